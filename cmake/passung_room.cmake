@@ -1,0 +1,25 @@
+# One static library per room. passung_room(core/base SOURCES a.cpp LINK Eigen3::Eigen PRIVATE_LINK assimp::assimp)
+# makes the target passung_core_base with the alias passung::core_base.
+
+include(GNUInstallDirs)
+
+# What every room is compiled with. Deterministic: no contraction, no fast-math, no -march
+# that would change results between machines. 16-byte alignment: the layout of the distribution's FCL.
+add_library(passung_flags INTERFACE)
+target_compile_options(passung_flags INTERFACE
+  $<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wshadow>
+  $<BUILD_INTERFACE:$<$<BOOL:${PASSUNG_WERROR}>:-Werror>>
+  -ffp-contract=off)
+target_compile_definitions(passung_flags INTERFACE EIGEN_MAX_ALIGN_BYTES=16)
+target_include_directories(passung_flags INTERFACE
+  $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/passung>)
+target_compile_features(passung_flags INTERFACE cxx_std_20)
+
+function(passung_room room)
+  cmake_parse_arguments(ROOM "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
+  string(REPLACE "/" "_" name ${room})
+  add_library(passung_${name} STATIC ${ROOM_SOURCES})
+  add_library(passung::${name} ALIAS passung_${name})
+  set_target_properties(passung_${name} PROPERTIES EXPORT_NAME ${name})
+  target_link_libraries(passung_${name} PUBLIC passung_flags ${ROOM_LINK} PRIVATE ${ROOM_PRIVATE_LINK})
+endfunction()

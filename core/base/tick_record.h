@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include "core/base/types.h"
+
+namespace passung {
+
+/// Which guard or limit acted in a tick, as a bit set. 0 = nothing to report.
+enum TickStatus : std::uint32_t {
+    kStatusOk = 0,
+    kInputHeld = 1u << 0,         // bad input sample: the last good pose was used
+    kInputRejected = 1u << 1,     // bad input for more than one tick: zero wrench
+    kDeviceStale = 1u << 2,       // no fresh sample
+    kNonFiniteLatched = 1u << 3,  // a computed wrench was not finite: zero until re-armed
+    kForceLimited = 1u << 4,      // the device's force or torque limit acted
+    kRateLimited = 1u << 5,       // the limit of rising force acted
+    kBudgetReached = 1u << 6,     // a query stopped at its node budget
+    kIterationLimit = 1u << 7,    // a solver stopped at its iteration cap
+    kContactCap = 1u << 8,        // more contacts than the manifold holds
+    kStepRejected = 1u << 9,      // the proxy's step was shortened by the acceptance test
+    kOverrun = 1u << 10,          // the previous cycle ended after its deadline
+    kEngaged = 1u << 16,          // the hand has reached the start pose: contact is rendered
+};
+
+/// What a device reports for one tick.
+struct DeviceReading {
+    Pose X_BD;                  // handle in the device's base frame
+    bool fresh = true;          // false: the device had nothing new
+    std::uint32_t buttons = 0;  // bit per button
+};
+
+/// One tick: its exact inputs, from which a replay reproduces everything else, and its outputs.
+/// Trivially copyable and of fixed size: it travels through a lock-free ring.
+struct TickRecord {
+    std::int64_t tick = 0;
+    // inputs, exact
+    std::array<double, 3> device_position_m{};  // raw reading, device base frame
+    std::array<double, 4> device_quaternion{};  // w, x, y, z
+    std::uint32_t input_flags = 0;              // bit 0: fresh; bits 8…31: buttons 0…23
+    std::uint32_t parameter_sequence = 0;       // which set of parameters was in force
+    // outputs as they are stored: 32-bit floats; scene frame W unless said otherwise
+    std::array<float, 3> hand_position_m{};  // X_WH: the held part where the device asks it to be
+    std::array<float, 4> hand_quaternion{};
+    std::array<float, 3> proxy_position_m{};  // X_WG; equals X_WH for penalty
+    std::array<float, 4> proxy_quaternion{};
+    std::array<float, 3> force_N{};    // on the hand, after the output stage
+    std::array<float, 3> torque_Nm{};  // about the held part's origin
+    float hand_depth_m = 0.0f;         // deepest point of the held part at X_WH, ≥ 0
+    float proxy_depth_m = 0.0f;        // the same at X_WG
+    float quality = 1.0f;              // area fraction of the shell proven or evaluated
+    std::uint32_t status = 0;          // TickStatus bits
+    std::uint32_t contacts = 0;        // points inside an obstacle at the proxy
+    std::uint32_t iterations = 0;      // proxy sub-steps
+    std::uint32_t nodes_visited = 0;
+    // measured, never compared by a replay
+    std::int64_t duration_ns = 0;  // of the tick's computation
+};
+static_assert(std::is_trivially_copyable_v<TickRecord>);
+
+inline constexpr double kTickSeconds = 1e-3;  // [s], the haptic period
+inline constexpr std::int64_t kTickNanoseconds = 1'000'000;
+
+}  // namespace passung

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "core/base/device_description.h"
+#include "core/base/tick_record.h"
+#include "core/base/types.h"
+
+namespace passung::loop {
+
+/// What a person sees of the scene, at the display's rate: never more than is on the screen.
+struct DisplayedImage {
+    std::int64_t tick = 0;
+    Pose X_WShown;         // the held part as drawn (proxy or device pose: the protocol's choice)
+    bool running = false;  // the trial has started (the "go" sign)
+};
+
+/// A haptic device, simulated or real. The loop calls read() then command() once a cycle, from one thread.
+/// Both are rt-safe: no allocation, lock or throw.
+class HapticDevice {
+public:
+    virtual ~HapticDevice() = default;
+    virtual const DeviceDescription& description() const = 0;
+    /// The newest reading. A simulated device first moves on by one tick under the last command.
+    virtual DeviceReading read() noexcept = 0;
+    /// `F_D_B`: wrench on the hand, about the handle's origin, in the device's base frame.
+    virtual void command(const Wrench& F_D_B) noexcept = 0;
+    /// A new frame on the display. Real devices ignore it; a simulated hand looks at it.
+    virtual void show(const DisplayedImage&) noexcept {}
+};
+
+}  // namespace passung::loop

@@ -1,0 +1,93 @@
+#include "core/loop/haptic_loop.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <time.h>
+
+#include <algorithm>
+#include <chrono>
+
+namespace passung::loop {
+
+namespace {
+
+constexpr int kPriority = 80;
+constexpr std::int64_t kSpinNanoseconds = 100'000;  // the timer wakes up this much early, the rest is spun
+
+std::int64_t now() noexcept {
+    timespec t{};
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return static_cast<std::int64_t>(t.tv_sec) * 1'000'000'000 + t.tv_nsec;
+}
+
+void sleepUntil(std::int64_t nanoseconds) noexcept {
+    const std::int64_t wake = nanoseconds - kSpinNanoseconds;
+    const timespec t{wake / 1'000'000'000, wake % 1'000'000'000};
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) != 0) {
+    }
+    while (now() < nanoseconds) {
+    }
+}
+
+}  // namespace
+
+HapticCycle::HapticCycle(const tick::TickModel& model, HapticDevice& device, RecordRing& ring, bool show_proxy)
+    : model_(model), state_(tick::makeState(model)), device_(device), ring_(ring), show_proxy_(show_proxy) {}
+
+void HapticCycle::run(bool late) noexcept {
+    const std::int64_t tick = state_.tick;
+    const DeviceReading reading = device_.read();
+    const std::int64_t begin = now();
+    const tick::TickOutput output = tick::step(model_, state_, reading);
+    const std::int64_t duration = now() - begin;
+    device_.command(output.F_D_B);
+    timing_.add(duration);
+
+    TickRecord record = tick::makeRecord(tick, reading, output);
+    record.duration_ns = duration;
+    if (late) record.status |= kOverrun;
+    ring_.tryPush(record);
+
+    if (tick == 0 || tick * kDisplayHz / 1000 != (tick - 1) * kDisplayHz / 1000) {
+        const bool running = (output.frame.status & kEngaged) != 0;
+        device_.show({tick, show_proxy_ ? output.X_WG : output.frame.X_WH, running});
+    }
+}
+
+RealTimeThread::RealTimeThread(HapticCycle& cycle) : cycle_(cycle), thread_([this] { main(); }) {}
+
+RealTimeThread::~RealTimeThread() { stop(); }
+
+void RealTimeThread::stop() {
+    running_.store(false);
+    if (thread_.joinable()) thread_.join();
+}
+
+void RealTimeThread::main() {
+    sched_param priority{};
+    priority.sched_priority = kPriority;
+    fifo_.store(pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority) == 0);
+    locked_.store(mlockall(MCL_CURRENT | MCL_FUTURE) == 0);
+    std::int64_t deadline = now() + kTickNanoseconds;
+    bool late = false;
+    while (running_.load(std::memory_order_relaxed)) {
+        sleepUntil(deadline);
+        lateness_.add(now() - deadline);
+        cycle_.run(late);
+        ticks_.store(cycle_.ticks(), std::memory_order_release);
+        deadline += kTickNanoseconds;
+        const std::int64_t end = now();
+        late = end > deadline;
+        if (late) {
+            // Cycles that were missed are not made up for: the next one is the next whole period from here.
+            const std::int64_t missed = (end - deadline) / kTickNanoseconds + 1;
+            overruns_.fetch_add(missed, std::memory_order_relaxed);
+            deadline += missed * kTickNanoseconds;
+        }
+    }
+    cycle_.release();
+    if (locked_.load()) munlockall();
+}
+
+}  // namespace passung::loop

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <thread>
+
+#include "core/base/tick_record.h"
+#include "core/loop/haptic_device.h"
+#include "core/loop/record_ring.h"
+#include "core/loop/timing.h"
+#include "core/tick/step.h"
+
+namespace passung::loop {
+
+inline constexpr std::int64_t kDisplayHz = 60;
+
+/// The haptic cycle, whatever clock drives it: read the device, compute the tick, command the wrench, record.
+class HapticCycle {
+public:
+    /// `show_proxy`: the display draws the proxy, otherwise the device's pose. Borrows everything.
+    HapticCycle(const tick::TickModel& model, HapticDevice& device, RecordRing& ring, bool show_proxy);
+
+    /// One cycle. `late`: the previous one ended after its deadline, for the record. rt-safe.
+    void run(bool late) noexcept;
+
+    /// Commands a zero wrench. rt-safe.
+    void release() noexcept { device_.command(Wrench{}); }
+
+    std::int64_t ticks() const { return state_.tick; }
+    std::uint64_t stateHash() const { return state_.hash; }
+    const TimingHistogram& timing() const { return timing_; }
+
+private:
+    const tick::TickModel& model_;
+    tick::TickState state_;
+    HapticDevice& device_;
+    RecordRing& ring_;
+    bool show_proxy_;
+    TimingHistogram timing_;
+};
+
+/// How the real-time thread runs on this machine.
+struct Scheduling {
+    bool fifo = false;           // SCHED_FIFO was granted
+    bool memory_locked = false;  // mlockall was granted
+};
+
+/// Drives a cycle at 1 kHz in a thread of its own: absolute timer, then a short spin. The thread asks for SCHED_FIFO
+/// and locked memory and goes on without them.
+class RealTimeThread {
+public:
+    explicit RealTimeThread(HapticCycle& cycle);
+    ~RealTimeThread();  // stops
+    RealTimeThread(const RealTimeThread&) = delete;
+    RealTimeThread& operator=(const RealTimeThread&) = delete;
+
+    /// Ends after the running cycle and releases the device.
+    void stop();
+
+    std::int64_t ticks() const noexcept { return ticks_.load(std::memory_order_acquire); }
+    std::int64_t overruns() const noexcept { return overruns_.load(std::memory_order_relaxed); }
+    Scheduling scheduling() const noexcept { return {fifo_.load(), locked_.load()}; }
+    /// How late the cycles began; read after stop().
+    const TimingHistogram& lateness() const { return lateness_; }
+
+private:
+    void main();
+
+    HapticCycle& cycle_;
+    std::atomic<bool> running_{true};
+    std::atomic<bool> fifo_{false}, locked_{false};
+    std::atomic<std::int64_t> ticks_{0}, overruns_{0};
+    TimingHistogram lateness_;
+    std::thread thread_;  // last: starts when everything else is there
+};
+
+}  // namespace passung::loop

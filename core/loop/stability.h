@@ -1,0 +1,35 @@
+#pragma once
+
+namespace passung::loop {
+
+/// A virtual wall felt through a sampled loop, one degree of freedom: a handle of `mass` with viscous `damping`, a
+/// force that is held between two ticks, and a wall whose spring and (backward difference) damper act `delay_ticks`
+/// late. The hand is left out: an arm adds mass and damping, for which the published linear condition still holds.
+/// Rotation uses the same numbers with inertia [kg·m²], [N·m·s/rad] and [N·m/rad].
+struct SampledWall {
+    double mass = 0.4;             // m [kg], > 0
+    double damping = 1.0;          // b of the mechanism [N·s/m], ≥ 0
+    double stiffness = 1000.0;     // K [N/m], ≥ 0
+    double virtual_damping = 0.0;  // B [N·s/m], ≥ 0
+    double period = 1e-3;          // T [s], > 0
+    int delay_ticks = 0;           // d, 0 … kMaxDelayTicks
+};
+
+inline constexpr int kMaxDelayTicks = 24;
+
+/// True if every motion against the wall dies out (exact for the model; the border itself counts as unstable).
+/// Values out of range, NaN included, are not stable.
+bool isStable(const SampledWall& wall);
+
+/// The stiffness up to which every smaller one is stable too, all else as in `wall` (its own stiffness is ignored)
+/// [N/m]. 0 if already a very soft wall is unstable.
+double stableStiffnessBorder(const SampledWall& wall);
+
+/// The largest stiffness at which the wall can never give out energy [N/m]; 0 if there is none. Stricter than stable.
+double passiveStiffness(const SampledWall& wall);
+
+/// The rule of thumb K = (b + B)/(T/2 + t_d) [N/m]. The tangent of the exact border at the origin: optimistic as soon
+/// as B outweighs b (by 5 % at BT/m = 0.05), so an upper estimate and no guarantee.
+double linearStiffness(const SampledWall& wall);
+
+}  // namespace passung::loop

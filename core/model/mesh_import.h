@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/model/mesh.h"
+
+namespace passung::model {
+
+/// What a loaded mesh is like and what was done about it. Edges are those of the mesh after welding and dropping,
+/// before triangles were turned; a count of what was wrong stays although it was put right.
+struct MeshReport {
+    std::string file;
+    std::string format;
+    double metres_per_unit = 1e-3;
+    std::size_t triangles_read = 0;
+    std::size_t triangles = 0;             // after the repair
+    std::size_t vertices = 0;              // after the repair
+    std::size_t welded_vertices = 0;       // equal positions joined; usual: STL repeats every corner
+    std::size_t degenerate_triangles = 0;  // without area: dropped
+    std::size_t duplicate_triangles = 0;   // same three corners, whichever way round: dropped but for the first
+    std::size_t boundary_edges = 0;        // edges of one triangle
+    std::size_t holes = 0;                 // closed chains of boundary edges; the border of an open sheet is one
+    std::size_t non_manifold_edges = 0;    // edges of three or more triangles
+    std::size_t inconsistent_edges = 0;    // two neighbours run the same way along an edge
+    std::size_t turned_triangles = 0;      // the smaller side of such a quarrel: turned to agree with the other
+    std::size_t shells = 0;                // pieces that hang together by edges
+    bool watertight = false;               // after the repair every edge is used once in each direction
+    bool turned_inside_out = false;        // negative volume: all triangles were turned
+    Vec3 size = Vec3::Zero();              // [m]
+    double area = 0.0;                     // [m²]
+    double volume = 0.0;                   // [m³]; of a watertight mesh, otherwise 0
+    std::vector<std::string> notes;        // sentences: each defect and what was done about it
+};
+
+struct ImportedMesh {
+    TriangleMesh mesh;
+    MeshReport report;
+};
+
+/// Reads a mesh file (STL, OBJ, PLY, OFF, glTF, 3MF … by assimp), all nodes with their transforms, as metres.
+/// `metres_per_unit` (> 0) applies to formats without a unit. glTF is in metres; a 3MF file names its unit, millimetre
+/// if it names none. Polygons are cut into triangles; points and lines are ignored.
+/// Errors: file missing or unreadable, no triangles with area, non-finite vertices.
+Result<ImportedMesh> importMesh(const std::string& path, double metres_per_unit);
+
+/// The same checks and repairs for triangles that are already in memory. @pre finite vertices, indices in range.
+ImportedMesh repairMesh(TriangleMesh mesh);
+
+}  // namespace passung::model

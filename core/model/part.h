@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/base/result.h"
+#include "core/model/distance_field.h"
+#include "core/model/mesh.h"
+#include "core/model/mesh_import.h"
+#include "core/model/scene_spec.h"
+#include "core/model/sphere_tree.h"
+
+namespace passung::model {
+
+/// What a scene needs of a part; what is not needed is not built.
+struct PartNeeds {
+    bool field = false;
+    bool shell = false;
+    double tolerance = 20e-6;  // of the field [m]; see chooseCell
+    double cell = 0.0;         // of the field [m]; 0 = chosen from the tolerance
+    double spacing = 1e-3;     // of the shell [m]
+};
+
+/// A part ready for contact: geometry, distance field, point shell. Built once, then const.
+struct Part {
+    std::string name;
+    std::optional<Shape> shape;  // if parametric: its closed form is the truth
+    TriangleMesh mesh;           // part frame, metres
+    MeshReport report;
+    double chord_error = 0.0;  // of the mesh against the shape [m]
+    std::optional<DistanceField> field;
+    std::optional<SphereTree> shell;
+};
+
+/// Errors: unreadable mesh, invalid shape, a field too large.
+Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs);
+
+/// Exact distances to the geometry of `part`: the closed form of a shape, the triangles of a mesh.
+/// The result holds what it needs; `part` may go.
+DistanceSource exactSource(const Part& part);
+
+/// The largest cell (halving from 1/32 of the part's longest side) whose trilinear error, measured at fixed random
+/// points within a cell of the surface, is ≤ `tolerance` for 90 % of them. Points at sharp edges err more at any cell
+/// size; DistanceField::errorBound holds everywhere.
+double chooseCell(const DistanceSource& source, const TriangleMesh& mesh, double tolerance);
+
+}  // namespace passung::model

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/base/types.h"
+#include "core/model/mesh.h"
+
+namespace passung::model {
+
+/// One sample of a surface; part frame, metres.
+struct SurfacePoint {
+    Vec3 position;
+    Vec3 normal;        // unit, outward: the mean of the patch that the point stands for
+    double area = 0.0;  // of that patch [m²]; 0 for samples on edges and corners, which represent no area
+};
+
+/// Blue-noise samples of a surface with the area that each stands for, plus samples along sharp edges and at corners
+/// (a rim must not slip between points).
+struct PointShell {
+    std::vector<SurfacePoint> points;
+    double total_area = 0.0;    // [m²], equals the mesh's area
+    double cover_radius = 0.0;  // no point of the surface is farther than this from a sample [m]
+};
+
+/// Samples `mesh` about `spacing` [m] apart; the same mesh and spacing give the same points.
+///   Candidates: the triangles, cut until no edge is longer than 0.4 spacings; each candidate is a cut triangle's
+///   centroid with its area. A Poisson-disk subset of them, relaxed by Lloyd's iteration, becomes the samples; a
+///   candidate belongs to the nearest sample whose normal is within 60° of its own, so that no patch joins two sides of
+///   a wall.
+/// A patch's area is the sum of its candidates' areas and its normal that of the summed area vectors, so that
+/// Σ area = area of the mesh and Σ area · normal = 0 on a closed mesh up to the patches' curvature.
+PointShell samplePoints(const TriangleMesh& mesh, double spacing);
+
+}  // namespace passung::model

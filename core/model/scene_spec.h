@@ -1,0 +1,89 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/base/types.h"
+#include "core/model/shape.h"
+
+namespace passung::model {
+
+/// Where the geometry of a part comes from: a file or a parametric shape.
+struct MeshFile {
+    std::string path;  // as a reader can open it (already relative to the working directory)
+    double metres_per_unit = 1e-3;
+};
+
+/// A part as a scene file describes it; SI units.
+struct PartSpec {
+    std::string name;
+    std::variant<Shape, MeshFile> geometry;
+    Pose X_WP;                         // part to world at the start
+    bool held = false;                 // the hand's part; exactly one in a scene
+    Vec3 shown_offset = Vec3::Zero();  // drawn this far from where it is touched, world axes [m]
+};
+
+enum class ContactMethod { Penalty, GodObjectHeuristic };
+enum class PenaltyVariant { MaxNormalised, AreaWeighted, Raw };
+enum class FieldMode { Trilinear, Linear };  // Linear: the thesis's one-sided four-sample V_I
+
+struct ContactSpec {
+    ContactMethod method = ContactMethod::GodObjectHeuristic;
+    PenaltyVariant variant = PenaltyVariant::MaxNormalised;
+    double stiffness = 1000.0;          // [N/m], > 0
+    double rotational_stiffness = 1.0;  // [N·m/rad], ≥ 0
+    double damping = 0.0;               // [N·s/m], ≥ 0
+    double rotational_damping = 0.0;    // [N·m·s/rad], ≥ 0
+    double area_stiffness = 1e9;        // κ [N/m³], > 0; area-weighted penalty only
+    double tolerance = 20e-6;           // asked accuracy of the distance field near surfaces [m], > 0
+    double cell = 0.0;                  // edge of a field cell [m]; 0 = chosen from the tolerance
+    double spacing = 1.0e-3;            // of the point shell [m], > 0
+    FieldMode mode = FieldMode::Trilinear;
+    int budget_nodes = 0;       // per query; 0 = no budget
+    double proxy_filter = 0.0;  // corner of the proxy's low-pass while in contact [Hz]; 0 = none
+};
+
+inline constexpr int kMaxDelayTicks = 100;
+
+/// Limits that the output stage holds; filled from the device's description, tightened by the scene.
+struct OutputLimits {
+    double max_force = 12.0;          // [N], > 0
+    double max_torque = 0.2;          // [N·m], ≥ 0
+    double max_force_rate = 10000.0;  // [N/s] while rising, > 0
+    double max_speed = 20.0;          // [m/s], a faster reading is a broken one
+    double max_spin = 200.0;          // [rad/s]
+    bool actuates_torque = true;
+    int delay_ticks = 0;  // added between command and effect
+};
+
+/// Maps device space to the scene: X_WH = align · scale(X_BD) · handle.
+struct Registration {
+    Pose X_WB;           // device base in the scene
+    double scale = 1.0;  // scene metres per device metre, > 0
+    Pose X_DH;           // held part in the handle
+};
+
+/// When does contact start: the hand has to hold the start pose first (0 = at once).
+struct StartGate {
+    double position_tolerance = 0.0;  // [m]
+    double angle_tolerance = 0.0;     // [rad]
+    int hold_ticks = 0;
+};
+
+struct SceneSpec {
+    std::vector<PartSpec> parts;
+    ContactSpec contact;
+    OutputLimits limits;
+    Registration registration;
+    StartGate start_gate;
+    bool record_hand_depth = true;  // an extra query at the device pose for god objects
+
+    /// Everything wrong with the values, cross-field rules included. Finite first.
+    std::vector<Error> validate() const;
+};
+
+}  // namespace passung::model

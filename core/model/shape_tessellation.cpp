@@ -1,0 +1,264 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include "core/model/shape.h"
+
+namespace passung::model {
+
+namespace {
+
+using std::numbers::pi;
+using Index = std::uint32_t;
+using Ring = std::vector<Index>;  // counter-clockwise seen from +z
+
+constexpr int kFewestSegments = 12;
+constexpr int kMostSegments = 2048;  // its chord error is 1.2e-6 of the radius: below any tolerance that is asked for
+
+/// Segments of a circle so that the sagitta r(1 - cos(π/n)) stays within `chord_error`; divisible by 4, so that the
+/// extreme points on the axes are vertices.
+int segmentsFor(double radius, double chord_error) {
+    const double cosine = std::clamp(1.0 - chord_error / radius, 0.0, 1.0);
+    const double half_angle = std::acos(cosine);
+    const double wanted = half_angle > 0.0 ? pi / half_angle : kMostSegments;
+    const int segments = static_cast<int>(std::ceil(std::min<double>(wanted, kMostSegments)));
+    return std::clamp((segments + 3) / 4 * 4, kFewestSegments, kMostSegments);
+}
+
+/// Appends vertices and triangles; every face is given counter-clockwise as seen from outside.
+class Builder {
+public:
+    Index vertex(double x, double y, double z) {
+        mesh_.vertices.emplace_back(x, y, z);
+        return static_cast<Index>(mesh_.vertices.size() - 1);
+    }
+    void triangle(Index a, Index b, Index c) { mesh_.triangles.push_back({a, b, c}); }
+    void quad(Index a, Index b, Index c, Index d) {
+        triangle(a, b, c);
+        triangle(a, c, d);
+    }
+
+    Ring ring(double radius, double z, int segments) {
+        Ring result;
+        for (int k = 0; k < segments; ++k) {
+            const auto [c, s] = direction(k, segments);
+            result.push_back(vertex(radius * c, radius * s, z));
+        }
+        return result;
+    }
+    Ring rectangle(double half_width, double half_depth, double z) {
+        return {vertex(half_width, half_depth, z), vertex(-half_width, half_depth, z),
+                vertex(-half_width, -half_depth, z), vertex(half_width, -half_depth, z)};
+    }
+
+    /// Disc around a new centre vertex, facing up or down.
+    void disc(const Ring& rim, double z, bool up) {
+        const Index centre = vertex(0.0, 0.0, z);
+        for (std::size_t k = 0; k < rim.size(); ++k) {
+            const Index a = rim[k], b = rim[(k + 1) % rim.size()];
+            up ? triangle(centre, a, b) : triangle(centre, b, a);
+        }
+    }
+    /// The band between two rings of equal size; it faces away from the axis if `upper` lies above `lower`, toward the
+    /// axis if the two are exchanged.
+    void band(const Ring& lower, const Ring& upper) {
+        for (std::size_t k = 0; k < lower.size(); ++k) {
+            const std::size_t next = (k + 1) % lower.size();
+            quad(lower[k], lower[next], upper[next], upper[k]);
+        }
+    }
+    /// Rectangle (corners in the four quadrants, in order) without the polygon `rim` around the axis. Each corner sees
+    /// the whole quarter of the rim in its quadrant; one triangle per side of the rectangle joins two quarters.
+    void faceWithHole(const Ring& corners, const Ring& rim, bool up) {
+        const std::size_t n = rim.size(), quarter = n / 4;
+        for (std::size_t q = 0; q < 4; ++q) {
+            const Index corner = corners[q];
+            for (std::size_t k = q * quarter; k < (q + 1) * quarter; ++k)
+                up ? triangle(corner, rim[(k + 1) % n], rim[k]) : triangle(corner, rim[k], rim[(k + 1) % n]);
+            const Index next = corners[(q + 1) % 4], middle = rim[(q + 1) * quarter % n];
+            up ? triangle(corner, next, middle) : triangle(next, corner, middle);
+        }
+    }
+
+    TriangleMesh take() { return std::move(mesh_); }
+
+private:
+    /// Cosine and sine of 2π k/n, mirrored from the first quarter so that the polygon is exactly symmetric.
+    static std::array<double, 2> direction(int k, int n) {
+        const int quarter = n / 4, q = k / quarter, j = k % quarter;
+        const double angle = 2.0 * pi * j / n;
+        const double c = std::cos(angle), s = std::sin(angle);
+        switch (q) {
+            case 0:
+                return {c, s};
+            case 1:
+                return {-s, c};
+            case 2:
+                return {-c, -s};
+            default:
+                return {s, -c};
+        }
+    }
+
+    TriangleMesh mesh_;
+};
+
+/// Largest distance between the sphere of radius 1 and a triangle with corners on it: at its circumcentre, or nearer.
+double sphereError(const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3 normal = (b - a).cross(c - a).normalized();
+    return 1.0 - std::abs(normal.dot(a));
+}
+
+/// Vertex (i, j) of an octant in `rows` rows: row i lies at the polar angle i/rows of a right angle, j/i along it.
+/// Edges then differ in length by at most 1.6, without the slivers that meridians make at the poles.
+Vec3 octantPoint(int i, int j, int rows) {
+    const double theta = 0.5 * pi * i / rows;
+    const double phi = i > 0 ? 0.5 * pi * j / i : 0.0;
+    return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+}
+
+double octantError(int rows) {
+    double error = 0.0;
+    for (int i = 0; i < rows; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            const Vec3 a = octantPoint(i, j, rows), b = octantPoint(i + 1, j, rows),
+                       c = octantPoint(i + 1, j + 1, rows);
+            error = std::max(error, sphereError(a, b, c));
+            if (j < i) error = std::max(error, sphereError(a, c, octantPoint(i, j + 1, rows)));
+        }
+    }
+    return error;
+}
+
+int rowsFor(double radius, double chord_error) {
+    int rows = segmentsFor(radius, chord_error) / 4;
+    const double allowed = chord_error / radius;
+    for (double error = octantError(rows); error > allowed && rows < kMostSegments / 4; error = octantError(rows))
+        rows = std::min(kMostSegments / 4, std::max(rows + 1, static_cast<int>(rows * std::sqrt(error / allowed))));
+    return rows;
+}
+
+/// Rows of octants from the north pole over the equator to the south pole. Ring i has 4i vertices.
+TriangleMesh tessellateShape(const Sphere& sphere, double chord_error) {
+    const double radius = 0.5 * sphere.diameter;
+    const int rows = rowsFor(radius, chord_error);
+    Builder builder;
+    const auto makeRing = [&](int i, double hemisphere) {
+        if (i == 0) return Ring{builder.vertex(0.0, 0.0, hemisphere * radius)};
+        if (i == rows) return builder.ring(radius, 0.0, 4 * i);
+        const double theta = 0.5 * pi * i / rows;
+        return builder.ring(radius * std::sin(theta), hemisphere * radius * std::cos(theta), 4 * i);
+    };
+    // `small` has 4i vertices, `large` 4(i+1); `small` lies nearer to the pole.
+    const auto joinRings = [&](const Ring& small, const Ring& large, int i, bool north) {
+        for (int q = 0; q < 4; ++q) {
+            const auto inner = [&](int j) {
+                return small[static_cast<std::size_t>(i == 0 ? 0 : (q * i + j) % (4 * i))];
+            };
+            const auto outer = [&](int j) {
+                return large[static_cast<std::size_t>((q * (i + 1) + j) % (4 * (i + 1)))];
+            };
+            for (int j = 0; j <= i; ++j) {
+                const Index a = inner(j), b = outer(j), c = outer(j + 1);
+                north ? builder.triangle(a, b, c) : builder.triangle(a, c, b);
+                if (j == i) continue;
+                const Index d = inner(j + 1);
+                north ? builder.triangle(a, c, d) : builder.triangle(a, d, c);
+            }
+        }
+    };
+    Ring previous = makeRing(0, 1.0);
+    for (int m = 1; m <= 2 * rows; ++m) {
+        const bool north = m <= rows;
+        const Ring next = makeRing(north ? m : 2 * rows - m, north ? 1.0 : -1.0);
+        north ? joinRings(previous, next, m - 1, true) : joinRings(next, previous, 2 * rows - m, false);
+        previous = next;
+    }
+    return builder.take();
+}
+
+TriangleMesh tessellateShape(const Box& box, double) {
+    Builder builder;
+    const Ring low = builder.rectangle(0.5 * box.width, 0.5 * box.depth, -0.5 * box.height);
+    const Ring high = builder.rectangle(0.5 * box.width, 0.5 * box.depth, 0.5 * box.height);
+    builder.band(low, high);
+    builder.quad(high[0], high[1], high[2], high[3]);
+    builder.quad(low[3], low[2], low[1], low[0]);
+    return builder.take();
+}
+
+TriangleMesh tessellateShape(const Sheet& sheet, double) {
+    Builder builder;
+    const Ring corners = builder.rectangle(0.5 * sheet.width, 0.5 * sheet.depth, 0.0);
+    builder.quad(corners[0], corners[1], corners[2], corners[3]);
+    return builder.take();
+}
+
+TriangleMesh tessellateShape(const Cylinder& cylinder, double chord_error) {
+    const double radius = 0.5 * cylinder.diameter, half = 0.5 * cylinder.length;
+    const int segments = segmentsFor(radius, chord_error);
+    Builder builder;
+    const Ring low = builder.ring(radius, -half, segments);
+    const Ring high = builder.ring(radius, half, segments);
+    builder.disc(low, -half, false);
+    builder.band(low, high);
+    builder.disc(high, half, true);
+    return builder.take();
+}
+
+TriangleMesh tessellateShape(const Peg& peg, double chord_error) {
+    const double radius = 0.5 * peg.diameter;
+    const int segments = segmentsFor(radius, chord_error);
+    Builder builder;
+    const Ring edge = builder.ring(radius, peg.chamfer, segments);
+    const Ring end = builder.ring(radius, peg.length, segments);
+    if (peg.chamfer > 0.0) {
+        const Ring tip = builder.ring(radius - peg.chamfer, 0.0, segments);
+        builder.disc(tip, 0.0, false);
+        builder.band(tip, edge);
+    } else {
+        builder.disc(edge, 0.0, false);
+    }
+    builder.band(edge, end);
+    builder.disc(end, peg.length, true);
+    return builder.take();
+}
+
+TriangleMesh tessellateShape(const BorePlate& plate, double chord_error) {
+    const double bore = 0.5 * plate.bore_diameter, mouth = bore + plate.chamfer;
+    const bool through = plate.bore_depth >= plate.height;
+    const double floor_z = through ? -plate.height : -plate.bore_depth;
+    const int segments = segmentsFor(mouth, chord_error);
+    Builder builder;
+    const Ring top = builder.rectangle(0.5 * plate.width, 0.5 * plate.depth, 0.0);
+    const Ring bottom = builder.rectangle(0.5 * plate.width, 0.5 * plate.depth, -plate.height);
+    const Ring neck = builder.ring(bore, -plate.chamfer, segments);
+    const Ring end = builder.ring(bore, floor_z, segments);
+    builder.band(bottom, top);
+    builder.band(neck, end);  // the wall faces the axis
+    if (plate.chamfer > 0.0) {
+        const Ring rim = builder.ring(mouth, 0.0, segments);
+        builder.faceWithHole(top, rim, true);
+        builder.band(rim, neck);
+    } else {
+        builder.faceWithHole(top, neck, true);
+    }
+    if (through) {
+        builder.faceWithHole(bottom, end, false);
+    } else {
+        builder.disc(end, floor_z, true);
+        builder.quad(bottom[3], bottom[2], bottom[1], bottom[0]);
+    }
+    return builder.take();
+}
+
+}  // namespace
+
+TriangleMesh tessellate(const Shape& shape, double chord_error) {
+    return std::visit([&](const auto& s) { return tessellateShape(s, chord_error); }, shape);
+}
+
+}  // namespace passung::model

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/types.h"
+#include "core/model/mesh.h"
+
+namespace passung::model {
+
+/// Closest point on a set of triangles.
+struct ClosestPoint {
+    double distance = 0.0;  // [m], unsigned
+    Vec3 point = Vec3::Zero();
+    std::uint32_t triangle = 0;
+};
+
+/// Bounding volume hierarchy over the triangles of a mesh: exact distance and winding number.
+/// Built once, then const; every query is thread-safe and deterministic.
+class TriangleTree {
+public:
+    explicit TriangleTree(const TriangleMesh& mesh);  // copies what it needs; @pre at least one triangle
+
+    /// Exact; searches no farther than `limit` (then distance = limit and the point is meaningless).
+    ClosestPoint closest(const Vec3& p, double limit = 1e300) const;
+
+    /// Generalised winding number (Jacobson 2013) with dipoles for far clusters (Barill 2018): about 1 inside, 0
+    /// outside.
+    double windingNumber(const Vec3& p) const;
+
+    bool inside(const Vec3& p) const { return windingNumber(p) > 0.5; }
+
+private:
+    struct Node {
+        Vec3 low, high;              // box
+        std::uint32_t first, count;  // triangles if a leaf (count > 0), else left child = first, right = first + 1
+    };
+    /// What a node's triangles look like from afar.
+    struct Cluster {
+        Vec3 centre;         // area-weighted centre of the triangles below
+        Vec3 dipole;         // sum of area · normal [m²]
+        double far_squared;  // a point farther than this (squared) from `centre` sees the dipole [m²]
+    };
+    struct Corners {
+        Vec3 a, b, c;
+        bool needle;  // very long for its height, or without area
+    };
+
+    Cluster summarise(std::uint32_t first, std::uint32_t count) const;
+
+    std::vector<Node> nodes_;
+    std::vector<Cluster> clusters_;        // per node
+    std::vector<Corners> corners_;         // in tree order
+    std::vector<std::uint32_t> original_;  // index in the mesh, in tree order
+};
+
+}  // namespace passung::model

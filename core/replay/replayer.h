@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "core/base/tick_record.h"
+#include "core/model/scene.h"
+
+namespace passung::replay {
+
+/// The first place where a replay and its recording differ.
+struct Difference {
+    std::int64_t tick = 0;
+    std::string column;
+    double recorded = 0.0, replayed = 0.0;
+};
+
+struct ReplayReport {
+    std::int64_t ticks = 0;
+    std::optional<Difference> first_difference;  // in a recorded output
+    std::uint64_t state_hash = 0;                // over the exact outputs of all ticks
+};
+
+/// Runs the recorded inputs of one attempt through the tick again and compares every recorded output bit for bit;
+/// durations and the overrun bit are measurements and not compared.
+/// @pre `records` are the attempt's ticks from tick 0 without gaps (gap: reported as a difference in "tick").
+ReplayReport replay(const model::Scene& scene, std::span<const TickRecord> records);
+
+}  // namespace passung::replay

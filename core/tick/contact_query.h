@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/base/types.h"
+#include "core/model/distance_field.h"
+#include "core/model/sphere_tree.h"
+
+namespace passung::tick {
+
+/// One shell point near or inside an obstacle; world frame.
+struct ContactPoint {
+    Vec3 position;      // p_WP [m]
+    Vec3 normal;        // of the shell, unit, outward from the held part; of the field (turned) for edge samples
+    Vec3 gradient;      // of φ, as interpolated
+    double phi = 0.0;   // [m], < 0 inside the obstacle
+    double area = 0.0;  // [m²]
+};
+
+/// Contact manifold of one query or of several (it is appended to). Memory is sized once.
+class ContactManifold {
+public:
+    explicit ContactManifold(std::size_t capacity = 0) : points_(capacity) {}
+    void clear() noexcept { count_ = 0; }
+    /// False if full.
+    bool tryPush(const ContactPoint& point) noexcept {
+        if (count_ == points_.size()) return false;
+        points_[count_++] = point;
+        return true;
+    }
+    const ContactPoint* begin() const noexcept { return points_.data(); }
+    const ContactPoint* end() const noexcept { return points_.data() + count_; }
+    std::size_t size() const noexcept { return count_; }
+    const ContactPoint& operator[](std::size_t i) const noexcept { return points_[i]; }
+
+private:
+    std::vector<ContactPoint> points_;
+    std::size_t count_ = 0;
+};
+
+/// Memory of a traversal, sized once for a tree.
+class QueryWorkspace {
+public:
+    explicit QueryWorkspace(std::size_t nodes = 0) : heap_(nodes) {}
+
+private:
+    struct Entry {
+        double bound;  // no point below the node is nearer than this [m]
+        std::uint32_t node;
+    };
+    std::vector<Entry> heap_;
+    friend struct Traversal;
+};
+
+/// What a query is asked for.
+struct QueryRequest {
+    double collect_below = 0.0;  // points with φ < this go into the manifold [m] (the thesis's p_c)
+    double search_below = 0.0;   // the deepest or closest point is searched up to this φ [m]
+    int max_nodes = 0;           // budget (the thesis's η_c, in nodes so that it is deterministic); 0 = none
+    model::FieldMode mode = model::FieldMode::Trilinear;
+    bool prove = false;  // also find QueryAnswer::lower_bound; costs about as much again
+};
+
+struct QueryAnswer {
+    bool found = false;             // a point with φ < search_below exists
+    double phi = 0.0;               // of the deepest or closest point if found, else search_below (a lower bound)
+    Vec3 closest_W = Vec3::Zero();  // that point
+    Vec3 normal_W = Vec3::Zero();   // unit gradient of φ there: out of the obstacle
+    Vec3 closest_F = Vec3::Zero();  // the same point in the field's frame
+    double lower_bound = 0.0;       // if asked to prove: no point of the shell has a true φ below this [m]
+    double quality = 1.0;           // share of the shell's area pruned with proof or evaluated point by point
+    int nodes_visited = 0;
+    int points_tested = 0;
+    bool budget_reached = false;
+    bool manifold_full = false;
+};
+
+/// Collision, proximity and penalty in one traversal of a point-sphere tree against a distance field.
+///   Source: Sagardia 2019, algorithm 3.1 (reconstructed), with φ = -V.
+///   Best first by  b = φ_low(c) - R,  φ_low a rigorous lower bound of φ at the sphere's centre c and R its radius:
+///   φ is 1-Lipschitz, so no point below the node has φ < b, and a node with  b ≥ max(collect, min(search, best))
+///   is pruned with proof. A leaf's points are all evaluated.
+///   Limit cases: everything far → the roots are all that is visited; a budget that ends → each node still waiting is
+///   represented by its own point with the area of all points below (the wrench stays consistent), and `quality`
+///   says which share of the area was proven or evaluated.
+/// Appends to `manifold`. rt-safe; the number of steps is bounded by the number of nodes.
+/// @pre `workspace` has room for all nodes of `shell`; poses are finite.
+QueryAnswer queryContacts(const model::DistanceField& field, const Pose& X_WF, const model::SphereTree& shell,
+                          const Pose& X_WS, const QueryRequest& request, QueryWorkspace& workspace,
+                          ContactManifold& manifold) noexcept;
+
+}  // namespace passung::tick

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "core/tick/tick_model.h"
+
+namespace passung::tick {
+
+/// The constraint-based method on top of the penalty query: the god object heuristic.
+/// Source: Sagardia 2019, chapter 4, steps #1-#8, of which only the names and the order are at hand; what a step does
+/// is reconstructed, and the deviations below are ours.
+///
+/// Symbols: G proxy, H hand, P_i contact points with φ_i and gradient g_i = ∇φ (out of the obstacle), r_i = P_i - o,
+/// o the held part's origin, s the finest cell, ρ = metric_radius.
+/// A small motion u = (Δx, ρ Δφ) of the proxy changes φ_i to first order by  a_i · u,  a_i = (g_i, (r_i × g_i) / ρ).
+///
+/// #1 contacts at the previous proxy G_{k-1}, not at the hand: that is what keeps the overlap small. All points that
+/// this
+///    tick's motion could reach are taken (φ < reach), not only those inside: a constraint that is known before it is
+///    violated cannot be jumped.
+/// #2 correction of the previous proxy if its overlap p_max exceeds kKeep · s: rotation by θ about the penalty torque,
+/// the
+///    least squares of  θ h_i = p_i  over the contacts with a lever h_i = n_i · (T̂ × r_i), and translation along the
+///    penalty force, shared by  λ = ‖F‖ / (‖F‖ + ‖T‖/ρ):  Δx = λ p_max F̂,  Δφ = (1 - λ) θ T̂.  Accepted only if the
+///    query at the corrected pose finds less overlap; halved otherwise, at most kCorrections times.
+/// #3 unconstrained motion  u = (x_H - x_G, ρ log(R_H R_Gᵀ)).
+/// #4 constrained motion: the least change of u (Gauss) under  a_i · u ≥ -kKeep·s - φ_i.  Rows are added one at a time,
+/// the
+///    most violated first, and solved by projected Gauss-Seidel: exact at convergence, never more than kRows rows. The
+///    step is cut to `reach`, checked by a query, halved until the overlap is acceptable, and repeated from the new
+///    pose up to kSubSteps times.
+/// #5 low-pass of the proxy, a stage of its own (only if the scene names its corner f_c), while in contact:
+///    G_k = G_{k-1} ⊕ α (G* ⊖ G_{k-1}),  α = 1 - exp(-2π f_c T); dropped for a tick where it would cost overlap. #6
+///    coupling: virtual_coupling.h. #7, #8 limits and sending: output_stage.h.
+///
+/// Why ρ² = K_φ / K: the proxy then minimises the coupling's energy  ½K|x_H - x_G|² + ½K_φ|φ|²  under the constraints.
+/// At the minimum the coupling wrench is a sum of contact forces λ_i a_i, λ_i ≥ 0, so that no friction is felt that
+/// nobody asked for. (With K_φ = 0, ρ is the shell's radius of gyration.)
+/// Limit cases: no contact in reach → G = H. One plane → G is H's projection onto it; the overlap there is kKeep · s.
+/// Invariants: between two ticks no point of the shell moves by more than it was known to be away from the obstacle
+/// plus what was found at the next pose; overlap ≤ kAccept · s unless the scene started with more. Keeping kKeep · s of
+/// overlap instead of none lets the record tell contact from nearness.
+inline constexpr double kKeep = 0.01;    // overlap kept, per cell
+inline constexpr double kAccept = 0.05;  // overlap accepted by the test, per cell
+inline constexpr int kSubSteps = 4;
+inline constexpr int kCorrections = 3;
+inline constexpr int kHalvings = 4;
+inline constexpr int kRows = 24;
+
+/// Stages, in this order.
+void correctProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept;  // #1, #2
+void moveProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept;     // #3, #4
+void filterProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept;   // #5
+/// Writes the depths and the number of contacts of the frame's record.
+void describeProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+/// Depth of the held part at the hand's pose: only for the record, an extra query.
+void measureHandDepth(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+
+}  // namespace passung::tick

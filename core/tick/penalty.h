@@ -1,0 +1,39 @@
+#pragma once
+
+#include "core/tick/tick_model.h"
+
+namespace passung::tick {
+
+/// Stage: contact at the device's pose.
+///   Reads X_WH; fills the manifold with all points inside obstacles; writes depth, contacts, quality.
+///   The proxy follows the device: X_WG = X_WH.
+void findContactsAtHand(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+
+/// Penalty wrench of a manifold on the held part about `p_WO`, world axes (Sagardia 2019, 3.3; McNeely 1999). rt-safe.
+///   p_i = max(0, -φ_i) depth, n_i the shell's inward normal, a_i area, r_i = P_i - O.
+///   area_weighted   F = κ Σ a_i p_i n_i            T = Σ r_i × f_i
+///   raw             F = K Σ p_i n_i                T = Σ r_i × f_i
+///   max_normalised  as raw, scaled so that ‖F‖ = K p_max (one stiffness K, whatever the contact area).
+/// Derivation of the first: on a half-space p is linear in space, so by the divergence theorem
+///   F = κ ∫ p n dA = κ V n_plane, V the submerged volume, acting through its centroid, for any closed body;
+/// the wet part of the plane itself adds nothing because p = 0 there.
+/// Limit cases: no depth → zero wrench. Opposite contacts (a peg squeezed in a bore): Σ p_i n_i → 0 while p_max stays,
+/// and the scale of max_normalised would grow without bound; it is therefore held at Σ p_i n_i ≥ kLeastCoherence · Σ
+/// p_i (our addition), which lets the force fade to zero there.
+Wrench penaltyWrench(const model::ContactSpec& contact, const ContactManifold& manifold, const Vec3& p_WO) noexcept;
+inline constexpr double kLeastCoherence = 0.2;
+
+/// Stage: the wrench of the manifold on the hand, with viscous damping along the force while in contact:
+///   F += -b (v · F̂) F̂,  b = damping, v the hand's velocity; the same for the torque.
+/// A damper may not pull: its part is limited so that F · F̂ stays ≥ 0.
+void renderPenalty(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+
+/// Contact points with φ < `collect_below` of all obstacles for the held part at `X_WS`. Returns the deepest or closest
+/// answer; nodes and quality are added up.
+QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, double collect_below, double search_below,
+                           QueryWorkspace& workspace, ContactManifold& manifold) noexcept;
+
+/// Books a query's cost and completeness in the frame.
+void account(const QueryAnswer& answer, TickFrame& frame) noexcept;
+
+}  // namespace passung::tick

@@ -1,0 +1,94 @@
+#include "core/tick/step.h"
+
+#include <bit>
+
+namespace passung::tick {
+
+namespace {
+
+/// Mixes the bits of one value into the hash (multiply and fold, 64 bit).
+void mix(std::uint64_t& hash, std::uint64_t bits) noexcept {
+    hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
+    hash ^= hash >> 32;
+}
+
+void mix(std::uint64_t& hash, const Vec3& v) noexcept {
+    for (int i = 0; i < 3; ++i) mix(hash, std::bit_cast<std::uint64_t>(v[i]));
+}
+
+void mix(std::uint64_t& hash, const Pose& pose) noexcept {
+    mix(hash, pose.p);
+    mix(hash, pose.q.vec());
+    mix(hash, std::bit_cast<std::uint64_t>(pose.q.w()));
+}
+
+void mixOutputs(std::uint64_t& hash, const TickFrame& frame, const Pose& X_WG) noexcept {
+    mix(hash, frame.X_WH);
+    mix(hash, X_WG);
+    mix(hash, frame.F_H_W.force);
+    mix(hash, frame.F_H_W.torque);
+    mix(hash, frame.F_D_B.force);
+    mix(hash, frame.F_D_B.torque);
+    mix(hash, Vec3(frame.proxy_depth, frame.hand_depth, frame.quality));
+    mix(hash, std::uint64_t{frame.status} << 32 | frame.contacts);
+    mix(hash, std::uint64_t{frame.iterations} << 32 | frame.nodes_visited);
+}
+
+template <std::size_t N>
+void store(std::array<float, N>& into, const Vec3& v) noexcept {
+    for (std::size_t i = 0; i < 3; ++i) into[i] = static_cast<float>(v[static_cast<int>(i)]);
+}
+
+void store(std::array<float, 4>& into, const Quat& q) noexcept {
+    into = {static_cast<float>(q.w()), static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z())};
+}
+
+}  // namespace
+
+TickOutput step(const TickModel& model, TickState& state, const DeviceReading& reading) noexcept {
+    TickFrame frame;
+    frame.reading = reading;
+    for (const Stage& stage : model.stages) {
+        if (state.engaged || stage.before_start) stage.run(model, state, frame);
+    }
+    if (state.engaged) frame.status |= kEngaged;
+    mixOutputs(state.hash, frame, state.X_WG);
+    ++state.tick;
+    return {frame.F_D_B, frame, state.X_WG};
+}
+
+TickRecord makeRecord(std::int64_t tick, const DeviceReading& reading, const TickOutput& output) noexcept {
+    const TickFrame& frame = output.frame;
+    TickRecord record;
+    record.tick = tick;
+    for (std::size_t i = 0; i < 3; ++i) record.device_position_m[i] = reading.X_BD.p[static_cast<int>(i)];
+    const Quat& q = reading.X_BD.q;
+    record.device_quaternion = {q.w(), q.x(), q.y(), q.z()};
+    record.input_flags = (reading.fresh ? 1u : 0u) | reading.buttons << 8;
+    store(record.hand_position_m, frame.X_WH.p);
+    store(record.hand_quaternion, frame.X_WH.q);
+    store(record.proxy_position_m, output.X_WG.p);
+    store(record.proxy_quaternion, output.X_WG.q);
+    store(record.force_N, frame.F_H_W.force);
+    store(record.torque_Nm, frame.F_H_W.torque);
+    record.hand_depth_m = static_cast<float>(frame.hand_depth);
+    record.proxy_depth_m = static_cast<float>(frame.proxy_depth);
+    record.quality = static_cast<float>(frame.quality);
+    record.status = frame.status;
+    record.contacts = frame.contacts;
+    record.iterations = frame.iterations;
+    record.nodes_visited = frame.nodes_visited;
+    return record;
+}
+
+DeviceReading readingOf(const TickRecord& record) noexcept {
+    DeviceReading reading;
+    const auto& p = record.device_position_m;
+    const auto& q = record.device_quaternion;
+    reading.X_BD = {Quat(q[0], q[1], q[2], q[3]), Vec3(p[0], p[1], p[2])};
+    reading.fresh = (record.input_flags & 1u) != 0;
+    reading.buttons = record.input_flags >> 8;
+    return reading;
+}
+
+}  // namespace passung::tick

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "core/tick/tick_model.h"
+
+namespace passung::tick {
+
+/// What one tick gives back: exact values, before they are rounded into a record.
+struct TickOutput {
+    Wrench F_D_B;     // to be commanded
+    TickFrame frame;  // everything else
+    Pose X_WG;        // proxy of the held part
+};
+
+/// One tick of the haptic loop: a plain function over values. Same model, state and reading: same bits.
+///   It walks the model's stages; each reads and writes only state and frame. Nothing allocates, locks or throws, and
+///   every loop has a bound. rt-safe.
+TickOutput step(const TickModel& model, TickState& state, const DeviceReading& reading) noexcept;
+
+/// The record of a tick: inputs exact, outputs as 32-bit floats. rt-safe.
+TickRecord makeRecord(std::int64_t tick, const DeviceReading& reading, const TickOutput& output) noexcept;
+
+/// The reading that a record was made from. rt-safe.
+DeviceReading readingOf(const TickRecord& record) noexcept;
+
+}  // namespace passung::tick

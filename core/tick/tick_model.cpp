@@ -1,0 +1,100 @@
+#include "core/tick/tick_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/tick/god_object_heuristic.h"
+#include "core/tick/input_guard.h"
+#include "core/tick/output_stage.h"
+#include "core/tick/penalty.h"
+#include "core/tick/virtual_coupling.h"
+
+namespace passung::tick {
+
+namespace {
+
+/// Stage of a scene without obstacles: the held part is where the hand is.
+void followHand(const TickModel&, TickState& state, TickFrame& frame) noexcept { state.X_WG = frame.X_WH; }
+
+void addPenalty(TickModel& model) {
+    model.stages.push_back({"contacts at the hand",
+                            "contact.method is penalty: forces come from the overlap at the "
+                            "device's own pose",
+                            false, findContactsAtHand});
+    model.stages.push_back(
+        {"penalty wrench", "turns the overlap into force and torque by contact.variant", false, renderPenalty});
+}
+
+void addGodObject(TickModel& model, bool record_hand_depth) {
+    model.stages.push_back({"proxy correction",
+                            "contact.method is god_object_heuristic: steps #1 and #2, contacts at "
+                            "the last proxy and relief of its overlap",
+                            false, correctProxy});
+    model.stages.push_back({"proxy motion", "steps #3 and #4: the proxy follows the hand as far as the contacts let it",
+                            false, moveProxy});
+    if (model.contact.proxy_filter > 0.0) {
+        model.stages.push_back({"proxy filter", "contact.proxy_filter_Hz is set: step #5", false, filterProxy});
+    }
+    model.stages.push_back({"proxy record", "overlap and contacts at the proxy, for the record", false, describeProxy});
+    if (record_hand_depth) {
+        model.stages.push_back(
+            {"hand depth", "the overlap at the device's pose is measured and recorded", false, measureHandDepth});
+    }
+    model.stages.push_back(
+        {"virtual coupling", "step #6: spring and damper between proxy and hand", false, renderCoupling});
+}
+
+}  // namespace
+
+TickModel makeModel(const model::Scene& scene) {
+    TickModel model;
+    const model::SceneSpec& spec = scene.spec;
+    model.contact = spec.contact;
+    model.limits = spec.limits;
+    model.registration = spec.registration;
+    model.start_gate = spec.start_gate;
+    model.X_WG_start = spec.parts[scene.held].X_WP;
+    model.shell = &*scene.parts[scene.held]->shell;
+    for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+        if (i == scene.held) continue;
+        model.obstacles.push_back({&*scene.parts[i]->field, spec.parts[i].X_WP});
+        const double cell = model.obstacles.back().field->cell();
+        model.finest_cell = model.finest_cell > 0.0 ? std::min(model.finest_cell, cell) : cell;
+    }
+    const double ratio = spec.contact.rotational_stiffness / spec.contact.stiffness;
+    model.metric_radius = ratio > 0.0 ? std::sqrt(ratio) : std::max(model.shell->gyrationRadius(), 1e-6);
+
+    model.stages.push_back({"input guard", "always: a device may lie, stall or vanish", true, guardInput});
+    if (spec.start_gate.hold_ticks > 0) {
+        model.stages.push_back({"start gate", "start_gate is set: contact begins when the hand holds the start pose",
+                                true, waitForStartPose});
+    }
+    if (model.obstacles.empty()) {
+        model.stages.push_back({"free hand", "the scene has no obstacle", false, followHand});
+    } else if (spec.contact.method == model::ContactMethod::Penalty) {
+        addPenalty(model);
+    } else {
+        addGodObject(model, spec.record_hand_depth);
+    }
+    if (spec.limits.delay_ticks > 0) {
+        model.stages.push_back({"output delay", "device.delay_ticks is set", true, delayOutput});
+    }
+    model.stages.push_back(
+        {"output limits", "always, last: finite, within the device's limits, rising slowly enough", true, limitOutput});
+    return model;
+}
+
+TickState makeState(const TickModel& model) {
+    TickState state;
+    state.engaged = model.start_gate.hold_ticks <= 0;
+    state.X_WG = model.X_WG_start;
+    // Nodes stand in for their points when a budget ends, and every obstacle may touch every point.
+    const std::size_t points = model.shell->points().size() + model.shell->nodes().size();
+    const std::size_t capacity = points * model.obstacles.size();
+    state.manifold = ContactManifold(capacity);
+    state.scratch = ContactManifold(capacity);
+    state.workspace = QueryWorkspace(model.shell->nodes().size());
+    return state;
+}
+
+}  // namespace passung::tick

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/tick_record.h"
+#include "core/base/types.h"
+#include "core/model/scene.h"
+#include "core/tick/contact_query.h"
+
+namespace passung::tick {
+
+struct TickModel;
+struct TickState;
+
+/// What one tick works on; dies with it.
+struct TickFrame {
+    DeviceReading reading;      // as the device gave it
+    Pose X_WH;                  // held part where the device asks it to be, after the input guard
+    bool input_usable = false;  // false: the output is zero
+    Wrench F_H_W;               // on the hand, about the held part's origin, world axes
+    Wrench F_D_B;               // what is sent: on the hand, about the handle's origin, device base axes
+    double proxy_depth = 0.0;   // [m], ≥ 0
+    double hand_depth = 0.0;    // [m], ≥ 0
+    double quality = 1.0;
+    std::uint32_t status = 0;  // TickStatus bits
+    std::uint32_t contacts = 0;
+    std::uint32_t iterations = 0;
+    std::uint32_t nodes_visited = 0;
+};
+
+/// One step of the tick's work. `reason` says why this scene has it.
+struct Stage {
+    const char* name;
+    const char* reason;
+    bool before_start;  // runs also while the start gate is closed
+    void (*run)(const TickModel&, TickState&, TickFrame&) noexcept;
+};
+
+/// An obstacle: a distance field fixed in the world.
+struct Obstacle {
+    const model::DistanceField* field;
+    Pose X_WF;
+};
+
+/// Everything that does not change while a trial runs. Borrows the scene's parts.
+struct TickModel {
+    const model::SphereTree* shell = nullptr;
+    std::vector<Obstacle> obstacles;
+    Pose X_WG_start;
+    model::ContactSpec contact;
+    model::OutputLimits limits;
+    model::Registration registration;
+    model::StartGate start_gate;
+    std::vector<Stage> stages;
+    double finest_cell = 0.0;    // of all obstacles [m]
+    double metric_radius = 0.0;  // [m]: makes a rotation comparable with a translation (god_object_heuristic.h)
+};
+
+/// Everything that a tick carries to the next. Sized by makeState; a tick never allocates.
+struct TickState {
+    std::int64_t tick = 0;
+    // input guard
+    bool has_good_pose = false;
+    Pose X_BD_good;
+    std::int64_t ticks_since_good = 0;
+    // start gate
+    bool engaged = false;
+    int held_ticks = 0;
+    // proxy
+    Pose X_WG;
+    ContactManifold manifold;      // at X_WG, points with φ < manifold_reach
+    double manifold_reach = -1.0;  // < 0: nothing known
+    double clearance = 0.0;        // lower bound of φ at X_WG [m]
+    double last_motion = 0.0;      // of the proxy, in the metric of metric_radius [m]
+    Pose X_WG_last;                // for the proxy filter
+    bool has_last_proxy = false;
+    // penalty damping
+    Pose X_WH_last;
+    bool has_last_hand = false;
+    // coupling
+    Vec3 last_stretch = Vec3::Zero(), last_twist = Vec3::Zero();
+    bool has_last_stretch = false;
+    // output
+    Wrench last_sent;      // F_D_B of the previous tick
+    bool latched = false;  // a computed wrench was not finite
+    std::array<Wrench, model::kMaxDelayTicks + 1> delay_line{};
+    std::uint64_t hash = 0xcbf29ce484222325u;  // of all outputs so far, exact bits
+    // scratch memory
+    QueryWorkspace workspace;
+    ContactManifold scratch;
+};
+
+/// The stages that the scene names, in order, and what they need. `scene` must outlive the result.
+TickModel makeModel(const model::Scene& scene);
+
+/// The state before the first tick, with all memory that the ticks will need.
+TickState makeState(const TickModel& model);
+
+}  // namespace passung::tick

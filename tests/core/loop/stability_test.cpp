@@ -1,0 +1,179 @@
+#include "core/loop/stability.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+using namespace passung::loop;
+
+namespace {
+
+double border(double m, double b, double B, double T, int d) {
+    return stableStiffnessBorder(
+        {.mass = m, .damping = b, .stiffness = 0, .virtual_damping = B, .period = T, .delay_ticks = d});
+}
+
+// The wall in the time domain: the handle moves exactly under a force held for one tick.
+// Returns the largest |x| in the last tenth over the largest in the first tenth.
+double growth(const SampledWall& w, int ticks) {
+    const double a = w.damping / w.mass;
+    const double E = std::exp(-a * w.period);
+    const double vx = a > 0 ? (1 - E) / a : w.period;  // position gained by a unit of velocity
+    const double fv = a > 0 ? (1 - E) / w.damping : w.period / w.mass;
+    const double fx = a > 0 ? (w.period - vx) / w.damping : w.period * w.period / (2 * w.mass);
+    std::array<double, 32> past{};  // positions, newest first
+    double x = 1e-3, v = 0, early = 0, late = 0;
+    past.fill(x);
+    for (int k = 0; k < ticks; ++k) {
+        for (std::size_t i = past.size() - 1; i > 0; --i) past[i] = past[i - 1];
+        past[0] = x;
+        const auto d = static_cast<std::size_t>(w.delay_ticks);
+        const double force = -w.stiffness * past[d] - w.virtual_damping * (past[d] - past[d + 1]) / w.period;
+        x += vx * v + fx * force;
+        v = E * v + fv * force;
+        if (k < ticks / 10) early = std::max(early, std::abs(x));
+        if (k >= ticks - ticks / 10) late = std::max(late, std::abs(x));
+        if (std::abs(x) > 1e6) return std::abs(x) / early;
+    }
+    return late / early;
+}
+
+}  // namespace
+
+TEST(Stability, UndampedUndelayedBorderHasClosedForm) {
+    // Truth: closed form, alpha = 2 beta (2 - beta)/(2 + beta) for 0 < beta < 2.
+    const double m = 0.3, T = 1e-3;
+    for (double beta = 0.02; beta < 2.0; beta += 0.06) {
+        const double alpha = 2 * beta * (2 - beta) / (2 + beta);
+        EXPECT_NEAR(border(m, 0, beta * m / T, T, 0) * T * T / m, alpha, 1e-6 * alpha) << "beta " << beta;
+    }
+    EXPECT_EQ(border(m, 0, 2.01 * m / T, T, 0), 0);
+    EXPECT_EQ(border(m, 0, 0, T, 0), 0);
+}
+
+TEST(Stability, BestUndampedBorderIsTwelveMinusEightRootTwo) {
+    // Truth: closed form, maximum 12 - 8 sqrt(2) at beta = 2 sqrt(2) - 2.
+    const double beta = 2 * std::numbers::sqrt2 - 2;
+    const double best = border(1, 0, beta, 1, 0);
+    EXPECT_NEAR(best, 12 - 8 * std::numbers::sqrt2, 1e-9);
+    EXPECT_LT(border(1, 0, beta * 1.01, 1, 0), best);
+    EXPECT_LT(border(1, 0, beta * 0.99, 1, 0), best);
+}
+
+TEST(Stability, VirtualDampingAloneHasALimitForEveryDelay) {
+    // Truth: closed form, beta_max = 2 tan(pi/(4 (d + 1))) for K -> 0, b = 0.
+    for (int d = 0; d <= 6; ++d) {
+        const double limit = 2 * std::tan(std::numbers::pi / (4 * (d + 1)));
+        EXPECT_GT(border(1, 0, 0.999 * limit, 1, d), 0) << d;
+        EXPECT_EQ(border(1, 0, 1.001 * limit, 1, d), 0) << d;
+    }
+}
+
+TEST(Stability, DelayCostsStiffnessAsTabulated) {
+    // Truth: independent program (numerical maximum over beta of the exact border, derived outside this project).
+    const std::array<double, 6> best = {0.6863, 0.1445, 0.0624, 0.0348, 0.0222, 0.0154};
+    for (int d = 0; d < 6; ++d) {
+        double alpha = 0;
+        for (double beta = 0.01; beta < 2; beta *= 1.01) alpha = std::max(alpha, border(1, 0, beta, 1, d));
+        EXPECT_NEAR(alpha, best[static_cast<std::size_t>(d)], 0.01 * alpha) << d;
+    }
+}
+
+TEST(Stability, KnownDevicesHaveTheirTabulatedBorders) {
+    // Truth: independent program (root finder on the same model, outside this project), given to four digits; 1 %.
+    struct Row {
+        double m, b, T;
+        int d;
+        double B, passive, linear, exact;
+    };
+    const std::array<Row, 15> rows{{
+        {0.1, 0.2, 1e-3, 0, 0, 400, 400, 400},
+        {0.1, 0.2, 1e-3, 0, 5, 0, 10400, 9896},
+        {0.1, 0.2, 1e-3, 1, 5, 0, 3467, 3275},
+        {0.1, 0.2, 1e-3, 1, 80, 0, 53467, 2127},
+        {0.2, 0.5, 1e-3, 0, 0, 1000, 1000, 1000},
+        {0.2, 0.5, 1e-3, 0, 0.4, 200, 1800, 1797},
+        {0.2, 0.5, 1e-3, 0, 20, 0, 41000, 37115},
+        {0.2, 0.5, 1e-3, 1, 20, 0, 13667, 12148},
+        {0.2, 0.5, 0.25e-3, 0, 0, 4000, 4000, 4000},
+        {0.4, 1, 1e-3, 0, 0, 2000, 2000, 2001},
+        {0.4, 1, 1e-3, 1, 5, 0, 4000, 3947},
+        {0.4, 1, 1e-3, 2, 20, 0, 8400, 7811},
+        {4, 10, 1e-3, 1, 5, 7321, 10000, 9993},
+        {4, 10, 1e-3, 2, 20, 0, 12000, 11929},
+        {6, 30, 1e-3, 1, 24, 10788, 36000, 35890},
+    }};
+    for (const Row& r : rows) {
+        const SampledWall wall{
+            .mass = r.m, .damping = r.b, .stiffness = 0, .virtual_damping = r.B, .period = r.T, .delay_ticks = r.d};
+        EXPECT_NEAR(stableStiffnessBorder(wall), r.exact, 0.01 * r.exact) << r.m << " kg, B " << r.B << ", d " << r.d;
+        EXPECT_NEAR(linearStiffness(wall), r.linear, 0.001 * r.linear);
+        EXPECT_NEAR(passiveStiffness(wall), r.passive, 0.01 * r.passive);
+    }
+}
+
+TEST(Stability, WristInertiaReachesItsTabulatedBest) {
+    // Truth: independent program, as above: I = 5e-4 kg m², b = 2e-3 N·m·s/rad, best over the virtual damping.
+    double best = 0;
+    for (double beta = 0.05; beta < 2; beta *= 1.005)
+        best = std::max(best, border(5e-4, 2e-3, beta * 5e-4 / 1e-3, 1e-3, 0));
+    EXPECT_NEAR(best, 345.8, 3.5);
+}
+
+TEST(Stability, OnlyTheScaledNumbersMatter) {
+    // Truth: invariant; alpha, beta, delta and d decide, whatever the units of mass and time.
+    for (int d = 0; d < 4; ++d) {
+        const double reference = border(0.4, 1, 6, 1e-3, d);
+        EXPECT_NEAR(border(0.4 * 7, 1 * 7, 6 * 7, 1e-3, d), 7 * reference, 1e-6 * 7 * reference);
+        EXPECT_NEAR(border(0.4, 1 / 4.0, 6 / 4.0, 4e-3, d), reference / 16, 1e-6 * reference / 16);
+    }
+}
+
+TEST(Stability, HalfThePeriodDoublesThePassiveStiffness) {
+    // Truth: closed form, 2 (b - B)/T without delay.
+    const SampledWall wall{
+        .mass = 1, .damping = 3, .stiffness = 0, .virtual_damping = 1, .period = 1e-3, .delay_ticks = 0};
+    SampledWall faster = wall;
+    faster.period = 0.5e-3;
+    EXPECT_NEAR(passiveStiffness(wall), 4000, 1e-6 * 4000);
+    EXPECT_NEAR(passiveStiffness(faster), 8000, 1e-6 * 8000);
+}
+
+TEST(Stability, BorderSeparatesDecayFromGrowthInTime) {
+    // Truth: invariant between two models; the time simulation shares no line with the polynomial test.
+    struct Case {
+        double m, b, B;
+        int d;
+    };
+    for (const Case& c : {Case{0.4, 1, 5, 0}, Case{0.4, 1, 5, 1}, Case{0.1, 0.2, 80, 1}, Case{4, 10, 20, 2},
+                          Case{0.2, 0, 20, 0}, Case{0.5, 2, 10, 5}}) {
+        SampledWall wall{
+            .mass = c.m, .damping = c.b, .stiffness = 0, .virtual_damping = c.B, .period = 1e-3, .delay_ticks = c.d};
+        const double K = stableStiffnessBorder(wall);
+        ASSERT_GT(K, 0);
+        wall.stiffness = 0.99 * K;
+        EXPECT_TRUE(isStable(wall));
+        EXPECT_LT(growth(wall, 200000), 0.5) << c.m << ' ' << c.d;
+        wall.stiffness = 1.01 * K;
+        EXPECT_FALSE(isStable(wall));
+        EXPECT_GT(growth(wall, 200000), 2.0) << c.m << ' ' << c.d;
+    }
+}
+
+TEST(Stability, NonsenseIsNeverStable) {
+    // Truth: invariant; input is checked before it is used.
+    const SampledWall good{};
+    EXPECT_TRUE(isStable(good));
+    SampledWall bad = good;
+    bad.mass = std::nan("");
+    EXPECT_FALSE(isStable(bad));
+    EXPECT_EQ(stableStiffnessBorder(bad), 0);
+    bad = good;
+    bad.delay_ticks = kMaxDelayTicks + 1;
+    EXPECT_FALSE(isStable(bad));
+    bad = good;
+    bad.stiffness = -1;
+    EXPECT_FALSE(isStable(bad));
+}

@@ -1,0 +1,106 @@
+#include "core/replay/replayer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "core/base/random.h"
+#include "core/loop/haptic_loop.h"
+#include "tests/support/scenes.h"
+
+namespace passung {
+namespace {
+
+/// A device that moves by itself along a wobbling press, with a bad sample now and then.
+class Wobble final : public loop::HapticDevice {
+public:
+    const DeviceDescription& description() const override { return description_; }
+    DeviceReading read() noexcept override {
+        const double t = 1e-3 * tick_++;
+        DeviceReading reading;
+        reading.X_BD = {rotationFromVector(0.05 * Vec3(std::sin(3 * t), std::cos(5 * t), std::sin(t))),
+                        Vec3(0.004 * std::sin(2 * t), 0.003 * std::cos(3 * t), 0.012 - 0.006 * t)};
+        if (random_.below(100) == 0) reading.X_BD.p.x() = std::nan("");
+        if (random_.below(100) == 0) reading.fresh = false;
+        reading.buttons = static_cast<std::uint32_t>(tick_ / 100) & 3u;
+        return reading;
+    }
+    void command(const Wrench&) noexcept override {}
+
+private:
+    DeviceDescription description_;
+    Random random_{4};
+    int tick_ = 0;
+};
+
+model::SceneSpec pressing(model::ContactMethod method) {
+    auto spec = test::scene(model::Peg{0.01, 0.02, 0.001}, {Quat::Identity(), Vec3(0, 0, 0.012)},
+                            model::Box{0.06, 0.06, 0.02}, {Quat::Identity(), Vec3(0, 0, -0.01)}, method);
+    spec.limits.max_force_rate = 5000;
+    spec.limits.max_force = 10;
+    return spec;
+}
+
+std::vector<TickRecord> record(const test::Bench& bench, std::uint64_t& hash) {
+    Wobble device;
+    loop::RecordRing ring(4096);
+    loop::HapticCycle cycle(bench.model(), device, ring, true);
+    for (int i = 0; i < 2000; ++i) cycle.run(i == 1000);  // one cycle came late
+    hash = cycle.stateHash();
+    std::vector<TickRecord> records(4096);
+    records.resize(ring.take(records));
+    return records;
+}
+
+TEST(Replayer, ReproducesEveryRecordedBitOfEveryMethod) {
+    // Truth: invariant. Recorded inputs through the same scene give the recorded outputs and the same state hash.
+    for (const auto method : {model::ContactMethod::Penalty, model::ContactMethod::GodObjectHeuristic}) {
+        test::Bench bench(pressing(method));
+        std::uint64_t hash = 0;
+        const auto records = record(bench, hash);
+        ASSERT_EQ(records.size(), 2000u);
+        const auto report = replay::replay(bench.scene(), records);
+        EXPECT_FALSE(report.first_difference)
+            << report.first_difference->column << " at " << report.first_difference->tick;
+        EXPECT_EQ(report.state_hash, hash);
+        EXPECT_EQ(report.ticks, 2000);
+    }
+}
+
+TEST(Replayer, FindsOneChangedBitAndOneMissingTick) {
+    // Truth: planted faults.
+    test::Bench bench(pressing(model::ContactMethod::GodObjectHeuristic));
+    std::uint64_t hash = 0;
+    auto records = record(bench, hash);
+    auto changed = records;
+    changed[1500].force_N[2] = std::nextafter(changed[1500].force_N[2], 100.0f);
+    auto report = replay::replay(bench.scene(), changed);
+    ASSERT_TRUE(report.first_difference);
+    EXPECT_EQ(report.first_difference->tick, 1500);
+    EXPECT_EQ(report.first_difference->column, "force_N");
+
+    changed = records;
+    changed[700].device_position_m[0] = std::nextafter(changed[700].device_position_m[0], 1.0);
+    EXPECT_NE(replay::replay(bench.scene(), changed).state_hash, hash);
+
+    records.erase(records.begin() + 100);
+    report = replay::replay(bench.scene(), records);
+    ASSERT_TRUE(report.first_difference);
+    EXPECT_EQ(report.first_difference->column, "tick");
+}
+
+TEST(Determinism, StateHashOfAFixedRunIsTheRecordedOne) {
+    // Truth: regression (first version; trusted because the runs behind it pass the closed-form tests of core/tick).
+    // The same number in g++ and clang, Debug and Release.
+    std::uint64_t hash = 0;
+    test::Bench penalty(pressing(model::ContactMethod::Penalty));
+    record(penalty, hash);
+    EXPECT_EQ(hash, 14555680503138598141u);
+    test::Bench god_object(pressing(model::ContactMethod::GodObjectHeuristic));
+    record(god_object, hash);
+    EXPECT_EQ(hash, 12480654351138281964u);
+}
+
+}  // namespace
+}  // namespace passung

@@ -1,0 +1,138 @@
+#include "core/tick/step.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/rt_guard.h"
+#include "tests/support/scenes.h"
+
+namespace passung {
+namespace {
+
+/// A peg over a plate with a narrow bore.
+model::SceneSpec pegAndPlate(model::ContactMethod method) {
+    auto spec = test::scene(model::Peg{0.02, 0.05, 0.001}, {Quat::Identity(), Vec3(0, 0, 0.01)},
+                            model::BorePlate{0.06, 0.06, 0.03, 0.0204, 0.03, 0.001}, Pose{}, method);
+    spec.contact.spacing = 1.5e-3;
+    spec.contact.stiffness = 3000;
+    spec.contact.rotational_stiffness = 1;
+    spec.contact.damping = 5;
+    spec.limits.max_force = 12;
+    spec.limits.max_torque = 0.2;
+    spec.limits.max_force_rate = 10000;
+    return spec;
+}
+
+/// Down onto the plate, around on it, into the bore with wobble.
+Pose path(int tick) {
+    const double t = tick * 1e-3;
+    Vec3 p(0.003, 0, 0.01 - 0.011 * t);
+    if (t > 1) p = 0.003 * std::max(0.0, 2 - t) * Vec3(std::cos(6 * t), std::sin(6 * t), 0) + Vec3(0, 0, -0.001);
+    if (t > 2) p += Vec3(6e-4 * std::cos(20 * t), 6e-4 * std::sin(17 * t), -0.003 * (t - 2));
+    return {rotationFromVector(Vec3(0.02 * std::sin(9 * t), 0.02 * std::cos(7 * t), 0.05 * std::sin(t))), p};
+}
+
+constexpr int kTicks = 10000;
+
+std::vector<std::pair<const char*, model::SceneSpec>> everyKindOfScene() {
+    std::vector<std::pair<const char*, model::SceneSpec>> scenes;
+    for (const auto variant :
+         {model::PenaltyVariant::MaxNormalised, model::PenaltyVariant::AreaWeighted, model::PenaltyVariant::Raw}) {
+        scenes.emplace_back("penalty", pegAndPlate(model::ContactMethod::Penalty));
+        scenes.back().second.contact.variant = variant;
+    }
+    scenes.emplace_back("god object", pegAndPlate(model::ContactMethod::GodObjectHeuristic));
+    scenes.emplace_back("god object, everything named", pegAndPlate(model::ContactMethod::GodObjectHeuristic));
+    scenes.back().second.contact.proxy_filter = 150;
+    scenes.back().second.contact.budget_nodes = 200;
+    scenes.back().second.limits.delay_ticks = 2;
+    scenes.back().second.start_gate = {0.02, 0.1, 50};
+    scenes.emplace_back("free", pegAndPlate(model::ContactMethod::GodObjectHeuristic));
+    scenes.back().second.parts.pop_back();
+    return scenes;
+}
+
+TEST(Step, AllocatesLocksAndWritesNothingInTenThousandTicks) {
+    // Truth: invariant, counted by interposed malloc, mutex and write.
+    if (!support::RtGuard::available()) GTEST_SKIP() << "the sanitizer owns the interposed functions";
+    for (const auto& [name, spec] : everyKindOfScene()) {
+        test::Bench bench(spec);
+        double work = 0.0;
+        support::RtGuard guard;
+        for (int i = 0; i < kTicks; ++i) work += bench.step(path(i)).F_D_B.force.norm();
+        EXPECT_EQ(guard.violations(), 0) << name << ": " << guard.describe();
+        EXPECT_EQ(guard.clockReads(), 0) << name << ": the tick has no clock";
+        EXPECT_EQ(work > 0.0, spec.parts.size() > 1) << name;
+    }
+}
+
+TEST(Step, GivesTheSameBitsForTheSameInputs) {
+    // Truth: invariant. Two states, one model; every kind of scene.
+    for (const auto& [name, spec] : everyKindOfScene()) {
+        test::Bench a(spec), b(spec);
+        for (int i = 0; i < 2500; ++i) {
+            a.step(path(i));
+            b.step(path(i));
+        }
+        EXPECT_EQ(a.state().hash, b.state().hash) << name;
+    }
+}
+
+TEST(Step, GodObjectOverlapsFarLessThanPenaltyOnTheSamePath) {
+    // Truth: invariant (why the method exists); depths here are the tick's own, see peg_truth_test for independent
+    // ones.
+    double deepest[2] = {0, 0};
+    for (const auto method : {model::ContactMethod::Penalty, model::ContactMethod::GodObjectHeuristic}) {
+        test::Bench bench(pegAndPlate(method));
+        double& worst = deepest[method == model::ContactMethod::Penalty ? 0 : 1];
+        for (int i = 0; i < kTicks; ++i) worst = std::max(worst, bench.step(path(i)).frame.proxy_depth);
+    }
+    EXPECT_GT(deepest[0], 0.3e-3);
+    EXPECT_LT(deepest[1], 0.05 * 0.5e-3 + 1e-6);
+}
+
+TEST(Step, BuildsOnlyTheStagesThatTheSceneNames) {
+    // Truth: invariant (the third promise): the list of stages follows the scene.
+    const auto names = [](const model::SceneSpec& spec) {
+        test::Bench bench(spec);
+        std::vector<std::string> all;
+        for (const auto& stage : bench.model().stages) all.emplace_back(stage.name);
+        return all;
+    };
+    using Names = std::vector<std::string>;
+    auto spec = pegAndPlate(model::ContactMethod::Penalty);
+    EXPECT_EQ(names(spec), (Names{"input guard", "contacts at the hand", "penalty wrench", "output limits"}));
+    spec.contact.method = model::ContactMethod::GodObjectHeuristic;
+    spec.record_hand_depth = false;
+    EXPECT_EQ(names(spec), (Names{"input guard", "proxy correction", "proxy motion", "proxy record", "virtual coupling",
+                                  "output limits"}));
+    spec.start_gate = {0.003, 0.1, 100};
+    spec.limits.delay_ticks = 1;
+    spec.contact.proxy_filter = 100;
+    spec.record_hand_depth = true;
+    EXPECT_EQ(names(spec), (Names{"input guard", "start gate", "proxy correction", "proxy motion", "proxy filter",
+                                  "proxy record", "hand depth", "virtual coupling", "output delay", "output limits"}));
+    spec = pegAndPlate(model::ContactMethod::Penalty);
+    spec.parts.pop_back();
+    EXPECT_EQ(names(spec), (Names{"input guard", "free hand", "output limits"}));
+}
+
+TEST(Step, RendersNothingBeforeTheHandHasHeldTheStartPose) {
+    // Truth: invariant. Zero wrench and the proxy at its start until hold_ticks ticks within the tolerance.
+    auto spec = pegAndPlate(model::ContactMethod::GodObjectHeuristic);
+    spec.start_gate = {0.002, 0.05, 200};
+    test::Bench bench(spec);
+    const Pose start = spec.parts[0].X_WP;
+    for (int i = 0; i < 500; ++i) {  // pressed into the plate
+        const auto out = bench.step(Pose{Quat::Identity(), Vec3(0.01, 0, -0.005)});
+        ASSERT_EQ(out.F_D_B.force.norm(), 0.0);
+        ASSERT_FALSE(out.frame.status & kEngaged);
+    }
+    for (int i = 0; i < 200; ++i) ASSERT_FALSE(bench.step(start).frame.status & kEngaged) << i;
+    EXPECT_TRUE(bench.step(start).frame.status & kEngaged);
+    EXPECT_TRUE(bench.step(Pose{Quat::Identity(), Vec3(0.01, 0, 0.02)}).frame.status & kEngaged);
+}
+
+}  // namespace
+}  // namespace passung

@@ -1,0 +1,33 @@
+// Truth: closed form. A ball of 20 mm lies 1 mm deep in the top face of a block: the deepest point is 1 mm inside.
+
+#include <cmath>
+#include <cstdio>
+
+#include "core/model/part.h"
+#include "core/tick/contact_query.h"
+
+using namespace passung;
+
+int main() {
+    const double depth = 1e-3, spacing = 0.2e-3;
+    model::PartSpec block{.name = "block", .geometry = model::Shape{model::Box{0.06, 0.06, 0.02}}};
+    model::PartSpec ball{.name = "ball", .geometry = model::Shape{model::Sphere{0.02}}, .held = true};
+    const auto field_part = model::buildPart(block, {.field = true, .cell = 0.5e-3});
+    const auto shell_part = model::buildPart(ball, {.shell = true, .spacing = spacing});
+    if (!field_part || !shell_part) {
+        std::puts("a part could not be built");
+        return 1;
+    }
+
+    const Pose X_WF, X_WS{.p = Vec3(0.003, -0.002, 0.01 + 0.01 - depth)};
+    tick::QueryWorkspace workspace(shell_part->shell->nodes().size());
+    tick::ContactManifold manifold(shell_part->shell->points().size());
+    const tick::QueryAnswer answer =
+        tick::queryContacts(*field_part->field, X_WF, *shell_part->shell, X_WS,
+                            {.collect_below = 0.0, .search_below = 1.0}, workspace, manifold);
+
+    // A shell point lies within one spacing of the lowest point of the ball: it is less than s²/2r higher.
+    const double sampling = spacing * spacing / 0.02, tolerance = sampling + 10e-6;
+    std::printf("%zu contacts, phi = %.1f um\n", manifold.size(), 1e6 * answer.phi);
+    return answer.found && std::abs(answer.phi + depth) < tolerance && manifold.size() > 0 ? 0 : 1;
+}

@@ -1,0 +1,185 @@
+# cmake -DROOT=... -P rooms.cmake: every include of every source file against the table of rooms.
+# Prints every violation as file:line: message and fails.
+cmake_policy(VERSION 3.25)
+
+# Each room and the rooms it may include besides itself. Arrows point only upward.
+set(core_rooms "core/base core/model core/tick core/loop core/replay")
+set(study_rooms "study/protocol study/design study/questionnaire study/measures study/person")
+set(rooms
+  "core/base           |"
+  "core/model          | core/base"
+  "core/tick           | core/base core/model"
+  "core/loop           | core/base core/model core/tick"
+  "core/replay         | core/base core/model core/tick"
+  "devices             | core/base core/loop"
+  "study/protocol      | core/base core/model"
+  "study/design        | core/base"
+  "study/questionnaire | core/base"
+  "study/measures      | core/base"
+  "study/person        | core/base study/questionnaire"
+  "study/session       | core/base core/model ${study_rooms}"
+  "study/store         | core/base ${study_rooms} study/session"
+  "analysis/truth      | core/base core/model core/tick"
+  "analysis/export     | core/base study/protocol study/measures study/store"
+  "ui/cli              | *"
+  "ui/app              | *"
+  "tests               | *")
+
+# Headers from outside: what the path between the angle brackets looks like, the rooms that may include it, and
+# whether only their .cpp files may (so that nothing built on the room sees it).
+set(libraries
+  "Eigen    | ^Eigen/                          | *                                      | any"
+  "fmt      | ^fmt/                            | core/base core/model core/loop core/replay devices study analysis ui tests | any"
+  "assimp   | ^assimp/                         | core/model tests                       | cpp"
+  "minizip  | ^minizip/                        | core/model                             | cpp"
+  "toml++   | ^toml[+][+]/                     | study/protocol tests                   | cpp"
+  "SQLite   | ^sqlite3[.]h$                    | study/store tests                      | any"
+  "zlib     | ^zlib[.]h$                       | study/store analysis/export tests      | cpp"
+  "OpenSSL  | ^openssl/                        | study/store analysis/export tests      | cpp"
+  "FCL      | ^fcl/                            | analysis/truth tests                   | cpp"
+  "spdlog   | ^spdlog/                         | ui tests                               | cpp"
+  "CLI11    | ^CLI/                            | ui/cli ui/app                          | cpp"
+  "Qt       | ^Q[A-Zt]                         | ui                                     | any"
+  "gtest    | ^g(test|mock)/                   | tests                                  | any"
+  "POSIX    | ^(sys|linux|arpa|netinet)/|^(unistd|pthread|sched|fcntl|poll|semaphore|signal|time|dlfcn|termios)[.]h$ | core/loop devices study/store ui tests | cpp")
+
+# The tick: a positive list. What is not here allocates, locks, throws, waits or talks to the system.
+set(tick_standard_headers algorithm array atomic bit bitset cassert cfloat climits cmath compare concepts cstddef
+  cstdint cstdlib cstring initializer_list iterator limits numbers numeric optional span tuple type_traits utility
+  variant vector)
+# Rooms without a thread or a lock of their own.
+set(threadless_rooms core/base core/replay study/protocol study/design study/questionnaire study/measures
+  study/person study/session)
+set(thread_headers barrier condition_variable future latch mutex semaphore shared_mutex stop_token thread)
+
+set(room_names)
+foreach(row IN LISTS rooms)
+  string(REGEX MATCH "^([^| ]+) *[|] *(.*)$" matched "${row}")
+  set(name ${CMAKE_MATCH_1})
+  list(APPEND room_names ${name})
+  string(REPLACE " " ";" allowed_${name} "${CMAKE_MATCH_2}")
+endforeach()
+
+# The room that `path` (relative to the root) lies in; empty if in none.
+function(room_of path result)
+  set(${result} "" PARENT_SCOPE)
+  foreach(name IN LISTS room_names)
+    string(FIND "${path}" "${name}/" position)
+    if(position EQUAL 0)
+      set(${result} ${name} PARENT_SCOPE)
+      return()
+    endif()
+  endforeach()
+endfunction()
+
+# Is `room` one of `names`, below one of them, or is there a * among them?
+function(is_among room names result)
+  set(${result} FALSE PARENT_SCOPE)
+  foreach(name IN LISTS names)
+    string(FIND "${room}/" "${name}/" position)
+    if(name STREQUAL "*" OR position EQUAL 0)
+      set(${result} TRUE PARENT_SCOPE)
+      return()
+    endif()
+  endforeach()
+endfunction()
+
+# Sets `complaint` if `room` may not include "path" from our own tree.
+function(judge_own room path)
+  set(complaint "" PARENT_SCOPE)
+  room_of("${path}" target)
+  if(NOT target)
+    set(complaint "\"${path}\" names no room: write the path from the repository's root" PARENT_SCOPE)
+  elseif(NOT EXISTS "${ROOT}/${path}")
+    set(complaint "\"${path}\" does not exist" PARENT_SCOPE)
+  elseif(target STREQUAL "tests" AND NOT room STREQUAL "tests")
+    set(complaint "\"${path}\": only tests may include tests" PARENT_SCOPE)
+  elseif(NOT target STREQUAL room)
+    is_among(${target} "${allowed_${room}}" fine)
+    if(NOT fine)
+      set(complaint "\"${path}\": ${room} may not include ${target}" PARENT_SCOPE)
+    endif()
+  endif()
+endfunction()
+
+# Sets `complaint` if `file` of `room` may not include <path>.
+function(judge_foreign room file path)
+  set(complaint "" PARENT_SCOPE)
+  if(path MATCHES "^[a-z0-9_]+$")
+    if(room STREQUAL "core/tick" AND NOT path IN_LIST tick_standard_headers)
+      set(complaint "<${path}> has no place in the tick" PARENT_SCOPE)
+    elseif(room IN_LIST threadless_rooms AND path IN_LIST thread_headers)
+      set(complaint "<${path}>: ${room} has no threads" PARENT_SCOPE)
+    endif()
+    return()
+  endif()
+  foreach(row IN LISTS libraries)
+    # Fields are parted by " | " so that a pattern may hold alternatives.
+    string(REGEX REPLACE " +[|] +" ";" fields "${row}")
+    list(GET fields 0 library)
+    list(GET fields 1 pattern)
+    list(GET fields 2 names)
+    list(GET fields 3 kind)
+    if(NOT path MATCHES "${pattern}")
+      continue()
+    endif()
+    string(REPLACE " " ";" names "${names}")
+    is_among(${room} "${names}" fine)
+    if(NOT fine)
+      set(complaint "<${path}>: ${library} has no place in ${room}" PARENT_SCOPE)
+    elseif(kind STREQUAL "cpp" AND NOT file MATCHES "[.]cpp$" AND NOT room STREQUAL "tests")
+      set(complaint "<${path}>: ${library} in .cpp files only" PARENT_SCOPE)
+    endif()
+    return()
+  endforeach()
+  set(complaint "<${path}> is in no row of the table of libraries" PARENT_SCOPE)
+endfunction()
+
+set(faults)
+set(file_count 0)
+set(include_count 0)
+foreach(folder core devices study analysis ui protocols tests)
+  file(GLOB_RECURSE files RELATIVE ${ROOT}
+    ${ROOT}/${folder}/*.h ${ROOT}/${folder}/*.hpp ${ROOT}/${folder}/*.cpp ${ROOT}/${folder}/*.c ${ROOT}/${folder}/*.qml)
+  foreach(file IN LISTS files)
+    math(EXPR file_count "${file_count} + 1")
+    room_of(${file} room)
+    if(NOT room)
+      list(APPEND faults "${file}:1: this folder is no room of the table")
+      continue()
+    endif()
+    if(file MATCHES "[.]qml$" AND NOT room MATCHES "^ui/(experimenter|participant)$")
+      list(APPEND faults "${file}:1: QML has no place in ${room}")
+      continue()
+    endif()
+    file(READ ${ROOT}/${file} text)
+    # One list item a line, whatever the lines contain.
+    string(REGEX REPLACE "[][;\\]" "_" text "${text}")
+    string(REPLACE "\n" ";" lines "${text}")
+    set(number 0)
+    foreach(line IN LISTS lines)
+      math(EXPR number "${number} + 1")
+      if(line MATCHES "^[ \t]*#[ \t]*include[ \t]*\"([^\"]+)\"")
+        judge_own(${room} "${CMAKE_MATCH_1}")
+      elseif(line MATCHES "^[ \t]*#[ \t]*include[ \t]*<([^>]+)>")
+        judge_foreign(${room} ${file} "${CMAKE_MATCH_1}")
+      elseif(line MATCHES "^[ \t]*#[ \t]*include")
+        set(complaint "an include that is neither \"...\" nor <...>")
+      else()
+        continue()
+      endif()
+      math(EXPR include_count "${include_count} + 1")
+      if(complaint)
+        list(APPEND faults "${file}:${number}: ${complaint}")
+      endif()
+    endforeach()
+  endforeach()
+endforeach()
+
+if(faults)
+  list(LENGTH faults count)
+  list(JOIN faults "\n" text)
+  message(NOTICE "${text}")
+  message(FATAL_ERROR "${count} violations in ${file_count} files")
+endif()
+message(STATUS "${include_count} includes in ${file_count} files, each in its room")

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "core/model/scene.h"
+#include "core/tick/step.h"
+
+namespace passung::test {
+
+/// A scene held together with its model and state, driven by poses of the held part.
+class Bench {
+public:
+    explicit Bench(const model::SceneSpec& spec)
+        : scene_(build(spec)), model_(tick::makeModel(scene_)), state_(tick::makeState(model_)) {}
+
+    tick::TickOutput step(const Pose& X_WH) { return step(DeviceReading{X_WH}); }
+    tick::TickOutput step(const DeviceReading& reading) { return tick::step(model_, state_, reading); }
+
+    const model::Scene& scene() const { return scene_; }
+    const tick::TickModel& model() const { return model_; }
+    tick::TickState& state() { return state_; }
+
+private:
+    static model::Scene build(const model::SceneSpec& spec) {
+        static model::PartCache cache;  // parts that tests of one program share are built once
+        auto scene = model::buildScene(spec, cache);
+        if (!scene) ADD_FAILURE() << toString(scene.errors().front());
+        return std::move(*scene);
+    }
+    model::Scene scene_;
+    tick::TickModel model_;
+    tick::TickState state_;
+};
+
+/// A held part over one fixed part, no limits that act and no start gate.
+inline model::SceneSpec scene(const model::Shape& held, const Pose& X_WHeld, const model::Shape& fixed,
+                              const Pose& X_WFixed, model::ContactMethod method) {
+    model::SceneSpec spec;
+    spec.parts.push_back({.name = "held", .geometry = held, .X_WP = X_WHeld, .held = true});
+    spec.parts.push_back({.name = "fixed", .geometry = fixed, .X_WP = X_WFixed});
+    spec.contact.method = method;
+    spec.contact.cell = 0.5e-3;
+    spec.contact.spacing = 1e-3;
+    spec.limits.max_force = 1e4;
+    spec.limits.max_torque = 1e4;
+    spec.limits.max_force_rate = 1e12;
+    return spec;
+}
+
+}  // namespace passung::test
