@@ -1,0 +1,71 @@
+#include "devices/scripted/trajectory.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/number_table.h"
+#include "core/base/tick_record.h"
+
+namespace passung::scripted {
+
+namespace {
+constexpr double kSameTime = 1e-9;  // [s]: a tick is at a row although the two times were rounded differently
+}
+
+Result<Trajectory> Trajectory::read(const std::string& path) {
+    auto table = readNumbers(path, {"t_s", "x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"});
+    if (!table) return table.errors();
+    Trajectory trajectory;
+    Errors errors;
+    const auto problem = [&](std::size_t row, const char* key, double value, const char* requirement) {
+        errors.push_back({.message = requirement,
+                          .file = path,
+                          .line = static_cast<int>(row) + 2,
+                          .column = 1,
+                          .key = key,
+                          .value = std::to_string(value)});
+    };
+    for (std::size_t i = 0; i < table->rows.size(); ++i) {
+        const auto& v = table->rows[i];
+        Row row{v[0], {Quat(v[4], v[5], v[6], v[7]), Vec3(v[1], v[2], v[3])}};
+        if (!std::isfinite(row.t) || (i > 0 && !(row.t > trajectory.rows_.back().t))) {
+            problem(i, "t_s", row.t, "times must be finite and rise from row to row");
+        }
+        if (isFinite(row.pose)) {
+            const double length = row.pose.q.norm();
+            if (!(std::abs(length - 1.0) < 1e-3)) problem(i, "qw", length, "the quaternion's length must be 1 ± 0.001");
+            row.pose.q.normalize();
+        } else if (i == 0) {
+            problem(i, "x_m", row.pose.p.x(), "the first pose must be finite");
+        }
+        trajectory.rows_.push_back(row);
+    }
+    if (!errors.empty()) return errors;
+    return trajectory;
+}
+
+std::int64_t Trajectory::lastTick() const {
+    // A last time of 0.3 s is a little less in binary: the tick still belongs to the run.
+    return static_cast<std::int64_t>(std::floor(rows_.back().t * 1000.0 + 1e3 * kSameTime));
+}
+
+Pose Trajectory::at(std::int64_t tick) const {
+    const double t = static_cast<double>(tick) * kTickSeconds;
+    const auto after =
+        std::upper_bound(rows_.begin(), rows_.end(), t, [](double x, const Row& row) { return x < row.t; });
+    if (after == rows_.begin()) return rows_.front().pose;
+    if (after == rows_.end()) return rows_.back().pose;
+    const Row& a = *(after - 1);
+    const Row& b = *after;
+    if (t - a.t < kSameTime) return a.pose;
+    if (b.t - t < kSameTime) return b.pose;
+    if (!isFinite(a.pose) || !isFinite(b.pose)) {
+        const double nan = std::numeric_limits<double>::quiet_NaN();
+        return {Quat(nan, nan, nan, nan), Vec3::Constant(nan)};
+    }
+    const double share = (t - a.t) / (b.t - a.t);
+    return {a.pose.q.slerp(share, b.pose.q), a.pose.p + share * (b.pose.p - a.pose.p)};
+}
+
+}  // namespace passung::scripted

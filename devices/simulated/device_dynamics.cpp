@@ -1,0 +1,99 @@
+// One substep of h for translation (rotation alike, with small rotation vectors): the linear part
+//     M v' = F + k (x_set - x) - (b + b_h) v,      M = device + hand,
+// by the trapezoidal rule, which is exact for a constant force, keeps a spring's energy and is stable for every k:
+//     u = (v_old + v_new)/2,  (2M/h + b + b_h + k h/2) u = 2M/h v_old + F + k (x_set - x_old),
+//     x_new = x_old + h u,    v_new = 2 u - v_old.
+// Dry friction follows as a separate shrink of the speed by h f_c/M, never below zero: it can only take energy away.
+// A handle at rest stays exactly where it is while the other forces do not exceed f_c (no creep).
+// Limits: f_c = k = 0: v decays as exp(-b t/M) to O(h²); b = k = 0 with friction alone: stops after v² M/(2 f_c).
+#include "devices/simulated/device_dynamics.h"
+
+#include <cmath>
+
+#include "core/base/assert.h"
+#include "core/base/tick_record.h"
+
+namespace passung::simulated {
+namespace {
+
+constexpr int kSubsteps = 4;
+constexpr double kStep = kTickSeconds / kSubsteps;
+
+struct Axis {
+    double mass, damping, stiffness, coulomb;
+};
+
+// Advances the velocity and returns the displacement. `force` excludes spring and damper, `error` = set-point -
+// position.
+Vec3 advanceVelocity(const Axis& a, const Vec3& force, const Vec3& error, Vec3& v) noexcept {
+    const Vec3 driving = force + a.stiffness * error;
+    if (v.isZero(0.0) && driving.norm() <= a.coulomb) return Vec3::Zero();
+    const double inertial = 2.0 * a.mass / kStep;
+    const Vec3 u = (inertial * v + driving) / (inertial + a.damping + 0.5 * a.stiffness * kStep);
+    v = 2.0 * u - v;
+    const double speed = v.norm();
+    const double loss = kStep * a.coulomb / a.mass;
+    v = speed > loss ? Vec3((1.0 - loss / speed) * v) : Vec3(Vec3::Zero());
+    return kStep * u;
+}
+
+Vec3 rounded(const Vec3& v, double quantum) noexcept {
+    if (!(quantum > 0)) return v;
+    return {std::round(v.x() / quantum) * quantum, std::round(v.y() / quantum) * quantum,
+            std::round(v.z() / quantum) * quantum};
+}
+
+Vec3 shortened(const Vec3& v, double limit) noexcept {
+    const double n = v.norm();
+    return n > limit ? Vec3((limit / n) * v) : v;
+}
+
+}  // namespace
+
+DeviceDynamics::DeviceDynamics(const DeviceParams& params, const Pose& X_BDHome)
+    : params_(params), X_BDHome_(X_BDHome), X_BD_(X_BDHome) {
+    PASSUNG_ASSERT(params.validate().empty());
+}
+
+Wrench DeviceDynamics::limited(const Wrench& wrench) const noexcept {
+    if (!isFinite(wrench)) return {};
+    const bool turns = params_.actuated_degrees == 6;
+    return {shortened(wrench.force, params_.max_force.value),
+            turns ? shortened(wrench.torque, params_.max_torque.value) : Vec3(Vec3::Zero())};
+}
+
+void DeviceDynamics::command(const Wrench& F_D_B) noexcept { pending_[next_] = limited(F_D_B); }
+
+void DeviceDynamics::advance(const HandCoupling& hand) noexcept {
+    const std::size_t size = pending_.size();
+    acting_ = pending_[(next_ + size - static_cast<std::size_t>(params_.delay_ticks)) % size];
+    // Without a new command the motors keep the last one.
+    const Wrench last = pending_[next_];
+    next_ = (next_ + 1) % size;
+    pending_[next_] = last;
+
+    const double held = hand.attached ? 1.0 : 0.0;
+    const Axis linear{params_.mass.value + held * hand.mass, params_.damping.value + held * hand.damping,
+                      held * hand.stiffness, params_.coulomb_force.value};
+    const Axis angular{params_.inertia.value + held * hand.inertia,
+                       params_.rotational_damping.value + held * hand.rotational_damping,
+                       held * hand.rotational_stiffness, params_.coulomb_torque.value};
+    const Vec3 force = acting_.force + held * hand.F_D_B.force;
+    const Vec3 torque = acting_.torque + held * hand.F_D_B.torque;
+    for (int i = 0; i < kSubsteps; ++i) {
+        X_BD_.p += advanceVelocity(linear, force, hand.X_BSet.p - X_BD_.p, V_BD_B_.v);
+        if (params_.sensed_degrees == 6) {
+            const Vec3 error = rotationVector(hand.X_BSet.q * X_BD_.q.conjugate());
+            const Vec3 turn = advanceVelocity(angular, torque, error, V_BD_B_.w);
+            X_BD_.q = (rotationFromVector(turn) * X_BD_.q).normalized();
+        }
+    }
+}
+
+Pose DeviceDynamics::readPose() const noexcept {
+    const Vec3 p = X_BDHome_.p + rounded(X_BD_.p - X_BDHome_.p, params_.quantum.value);
+    const Vec3 turned = rounded(rotationVector(X_BD_.q * X_BDHome_.q.conjugate()), params_.rotational_quantum.value);
+    return {(rotationFromVector(turned) * X_BDHome_.q).normalized(), p};
+}
+
+}  // namespace passung::simulated

@@ -1,0 +1,368 @@
+// Peg-in-hole by a simulated person. Everything a phase decides comes from a Percept (late, and only what a person
+// could know) and from the belief about the bore's place; tests/devices moves the real bore to prove it.
+//
+// The frame M is the believed mouth: +z out of the bore. Set-points are expressed there as p_MP and turned into a
+// handle pose at the end of act(). The arm's spring turns the distance between set-point and handle into force, so
+// pressing with a force f means a set-point that leads by f/k; an integrator on the felt force corrects for friction.
+#include "devices/simulated/hand.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "core/base/assert.h"
+#include "core/base/tick_record.h"
+
+namespace passung::simulated {
+namespace {
+
+constexpr double kDt = kTickSeconds;
+
+// Thresholds of judgement; proposed here.
+constexpr double kStartDuration = 0.9;     // [s] reach for the start pose
+constexpr double kSettleDuration = 0.45;   // [s]
+constexpr double kPuzzled = 0.8;           // [s] longer look after a try that failed
+constexpr double kLiftDuration = 0.7;      // [s]
+constexpr double kContactForce = 0.7;      // [N] a touch is noticed
+constexpr double kClearlyInside = 4e-3;    // [m] seen below the mouth: no wall gives way that far
+constexpr double kDrop = 1e-3;             // [m] seen below the pressed level: it goes in
+constexpr double kCaughtForce = 0.8;       // [N] sideways: the tip is held by something
+constexpr double kCaughtTime = 0.12;       // [s] for so long
+constexpr double kCaughtPause = 0.6;       // [s] of searching before being caught counts (again)
+constexpr double kProgress = 0.4e-3;       // [m] seen progress that counts
+constexpr double kStallTime = 0.6;         // [s] without it: stuck
+constexpr double kBackOffDuration = 0.35;  // [s]
+constexpr double kBackOffLift = 1.5e-3;    // [m]
+constexpr double kWiggle = 0.6e-3;         // [m]
+constexpr double kWiggleTurn = 0.01;       // [rad]
+constexpr int kMostStalls = 2;             // pushes without depth before searching on
+constexpr double kBeside = 3.0;            // standard deviations of seeing next to the hole: doubt
+constexpr double kPaceSpread = 0.1;        // of the natural logarithm of a trial's pace
+constexpr double kExtraDepth = 1e-3;       // [m] beyond the asked depth, to be sure
+constexpr double kBottomShare = 0.88;      // of the asked depth: a stop there is taken for the end
+constexpr double kEndGain = 2.5;           // [1/s] slows down before the asked depth
+constexpr double kEndSpeed = 2e-3;         // [m/s]
+constexpr double kGiveWay = 0.25;          // [s] time constant of yielding to the sides and in tilt
+constexpr double kOffsetGain = 2.5;        // [1/s] against friction; × delay < 1/2 keeps it stable
+constexpr double kPressGain = 2.5;         // [1/s]
+constexpr double kMostOffset = 15e-3;      // [m]
+constexpr double kMostTurnOffset = 0.1;    // [rad]
+
+std::uint64_t derived(std::uint64_t seed, std::uint64_t purpose) {
+    std::uint64_t state = seed ^ (0x9e3779b97f4a7c15u * purpose);
+    return splitmix64(state);
+}
+
+Vec3 clamped(const Vec3& v, double limit) noexcept { return v.cwiseMax(-limit).cwiseMin(limit); }
+
+}  // namespace
+
+const char* phaseName(HandPhase phase) noexcept {
+    constexpr std::array<const char*, 11> kNames = {"to_start", "hold_start", "approach", "settle", "descend", "press",
+                                                    "search",   "insert",     "back_off", "lift",   "hold"};
+    return kNames[static_cast<std::size_t>(phase)];
+}
+
+Hand::Hand(const HandParams& params, const VisibleTask& task, const HandRegistration& registration, std::uint64_t seed)
+    : params_(params),
+      task_(task),
+      registration_(registration),
+      perception_(derived(seed, 1)),
+      motor_(derived(seed, 2)),
+      tremor_(params.tremor, params.mass, motor_),
+      senses_(params),
+      pace_(params.pace * std::exp(kPaceSpread * std::clamp(motor_.normal(), -2.5, 2.5))) {
+    PASSUNG_ASSERT(params.validate().empty());
+    look();
+}
+
+// ---- senses -----------------------------------------------------------------------------------------------------
+
+void Hand::look() noexcept {
+    const Vec3 shift(params_.lateral_error * perception_.normal(), params_.lateral_error * perception_.normal(),
+                     params_.depth_error * perception_.normal());
+    const Vec3 tilt(params_.tilt_error * perception_.normal(), params_.tilt_error * perception_.normal(), 0.0);
+    X_WM_ = task_.X_WTarget * Pose{rotationFromVector(tilt), shift};
+    const Vec3 axis = X_WM_.q * Vec3::UnitZ();
+    const Quat align = Quat::FromTwoVectors(task_.X_WHeldStart.q * Vec3::UnitZ(), axis);
+    q_goal_ = (align * task_.X_WHeldStart.q).normalized();
+}
+
+double Hand::seenDepth(const Percept& percept) const noexcept {
+    return percept.sees ? -(X_WM_.inverse() * percept.X_WSeen.p).z() : -1.0;
+}
+
+Vec3 Hand::feltPosition(const Percept& percept) const noexcept { return X_WM_.inverse() * percept.X_WFelt.p; }
+
+Vec3 Hand::feltForce(const Percept& percept) const noexcept { return X_WM_.q.conjugate() * percept.F_felt.force; }
+
+Vec3 Hand::feltTurn(const Percept& percept) const noexcept {
+    return rotationVector(percept.X_WFelt.q * q_goal_.conjugate());
+}
+
+// ---- building blocks of movement --------------------------------------------------------------------------------
+
+void Hand::enter(HandPhase phase) noexcept {
+    phase_ = phase;
+    phase_start_ = tick_;
+    t_ = 0.0;
+}
+
+void Hand::startReach(HandPhase phase, const Pose& to, double duration) noexcept {
+    reach_ = {X_WRef_, to, duration};
+    enter(phase);
+}
+
+Pose Hand::aboveMouth() const noexcept { return {q_goal_, X_WM_ * Vec3(0.0, 0.0, params_.approach_height)}; }
+
+void Hand::placeReference(const Vec3& p_MP, const Vec3& turn) noexcept {
+    X_WRef_ = {(rotationFromVector(turn) * q_goal_).normalized(), X_WM_ * p_MP};
+}
+
+// In free space the arm sees that friction keeps it short of where it wants to be, and asks for a little more.
+void Hand::removeOffset(const Percept& percept) noexcept {
+    offset_ = clamped(offset_ + kOffsetGain * kDt * (X_WRef_.p - percept.X_WFelt.p), kMostOffset);
+    const Vec3 turn = rotationVector(X_WRef_.q * percept.X_WFelt.q.conjugate());
+    turn_offset_ = clamped(turn_offset_ + kOffsetGain * kDt * turn, kMostTurnOffset);
+}
+
+void Hand::pressWith(double force, const Percept& percept) noexcept {
+    const double missing = force - feltForce(percept).z();
+    const double speed = std::min(kPressGain * missing / params_.stiffness, params_.insert_speed);
+    // Never lead by more than twice the force: a wall that vanishes must not be followed by a fall.
+    const double lowest = feltPosition(percept).z() - 2.0 * force / params_.stiffness;
+    p_MP_.z() = std::max(p_MP_.z() - speed * kDt, std::min(lowest, p_MP_.z()));
+}
+
+// ---- phases -----------------------------------------------------------------------------------------------------
+
+void Hand::toStart() noexcept {
+    X_WRef_ = reach_.at(t_);
+    if (t_ >= reach_.duration) enter(HandPhase::HoldStart);
+}
+
+void Hand::holdStart(const Percept& percept) noexcept {
+    removeOffset(percept);
+    if (percept.go) startReach(HandPhase::Approach, aboveMouth(), params_.approach_duration / pace_);
+}
+
+void Hand::approach() noexcept {
+    X_WRef_ = reach_.at(t_);
+    if (t_ >= reach_.duration) enter(HandPhase::Settle);
+}
+
+void Hand::settle(const Percept& percept) noexcept {
+    if (t_ > params_.haptic_delay) removeOffset(percept);
+    if (t_ < kSettleDuration + (attempt_ > 0 ? kPuzzled / pace_ : 0.0)) return;
+    p_MP_ = X_WM_.inverse() * X_WRef_.p;
+    turn_.setZero();
+    enter(HandPhase::Descend);
+}
+
+void Hand::descend(const Percept& percept) noexcept {
+    p_MP_.z() -= pace_ * params_.descend_speed * kDt;
+    placeReference(p_MP_, turn_);
+    best_depth_ = -1.0;
+    stalled_ = 0.0;
+    stalls_ = 0;
+    if (feltForce(percept).norm() > kContactForce) enter(HandPhase::Press);
+    if (seenDepth(percept) > kClearlyInside) enter(HandPhase::Insert);
+}
+
+void Hand::press(const Percept& percept) noexcept {
+    pressWith(params_.press_force, percept);
+    placeReference(p_MP_, turn_);
+    const double depth = seenDepth(percept);
+    if (depth > best_depth_ + kProgress) {
+        best_depth_ = depth;
+        stalled_ = 0.0;
+    } else {
+        stalled_ += kDt;
+    }
+    if (depth > kClearlyInside) {
+        enter(HandPhase::Insert);
+    } else if (stalled_ > params_.judgement + params_.visual_delay) {
+        baseline_ = depth;
+        startSearch();
+    }
+}
+
+void Hand::startSearch() noexcept {
+    centre_ = p_MP_;
+    spiral_angle_ = 0.0;
+    resumeSearch();
+}
+
+void Hand::resumeSearch() noexcept {
+    search_time_ = 0.0;
+    caught_ = 0.0;
+    enter(HandPhase::Search);
+}
+
+// Archimedean spiral r = pitch · angle / 2π at constant speed: angle' = v / sqrt(r² + (pitch/2π)²).
+void Hand::search(const Percept& percept) noexcept {
+    const double a = params_.search_pitch / (2.0 * std::numbers::pi);
+    const double r = a * spiral_angle_;
+    spiral_angle_ += kDt * pace_ * params_.search_speed / std::hypot(r, a);
+    search_time_ += kDt;
+    pressWith(params_.press_force, percept);
+    // After an interruption the tip first comes back to the spiral, no faster than it searches.
+    const Vec3 spiral = centre_ + Vec3(r * std::cos(spiral_angle_), r * std::sin(spiral_angle_), 0.0);
+    Vec3 step = spiral - p_MP_;
+    step.z() = 0.0;
+    const double most = 2.0 * params_.search_speed * kDt;
+    p_MP_ += step.norm() > most ? Vec3(step * (most / step.norm())) : step;
+    const double tau = 2.0 * std::numbers::pi * search_time_;
+    const Vec3 wobble = params_.search_tilt * Vec3(std::sin(1.3 * tau), std::sin(1.7 * tau), 0.0);
+    placeReference(p_MP_, turn_ + wobble);
+
+    const double depth = seenDepth(percept);
+    const bool held = search_time_ > kCaughtPause && feltForce(percept).head<2>().norm() > kCaughtForce;
+    caught_ = held ? caught_ + kDt : 0.0;
+    const double widest = std::min(params_.first_search_radius * (attempt_ + 1), params_.last_search_radius);
+    if (depth > baseline_ + kDrop || caught_ > kCaughtTime) {
+        best_depth_ = depth;
+        stalled_ = 0.0;
+        stalls_ = 0;
+        enter(HandPhase::Insert);
+    } else if (r > widest) {
+        giveUp();
+    }
+}
+
+void Hand::giveUp() noexcept {
+    ++attempt_;
+    look();
+    startReach(HandPhase::Lift, aboveMouth(), kLiftDuration / pace_);
+}
+
+void Hand::insert(const Percept& percept) noexcept {
+    const double depth = seenDepth(percept);
+    // A part that is seen going in next to the hole looks like a mistake. Once; then touch is believed.
+    const Vec3 seen = X_WM_.inverse() * percept.X_WSeen.p;
+    if (!doubted_ && depth > kClearlyInside && seen.head<2>().norm() > kBeside * params_.lateral_error) {
+        doubted_ = true;
+        return giveUp();
+    }
+    const double remaining = task_.insertion_depth + kExtraDepth - depth;
+    const double speed = std::clamp(kEndGain * remaining, kEndSpeed, pace_ * params_.insert_speed);
+    const Vec3 felt = feltPosition(percept);
+    const double lowest = felt.z() - params_.insert_force / params_.stiffness;
+    p_MP_.z() = std::max(p_MP_.z() - speed * kDt, std::min(lowest, p_MP_.z()));
+    // Giving way: the intention drifts to where the walls have put the part, which takes the side force away.
+    p_MP_.head<2>() += (kDt / kGiveWay) * (felt - p_MP_).head<2>();
+    turn_ += (kDt / kGiveWay) * (feltTurn(percept) - turn_);
+    offset_ -= (kDt / kGiveWay) * offset_;
+    turn_offset_ -= (kDt / kGiveWay) * turn_offset_;
+    placeReference(p_MP_, turn_);
+
+    if (depth > best_depth_ + kProgress) {
+        best_depth_ = depth;
+        stalled_ = 0.0;
+        stalls_ = 0;
+    } else {
+        stalled_ += kDt;
+    }
+    bottomed_ = stalled_ > kStallTime && depth > kBottomShare * task_.insertion_depth;
+    if (remaining < 0.0 || bottomed_) {
+        p_MP_.z() = felt.z();
+        enter(HandPhase::Hold);
+    } else if (stalled_ > kStallTime) {
+        const double angle = motor_.uniform(0.0, 2.0 * std::numbers::pi);
+        wiggle_ = kWiggle * Vec3(std::cos(angle), std::sin(angle), 0.0);
+        wiggle_turn_ = kWiggleTurn * Vec3(motor_.normal(), motor_.normal(), 0.0);
+        ++stalls_;
+        enter(HandPhase::BackOff);
+    }
+}
+
+void Hand::backOff(const Percept& percept) noexcept {
+    p_MP_.z() =
+        std::max(p_MP_.z(), std::min(p_MP_.z() + 20.0 * kBackOffLift * kDt, feltPosition(percept).z() + kBackOffLift));
+    placeReference(p_MP_ + wiggle_, turn_ + wiggle_turn_);
+    if (t_ < kBackOffDuration) return;
+    stalled_ = 0.0;
+    // A soft wall gives way under more force; only what is deeper than that is inside.
+    const double yields = std::max(baseline_, 0.0) * params_.insert_force / params_.press_force + kDrop;
+    if (best_depth_ > std::max(yields, kClearlyInside) || stalls_ < kMostStalls) {
+        enter(HandPhase::Insert);
+    } else if (spiral_angle_ > 0.0) {
+        resumeSearch();
+    } else {
+        giveUp();
+    }
+}
+
+void Hand::lift() noexcept {
+    X_WRef_ = reach_.at(t_);
+    if (t_ < reach_.duration) return;
+    spiral_angle_ = 0.0;
+    enter(HandPhase::Settle);
+}
+
+void Hand::hold(const Percept& percept) noexcept {
+    placeReference(p_MP_, turn_);
+    const bool slippedBack = seenDepth(percept) < task_.insertion_depth;
+    if (!slippedBack || bottomed_ || t_ < params_.visual_delay + params_.judgement) return;
+    best_depth_ = seenDepth(percept);
+    stalled_ = 0.0;
+    enter(HandPhase::Insert);
+}
+
+// ---- one tick ---------------------------------------------------------------------------------------------------
+
+void Hand::choose(const Percept& percept) noexcept {
+    switch (phase_) {
+        case HandPhase::ToStart:
+            return toStart();
+        case HandPhase::HoldStart:
+            return holdStart(percept);
+        case HandPhase::Approach:
+            return approach();
+        case HandPhase::Settle:
+            return settle(percept);
+        case HandPhase::Descend:
+            return descend(percept);
+        case HandPhase::Press:
+            return press(percept);
+        case HandPhase::Search:
+            return search(percept);
+        case HandPhase::Insert:
+            return insert(percept);
+        case HandPhase::BackOff:
+            return backOff(percept);
+        case HandPhase::Lift:
+            return lift();
+        case HandPhase::Hold:
+            return hold(percept);
+    }
+}
+
+HandCoupling Hand::act(const Pose& X_BD, const Wrench& F_D_B) noexcept {
+    const Pose X_WH = registration_.partFromHandle(X_BD);
+    const Quat& q_WB = registration_.X_WB.q;
+    senses_.feel(X_WH, {q_WB * F_D_B.force, q_WB * F_D_B.torque});
+    if (tick_ == 0) {
+        X_WRef_ = X_WH;
+        startReach(HandPhase::ToStart, task_.X_WHeldStart, kStartDuration);
+    }
+    t_ = static_cast<double>(tick_ - phase_start_) * kDt;
+    choose(senses_.percept());
+
+    HandCoupling coupling;
+    coupling.attached = true;
+    coupling.mass = params_.mass;
+    coupling.inertia = params_.inertia;
+    coupling.stiffness = params_.stiffness;
+    coupling.damping = params_.damping;
+    coupling.rotational_stiffness = params_.rotational_stiffness;
+    coupling.rotational_damping = params_.rotational_damping;
+    coupling.X_BSet = registration_.handleFromPart(
+        {(rotationFromVector(turn_offset_) * X_WRef_.q).normalized(), X_WRef_.p + offset_});
+    coupling.F_D_B.force = tremor_.force(static_cast<double>(tick_) * kDt);
+    ++tick_;
+    return coupling;
+}
+
+}  // namespace passung::simulated

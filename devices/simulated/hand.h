@@ -1,0 +1,119 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/base/random.h"
+#include "core/base/types.h"
+#include "core/loop/haptic_device.h"
+#include "devices/simulated/device_dynamics.h"
+#include "devices/simulated/hand_params.h"
+#include "devices/simulated/hand_senses.h"
+#include "devices/simulated/minimum_jerk.h"
+#include "devices/simulated/tremor.h"
+
+namespace passung::simulated {
+
+/// What the hand is doing. The order of a smooth trial is the order here up to Insert, then Hold.
+enum class HandPhase {
+    ToStart,    // reach for the start pose
+    HoldStart,  // stay there until the display says go
+    Approach,   // reach to above the bore that is seen
+    Settle,     // stop, look, correct what friction held back
+    Descend,    // down until something is felt or the part is seen inside
+    Press,      // lean on it and look whether it goes in
+    Search,     // a growing spiral under light pressure
+    Insert,     // push along the bore, give way to the sides
+    BackOff,    // stuck: pull back a little and wiggle
+    Lift,       // nothing found: up and look again
+    Hold,       // seen at the asked depth: keep still
+};
+const char* phaseName(HandPhase phase) noexcept;
+
+/// A simulated person's hand doing peg-in-hole. It knows its posture, the displayed force and the displayed image, each
+/// late and the bore's place seen with an error; where parts are touched it must find out.
+/// All but the constructor rt-safe; the same seed gives the same movements bit for bit.
+class Hand {
+public:
+    /// @pre params.validate() is empty.
+    Hand(const HandParams& params, const VisibleTask& task, const HandRegistration& registration, std::uint64_t seed);
+
+    /// A frame on the display.
+    void see(const loop::DisplayedImage& image) noexcept { senses_.see(image); }
+
+    /// One tick: posture and force in, what the arm does out. `F_D_B` as the motors give it.
+    HandCoupling act(const Pose& X_BD, const Wrench& F_D_B) noexcept;
+
+    HandPhase phase() const noexcept { return phase_; }
+
+private:
+    void enter(HandPhase phase) noexcept;
+    void startReach(HandPhase phase, const Pose& to, double duration) noexcept;
+    void look() noexcept;
+    Pose aboveMouth() const noexcept;
+
+    void choose(const Percept& percept) noexcept;
+    void toStart() noexcept;
+    void holdStart(const Percept& percept) noexcept;
+    void approach() noexcept;
+    void settle(const Percept& percept) noexcept;
+    void descend(const Percept& percept) noexcept;
+    void press(const Percept& percept) noexcept;
+    void search(const Percept& percept) noexcept;
+    void insert(const Percept& percept) noexcept;
+    void backOff(const Percept& percept) noexcept;
+    void lift() noexcept;
+    void hold(const Percept& percept) noexcept;
+
+    void removeOffset(const Percept& percept) noexcept;
+    void pressWith(double force, const Percept& percept) noexcept;
+    void startSearch() noexcept;
+    void resumeSearch() noexcept;
+    void giveUp() noexcept;
+    void placeReference(const Vec3& p_MP, const Vec3& turn) noexcept;
+    double seenDepth(const Percept& percept) const noexcept;
+    Vec3 feltPosition(const Percept& percept) const noexcept;
+    Vec3 feltForce(const Percept& percept) const noexcept;
+    Vec3 feltTurn(const Percept& percept) const noexcept;
+
+    HandParams params_;
+    VisibleTask task_;
+    HandRegistration registration_;
+    Random perception_;  // errors of looking
+    Random motor_;       // choices of movement
+    Tremor tremor_;
+    HandSenses senses_;
+
+    double pace_;  // of this trial against the habit
+
+    HandPhase phase_ = HandPhase::ToStart;
+    std::int64_t tick_ = 0;
+    std::int64_t phase_start_ = 0;
+    double t_ = 0.0;  // in the phase [s]
+
+    // intention: where the part shall be
+    Reach reach_;
+    Pose X_WRef_;
+    Vec3 offset_ = Vec3::Zero();  // added to it against friction, world axes [m]
+    Vec3 turn_offset_ = Vec3::Zero();
+
+    // belief about the mouth M and movement relative to it
+    Pose X_WM_;
+    Quat q_goal_;                 // the part's orientation along the believed axis
+    Vec3 p_MP_ = Vec3::Zero();    // intended tip in M [m]
+    Vec3 turn_ = Vec3::Zero();    // intended rotation on top of q_goal_, rotation vector in W
+    double baseline_ = 0.0;       // seen depth at which pressing got no further [m]
+    Vec3 centre_ = Vec3::Zero();  // of the spiral, in M
+    int attempt_ = 0;             // searches since go
+    double spiral_angle_ = 0.0;   // [rad]
+    double caught_ = 0.0;         // how long something has held the tip sideways [s]
+    double search_time_ = 0.0;    // since the spiral was last taken up [s]
+    double best_depth_ = 0.0;     // seen so far in this push [m]
+    double stalled_ = 0.0;        // time without progress [s]
+    int stalls_ = 0;
+    Vec3 wiggle_ = Vec3::Zero();
+    Vec3 wiggle_turn_ = Vec3::Zero();
+    bool bottomed_ = false;
+    bool doubted_ = false;  // has once pulled out because it looked wrong
+};
+
+}  // namespace passung::simulated

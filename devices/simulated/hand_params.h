@@ -1,0 +1,73 @@
+#pragma once
+
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/base/types.h"
+
+namespace passung::simulated {
+
+/// What the display shows of the task and does not change during a trial: where things are drawn, which need not be
+/// where they are touched. Poses of the held part and of the bore's mouth (its axis +z points out of the bore).
+struct VisibleTask {
+    Pose X_WHeldStart;
+    Pose X_WTarget;
+    double insertion_depth = 0.020;  // [m], > 0
+};
+
+/// How the handle maps to the held part: X_WH = X_WB · scale(X_BD) · X_DH, the scale acting on the position.
+struct HandRegistration {
+    Pose X_WB;
+    double scale = 1.0;  // > 0
+    Pose X_DH;
+
+    Pose partFromHandle(const Pose& X_BD) const { return X_WB * Pose{X_BD.q, scale * X_BD.p} * X_DH; }
+    Pose handleFromPart(const Pose& X_WH) const {
+        const Pose X_BD = X_WB.inverse() * X_WH * X_DH.inverse();
+        return {X_BD.q, X_BD.p / scale};
+    }
+};
+
+/// A person's arm, senses and habits, as far as peg-in-hole needs them. SI units. The defaults are plausible for a calm
+/// adult and proposed here; they are not measured on anybody.
+struct HandParams {
+    // the arm at the handle
+    double mass = 0.5;                  // [kg]
+    double inertia = 1.5e-3;            // [kg·m²]
+    double stiffness = 300.0;           // [N/m], > 0
+    double damping = 15.0;              // [N·s/m]
+    double rotational_stiffness = 3.0;  // [N·m/rad], > 0
+    double rotational_damping = 0.08;   // [N·m·s/rad]
+    double tremor = 4e-5;               // root mean square per axis of the free hand, 8-12 Hz [m]
+
+    // delays from sense to reaction
+    double visual_delay = 0.20;  // [s], 0 … kMaxSenseDelay
+    double haptic_delay = 0.13;  // [s], felt force and own posture
+
+    // how wrongly the relative pose of part and bore is seen (standard deviations, drawn anew at every look)
+    double lateral_error = 0.6e-3;  // [m] per axis
+    double depth_error = 0.5e-3;    // [m]
+    double tilt_error = 0.013;      // [rad] per axis
+
+    // habits
+    double pace = 1.0;                  // factor on the speed of all movements, > 0
+    double approach_duration = 1.1;     // [s] for the reach to above the bore, > 0
+    double approach_height = 8e-3;      // [m] above the mouth
+    double descend_speed = 0.02;        // [m/s]
+    double judgement = 0.35;            // [s] looking whether it goes in before searching
+    double press_force = 3.0;           // [N] while searching
+    double search_speed = 8e-3;         // [m/s] along the spiral
+    double search_pitch = 0.6e-3;       // [m] between turns
+    double first_search_radius = 2e-3;  // [m] before lifting and looking again; grows by itself at every attempt
+    double last_search_radius = 6e-3;   // [m]
+    double search_tilt = 0.008;         // wobble while searching [rad]
+    double insert_speed = 0.025;        // [m/s]
+    double insert_force = 7.0;          // [N], the most that is pushed
+
+    /// Everything out of range; key = field.
+    std::vector<Error> validate() const;
+};
+
+inline constexpr double kMaxSenseDelay = 0.5;  // [s]
+
+}  // namespace passung::simulated

@@ -1,0 +1,46 @@
+#include "devices/simulated/hand_senses.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/tick_record.h"
+
+namespace passung::simulated {
+namespace {
+
+std::int64_t ticks(double seconds) { return std::llround(seconds / kTickSeconds); }
+
+}  // namespace
+
+HandSenses::HandSenses(const HandParams& params)
+    : haptic_delay_ticks_(ticks(params.haptic_delay)), visual_delay_ticks_(ticks(params.visual_delay)) {}
+
+void HandSenses::feel(const Pose& X_WH, const Wrench& F_W) noexcept {
+    ++now_;
+    feelings_[static_cast<std::size_t>(now_) % kMemory] = {X_WH, F_W};
+}
+
+void HandSenses::see(const loop::DisplayedImage& image) noexcept {
+    sights_[static_cast<std::size_t>(sights_seen_) % kMemory] = {std::max<std::int64_t>(now_, 0), image};
+    ++sights_seen_;
+}
+
+Percept HandSenses::percept() const noexcept {
+    Percept percept;
+    if (now_ < 0) return percept;
+    const std::int64_t felt = std::max<std::int64_t>(now_ - haptic_delay_ticks_, 0);
+    percept.X_WFelt = feelings_[static_cast<std::size_t>(felt) % kMemory].X_WH;
+    percept.F_felt = feelings_[static_cast<std::size_t>(felt) % kMemory].F_W;
+    const std::int64_t oldest = std::max<std::int64_t>(sights_seen_ - static_cast<std::int64_t>(kMemory), 0);
+    for (std::int64_t i = sights_seen_ - 1; i >= oldest; --i) {
+        const Sight& sight = sights_[static_cast<std::size_t>(i) % kMemory];
+        if (sight.arrived > now_ - visual_delay_ticks_) continue;
+        percept.sees = true;
+        percept.X_WSeen = sight.image.X_WShown;
+        percept.go = sight.image.running;
+        break;
+    }
+    return percept;
+}
+
+}  // namespace passung::simulated

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/base/types.h"
+#include "core/loop/haptic_device.h"
+#include "devices/simulated/hand_params.h"
+
+namespace passung::simulated {
+
+/// What the person knows at one moment, all of it late.
+struct Percept {
+    Pose X_WFelt;       // where the own posture says the held part is
+    Wrench F_felt;      // on the hand, about the handle's origin, world axes
+    bool sees = false;  // an image has arrived
+    Pose X_WSeen;       // the held part as drawn
+    bool go = false;    // the trial has visibly started
+};
+
+/// Delays between the world and the person. rt-safe after construction.
+class HandSenses {
+public:
+    explicit HandSenses(const HandParams& params);
+    /// One call per tick, before percept().
+    void feel(const Pose& X_WH, const Wrench& F_W) noexcept;
+    void see(const loop::DisplayedImage& image) noexcept;
+    Percept percept() const noexcept;
+
+private:
+    struct Feeling {
+        Pose X_WH;
+        Wrench F_W;
+    };
+    struct Sight {
+        std::int64_t arrived = 0;  // own ticks
+        loop::DisplayedImage image;
+    };
+    static constexpr std::size_t kMemory = 512;  // > kMaxSenseDelay in ticks; images come at most once a tick
+
+    std::int64_t haptic_delay_ticks_;
+    std::int64_t visual_delay_ticks_;
+    std::int64_t now_ = -1;
+    std::array<Feeling, kMemory> feelings_{};
+    std::array<Sight, kMemory> sights_{};
+    std::int64_t sights_seen_ = 0;
+};
+
+}  // namespace passung::simulated

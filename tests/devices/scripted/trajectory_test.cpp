@@ -1,0 +1,51 @@
+#include "devices/scripted/trajectory.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+namespace passung {
+namespace {
+
+constexpr const char* kHeader = "t_s,x_m,y_m,z_m,qw,qx,qy,qz\n";
+
+Result<scripted::Trajectory> read(const std::string& rows) {
+    const auto path = std::filesystem::temp_directory_path() / ("passung_path_" + std::to_string(getpid()) + ".csv");
+    std::ofstream(path) << kHeader << rows;
+    return scripted::Trajectory::read(path.string());
+}
+
+TEST(Trajectory, InterpolatesLinearlyAndAlongTheGreatCircle) {
+    // Truth: closed form. Half way: the middle, and half of a quarter turn about z.
+    const auto path = read("0,0,0,0,1,0,0,0\n0.1,0.2,0,-0.4,0.7071067811865476,0,0,0.7071067811865476\n");
+    ASSERT_TRUE(path);
+    EXPECT_EQ(path->lastTick(), 100);
+    const Pose middle = path->at(50);
+    EXPECT_LT((middle.p - Vec3(0.1, 0, -0.2)).norm(), 1e-12);
+    EXPECT_NEAR(middle.q.z(), std::sin(3.14159265358979 / 8), 1e-9);
+    EXPECT_LT((path->at(100).p - Vec3(0.2, 0, -0.4)).norm(), 1e-12);
+}
+
+TEST(Trajectory, IsBrokenBetweenRowsOfWhichOneIsNan) {
+    // Truth: invariant. The rows themselves are what they say.
+    const auto path = read("0,0,0,0,1,0,0,0\n0.010,1,0,0,1,0,0,0\n0.020,nan,0,0,1,0,0,0\n0.030,3,0,0,1,0,0,0\n");
+    ASSERT_TRUE(path);
+    EXPECT_TRUE(isFinite(path->at(10)));
+    for (int tick = 11; tick < 30; ++tick) EXPECT_FALSE(isFinite(path->at(tick))) << tick;
+    EXPECT_EQ(path->at(30).p.x(), 3.0);
+}
+
+TEST(Trajectory, RefusesTimesThatDoNotRiseAndRotationsThatAreNone) {
+    // Truth: invariant.
+    EXPECT_FALSE(read("0,0,0,0,1,0,0,0\n0,0,0,0,1,0,0,0\n"));
+    EXPECT_FALSE(read("0,0,0,0,1,0,0,0\nnan,0,0,0,1,0,0,0\n"));
+    EXPECT_FALSE(read("0,0,0,0,0.5,0,0,0\n"));
+    EXPECT_FALSE(read("0,nan,0,0,1,0,0,0\n"));
+    EXPECT_TRUE(read("0,0,0,0,1,0,0,0\n"));
+}
+
+}  // namespace
+}  // namespace passung
