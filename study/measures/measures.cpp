@@ -1,0 +1,309 @@
+#include "study/measures/measures.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "study/measures/tick_facts.h"
+
+namespace passung::measures {
+namespace {
+
+using Optional = std::optional<double>;
+
+/// A trial cut to its ticks. Each tick stands for the millisecond that begins with it, so the record at end_tick only
+/// closes the last step.
+struct Trial {
+    const TrialContext& context;
+    std::span<const TickRecord> ticks;   // start_tick ≤ tick < end_tick: the formulas' "trial ticks"
+    std::span<const TickRecord> points;  // the same and the record at end_tick
+    std::optional<std::int64_t> leave_tick;
+    std::optional<std::int64_t> touch_tick;       // first contact tick
+    std::optional<std::int64_t> engagement_tick;  // first tick with the tip deep enough in the bore
+
+    bool succeeded() const { return context.outcome == Outcome::Success; }
+};
+
+double magnitude(const std::array<float, 3>& vector) { return Vec3(vector[0], vector[1], vector[2]).norm(); }
+
+double forceOf(const TickRecord& record) { return magnitude(record.force_N); }
+double torqueOf(const TickRecord& record) { return magnitude(record.torque_Nm); }
+double handDepthOf(const TickRecord& record) { return record.hand_depth_m; }
+double proxyDepthOf(const TickRecord& record) { return record.proxy_depth_m; }
+
+/// Rotation vector in world axes from `from` to `to`, the shortest way; the quaternions' lengths cancel.
+Vec3 handRotation(const TickRecord& from, const TickRecord& to) {
+    const auto quaternion = [](const TickRecord& r) {
+        const auto& q = r.hand_quaternion;
+        return Quat(q[0], q[1], q[2], q[3]);
+    };
+    const Quat step = quaternion(to) * quaternion(from).conjugate();
+    const double sine = step.vec().norm();
+    if (!(sine > 0.0)) return Vec3::Zero();
+    const double angle = 2.0 * std::atan2(sine, std::abs(step.w()));
+    return step.vec() * ((step.w() < 0.0 ? -angle : angle) / sine);
+}
+
+double seconds(std::int64_t from_tick, std::int64_t to_tick) {
+    return static_cast<double>(to_tick - from_tick) * kTickSeconds;
+}
+
+template <class Condition>
+std::optional<std::int64_t> firstTick(std::span<const TickRecord> ticks, Condition condition) {
+    const auto found = std::find_if(ticks.begin(), ticks.end(), condition);
+    if (found == ticks.end()) return std::nullopt;
+    return found->tick;
+}
+
+Trial cutTrial(std::span<const TickRecord> records, const TrialContext& context) {
+    const auto firstFrom = [records](std::int64_t tick) {
+        return std::partition_point(records.begin(), records.end(),
+                                    [tick](const TickRecord& r) { return r.tick < tick; });
+    };
+    const auto begin = firstFrom(context.start_tick);
+    const auto end = std::max(begin, firstFrom(context.end_tick));
+    const auto point_end = std::max(end, firstFrom(context.end_tick + 1));
+    Trial trial{context, {begin, end}, {begin, point_end}, {}, {}, {}};
+    if (trial.ticks.empty()) return trial;
+
+    const Vec3 start = handPosition(trial.ticks.front());
+    trial.leave_tick = firstTick(trial.ticks, [&](const TickRecord& record) {
+        return (handPosition(record) - start).norm() > context.leave_radius;
+    });
+    trial.touch_tick = firstTick(trial.ticks, isContact);
+    const Pose X_TW = context.X_WT.inverse();
+    trial.engagement_tick = firstTick(trial.ticks, [&](const TickRecord& record) {
+        return tipDepthInBore(record, X_TW) >= context.engagement_depth;
+    });
+    return trial;
+}
+
+/// First contact, or engagement where the part went in without touching anything before.
+std::optional<std::int64_t> approachEnd(const Trial& trial) {
+    if (!trial.engagement_tick) return trial.touch_tick;
+    return std::min(trial.touch_tick.value_or(*trial.engagement_tick), *trial.engagement_tick);
+}
+
+template <class Quantity>
+Optional sumOverSteps(const Trial& trial, Quantity quantity) {
+    if (trial.ticks.empty()) return std::nullopt;
+    double sum = 0.0;
+    for (std::size_t i = 1; i < trial.points.size(); ++i) sum += quantity(trial.points[i - 1], trial.points[i]);
+    return sum;
+}
+
+template <class Quantity>
+Optional sumOverTicks(const Trial& trial, Quantity quantity) {
+    if (trial.ticks.empty()) return std::nullopt;
+    double sum = 0.0;
+    for (const TickRecord& record : trial.ticks) sum += quantity(record);
+    return sum;
+}
+
+template <double (*quantity)(const TickRecord&)>
+Optional meanInContact(const Trial& trial) {
+    double sum = 0.0;
+    std::int64_t count = 0;
+    for (const TickRecord& record : trial.ticks) {
+        if (!isContact(record)) continue;
+        sum += quantity(record);
+        ++count;
+    }
+    if (count == 0) return std::nullopt;
+    return sum / static_cast<double>(count);
+}
+
+template <double (*quantity)(const TickRecord&)>
+Optional largest(const Trial& trial) {
+    if (trial.ticks.empty()) return std::nullopt;
+    double result = 0.0;
+    for (const TickRecord& record : trial.ticks) result = std::max(result, quantity(record));
+    return result;
+}
+
+Optional success(const Trial& trial) { return trial.succeeded() ? 1.0 : 0.0; }
+
+Optional completionTime(const Trial& trial) {
+    if (!trial.succeeded() || !trial.leave_tick) return std::nullopt;
+    return seconds(*trial.leave_tick, trial.context.end_tick);
+}
+
+Optional trialTime(const Trial& trial) {
+    if (trial.context.end_tick < trial.context.start_tick) return std::nullopt;
+    return seconds(trial.context.start_tick, trial.context.end_tick);
+}
+
+Optional approachTime(const Trial& trial) {
+    const auto end = approachEnd(trial);
+    if (!end) return std::nullopt;
+    return seconds(trial.context.start_tick, *end);
+}
+
+Optional searchTime(const Trial& trial) {
+    if (!trial.engagement_tick) return std::nullopt;
+    return seconds(*approachEnd(trial), *trial.engagement_tick);
+}
+
+Optional insertionTime(const Trial& trial) {
+    if (!trial.succeeded() || !trial.engagement_tick) return std::nullopt;
+    return seconds(*trial.engagement_tick, trial.context.end_tick);
+}
+
+Optional insertionDepth(const Trial& trial) {
+    if (trial.points.empty()) return std::nullopt;
+    return std::max(0.0, tipDepthInBore(trial.points.back(), trial.context.X_WT.inverse()).value_or(0.0));
+}
+
+Optional pathLength(const Trial& trial) {
+    return sumOverSteps(trial, [](const TickRecord& from, const TickRecord& to) {
+        return (handPosition(to) - handPosition(from)).norm();
+    });
+}
+
+Optional rotationPath(const Trial& trial) {
+    return sumOverSteps(trial,
+                        [](const TickRecord& from, const TickRecord& to) { return handRotation(from, to).norm(); });
+}
+
+Optional contactOnsets(const Trial& trial) {
+    bool before = false;
+    return sumOverTicks(trial, [&before](const TickRecord& record) {
+        const bool now = isContact(record);
+        const bool onset = now && !before;
+        before = now;
+        return onset ? 1.0 : 0.0;
+    });
+}
+
+Optional contactTime(const Trial& trial) {
+    if (trial.ticks.empty()) return std::nullopt;
+    return seconds(0, std::count_if(trial.ticks.begin(), trial.ticks.end(), isContact));
+}
+
+Optional impulse(const Trial& trial) {
+    return sumOverTicks(trial, [](const TickRecord& record) { return forceOf(record) * kTickSeconds; });
+}
+
+Optional work(const Trial& trial) {
+    return sumOverSteps(trial, [](const TickRecord& from, const TickRecord& to) {
+        const Vec3 force(from.force_N[0], from.force_N[1], from.force_N[2]);
+        const Vec3 torque(from.torque_Nm[0], from.torque_Nm[1], from.torque_Nm[2]);
+        return -force.dot(handPosition(to) - handPosition(from)) - torque.dot(handRotation(from, to));
+    });
+}
+
+Optional saturatedShare(const Trial& trial) {
+    if (trial.ticks.empty()) return std::nullopt;
+    const auto saturated = std::count_if(trial.ticks.begin(), trial.ticks.end(),
+                                         [](const TickRecord& record) { return (record.status & kForceLimited) != 0; });
+    return static_cast<double>(saturated) / static_cast<double>(trial.ticks.size());
+}
+
+struct Measure {
+    Definition definition;
+    Optional (*compute)(const Trial&);
+};
+
+// Words shared by the formulas: a trial tick is a recorded tick with start tick ≤ tick < end tick. A contact tick is a
+// trial tick with |force| > 1e-6 N or |torque| > 1e-9 N·m or contacts > 0. The tip is the origin of the held part's
+// proxy; its depth counts only within 2 mm of the bore's axis.
+const std::vector<Measure>& measures() {
+    static const std::vector<Measure> all = {
+        {{"success", "Success", "1", "1 if the outcome is success, else 0"}, success},
+        {{"completion_time_s", "Completion time", "s",
+          "from the first trial tick at which the hand is farther than the leave radius from its position at the start "
+          "tick, to the end tick; only for success"},
+         completionTime},
+        {{"trial_time_s", "Trial time", "s", "from the start tick to the end tick; 1 tick = 1 ms"}, trialTime},
+        {{"approach_time_s", "Approach time", "s",
+          "from the start tick to the first contact tick, or to the engagement tick if that is earlier; contact tick: "
+          "trial tick with |force| > 1e-6 N or |torque| > 1e-9 N m or contacts > 0; engagement tick: first trial tick "
+          "with a tip depth >= the engagement depth; tip depth: -z of the proxy's origin in the target's frame, "
+          "counted "
+          "only within 2 mm of the bore's axis"},
+         approachTime},
+        {{"search_time_s", "Search time", "s",
+          "from the end of the approach to the engagement tick; empty without engagement"},
+         searchTime},
+        {{"insertion_time_s", "Insertion time", "s", "from the engagement tick to the end tick; only for success"},
+         insertionTime},
+        {{"insertion_depth_m", "Insertion depth", "m",
+          "tip depth at the last record up to the end tick; 0 above the mouth or farther than 2 mm from the bore's "
+          "axis"},
+         insertionDepth},
+        {{"path_length_m", "Path length of the hand", "m",
+          "sum of |x(k+1) - x(k)| of the hand position over the trial ticks k"},
+         pathLength},
+        {{"rotation_path_rad", "Rotation path of the hand", "rad",
+          "sum over the trial ticks k of the angle between the hand quaternions of k and k+1, each <= pi"},
+         rotationPath},
+        {{"contact_onsets", "Contact onsets", "1",
+          "number of contact ticks whose preceding trial tick is no contact tick; contact at the start tick counts; no "
+          "minimum pause"},
+         contactOnsets},
+        {{"contact_time_s", "Contact time", "s", "number of contact ticks x 1 ms"}, contactTime},
+        {{"mean_force_N", "Mean force", "N", "mean of |force| over the contact ticks; empty without contact"},
+         meanInContact<forceOf>},
+        {{"peak_force_N", "Peak force", "N", "largest |force| over the trial ticks"}, largest<forceOf>},
+        {{"mean_torque_Nm", "Mean torque", "N m", "mean of |torque| over the contact ticks; empty without contact"},
+         meanInContact<torqueOf>},
+        {{"peak_torque_Nm", "Peak torque", "N m", "largest |torque| over the trial ticks"}, largest<torqueOf>},
+        {{"mean_hand_depth_m", "Mean depth at the hand's pose", "m",
+          "mean of hand_depth_m over the contact ticks; empty without contact"},
+         meanInContact<handDepthOf>},
+        {{"max_hand_depth_m", "Largest depth at the hand's pose", "m", "largest hand_depth_m over the trial ticks"},
+         largest<handDepthOf>},
+        {{"mean_proxy_depth_m", "Mean depth at the proxy's pose", "m",
+          "mean of proxy_depth_m over the contact ticks; empty without contact"},
+         meanInContact<proxyDepthOf>},
+        {{"max_proxy_depth_m", "Largest depth at the proxy's pose", "m", "largest proxy_depth_m over the trial ticks"},
+         largest<proxyDepthOf>},
+        {{"impulse_Ns", "Impulse", "N s", "sum of |force| x 1 ms over the trial ticks"}, impulse},
+        {{"work_J", "Work of the hand", "J",
+          "-sum over the trial ticks k of force(k).(x(k+1) - x(k)) + torque(k).theta(k), x the hand position and theta "
+          "its rotation vector from k to k+1 in world axes; positive: the hand put energy into the scene"},
+         work},
+        {{"saturated_share", "Share of time at the force limit", "1",
+          "trial ticks with status bit 4 (force or torque limited) / trial ticks"},
+         saturatedShare},
+    };
+    return all;
+}
+
+}  // namespace
+
+const char* outcomeName(Outcome outcome) {
+    switch (outcome) {
+        case Outcome::Success:
+            return "success";
+        case Outcome::Failure:
+            return "failure";
+        case Outcome::Timeout:
+            return "timeout";
+        case Outcome::Aborted:
+            break;
+    }
+    return "aborted";
+}
+
+const std::vector<Definition>& definitions() {
+    static const std::vector<Definition> all = [] {
+        std::vector<Definition> result;
+        for (const Measure& measure : measures()) result.push_back(measure.definition);
+        return result;
+    }();
+    return all;
+}
+
+std::vector<Value> computeMeasures(std::span<const TickRecord> records, const TrialContext& context) {
+    const Trial trial = cutTrial(records, context);
+    std::vector<Value> values;
+    values.reserve(measures().size());
+    for (const Measure& measure : measures()) {
+        Optional value = measure.compute(trial);
+        if (value && !std::isfinite(*value)) value.reset();
+        values.push_back({measure.definition.name, value});
+    }
+    return values;
+}
+
+}  // namespace passung::measures

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/tick_record.h"
+
+namespace passung::measures {
+
+/// What a trial ended with.
+enum class Outcome { Success, Failure, Timeout, Aborted };
+const char* outcomeName(Outcome outcome);  // as stored
+
+/// What the measures need to know of a trial beside its records.
+struct TrialContext {
+    std::int64_t start_tick = 0;  // the hand held the start pose: contact on, "go" shown
+    std::int64_t end_tick = 0;    // success, time-out or abort; before start_tick: the trial never started
+    Outcome outcome = Outcome::Success;
+    Pose X_WT;                        // target: origin at the bore's mouth, bore along -z
+    double leave_radius = 0.020;      // [m]
+    double engagement_depth = 0.001;  // [m]
+};
+
+/// A measure's definition: name (the column; its unit is the suffix), label, unit, formula.
+struct Definition {
+    std::string name;
+    std::string label;
+    std::string unit;     // "s", "m", "N", "1" …
+    std::string formula;  // exact words: what is summed over which ticks
+    int version = 1;
+};
+
+/// All measures, in column order.
+const std::vector<Definition>& definitions();
+
+struct Value {
+    std::string name;
+    std::optional<double> value;  // empty: not defined for this trial (e.g. insertion time without insertion)
+};
+
+/// Every measure of one trial from its recorded ticks, in the order of definitions().
+/// `records` are in order of their ticks; those outside [start_tick, end_tick] are ignored. The formulas take them as
+/// consecutive: where records are missing, a step spans the gap and the missing ticks count for no duration.
+/// Only stored values enter, so every measure can be computed again from an export of the samples.
+std::vector<Value> computeMeasures(std::span<const TickRecord> records, const TrialContext& context);
+
+}  // namespace passung::measures

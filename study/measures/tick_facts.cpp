@@ -1,0 +1,30 @@
+#include "study/measures/tick_facts.h"
+
+#include <cmath>
+
+namespace passung::measures {
+namespace {
+
+constexpr double kNoForce = 1e-6;   // [N]
+constexpr double kNoTorque = 1e-9;  // [N·m]
+
+Vec3 toVec3(const std::array<float, 3>& values) { return {values[0], values[1], values[2]}; }
+
+}  // namespace
+
+bool isContact(const TickRecord& record) {
+    return record.contacts > 0 || toVec3(record.force_N).norm() > kNoForce ||
+           toVec3(record.torque_Nm).norm() > kNoTorque;
+}
+
+std::optional<double> tipDepthInBore(const TickRecord& record, const Pose& X_TW) {
+    const Vec3 p_TG = X_TW * proxyPosition(record);
+    if (!(std::hypot(p_TG.x(), p_TG.y()) <= kBoreNeighbourhood)) return std::nullopt;
+    return -p_TG.z();
+}
+
+Vec3 handPosition(const TickRecord& record) { return toVec3(record.hand_position_m); }
+
+Vec3 proxyPosition(const TickRecord& record) { return toVec3(record.proxy_position_m); }
+
+}  // namespace passung::measures

@@ -1,0 +1,172 @@
+#include "study/protocol/document.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <tuple>
+#include <utility>
+
+namespace passung::protocol {
+namespace {
+
+Place placeOf(const toml::source_region& region, const std::string& file) {
+    // The parser leaves 0 where a value has no place of its own (the top-level table).
+    return {file, std::max(1, static_cast<int>(region.begin.line)), std::max(1, static_cast<int>(region.begin.column))};
+}
+
+const char* otherKind(toml::node_type type) {
+    switch (type) {
+        case toml::node_type::date:
+            return "a date";
+        case toml::node_type::time:
+            return "a time";
+        default:
+            return "a date and time";
+    }
+}
+
+Node convert(const toml::node& source, const std::string& file);
+
+void convertTable(const toml::table& table, const std::string& file, Node& node) {
+    node.kind = Node::Kind::Table;
+    for (const auto& [key, value] : table)
+        node.entries.push_back({std::string(key.str()), placeOf(key.source(), file), convert(value, file)});
+    std::stable_sort(node.entries.begin(), node.entries.end(), [](const Entry& a, const Entry& b) {
+        return std::tie(a.place.line, a.place.column) < std::tie(b.place.line, b.place.column);
+    });
+}
+
+Node convert(const toml::node& source, const std::string& file) {
+    Node node;
+    node.place = placeOf(source.source(), file);
+    if (const auto* table = source.as_table()) {
+        convertTable(*table, file, node);
+    } else if (const auto* list = source.as_array()) {
+        node.kind = Node::Kind::List;
+        for (const auto& item : *list) node.items.push_back(convert(item, file));
+    } else if (const auto* boolean = source.as_boolean()) {
+        node.kind = Node::Kind::Boolean;
+        node.boolean = boolean->get();
+    } else if (const auto* integer = source.as_integer()) {
+        node.kind = Node::Kind::Integer;
+        node.integer = integer->get();
+        node.number = static_cast<double>(node.integer);
+    } else if (const auto* number = source.as_floating_point()) {
+        node.kind = Node::Kind::Number;
+        node.number = number->get();
+    } else if (const auto* text = source.as_string()) {
+        node.kind = Node::Kind::Text;
+        node.text = text->get();
+    } else {
+        node.kind = Node::Kind::Other;
+        node.text = otherKind(source.type());
+    }
+    return node;
+}
+
+}  // namespace
+
+const Node* Node::find(std::string_view key) const {
+    for (const auto& entry : entries)
+        if (entry.key == key) return &entry.value;
+    return nullptr;
+}
+
+Node* Node::find(std::string_view key) { return const_cast<Node*>(std::as_const(*this).find(key)); }
+
+Node emptyTable(const Place& place) {
+    Node node;
+    node.place = place;
+    return node;
+}
+
+Result<Node> parseDocument(const std::string& text, const std::string& file) {
+    try {
+        const auto table = toml::parse(std::string_view(text), std::string_view(file));
+        return convert(table, file);
+    } catch (const toml::parse_error& error) {
+        std::string_view description = error.description();
+        constexpr std::string_view kPrefix = "Error while ";
+        if (description.starts_with(kPrefix)) description.remove_prefix(kPrefix.size());
+        return errorAt(placeOf(error.source(), file), "", "", fmt::format("not valid TOML: {}", description));
+    }
+}
+
+Result<std::string> readFile(const std::string& path) {
+    std::error_code ignored;
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream.is_open() || std::filesystem::is_directory(path, ignored))
+        return Error{.message = "cannot be opened", .file = path};
+    std::string text(std::istreambuf_iterator<char>(stream), {});
+    if (stream.bad()) return Error{.message = "cannot be read", .file = path};
+    return text;
+}
+
+std::string kindText(const Node& node) {
+    switch (node.kind) {
+        case Node::Kind::Boolean:
+            return "a boolean";
+        case Node::Kind::Integer:
+            return "an integer";
+        case Node::Kind::Number:
+            return "a number";
+        case Node::Kind::Text:
+            return "a string";
+        case Node::Kind::List:
+            return "a list";
+        case Node::Kind::Table:
+            return "a table";
+        case Node::Kind::Other:
+            return node.text;
+    }
+    return "";
+}
+
+std::string valueText(const Node& node) {
+    switch (node.kind) {
+        case Node::Kind::Boolean:
+            return node.boolean ? "true" : "false";
+        case Node::Kind::Integer:
+            return fmt::format("{}", node.integer);
+        case Node::Kind::Number:
+            return fmt::format("{}", node.number);
+        case Node::Kind::Text:
+            return fmt::format("\"{}\"", node.text);
+        case Node::Kind::Table:
+            return "{...}";
+        case Node::Kind::Other:
+            return node.text;
+        case Node::Kind::List:
+            break;
+    }
+    std::string text;
+    for (const auto& item : node.items) {
+        if (!text.empty()) text += ", ";
+        text += valueText(item);
+    }
+    return fmt::format("[{}]", text);
+}
+
+Error errorAt(const Place& place, std::string key, std::string value, std::string message) {
+    return {.message = std::move(message),
+            .file = place.file,
+            .line = place.line,
+            .column = place.column,
+            .key = std::move(key),
+            .value = std::move(value)};
+}
+
+void tidy(Errors& errors) {
+    const auto fields = [](const Error& e) { return std::tie(e.file, e.line, e.column, e.key, e.value, e.message); };
+    std::stable_sort(errors.begin(), errors.end(),
+                     [&](const Error& a, const Error& b) { return fields(a) < fields(b); });
+    errors.erase(std::unique(errors.begin(), errors.end(),
+                             [&](const Error& a, const Error& b) { return fields(a) == fields(b); }),
+                 errors.end());
+}
+
+}  // namespace passung::protocol

@@ -1,0 +1,214 @@
+#include "study/protocol/factors.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "study/protocol/table_reader.h"
+
+namespace passung::protocol {
+namespace {
+
+/// Columns that every export has; a factor of that name could not be told from them.
+constexpr std::array kReservedNames{"participant_id", "kind",       "group",       "session",        "station",
+                                    "device",         "block",      "phase",       "block_index",    "trial_index",
+                                    "trial_in_block", "attempt_no", "attempt_id",  "repetition",     "condition",
+                                    "start_s",        "duration_s", "outcome",     "valid",          "invalid_reason",
+                                    "n_ticks",        "overruns",   "app_version", "protocol_sha256"};
+
+bool isScalar(const Node& node) {
+    return node.kind == Node::Kind::Boolean || node.kind == Node::Kind::Integer || node.kind == Node::Kind::Number ||
+           node.kind == Node::Kind::Text;
+}
+
+std::string labelOf(const Node& value) { return value.kind == Node::Kind::Text ? value.text : valueText(value); }
+
+bool isLabel(const std::string& text) {
+    return !text.empty() && std::all_of(text.begin(), text.end(),
+                                        [](char c) { return c != '/' && static_cast<unsigned char>(c) >= 0x20; });
+}
+
+/// Reads the levels of one factor.
+class LevelReader {
+public:
+    LevelReader(const TableReader& factor, FactorContent& content, Errors& errors)
+        : factor_(factor), content_(content), errors_(errors) {}
+
+    void read(const Node& level) {
+        const bool table = level.kind == Node::Kind::Table;
+        std::string label = table ? "" : labelOf(level);
+        if (table)
+            readTable(level, label);
+        else if (isScalar(level))
+            setKey(level);
+        else
+            report(level.place, valueText(level), "a level that is a list needs a label: { label = ..., value = ... }");
+        if (isLabel(label)) {
+            if (!labels_.insert(label).second)
+                report(level.place, fmt::format("\"{}\"", label), "two levels have this label");
+        } else if (errors_.size() == before_) {
+            report(level.place, fmt::format("\"{}\"", label), "a label must not be empty nor contain \"/\"");
+        }
+        content_.factor.levels.push_back({label});
+        content_.overrides.push_back(std::move(overrides_));
+        overrides_.clear();
+        before_ = errors_.size();
+    }
+
+private:
+    void readTable(const Node& level, std::string& label) {
+        const TableReader read(level, {"level"}, factor_.pathOf("levels"), errors_);
+        const Node* value = level.find("value");
+        const Node* set = level.find("set");
+        label = read.text("label");
+        if ((value == nullptr) == (set == nullptr)) {
+            report(level.place, "", "a level needs either a value or a set");
+        } else if (value != nullptr) {
+            if (!read.has("label") && isScalar(*value)) label = labelOf(*value);
+            setKey(*value);
+        } else if (read.has("set")) {
+            if (factor_has_key_) report(set->place, "", "set is for factors without a key");
+            for (const Entry& entry : set->entries) overrides_.push_back({entry.key, entry.place, &entry.value});
+        }
+        if (level.find("label") == nullptr && label.empty() && errors_.size() == before_)
+            report(level.place, "", "a level with a list or a set needs a label");
+    }
+
+    void setKey(const Node& value) {
+        if (const Node* key = factor_.node("key"))
+            overrides_.push_back({key->text, key->place, &value});
+        else
+            report(value.place, valueText(value), "a value needs the factor's key; without a key use set");
+    }
+
+    void report(const Place& place, std::string value, std::string message) {
+        errors_.push_back(errorAt(place, factor_.pathOf("levels"), std::move(value), std::move(message)));
+    }
+
+    const TableReader& factor_;
+    FactorContent& content_;
+    Errors& errors_;
+    bool factor_has_key_ = factor_.has("key");
+    std::size_t before_ = errors_.size();
+    std::vector<Override> overrides_;
+    std::set<std::string> labels_;
+};
+
+bool overlap(const std::string& a, const std::string& b) {
+    return a == b || a.starts_with(b + ".") || b.starts_with(a + ".");
+}
+
+/// Two factors that change the same key would undo one another.
+void checkOverlaps(const std::vector<FactorContent>& factors, Errors& errors) {
+    for (std::size_t i = 0; i < factors.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            for (const auto& level : factors[i].overrides)
+                for (const auto& change : level)
+                    for (const auto& other_level : factors[j].overrides)
+                        for (const auto& other : other_level)
+                            if (overlap(change.path, other.path))
+                                errors.push_back(
+                                    errorAt(change.path_place, "factor." + factors[i].factor.name, change.path,
+                                            fmt::format("is also changed by factor {}", factors[j].factor.name)));
+}
+
+std::vector<std::string> splitPath(const std::string& path) {
+    std::vector<std::string> segments{""};
+    for (const char c : path) {
+        if (c == '.')
+            segments.emplace_back();
+        else
+            segments.back() += c;
+    }
+    return segments;
+}
+
+/// The part of this name among [[part]] tables; nullptr if there is none.
+Node* findPart(Node& scene, const std::string& name) {
+    Node* parts = scene.find("part");
+    if (parts == nullptr) return nullptr;
+    for (Node& part : parts->items) {
+        const Node* part_name = part.find("name");
+        if (part_name != nullptr && part_name->text == name) return &part;
+    }
+    return nullptr;
+}
+
+}  // namespace
+
+std::vector<FactorContent> readFactors(const std::vector<Node>& tables, std::span<const std::string> taken_names,
+                                       Errors& errors) {
+    std::vector<FactorContent> factors;
+    std::set<std::string> names;
+    for (const Node& table : tables) {
+        const Node* name = table.find("name");
+        const bool named = name != nullptr && name->kind == Node::Kind::Text && isName(name->text);
+        const TableReader read(table, {"factor"}, named ? "factor." + name->text : "factor", errors);
+        FactorContent content;
+        content.factor.name = read.text("name");
+        content.factor.unit = read.text("unit");
+        if (named && !names.insert(name->text).second) read.fail("name", "two factors have this name");
+        const auto among = [&](const auto& taken) {
+            return named && std::find(taken.begin(), taken.end(), name->text) != taken.end();
+        };
+        if (among(kReservedNames) || among(taken_names))
+            read.fail("name", "is a column of every export; choose another name");
+        if (read.has("levels") && read.items("levels").size() < 2) read.fail("levels", "needs at least two levels");
+        LevelReader levels(read, content, errors);
+        for (const Node& level : read.items("levels")) levels.read(level);
+        factors.push_back(std::move(content));
+    }
+    checkOverlaps(factors, errors);
+    return factors;
+}
+
+void applyOverride(const Override& change, StudyTables& tables, Errors& errors) {
+    const auto report = [&](std::string message) {
+        errors.push_back(errorAt(change.path_place, "factor", change.path, std::move(message)));
+    };
+    const auto segments = splitPath(change.path);
+    if (std::count(segments.begin(), segments.end(), "") > 0)
+        return report("is no path of keys such as contact.method");
+    std::size_t next = 0;
+    Node* table = &tables.scene;
+    if (segments[0] == "task" || segments[0] == "feedback") {
+        table = segments[0] == "task" ? &tables.task : &tables.feedback;
+        next = 1;
+    } else if (segments[0] == "part") {
+        table = segments.size() > 1 ? findPart(tables.scene, segments[1]) : nullptr;
+        if (table == nullptr) return report("the scene has no part of this name");
+        next = 2;
+    }
+    if (next >= segments.size()) return report("names a table, not a key in it");
+    for (; next + 1 < segments.size(); ++next) {
+        Node* inner = table->find(segments[next]);
+        if (inner == nullptr) {
+            table->entries.push_back({segments[next], change.path_place, emptyTable(change.path_place)});
+            inner = &table->entries.back().value;
+        }
+        if (inner->kind != Node::Kind::Table) return report(fmt::format("{} is no table", segments[next]));
+        table = inner;
+    }
+    if (Node* value = table->find(segments[next]))
+        *value = *change.value;
+    else
+        table->entries.push_back({segments[next], change.path_place, *change.value});
+}
+
+std::vector<std::vector<std::size_t>> combinations(const std::vector<FactorContent>& factors) {
+    std::vector<std::vector<std::size_t>> all{{}};
+    for (const auto& factor : factors) {
+        std::vector<std::vector<std::size_t>> longer;
+        for (const auto& combination : all)
+            for (std::size_t level = 0; level < factor.factor.levels.size(); ++level) {
+                longer.push_back(combination);
+                longer.back().push_back(level);
+            }
+        all = std::move(longer);
+    }
+    return all;
+}
+
+}  // namespace passung::protocol

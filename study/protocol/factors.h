@@ -1,0 +1,43 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "study/protocol/document.h"
+#include "study/protocol/study_plan.h"
+
+namespace passung::protocol {
+
+/// One key of the study that a level changes.
+struct Override {
+    std::string path;   // "contact.method", "part.plate.shape.bore_diameter", "task.timeout_s"
+    Place path_place;   // where the path is written
+    const Node* value;  // in the study's document
+};
+
+/// A factor and what each of its levels changes.
+struct FactorContent {
+    Factor factor;
+    std::vector<std::vector<Override>> overrides;  // per level
+};
+
+/// The tables that a level may change.
+struct StudyTables {
+    Node scene;
+    Node task;
+    Node feedback;
+};
+
+/// Reads the [[factor]] tables. The result borrows from `tables`. `taken_names` are columns that exports have anyway.
+std::vector<FactorContent> readFactors(const std::vector<Node>& tables, std::span<const std::string> taken_names,
+                                       Errors& errors);
+
+/// Puts the level's value into its table; keys that are missing on the way are created. Errors: a part that is not
+/// there, a path that leads through something that is no table.
+void applyOverride(const Override& change, StudyTables& tables, Errors& errors);
+
+/// Every combination of level indices, the first factor varying slowest. One empty combination without factors.
+std::vector<std::vector<std::size_t>> combinations(const std::vector<FactorContent>& factors);
+
+}  // namespace passung::protocol

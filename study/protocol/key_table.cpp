@@ -1,0 +1,323 @@
+#include "study/protocol/key_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+namespace passung::protocol {
+namespace {
+
+constexpr Range kAny{};
+
+constexpr Range above(double low) {
+    return {.low = low, .high = std::numeric_limits<double>::infinity(), .low_excluded = true};
+}
+
+constexpr Range atLeast(double low) {
+    return {.low = low, .high = std::numeric_limits<double>::infinity(), .low_excluded = false};
+}
+
+constexpr Range from(double low, double high) { return {.low = low, .high = high, .low_excluded = false}; }
+
+constexpr Range aboveUpTo(double low, double high) { return {.low = low, .high = high, .low_excluded = true}; }
+
+using enum KeyType;
+
+// clang-format off
+constexpr std::array kKeys{
+    Key{"protocol", "passung", Integer, from(1, 1), "", "!", "Version of this file format."},
+    Key{"protocol", "study", Table, kAny, "", "!", "What the study is called and how many take part."},
+    Key{"protocol", "scene", Table, kAny, "", "!", "Parts, contact, device and registration, or a file with them."},
+    Key{"protocol", "factor", Tables, kAny, "", "(none: one condition)", "What is varied; every combination of levels is a condition."},
+    Key{"protocol", "task", Table, kAny, "", "!", "What a trial asks for and how it is judged."},
+    Key{"protocol", "feedback", Table, kAny, "", "(its defaults)", "What the participant is given to feel and see."},
+    Key{"protocol", "block", Tables, kAny, "", "!", "Blocks of trials in the order in which they run."},
+    Key{"protocol", "measures", Texts, kAny, "", "(all)", "Names of the measures to store for every trial."},
+
+    Key{"study", "name", Name, kAny, "", "!", "Short name; part of every random stream, so renaming a study changes its orders."},
+    Key{"study", "version", Text, kAny, "", "!", "Your version of the protocol; stored with every session."},
+    Key{"study", "title", Text, kAny, "", "(the name)", "Title for people."},
+    Key{"study", "seed", Integer, atLeast(0), "", "!", "Everything random follows from it."},
+    Key{"study", "participants", Integer, from(1, 100000), "", "!", "How many are planned; a multiple of the rows of the Williams square keeps orders balanced."},
+
+    Key{"scene", "unit", Choice, kAny, "um|mm|cm|m|in", "mm", "Unit of lengths without one in their key: shapes, positions, meshes that do not say theirs."},
+    Key{"scene", "part", Tables, kAny, "", "!", "The parts; exactly one is held."},
+    Key{"scene", "contact", Table, kAny, "", "(its defaults)", "How contact is computed and rendered."},
+    Key{"scene", "device", Table, kAny, "", "(no preset)", "The haptic device and its limits; a study needs a preset."},
+    Key{"scene", "registration", Table, kAny, "", "(its defaults)", "How the device's space lies in the scene."},
+    Key{"scene", "start_gate", Table, kAny, "", "(no gate)", "When a trial starts: the hand holds the start pose first."},
+    Key{"scene", "effects", Table, kAny, "", "(none)", "Further effects, a table each."},
+    Key{"study_scene", "file", Text, kAny, "", "(inline)", "A scene file instead of the keys below, relative to the study's file."},
+
+    Key{"part_file", "unit", Choice, kAny, "um|mm|cm|m|in", "(the caller's)", "Unit of lengths without one in their key."},
+    Key{"part_file", "part", Tables, kAny, "", "!", "Exactly one part."},
+
+    Key{"part", "name", Name, kAny, "", "!", "Unique; factors address the part by it."},
+    Key{"part", "mesh", Text, kAny, "", "(a shape)", "Mesh file, relative to the file that names it."},
+    Key{"part", "shape", Table, kAny, "", "(a mesh)", "Parametric shape."},
+    Key{"part", "pose", Table, kAny, "", "(identity)", "Part to world at the start."},
+    Key{"part", "held", Boolean, kAny, "", "false", "The part in the hand."},
+    Key{"part", "shown_offset", LengthVector, kAny, "", "(zero)", "The part is drawn this far from where it is touched, along the world's axes."},
+    Key{"part", "unit", Choice, kAny, "um|mm|cm|m|in", "(the scene's)", "Unit of this part's lengths."},
+
+    Key{"pose", "position", LengthVector, kAny, "", "(zero)", "Origin of the part in the world."},
+    Key{"pose", "rotation_deg", Vector, kAny, "", "(zero)", "Angles about the world's x, then y, then z axis: R = Rz Ry Rx."},
+
+    Key{"shape", "kind", Choice, kAny, "sphere|box|cylinder|sheet|peg|bore_plate", "!", "Which shape; its own keys follow."},
+    Key{"shape.sphere", "diameter", Length, above(0), "", "!", "Origin at the centre."},
+    Key{"shape.box", "width", Length, above(0), "", "!", "Along x; origin at the centre."},
+    Key{"shape.box", "depth", Length, above(0), "", "!", "Along y."},
+    Key{"shape.box", "height", Length, above(0), "", "!", "Along z."},
+    Key{"shape.cylinder", "diameter", Length, above(0), "", "!", "Axis z; origin at the centre."},
+    Key{"shape.cylinder", "length", Length, above(0), "", "!", "Along z."},
+    Key{"shape.sheet", "width", Length, above(0), "", "!", "Along x; zero thickness in the plane z = 0, open."},
+    Key{"shape.sheet", "depth", Length, above(0), "", "!", "Along y."},
+    Key{"shape.peg", "diameter", Length, above(0), "", "!", "Axis z; origin at the centre of the tip face, body along +z."},
+    Key{"shape.peg", "length", Length, above(0), "", "!", "Along z."},
+    Key{"shape.peg", "chamfer", Length, atLeast(0), "", "0", "45 degree chamfer at the tip; 0 = sharp."},
+    Key{"shape.bore_plate", "width", Length, above(0), "", "!", "Along x; origin at the centre of the bore's mouth, body below z = 0."},
+    Key{"shape.bore_plate", "depth", Length, above(0), "", "!", "Along y."},
+    Key{"shape.bore_plate", "height", Length, above(0), "", "!", "Along z."},
+    Key{"shape.bore_plate", "bore_diameter", Length, above(0), "", "!", "Of the bore."},
+    Key{"shape.bore_plate", "bore_depth", Depth, above(0), "", "!", "Of the bore: a length or \"through\"."},
+    Key{"shape.bore_plate", "chamfer", Length, atLeast(0), "", "0", "45 degree chamfer at the mouth; 0 = sharp."},
+
+    Key{"contact", "method", Choice, kAny, "penalty|god_object_heuristic", "god_object_heuristic", "How penetration becomes force: springs in every contact, or a proxy that stays outside and is coupled to the hand."},
+    Key{"contact", "variant", Choice, kAny, "max_normalised|area_weighted|raw", "max_normalised", "Weighting of the penalty; unused by other methods."},
+    Key{"contact", "stiffness_N_per_m", Stiffness, above(0), "", "(\"max\"; without a device preset 1000)", "Number, or fraction of the device's stable maximum: \"max\", \"0.5 max\"; never above it."},
+    Key{"contact", "rotational_stiffness_Nm_per_rad", Stiffness, atLeast(0), "", "(the same fraction of the device's maximum as the stiffness; without a device preset 1)", "As the stiffness, for rotations."},
+    Key{"contact", "damping_Ns_per_m", Number, atLeast(0), "", "(1 times the device's recommended damping; without a device preset 0)", "Damping of the coupling between hand and scene."},
+    Key{"contact", "rotational_damping_Nms_per_rad", Number, atLeast(0), "", "(1 times the device's recommended damping; without a device preset 0)", "As the damping, for rotations."},
+    Key{"contact", "area_stiffness_N_per_m3", Number, above(0), "", "1e9", "Pressure per depth of the area-weighted penalty."},
+    Key{"contact", "tolerance_um", Number, above(0), "", "20", "Asked accuracy of the distance fields near surfaces."},
+    Key{"contact", "cell_mm", Number, above(0), "", "(from the tolerance)", "Edge of a distance field's cell."},
+    Key{"contact", "spacing_mm", Number, above(0), "", "1", "Distance between the points of the point shells."},
+    Key{"contact", "mode", Choice, kAny, "trilinear|linear", "trilinear", "Interpolation in the distance field."},
+    Key{"contact", "budget_nodes", Integer, from(0, 1000000), "", "0", "Most tree nodes that a query visits; 0 = no budget."},
+    Key{"contact", "proxy_filter_hz", Number, from(0, 500), "", "0", "Corner of the proxy's low-pass while in contact; 0 = no filter."},
+
+    Key{"device", "preset", Text, kAny, "", "(none)", "Name of a known device."},
+    Key{"device", "max_force_N", Number, above(0), "", "(the device's)", "Tightens the device's limit."},
+    Key{"device", "max_torque_Nm", Number, atLeast(0), "", "(the device's)", "Tightens the device's limit."},
+    Key{"device", "max_force_rate_N_per_s", Number, above(0), "", "(the device's)", "Tightens the device's limit of rising force."},
+    Key{"device", "delay_ticks", Integer, from(0, 100), "", "0", "Milliseconds added between command and effect, beside the device's own delay."},
+
+    Key{"registration", "position", LengthVector, kAny, "", "(zero)", "Origin of the device's base in the world."},
+    Key{"registration", "rotation_deg", Vector, kAny, "", "(zero)", "Rotation of the device's base, as in a pose."},
+    Key{"registration", "scale", Number, above(0), "", "1", "Metres in the scene per metre of the device."},
+    Key{"registration", "handle_position", LengthVector, kAny, "", "(zero)", "Origin of the held part in the device's handle."},
+    Key{"registration", "handle_rotation_deg", Vector, kAny, "", "(zero)", "Rotation of the held part in the handle."},
+
+    Key{"start_gate", "position_tolerance_mm", Number, atLeast(0), "", "0", "How close the hand comes to the held part's start; 0 = not asked."},
+    Key{"start_gate", "angle_tolerance_deg", Number, from(0, 180), "", "0", "How well it is aligned; 0 = not asked."},
+    Key{"start_gate", "hold_ms", Number, from(0, 10000), "", "0", "How long it stays there."},
+
+    Key{"factor", "name", Name, kAny, "", "!", "A column in every export."},
+    Key{"factor", "key", Text, kAny, "", "(every level has its `set`)", "Key of the scene that varies, such as contact.method or part.plate.shape.bore_diameter; also task.* and feedback.*."},
+    Key{"factor", "kind", Choice, kAny, "within", "within", "Everyone sees every level."},
+    Key{"factor", "unit", Text, kAny, "", "(none)", "Unit of the labels, for tables."},
+    Key{"factor", "levels", Levels, kAny, "", "!", "At least two: plain values, or tables as below."},
+
+    Key{"level", "label", Text, kAny, "", "(the value)", "As it appears in tables and exports; unique."},
+    Key{"level", "value", Any, kAny, "", "(its `set`)", "What the factor's key becomes."},
+    Key{"level", "set", Table, kAny, "", "(its `value`)", "Several keys at once: { \"contact.method\" = \"penalty\", ... }."},
+
+    Key{"task", "type", Choice, kAny, "peg_in_hole", "!", "Kind of trial."},
+    Key{"task", "target", Text, kAny, "", "!", "Name of the bore_plate part to insert into."},
+    Key{"task", "insertion_depth_mm", Number, above(0), "", "20", "Depth of the tip below the mouth that counts as fully inserted."},
+    Key{"task", "success_fraction", Number, aboveUpTo(0, 1), "", "0.95", "Part of that depth that is success."},
+    Key{"task", "max_speed_mm_per_s", Number, above(0), "", "5", "Slower than this while the depth is held."},
+    Key{"task", "hold_s", Number, from(0, 60), "", "0.5", "How long the depth is held."},
+    Key{"task", "timeout_s", Number, aboveUpTo(0, 3600), "", "30", "From the start of the trial."},
+    Key{"task", "leave_radius_mm", Number, atLeast(0), "", "20", "The trial's clock starts when the part leaves this sphere about its start."},
+    Key{"task", "engagement_depth_mm", Number, above(0), "", "1", "Search ends and insertion begins at this depth."},
+
+    Key{"feedback", "kinesthetic", Boolean, kAny, "", "true", "Forces are rendered; only true is supported."},
+    Key{"feedback", "shown_pose", Choice, kAny, "proxy|device", "proxy", "What is drawn of the held part: the proxy, which stays outside, or where the device is."},
+
+    Key{"block", "name", Name, kAny, "", "!", "Unique."},
+    Key{"block", "phase", Choice, kAny, "practice|main", "main", "Practice is stored and marked."},
+    Key{"block", "repetitions", Integer, from(1, 1000), "", "1", "Passes through the order."},
+    Key{"block", "order", Choice, kAny, "williams|random|listed", "williams", "The participant's row of a Williams square, a new shuffle for every pass, or as listed."},
+    Key{"block", "trials", Integer, atLeast(1), "", "(all)", "Only the first so many conditions of each pass."},
+};
+
+/// Tables in the order of the documentation: id, heading, sentence.
+struct TableInfo {
+    std::string_view id, heading, doc;
+};
+constexpr std::array kTables{
+    TableInfo{"protocol", "Top level of a study", "A study file starts with `passung = 1`."},
+    TableInfo{"study", "`[study]`", ""},
+    TableInfo{"study_scene", "`[scene]` of a study", "Holds either `file` or the keys of a scene, as `[scene.contact]`, `[[scene.part]]` and so on."},
+    TableInfo{"scene", "Top level of a scene", ""},
+    TableInfo{"part_file", "Top level of a part file", ""},
+    TableInfo{"part", "`[[part]]`", "A part has either a `mesh` or a `shape`."},
+    TableInfo{"pose", "`pose` of a part", ""},
+    TableInfo{"shape", "`shape` of a part", ""},
+    TableInfo{"shape.sphere", "`shape` of kind `sphere`", ""},
+    TableInfo{"shape.box", "`shape` of kind `box`", ""},
+    TableInfo{"shape.cylinder", "`shape` of kind `cylinder`", ""},
+    TableInfo{"shape.sheet", "`shape` of kind `sheet`", ""},
+    TableInfo{"shape.peg", "`shape` of kind `peg`", ""},
+    TableInfo{"shape.bore_plate", "`shape` of kind `bore_plate`", ""},
+    TableInfo{"contact", "`[contact]`", ""},
+    TableInfo{"device", "`[device]`", ""},
+    TableInfo{"registration", "`[registration]`", ""},
+    TableInfo{"start_gate", "`[start_gate]`", ""},
+    TableInfo{"effects", "`[effects]`", "No effect is known here yet: every key is an error."},
+    TableInfo{"factor", "`[[factor]]`", ""},
+    TableInfo{"level", "Levels written as tables", "A level has either a `value` or a `set`."},
+    TableInfo{"task", "`[task]`", ""},
+    TableInfo{"feedback", "`[feedback]`", ""},
+    TableInfo{"block", "`[[block]]`", ""},
+};
+// clang-format on
+
+std::string typeText(const Key& key) {
+    switch (key.type) {
+        case Boolean:
+            return "boolean";
+        case Integer:
+            return "integer";
+        case Number:
+            return "number";
+        case Text:
+            return "string";
+        case Name:
+            return "name (a-z, 0-9, _)";
+        case Length:
+            return "length";
+        case LengthVector:
+            return "[x, y, z], lengths";
+        case Depth:
+            return "length or \"through\"";
+        case Vector:
+            return "[x, y, z]";
+        case Stiffness:
+            return "number, \"max\" or \"0.7 max\"";
+        case Table:
+            return "table";
+        case Tables:
+            return "tables";
+        case Texts:
+            return "list of strings";
+        case Levels:
+            return "list";
+        case Any:
+            return "any";
+        case Choice:
+            break;
+    }
+    std::string text;
+    for (const auto choice : key.choiceList()) text += fmt::format("{}`{}`", text.empty() ? "" : ", ", choice);
+    return text;
+}
+
+std::string fallbackText(const Key& key) {
+    if (key.required()) return "**required**";
+    if (key.fallback.starts_with('(')) return std::string(key.fallback.substr(1, key.fallback.size() - 2));
+    return fmt::format("`{}`", key.fallback);
+}
+
+/// Levenshtein's distance.
+std::size_t editDistance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::size_t diagonal = std::exchange(row[0], i);
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+            diagonal = row[j];
+            row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+        }
+    }
+    return row[b.size()];
+}
+
+}  // namespace
+
+std::optional<double> Key::fallbackNumber() const {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(fallback.data(), fallback.data() + fallback.size(), value);
+    if (error != std::errc{} || end != fallback.data() + fallback.size()) return std::nullopt;
+    return value;
+}
+
+std::vector<std::string_view> Key::choiceList() const {
+    std::vector<std::string_view> list;
+    for (std::string_view rest = choices; !rest.empty();) {
+        const auto bar = rest.find('|');
+        list.push_back(rest.substr(0, bar));
+        rest = bar == std::string_view::npos ? std::string_view{} : rest.substr(bar + 1);
+    }
+    return list;
+}
+
+std::span<const Key> keys() { return kKeys; }
+
+const Key* findKey(std::span<const std::string_view> tables, std::string_view name) {
+    for (const auto& key : kKeys)
+        if (key.name == name && std::find(tables.begin(), tables.end(), key.table) != tables.end()) return &key;
+    return nullptr;
+}
+
+double unitsPerSi(std::string_view name) {
+    if (name.ends_with("_um")) return 1e6;
+    if (name.ends_with("_mm") || name.ends_with("_mm_per_s") || name.ends_with("_ms")) return 1e3;
+    if (name.ends_with("_deg")) return 180.0 / 3.14159265358979323846;
+    return 1.0;
+}
+
+std::string requirement(const Range& range) {
+    const bool has_low = std::isfinite(range.low), has_high = std::isfinite(range.high);
+    if (has_low && range.low == range.high) return fmt::format("must be {}", range.low);
+    if (has_low && has_high && range.low_excluded)
+        return fmt::format("must be > {} and at most {}", range.low, range.high);
+    if (has_low && has_high) return fmt::format("must be from {} to {}", range.low, range.high);
+    if (has_low) return fmt::format("must be {} {}", range.low_excluded ? ">" : "≥", range.low);
+    return "";
+}
+
+std::optional<std::string_view> closestWord(std::string_view word, std::span<const std::string_view> candidates) {
+    std::optional<std::string_view> best;
+    // A third of the letters wrong is the most that still looks like a slip.
+    std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
+    for (const auto candidate : candidates) {
+        // The same word without its unit is meant as well.
+        const bool begins_alike = word.size() >= 3 && candidate.starts_with(word);
+        const std::size_t distance = begins_alike ? 1 : editDistance(word, candidate);
+        if (distance < best_distance) {
+            best = candidate;
+            best_distance = distance;
+        }
+    }
+    return best;
+}
+
+std::string keyTable() {
+    std::string text =
+        "# Keys of study, scene and part files\n\n"
+        "Printed by the program from the table that its reader uses. Files are TOML; a key that is not listed is an\n"
+        "error. Lengths are in the file's `unit`; keys with a unit in their name are in that unit.\n";
+    for (const auto& table : kTables) {
+        text += fmt::format("\n## {}\n", table.heading);
+        if (!table.doc.empty()) text += fmt::format("\n{}\n", table.doc);
+        bool first = true;
+        for (const auto& key : kKeys) {
+            if (key.table != table.id) continue;
+            if (std::exchange(first, false))
+                text += "\n| key | value | default | meaning |\n| --- | --- | --- | --- |\n";
+            const auto range = requirement(key.range);
+            text += fmt::format("| `{}` | {}{}{} | {} | {} |\n", key.name, typeText(key), range.empty() ? "" : ", ",
+                                range.starts_with("must be ") ? range.substr(8) : range, fallbackText(key), key.doc);
+        }
+    }
+    return text;
+}
+
+}  // namespace passung::protocol

@@ -1,0 +1,102 @@
+#include <algorithm>
+#include <filesystem>
+#include <numbers>
+
+#include "study/protocol/scene_node.h"
+
+namespace passung::protocol {
+namespace {
+
+const model::Shape kHarmless = model::Sphere{1.0};  // stands in after an error
+
+model::Shape buildShape(const TableReader& read, const std::string& kind, double units) {
+    const auto length = [&](const char* name) { return read.number(name) / units; };
+    if (kind == "sphere") return model::Sphere{length("diameter")};
+    if (kind == "box") return model::Box{length("width"), length("depth"), length("height")};
+    if (kind == "cylinder") return model::Cylinder{length("diameter"), length("length")};
+    if (kind == "sheet") return model::Sheet{length("width"), length("depth")};
+    if (kind == "peg") return model::Peg{length("diameter"), length("length"), length("chamfer")};
+    const bool through = read.text("bore_depth") == "through";
+    const double bore_depth = length(through ? "height" : "bore_depth");
+    return model::BorePlate{length("width"),         length("depth"), length("height"),
+                            length("bore_diameter"), bore_depth,      length("chamfer")};
+}
+
+model::Shape readShape(const Node& table, const std::string& path, double units, Errors& errors) {
+    const std::size_t before = errors.size();
+    // The kind first: without it no other key can be judged.
+    Node kind_only = emptyTable(table.place);
+    std::copy_if(table.entries.begin(), table.entries.end(), std::back_inserter(kind_only.entries),
+                 [](const Entry& entry) { return entry.key == "kind"; });
+    const auto kind = TableReader(kind_only, {"shape"}, path, errors).text("kind");
+    if (errors.size() > before) return kHarmless;
+
+    const std::string id = "shape." + kind;
+    const TableReader read(table, {"shape", id}, path, errors);
+    if (errors.size() > before) return kHarmless;
+    const auto shape = buildShape(read, kind, units);
+    for (const Error& error : model::validate(shape)) read.fail(error.key, error.message);
+    return errors.size() > before ? kHarmless : shape;
+}
+
+model::MeshFile readMesh(const TableReader& read, const Node& value, double units) {
+    const auto folder = std::filesystem::path(value.place.file).parent_path();
+    const auto path = folder / value.text;
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored)) read.fail("mesh", "there is no such file");
+    return {path.lexically_normal().string(), 1.0 / units};
+}
+
+}  // namespace
+
+double unitsPerMetre(const TableReader& read, double absent) {
+    const auto unit = read.text("unit");
+    if (unit == "um") return 1e6;
+    if (unit == "mm") return 1e3;
+    if (unit == "cm") return 1e2;
+    if (unit == "m") return 1.0;
+    if (unit == "in") return 1.0 / 0.0254;
+    return absent;
+}
+
+Pose readPose(const TableReader& read, std::string_view position_key, std::string_view rotation_key,
+              double units_per_metre) {
+    const Vec3 angles = read.vector(rotation_key) * (std::numbers::pi / 180.0);
+    Pose pose;
+    pose.p = read.vector(position_key) / units_per_metre;
+    pose.q = Eigen::AngleAxisd(angles.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(angles.y(), Vec3::UnitY()) *
+             Eigen::AngleAxisd(angles.x(), Vec3::UnitX());
+    return pose;
+}
+
+model::PartSpec readPartNode(const Node& table, const std::string& parent_path, double units_per_metre,
+                             Errors& errors) {
+    const Node* name = table.find("name");
+    std::string path = parent_path;
+    path += parent_path.empty() ? "part" : ".part";
+    if (name != nullptr && name->kind == Node::Kind::Text && isName(name->text)) path += '.' + name->text;
+
+    const TableReader read(table, {"part"}, path, errors);
+    model::PartSpec part;
+    part.name = read.text("name");
+    part.held = read.boolean("held");
+    const double units = unitsPerMetre(read, units_per_metre);
+    part.shown_offset = read.vector("shown_offset") / units;
+    if (const Node* pose = read.node("pose"))
+        part.X_WP =
+            readPose(TableReader(*pose, {"pose"}, read.pathOf("pose"), errors), "position", "rotation_deg", units);
+
+    const Node* shape = read.node("shape");
+    const Node* mesh = read.node("mesh");
+    if (table.find("shape") != nullptr && table.find("mesh") != nullptr)
+        read.fail("shape", "a part has either a shape or a mesh");
+    else if (shape != nullptr)
+        part.geometry = readShape(*shape, read.pathOf("shape"), units, errors);
+    else if (mesh != nullptr)
+        part.geometry = readMesh(read, *mesh, units);
+    else if (table.find("shape") == nullptr && table.find("mesh") == nullptr)
+        errors.push_back(errorAt(table.place, path, "", "needs a shape or a mesh"));
+    return part;
+}
+
+}  // namespace passung::protocol

@@ -1,0 +1,193 @@
+#include "study/protocol/plan_json.h"
+
+#include <filesystem>
+
+#include "study/protocol/json.h"
+
+namespace passung::protocol {
+namespace {
+
+std::string poseJson(const Pose& pose) {
+    return JsonObject()
+        .json("position_m", jsonVector(pose.p))
+        .json("quaternion_wxyz", jsonNumbers({pose.q.w(), pose.q.x(), pose.q.y(), pose.q.z()}))
+        .str();
+}
+
+struct ShapeJson {
+    JsonObject object;
+
+    void operator()(const model::Sphere& s) { object.number("diameter_m", s.diameter); }
+    void operator()(const model::Box& s) {
+        object.number("width_m", s.width).number("depth_m", s.depth).number("height_m", s.height);
+    }
+    void operator()(const model::Cylinder& s) { object.number("diameter_m", s.diameter).number("length_m", s.length); }
+    void operator()(const model::Sheet& s) { object.number("width_m", s.width).number("depth_m", s.depth); }
+    void operator()(const model::Peg& s) {
+        object.number("diameter_m", s.diameter).number("length_m", s.length).number("chamfer_m", s.chamfer);
+    }
+    void operator()(const model::BorePlate& s) {
+        object.number("width_m", s.width).number("depth_m", s.depth).number("height_m", s.height);
+        object.number("bore_diameter_m", s.bore_diameter).number("bore_depth_m", s.bore_depth);
+        object.number("chamfer_m", s.chamfer);
+    }
+};
+
+std::string partJson(const model::PartSpec& part) {
+    JsonObject json;
+    json.text("name", part.name).boolean("held", part.held);
+    if (const auto* shape = std::get_if<model::Shape>(&part.geometry)) {
+        ShapeJson shape_json;
+        shape_json.object.text("kind", model::kindName(*shape));
+        std::visit(shape_json, *shape);
+        json.json("shape", shape_json.object.str());
+    } else {
+        const auto& mesh = std::get<model::MeshFile>(part.geometry);
+        // Without its folder: where a lab keeps its files must not change what is exported.
+        json.text("mesh", std::filesystem::path(mesh.path).filename().string())
+            .number("metres_per_unit", mesh.metres_per_unit);
+    }
+    return json.json("pose", poseJson(part.X_WP)).json("shown_offset_m", jsonVector(part.shown_offset)).str();
+}
+
+const char* methodName(model::ContactMethod method) {
+    return method == model::ContactMethod::Penalty ? "penalty" : "god_object_heuristic";
+}
+
+const char* variantName(model::PenaltyVariant variant) {
+    switch (variant) {
+        case model::PenaltyVariant::MaxNormalised:
+            return "max_normalised";
+        case model::PenaltyVariant::AreaWeighted:
+            return "area_weighted";
+        case model::PenaltyVariant::Raw:
+            return "raw";
+    }
+    return "";
+}
+
+std::string contactJson(const model::ContactSpec& contact) {
+    return JsonObject()
+        .text("method", methodName(contact.method))
+        .text("variant", variantName(contact.variant))
+        .number("stiffness_N_per_m", contact.stiffness)
+        .number("rotational_stiffness_Nm_per_rad", contact.rotational_stiffness)
+        .number("damping_Ns_per_m", contact.damping)
+        .number("rotational_damping_Nms_per_rad", contact.rotational_damping)
+        .number("area_stiffness_N_per_m3", contact.area_stiffness)
+        .number("tolerance_m", contact.tolerance)
+        .number("cell_m", contact.cell)
+        .number("spacing_m", contact.spacing)
+        .text("mode", contact.mode == model::FieldMode::Linear ? "linear" : "trilinear")
+        .integer("budget_nodes", contact.budget_nodes)
+        .number("proxy_filter_hz", contact.proxy_filter)
+        .str();
+}
+
+std::string limitsJson(const model::OutputLimits& limits) {
+    return JsonObject()
+        .number("max_force_N", limits.max_force)
+        .number("max_torque_Nm", limits.max_torque)
+        .number("max_force_rate_N_per_s", limits.max_force_rate)
+        .number("max_speed_m_per_s", limits.max_speed)
+        .number("max_spin_rad_per_s", limits.max_spin)
+        .boolean("actuates_torque", limits.actuates_torque)
+        .integer("delay_ticks", limits.delay_ticks)
+        .str();
+}
+
+std::string taskJson(const PegInHoleTask& task) {
+    return JsonObject()
+        .text("type", "peg_in_hole")
+        .text("target", task.target)
+        .number("insertion_depth_m", task.insertion_depth)
+        .number("success_fraction", task.success_fraction)
+        .number("max_speed_m_per_s", task.max_speed)
+        .number("hold_s", task.hold)
+        .number("timeout_s", task.timeout)
+        .number("leave_radius_m", task.leave_radius)
+        .number("engagement_depth_m", task.engagement_depth)
+        .str();
+}
+
+std::string factorJson(const Factor& factor) {
+    std::vector<std::string> levels;
+    for (const auto& level : factor.levels) levels.push_back(jsonText(level.label));
+    return JsonObject()
+        .text("name", factor.name)
+        .text("kind", "within")
+        .text("unit", factor.unit)
+        .json("levels", jsonList(levels))
+        .str();
+}
+
+std::string conditionJson(const Condition& condition) {
+    return JsonObject()
+        .text("condition", condition.name)
+        .json("levels", condition.levels_json)
+        .json("params", condition.params_json)
+        .str();
+}
+
+std::string blockJson(const Block& block) {
+    return JsonObject()
+        .text("name", block.name)
+        .text("phase", phaseName(block.phase))
+        .integer("repetitions", block.repetitions)
+        .text("order", blockOrderName(block.order))
+        .integer("trials", block.trials)
+        .str();
+}
+
+template <class T, class Function>
+std::string listOf(const std::vector<T>& items, Function json) {
+    std::vector<std::string> texts;
+    for (const auto& item : items) texts.push_back(json(item));
+    return jsonList(texts);
+}
+
+}  // namespace
+
+std::string levelsJson(const std::vector<Factor>& factors, const std::vector<std::size_t>& levels) {
+    JsonObject json;
+    for (std::size_t i = 0; i < factors.size(); ++i) json.text(factors[i].name, factors[i].levels[levels[i]].label);
+    return json.str();
+}
+
+std::string paramsJson(const Condition& condition) {
+    const auto& scene = condition.scene;
+    return JsonObject()
+        .text("device", condition.device)
+        .text("shown_pose", condition.shown == ShownPose::Proxy ? "proxy" : "device")
+        .json("parts", listOf(scene.parts, partJson))
+        .json("contact", contactJson(scene.contact))
+        .json("limits", limitsJson(scene.limits))
+        .json("registration", JsonObject()
+                                  .json("device_base", poseJson(scene.registration.X_WB))
+                                  .number("scale", scene.registration.scale)
+                                  .json("handle", poseJson(scene.registration.X_DH))
+                                  .str())
+        .json("start_gate", JsonObject()
+                                .number("position_tolerance_m", scene.start_gate.position_tolerance)
+                                .number("angle_tolerance_rad", scene.start_gate.angle_tolerance)
+                                .integer("hold_ticks", scene.start_gate.hold_ticks)
+                                .str())
+        .json("task", taskJson(condition.task))
+        .str();
+}
+
+std::string expandedJson(const StudyPlan& plan) {
+    return JsonObject()
+        .text("name", plan.name)
+        .text("version", plan.version)
+        .text("title", plan.title)
+        .json("seed", std::to_string(plan.seed))
+        .integer("participants", plan.participants)
+        .json("factors", listOf(plan.factors, factorJson))
+        .json("conditions", listOf(plan.conditions, conditionJson))
+        .json("blocks", listOf(plan.blocks, blockJson))
+        .json("measures", listOf(plan.measures, [](const std::string& name) { return jsonText(name); }))
+        .str();
+}
+
+}  // namespace passung::protocol

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "study/protocol/study_plan.h"
+
+namespace passung::protocol {
+
+/// {"factor": "label", ...}
+std::string levelsJson(const std::vector<Factor>& factors, const std::vector<std::size_t>& levels);
+
+/// Every resolved number of a condition, SI units in the names. Equal conditions give equal bytes.
+std::string paramsJson(const Condition& condition);
+
+/// Factors, conditions and blocks of a plan whose other members are filled.
+std::string expandedJson(const StudyPlan& plan);
+
+}  // namespace passung::protocol

@@ -1,0 +1,239 @@
+#include "study/protocol/protocol_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <set>
+
+#include "study/protocol/factors.h"
+#include "study/protocol/plan_json.h"
+#include "study/protocol/scene_node.h"
+#include "study/protocol/task_reader.h"
+
+namespace passung::protocol {
+namespace {
+
+constexpr std::size_t kMaxConditions = 1000;
+
+/// Where the scene stands: written in the study file, or a file of its own.
+struct SceneSource {
+    Node table;
+    std::vector<std::string_view> ids{"study_scene", "scene"};
+    std::string path = "scene";
+};
+
+/// Reads one study file, step by step; every step adds to errors_.
+class ProtocolReader {
+public:
+    ProtocolReader(const Node& document, std::span<const DeviceDescription> devices,
+                   std::span<const std::string> known_measures)
+        : document_(document),
+          devices_(devices),
+          known_measures_(known_measures),
+          root_(document, {"protocol"}, "", errors_) {}
+
+    Result<StudyPlan> read() {
+        readStudy();
+        readConditions();
+        readBlocks();
+        readMeasures();
+        tidy(errors_);
+        if (!errors_.empty()) return errors_;
+        warn();
+        plan_.expanded_json = expandedJson(plan_);
+        return std::move(plan_);
+    }
+
+private:
+    void readStudy() {
+        const Node* table = root_.node("study");
+        if (table == nullptr) return;
+        const TableReader read(*table, {"study"}, "study", errors_);
+        plan_.name = read.text("name");
+        plan_.version = read.text("version");
+        plan_.title = read.has("title") ? read.text("title") : plan_.name;
+        plan_.seed = static_cast<std::uint64_t>(read.integer("seed"));
+        plan_.participants = static_cast<int>(read.integer("participants"));
+    }
+
+    /// Nothing if there is none or it cannot be read.
+    std::optional<SceneSource> openScene() {
+        const Node* table = root_.node("scene");
+        if (table == nullptr) return std::nullopt;
+        const Node* file = table->find("file");
+        if (file == nullptr) return SceneSource{*table};
+        const Node reduced = [&] {
+            Node only = emptyTable(table->place);
+            for (const Entry& entry : table->entries)
+                if (entry.key == "file")
+                    only.entries.push_back(entry);
+                else
+                    errors_.push_back(errorAt(entry.place, "scene." + entry.key, "", "cannot stand beside scene.file"));
+            return only;
+        }();
+        const TableReader read(reduced, {"study_scene"}, "scene", errors_);
+        if (!read.has("file")) return std::nullopt;
+        const auto path = std::filesystem::path(file->place.file).parent_path() / file->text;
+        const auto text = readFile(path.lexically_normal().string());
+        if (!text) {
+            read.fail("file", "cannot be opened");
+            return std::nullopt;
+        }
+        auto document = parseDocument(*text, path.lexically_normal().string());
+        if (!document) {
+            errors_.insert(errors_.end(), document.errors().begin(), document.errors().end());
+            return std::nullopt;
+        }
+        return SceneSource{std::move(*document), {"scene"}, ""};
+    }
+
+    void readConditions() {
+        const auto scene = openScene();
+        const std::size_t before = errors_.size();
+        const auto factors = readFactors(root_.items("factor"), known_measures_, errors_);
+        std::size_t count = 1;
+        for (const auto& factor : factors) {
+            plan_.factors.push_back(factor.factor);
+            count = std::min(count * std::max<std::size_t>(1, factor.factor.levels.size()), kMaxConditions + 1);
+        }
+        if (count > kMaxConditions)
+            root_.fail("factor", fmt::format("more than {} combinations of levels", kMaxConditions));
+        // Levels that are wrong in themselves would be reported once more in every condition.
+        if (errors_.size() > before) return;
+        conditions_ = count;
+        if (!scene) return;
+        for (auto& levels : combinations(factors)) readCondition(*scene, factors, std::move(levels));
+    }
+
+    void readCondition(const SceneSource& source, const std::vector<FactorContent>& factors,
+                       std::vector<std::size_t> levels) {
+        const auto copyOf = [&](std::string_view name) {
+            const Node* table = root_.node(name);
+            return table != nullptr ? *table : emptyTable(document_.place);
+        };
+        StudyTables tables{source.table, copyOf("task"), copyOf("feedback")};
+        Condition condition;
+        for (std::size_t i = 0; i < factors.size(); ++i) {
+            for (const Override& change : factors[i].overrides[levels[i]]) applyOverride(change, tables, errors_);
+            if (i > 0) condition.name += '/';
+            condition.name += factors[i].factor.levels[levels[i]].label;
+        }
+        if (factors.empty()) condition.name = "single";
+
+        const std::size_t before = errors_.size();
+        auto content = readSceneNode(tables.scene, source.ids, source.path, devices_, errors_);
+        if (errors_.size() == before && content.device.empty()) {
+            const Node* device = tables.scene.find("device");
+            errors_.push_back(errorAt(device != nullptr ? device->place : tables.scene.place, "device.preset", "",
+                                      "required in a study"));
+        }
+        condition.scene = std::move(content.scene);
+        condition.device = std::move(content.device);
+        if (errors_.size() == before && root_.has("task")) condition.task = readTask(tables, condition.scene, errors_);
+        condition.shown = readFeedback(tables.feedback);
+        if (errors_.size() > before) return;
+        condition.levels_json = levelsJson(plan_.factors, levels);
+        condition.levels = std::move(levels);
+        condition.params_json = paramsJson(condition);
+        plan_.conditions.push_back(std::move(condition));
+    }
+
+    ShownPose readFeedback(const Node& table) {
+        const TableReader read(table, {"feedback"}, "feedback", errors_);
+        if (read.has("kinesthetic") && !read.boolean("kinesthetic")) read.fail("kinesthetic", "only true is supported");
+        return read.text("shown_pose") == "device" ? ShownPose::Device : ShownPose::Proxy;
+    }
+
+    void readBlocks() {
+        const auto& tables = root_.items("block");
+        if (root_.has("block") && tables.empty()) root_.fail("block", "needs at least one block");
+        std::set<std::string> names;
+        for (const Node& table : tables) {
+            const Node* name = table.find("name");
+            const bool named = name != nullptr && name->kind == Node::Kind::Text && isName(name->text);
+            const TableReader read(table, {"block"}, named ? "block." + name->text : "block", errors_);
+            Block block;
+            block.name = read.text("name");
+            block.phase = read.text("phase") == "practice" ? Phase::Practice : Phase::Main;
+            block.repetitions = static_cast<int>(read.integer("repetitions"));
+            const auto order = read.text("order");
+            block.order = order == "random"   ? BlockOrder::Random
+                          : order == "listed" ? BlockOrder::Listed
+                                              : BlockOrder::Williams;
+            if (named && !names.insert(block.name).second) read.fail("name", "two blocks have this name");
+            if (block.order == BlockOrder::Williams && conditions_ == 1u)
+                read.fail("order", "a Williams square needs at least two conditions");
+            if (conditions_ && read.has("trials") && read.integer("trials") > static_cast<std::int64_t>(*conditions_))
+                read.fail("trials", fmt::format("must be at most the number of conditions, {}", *conditions_));
+            else
+                block.trials = static_cast<int>(read.integer("trials"));
+            plan_.blocks.push_back(std::move(block));
+        }
+    }
+
+    void readMeasures() {
+        if (!root_.has("measures")) {
+            plan_.measures.assign(known_measures_.begin(), known_measures_.end());
+            return;
+        }
+        const std::vector<std::string_view> known(known_measures_.begin(), known_measures_.end());
+        for (const Node& item : root_.items("measures")) {
+            const auto report = [&](std::string message) {
+                errors_.push_back(errorAt(item.place, "measures", valueText(item), std::move(message)));
+            };
+            if (std::find(known.begin(), known.end(), item.text) == known.end()) {
+                const auto close = closestWord(item.text, known);
+                report(close ? fmt::format("unknown measure; did you mean \"{}\"?", *close)
+                             : fmt::format("unknown measure; known measures: {}", fmt::join(known, ", ")));
+            } else if (std::find(plan_.measures.begin(), plan_.measures.end(), item.text) != plan_.measures.end()) {
+                report("is listed twice");
+            }
+            plan_.measures.push_back(item.text);
+        }
+    }
+
+    void warn() {
+        const bool williams = std::any_of(plan_.blocks.begin(), plan_.blocks.end(),
+                                          [](const Block& block) { return block.order == BlockOrder::Williams; });
+        const std::size_t n = plan_.conditions.size();
+        const std::size_t rows = n % 2 == 0 ? n : 2 * n;
+        if (williams && static_cast<std::size_t>(plan_.participants) % rows != 0)
+            plan_.warnings.push_back(
+                fmt::format("study.participants = {} is not a multiple of the {} rows of the Williams square: orders "
+                            "will not be balanced",
+                            plan_.participants, rows));
+    }
+
+    const Node& document_;
+    std::span<const DeviceDescription> devices_;
+    std::span<const std::string> known_measures_;
+    Errors errors_;
+    TableReader root_;
+    StudyPlan plan_;
+    std::optional<std::size_t> conditions_;  // nothing if the factors are not sound
+};
+
+}  // namespace
+
+Result<StudyPlan> readProtocol(const std::string& path, std::span<const DeviceDescription> devices,
+                               std::span<const std::string> known_measures) {
+    const auto text = readFile(path);
+    if (!text) return text.errors();
+    return readProtocolText(*text, path, devices, known_measures);
+}
+
+Result<StudyPlan> readProtocolText(const std::string& text, const std::string& path,
+                                   std::span<const DeviceDescription> devices,
+                                   std::span<const std::string> known_measures) {
+    const auto document = parseDocument(text, path);
+    if (!document) return document.errors();
+    auto plan = ProtocolReader(*document, devices, known_measures).read();
+    if (!plan) return plan.errors();
+    plan->source_text = text;
+    plan->source_path = path;
+    return plan;
+}
+
+}  // namespace passung::protocol

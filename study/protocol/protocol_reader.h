@@ -1,0 +1,22 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "core/base/device_description.h"
+#include "core/base/result.h"
+#include "study/protocol/study_plan.h"
+
+namespace passung::protocol {
+
+/// Reads a study file: checks everything and expands it to conditions that are ready to run. `devices` are the known
+/// presets, `known_measures` the names that `measures` may list. All problems are collected, each with its place.
+Result<StudyPlan> readProtocol(const std::string& path, std::span<const DeviceDescription> devices,
+                               std::span<const std::string> known_measures);
+
+/// The same for a text that stands for the file `path` (names in messages and the base of other paths).
+Result<StudyPlan> readProtocolText(const std::string& text, const std::string& path,
+                                   std::span<const DeviceDescription> devices,
+                                   std::span<const std::string> known_measures);
+
+}  // namespace passung::protocol

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/base/device_description.h"
+#include "core/model/scene_spec.h"
+#include "study/protocol/document.h"
+#include "study/protocol/table_reader.h"
+
+namespace passung::protocol {
+
+/// A scene as read from a tree of values; only for readers in this room.
+struct SceneContent {
+    model::SceneSpec scene;
+    std::string device;  // preset, empty if none is named
+};
+
+/// Reads a scene's table. `ids`: its tables in the key table; `path`: its name in messages ("scene" or "").
+/// Adds everything that is wrong to `errors`; the result is meaningful only if nothing was added.
+SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids, const std::string& path,
+                           std::span<const DeviceDescription> devices, Errors& errors);
+
+/// Reads one part. Lengths are in its own `unit`, else `units_per_metre` make a metre.
+model::PartSpec readPartNode(const Node& table, const std::string& parent_path, double units_per_metre, Errors& errors);
+
+/// Reads `position_key` (lengths) and `rotation_key` (degrees, R = Rz·Ry·Rx).
+Pose readPose(const TableReader& read, std::string_view position_key, std::string_view rotation_key,
+              double units_per_metre);
+
+/// How many of a table's `unit` make a metre; `absent` if it names none.
+double unitsPerMetre(const TableReader& read, double absent);
+
+}  // namespace passung::protocol

@@ -1,0 +1,220 @@
+#include "study/protocol/scene_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "study/protocol/scene_node.h"
+
+namespace passung::protocol {
+namespace {
+
+constexpr double kDefaultStiffness = 1000.0;         // [N/m], without a device
+constexpr double kDefaultRotationalStiffness = 1.0;  // [N·m/rad], without a device
+
+std::vector<model::PartSpec> readParts(const TableReader& read, const Node& scene, const std::string& path,
+                                       double units, Errors& errors) {
+    std::vector<model::PartSpec> parts;
+    std::set<std::string> names;
+    bool held = false;
+    for (const Node& table : read.items("part")) {
+        auto part = readPartNode(table, path, units, errors);
+        const auto report = [&](const char* key, const char* message) {
+            const Node& value = *table.find(key);
+            errors.push_back(
+                errorAt(value.place, fmt::format("{}.{}", read.pathOf("part"), key), valueText(value), message));
+        };
+        if (!part.name.empty() && !names.insert(part.name).second) report("name", "is used by another part");
+        if (part.held && held) report("held", "only one part can be held");
+        held = held || part.held;
+        parts.push_back(std::move(part));
+    }
+    if (read.has("part") && !held)
+        errors.push_back(errorAt(scene.place, read.pathOf("part"), "", "one part must be held: held = true"));
+    return parts;
+}
+
+/// The device that the scene names; nullptr if none or unknown.
+const DeviceDescription* findDevice(const TableReader& read, std::span<const DeviceDescription> devices) {
+    if (!read.has("preset")) return nullptr;
+    const auto name = read.text("preset");
+    std::vector<std::string_view> names;
+    for (const auto& device : devices) {
+        if (device.name == name) return &device;
+        names.push_back(device.name);
+    }
+    read.fail("preset", fmt::format("unknown device; known devices: {}", fmt::join(names, ", ")));
+    return nullptr;
+}
+
+model::OutputLimits readLimits(const TableReader& read, const DeviceDescription* device) {
+    model::OutputLimits limits;
+    if (device != nullptr) {
+        limits.max_force = device->max_force_N;
+        limits.max_torque = device->max_torque_Nm;
+        limits.max_force_rate = device->max_force_rate_N_per_s;
+        limits.max_speed = device->max_speed_m_per_s;
+        limits.max_spin = device->max_spin_rad_per_s;
+        limits.actuates_torque = device->actuated_degrees >= 6;
+    }
+    const auto tighten = [&](const char* key, double& limit) {
+        if (!read.has(key)) return;
+        if (device != nullptr && read.number(key) > limit)
+            read.fail(key, fmt::format("must not exceed the limit of {}: {}", device->name, limit));
+        limit = read.number(key);
+    };
+    tighten("max_force_N", limits.max_force);
+    tighten("max_torque_Nm", limits.max_torque);
+    tighten("max_force_rate_N_per_s", limits.max_force_rate);
+    limits.delay_ticks = static_cast<int>(read.integer("delay_ticks"));
+    return limits;
+}
+
+/// A stiffness as a number, and as a fraction of the device's stable `maximum` (0: not known).
+struct Stiffness {
+    double value = 0.0;
+    double fraction = 1.0;
+};
+
+Stiffness resolveStiffness(const TableReader& read, const char* key, double maximum, const DeviceDescription* device,
+                           bool device_named) {
+    const Node* node = read.node(key);
+    if (node == nullptr || (device_named && device == nullptr)) return {};
+    const bool limited = maximum > 0.0;
+    if (node->kind == Node::Kind::Text) {
+        const double fraction = stiffnessFraction(node->text).value_or(1.0);
+        if (device == nullptr)
+            read.fail(key, "a fraction of the stable maximum needs device.preset");
+        else if (!limited)
+            read.fail(key, fmt::format("the stable maximum of {} is not known", device->name));
+        return {fraction * maximum, fraction};
+    }
+    if (limited && node->number > maximum)
+        read.fail(key, fmt::format("must not exceed the stable maximum of {}: {}", device->name, maximum));
+    return {node->number, limited ? node->number / maximum : 1.0};
+}
+
+void readCoupling(const TableReader& read, const DeviceDescription* device, bool device_named,
+                  model::ContactSpec& contact) {
+    const double maximum = device != nullptr ? device->stable_stiffness_N_per_m : 0.0;
+    const double rotational_maximum = device != nullptr ? device->stable_rotational_stiffness_Nm_per_rad : 0.0;
+    const auto resolve = [&](const char* key, double limit) {
+        return resolveStiffness(read, key, limit, device, device_named);
+    };
+    double fraction = 1.0;
+    contact.stiffness = maximum > 0.0 ? maximum : kDefaultStiffness;
+    if (read.has("stiffness_N_per_m")) {
+        const auto stiffness = resolve("stiffness_N_per_m", maximum);
+        contact.stiffness = stiffness.value;
+        fraction = stiffness.fraction;
+    }
+    contact.rotational_stiffness = device != nullptr ? fraction * rotational_maximum : kDefaultRotationalStiffness;
+    if (read.has("rotational_stiffness_Nm_per_rad"))
+        contact.rotational_stiffness = resolve("rotational_stiffness_Nm_per_rad", rotational_maximum).value;
+    contact.damping = read.numberOr("damping_Ns_per_m", device != nullptr ? device->recommended_damping_Ns_per_m : 0.0);
+    contact.rotational_damping = read.numberOr(
+        "rotational_damping_Nms_per_rad", device != nullptr ? device->recommended_rotational_damping_Nms_per_rad : 0.0);
+}
+
+model::ContactSpec readContact(const TableReader& read, const DeviceDescription* device, bool device_named) {
+    model::ContactSpec contact;
+    contact.method =
+        read.text("method") == "penalty" ? model::ContactMethod::Penalty : model::ContactMethod::GodObjectHeuristic;
+    const auto variant = read.text("variant");
+    contact.variant = variant == "raw"             ? model::PenaltyVariant::Raw
+                      : variant == "area_weighted" ? model::PenaltyVariant::AreaWeighted
+                                                   : model::PenaltyVariant::MaxNormalised;
+    readCoupling(read, device, device_named, contact);
+    contact.area_stiffness = read.number("area_stiffness_N_per_m3");
+    contact.tolerance = read.number("tolerance_um");
+    contact.cell = read.numberOr("cell_mm", 0.0);
+    contact.spacing = read.number("spacing_mm");
+    contact.mode = read.text("mode") == "linear" ? model::FieldMode::Linear : model::FieldMode::Trilinear;
+    contact.budget_nodes = static_cast<int>(read.integer("budget_nodes"));
+    contact.proxy_filter = read.number("proxy_filter_hz");
+    return contact;
+}
+
+model::Registration readRegistration(const TableReader& read, double units) {
+    model::Registration registration;
+    registration.X_WB = readPose(read, "position", "rotation_deg", units);
+    registration.scale = read.number("scale");
+    registration.X_DH = readPose(read, "handle_position", "handle_rotation_deg", units);
+    return registration;
+}
+
+model::StartGate readStartGate(const TableReader& read) {
+    model::StartGate gate;
+    gate.position_tolerance = read.number("position_tolerance_mm");
+    gate.angle_tolerance = read.number("angle_tolerance_deg");
+    gate.hold_ticks = static_cast<int>(std::lround(read.number("hold_ms") * 1000.0));
+    return gate;
+}
+
+}  // namespace
+
+SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids, const std::string& path,
+                           std::span<const DeviceDescription> devices, Errors& errors) {
+    const std::size_t before = errors.size();
+    const TableReader read(table, std::move(ids), path, errors);
+    const double units = unitsPerMetre(read, 1e3);
+    // A table that is not there has no keys: its reader gives the defaults.
+    const Node absent = emptyTable(table.place);
+    const auto open = [&](std::string_view name) {
+        const Node* node = read.node(name);
+        return TableReader(node != nullptr ? *node : absent, {name}, read.pathOf(name), errors);
+    };
+    SceneContent content;
+    content.scene.parts = readParts(read, table, path, units, errors);
+    const auto device_table = open("device");
+    const DeviceDescription* device = findDevice(device_table, devices);
+    content.device = device_table.text("preset");
+    content.scene.limits = readLimits(device_table, device);
+    content.scene.contact = readContact(open("contact"), device, device_table.has("preset"));
+    content.scene.registration = readRegistration(open("registration"), units);
+    content.scene.start_gate = readStartGate(open("start_gate"));
+    open("effects");
+    // What only the model itself can judge has no line of its own.
+    if (errors.size() == before)
+        for (const Error& error : content.scene.validate())
+            errors.push_back(errorAt(table.place, error.key, error.value, error.message));
+    return content;
+}
+
+Result<model::SceneSpec> readScene(const std::string& path, std::span<const DeviceDescription> devices) {
+    const auto text = readFile(path);
+    if (!text) return text.errors();
+    return readSceneText(*text, path, devices);
+}
+
+Result<model::SceneSpec> readSceneText(const std::string& text, const std::string& path,
+                                       std::span<const DeviceDescription> devices) {
+    const auto document = parseDocument(text, path);
+    if (!document) return document.errors();
+    Errors errors;
+    auto content = readSceneNode(*document, {"scene"}, "", devices, errors);
+    tidy(errors);
+    if (!errors.empty()) return errors;
+    return std::move(content.scene);
+}
+
+Result<model::PartSpec> readPart(const std::string& path, double metres_per_unit) {
+    const auto text = readFile(path);
+    if (!text) return text.errors();
+    const auto document = parseDocument(*text, path);
+    if (!document) return document.errors();
+    Errors errors;
+    const TableReader read(*document, {"part_file"}, "", errors);
+    const auto& parts = read.items("part");
+    if (read.has("part") && parts.size() != 1)
+        errors.push_back(errorAt(parts.empty() ? document->place : parts[1].place, "part", "", "must be exactly one"));
+    model::PartSpec part;
+    if (!parts.empty()) part = readPartNode(parts[0], "", unitsPerMetre(read, 1.0 / metres_per_unit), errors);
+    tidy(errors);
+    if (!errors.empty()) return errors;
+    return part;
+}
+
+}  // namespace passung::protocol

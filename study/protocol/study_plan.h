@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/model/scene_spec.h"
+
+namespace passung::protocol {
+
+enum class Phase { Practice, Main };
+const char* phaseName(Phase phase);  // "practice", "main": as stored
+
+enum class FactorKind { Within };
+
+/// One value of a factor, as the protocol wrote it.
+struct Level {
+    std::string label;  // as it appears in tables and exports
+};
+
+struct Factor {
+    std::string name;  // a column in every export
+    FactorKind kind = FactorKind::Within;
+    std::string unit;  // of the labels, if they are numbers; may be empty
+    std::vector<Level> levels;
+};
+
+/// How a peg-in-hole trial is judged. Poses are of the held part in the target's frame (its bore's mouth, axis -z).
+struct PegInHoleTask {
+    std::string target;               // name of the part with the bore
+    double insertion_depth = 0.020;   // [m] of the tip below the mouth that counts as fully inserted
+    double success_fraction = 0.95;   // of that depth
+    double max_speed = 0.005;         // [m/s] while the depth is held
+    double hold = 0.5;                // [s]
+    double timeout = 30.0;            // [s] from the start
+    double leave_radius = 0.020;      // [m] the trial's clock starts when the part leaves this sphere about its start
+    double engagement_depth = 0.001;  // [m] search ends at this depth
+};
+
+enum class ShownPose { Proxy, Device };  // what the display draws for the held part
+
+/// One combination of factor levels with everything it means.
+struct Condition {
+    std::string name;                 // levels joined by "/", unique
+    std::vector<std::size_t> levels;  // index per factor
+    std::string levels_json;          // {"factor": "label", ...}
+    model::SceneSpec scene;           // complete: stiffness resolved to numbers
+    PegInHoleTask task;
+    ShownPose shown = ShownPose::Proxy;
+    std::string device;       // preset
+    std::string params_json;  // every resolved number, for the attempt's row
+};
+
+enum class BlockOrder { Williams, Random, Listed };
+const char* blockOrderName(BlockOrder order);  // "williams", "random", "listed"
+
+struct Block {
+    std::string name;
+    Phase phase = Phase::Main;
+    int repetitions = 1;  // passes through the order
+    BlockOrder order = BlockOrder::Williams;
+    int trials = 0;  // 0 = every condition of the pass; else the first so many (practice)
+};
+
+/// A protocol, validated and complete: what runs is decided here and nowhere else.
+struct StudyPlan {
+    std::string name;
+    std::string version;
+    std::string title;
+    std::uint64_t seed = 0;
+    int participants = 0;  // planned N
+    std::vector<Factor> factors;
+    std::vector<Condition> conditions;  // the first factor varies slowest
+    std::vector<Block> blocks;
+    std::vector<std::string> measures;  // names, all known to study/measures
+    std::string source_text;            // the file, byte for byte
+    std::string source_path;
+    std::string expanded_json;          // factors, conditions, blocks after expansion
+    std::vector<std::string> warnings;  // sentences: allowed, but the experimenter should know
+};
+
+}  // namespace passung::protocol

@@ -1,0 +1,87 @@
+#include "study/protocol/task_reader.h"
+
+#include <fmt/format.h>
+
+#include "study/protocol/table_reader.h"
+
+namespace passung::protocol {
+namespace {
+
+template <class T>
+const T* shapeOf(const model::PartSpec& part) {
+    const auto* shape = std::get_if<model::Shape>(&part.geometry);
+    return shape != nullptr ? std::get_if<T>(shape) : nullptr;
+}
+
+const model::PartSpec* heldPart(const model::SceneSpec& scene) {
+    for (const auto& part : scene.parts)
+        if (part.held) return &part;
+    return nullptr;
+}
+
+/// The target's bore; nullptr after reporting why there is none.
+const model::BorePlate* findBore(const TableReader& read, const model::SceneSpec& scene) {
+    const auto name = read.text("target");
+    for (const auto& part : scene.parts) {
+        if (part.name != name) continue;
+        const auto* plate = shapeOf<model::BorePlate>(part);
+        if (part.held)
+            read.fail("target", "must not be the held part");
+        else if (plate == nullptr)
+            read.fail("target", "must be a part with the shape bore_plate");
+        return part.held ? nullptr : plate;
+    }
+    std::vector<std::string_view> names;
+    for (const auto& part : scene.parts) names.push_back(part.name);
+    read.fail("target", fmt::format("the scene has no part of this name; parts: {}", fmt::join(names, ", ")));
+    return nullptr;
+}
+
+/// Reports a bore that is too narrow for the peg where the bore's diameter is written.
+void checkFit(const StudyTables& tables, const std::string& target, const model::Peg& peg,
+              const model::BorePlate& plate, Errors& errors) {
+    if (peg.diameter < plate.bore_diameter) return;
+    for (const Node& part : tables.scene.find("part")->items) {
+        const Node* shape = part.find("shape");
+        if (part.find("name")->text != target || shape == nullptr) continue;
+        const Node& value = *shape->find("bore_diameter");
+        errors.push_back(errorAt(value.place, fmt::format("part.{}.shape.bore_diameter", target), valueText(value),
+                                 "must be larger than the peg's diameter"));
+    }
+}
+
+}  // namespace
+
+PegInHoleTask readTask(const StudyTables& tables, const model::SceneSpec& scene, Errors& errors) {
+    const std::size_t before = errors.size();
+    const TableReader read(tables.task, {"task"}, "task", errors);
+    PegInHoleTask task;
+    task.target = read.text("target");
+    task.insertion_depth = read.number("insertion_depth_mm");
+    task.success_fraction = read.number("success_fraction");
+    task.max_speed = read.number("max_speed_mm_per_s");
+    task.hold = read.number("hold_s");
+    task.timeout = read.number("timeout_s");
+    task.leave_radius = read.number("leave_radius_mm");
+    task.engagement_depth = read.number("engagement_depth_mm");
+    if (errors.size() > before) return task;
+
+    const double success_depth = task.success_fraction * task.insertion_depth;
+    if (!(task.engagement_depth < success_depth))
+        read.fail("engagement_depth_mm",
+                  fmt::format("must be less than the depth of success, {:.6g} mm", 1e3 * success_depth));
+    if (!(task.hold < task.timeout)) read.fail("hold_s", "must be less than timeout_s");
+    const auto* plate = findBore(read, scene);
+    if (plate == nullptr) return task;
+    if (task.insertion_depth > plate->bore_depth)
+        read.fail("insertion_depth_mm", fmt::format("the bore is only {:.6g} mm deep", 1e3 * plate->bore_depth));
+    const auto* held = heldPart(scene);
+    const auto* peg = held != nullptr ? shapeOf<model::Peg>(*held) : nullptr;
+    if (peg == nullptr) return task;
+    if (task.insertion_depth > peg->length)
+        read.fail("insertion_depth_mm", fmt::format("the peg is only {:.6g} mm long", 1e3 * peg->length));
+    checkFit(tables, task.target, *peg, *plate, errors);
+    return task;
+}
+
+}  // namespace passung::protocol

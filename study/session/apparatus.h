@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/device_description.h"
+#include "core/base/result.h"
+#include "core/base/tick_record.h"
+#include "study/protocol/study_plan.h"
+
+namespace passung::session {
+
+/// How well the loop kept its rate during one attempt.
+struct LoopHealth {
+    std::string loop;  // "virtual", "real-time fifo", "real-time normal"
+    std::int64_t ticks = 0;
+    double mean_us = 0, sd_us = 0, p99_us = 0, p999_us = 0, max_us = 0;  // computing time of a tick
+    std::int64_t overruns = 0;  // cycles that ended after their deadline; 0 in virtual time
+    std::int64_t dropped_records = 0;
+    std::vector<std::int64_t> histogram;  // ticks per bucket, bucket i: [2^i, 2^(i+1)) × 0.1 µs
+    std::uint64_t state_hash = 0;         // over every exact output of the attempt; equal on replay
+};
+
+/// One stage of the tick and why it runs.
+struct StageNote {
+    std::string name;
+    std::string reason;
+};
+
+/// The session's view of loop, device and scene. It never blocks longer than it is told to.
+class Apparatus {
+public:
+    virtual ~Apparatus() = default;
+
+    virtual const DeviceDescription& device() const = 0;
+
+    /// Builds the scene of `condition` and everything that a trial needs; may take seconds. Motors stay off.
+    /// `seed` drives everything random in a simulated device and hand for this attempt.
+    virtual Result<std::vector<StageNote>> prepare(const protocol::Condition& condition, std::uint64_t seed) = 0;
+
+    /// Starts the loop at tick 0.
+    virtual void start() = 0;
+
+    /// Lets `ticks` more ticks happen: computes them in virtual time, waits for them in real time.
+    virtual void advance(std::int64_t ticks) = 0;
+
+    /// Takes the oldest records out of the ring; call until it returns 0. Consecutive ticks unless dropped.
+    virtual std::size_t takeRecords(std::span<TickRecord> into) = 0;
+
+    /// Stops the loop with a zero wrench and says how it went.
+    virtual LoopHealth stop() = 0;
+};
+
+}  // namespace passung::session

@@ -1,0 +1,208 @@
+#include "study/session/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "core/base/assert.h"
+#include "core/base/random.h"
+
+namespace passung::session {
+namespace {
+
+constexpr int kFirstAttempt = 1;
+constexpr std::size_t kTakeAtOnce = 256;  // records
+
+/// Pose of the task's target in the world.
+Result<Pose> targetPose(const protocol::Condition& condition) {
+    for (const model::PartSpec& part : condition.scene.parts)
+        if (part.name == condition.task.target) return part.X_WP;
+    Error error;
+    error.message = fmt::format("condition {} has no part of this name", condition.name);
+    error.key = "target";
+    error.value = condition.task.target;
+    return error;
+}
+
+}  // namespace
+
+std::uint64_t attemptSeed(const SessionSetup& setup, const design::PlannedTrial& trial, int attempt_no) {
+    const std::string purpose = fmt::format("simulated|{}|{}", trial.trial_index, attempt_no);
+    return streamSeed(setup.plan.name, setup.participant, trial.phase, purpose, setup.seed);
+}
+
+Session::Session(SessionSetup setup, Apparatus& apparatus, TrialSink& sink, SessionListener listener)
+    : setup_(std::move(setup)), apparatus_(apparatus), sink_(sink), listener_(std::move(listener)) {}
+
+Session::~Session() {
+    if (state_ == SessionState::InTrial) apparatus_.stop();
+}
+
+Result<Done> Session::run() {
+    while (state_ == SessionState::BetweenTrials || state_ == SessionState::InTrial) advance();
+    if (state_ == SessionState::Failed) return errors_;
+    return Done{};
+}
+
+SessionState Session::advance() {
+    switch (state_) {
+        case SessionState::BetweenTrials:
+            if (finished_ < setup_.trials.size())
+                beginTrial();
+            else
+                finish(SessionState::Complete);
+            break;
+        case SessionState::InTrial:
+            watchTrial();
+            break;
+        case SessionState::Complete:
+        case SessionState::Failed:
+            break;
+    }
+    return state_;
+}
+
+void Session::beginTrial() {
+    PASSUNG_ASSERT(trial().condition < setup_.plan.conditions.size());
+    const protocol::Condition& condition = setup_.plan.conditions[trial().condition];
+    const auto X_WT = targetPose(condition);
+    if (!X_WT) return fail("prepare", X_WT.errors());
+
+    AttemptStart start;
+    start.trial_index = trial().trial_index;
+    start.attempt_no = kFirstAttempt;
+    start.start_ns = session_ns_;
+    start.params_json = condition.params_json;
+    start.seed = attemptSeed(setup_, trial(), start.attempt_no);
+    auto stages = apparatus_.prepare(condition, start.seed);
+    if (!stages) return fail("prepare", stages.errors());
+    start.stages = *std::move(stages);
+
+    const auto id = sink_.startAttempt(start);
+    if (!id) return fail("start attempt", id.errors());
+    attempt_.emplace(Attempt{*id, condition, TrialCourse(condition.task, *X_WT), {}});
+    apparatus_.start();
+    state_ = SessionState::InTrial;
+}
+
+void Session::watchTrial() {
+    apparatus_.advance(kTicksPerLook);
+    attempt_->silent_looks = takeRecords() > 0 ? 0 : attempt_->silent_looks + 1;
+    const bool silent = attempt_->silent_looks >= kSilentLooks && !attempt_->course.ended();
+    if (silent) {
+        std::vector<TrialEvent> events;
+        attempt_->course.abort(attempt_->next_tick, "the loop delivers no records", events);
+        appendEvents(events);
+    }
+    if (!attempt_->course.ended()) return;
+    finishTrial();
+    if (silent && state_ != SessionState::Failed) {
+        Error error;
+        error.message = "the haptic loop delivers no records";
+        fail("loop", {error});
+    }
+}
+
+/// Takes all that the apparatus holds; how many records there were.
+std::size_t Session::takeRecords() {
+    std::array<TickRecord, kTakeAtOnce> buffer;
+    std::size_t total = 0;
+    while (const std::size_t count = apparatus_.takeRecords(buffer)) {
+        const std::span<const TickRecord> records = std::span(buffer).first(count);
+        sink_.appendRecords(attempt_->id, records);
+        judge(records);
+        total += count;
+    }
+    return total;
+}
+
+void Session::judge(std::span<const TickRecord> records) {
+    std::vector<TrialEvent> events;
+    for (const TickRecord& record : records) {
+        attempt_->missing_ticks += record.tick - attempt_->next_tick;
+        attempt_->next_tick = record.tick + 1;
+        if (attempt_->course.ended()) continue;
+        attempt_->course.follow(record, events);
+        if (attempt_->course.started()) attempt_->records.push_back(record);
+    }
+    appendEvents(events);
+}
+
+void Session::finishTrial() {
+    LoopHealth health = apparatus_.stop();
+    takeRecords();
+    const std::int64_t ticks = std::max(attempt_->next_tick, health.ticks);
+    const AttemptEnd end = describeEnd(std::move(health));
+    const auto finished = sink_.finishAttempt(attempt_->id, end);
+    session_ns_ += ticks * kTickNanoseconds;
+    const Attempt attempt = *std::exchange(attempt_, std::nullopt);
+    if (!finished) return fail("finish attempt", finished.errors());
+
+    state_ = SessionState::BetweenTrials;
+    if (listener_.acknowledge) listener_.acknowledge(attempt.id, end.outcome);
+    const design::PlannedTrial& done = trial();
+    ++finished_;
+    if (!listener_.progress) return;
+    std::optional<double> trial_time_s;
+    for (const measures::Value& value : end.measures)
+        if (value.name == "trial_time_s") trial_time_s = value.value;
+    listener_.progress({done, attempt.condition, end.outcome, end.valid, end.invalid_reason, trial_time_s, finished_,
+                        setup_.trials.size(), session_ns_});
+}
+
+AttemptEnd Session::describeEnd(LoopHealth health) const {
+    const TrialCourse& course = attempt_->course;
+    const measures::TrialContext context = course.context();
+    AttemptEnd end;
+    end.end_ns = session_ns_ + context.end_tick * kTickNanoseconds;
+    end.outcome = context.outcome;
+    end.measures = measures::computeMeasures(attempt_->records, context);
+    end.timing_measured = setup_.timing_measured;
+
+    health.dropped_records = std::max(health.dropped_records, attempt_->missing_ticks);
+    if (course.state() == TrialState::Aborted)
+        end.invalid_reason = course.abortReason();
+    else if (health.dropped_records > 0)
+        end.invalid_reason = fmt::format("{} tick records lost", health.dropped_records);
+    else if (course.rejectedTicks() > 0)
+        end.invalid_reason = fmt::format("no usable device input in {} ticks", course.rejectedTicks());
+    end.valid = end.invalid_reason.empty();
+    end.health = std::move(health);
+    return end;
+}
+
+void Session::appendEvents(const std::vector<TrialEvent>& events) {
+    for (const TrialEvent& happened : events) {
+        Event event;
+        event.attempt = attempt_->id;
+        event.t_ns = session_ns_ + happened.tick * kTickNanoseconds;
+        event.source = "session";
+        event.event = happened.name;
+        if (event.event == "aborted")
+            event.payload_json = fmt::format(R"({{"reason":"{}"}})", attempt_->course.abortReason());
+        sink_.appendEvent(event);
+    }
+}
+
+void Session::finish(SessionState state) {
+    state_ = state;
+    const auto finished = sink_.finishSession(state == SessionState::Complete, session_ns_);
+    if (finished) return;
+    state_ = SessionState::Failed;
+    errors_.insert(errors_.end(), finished.errors().begin(), finished.errors().end());
+}
+
+void Session::fail(const char* stage, const Errors& errors) {
+    errors_ = errors;
+    Event event;
+    event.t_ns = session_ns_;
+    event.source = "session";
+    event.event = "session_failed";
+    event.payload_json = fmt::format(R"({{"stage":"{}"}})", stage);
+    sink_.appendEvent(event);
+    finish(SessionState::Failed);
+}
+
+}  // namespace passung::session

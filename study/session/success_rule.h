@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "core/base/tick_record.h"
+#include "study/protocol/study_plan.h"
+
+namespace passung::session {
+
+/// When a peg-in-hole trial has succeeded. All of this must hold in every tick for `hold` seconds:
+/// - the proxy's origin (the peg's tip) is at least success_fraction × insertion_depth below the bore's mouth and
+///   within measures::kBoreNeighbourhood of its axis;
+/// - its speed is below max_speed, as the mean over the last kSpeedTicks: the distance between two positions so far
+///   apart in time, because the difference of neighbouring ticks is mostly the encoder's quantum and tremor.
+/// A missing tick starts the hold anew: what was not recorded is not counted as held.
+class SuccessRule {
+public:
+    static constexpr std::int64_t kSpeedTicks = 50;
+
+    /// `X_WT`: the target in the world, its bore along -z from the origin.
+    SuccessRule(const protocol::PegInHoleTask& task, const Pose& X_WT);
+
+    /// Takes the next record of the trial; true if the rule is fulfilled at its tick.
+    bool fulfilledAt(const TickRecord& record);
+
+private:
+    bool isRestingInBore(const TickRecord& record) const;
+
+    Pose X_TW_;
+    double min_depth_;  // [m]
+    double max_step_;   // [m] per kSpeedTicks
+    std::int64_t hold_ticks_;
+    std::array<Vec3, kSpeedTicks> positions_;  // the proxy at tick k stands at k modulo kSpeedTicks
+    std::int64_t known_ = 0;                   // consecutive ticks seen
+    std::int64_t last_tick_ = 0;
+    std::optional<std::int64_t> resting_since_;
+};
+
+}  // namespace passung::session

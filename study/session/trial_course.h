@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "study/measures/measures.h"
+#include "study/session/success_rule.h"
+
+namespace passung::session {
+
+enum class TrialState { AwaitingStart, Running, Succeeded, TimedOut, Aborted };
+
+/// Something that happened in a trial: trial_started, first_contact, engaged (the tip is in the bore), success,
+/// timeout, aborted.
+struct TrialEvent {
+    std::int64_t tick = 0;
+    const char* name = "";
+};
+
+/// One attempt, decided record by record: AwaitingStart → Running → Succeeded | TimedOut, and from the first two →
+/// Aborted. The trial starts at the first tick with kEngaged. A fulfilled success rule wins over a time-out in the same
+/// tick. Aborted by itself if the start pose is not reached within kStartLimitTicks, or if a wrench was not finite (the
+/// output is then zero, so whatever followed would not be the condition's contact).
+class TrialCourse {
+public:
+    static constexpr std::int64_t kStartLimitTicks = 60'000;
+
+    TrialCourse(const protocol::PegInHoleTask& task, const Pose& X_WT);
+
+    /// Takes the next record and appends what happened in it. @pre not ended()
+    void follow(const TickRecord& record, std::vector<TrialEvent>& events);
+
+    /// Ends the attempt from outside. @pre not ended()
+    void abort(std::int64_t tick, std::string reason, std::vector<TrialEvent>& events);
+
+    TrialState state() const { return state_; }
+    bool ended() const { return state_ > TrialState::Running; }
+    bool started() const { return start_tick_.has_value(); }
+
+    /// @pre ended(); an empty trial (end before start) if it never started.
+    measures::TrialContext context() const;
+    const std::string& abortReason() const { return abort_reason_; }
+
+    /// Ticks of the running trial without usable device input, hence without a wrench.
+    std::int64_t rejectedTicks() const { return rejected_ticks_; }
+
+private:
+    void awaitStart(const TickRecord& record, std::vector<TrialEvent>& events);
+    void noteMilestones(const TickRecord& record, std::vector<TrialEvent>& events);
+    void end(TrialState state, std::int64_t tick, const char* event, std::vector<TrialEvent>& events);
+
+    protocol::PegInHoleTask task_;
+    Pose X_WT_;
+    SuccessRule success_rule_;
+    std::int64_t timeout_ticks_;
+    TrialState state_ = TrialState::AwaitingStart;
+    std::optional<std::int64_t> start_tick_;
+    std::int64_t end_tick_ = 0;
+    std::string abort_reason_;
+    std::int64_t rejected_ticks_ = 0;
+    bool touched_ = false;
+    bool engaged_ = false;
+};
+
+}  // namespace passung::session

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/base/tick_record.h"
+#include "study/measures/measures.h"
+#include "study/session/apparatus.h"
+
+namespace passung::session {
+
+enum class AttemptId : std::int64_t {};
+
+struct AttemptStart {
+    std::int64_t trial_index = 0;  // in the session's plan
+    int attempt_no = 1;
+    std::int64_t start_ns = 0;  // monotonic, from the segment's zero
+    std::string params_json;
+    std::vector<StageNote> stages;
+    std::uint64_t seed = 0;  // of the simulated device and hand
+};
+
+struct AttemptEnd {
+    std::int64_t end_ns = 0;
+    measures::Outcome outcome = measures::Outcome::Aborted;
+    bool valid = true;
+    std::string invalid_reason;  // e.g. dropped records
+    std::vector<measures::Value> measures;
+    LoopHealth health;
+    bool timing_measured = true;  // false in virtual time: timing cells are exported as NA
+};
+
+struct Event {
+    std::optional<AttemptId> attempt;
+    std::int64_t t_ns = 0;  // monotonic, from the segment's zero
+    std::string source;     // "session", "loop", "experimenter"
+    std::string event;
+    std::string payload_json = "{}";
+};
+
+/// Where a session's data goes. Calls return quickly; finishAttempt and finishSession return when the data is durable.
+class TrialSink {
+public:
+    virtual ~TrialSink() = default;
+    virtual Result<AttemptId> startAttempt(const AttemptStart& start) = 0;
+    virtual void appendRecords(AttemptId attempt, std::span<const TickRecord> records) = 0;
+    virtual void appendEvent(const Event& event) = 0;
+    virtual Result<Done> finishAttempt(AttemptId attempt, const AttemptEnd& end) = 0;
+    virtual Result<Done> finishSession(bool complete, std::int64_t end_ns) = 0;
+};
+
+}  // namespace passung::session

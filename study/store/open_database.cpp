@@ -1,0 +1,135 @@
+#include "study/store/open_database.h"
+
+#include <filesystem>
+
+#include "study/store/revisions.h"
+
+namespace passung::store {
+namespace {
+
+Error fileError(const std::string& path, std::string message) {
+    return Error{.message = std::move(message), .file = path, .key = {}, .value = {}};
+}
+
+constexpr const char* kForeign = "not a Passung database";
+
+std::string newerText(const Database& database, const char* consequence) {
+    return "written by a newer program (schema " + std::to_string(fileSchemaNumber(database)) +
+           ", this program knows " + std::to_string(schemaNumber()) + "): " + consequence;
+}
+
+void checkIntegrity(const Database& database) {
+    const std::string verdict = database.text("PRAGMA quick_check(1)");
+    if (verdict != "ok") throw std::runtime_error("the database is damaged: " + verdict);
+}
+
+/// Attempts without an end belong to a process that is gone: the lock says that no other one writes.
+RecoveryReport markCrashed(const Database& database) {
+    RecoveryReport report;
+    Transaction transaction(database);
+    {
+        Statement attempts = database.prepare(
+            "SELECT participant_id || ', session ' || ordinal || ', trial ' || (trial_index + 1) || ', attempt ' || "
+            "attempt_no "
+            "FROM attempt JOIN trial_plan USING(trial_id) JOIN session USING(session_id) WHERE outcome='running' "
+            "ORDER BY attempt_id");
+        while (attempts.step()) report.crashed_attempts.push_back(attempts.text(0));
+        Statement sessions = database.prepare(
+            "SELECT participant_id || ', session ' || ordinal FROM session WHERE end_state IS NULL ORDER BY rowid");
+        while (sessions.step()) report.crashed_sessions.push_back(sessions.text(0));
+    }
+    if (report.empty()) return report;
+    database.execute(
+        "UPDATE attempt SET outcome='crashed', valid=0, invalid_reason='the program ended during the attempt' "
+        "WHERE outcome='running'; "
+        "UPDATE session SET end_state='crashed' WHERE end_state IS NULL");
+    transaction.commit();
+    return report;
+}
+
+/// Fills `opened` for a file whose schema this program may write.
+void prepareForWriting(const OpenOptions& options, SchemaState state, OpenedDatabase& opened) {
+    const Database& database = *opened.database;
+    if (options.max_pages > 0) database.execute("PRAGMA max_page_count=" + std::to_string(options.max_pages));
+    checkIntegrity(database);
+    database.execute("PRAGMA journal_mode=WAL");
+    if (state != SchemaState::Current) upgradeSchema(database, options.now_utc);
+    opened.recovery = markCrashed(database);
+    opened.outcome = state == SchemaState::Empty     ? OpenOutcome::Created
+                     : state == SchemaState::Current ? OpenOutcome::Current
+                                                     : OpenOutcome::Upgraded;
+}
+
+void inspectAndPrepare(const std::string& path, const OpenOptions& options, OpenedDatabase& opened) {
+    const SchemaState state = inspectSchema(*opened.database);
+    switch (state) {
+        case SchemaState::Foreign:
+            opened.errors.push_back(fileError(path, kForeign));
+            return;
+        case SchemaState::NewerCompatible:
+            opened.outcome = OpenOutcome::NewerCompatible;
+            opened.errors.push_back(fileError(path, newerText(*opened.database, "it can be read but not written")));
+            return;
+        case SchemaState::NewerIncompatible:
+            opened.outcome = OpenOutcome::NewerIncompatible;
+            opened.errors.push_back(fileError(path, newerText(*opened.database, "it cannot be read")));
+            return;
+        case SchemaState::Empty:
+            if (!options.create) {
+                opened.errors.push_back(fileError(path, kForeign));
+                return;
+            }
+            break;
+        case SchemaState::Older:
+        case SchemaState::Current:
+            break;
+    }
+    prepareForWriting(options, state, opened);
+}
+
+}  // namespace
+
+OpenedDatabase openForWriting(const std::string& path, const OpenOptions& options) {
+    OpenedDatabase opened;
+    const bool existed = std::filesystem::exists(path);
+    const auto done = guarded(path, [&] {
+        opened.database = std::make_unique<Database>(path, options.create ? OpenMode::Create : OpenMode::ReadWrite);
+        inspectAndPrepare(path, options, opened);
+        return Done{};
+    });
+    if (!done) {
+        opened.outcome = OpenOutcome::Failed;
+        opened.errors = done.errors();
+    }
+    if (!opened.errors.empty()) opened.database.reset();
+    if (!opened.database && !existed) {
+        std::error_code ignored;
+        std::filesystem::remove(path, ignored);
+    }
+    return opened;
+}
+
+Result<std::unique_ptr<Database>> openForReading(const std::string& path) {
+    if (!std::filesystem::exists(path)) return fileError(path, "no such file");
+    return guarded(path, [&] {
+        // A connection that may write tidies SQLite's side files away when it closes; query_only keeps it from writing.
+        auto database = std::make_unique<Database>(path, OpenMode::ReadWrite);
+        database->execute("PRAGMA query_only=ON");
+        switch (inspectSchema(*database)) {
+            case SchemaState::Empty:
+            case SchemaState::Foreign:
+                throw std::runtime_error(kForeign);
+            case SchemaState::Older:
+                throw std::runtime_error("written by an older program: open it once for writing to upgrade it");
+            case SchemaState::NewerIncompatible:
+                throw std::runtime_error(newerText(*database, "it cannot be read"));
+            case SchemaState::NewerCompatible:
+            case SchemaState::Current:
+                break;
+        }
+        checkIntegrity(*database);
+        return database;
+    });
+}
+
+}  // namespace passung::store

@@ -1,0 +1,143 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace passung::store {
+
+// What StoreReader hands out: one struct per table or join, names as in the schema. An empty optional is NULL.
+
+struct ProtocolRow {
+    std::string sha256;
+    std::string name;
+    std::string version;
+    std::string title;
+    std::string source_text;
+    std::string expanded_json;
+    std::string app_version;
+};
+
+struct FactorRow {
+    std::string protocol_sha256;
+    std::string factor;
+    std::string kind;
+    std::string unit;
+    std::vector<std::string> levels;
+};
+
+using Levels = std::vector<std::pair<std::string, std::string>>;  // factor, label
+
+struct ConditionRow {
+    std::string protocol_sha256;
+    std::string condition;
+    Levels levels;
+};
+
+struct MeasureRow {
+    std::string measure;
+    std::string label;
+    std::string unit;
+    std::string formula;
+    std::int64_t formula_version = 1;
+    bool declared = false;  // named by a protocol of this file
+};
+
+struct ParticipantRow {
+    std::string participant_id;
+    std::string kind;
+    std::string status;
+    std::optional<std::string> status_reason;
+    std::string created_utc;
+    std::optional<std::string> group;
+    std::optional<std::int64_t> sequence_index;
+    std::optional<std::int64_t> replicate;
+    std::int64_t sessions = 0;
+};
+
+struct SessionRow {
+    std::string session_id;
+    std::string participant_id;
+    std::string kind;
+    std::int64_t ordinal = 1;
+    std::string station;
+    std::string device;
+    bool device_simulated = true;
+    std::optional<std::string> experimenter;
+    std::string language;
+    std::uint64_t seed = 0;
+    std::string rng;
+    std::string epoch;
+    std::string started_utc;
+    std::optional<std::string> ended_utc;
+    std::optional<std::string> end_state;  // empty: still running, or killed and not opened for writing since
+    std::string protocol_sha256;
+    std::string app_version;
+    std::int64_t segments = 0;
+    std::int64_t planned_trials = 0;
+    std::int64_t attempts = 0;
+    std::int64_t valid_attempts = 0;
+};
+
+/// `*_us` are empty where time was not measured.
+struct TimingRow {
+    std::string loop;
+    std::int64_t ticks = 0;
+    std::optional<double> mean_us, sd_us, p99_us, p999_us, max_us;
+    std::int64_t overruns = 0;
+    std::int64_t dropped_samples = 0;
+};
+
+struct AttemptRow {
+    std::int64_t attempt_id = 0;
+    std::string session_id;
+    std::string participant_id;
+    std::string kind;
+    std::string group;
+    std::int64_t session_ordinal = 1;
+    std::string station;
+    std::string device;
+    std::int64_t block_index = 0;
+    std::string block;
+    std::string phase;
+    std::int64_t trial_index = 0;
+    std::int64_t trial_in_block = 0;
+    std::int64_t repetition = 1;
+    std::int64_t attempt_no = 1;
+    std::string condition;
+    Levels levels;
+    std::int64_t start_ns = 0;
+    std::optional<std::int64_t> end_ns;
+    std::string outcome;  // also "running" and "crashed"
+    bool valid = false;
+    std::optional<std::string> invalid_reason;
+    std::string params_json;
+    std::string stages_json;
+    std::uint64_t seed = 0;
+    std::string state_hash;  // 16 hexadecimal digits; empty if it did not end
+    std::string protocol_sha256;
+    std::string app_version;
+    std::optional<TimingRow> timing;
+    std::map<std::string, double> measures;  // only those that are defined for this attempt
+
+    /// A main-phase attempt that counts in means: it ended by its own rules and nothing spoilt it.
+    bool counts() const {
+        return valid && phase == "main" && (outcome == "success" || outcome == "failure" || outcome == "timeout");
+    }
+};
+
+struct EventRow {
+    std::string participant_id;
+    std::int64_t session_ordinal = 1;
+    std::int64_t t_ns = 0;
+    std::optional<std::int64_t> trial_index;
+    std::optional<std::int64_t> attempt_no;
+    std::string source;
+    std::string event;
+    std::string payload_json;
+};
+
+}  // namespace passung::store

@@ -1,0 +1,192 @@
+#include "study/store/sample_codec.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "core/base/assert.h"
+#include "study/store/digest.h"
+#include "study/store/json_text.h"
+
+namespace passung::store {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "chunks are written as the machine holds them");
+static_assert(std::is_standard_layout_v<TickRecord>);
+
+/// Where a column's value lies in a record.
+struct Field {
+    std::size_t offset;
+    std::size_t width;
+};
+
+struct Layout {
+    std::vector<Channel> channels;
+    std::vector<Field> fields;
+    std::size_t bytes_per_tick = 0;
+
+    void add(std::string name, std::string type, std::string unit, std::string label, std::size_t offset) {
+        const std::size_t width = type == "float64" || type == "int64" ? 8 : 4;
+        channels.push_back({std::move(name), std::move(type), std::move(unit), std::move(label)});
+        fields.push_back({offset, width});
+        bytes_per_tick += width;
+    }
+
+    /// `axes` columns of one array, e.g. proxy_x_m, proxy_y_m, proxy_z_m.
+    void addAxes(const std::string& stem, std::string_view axes, const std::string& suffix, const std::string& type,
+                 const std::string& unit, const std::string& label, std::size_t offset) {
+        const std::size_t width = type == "float64" ? 8 : 4;
+        for (std::size_t i = 0; i < axes.size(); ++i) {
+            const std::string axis(1, axes[i]);
+            add(stem + axis + suffix, type, unit, label + ", " + axis, offset + i * width);
+        }
+    }
+};
+
+Layout makeTickLayout() {
+    Layout layout;
+    layout.addAxes("device_", "xyz", "_m", "float64", "m", "Raw position of the handle, device base frame",
+                   offsetof(TickRecord, device_position_m));
+    layout.addAxes("device_q", "wxyz", "", "float64", "1", "Raw orientation of the handle, device base frame",
+                   offsetof(TickRecord, device_quaternion));
+    layout.add("input_flags", "uint32", "1", "Bit 0: fresh reading; bits 8-31: buttons 0-23",
+               offsetof(TickRecord, input_flags));
+    layout.add("parameter_sequence", "uint32", "1", "Number of the parameter set in force",
+               offsetof(TickRecord, parameter_sequence));
+    layout.addAxes("hand_", "xyz", "_m", "float32", "m", "Held part where the device asks it to be, scene frame",
+                   offsetof(TickRecord, hand_position_m));
+    layout.addAxes("hand_q", "wxyz", "", "float32", "1", "Orientation asked by the device, scene frame",
+                   offsetof(TickRecord, hand_quaternion));
+    layout.addAxes("proxy_", "xyz", "_m", "float32", "m", "Held part's proxy, scene frame (penalty: as hand)",
+                   offsetof(TickRecord, proxy_position_m));
+    layout.addAxes("proxy_q", "wxyz", "", "float32", "1", "Orientation of the proxy, scene frame",
+                   offsetof(TickRecord, proxy_quaternion));
+    layout.addAxes("force_", "xyz", "_N", "float32", "N", "Force on the hand after the output stage, scene axes",
+                   offsetof(TickRecord, force_N));
+    layout.addAxes("torque_", "xyz", "_Nm", "float32", "N·m",
+                   "Torque on the hand about the held part's origin, scene axes", offsetof(TickRecord, torque_Nm));
+    layout.add("hand_depth_m", "float32", "m", "Deepest point of the held part at the hand's pose",
+               offsetof(TickRecord, hand_depth_m));
+    layout.add("proxy_depth_m", "float32", "m", "Deepest point of the held part at the proxy's pose",
+               offsetof(TickRecord, proxy_depth_m));
+    layout.add("quality", "float32", "1", "Area fraction of the point shell that was proven or evaluated",
+               offsetof(TickRecord, quality));
+    layout.add("status", "uint32", "1", "Status bits of the tick; 0 = nothing to report", offsetof(TickRecord, status));
+    layout.add("contacts", "uint32", "1", "Points inside an obstacle at the proxy", offsetof(TickRecord, contacts));
+    layout.add("iterations", "uint32", "1", "Sub-steps of the proxy", offsetof(TickRecord, iterations));
+    layout.add("nodes_visited", "uint32", "1", "Nodes that the queries visited", offsetof(TickRecord, nodes_visited));
+    return layout;
+}
+
+Layout makeTimingLayout() {
+    Layout layout;
+    layout.add("duration_ns", "int64", "ns", "Computing time of the tick", offsetof(TickRecord, duration_ns));
+    return layout;
+}
+
+const Layout& tickLayout() {
+    static const Layout layout = makeTickLayout();
+    return layout;
+}
+
+const Layout& timingLayout() {
+    static const Layout layout = makeTimingLayout();
+    return layout;
+}
+
+Chunk encode(const Layout& layout, std::span<const TickRecord> records) {
+    PASSUNG_ASSERT(!records.empty() && consecutiveTicks(records) == records.size());
+    Chunk chunk;
+    chunk.first_tick = records.front().tick;
+    chunk.count = static_cast<std::int64_t>(records.size());
+    chunk.data.resize(layout.bytes_per_tick * records.size());
+    std::byte* out = chunk.data.data();
+    for (const Field& field : layout.fields) {
+        for (const TickRecord& record : records) {
+            std::memcpy(out, reinterpret_cast<const std::byte*>(&record) + field.offset, field.width);
+            out += field.width;
+        }
+    }
+    chunk.crc32 = crc32(chunk.data);
+    return chunk;
+}
+
+Result<Done> check(const Layout& layout, const Chunk& chunk) {
+    const std::string place = "chunk of samples from tick " + std::to_string(chunk.first_tick);
+    if (chunk.count < 1 || chunk.count > static_cast<std::int64_t>(kChunkTicks) ||
+        chunk.data.size() != static_cast<std::size_t>(chunk.count) * layout.bytes_per_tick) {
+        return Error{
+            .message = place + ": its size does not fit its number of ticks", .file = {}, .key = {}, .value = {}};
+    }
+    if (crc32(chunk.data) != chunk.crc32) {
+        return Error{
+            .message = place + ": checksum does not match, the data is damaged", .file = {}, .key = {}, .value = {}};
+    }
+    return Done{};
+}
+
+void decode(const Layout& layout, const Chunk& chunk, std::span<TickRecord> records, std::size_t skip_rows) {
+    const auto rows = static_cast<std::size_t>(chunk.count);
+    const std::byte* column = chunk.data.data();
+    for (const Field& field : layout.fields) {
+        for (std::size_t row = 0; row < records.size(); ++row) {
+            std::memcpy(reinterpret_cast<std::byte*>(&records[row]) + field.offset,
+                        column + (skip_rows + row) * field.width, field.width);
+        }
+        column += rows * field.width;
+    }
+}
+
+}  // namespace
+
+const std::vector<Channel>& tickChannels() { return tickLayout().channels; }
+const std::vector<Channel>& timingChannels() { return timingLayout().channels; }
+
+std::string encodingText() {
+    return "columns-v1: one blob holds n consecutive ticks, tick number of row i = first_tick + i, time since the "
+           "attempt's tick 0 = tick * 0.001 s. The columns of channels_json follow one another in that order, each as "
+           "n values of its type, little-endian, without padding or compression. crc32 = CRC-32 (zlib) of the blob.";
+}
+
+std::string channelsJson(const std::vector<Channel>& channels) {
+    std::string json = "[";
+    for (const Channel& channel : channels) {
+        if (json.size() > 1) json += ',';
+        json += "{\"name\":" + jsonString(channel.name) + ",\"type\":" + jsonString(channel.type) +
+                ",\"unit\":" + jsonString(channel.unit) + ",\"label\":" + jsonString(channel.label) + "}";
+    }
+    return json + "]";
+}
+
+Chunk encodeTicks(std::span<const TickRecord> records) { return encode(tickLayout(), records); }
+Chunk encodeTiming(std::span<const TickRecord> records) { return encode(timingLayout(), records); }
+
+Result<Done> decodeTicks(const Chunk& chunk, std::vector<TickRecord>& records) {
+    if (const auto sound = check(tickLayout(), chunk); !sound) return sound.errors();
+    const std::size_t first = records.size();
+    records.resize(first + static_cast<std::size_t>(chunk.count));
+    const std::span<TickRecord> added = std::span(records).subspan(first);
+    for (std::size_t row = 0; row < added.size(); ++row) {
+        added[row].tick = chunk.first_tick + static_cast<std::int64_t>(row);
+    }
+    decode(tickLayout(), chunk, added, 0);
+    return Done{};
+}
+
+Result<Done> decodeTiming(const Chunk& chunk, std::span<TickRecord> records) {
+    if (const auto sound = check(timingLayout(), chunk); !sound) return sound.errors();
+    for (TickRecord& record : records) {
+        const std::int64_t row = record.tick - chunk.first_tick;
+        if (row < 0 || row >= chunk.count) continue;
+        decode(timingLayout(), chunk, std::span(&record, 1), static_cast<std::size_t>(row));
+    }
+    return Done{};
+}
+
+std::size_t consecutiveTicks(std::span<const TickRecord> records) {
+    std::size_t n = std::min<std::size_t>(records.size(), 1);
+    while (n < records.size() && n < kChunkTicks && records[n].tick == records[n - 1].tick + 1) ++n;
+    return n;
+}
+
+}  // namespace passung::store

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/base/tick_record.h"
+
+namespace passung::store {
+
+/// Ticks per chunk at most; a gap in the ticks begins a new chunk earlier.
+inline constexpr std::size_t kChunkTicks = 1000;
+
+/// One column of a stream: what a reader in another language has to know.
+struct Channel {
+    std::string name;  // unit as suffix where there is one
+    std::string type;  // "float64", "float32", "uint32", "int64"; little-endian
+    std::string unit;  // "1" if it has none
+    std::string label;
+};
+
+/// Columns of the stream "tick", in the order of the blob.
+const std::vector<Channel>& tickChannels();
+/// The one column of the stream "tick_timing": measured computing times, only where a real clock ran.
+const std::vector<Channel>& timingChannels();
+
+/// How a chunk's blob is laid out, in words that suffice to write a reader.
+std::string encodingText();
+/// `[{"name":…,"type":…,"unit":…,"label":…}, …]`
+std::string channelsJson(const std::vector<Channel>& channels);
+
+/// Consecutive ticks as one blob; the tick numbers are first_tick + row and not in the blob.
+struct Chunk {
+    std::int64_t first_tick = 0;
+    std::int64_t count = 0;
+    std::uint32_t crc32 = 0;  // over `data`
+    std::vector<std::byte> data;
+};
+
+/// Encodes ticks without gaps. @pre records are consecutive, 1 … kChunkTicks of them.
+Chunk encodeTicks(std::span<const TickRecord> records);
+Chunk encodeTiming(std::span<const TickRecord> records);
+
+/// Appends the chunk's ticks. Fails on a wrong checksum or size, and then appends nothing.
+Result<Done> decodeTicks(const Chunk& chunk, std::vector<TickRecord>& records);
+/// Fills duration_ns of those of `records` (ascending ticks) that the chunk holds.
+Result<Done> decodeTiming(const Chunk& chunk, std::span<TickRecord> records);
+
+/// Length of the first run of consecutive ticks, at most kChunkTicks.
+std::size_t consecutiveTicks(std::span<const TickRecord> records);
+
+}  // namespace passung::store

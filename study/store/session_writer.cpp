@@ -1,0 +1,217 @@
+#include "study/store/session_writer.h"
+
+#include "study/store/identity.h"
+#include "study/store/json_text.h"
+#include "study/store/sqlite.h"
+#include "study/store/writer_thread.h"
+
+namespace passung::store {
+namespace {
+
+std::string histogramJson(const std::vector<std::int64_t>& histogram) {
+    std::string json = "[";
+    for (const std::int64_t count : histogram) {
+        if (json.size() > 1) json += ',';
+        json += std::to_string(count);
+    }
+    return json + "]";
+}
+
+std::optional<std::string> nullIfEmpty(const std::string& text) {
+    if (text.empty()) return std::nullopt;
+    return text;
+}
+
+void insertMeasures(const Database& database, std::int64_t attempt_id, const std::vector<measures::Value>& values) {
+    Statement insert = database.prepare("INSERT INTO attempt_measure(attempt_id, measure, value_num) VALUES(?, ?, ?)");
+    for (const measures::Value& value : values) insert.bind(attempt_id, value.name, value.value).run();
+}
+
+void insertTiming(const Database& database, std::int64_t attempt_id, const session::LoopHealth& health, bool measured) {
+    const auto us = [measured](double value) { return measured ? std::optional(value) : std::nullopt; };
+    const auto histogram = measured ? std::optional(histogramJson(health.histogram)) : std::nullopt;
+    database.prepare("INSERT INTO timing VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+        .bind(attempt_id, health.loop, health.ticks, us(health.mean_us), us(health.sd_us), us(health.p99_us),
+              us(health.p999_us), us(health.max_us), health.overruns, health.dropped_records, histogram)
+        .run();
+}
+
+}  // namespace
+
+SessionWriter::SessionWriter(WriterThread& thread, Rows rows, UtcClock clock)
+    : thread_(thread), rows_(std::move(rows)), clock_(clock) {}
+
+SessionWriter::~SessionWriter() {
+    // Jobs refer to this object: wait until none is left.
+    static_cast<void>(thread_.call([](const Database&) { return Done{}; }));
+}
+
+template <class Work>
+void SessionWriter::postGuarded(Work work) {
+    thread_.post([this, work = std::move(work)](const Database& database) {
+        try {
+            work(database);
+        } catch (const std::exception& error) {
+            if (failure_.empty()) failure_ = error.what();
+        }
+    });
+}
+
+void SessionWriter::throwFailure() {
+    if (failure_.empty()) return;
+    const std::string failure = std::exchange(failure_, {});
+    throw std::runtime_error("data could not be stored: " + failure);
+}
+
+Result<session::AttemptId> SessionWriter::startAttempt(const session::AttemptStart& start) {
+    const std::string stages = stagesJson(start.stages);
+    const auto id = thread_.call([&](const Database& database) {
+        throwFailure();
+        Transaction transaction(database, Durability::Normal);
+        Statement trial = database.prepare("SELECT trial_id FROM trial_plan WHERE session_id=? AND trial_index=?");
+        if (!trial.bind(rows_.session_id, start.trial_index).step()) {
+            throw std::runtime_error("trial " + std::to_string(start.trial_index) + " is not in the session's plan");
+        }
+        // Not valid before it has ended.
+        database
+            .prepare(
+                "INSERT INTO attempt(trial_id, attempt_no, segment_id, start_ns, valid, params_json, stages_json, "
+                "seed) VALUES(?, ?, ?, ?, 0, ?, ?, ?)")
+            .bind(trial.integer(0), start.attempt_no, rows_.segment_id, start.start_ns, start.params_json, stages,
+                  start.seed)
+            .run();
+        const std::int64_t attempt_id = database.lastRowId();
+        trial.reset();
+        transaction.commit();
+        return attempt_id;
+    });
+    if (!id) return id.errors();
+    open_ = OpenAttempt{session::AttemptId{*id}, start.start_ns, {}};
+    return open_->id;
+}
+
+void SessionWriter::insertChunk(const Database& database, std::int64_t stream_id, std::int64_t chunk_no,
+                                std::int64_t attempt_id, std::int64_t start_ns, const Chunk& chunk) {
+    database.prepare("INSERT INTO sample_chunk VALUES(?, ?, ?, ?, ?, ?, ?, ?)")
+        .bind(stream_id, chunk_no, attempt_id, chunk.first_tick, chunk.count,
+              start_ns + chunk.first_tick * kTickNanoseconds, chunk.crc32, std::span<const std::byte>(chunk.data))
+        .run();
+}
+
+void SessionWriter::insertChunks(const Database& database, std::int64_t attempt_id, std::int64_t start_ns,
+                                 std::span<const TickRecord> records) {
+    while (!records.empty()) {
+        const std::size_t count = consecutiveTicks(records);
+        const auto run = records.first(count);
+        insertChunk(database, rows_.tick_stream_id, next_chunk_, attempt_id, start_ns, encodeTicks(run));
+        if (rows_.timing_stream_id) {
+            insertChunk(database, *rows_.timing_stream_id, next_chunk_, attempt_id, start_ns, encodeTiming(run));
+        }
+        ++next_chunk_;  // a number that a rollback leaves unused does no harm
+        records = records.subspan(count);
+    }
+}
+
+void SessionWriter::appendRecords(session::AttemptId attempt, std::span<const TickRecord> records) {
+    if (!open_ || open_->id != attempt) {
+        postGuarded([](const Database&) { throw std::runtime_error("records for an attempt that is not open"); });
+        return;
+    }
+    std::vector<TickRecord>& pending = open_->pending;
+    pending.insert(pending.end(), records.begin(), records.end());
+    std::size_t ready = 0;
+    for (;;) {
+        const auto rest = std::span(pending).subspan(ready);
+        const std::size_t count = consecutiveTicks(rest);
+        if (count == rest.size() && count < kChunkTicks) break;  // may still grow
+        ready += count;
+    }
+    if (ready == 0) return;
+    std::vector<TickRecord> chunk(pending.begin(), pending.begin() + static_cast<std::ptrdiff_t>(ready));
+    pending.erase(pending.begin(), pending.begin() + static_cast<std::ptrdiff_t>(ready));
+    postGuarded([this, attempt, start_ns = open_->start_ns, chunk = std::move(chunk)](const Database& database) {
+        Transaction transaction(database, Durability::Normal);
+        insertChunks(database, static_cast<std::int64_t>(attempt), start_ns, chunk);
+        transaction.commit();
+    });
+}
+
+void SessionWriter::appendEvent(const session::Event& event) {
+    postGuarded([this, event](const Database& database) {
+        std::optional<std::int64_t> attempt_id;
+        if (event.attempt) attempt_id = static_cast<std::int64_t>(*event.attempt);
+        Transaction transaction(database, Durability::Normal);
+        database
+            .prepare(
+                "INSERT INTO event(segment_id, attempt_id, t_ns, source, event, payload_json) "
+                "VALUES(?, ?, ?, ?, ?, ?)")
+            .bind(rows_.segment_id, attempt_id, event.t_ns, event.source, event.event, event.payload_json)
+            .run();
+        transaction.commit();
+    });
+}
+
+void SessionWriter::storeEnd(const Database& database, const OpenAttempt& attempt, const session::AttemptEnd& end) {
+    const auto attempt_id = static_cast<std::int64_t>(attempt.id);
+    Transaction transaction(database, Durability::Full);
+    insertChunks(database, attempt_id, attempt.start_ns, attempt.pending);
+    database
+        .prepare(
+            "UPDATE attempt SET end_ns=?, outcome=?, valid=?, invalid_reason=?, state_hash=?, timing_measured=? "
+            "WHERE attempt_id=?")
+        .bind(end.end_ns, measures::outcomeName(end.outcome), end.valid, nullIfEmpty(end.invalid_reason),
+              hexText(end.health.state_hash), end.timing_measured, attempt_id)
+        .run();
+    insertMeasures(database, attempt_id, end.measures);
+    insertTiming(database, attempt_id, end.health, end.timing_measured);
+    transaction.commit();
+}
+
+Result<Done> SessionWriter::finishAttempt(session::AttemptId attempt, const session::AttemptEnd& end) {
+    if (!open_ || open_->id != attempt) {
+        return Error{
+            .message = "an attempt that is not open cannot end", .file = thread_.path(), .key = {}, .value = {}};
+    }
+    const OpenAttempt ended = std::move(*open_);
+    open_.reset();
+    return thread_.call([&](const Database& database) {
+        throwFailure();
+        storeEnd(database, ended, end);
+        return Done{};
+    });
+}
+
+Result<Done> SessionWriter::finishSession(bool complete, std::int64_t end_ns) {
+    return thread_.call([&](const Database& database) {
+        throwFailure();
+        Transaction transaction(database, Durability::Full);
+        database
+            .prepare(
+                "UPDATE attempt SET outcome='crashed', valid=0, invalid_reason='its data could not be stored' "
+                "WHERE segment_id=? AND outcome='running'")
+            .bind(rows_.segment_id)
+            .run();
+        database.prepare("UPDATE session SET ended_utc=?, end_state=? WHERE session_id=?")
+            .bind(clock_.at(end_ns), complete ? "complete" : "aborted", rows_.session_id)
+            .run();
+        database.prepare("UPDATE segment SET closed_clean=1 WHERE segment_id=?").bind(rows_.segment_id).run();
+        if (complete) {
+            database
+                .prepare(
+                    "UPDATE participant SET status='complete' WHERE status='active' AND "
+                    "participant_id=(SELECT participant_id FROM session WHERE session_id=?)")
+                .bind(rows_.session_id)
+                .run();
+            database
+                .prepare(
+                    "UPDATE design_slot SET state='complete' WHERE state='assigned' AND "
+                    "participant_id=(SELECT participant_id FROM session WHERE session_id=?)")
+                .bind(rows_.session_id)
+                .run();
+        }
+        transaction.commit();
+        return Done{};
+    });
+}
+
+}  // namespace passung::store

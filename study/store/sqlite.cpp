@@ -1,0 +1,185 @@
+#include "study/store/sqlite.h"
+
+#include <sqlite3.h>
+
+namespace passung::store {
+namespace {
+
+[[noreturn]] void fail(sqlite3* connection, int code) {
+    const char* message = connection ? sqlite3_errmsg(connection) : sqlite3_errstr(code);
+    throw SqliteError(message, connection ? sqlite3_extended_errcode(connection) : code);
+}
+
+constexpr int kBusyTimeoutMs = 5000;
+
+}  // namespace
+
+Statement::Statement(sqlite3* connection, std::string_view sql) {
+    const int result = sqlite3_prepare_v2(connection, sql.data(), static_cast<int>(sql.size()), &statement_, nullptr);
+    if (result != SQLITE_OK) fail(connection, result);
+}
+
+Statement::Statement(Statement&& other) noexcept : statement_(other.statement_) { other.statement_ = nullptr; }
+
+Statement::~Statement() { sqlite3_finalize(statement_); }
+
+void Statement::check(int result) const {
+    if (result != SQLITE_OK) fail(sqlite3_db_handle(statement_), result);
+}
+
+bool Statement::step() {
+    const int result = sqlite3_step(statement_);
+    if (result == SQLITE_ROW) return true;
+    if (result == SQLITE_DONE) return false;
+    sqlite3* connection = sqlite3_db_handle(statement_);
+    const SqliteError error(sqlite3_errmsg(connection), sqlite3_extended_errcode(connection));
+    sqlite3_reset(statement_);
+    throw error;
+}
+
+void Statement::run() {
+    while (step()) {
+    }
+    sqlite3_reset(statement_);
+}
+
+void Statement::reset() {
+    sqlite3_reset(statement_);
+    sqlite3_clear_bindings(statement_);
+}
+
+std::int64_t Statement::integer(int column) const { return sqlite3_column_int64(statement_, column); }
+double Statement::real(int column) const { return sqlite3_column_double(statement_, column); }
+
+std::string Statement::text(int column) const {
+    const auto* start = reinterpret_cast<const char*>(sqlite3_column_text(statement_, column));
+    if (!start) return {};
+    return {start, static_cast<std::size_t>(sqlite3_column_bytes(statement_, column))};
+}
+
+std::span<const std::byte> Statement::blob(int column) const {
+    const auto* start = static_cast<const std::byte*>(sqlite3_column_blob(statement_, column));
+    return {start, start ? static_cast<std::size_t>(sqlite3_column_bytes(statement_, column)) : 0};
+}
+
+bool Statement::isNull(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_NULL; }
+
+std::optional<std::int64_t> Statement::optionalInteger(int column) const {
+    if (isNull(column)) return std::nullopt;
+    return integer(column);
+}
+
+std::optional<double> Statement::optionalReal(int column) const {
+    if (isNull(column)) return std::nullopt;
+    return real(column);
+}
+
+void Statement::bindOne(int index, std::int64_t value) { check(sqlite3_bind_int64(statement_, index, value)); }
+void Statement::bindOne(int index, double value) { check(sqlite3_bind_double(statement_, index, value)); }
+void Statement::bindOne(int index, std::nullptr_t) { check(sqlite3_bind_null(statement_, index)); }
+
+void Statement::bindOne(int index, std::string_view value) {
+    check(sqlite3_bind_text64(statement_, index, value.data() ? value.data() : "", value.size(), SQLITE_STATIC,
+                              SQLITE_UTF8));
+}
+
+void Statement::bindOne(int index, std::span<const std::byte> value) {
+    check(sqlite3_bind_blob64(statement_, index, value.data(), value.size(), SQLITE_STATIC));
+}
+
+Database::Database(const std::string& path, OpenMode mode) {
+    int flags = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE;
+    switch (mode) {
+        case OpenMode::ReadOnly:
+            flags |= SQLITE_OPEN_READONLY;
+            break;
+        case OpenMode::ReadWrite:
+            flags |= SQLITE_OPEN_READWRITE;
+            break;
+        case OpenMode::Create:
+            flags |= SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+            break;
+    }
+    const int result = sqlite3_open_v2(path.c_str(), &connection_, flags, nullptr);
+    if (result != SQLITE_OK) {
+        const SqliteError error(connection_ ? sqlite3_errmsg(connection_) : sqlite3_errstr(result), result);
+        sqlite3_close_v2(connection_);
+        throw error;
+    }
+    sqlite3_busy_timeout(connection_, kBusyTimeoutMs);
+    try {
+        execute("PRAGMA foreign_keys=ON");
+    } catch (...) {
+        sqlite3_close_v2(connection_);
+        throw;
+    }
+}
+
+Database::~Database() { sqlite3_close_v2(connection_); }
+
+void Database::execute(const std::string& sql) const {
+    const int result = sqlite3_exec(connection_, sql.c_str(), nullptr, nullptr, nullptr);
+    if (result != SQLITE_OK) fail(connection_, result);
+}
+
+std::int64_t Database::integer(std::string_view sql) const {
+    Statement statement = prepare(sql);
+    return statement.step() ? statement.integer(0) : 0;
+}
+
+std::string Database::text(std::string_view sql) const {
+    Statement statement = prepare(sql);
+    return statement.step() ? statement.text(0) : std::string();
+}
+
+std::int64_t Database::lastRowId() const { return sqlite3_last_insert_rowid(connection_); }
+std::int64_t Database::changes() const { return sqlite3_changes64(connection_); }
+
+Transaction::Transaction(const Database& database, Durability durability) : database_(database) {
+    database_.execute(durability == Durability::Full ? "PRAGMA synchronous=FULL; BEGIN IMMEDIATE"
+                                                     : "PRAGMA synchronous=NORMAL; BEGIN IMMEDIATE");
+}
+
+Transaction::~Transaction() {
+    if (!open_) return;
+    try {
+        database_.execute("ROLLBACK");
+    } catch (const SqliteError&) {
+        // SQLite has already rolled back by itself (a full disk does that): nothing is left to undo.
+    }
+}
+
+void Transaction::commit() {
+    database_.execute("COMMIT");
+    open_ = false;
+}
+
+Error sqliteError(const std::string& path, const SqliteError& error) {
+    std::string message = error.what();
+    switch (error.code & 0xff) {
+        case SQLITE_FULL:
+            message = "no space left for the database (" + message + ")";
+            break;
+        case SQLITE_BUSY:
+        case SQLITE_LOCKED:
+            message = "another program is using the database (" + message + ")";
+            break;
+        case SQLITE_NOTADB:
+            message = "not a Passung database (" + message + ")";
+            break;
+        case SQLITE_CORRUPT:
+            message = "the database is damaged (" + message + ")";
+            break;
+        case SQLITE_CANTOPEN:
+            message = "cannot be opened (" + message + ")";
+            break;
+        case SQLITE_READONLY:
+            message = "cannot be written (" + message + ")";
+            break;
+        default:
+            break;
+    }
+    return Error{.message = message, .file = path, .key = {}, .value = {}};
+}
+
+}  // namespace passung::store

@@ -1,0 +1,300 @@
+#include "study/store/store.h"
+
+#include <algorithm>
+
+#include "study/design/williams.h"
+#include "study/measures/measures.h"
+#include "study/store/digest.h"
+#include "study/store/json_text.h"
+#include "study/store/open_database.h"
+#include "study/store/process_lock.h"
+#include "study/store/revisions.h"
+#include "study/store/writer_thread.h"
+
+namespace passung::store {
+namespace {
+
+constexpr const char* kOneGroup = "all";  // no between factor
+
+std::string levelsJson(const protocol::Factor& factor) {
+    std::string json = "[";
+    for (const protocol::Level& level : factor.levels) {
+        if (json.size() > 1) json += ',';
+        json += jsonString(level.label);
+    }
+    return json + "]";
+}
+
+const char* factorKindName(protocol::FactorKind kind) {
+    switch (kind) {
+        case protocol::FactorKind::Within:
+            break;
+    }
+    return "within";
+}
+
+/// Rows of the counterbalancing square that the plan's orders take turns with.
+std::int64_t sequenceCount(const protocol::StudyPlan& plan) {
+    const bool square = std::any_of(plan.blocks.begin(), plan.blocks.end(), [](const protocol::Block& block) {
+        return block.order == protocol::BlockOrder::Williams;
+    });
+    if (!square || plan.conditions.size() < 2) return 1;
+    return static_cast<std::int64_t>(design::williamsRows(plan.conditions.size()));
+}
+
+void insertFactors(const Database& database, const std::string& sha256, const protocol::StudyPlan& plan) {
+    Statement insert = database.prepare("INSERT INTO factor VALUES(?, ?, ?, 'text', ?, ?, ?, ?)");
+    std::int64_t position = 0;
+    for (const protocol::Factor& factor : plan.factors) {
+        const auto unit = factor.unit.empty() ? std::nullopt : std::optional(factor.unit);
+        const std::string levels = levelsJson(factor);
+        insert.bind(sha256, factor.name, factorKindName(factor.kind), unit, factor.name, position++, levels).run();
+    }
+}
+
+void insertConditions(const Database& database, const std::string& sha256, const protocol::StudyPlan& plan) {
+    Statement insert =
+        database.prepare("INSERT INTO condition(protocol_sha256, condition, levels_json, position) VALUES(?, ?, ?, ?)");
+    std::int64_t position = 0;
+    for (const protocol::Condition& condition : plan.conditions) {
+        insert.bind(sha256, condition.name, condition.levels_json, position++).run();
+    }
+}
+
+/// Measures belong to the whole file: one formula per name, or the numbers of one column would mean two things.
+void insertMeasures(const Database& database, const std::string& sha256, const protocol::StudyPlan& plan) {
+    Statement insert = database.prepare("INSERT INTO measure VALUES(?, ?, ?, 'number', ?, ?, ?)");
+    Statement find = database.prepare("SELECT formula_version FROM measure WHERE measure=?");
+    Statement declare = database.prepare("INSERT INTO protocol_measure VALUES(?, ?)");
+    std::int64_t position = 0;
+    for (const measures::Definition& definition : measures::definitions()) {
+        if (!find.bind(definition.name).step()) {
+            insert
+                .bind(definition.name, definition.label, definition.unit, definition.formula, definition.version,
+                      position)
+                .run();
+        } else if (find.integer(0) != definition.version) {
+            throw std::runtime_error("the database holds the measure " + definition.name + " by version " +
+                                     find.text(0) + " of its formula, this program computes version " +
+                                     std::to_string(definition.version) + ": use a new database");
+        }
+        ++position;
+        const bool declared = plan.measures.empty() || std::find(plan.measures.begin(), plan.measures.end(),
+                                                                 definition.name) != plan.measures.end();
+        if (declared) declare.bind(sha256, definition.name).run();
+    }
+}
+
+void insertSlots(const Database& database, const std::string& sha256, const char* kind, std::int64_t replicate,
+                 std::int64_t sequences) {
+    Statement insert = database.prepare(
+        "INSERT INTO design_slot(protocol_sha256, between_group, sequence_index, replicate, state, kind) "
+        "VALUES(?, ?, ?, ?, 'free', ?)");
+    for (std::int64_t i = 0; i < sequences; ++i) insert.bind(sha256, kOneGroup, i, replicate, kind).run();
+}
+
+std::string importPlan(const Database& database, const protocol::StudyPlan& plan, const OpenOptions& options) {
+    const std::string sha256 = sha256Hex(plan.source_text);
+    Transaction transaction(database);
+    if (database.prepare("SELECT 1 FROM protocol_version WHERE protocol_sha256=?").bind(sha256).step()) return sha256;
+    database.prepare("INSERT INTO protocol_version VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+        .bind(sha256, plan.name, plan.version, plan.source_text, plan.expanded_json, schemaNumber(),
+              options.app_version, options.now_utc, plan.title, sequenceCount(plan))
+        .run();
+    insertFactors(database, sha256, plan);
+    insertConditions(database, sha256, plan);
+    insertMeasures(database, sha256, plan);
+    const std::int64_t sequences = sequenceCount(plan);
+    for (std::int64_t first = 0; first < plan.participants; first += sequences) {
+        insertSlots(database, sha256, kindName(ParticipantKind::Real), first / sequences, sequences);
+    }
+    transaction.commit();
+    return sha256;
+}
+
+std::int64_t sequencesOf(const Database& database, const std::string& sha256) {
+    Statement find = database.prepare("SELECT sequences FROM protocol_version WHERE protocol_sha256=?");
+    if (!find.bind(sha256).step()) throw std::runtime_error("the protocol has not been imported");
+    return find.integer(0);
+}
+
+Slot slotOf(const Statement& row, std::int64_t sequences) {
+    const std::int64_t index = row.integer(1);
+    const std::int64_t replicate = row.integer(2);
+    return {index, replicate, replicate * sequences + index};
+}
+
+std::string kindOf(const Database& database, const std::string& participant) {
+    Statement find = database.prepare("SELECT kind FROM participant WHERE participant_id=?");
+    if (!find.bind(participant).step()) throw std::runtime_error("participant " + participant + " is not enrolled");
+    return find.text(0);
+}
+
+Slot takeSlot(const Database& database, const std::string& sha256, const std::string& participant) {
+    Transaction transaction(database);
+    const std::int64_t sequences = sequencesOf(database, sha256);
+    const std::string kind = kindOf(database, participant);
+    Statement own =
+        database.prepare("SELECT protocol_sha256, sequence_index, replicate FROM design_slot WHERE participant_id=?");
+    if (own.bind(participant).step()) {
+        if (own.text(0) == sha256) return slotOf(own, sequences);
+        throw std::runtime_error("participant " + participant + " already has a place in another protocol");
+    }
+    Statement free = database.prepare(
+        "SELECT slot_id, sequence_index, replicate FROM design_slot "
+        "WHERE protocol_sha256=? AND kind=? AND state='free' ORDER BY replicate, sequence_index LIMIT 1");
+    if (!free.bind(sha256, kind).step()) {
+        Statement last = database.prepare(
+            "SELECT coalesce(max(replicate) + 1, 0) FROM design_slot WHERE protocol_sha256=? AND kind=?");
+        last.bind(sha256, kind).step();
+        insertSlots(database, sha256, kind.c_str(), last.integer(0), sequences);
+        free.bind(sha256, kind).step();
+    }
+    database.prepare("UPDATE design_slot SET state='assigned', participant_id=? WHERE slot_id=?")
+        .bind(participant, free.integer(0))
+        .run();
+    const Slot slot = slotOf(free, sequences);
+    free.reset();
+    transaction.commit();
+    return slot;
+}
+
+bool insertParticipant(const Database& database, const std::string& code, const char* kind,
+                       const std::string& created_utc) {
+    if (!isParticipantCode(code)) {
+        throw std::runtime_error("participant code '" + code +
+                                 "' is not a capital letter, then capital letters, digits, '_' or '-', then a digit");
+    }
+    Transaction transaction(database);
+    Statement find = database.prepare("SELECT kind FROM participant WHERE participant_id=?");
+    if (find.bind(code).step()) {
+        if (find.text(0) == kind) return false;
+        throw std::runtime_error("participant " + code + " is " + find.text(0) + ", not " + kind);
+    }
+    database.prepare("INSERT INTO participant VALUES(?, ?, 'enrolled', NULL, ?)").bind(code, kind, created_utc).run();
+    transaction.commit();
+    return true;
+}
+
+void insertTrialPlan(const Database& database, const SessionStart& start, std::span<const design::PlannedTrial> plan) {
+    std::vector<std::int64_t> condition_ids;
+    Statement conditions =
+        database.prepare("SELECT condition_id FROM condition WHERE protocol_sha256=? ORDER BY position");
+    conditions.bind(start.protocol_sha256);
+    while (conditions.step()) condition_ids.push_back(conditions.integer(0));
+    Statement insert = database.prepare(
+        "INSERT INTO trial_plan(session_id, trial_index, block_index, block, trial_in_block, phase, condition_id, "
+        "repetition) VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
+    for (const design::PlannedTrial& trial : plan) {
+        insert
+            .bind(start.session_id, trial.trial_index, trial.block_index, trial.block, trial.trial_in_block,
+                  trial.phase, condition_ids.at(trial.condition), trial.repetition)
+            .run();
+    }
+}
+
+std::int64_t insertStream(const Database& database, std::int64_t segment_id, const char* name,
+                          const std::vector<Channel>& channels) {
+    const std::string channels_json = channelsJson(channels);
+    const std::string encoding = encodingText();
+    database
+        .prepare("INSERT INTO stream(segment_id, stream, nominal_hz, channels_json, encoding) VALUES(?, ?, ?, ?, ?)")
+        .bind(segment_id, name, 1.0 / kTickSeconds, channels_json, encoding)
+        .run();
+    return database.lastRowId();
+}
+
+SessionWriter::Rows insertSession(const Database& database, const SessionStart& start,
+                                  std::span<const design::PlannedTrial> plan, const OpenOptions& options) {
+    const std::string started_utc = start.clock.at(0);
+    const auto orNull = [](const std::string& text) { return text.empty() ? std::nullopt : std::optional(text); };
+    Transaction transaction(database);
+    database.prepare("INSERT INTO session VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, NULL, NULL, ?)")
+        .bind(start.session_id, start.participant, start.protocol_sha256, start.ordinal, start.station,
+              orNull(start.experimenter), start.language, start.seed, start.random_name, started_utc,
+              start.clock.epoch() == Epoch::Virtual ? "virtual" : "wall")
+        .run();
+    const std::string device = deviceJson(start.device);
+    database
+        .prepare(
+            "INSERT INTO segment(session_id, app_version, host, device_json, mono_zero_ns, utc_zero, started_utc) "
+            "VALUES(?, ?, ?, ?, ?, ?, ?)")
+        .bind(start.session_id, options.app_version, orNull(start.host), device, start.mono_zero_ns, started_utc,
+              started_utc)
+        .run();
+    SessionWriter::Rows rows{start.session_id, database.lastRowId(), 0, std::nullopt};
+    insertTrialPlan(database, start, plan);
+    rows.tick_stream_id = insertStream(database, rows.segment_id, "tick", tickChannels());
+    if (start.timing_measured) {
+        rows.timing_stream_id = insertStream(database, rows.segment_id, "tick_timing", timingChannels());
+    }
+    database.prepare("UPDATE participant SET status='active' WHERE participant_id=? AND status='enrolled'")
+        .bind(start.participant)
+        .run();
+    transaction.commit();
+    return rows;
+}
+
+}  // namespace
+
+Store::Store(OpenOptions options, std::unique_ptr<ProcessLock> lock, std::unique_ptr<WriterThread> thread)
+    : options_(std::move(options)), lock_(std::move(lock)), thread_(std::move(thread)) {}
+
+Store::~Store() = default;
+
+Store::Opened Store::open(const std::string& path, const OpenOptions& options) {
+    Opened opened;
+    auto lock = ProcessLock::take(path);
+    if (!lock) {
+        opened.errors = lock.errors();
+        return opened;
+    }
+    OpenedDatabase file = openForWriting(path, options);
+    opened.outcome = file.outcome;
+    opened.recovery = std::move(file.recovery);
+    opened.errors = std::move(file.errors);
+    if (file.database) {
+        opened.store.reset(new Store(options, std::make_unique<ProcessLock>(*std::move(lock)),
+                                     std::make_unique<WriterThread>(path, std::move(file.database))));
+    }
+    return opened;
+}
+
+Result<std::string> Store::importProtocol(const protocol::StudyPlan& plan) {
+    return thread_->call([&](const Database& database) { return importPlan(database, plan, options_); });
+}
+
+Result<bool> Store::enrol(const std::string& code, ParticipantKind kind, const std::string& created_utc) {
+    return thread_->call(
+        [&](const Database& database) { return insertParticipant(database, code, kindName(kind), created_utc); });
+}
+
+Result<std::string> Store::nextCode(ParticipantKind kind) {
+    return thread_->call([&](const Database& database) {
+        Statement find = database.prepare("SELECT 1 FROM participant WHERE participant_id=?");
+        std::int64_t number = 1;
+        while (find.bind(participantCode(kind, number)).step()) ++number;
+        return participantCode(kind, number);
+    });
+}
+
+Result<Slot> Store::assignSlot(const std::string& protocol_sha256, const std::string& participant) {
+    return thread_->call([&](const Database& database) { return takeSlot(database, protocol_sha256, participant); });
+}
+
+Result<int> Store::nextOrdinal(const std::string& participant) {
+    return thread_->call([&](const Database& database) {
+        Statement find = database.prepare("SELECT coalesce(max(ordinal), 0) + 1 FROM session WHERE participant_id=?");
+        find.bind(participant).step();
+        return static_cast<int>(find.integer(0));
+    });
+}
+
+Result<std::unique_ptr<SessionWriter>> Store::createSession(const SessionStart& start,
+                                                            std::span<const design::PlannedTrial> plan) {
+    auto rows = thread_->call([&](const Database& database) { return insertSession(database, start, plan, options_); });
+    if (!rows) return rows.errors();
+    return std::make_unique<SessionWriter>(*thread_, *std::move(rows), start.clock);
+}
+
+}  // namespace passung::store

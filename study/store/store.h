@@ -1,0 +1,115 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/device_description.h"
+#include "core/base/random.h"
+#include "core/base/result.h"
+#include "study/design/trial_order.h"
+#include "study/protocol/study_plan.h"
+#include "study/store/identity.h"
+#include "study/store/session_writer.h"
+#include "study/store/utc_clock.h"
+
+namespace passung::store {
+
+class WriterThread;
+class ProcessLock;
+
+enum class OpenOutcome { Current, Upgraded, Created, NewerCompatible, NewerIncompatible, Failed };
+
+/// What an earlier process left unfinished when it was killed, as found and marked at opening.
+struct RecoveryReport {
+    std::vector<std::string> crashed_attempts;  // for people, from 1: "S001, session 1, trial 4, attempt 1"
+    std::vector<std::string> crashed_sessions;  // "S001, session 1"
+    bool empty() const { return crashed_attempts.empty() && crashed_sessions.empty(); }
+};
+
+struct OpenOptions {
+    std::string app_version;     // of the program, stored with protocols and segments
+    std::string now_utc;         // wall clock for rows about the file itself (schema, import); never exported
+    bool create = true;          // false: the file has to exist
+    std::int64_t max_pages = 0;  // refuse to grow beyond so many pages of 4096 bytes; 0 = as far as the disk goes
+};
+
+/// A participant's place in the counterbalancing.
+struct Slot {
+    std::int64_t sequence_index = 0;  // row of the square
+    std::int64_t replicate = 0;
+    std::int64_t number = 0;  // replicate · rows + sequence_index: the slot of design::SessionKey
+};
+
+struct SessionStart {
+    std::string session_id;  // see sessionId()
+    std::string participant;
+    std::string protocol_sha256;
+    int ordinal = 1;
+    std::string station = "local";
+    std::string experimenter;  // empty: none
+    std::string language = "en";
+    std::uint64_t seed = 0;
+    std::string random_name = kRandomName;
+    UtcClock clock = UtcClock::virtualEpoch();
+    DeviceDescription device;
+    std::string host;  // description of the machine; leave empty in virtual time
+    std::int64_t mono_zero_ns = 0;
+    bool timing_measured = false;  // a real clock runs: store every tick's computing time too
+};
+
+/// A study's database, open for writing by this process alone. Every function may be called from any thread and
+/// returns when its data is durable; all of them run in one writer thread.
+class Store {
+public:
+    struct Opened;
+
+    /// Opens or creates the file, checks its integrity, upgrades its schema and marks what a killed process left.
+    /// A file of a newer program is never written: NewerCompatible and NewerIncompatible come without a store.
+    static Opened open(const std::string& path, const OpenOptions& options);
+    ~Store();
+    Store(const Store&) = delete;
+    Store& operator=(const Store&) = delete;
+
+    /// Stores the protocol with its text, factors, conditions, measures and a free slot for every planned participant.
+    /// Returns the SHA-256 of the text. Importing the same text again changes nothing.
+    Result<std::string> importProtocol(const protocol::StudyPlan& plan);
+
+    /// True if the participant is new, false if already enrolled with this kind; another kind is an error.
+    Result<bool> enrol(const std::string& code, ParticipantKind kind, const std::string& created_utc);
+
+    /// The first unused code of the kind: P001, P002 … for real participants.
+    Result<std::string> nextCode(ParticipantKind kind);
+
+    /// The participant's slot: the one they have, else the free one with the lowest replicate, then sequence_index;
+    /// a further replicate if none is free. Each kind of participant has slots of its own, so that simulated people
+    /// never use up a place of the design.
+    Result<Slot> assignSlot(const std::string& protocol_sha256, const std::string& participant);
+
+    /// 1 for a participant's first session.
+    Result<int> nextOrdinal(const std::string& participant);
+
+    /// Writes session, segment and the complete plan of trials in one transaction. The writer must not outlive the
+    /// store.
+    Result<std::unique_ptr<SessionWriter>> createSession(const SessionStart& start,
+                                                         std::span<const design::PlannedTrial> plan);
+
+private:
+    Store(OpenOptions options, std::unique_ptr<ProcessLock> lock, std::unique_ptr<WriterThread> thread);
+
+    OpenOptions options_;
+    std::unique_ptr<ProcessLock> lock_;
+    std::unique_ptr<WriterThread> thread_;  // ends before the lock is released
+};
+
+/// What came of opening; `store` is null and `errors` tells why unless it is Current, Upgraded or Created.
+struct Store::Opened {
+    OpenOutcome outcome = OpenOutcome::Failed;
+    std::unique_ptr<Store> store;
+    RecoveryReport recovery;
+    Errors errors;
+};
+
+}  // namespace passung::store

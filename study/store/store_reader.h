@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/base/tick_record.h"
+#include "study/store/rows.h"
+
+namespace passung::store {
+
+class Database;
+
+/// A study's database, read as it was at opening, whatever a session writes meanwhile. All lists are sorted by what
+/// they mean (participant, session, trial …), never by row numbers, so that equal data gives equal lists.
+class StoreReader {
+public:
+    /// Fails for files that are missing, damaged, not Passung's, or of a schema that this program cannot read.
+    static Result<StoreReader> open(const std::string& path);
+    ~StoreReader();
+    StoreReader(StoreReader&&) noexcept;
+
+    const std::string& path() const { return path_; }
+
+    Result<std::vector<ProtocolRow>> protocols() const;    // by name, version, hash
+    Result<std::vector<FactorRow>> factors() const;        // protocols as above, factors as the protocol lists them
+    Result<std::vector<ConditionRow>> conditions() const;  // likewise
+    Result<std::vector<MeasureRow>> measures() const;
+    Result<std::vector<ParticipantRow>> participants() const;
+    Result<std::vector<SessionRow>> sessions() const;
+    Result<std::vector<AttemptRow>> attempts() const;
+    Result<AttemptRow> attempt(std::int64_t attempt_id) const;
+    Result<std::vector<EventRow>> events() const;
+
+    /// The attempt's ticks, ascending; gaps are ticks that were dropped. Every chunk's checksum is verified.
+    /// duration_ns is 0 where it was not measured.
+    Result<std::vector<TickRecord>> records(std::int64_t attempt_id) const;
+
+private:
+    StoreReader(std::string path, std::unique_ptr<Database> database);
+
+    std::string path_;
+    std::unique_ptr<Database> database_;
+};
+
+}  // namespace passung::store

@@ -1,0 +1,274 @@
+#include "study/measures/measures.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+
+namespace passung::measures {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double kStep = 0x1p-13;  // [m] a tick; exact in 32 bits, so that sums are exact too
+
+/// `count` ticks from 0, hand and proxy far above the target's mouth at the origin, no contact.
+std::vector<TickRecord> restingTicks(std::int64_t count) {
+    std::vector<TickRecord> records(static_cast<std::size_t>(count));
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        records[i].tick = static_cast<std::int64_t>(i);
+        records[i].hand_position_m = {0.0f, 0.0f, 0.5f};
+        records[i].proxy_position_m = {0.0f, 0.0f, 0.5f};
+        records[i].hand_quaternion = {1.0f, 0.0f, 0.0f, 0.0f};
+        records[i].proxy_quaternion = {1.0f, 0.0f, 0.0f, 0.0f};
+    }
+    return records;
+}
+
+/// Moves the proxy's origin to `depth` below the mouth, on the axis.
+void putTipAt(TickRecord& record, double depth) { record.proxy_position_m = {0.0f, 0.0f, static_cast<float>(-depth)}; }
+
+TrialContext contextUntil(std::int64_t end_tick, Outcome outcome = Outcome::Success) {
+    TrialContext context;
+    context.end_tick = end_tick;
+    context.outcome = outcome;
+    return context;
+}
+
+std::map<std::string, std::optional<double>> measure(const std::vector<TickRecord>& records,
+                                                     const TrialContext& context) {
+    std::map<std::string, std::optional<double>> result;
+    for (const Value& value : computeMeasures(records, context)) result[value.name] = value.value;
+    return result;
+}
+
+TEST(Measures, EveryDefinitionHasAUniqueNameThatEndsInItsUnit) {
+    // Truth: invariant
+    const std::map<std::string, std::string> suffixes = {{"s", "_s"},    {"m", "_m"},    {"rad", "_rad"}, {"N", "_N"},
+                                                         {"N m", "_Nm"}, {"N s", "_Ns"}, {"J", "_J"},     {"1", ""}};
+    std::set<std::string> names;
+    for (const Definition& definition : definitions()) {
+        EXPECT_TRUE(names.insert(definition.name).second) << definition.name;
+        ASSERT_TRUE(suffixes.contains(definition.unit)) << definition.unit;
+        EXPECT_TRUE(definition.name.ends_with(suffixes.at(definition.unit))) << definition.name;
+        EXPECT_FALSE(definition.label.empty() || definition.formula.empty()) << definition.name;
+    }
+}
+
+TEST(Measures, ValuesComeInTheOrderOfTheDefinitions) {
+    // Truth: invariant
+    const auto values = computeMeasures(restingTicks(3), contextUntil(2));
+    ASSERT_EQ(values.size(), definitions().size());
+    for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(values[i].name, definitions()[i].name);
+}
+
+TEST(Measures, StraightLineHasTheLengthOfItsStepsAndItsClockStartsOutsideTheLeaveSphere) {
+    // Truth: closed form. 1000 steps of 2^-13 m; |x| > 20 mm first at step ceil(0.02 · 2^13) = 164.
+    auto records = restingTicks(1001);
+    for (std::size_t i = 0; i < records.size(); ++i)
+        records[i].hand_position_m = {static_cast<float>(kStep * static_cast<double>(i)), 0.0f, 0.5f};
+    const auto values = measure(records, contextUntil(1000));
+    EXPECT_DOUBLE_EQ(*values.at("path_length_m"), 1000.0 * kStep);
+    EXPECT_DOUBLE_EQ(*values.at("trial_time_s"), 1.0);
+    EXPECT_DOUBLE_EQ(*values.at("completion_time_s"), 0.836);
+    EXPECT_DOUBLE_EQ(*values.at("success"), 1.0);
+    EXPECT_DOUBLE_EQ(*values.at("rotation_path_rad"), 0.0);
+}
+
+TEST(Measures, CompletionTimeIsEmptyWithoutSuccess) {
+    // Truth: closed form (definition)
+    auto records = restingTicks(1001);
+    for (std::size_t i = 500; i < records.size(); ++i) records[i].hand_position_m = {0.1f, 0.0f, 0.5f};
+    const auto values = measure(records, contextUntil(1000, Outcome::Timeout));
+    EXPECT_FALSE(values.at("completion_time_s"));
+    EXPECT_DOUBLE_EQ(*values.at("success"), 0.0);
+    EXPECT_DOUBLE_EQ(*measure(records, contextUntil(1000)).at("completion_time_s"), 0.5);
+}
+
+TEST(Measures, CircleHasTheLengthOfItsChordsAndOneTurnOfRotation) {
+    // Truth: closed form. Chords: 2 r n sin(π/n). 32-bit positions of 0.05 m are off by < 2e-9 m each, the sum of
+    // 1000 steps by far less than 1e-6 m; 32-bit quaternions turn a step by < 2e-7 rad, the sum by < 2e-4 rad.
+    constexpr int n = 1000;
+    constexpr double r = 0.05;
+    const Vec3 axis = Vec3(1.0, -2.0, 0.5).normalized();
+    auto records = restingTicks(n + 1);
+    for (int i = 0; i <= n; ++i) {
+        const double angle = 2.0 * pi * i / n;
+        TickRecord& record = records[static_cast<std::size_t>(i)];
+        record.hand_position_m = {static_cast<float>(r * std::cos(angle)), static_cast<float>(r * std::sin(angle)), 0};
+        const double sign = i % 2 == 0 ? 1.0 : -1.0;  // q and -q are the same rotation
+        const Vec3 v = sign * std::sin(angle / 2.0) * axis;
+        record.hand_quaternion = {static_cast<float>(sign * std::cos(angle / 2.0)), static_cast<float>(v.x()),
+                                  static_cast<float>(v.y()), static_cast<float>(v.z())};
+    }
+    const auto values = measure(records, contextUntil(n));
+    EXPECT_NEAR(*values.at("path_length_m"), 2.0 * r * n * std::sin(pi / n), 1e-6);
+    EXPECT_NEAR(*values.at("rotation_path_rad"), 2.0 * pi, 2e-4);
+}
+
+TEST(Measures, ForcesAndDepthsAverageOverContactTicksOnly) {
+    // Truth: closed form. Contact in ticks 100…199 and 300…349 with |F| = 5 N, |T| = 0.25 N·m; one tick twice that.
+    auto records = restingTicks(1001);
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        if (!((i >= 100 && i < 200) || (i >= 300 && i < 350))) continue;
+        const float factor = i == 320 ? 2.0f : 1.0f;
+        records[i].force_N = {3.0f * factor, 4.0f * factor, 0.0f};
+        records[i].torque_Nm = {0.0f, 0.0f, -0.25f * factor};
+        records[i].hand_depth_m = 0x1p-9f * factor;
+        records[i].proxy_depth_m = 0x1p-14f * factor;
+    }
+    const auto values = measure(records, contextUntil(1000));
+    EXPECT_DOUBLE_EQ(*values.at("contact_onsets"), 2.0);
+    EXPECT_DOUBLE_EQ(*values.at("contact_time_s"), 0.150);
+    EXPECT_DOUBLE_EQ(*values.at("mean_force_N"), 5.0 * 151.0 / 150.0);
+    EXPECT_DOUBLE_EQ(*values.at("peak_force_N"), 10.0);
+    EXPECT_DOUBLE_EQ(*values.at("mean_torque_Nm"), 0.25 * 151.0 / 150.0);
+    EXPECT_DOUBLE_EQ(*values.at("peak_torque_Nm"), 0.5);
+    EXPECT_DOUBLE_EQ(*values.at("mean_hand_depth_m"), 0x1p-9 * 151.0 / 150.0);
+    EXPECT_DOUBLE_EQ(*values.at("max_hand_depth_m"), 0x1p-8);
+    EXPECT_DOUBLE_EQ(*values.at("mean_proxy_depth_m"), 0x1p-14 * 151.0 / 150.0);
+    EXPECT_DOUBLE_EQ(*values.at("max_proxy_depth_m"), 0x1p-13);
+    EXPECT_NEAR(*values.at("impulse_Ns"), 5.0 * 151.0 * 1e-3, 1e-12);
+}
+
+TEST(Measures, MeansAreEmptyAndSumsZeroWithoutContact) {
+    // Truth: closed form (definition)
+    const auto values = measure(restingTicks(101), contextUntil(100));
+    for (const char* name : {"mean_force_N", "mean_torque_Nm", "mean_hand_depth_m", "mean_proxy_depth_m",
+                             "approach_time_s", "search_time_s", "insertion_time_s"})
+        EXPECT_FALSE(values.at(name)) << name;
+    for (const char* name : {"contact_onsets", "contact_time_s", "peak_force_N", "peak_torque_Nm", "impulse_Ns",
+                             "max_hand_depth_m", "max_proxy_depth_m", "work_J", "insertion_depth_m"})
+        EXPECT_DOUBLE_EQ(values.at(name).value(), 0.0) << name;
+}
+
+TEST(Measures, HandThatMovesAgainstAForceDoesPositiveWork) {
+    // Truth: closed form. W = |F| · distance.
+    auto records = restingTicks(1001);
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        records[i].hand_position_m = {static_cast<float>(kStep * static_cast<double>(i)), 0.0f, 0.5f};
+        records[i].force_N = {-2.0f, 7.0f, 0.0f};  // the sideways part does no work
+    }
+    EXPECT_DOUBLE_EQ(*measure(records, contextUntil(1000)).at("work_J"), 2.0 * 1000.0 * kStep);
+}
+
+TEST(Measures, HandThatTurnsWithATorqueTakesWorkOut) {
+    // Truth: closed form. W = -T · angle; 1 rad in 1000 steps, 32-bit quaternions are off by < 2e-7 rad a step.
+    auto records = restingTicks(1001);
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        const double angle = 1e-3 * static_cast<double>(i);
+        const double sign = i % 2 == 0 ? 1.0 : -1.0;  // q and -q are the same rotation
+        records[i].hand_quaternion = {static_cast<float>(sign * std::cos(angle / 2.0)), 0.0f, 0.0f,
+                                      static_cast<float>(sign * std::sin(angle / 2.0))};
+        records[i].torque_Nm = {0.3f, 0.0f, 0.5f};
+    }
+    EXPECT_NEAR(*measure(records, contextUntil(1000)).at("work_J"), -0.5, 1e-5);
+}
+
+TEST(Measures, SaturatedShareCountsTicksAtTheForceLimit) {
+    // Truth: closed form. 50 of 200 ticks; the rate limit is another bit.
+    auto records = restingTicks(201);
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        records[i].status = kRateLimited | kEngaged;
+        if (i >= 20 && i < 70) records[i].status |= kForceLimited;
+    }
+    EXPECT_DOUBLE_EQ(*measure(records, contextUntil(200)).at("saturated_share"), 0.25);
+}
+
+/// Contact from tick 400, tip 1.5 mm deep from tick 700, 20 mm from tick 900.
+std::vector<TickRecord> insertion() {
+    auto records = restingTicks(1501);
+    for (std::size_t i = 400; i < records.size(); ++i) {
+        records[i].contacts = 3;
+        putTipAt(records[i], i < 700 ? 0.0005 : i < 900 ? 0.0015 : 0.020);
+    }
+    return records;
+}
+
+TEST(Measures, PhasesOfASuccessPartitionTheTrial) {
+    // Truth: closed form
+    const auto values = measure(insertion(), contextUntil(1500));
+    EXPECT_DOUBLE_EQ(*values.at("approach_time_s"), 0.4);
+    EXPECT_DOUBLE_EQ(*values.at("search_time_s"), 0.3);
+    EXPECT_DOUBLE_EQ(*values.at("insertion_time_s"), 0.8);
+    EXPECT_NEAR(*values.at("insertion_depth_m"), 0.020, 1e-8);
+}
+
+TEST(Measures, InsertionTimeIsEmptyWithoutSuccess) {
+    // Truth: closed form (definition)
+    const auto values = measure(insertion(), contextUntil(1500, Outcome::Timeout));
+    EXPECT_TRUE(values.at("search_time_s"));
+    EXPECT_FALSE(values.at("insertion_time_s"));
+}
+
+TEST(Measures, PartThatGoesInWithoutTouchingDoesNotSearch) {
+    // Truth: closed form. Engaged at tick 300, first contact at tick 600.
+    auto records = restingTicks(1001);
+    for (std::size_t i = 300; i < records.size(); ++i) putTipAt(records[i], 0.005);
+    for (std::size_t i = 600; i < records.size(); ++i) records[i].contacts = 1;
+    const auto values = measure(records, contextUntil(1000));
+    EXPECT_DOUBLE_EQ(*values.at("approach_time_s"), 0.3);
+    EXPECT_DOUBLE_EQ(*values.at("search_time_s"), 0.0);
+    EXPECT_DOUBLE_EQ(*values.at("insertion_time_s"), 0.7);
+}
+
+TEST(Measures, DepthCountsOnTheAxisOfATurnedTargetAndNotBesideIt) {
+    // Truth: closed form. The bore's axis is the world's y: its mouth at (0.1, 0.2, 0.3), 5 mm in is y = 0.195.
+    TrialContext context = contextUntil(10);
+    context.X_WT.q = Quat(Eigen::AngleAxisd(-pi / 2.0, Vec3::UnitX()));  // z of the target to the world's y
+    context.X_WT.p = Vec3(0.1, 0.2, 0.3);
+    auto records = restingTicks(11);
+    for (TickRecord& record : records) record.proxy_position_m = {0.1f, 0.195f, 0.3015f};
+    EXPECT_NEAR(*measure(records, context).at("insertion_depth_m"), 0.005, 1e-7);
+    for (TickRecord& record : records) record.proxy_position_m = {0.1f, 0.195f, 0.3025f};
+    EXPECT_DOUBLE_EQ(*measure(records, context).at("insertion_depth_m"), 0.0);
+    EXPECT_FALSE(measure(records, context).at("search_time_s"));
+}
+
+TEST(Measures, TicksOutsideTheTrialAreIgnored) {
+    // Truth: invariant: loud ticks before the start and after the end change nothing.
+    auto records = insertion();
+    TrialContext context = contextUntil(1200);
+    context.start_tick = 200;
+    const auto quiet = measure(records, context);
+    for (TickRecord& record : records) {
+        if (record.tick >= 200 && record.tick <= 1200) continue;
+        record.force_N = {100.0f, 0.0f, 0.0f};
+        record.hand_position_m = {static_cast<float>(record.tick), 0.0f, 0.0f};
+        record.status = kForceLimited;
+        record.proxy_depth_m = 1.0f;
+        putTipAt(record, 0.010);
+    }
+    EXPECT_EQ(measure(records, context), quiet);
+}
+
+TEST(Measures, MissingTicksCountForNoDurationAndTheirStepIsStraight) {
+    // Truth: closed form. Ticks 200…299 of a straight line in constant contact are lost.
+    auto records = restingTicks(1001);
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        records[i].hand_position_m = {static_cast<float>(kStep * static_cast<double>(i)), 0.0f, 0.5f};
+        records[i].force_N = {0.0f, 0.0f, 2.0f};
+    }
+    records.erase(records.begin() + 200, records.begin() + 300);
+    const auto values = measure(records, contextUntil(1000));
+    EXPECT_DOUBLE_EQ(*values.at("path_length_m"), 1000.0 * kStep);
+    EXPECT_DOUBLE_EQ(*values.at("contact_time_s"), 0.9);
+    EXPECT_DOUBLE_EQ(*values.at("trial_time_s"), 1.0);
+}
+
+TEST(Measures, TrialThatNeverStartedHasNoMeasureButItsFailure) {
+    // Truth: closed form (definition)
+    TrialContext context = contextUntil(100, Outcome::Aborted);
+    context.start_tick = 101;
+    for (const Value& value : computeMeasures({}, context)) {
+        if (value.name == "success")
+            EXPECT_DOUBLE_EQ(value.value.value(), 0.0);
+        else
+            EXPECT_FALSE(value.value) << value.name;
+    }
+}
+
+}  // namespace
+}  // namespace passung::measures

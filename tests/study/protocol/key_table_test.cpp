@@ -1,0 +1,70 @@
+#include "study/protocol/key_table.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <set>
+
+namespace passung::protocol {
+namespace {
+
+TEST(KeyTable, IsWhatTheShippedDocumentSays) {
+    // Truth: regression (protocols/KEYS.md; set PASSUNG_WRITE_KEYS=1 to write it anew after a change of the table).
+    const std::string path = PASSUNG_SOURCE_DIR "/protocols/KEYS.md";
+    if (std::getenv("PASSUNG_WRITE_KEYS") != nullptr) std::ofstream(path, std::ios::binary) << keyTable();
+    std::ifstream stream(path, std::ios::binary);
+    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}), keyTable());
+}
+
+TEST(KeyTable, DocumentsEveryKeyOnce) {
+    // Truth: invariant: every row appears under the heading of its table.
+    std::set<std::string> seen;
+    std::size_t rows = 0;
+    for (const Key& key : keys()) {
+        const bool added = seen.insert(std::string(key.table) + "." + std::string(key.name)).second;
+        EXPECT_TRUE(added || key.table == "shape") << key.table << "." << key.name;
+        EXPECT_FALSE(key.doc.empty()) << key.name;
+        EXPECT_TRUE(key.doc.ends_with('.')) << key.name;
+    }
+    const auto text = keyTable();
+    for (std::size_t at = text.find("\n| `"); at != std::string::npos; at = text.find("\n| `", at + 1)) ++rows;
+    EXPECT_EQ(rows, keys().size());
+}
+
+TEST(KeyTable, DefaultsLieInTheirRanges) {
+    // Truth: invariant: a default that a user could not write himself would be a fault of the table.
+    for (const Key& key : keys()) {
+        const auto value = key.fallbackNumber();
+        if (!value) continue;
+        EXPECT_TRUE(std::isfinite(*value) && *value <= key.range.high) << key.name;
+        EXPECT_TRUE(key.range.low_excluded ? *value > key.range.low : *value >= key.range.low) << key.name;
+    }
+    for (const Key& key : keys()) {
+        if (key.type != KeyType::Choice || key.required() || key.fallback.starts_with('(')) continue;
+        const auto choices = key.choiceList();
+        EXPECT_EQ(std::count(choices.begin(), choices.end(), key.fallback), 1) << key.name;
+    }
+}
+
+TEST(KeyTable, ConvertsByTheUnitInTheName) {
+    // Truth: closed form: SI prefixes; 180 degrees are pi.
+    EXPECT_EQ(unitsPerSi("tolerance_um"), 1e6);
+    EXPECT_EQ(unitsPerSi("spacing_mm"), 1e3);
+    EXPECT_EQ(unitsPerSi("hold_ms"), 1e3);
+    EXPECT_EQ(unitsPerSi("max_speed_mm_per_s"), 1e3);
+    EXPECT_DOUBLE_EQ(180.0 / unitsPerSi("angle_tolerance_deg"), 3.14159265358979323846);
+    EXPECT_EQ(unitsPerSi("stiffness_N_per_m"), 1.0);
+    EXPECT_EQ(unitsPerSi("hold_s"), 1.0);
+}
+
+TEST(KeyTable, SuggestsTheWordThatWasMeant) {
+    // Truth: closed form: one slip, a missing unit, and a word that is like none.
+    const std::vector<std::string_view> words{"stiffness_N_per_m", "tolerance_um", "mode"};
+    EXPECT_EQ(closestWord("stifness_N_per_m", words), "stiffness_N_per_m");
+    EXPECT_EQ(closestWord("tolerance", words), "tolerance_um");
+    EXPECT_EQ(closestWord("gravity", words), std::nullopt);
+}
+
+}  // namespace
+}  // namespace passung::protocol

@@ -1,0 +1,197 @@
+#include "study/protocol/scene_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/study/protocol/fake_devices.h"
+
+namespace passung::protocol {
+namespace {
+
+const std::string kParts = R"(
+[[part]]
+name = "plate"
+shape = { kind = "bore_plate", width = 60, depth = 50, height = 30, bore_diameter = 21, bore_depth = "through" }
+[[part]]
+name = "peg"
+held = true
+shape = { kind = "peg", diameter = 20, length = 50, chamfer = 1 }
+pose = { position = [20, 0, 30], rotation_deg = [10, 20, 30] }
+shown_offset = [0, 0, 1]
+)";
+
+Result<model::SceneSpec> read(const std::string& text) {
+    static const auto devices = fakeDevices();
+    return readSceneText(text, "s.toml", devices);
+}
+
+/// All error lines, or "" if the scene is sound.
+std::string errorsOf(const std::string& text) {
+    const auto scene = read(text);
+    std::string lines;
+    if (scene) return lines;
+    for (const auto& error : scene.errors()) {
+        if (!lines.empty()) lines += '\n';
+        lines += toString(error);
+    }
+    return lines;
+}
+
+TEST(SceneReader, ReadsLengthsInTheFilesUnit) {
+    // Truth: closed form: millimetres to metres, by hand.
+    const auto scene = read(kParts);
+    ASSERT_TRUE(scene) << errorsOf(kParts);
+    const auto& plate = std::get<model::BorePlate>(std::get<model::Shape>(scene->parts[0].geometry));
+    EXPECT_EQ(plate.width, 0.060);
+    EXPECT_EQ(plate.depth, 0.050);
+    EXPECT_EQ(plate.bore_diameter, 0.021);
+    EXPECT_EQ(plate.bore_depth, 0.030) << "a through bore is as deep as the plate";
+    EXPECT_EQ(plate.chamfer, 0.0);
+    const auto& peg = scene->parts[1];
+    EXPECT_TRUE(peg.held);
+    EXPECT_EQ(peg.X_WP.p, Vec3(0.020, 0.0, 0.030));
+    EXPECT_EQ(peg.shown_offset, Vec3(0, 0, 0.001));
+}
+
+TEST(SceneReader, KnowsItsUnits) {
+    // Truth: closed form: definition of the units; the part's own unit wins.
+    const std::string sphere = "[[part]]\nname = \"ball\"\nheld = true\nshape = { kind = \"sphere\", diameter = 2 }\n";
+    const auto diameter = [](const Result<model::SceneSpec>& scene) {
+        return std::get<model::Sphere>(std::get<model::Shape>(scene->parts[0].geometry)).diameter;
+    };
+    EXPECT_EQ(diameter(read(sphere)), 2e-3);
+    EXPECT_EQ(diameter(read("unit = \"m\"\n" + sphere)), 2.0);
+    EXPECT_EQ(diameter(read("unit = \"cm\"\n" + sphere)), 2e-2);
+    EXPECT_EQ(diameter(read("unit = \"um\"\n" + sphere)), 2e-6);
+    EXPECT_DOUBLE_EQ(diameter(read("unit = \"in\"\n" + sphere)), 0.0508);
+    EXPECT_EQ(diameter(read("unit = \"m\"\n" + sphere + "unit = \"mm\"\n")), 2e-3);
+}
+
+TEST(SceneReader, RotatesAboutFixedAxesInTheOrderXYZ) {
+    // Truth: closed form: R = Rz Ry Rx written as matrices of sines and cosines.
+    const auto scene = read(kParts);
+    ASSERT_TRUE(scene);
+    const double a = 10 * M_PI / 180, b = 20 * M_PI / 180, c = 30 * M_PI / 180;
+    Mat3 rx, ry, rz;
+    rx << 1, 0, 0, 0, std::cos(a), -std::sin(a), 0, std::sin(a), std::cos(a);
+    ry << std::cos(b), 0, std::sin(b), 0, 1, 0, -std::sin(b), 0, std::cos(b);
+    rz << std::cos(c), -std::sin(c), 0, std::sin(c), std::cos(c), 0, 0, 0, 1;
+    EXPECT_LT((scene->parts[1].X_WP.q.toRotationMatrix() - rz * ry * rx).norm(), 1e-14);
+}
+
+TEST(SceneReader, TakesWhatIsLeftOutFromTheDevice) {
+    // Truth: closed form: the fake device's numbers.
+    const auto scene = read(kParts + "[device]\npreset = \"arm\"\n");
+    ASSERT_TRUE(scene);
+    EXPECT_EQ(scene->contact.stiffness, 4000.0);
+    EXPECT_EQ(scene->contact.rotational_stiffness, 8.0);
+    EXPECT_EQ(scene->contact.damping, 5.0);
+    EXPECT_EQ(scene->contact.rotational_damping, 0.002);
+    EXPECT_EQ(scene->limits.max_force, 20.0);
+    EXPECT_EQ(scene->limits.max_force_rate, 5000.0);
+    EXPECT_EQ(scene->limits.delay_ticks, 0) << "the device's own delay is not added twice";
+    EXPECT_TRUE(scene->limits.actuates_torque);
+    const auto stick = read(kParts + "[device]\npreset = \"stick\"\n");
+    ASSERT_TRUE(stick);
+    EXPECT_FALSE(stick->limits.actuates_torque);
+    EXPECT_EQ(stick->contact.rotational_stiffness, 0.0);
+}
+
+TEST(SceneReader, ResolvesStiffnessAgainstTheStableMaximum) {
+    // Truth: closed form: fractions of 4000 N/m and 8 N·m/rad.
+    const auto with = [](const std::string& contact) {
+        return read(kParts + "[device]\npreset = \"arm\"\n[contact]\n" + contact);
+    };
+    const auto fraction = with("stiffness_N_per_m = \"0.7 max\"");
+    ASSERT_TRUE(fraction);
+    EXPECT_DOUBLE_EQ(fraction->contact.stiffness, 2800.0);
+    EXPECT_DOUBLE_EQ(fraction->contact.rotational_stiffness, 5.6);
+    const auto number = with("stiffness_N_per_m = 1000");
+    ASSERT_TRUE(number);
+    EXPECT_DOUBLE_EQ(number->contact.rotational_stiffness, 2.0);
+    const auto own = with("stiffness_N_per_m = \"max\"\nrotational_stiffness_Nm_per_rad = \"0.5 max\"");
+    ASSERT_TRUE(own);
+    EXPECT_DOUBLE_EQ(own->contact.rotational_stiffness, 4.0);
+}
+
+TEST(SceneReader, RefusesStiffnessAboveTheStableMaximum) {
+    // Truth: closed form: 4000 N/m is the fake device's maximum; 11 lines stand before.
+    EXPECT_EQ(
+        errorsOf(kParts + "[device]\npreset = \"arm\"\n[contact]\nstiffness_N_per_m = 4000.5\n"),
+        "s.toml:14:21: error: contact.stiffness_N_per_m: 4000.5: must not exceed the stable maximum of arm: 4000");
+    EXPECT_EQ(errorsOf(kParts + "[contact]\nstiffness_N_per_m = \"max\"\n"),
+              "s.toml:12:21: error: contact.stiffness_N_per_m: \"max\": a fraction of the stable maximum needs "
+              "device.preset");
+    EXPECT_EQ(errorsOf(kParts + "[device]\npreset = \"arm\"\nmax_force_N = 21\n"),
+              "s.toml:13:15: error: device.max_force_N: 21: must not exceed the limit of arm: 20");
+}
+
+TEST(SceneReader, CollectsEveryProblem) {
+    // Truth: closed form: three mistakes on three lines.
+    EXPECT_EQ(errorsOf("unit = 3\n[contact]\nspacing_mm = -1\nmod = \"linear\"\n"),
+              "s.toml:1:1: error: part: required\n"
+              "s.toml:1:8: error: unit: 3: must be a string, not an integer\n"
+              "s.toml:3:14: error: contact.spacing_mm: -1: must be > 0\n"
+              "s.toml:4:1: error: contact.mod: unknown key; did you mean \"mode\"?");
+}
+
+TEST(SceneReader, TestsFinitenessFirst) {
+    // Truth: invariant: no comparison holds for NaN, so a range alone could let it pass.
+    for (const std::string value : {"nan", "inf", "-inf"})
+        EXPECT_EQ(errorsOf(kParts + "[contact]\ntolerance_um = " + value + "\n"),
+                  "s.toml:12:16: error: contact.tolerance_um: " + value + ": must be a finite number");
+    EXPECT_EQ(errorsOf(kParts + "[registration]\nposition = [0, nan, 0]\n"),
+              "s.toml:12:12: error: registration.position: [0, nan, 0]: must be finite numbers");
+}
+
+TEST(SceneReader, ReportsWhatDoesNotFitTogetherWhereItIsWritten) {
+    // Truth: closed form: a chamfer of 10 mm is half of the diameter; the kind decides which keys there are.
+    const std::string start = "[[part]]\nname = \"p\"\nheld = true\n";
+    EXPECT_EQ(
+        errorsOf(start + "shape = { kind = \"peg\", diameter = 20, length = 50, chamfer = 10 }\n"),
+        "s.toml:4:63: error: part.p.shape.chamfer: 10: peg: must be less than half the diameter and less than the "
+        "length");
+    EXPECT_EQ(errorsOf(start + "shape = { kind = \"sphere\", diameter = 20, length = 50 }\n"),
+              "s.toml:4:43: error: part.p.shape.length: unknown key; known keys: kind, diameter");
+    EXPECT_EQ(
+        errorsOf(start + "shape = { kind = \"pyramid\", diameter = 20 }\n"),
+        "s.toml:4:18: error: part.p.shape.kind: \"pyramid\": must be \"sphere\", \"box\", \"cylinder\", \"sheet\", "
+        "\"peg\" or \"bore_plate\"");
+    EXPECT_EQ(errorsOf(start + "pose = { position = [1, 2] }\n"),
+              "s.toml:1:1: error: part.p: needs a shape or a mesh\n"
+              "s.toml:4:21: error: part.p.pose.position: [1, 2]: must be a list of three numbers");
+}
+
+TEST(SceneReader, FindsMeshesBesideTheFile) {
+    // Truth: invariant: the path is relative to the file that names it, not to the working directory.
+    const auto folder = std::filesystem::path(testing::TempDir()) / "passung_scene_reader";
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "ball.stl") << "solid ball\nendsolid ball\n";
+    std::ofstream(folder / "s.toml") << "[[part]]\nname = \"b\"\nheld = true\nmesh = \"ball.stl\"\nunit = \"cm\"\n";
+    const auto scene = readScene((folder / "s.toml").string(), {});
+    ASSERT_TRUE(scene);
+    const auto& mesh = std::get<model::MeshFile>(scene->parts[0].geometry);
+    EXPECT_TRUE(std::filesystem::exists(mesh.path));
+    EXPECT_EQ(mesh.metres_per_unit, 0.01);
+    std::filesystem::remove_all(folder);
+}
+
+TEST(SceneReader, ReadsAFileWithOnePart) {
+    // Truth: closed form; the unit of the call counts where the file has none.
+    const auto path = std::filesystem::path(testing::TempDir()) / "passung_part.toml";
+    std::ofstream(path) << "[[part]]\nname = \"ball\"\nshape = { kind = \"sphere\", diameter = 2 }\n";
+    const auto part = readPart(path.string(), 1.0);
+    ASSERT_TRUE(part);
+    EXPECT_EQ(std::get<model::Sphere>(std::get<model::Shape>(part->geometry)).diameter, 2.0);
+    std::ofstream(path, std::ios::app) << "[[part]]\nname = \"b\"\nshape = { kind = \"sphere\", diameter = 2 }\n";
+    const auto two = readPart(path.string());
+    ASSERT_FALSE(two);
+    EXPECT_EQ(toString(two.errors()[0]), path.string() + ":4:1: error: part: must be exactly one");
+    std::filesystem::remove(path);
+    EXPECT_FALSE(readPart(path.string()));
+}
+
+}  // namespace
+}  // namespace passung::protocol

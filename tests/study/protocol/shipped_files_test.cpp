@@ -1,0 +1,116 @@
+#include <gtest/gtest.h>
+
+#include "devices/simulated/presets.h"
+#include "study/measures/measures.h"
+#include "study/protocol/protocol_reader.h"
+
+namespace passung::protocol {
+namespace {
+
+std::vector<DeviceDescription> knownDevices() {
+    std::vector<DeviceDescription> devices;
+    for (const auto& preset : simulated::presets()) devices.push_back(simulated::describe(preset));
+    return devices;
+}
+
+std::vector<std::string> knownMeasures() {
+    std::vector<std::string> names;
+    for (const auto& definition : measures::definitions()) names.push_back(definition.name);
+    return names;
+}
+
+Result<StudyPlan> readShipped(const std::string& name) {
+    return readProtocol(PASSUNG_SOURCE_DIR "/protocols/" + name, knownDevices(), knownMeasures());
+}
+
+double radialClearance(const Condition& condition) {
+    const auto& shape = [&](std::size_t i) -> const model::Shape& {
+        return std::get<model::Shape>(condition.scene.parts[i].geometry);
+    };
+    return 0.5 * (std::get<model::BorePlate>(shape(0)).bore_diameter - std::get<model::Peg>(shape(1)).diameter);
+}
+
+TEST(ShippedFiles, PegInHoleHasItsEightConditions) {
+    // Truth: closed form: 2 clearances x 2 methods x 2 stiffnesses, as the study's own comment says.
+    const auto plan = readShipped("peg_in_hole/study.toml");
+    ASSERT_TRUE(plan) << toString(plan.errors()[0]);
+    EXPECT_TRUE(plan->warnings.empty());
+    ASSERT_EQ(plan->conditions.size(), 8u);
+    const auto sigma7 = simulated::describe(*simulated::findPreset("sigma7"));
+    for (std::size_t i = 0; i < 8; ++i) {
+        const auto& condition = plan->conditions[i];
+        EXPECT_NEAR(radialClearance(condition), i < 4 ? 0.5e-3 : 0.1e-3, 1e-12);
+        EXPECT_EQ(condition.scene.contact.method,
+                  i / 2 % 2 == 0 ? model::ContactMethod::Penalty : model::ContactMethod::GodObjectHeuristic);
+        EXPECT_DOUBLE_EQ(condition.scene.contact.stiffness, (i % 2 == 0 ? 0.5 : 1.0) * sigma7.stable_stiffness_N_per_m);
+        EXPECT_EQ(condition.device, "sigma7");
+        EXPECT_EQ(condition.scene.parts[1].X_WP.p, Vec3(0.020, 0, 0.030));
+        EXPECT_EQ(condition.scene.start_gate.hold_ticks, 200);
+    }
+    EXPECT_EQ(plan->conditions[0].name, "0.5/penalty/0.5 max");
+    EXPECT_EQ(plan->conditions[7].name, "0.1/god_object_heuristic/max");
+    ASSERT_EQ(plan->blocks.size(), 2u);
+    EXPECT_EQ(plan->blocks[0].trials, 2);
+    EXPECT_EQ(plan->blocks[1].repetitions, 3);
+    EXPECT_EQ(plan->measures.size(), measures::definitions().size());
+}
+
+TEST(ShippedFiles, HiddenOffsetMovesOnlyTheTouchedPlate) {
+    // Truth: closed form: the drawn plate is at pose + shown_offset, which is where study.toml has it.
+    const auto plain = readShipped("peg_in_hole/study.toml");
+    const auto hidden = readShipped("peg_in_hole/hidden_offset.toml");
+    ASSERT_TRUE(plain && hidden);
+    ASSERT_EQ(hidden->conditions.size(), plain->conditions.size());
+    for (std::size_t i = 0; i < plain->conditions.size(); ++i) {
+        const auto& a = plain->conditions[i];
+        const auto& b = hidden->conditions[i];
+        EXPECT_EQ(a.name, b.name);
+        EXPECT_DOUBLE_EQ((b.scene.parts[0].X_WP.p - a.scene.parts[0].X_WP.p).norm(), 0.003);
+        EXPECT_EQ(b.scene.parts[0].X_WP.p + b.scene.parts[0].shown_offset, a.scene.parts[0].X_WP.p);
+        EXPECT_EQ(a.scene.parts[1].X_WP.p, b.scene.parts[1].X_WP.p);
+        EXPECT_EQ(a.scene.contact.stiffness, b.scene.contact.stiffness);
+    }
+}
+
+/// The study with `change` done to each line in turn must be read or refused with a place, whatever it does to it.
+template <class Change>
+void expectSafe(Change change) {
+    const auto plan = readShipped("peg_in_hole/study.toml");
+    ASSERT_TRUE(plan);
+    const std::string& text = plan->source_text;
+    const auto devices = knownDevices();
+    const auto measures = knownMeasures();
+    std::size_t refused = 0;
+    for (std::size_t start = 0; start < text.size();) {
+        const std::size_t end = text.find('\n', start) + 1;
+        const auto line = text.substr(start, end - start);
+        const auto damaged = text.substr(0, start) + change(line) + text.substr(end);
+        const auto read = readProtocolText(damaged, "damaged.toml", devices, measures);
+        if (!read) {
+            ++refused;
+            for (const auto& error : read.errors()) {
+                EXPECT_EQ(error.file, "damaged.toml") << damaged;
+                EXPECT_GE(error.line, 1) << toString(error);
+            }
+        }
+        start = end;
+    }
+    EXPECT_GT(refused, 20u) << "the damage must not go unnoticed";
+}
+
+TEST(ShippedFiles, AnyDamagedLineIsReadOrRefusedWithAPlace) {
+    // Truth: invariant: no input may crash the reader, and no error may lack its place.
+    expectSafe([](const std::string&) { return std::string(); });
+    expectSafe([](const std::string& line) { return line + line; });
+    const auto valueBecomes = [](const char* value) {
+        return [value](const std::string& line) {
+            const auto equals = line.find(" = ");
+            return line[0] == '#' || equals == std::string::npos ? line : line.substr(0, equals + 3) + value + "\n";
+        };
+    };
+    for (const char* value : {"nan", "-1", "1e400", "\"x\"", "[]", "[{}, {}]", "{}", "true", "1979-05-27", "[[[]]]"})
+        expectSafe(valueBecomes(value));
+}
+
+}  // namespace
+}  // namespace passung::protocol

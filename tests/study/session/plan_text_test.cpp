@@ -1,0 +1,77 @@
+#include "study/session/plan_text.h"
+
+#include <gtest/gtest.h>
+
+#include "study/session/participant_order.h"
+
+namespace passung::session {
+namespace {
+
+protocol::StudyPlan smallPlan() {
+    protocol::StudyPlan plan;
+    plan.name = "demo";
+    plan.version = "1";
+    plan.title = "A demonstration";
+    plan.seed = 42;
+    plan.participants = 4;
+    plan.factors = {{"method", protocol::FactorKind::Within, "", {{"a"}, {"b"}, {"c"}, {"d"}}}};
+    for (const char* label : {"a", "b", "c", "d"}) {
+        protocol::Condition condition;
+        condition.name = label;
+        condition.device = "arm";
+        condition.task.timeout = 30.0;
+        plan.conditions.push_back(condition);
+    }
+    plan.blocks = {{"practice", protocol::Phase::Practice, 1, protocol::BlockOrder::Random, 2},
+                   {"main", protocol::Phase::Main, 3, protocol::BlockOrder::Williams, 0}};
+    return plan;
+}
+
+TEST(PlanText, ShowsTheWholeDesign) {
+    // Truth: independent program (Python 3.11, the streams and squares from their definitions) for the orders;
+    // 14 trials of at most 30 s are 7 min.
+    EXPECT_EQ(describePlan(smallPlan(), 2), R"(A demonstration
+study demo, version 1, seed 42, 4 participants planned
+
+Factors (within participants)
+  method  a, b, c, d
+
+Conditions
+    1  a  (device arm, 1000 N/m, 1 Nm/rad)
+    2  b  (device arm, 1000 N/m, 1 Nm/rad)
+    3  c  (device arm, 1000 N/m, 1 Nm/rad)
+    4  d  (device arm, 1000 N/m, 1 Nm/rad)
+
+Blocks
+  practice  practice, order random, 2 trials x 1 repetition
+  main      main, order williams, 4 trials x 3 repetitions
+
+Orders (numbers of conditions; blocks parted by |)
+  P001  2 1 | 2 3 4 1 (x3)
+  P002  4 2 | 3 1 2 4 (x3)
+2 is not a multiple of 4: position counts 0-1, neighbour counts 0-1; balanced with 4.
+
+Duration
+  14 trials a participant, at most 7.0 min (every trial to its time-out, pauses not counted)
+)");
+}
+
+TEST(PlanText, RepeatsTheWarnings) {
+    // Truth: invariant: what the reader warned of must not get lost.
+    auto plan = smallPlan();
+    plan.warnings = {"too few"};
+    EXPECT_NE(describePlan(plan, 1).find("\nwarning: too few\n"), std::string::npos);
+}
+
+TEST(ParticipantOrder, FollowsTheBlocksOfTheProtocol) {
+    // Truth: closed form: block 0 has 2 practice trials, block 1 three passes of four.
+    const auto trials = planTrials(smallPlan(), 0, "P001");
+    ASSERT_EQ(trials.size(), 14u);
+    EXPECT_EQ(trials[1].phase, "practice");
+    EXPECT_EQ(trials[2].phase, "main");
+    EXPECT_EQ(trials[2].block, "main");
+    EXPECT_EQ(trials[13].repetition, 3);
+}
+
+}  // namespace
+}  // namespace passung::session

@@ -1,0 +1,425 @@
+#include "study/session/session.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <deque>
+#include <map>
+
+namespace passung::session {
+namespace {
+
+using measures::Outcome;
+using Records = std::vector<TickRecord>;
+
+constexpr std::int64_t kMs = 1'000'000;  // [ns]
+
+/// What the fakes saw, in one list, so that order across them can be claimed.
+using Log = std::vector<std::string>;
+
+/// Plays one script of records per trial; a tick without a record in the script is one that was lost.
+class ScriptedApparatus : public Apparatus {
+public:
+    explicit ScriptedApparatus(Log& log) : log_(log) {}
+
+    std::deque<Records> scripts;             // one per trial
+    std::int64_t ticks_after_stop = 0;       // the loop's last ticks, still in the ring when stop() returns
+    std::size_t fail_prepare_at = SIZE_MAX;  // index of the trial
+    std::vector<std::uint64_t> seeds;
+    std::int64_t most_ticks_at_once = 0;
+
+    const DeviceDescription& device() const override { return device_; }
+
+    Result<std::vector<StageNote>> prepare(const protocol::Condition& condition, std::uint64_t seed) override {
+        log_.push_back("prepare " + condition.name);
+        if (seeds.size() == fail_prepare_at) return Error{"the mesh is gone", {}, 0, 0, {}, {}};
+        seeds.push_back(seed);
+        return std::vector<StageNote>{{"query", "parts can touch"}};
+    }
+    void start() override {
+        log_.push_back("start");
+        script_ = scripts.front();
+        scripts.pop_front();
+        taken_ = 0;
+        tick_ = 0;
+    }
+    void advance(std::int64_t ticks) override {
+        most_ticks_at_once = std::max(most_ticks_at_once, ticks);
+        tick_ += ticks;
+    }
+    std::size_t takeRecords(std::span<TickRecord> into) override {
+        std::size_t count = 0;
+        while (count < into.size() && taken_ < script_.size() && script_[taken_].tick < tick_)
+            into[count++] = script_[taken_++];
+        return count;
+    }
+    LoopHealth stop() override {
+        log_.push_back("stop");
+        tick_ += ticks_after_stop;
+        LoopHealth health;
+        health.loop = "virtual";
+        health.ticks = tick_;
+        return health;
+    }
+
+private:
+    Log& log_;
+    DeviceDescription device_;
+    Records script_;
+    std::size_t taken_ = 0;
+    std::int64_t tick_ = 0;
+};
+
+class RememberingSink : public TrialSink {
+public:
+    explicit RememberingSink(Log& log) : log_(log) {}
+
+    std::size_t fail_start_at = SIZE_MAX, fail_finish_at = SIZE_MAX;  // index of the attempt
+    std::vector<AttemptStart> starts;
+    std::vector<AttemptEnd> ends;
+    std::vector<Event> events;
+    std::map<AttemptId, std::vector<std::int64_t>> ticks;
+    std::optional<bool> complete;
+    std::int64_t session_end_ns = 0;
+
+    Result<AttemptId> startAttempt(const AttemptStart& start) override {
+        log_.push_back("startAttempt");
+        if (starts.size() == fail_start_at) return Error{"the database is locked", {}, 0, 0, {}, {}};
+        starts.push_back(start);
+        return AttemptId{static_cast<std::int64_t>(starts.size())};
+    }
+    void appendRecords(AttemptId attempt, std::span<const TickRecord> records) override {
+        if (log_.back() != "appendRecords") log_.push_back("appendRecords");
+        for (const TickRecord& record : records) ticks[attempt].push_back(record.tick);
+    }
+    void appendEvent(const Event& event) override { events.push_back(event); }
+    Result<Done> finishAttempt(AttemptId, const AttemptEnd& end) override {
+        log_.push_back("finishAttempt");
+        if (ends.size() == fail_finish_at) return Error{"the disk is full", {}, 0, 0, {}, {}};
+        ends.push_back(end);
+        return Done{};
+    }
+    Result<Done> finishSession(bool all, std::int64_t end_ns) override {
+        log_.push_back("finishSession");
+        complete = all;
+        session_end_ns = end_ns;
+        return Done{};
+    }
+
+private:
+    Log& log_;
+};
+
+/// `count` ticks; the hand reaches the start pose at `start`, the tip rests on the bore's ground from `inserted` on.
+Records script(std::int64_t count, std::int64_t start, std::int64_t inserted) {
+    Records records(static_cast<std::size_t>(count));
+    for (std::int64_t tick = 0; tick < count; ++tick) {
+        TickRecord& record = records[static_cast<std::size_t>(tick)];
+        record.tick = tick;
+        record.hand_quaternion = {1.0f, 0.0f, 0.0f, 0.0f};
+        record.hand_position_m = record.proxy_position_m = {0.0f, 0.0f, tick < inserted ? 0.1f : -0.0195f};
+        if (tick >= start) record.status |= kEngaged;
+        if (tick >= inserted) record.contacts = 5;
+    }
+    return records;
+}
+
+constexpr std::int64_t kNever = 1'000'000;
+// Start at tick 100, inserted at 1000: the speed over 50 ticks is low from 1050 on, held for 500 ticks at 1550.
+constexpr std::int64_t kSuccessTick = 1550;
+Records successScript() { return script(4000, 100, 1000); }
+
+class SessionTest : public testing::Test {
+protected:
+    SessionTest() {
+        for (const char* name : {"soft", "hard"}) {
+            protocol::Condition condition;
+            condition.name = name;
+            condition.params_json = std::string(R"({"name":")") + name + "\"}";
+            condition.task.target = "plate";
+            condition.scene.parts = {
+                {"peg", model::Peg{0.02, 0.05, 0.0}, Pose{}, true, Vec3::Zero()},
+                {"plate", model::BorePlate{0.1, 0.1, 0.03, 0.0201, 0.02, 0.0}, Pose{}, false, Vec3::Zero()}};
+            plan_.conditions.push_back(condition);
+        }
+        plan_.name = "study";
+    }
+
+    void planTrials(std::vector<Records> scripts) {
+        for (std::size_t i = 0; i < scripts.size(); ++i) {
+            design::PlannedTrial trial;
+            trial.trial_index = static_cast<std::int64_t>(i);
+            trial.block = trial.phase = "main";
+            trial.condition = i % 2;
+            trials_.push_back(trial);
+            apparatus_.scripts.push_back(std::move(scripts[i]));
+        }
+    }
+
+    Result<Done> runSession() {
+        SessionListener listener;
+        listener.acknowledge = [this](AttemptId id, Outcome outcome) {
+            log_.push_back("acknowledge");
+            acknowledged_.push_back(id);
+            EXPECT_EQ(outcome, sink_.ends.back().outcome);
+        };
+        listener.progress = [this](const TrialProgress& progress) {
+            log_.push_back("progress " + std::to_string(progress.finished) + "/" + std::to_string(progress.planned));
+            trial_times_.push_back(progress.trial_time_s);
+        };
+        Session session({plan_, trials_, "P001", 7, false}, apparatus_, sink_, listener);
+        return session.run();
+    }
+
+    /// "name@ms of session time" of all events.
+    std::vector<std::string> eventTimes() const {
+        std::vector<std::string> result;
+        for (const Event& event : sink_.events) result.push_back(event.event + "@" + std::to_string(event.t_ns / kMs));
+        return result;
+    }
+
+    static std::optional<double> value(const AttemptEnd& end, const std::string& name) {
+        for (const measures::Value& measure : end.measures)
+            if (measure.name == name) return measure.value;
+        ADD_FAILURE() << name;
+        return std::nullopt;
+    }
+
+    Log log_;
+    protocol::StudyPlan plan_;
+    std::vector<design::PlannedTrial> trials_;
+    ScriptedApparatus apparatus_{log_};
+    RememberingSink sink_{log_};
+    std::vector<AttemptId> acknowledged_;
+    std::vector<std::optional<double>> trial_times_;
+};
+
+TEST_F(SessionTest, SuccessIsDecidedAtTheTickWhereTheHoldEnds) {
+    // Truth: closed form (see kSuccessTick)
+    planTrials({successScript()});
+    ASSERT_TRUE(runSession());
+    ASSERT_EQ(sink_.ends.size(), 1u);
+    const AttemptEnd& end = sink_.ends[0];
+    EXPECT_EQ(end.outcome, Outcome::Success);
+    EXPECT_TRUE(end.valid);
+    EXPECT_EQ(end.invalid_reason, "");
+    EXPECT_EQ(end.end_ns, kSuccessTick * kMs);
+    EXPECT_FALSE(end.timing_measured);
+    EXPECT_DOUBLE_EQ(value(end, "trial_time_s").value(), 1.45);
+    EXPECT_DOUBLE_EQ(value(end, "approach_time_s").value(), 0.9);
+    EXPECT_EQ(eventTimes(),
+              (std::vector<std::string>{"trial_started@100", "first_contact@1000", "engaged@1000", "success@1550"}));
+    EXPECT_EQ(trial_times_, std::vector<std::optional<double>>{1.45});
+    EXPECT_EQ(sink_.complete, true);
+}
+
+TEST_F(SessionTest, CallsComeInTheOrderThatKeepsDataSafe) {
+    // Truth: invariant: prepared before stored, stopped before finished, durable before acknowledged.
+    planTrials({successScript(), successScript()});
+    ASSERT_TRUE(runSession());
+    EXPECT_EQ(log_, (Log{"prepare soft", "startAttempt", "start", "appendRecords", "stop", "finishAttempt",
+                         "acknowledge", "progress 1/2", "prepare hard", "startAttempt", "start", "appendRecords",
+                         "stop", "finishAttempt", "acknowledge", "progress 2/2", "finishSession"}));
+    EXPECT_EQ(apparatus_.most_ticks_at_once, Session::kTicksPerLook);
+}
+
+TEST_F(SessionTest, EveryTickThatTheLoopMadeIsStoredBeforeTheAttemptIsFinished) {
+    // Truth: invariant. The decision falls in tick 1550, in the look up to tick 1559; 30 more come while stopping.
+    apparatus_.ticks_after_stop = 30;
+    planTrials({successScript()});
+    ASSERT_TRUE(runSession());
+    const auto& ticks = sink_.ticks.at(AttemptId{1});
+    ASSERT_EQ(ticks.size(), 1590u);
+    for (std::size_t i = 0; i < ticks.size(); ++i) ASSERT_EQ(ticks[i], static_cast<std::int64_t>(i));
+    const auto last_append = std::find(log_.rbegin(), log_.rend(), "appendRecords");
+    const auto finish = std::find(log_.rbegin(), log_.rend(), "finishAttempt");
+    EXPECT_GT(last_append, finish);
+}
+
+TEST_F(SessionTest, SessionTimeIsTheTicksOfAllAttemptsEndToEnd) {
+    // Truth: closed form. Each attempt makes 1560 ticks (78 looks).
+    planTrials({successScript(), successScript()});
+    ASSERT_TRUE(runSession());
+    EXPECT_EQ(sink_.starts[0].start_ns, 0);
+    EXPECT_EQ(sink_.starts[1].start_ns, 1560 * kMs);
+    EXPECT_EQ(sink_.ends[1].end_ns, (1560 + kSuccessTick) * kMs);
+    EXPECT_EQ(sink_.session_end_ns, 2 * 1560 * kMs);
+}
+
+TEST_F(SessionTest, AttemptCarriesItsTrialItsParametersAndTheStages) {
+    // Truth: invariant
+    planTrials({successScript(), successScript()});
+    ASSERT_TRUE(runSession());
+    EXPECT_EQ(sink_.starts[1].trial_index, 1);
+    EXPECT_EQ(sink_.starts[1].attempt_no, 1);
+    EXPECT_EQ(sink_.starts[1].params_json, R"({"name":"hard"})");
+    ASSERT_EQ(sink_.starts[1].stages.size(), 1u);
+    EXPECT_EQ(sink_.starts[1].stages[0].name, "query");
+}
+
+TEST_F(SessionTest, SeedBelongsToParticipantTrialAndAttemptAndNotToWhatRanBefore) {
+    // Truth: invariant: a session that resumes at its second trial draws what the uninterrupted one drew.
+    planTrials({successScript(), successScript()});
+    ASSERT_TRUE(runSession());
+    ASSERT_EQ(apparatus_.seeds.size(), 2u);
+    EXPECT_NE(apparatus_.seeds[0], apparatus_.seeds[1]);
+    EXPECT_EQ(sink_.starts[1].seed, apparatus_.seeds[1]);
+    const SessionSetup resumed{plan_, {trials_[1]}, "P001", 7, false};
+    EXPECT_EQ(attemptSeed(resumed, trials_[1], 1), apparatus_.seeds[1]);
+    EXPECT_NE(attemptSeed(resumed, trials_[1], 2), apparatus_.seeds[1]);
+    const SessionSetup other{plan_, {trials_[1]}, "P002", 7, false};
+    EXPECT_NE(attemptSeed(other, trials_[1], 1), apparatus_.seeds[1]);
+}
+
+TEST_F(SessionTest, TimeOutCountsFromTheStartOfTheTrial) {
+    // Truth: closed form. Started at tick 100, limit 2 s.
+    for (auto& condition : plan_.conditions) condition.task.timeout = 2.0;
+    planTrials({script(4000, 100, kNever)});
+    ASSERT_TRUE(runSession());
+    const AttemptEnd& end = sink_.ends.at(0);
+    EXPECT_EQ(end.outcome, Outcome::Timeout);
+    EXPECT_TRUE(end.valid);
+    EXPECT_EQ(end.end_ns, 2100 * kMs);
+    EXPECT_FALSE(value(end, "completion_time_s"));
+    EXPECT_EQ(eventTimes(), (std::vector<std::string>{"trial_started@100", "timeout@2100"}));
+}
+
+TEST_F(SessionTest, SuccessInTheTickOfTheTimeOutIsASuccess) {
+    // Truth: closed form. 1550 - 100 = 1450 ticks; one tick less is too late.
+    for (const auto& [timeout, outcome] : {std::pair{1.450, Outcome::Success}, std::pair{1.449, Outcome::Timeout}}) {
+        for (auto& condition : plan_.conditions) condition.task.timeout = timeout;
+        trials_.clear();
+        planTrials({successScript()});
+        ASSERT_TRUE(runSession());
+        EXPECT_EQ(sink_.ends.back().outcome, outcome);
+    }
+}
+
+TEST_F(SessionTest, PartThatLiesInTheBoreBeforeTheStartDoesNotSucceedBeforeIt) {
+    // Truth: closed form. Start at tick 2000: the rule sees its first record there, 50 + 500 ticks later it is met.
+    planTrials({script(4000, 2000, 0)});
+    ASSERT_TRUE(runSession());
+    EXPECT_EQ(sink_.ends.at(0).end_ns, 2550 * kMs);
+}
+
+TEST_F(SessionTest, AttemptWithoutStartPoseIsAbortedInvalidAndTheSessionGoesOn) {
+    // Truth: closed form. Limit 60 s.
+    planTrials({script(61'000, kNever, kNever), successScript()});
+    ASSERT_TRUE(runSession());
+    ASSERT_EQ(sink_.ends.size(), 2u);
+    EXPECT_EQ(sink_.ends[0].outcome, Outcome::Aborted);
+    EXPECT_FALSE(sink_.ends[0].valid);
+    EXPECT_EQ(sink_.ends[0].invalid_reason, "start pose not reached");
+    EXPECT_EQ(sink_.ends[0].end_ns, 60'000 * kMs);
+    EXPECT_FALSE(value(sink_.ends[0], "trial_time_s"));
+    EXPECT_EQ(sink_.events[0].event, "aborted");
+    EXPECT_EQ(sink_.events[0].payload_json, R"({"reason":"start pose not reached"})");
+    EXPECT_EQ(sink_.ends[1].outcome, Outcome::Success);
+    EXPECT_EQ(sink_.complete, true);
+}
+
+TEST_F(SessionTest, LostRecordsMakeTheAttemptInvalid) {
+    // Truth: closed form. Three ticks are missing before the insertion.
+    Records records = successScript();
+    records.erase(records.begin() + 500, records.begin() + 503);
+    planTrials({records});
+    ASSERT_TRUE(runSession());
+    EXPECT_EQ(sink_.ends.at(0).outcome, Outcome::Success);
+    EXPECT_FALSE(sink_.ends[0].valid);
+    EXPECT_EQ(sink_.ends[0].invalid_reason, "3 tick records lost");
+    EXPECT_EQ(sink_.ends[0].health.dropped_records, 3);
+}
+
+TEST_F(SessionTest, TicksWithoutUsableInputMakeTheAttemptInvalid) {
+    // Truth: closed form. Ticks 90…109; the trial starts at 100, so ten of them count.
+    Records records = successScript();
+    for (std::size_t i = 90; i < 110; ++i) records[i].status |= kInputRejected;
+    planTrials({records});
+    ASSERT_TRUE(runSession());
+    EXPECT_EQ(sink_.ends.at(0).invalid_reason, "no usable device input in 10 ticks");
+}
+
+TEST_F(SessionTest, LatchedOutputAbortsTheAttempt) {
+    // Truth: invariant: without force nothing that follows may count as success.
+    Records records = successScript();
+    for (std::size_t i = 900; i < records.size(); ++i) records[i].status |= kNonFiniteLatched;
+    planTrials({records});
+    ASSERT_TRUE(runSession());
+    EXPECT_EQ(sink_.ends.at(0).outcome, Outcome::Aborted);
+    EXPECT_EQ(sink_.ends[0].end_ns, 900 * kMs);
+    EXPECT_FALSE(sink_.ends[0].valid);
+}
+
+TEST_F(SessionTest, DeadLoopAbortsTheAttemptAndEndsTheSession) {
+    // Truth: invariant: a loop that delivers nothing must not hold the session for ever.
+    planTrials({script(200, 100, kNever), successScript()});
+    const auto result = runSession();
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.errors().at(0).message, "the haptic loop delivers no records");
+    ASSERT_EQ(sink_.ends.size(), 1u);
+    EXPECT_EQ(sink_.ends[0].outcome, Outcome::Aborted);
+    EXPECT_EQ(sink_.ends[0].invalid_reason, "the loop delivers no records");
+    EXPECT_EQ(sink_.complete, false);
+}
+
+TEST_F(SessionTest, FailedPreparationEndsTheSessionAndKeepsWhatIsFinished) {
+    // Truth: invariant
+    apparatus_.fail_prepare_at = 1;
+    planTrials({successScript(), successScript(), successScript()});
+    const auto result = runSession();
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.errors().at(0).message, "the mesh is gone");
+    EXPECT_EQ(sink_.starts.size(), 1u);
+    EXPECT_EQ(sink_.ends.size(), 1u);
+    EXPECT_EQ(acknowledged_, std::vector<AttemptId>{AttemptId{1}});
+    EXPECT_EQ(sink_.events.back().event, "session_failed");
+    EXPECT_EQ(sink_.complete, false);
+}
+
+TEST_F(SessionTest, AttemptThatCannotBeStoredIsNeverStarted) {
+    // Truth: invariant
+    sink_.fail_start_at = 0;
+    planTrials({successScript()});
+    const auto result = runSession();
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.errors().at(0).message, "the database is locked");
+    EXPECT_EQ(std::count(log_.begin(), log_.end(), "start"), 0);
+    EXPECT_EQ(sink_.complete, false);
+}
+
+TEST_F(SessionTest, AttemptThatIsNotDurableIsNotAcknowledged) {
+    // Truth: invariant
+    sink_.fail_finish_at = 1;
+    planTrials({successScript(), successScript(), successScript()});
+    const auto result = runSession();
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.errors().at(0).message, "the disk is full");
+    EXPECT_EQ(acknowledged_, std::vector<AttemptId>{AttemptId{1}});
+    EXPECT_EQ(std::count(log_.begin(), log_.end(), "stop"), 2);
+    EXPECT_EQ(sink_.starts.size(), 2u);
+    EXPECT_EQ(sink_.complete, false);
+}
+
+TEST_F(SessionTest, UnknownTargetIsAnErrorThatNamesIt) {
+    // Truth: invariant
+    plan_.conditions[0].task.target = "disc";
+    planTrials({successScript()});
+    const auto result = runSession();
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.errors().at(0).value, "disc");
+}
+
+TEST_F(SessionTest, SessionThatIsDroppedInATrialStopsTheApparatus) {
+    // Truth: invariant: motors never stay on behind a session that is gone.
+    planTrials({successScript()});
+    {
+        Session session({plan_, trials_, "P001", 7, false}, apparatus_, sink_, {});
+        EXPECT_EQ(session.advance(), SessionState::InTrial);
+        EXPECT_EQ(session.advance(), SessionState::InTrial);
+        EXPECT_EQ(std::count(log_.begin(), log_.end(), "stop"), 0);
+    }
+    EXPECT_EQ(log_.back(), "stop");
+}
+
+}  // namespace
+}  // namespace passung::session

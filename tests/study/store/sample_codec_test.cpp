@@ -1,0 +1,118 @@
+#include "study/store/sample_codec.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/study/store/fake_study.h"
+
+namespace passung::store {
+namespace {
+
+TEST(SampleCodec, GivesBackEveryStoredBit) {
+    // Truth: invariant (decoding inverts encoding)
+    for (const std::size_t count : {1u, 2u, 999u, 1000u}) {
+        std::vector<TickRecord> records = fake::makeRecords(count, count, 5'000'000'000);
+        records[0].device_position_m = {std::nan("7"), -0.0, std::numeric_limits<double>::infinity()};
+        records[0].force_N = {std::nanf("7"), -0.0f, std::numeric_limits<float>::denorm_min()};
+        std::vector<TickRecord> back;
+        ASSERT_TRUE(decodeTicks(encodeTicks(records), back));
+        EXPECT_TRUE(fake::sameStoredBits(records, back)) << count;
+    }
+}
+
+TEST(SampleCodec, KeepsMeasuredDurationsOutOfTheTicksAndInTheirOwnStream) {
+    // Truth: invariant
+    const std::vector<TickRecord> records = fake::makeRecords(1, 50);
+    std::vector<TickRecord> back;
+    ASSERT_TRUE(decodeTicks(encodeTicks(records), back));
+    for (const TickRecord& record : back) EXPECT_EQ(record.duration_ns, 0);
+    ASSERT_TRUE(decodeTiming(encodeTiming(records), back));
+    for (std::size_t i = 0; i < records.size(); ++i) EXPECT_EQ(back[i].duration_ns, records[i].duration_ns);
+}
+
+TEST(SampleCodec, FindsEveryFlippedBit) {
+    // Truth: invariant (a CRC-32 finds every single-bit error)
+    const Chunk sound = encodeTicks(fake::makeRecords(2, 3));
+    for (std::size_t byte = 0; byte < sound.data.size(); ++byte) {
+        for (int bit = 0; bit < 8; ++bit) {
+            Chunk damaged = sound;
+            damaged.data[byte] ^= static_cast<std::byte>(1 << bit);
+            std::vector<TickRecord> back;
+            ASSERT_FALSE(decodeTicks(damaged, back)) << byte << " " << bit;
+            ASSERT_TRUE(back.empty());
+        }
+    }
+}
+
+TEST(SampleCodec, RefusesAChunkWhoseSizeDoesNotFit) {
+    // Truth: invariant
+    const Chunk sound = encodeTicks(fake::makeRecords(2, 3));
+    std::vector<TickRecord> back;
+    Chunk longer = sound;
+    longer.count = 4;
+    EXPECT_FALSE(decodeTicks(longer, back));
+    longer.count = -1;
+    EXPECT_FALSE(decodeTicks(longer, back));
+    Chunk shorter = sound;
+    shorter.data.resize(shorter.data.size() - 1);
+    EXPECT_FALSE(decodeTicks(shorter, back));
+    EXPECT_TRUE(back.empty());
+}
+
+TEST(SampleCodec, LayoutIsWhatItsDescriptionSays) {
+    // Truth: invariant (a reader written from encodingText() and the channels alone finds the values)
+    const std::vector<TickRecord> records = fake::makeRecords(3, 10);
+    const Chunk chunk = encodeTicks(records);
+    std::size_t offset = 0;
+    int checked = 0;
+    for (const Channel& channel : tickChannels()) {
+        const std::size_t width = channel.type == "float64" || channel.type == "int64" ? 8 : 4;
+        const std::byte* row7 = chunk.data.data() + offset + 7 * width;
+        const auto holds = [&](const auto& expected) {
+            ++checked;
+            return sizeof expected == width && std::memcmp(row7, &expected, width) == 0;
+        };
+        const TickRecord& r = records[7];
+        if (channel.name == "device_z_m") {
+            EXPECT_TRUE(holds(r.device_position_m[2]));
+        }
+        if (channel.name == "device_qw") {
+            EXPECT_TRUE(holds(r.device_quaternion[0]));
+        }
+        if (channel.name == "input_flags") {
+            EXPECT_TRUE(holds(r.input_flags));
+        }
+        if (channel.name == "proxy_y_m") {
+            EXPECT_TRUE(holds(r.proxy_position_m[1]));
+        }
+        if (channel.name == "force_x_N") {
+            EXPECT_TRUE(holds(r.force_N[0]));
+        }
+        if (channel.name == "torque_z_Nm") {
+            EXPECT_TRUE(holds(r.torque_Nm[2]));
+        }
+        if (channel.name == "proxy_depth_m") {
+            EXPECT_TRUE(holds(r.proxy_depth_m));
+        }
+        if (channel.name == "nodes_visited") {
+            EXPECT_TRUE(holds(r.nodes_visited));
+        }
+        offset += 10 * width;
+    }
+    EXPECT_EQ(offset, chunk.data.size());
+    EXPECT_EQ(checked, 8);
+}
+
+TEST(SampleCodec, AChunkEndsAtAGapAndAtItsLargestSize) {
+    // Truth: closed form
+    std::vector<TickRecord> records = fake::makeRecords(4, 10);
+    for (std::size_t i = 6; i < 10; ++i) records[i].tick += 1;
+    EXPECT_EQ(consecutiveTicks(records), 6u);
+    EXPECT_EQ(consecutiveTicks(fake::makeRecords(4, 2500)), kChunkTicks);
+    EXPECT_EQ(consecutiveTicks({}), 0u);
+}
+
+}  // namespace
+}  // namespace passung::store

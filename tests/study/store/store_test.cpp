@@ -1,0 +1,427 @@
+#include "study/store/store.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <thread>
+
+#include "study/design/williams.h"
+#include "study/store/revisions.h"
+#include "study/store/sqlite.h"
+#include "tests/study/store/fake_study.h"
+
+namespace passung::store {
+namespace {
+
+using fake::require;
+
+std::string rows(const Database& database, const std::string& sql) {
+    std::string text;
+    Statement statement = database.prepare(sql);
+    while (statement.step()) text += statement.text(0) + "\n";
+    return text;
+}
+
+void expectSound(const std::string& path) {
+    const Database database(path, OpenMode::ReadOnly);
+    EXPECT_EQ(database.text("PRAGMA integrity_check"), "ok");
+    EXPECT_EQ(rows(database, "PRAGMA foreign_key_check"), "");
+}
+
+TEST(Store, NewFileHasASoundStrictSchemaOfTheCurrentRevision) {
+    // Truth: independent program (SQLite's own checks)
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    EXPECT_EQ(Store::open(path, fake::options()).outcome, OpenOutcome::Created);
+    EXPECT_EQ(Store::open(path, fake::options()).outcome, OpenOutcome::Current);
+    EXPECT_FALSE(std::filesystem::exists(path + ".lock"));
+    EXPECT_FALSE(std::filesystem::exists(path + "-wal"));
+    expectSound(path);
+    const Database database(path, OpenMode::ReadOnly);
+    EXPECT_EQ(rows(database,
+                   "SELECT name FROM pragma_table_list WHERE schema='main' AND NOT strict AND name NOT LIKE "
+                   "'sqlite_%'"),
+              "");
+    EXPECT_EQ(database.text("PRAGMA journal_mode"), "wal");
+    EXPECT_EQ(database.integer("SELECT max(revision) FROM schema_revision"), schemaNumber());
+}
+
+TEST(Store, TablesHoldEveryColumnOfTheDocumentedOutline) {
+    // Truth: closed form (a sample of the documented names that outside programs read)
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    fake::openStore(path);
+    const Database database(path, OpenMode::ReadOnly);
+    for (const char* sql :
+         {"SELECT attempt_id, trial_id, attempt_no, segment_id, start_ns, end_ns, outcome, valid, invalid_reason, "
+          "params_json FROM attempt",
+          "SELECT session_id, participant_id, protocol_sha256, ordinal, station, experimenter, language, seed, rng, "
+          "started_utc, ended_utc, end_state FROM session",
+          "SELECT trial_id, session_id, trial_index, block_index, block, trial_in_block, phase, condition_id FROM "
+          "trial_plan",
+          "SELECT stream_id, chunk_no, attempt_id, first_tick, n, t0_ns, crc32, data FROM sample_chunk",
+          "SELECT attempt_id, loop, ticks, mean_us, sd_us, p99_us, p999_us, max_us, overruns, dropped_samples, "
+          "hist_json FROM timing",
+          "SELECT slot_id, protocol_sha256, between_group, sequence_index, replicate, station, state, participant_id "
+          "FROM design_slot",
+          "SELECT run_id, item, presented_index, value_num, value_text, skipped, rt_ms, changes FROM item_response",
+          "SELECT audit_id, t_utc, actor, action, detail_json, prev_hash, hash FROM audit"}) {
+        EXPECT_NO_THROW(database.prepare(sql)) << sql;
+    }
+}
+
+TEST(Store, AWholeSessionReadsBackAsItWasWritten) {
+    // Truth: invariant (what goes in comes out)
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    {
+        auto store = fake::openStore(path);
+        auto writer = fake::beginSession(*store, "S001", 5);
+        for (int trial = 0; trial < 4; ++trial) require(fake::writeAttempt(*writer, trial, 2345));
+        require(writer->finishSession(true, 99'000'000'000));
+    }
+    expectSound(path);
+    const StoreReader reader = require(StoreReader::open(path));
+    const auto attempts = require(reader.attempts());
+    ASSERT_EQ(attempts.size(), 4u);
+    for (std::size_t i = 0; i < attempts.size(); ++i) {
+        const AttemptRow& attempt = attempts[i];
+        const auto index = static_cast<std::int64_t>(i);
+        EXPECT_EQ(attempt.trial_index, index);
+        EXPECT_EQ(attempt.outcome, "success");
+        EXPECT_TRUE(attempt.counts());
+        EXPECT_EQ(attempt.kind, "simulated");
+        EXPECT_EQ(attempt.seed, fake::attemptStart(index).seed);
+        EXPECT_EQ(attempt.state_hash, "0123456789abcdef");
+        EXPECT_EQ(attempt.measures,
+                  (std::map<std::string, double>{{"completion_time_s", 1.0 + 0.1 * static_cast<double>(i)},
+                                                 {"peak_force_N", 1.0 / 3.0}}));
+        EXPECT_TRUE(fake::sameStoredBits(require(reader.records(attempt.attempt_id)), fake::makeRecords(i, 2345)));
+    }
+    EXPECT_EQ(attempts[1].condition, "penalty/0,5");
+    EXPECT_EQ(attempts[1].levels, (Levels{{"method", "penalty"}, {"clearance", "0,5"}}));
+    const auto sessions = require(reader.sessions());
+    ASSERT_EQ(sessions.size(), 1u);
+    EXPECT_EQ(sessions[0].end_state, "complete");
+    EXPECT_EQ(sessions[0].ended_utc, "2000-01-01T00:01:39.000Z");
+    EXPECT_EQ(sessions[0].planned_trials, 5);
+    EXPECT_EQ(require(reader.protocols())[0].source_text, fake::makePlan().source_text);
+    EXPECT_EQ(require(reader.events()).size(), 4u);
+    EXPECT_EQ(require(reader.participants())[0].status, "complete");
+}
+
+TEST(Store, ReadingChangesNothingAndLeavesNoFilesBehind) {
+    // Truth: invariant
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    {
+        auto store = fake::openStore(path);
+        auto writer = fake::beginSession(*store, "S001", 1);
+        require(fake::writeAttempt(*writer, 0, 100));
+    }
+    const auto bytes = [&path] {
+        std::ifstream stream(path, std::ios::binary);
+        return std::string(std::istreambuf_iterator<char>(stream), {});
+    };
+    const std::string before = bytes();
+    {
+        const StoreReader reader = require(StoreReader::open(path));
+        EXPECT_EQ(require(reader.records(1)).size(), 100u);
+        EXPECT_EQ(require(reader.attempts()).size(), 1u);
+    }
+    EXPECT_EQ(bytes(), before);
+    for (const char* suffix : {"-wal", "-shm", ".lock"}) EXPECT_FALSE(std::filesystem::exists(path + suffix)) << suffix;
+}
+
+TEST(Store, VirtualTimeStoresNoMeasuredDuration) {
+    // Truth: invariant (determinism rule: no clock reaches the data)
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    {
+        auto store = fake::openStore(path);
+        auto writer = fake::beginSession(*store, "S001", 1);
+        require(fake::writeAttempt(*writer, 0, 100));
+        require(writer->finishSession(true, 0));
+    }
+    const Database database(path, OpenMode::ReadOnly);
+    EXPECT_EQ(rows(database, "SELECT stream FROM stream"), "tick\n");
+    EXPECT_EQ(database.integer("SELECT count(*) FROM timing WHERE mean_us IS NULL AND max_us IS NULL AND hist_json IS "
+                               "NULL AND ticks=100"),
+              1);
+}
+
+TEST(Store, RealTimeStoresEveryTicksDuration) {
+    // Truth: invariant
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    {
+        auto store = fake::openStore(path);
+        auto writer = fake::beginSession(*store, "S001", 1, true);
+        require(fake::writeAttempt(*writer, 0, 1100, true));
+    }
+    const StoreReader reader = require(StoreReader::open(path));
+    const auto attempts = require(reader.attempts());
+    const auto records = require(reader.records(attempts[0].attempt_id));
+    const auto expected = fake::makeRecords(0, 1100);
+    ASSERT_EQ(records.size(), expected.size());
+    for (std::size_t i = 0; i < records.size(); ++i) ASSERT_EQ(records[i].duration_ns, expected[i].duration_ns);
+    EXPECT_EQ(attempts[0].timing->mean_us, 4711.25);
+}
+
+TEST(Store, DroppedTicksBeginANewChunkAndNothingIsInvented) {
+    // Truth: invariant
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    std::vector<TickRecord> records = fake::makeRecords(9, 1500);
+    for (std::size_t i = 700; i < records.size(); ++i) records[i].tick += 40;
+    {
+        auto store = fake::openStore(path);
+        auto writer = fake::beginSession(*store, "S001", 1);
+        const auto id = require(writer->startAttempt(fake::attemptStart(0)));
+        writer->appendRecords(id, records);
+        require(writer->finishAttempt(id, fake::attemptEnd(0, 1540)));
+    }
+    const Database database(path, OpenMode::ReadOnly);
+    EXPECT_EQ(rows(database, "SELECT first_tick || ' ' || n FROM sample_chunk ORDER BY chunk_no"), "0 700\n740 800\n");
+    const StoreReader reader = require(StoreReader::open(path));
+    EXPECT_TRUE(fake::sameStoredBits(require(reader.records(1)), records));
+}
+
+TEST(Store, ADamagedChunkIsReportedNotRead) {
+    // Truth: invariant
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    {
+        auto store = fake::openStore(path);
+        auto writer = fake::beginSession(*store, "S001", 1);
+        require(fake::writeAttempt(*writer, 0, 100));
+    }
+    Database(path, OpenMode::ReadWrite)
+        .execute("UPDATE sample_chunk SET data = CAST(substr(data, 1, 500) || x'5A' || substr(data, 502) AS BLOB)");
+    const StoreReader reader = require(StoreReader::open(path));
+    const auto records = reader.records(1);
+    ASSERT_FALSE(records);
+    EXPECT_NE(records.errors()[0].message.find("checksum"), std::string::npos) << records.errors()[0].message;
+}
+
+TEST(Store, SecondWriterIsRefusedWithAClearError) {
+    // Truth: invariant (one process writes)
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    auto first = fake::openStore(path);
+    const auto second = Store::open(path, fake::options());
+    EXPECT_EQ(second.outcome, OpenOutcome::Failed);
+    ASSERT_FALSE(second.errors.empty());
+    EXPECT_NE(second.errors[0].message.find("another program"), std::string::npos);
+    EXPECT_TRUE(StoreReader::open(path)) << "readers are welcome meanwhile";
+    first.reset();
+    EXPECT_TRUE(Store::open(path, fake::options()).store);
+}
+
+TEST(Store, FilesThatAreNotOursAreRefusedAndLeftAlone) {
+    // Truth: invariant
+    const fake::TempFolder folder;
+    const std::string text = folder / "notes.txt";
+    const std::string content(5000, 'x');
+    std::ofstream(text) << content;
+    const std::string other = folder / "other.db";
+    Database(other, OpenMode::Create).execute("CREATE TABLE t(x)");
+    for (const std::string& path : {text, other}) {
+        const auto opened = Store::open(path, fake::options());
+        EXPECT_EQ(opened.outcome, OpenOutcome::Failed);
+        ASSERT_EQ(opened.errors.size(), 1u);
+        EXPECT_NE(opened.errors[0].message.find("not a Passung database"), std::string::npos)
+            << opened.errors[0].message;
+        EXPECT_EQ(opened.errors[0].file, path);
+        EXPECT_FALSE(StoreReader::open(path));
+        EXPECT_FALSE(std::filesystem::exists(path + ".lock"));
+    }
+    std::ifstream again(text);
+    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(again), {}), content);
+    EXPECT_EQ(rows(Database(other, OpenMode::ReadOnly), "SELECT name FROM sqlite_master"), "t\n");
+}
+
+TEST(Store, AMissingFileIsNotCreatedUnlessAsked) {
+    // Truth: invariant
+    const fake::TempFolder folder;
+    OpenOptions options = fake::options();
+    options.create = false;
+    EXPECT_EQ(Store::open(folder / "none.db", options).outcome, OpenOutcome::Failed);
+    EXPECT_FALSE(StoreReader::open(folder / "none.db"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "none.db"));
+    EXPECT_EQ(Store::open(folder / "no/such/folder.db", fake::options()).outcome, OpenOutcome::Failed);
+}
+
+TEST(Store, NewerFilesFollowTheRuleOfTheOldestReader) {
+    // Truth: closed form (a newer file is readable if its oldest reader is not newer than this program; never written)
+    for (const bool compatible : {true, false}) {
+        const fake::TempFolder folder;
+        const std::string path = folder / "s.db";
+        fake::openStore(path);
+        const int newer = schemaNumber() + 1;
+        Database(path, OpenMode::ReadWrite)
+            .prepare("INSERT INTO schema_revision VALUES(?, 'from the future', ?, '')")
+            .bind(newer, compatible ? schemaNumber() : newer)
+            .run();
+        const auto opened = Store::open(path, fake::options());
+        EXPECT_EQ(opened.outcome, compatible ? OpenOutcome::NewerCompatible : OpenOutcome::NewerIncompatible);
+        EXPECT_FALSE(opened.store);
+        EXPECT_FALSE(opened.errors.empty());
+        EXPECT_EQ(static_cast<bool>(StoreReader::open(path)), compatible);
+    }
+}
+
+TEST(Store, SlotsGoRowByRowAndKindsDoNotShareThem) {
+    // Truth: closed form (4 conditions: 4 rows; free slot with the lowest replicate, then row)
+    const fake::TempFolder folder;
+    auto store = fake::openStore(folder / "s.db");
+    const std::string sha = require(store->importProtocol(fake::makePlan(4)));
+    ASSERT_EQ(design::williamsRows(4), 4u);
+    for (int i = 1; i <= 6; ++i) {
+        const std::string code = require(store->nextCode(ParticipantKind::Simulated));
+        EXPECT_EQ(code, "S00" + std::to_string(i));
+        EXPECT_TRUE(require(store->enrol(code, ParticipantKind::Simulated, "")));
+        EXPECT_FALSE(require(store->enrol(code, ParticipantKind::Simulated, ""))) << "known already";
+        const Slot slot = require(store->assignSlot(sha, code));
+        EXPECT_EQ(slot.number, i - 1);
+        EXPECT_EQ(slot.sequence_index, (i - 1) % 4);
+        EXPECT_EQ(slot.replicate, (i - 1) / 4);
+        EXPECT_EQ(require(store->assignSlot(sha, code)).number, slot.number) << "keeps its slot";
+    }
+    const std::string real = require(store->nextCode(ParticipantKind::Real));
+    EXPECT_EQ(real, "P001");
+    require(store->enrol(real, ParticipantKind::Real, ""));
+    EXPECT_EQ(require(store->assignSlot(sha, real)).number, 0);
+    EXPECT_FALSE(store->enrol("S001", ParticipantKind::Real, "")) << "a simulated code never turns real";
+    EXPECT_FALSE(store->enrol("Anna", ParticipantKind::Real, ""));
+    EXPECT_FALSE(store->assignSlot(sha, "P999"));
+    EXPECT_FALSE(store->assignSlot("no such protocol", real));
+}
+
+TEST(Store, ASessionIsWrittenWholeOrNotAtAll) {
+    // Truth: invariant
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    auto store = fake::openStore(path);
+    const protocol::StudyPlan plan = fake::makePlan();
+    SessionStart start;
+    start.protocol_sha256 = require(store->importProtocol(plan));
+    start.session_id = "x";
+    start.participant = "S001";
+    require(store->enrol("S001", ParticipantKind::Simulated, ""));
+    auto trials = fake::makeTrials(plan, 8);
+    trials.back().condition = 99;
+    EXPECT_FALSE(store->createSession(start, trials));
+    const Database database(path, OpenMode::ReadOnly);
+    EXPECT_EQ(database.integer("SELECT count(*) FROM session"), 0);
+    EXPECT_EQ(database.integer("SELECT count(*) FROM trial_plan"), 0);
+    EXPECT_EQ(database.text("SELECT status FROM participant"), "enrolled");
+}
+
+TEST(Store, AFullDiskGivesAnErrorAndFinishedAttemptsRemain) {
+    // Truth: invariant; the disk is SQLite's page limit
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    std::int64_t finished = 0;
+    {
+        OpenOptions options = fake::options();
+        options.max_pages = 300;  // 1.2 MB: about three attempts of 2 000 ticks
+        auto store = fake::openStore(path, options);
+        auto writer = fake::beginSession(*store, "S001", 20);
+        std::string message;
+        while (finished < 20 && message.empty()) {
+            const auto written = fake::writeAttempt(*writer, finished, 2000);
+            if (written) {
+                ++finished;
+            } else {
+                message = written.errors()[0].message;
+            }
+        }
+        EXPECT_NE(message.find("full"), std::string::npos) << message;
+        EXPECT_GE(finished, 2);
+    }
+    const auto opened = Store::open(path, fake::options());
+    ASSERT_TRUE(opened.store);
+    EXPECT_LE(opened.recovery.crashed_attempts.size(), 1u);
+    EXPECT_EQ(opened.recovery.crashed_sessions, std::vector<std::string>{"S001, session 1"});
+    expectSound(path);
+    const StoreReader reader = require(StoreReader::open(path));
+    std::int64_t complete = 0;
+    for (const AttemptRow& attempt : require(reader.attempts())) {
+        if (attempt.outcome != "success") {
+            EXPECT_EQ(attempt.outcome, "crashed");
+            EXPECT_FALSE(attempt.valid);
+            EXPECT_TRUE(attempt.measures.empty());
+            continue;
+        }
+        ++complete;
+        EXPECT_TRUE(fake::sameStoredBits(require(reader.records(attempt.attempt_id)),
+                                         fake::makeRecords(static_cast<std::uint64_t>(attempt.trial_index), 2000)));
+    }
+    EXPECT_EQ(complete, finished);
+}
+
+TEST(Store, ARunningAttemptIsNotValidAndIsCalledCrashedAtTheNextStart) {
+    // Truth: invariant
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    {
+        auto store = fake::openStore(path);
+        auto writer = fake::beginSession(*store, "S001", 3);
+        require(fake::writeAttempt(*writer, 0, 50));
+        require(writer->startAttempt(fake::attemptStart(1)));
+        const auto attempts = require(require(StoreReader::open(path)).attempts());
+        ASSERT_EQ(attempts.size(), 2u);
+        EXPECT_EQ(attempts[1].outcome, "running");
+        EXPECT_FALSE(attempts[1].valid);
+    }
+    const auto opened = Store::open(path, fake::options());
+    EXPECT_EQ(opened.recovery.crashed_attempts, std::vector<std::string>{"S001, session 1, trial 2, attempt 1"});
+    EXPECT_TRUE(Store::open(path, fake::options()).recovery.empty());
+    const StoreReader reader = require(StoreReader::open(path));
+    EXPECT_EQ(require(reader.attempts())[1].outcome, "crashed");
+    EXPECT_EQ(require(reader.sessions())[0].end_state, "crashed");
+    EXPECT_EQ(require(reader.sessions())[0].ended_utc, std::nullopt);
+}
+
+TEST(Store, TwoSessionsAtOnceKeepTheirDataApart) {
+    // Truth: invariant
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    {
+        auto store = fake::openStore(path);
+        auto one = fake::beginSession(*store, "S001", 10);
+        auto two = fake::beginSession(*store, "S002", 10);
+        std::thread other([&] {
+            for (int trial = 0; trial < 10; ++trial) EXPECT_TRUE(fake::writeAttempt(*two, trial, 1700));
+        });
+        for (int trial = 0; trial < 10; ++trial) EXPECT_TRUE(fake::writeAttempt(*one, trial, 1700));
+        other.join();
+        require(one->finishSession(true, 0));
+        require(two->finishSession(true, 0));
+    }
+    expectSound(path);
+    const StoreReader reader = require(StoreReader::open(path));
+    const auto attempts = require(reader.attempts());
+    ASSERT_EQ(attempts.size(), 20u);
+    for (const AttemptRow& attempt : attempts) {
+        EXPECT_TRUE(fake::sameStoredBits(require(reader.records(attempt.attempt_id)),
+                                         fake::makeRecords(static_cast<std::uint64_t>(attempt.trial_index), 1700)));
+    }
+}
+
+TEST(Store, AnotherFormulaUnderAnOldNameIsRefused) {
+    // Truth: invariant (one column never means two things)
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    require(fake::openStore(path)->importProtocol(fake::makePlan()));
+    Database(path, OpenMode::ReadWrite).execute("UPDATE measure SET formula_version=99 WHERE measure='peak_force_N'");
+    protocol::StudyPlan plan = fake::makePlan();
+    plan.source_text += "# changed\n";
+    const auto imported = fake::openStore(path)->importProtocol(plan);
+    ASSERT_FALSE(imported);
+    EXPECT_NE(imported.errors()[0].message.find("peak_force_N"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace passung::store
