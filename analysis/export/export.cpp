@@ -1,0 +1,148 @@
+#include "analysis/export/export.h"
+
+#include <algorithm>
+#include <deque>
+#include <future>
+#include <thread>
+
+#include "analysis/export/codebook.h"
+#include "analysis/export/export_folder.h"
+#include "analysis/export/gzip.h"
+#include "analysis/export/samples.h"
+#include "analysis/export/session_tables.h"
+#include "analysis/export/study_data.h"
+#include "analysis/export/trial_tables.h"
+
+namespace passung::exporter {
+namespace {
+
+constexpr const char* kSamplesPattern = "samples/*.csv.gz";
+
+std::vector<Table> makeTables(const StudyData& study) {
+    std::vector<Table> tables = {makeTrials(study), makeCells(study)};
+    for (Table& table : makeWide(study)) tables.push_back(std::move(table));
+    tables.push_back(makeEvents(study));
+    tables.push_back(makeSessions(study));
+    tables.push_back(makeParticipants(study));
+    tables.push_back(makeTiming(study));
+    return tables;
+}
+
+std::string readmeText(const StudyData& study, const std::vector<Table>& tables, bool samples) {
+    std::string text = "# Export of a Passung study\n\n";
+    for (const store::ProtocolRow& protocol : study.protocols) {
+        text += "- " + (protocol.title.empty() ? protocol.name : protocol.title) + " (" + protocol.name + ", version " +
+                protocol.version + "): `protocol/" + protocol.sha256 + ".toml`\n";
+    }
+    text +=
+        "\nAll tables are CSV: UTF-8, comma, quotes as in RFC 4180, a header row, `NA` for a missing value. Numbers "
+        "have "
+        "a decimal point and as many digits as are needed to read back the same value. Units are in the column names "
+        "and in `codebook.csv`, which describes every column of every file (`codebook.json`: the same for "
+        "programs).\n\n"
+        "**Rows of simulated participants** have `kind` = `simulated`. They show that software and analysis work, "
+        "never how people behave: keep them apart.\n\n| file | holds |\n| --- | --- |\n";
+    for (const Table& table : tables) {
+        if (table.file == kSamplesPattern && !samples) continue;
+        text += "| `" + table.file + "` | " + table.about + " |\n";
+    }
+    text +=
+        "| `protocol/` | The protocols, byte for byte; the name is the SHA-256 of the text. |\n"
+        "| `SHA256SUMS` | For `sha256sum -c SHA256SUMS`. |\n\n"
+        "Read in R: `trials <- read.csv(\"trials.csv\")`; in Python: `trials = pandas.read_csv(\"trials.csv\")`. "
+        "Analyse the rows with `valid` = 1 and `phase` = `main`; `cells_long.csv` and the wide tables count only "
+        "those that ended in success, failure or timeout.\n";
+    return text;
+}
+
+/// Writes files until the first error.
+class Writer {
+public:
+    explicit Writer(ExportFolder& folder) : folder_(folder) {}
+
+    void write(const std::string& path, std::string_view bytes) {
+        if (!errors_.empty()) return;
+        const auto done = folder_.write(path, bytes);
+        if (!done) errors_ = done.errors();
+        ++files_;
+    }
+    void fail(const Errors& errors) { errors_ = errors; }
+    bool failed() const { return !errors_.empty(); }
+    const Errors& errors() const { return errors_; }
+    std::size_t files() const { return files_; }
+
+private:
+    ExportFolder& folder_;
+    Errors errors_;
+    std::size_t files_ = 0;
+};
+
+/// Reads and writes in order; packing, which takes nearly all of the time, runs on all processors.
+void writeSamples(const store::StoreReader& reader, const StudyData& study, const ExportOptions& options,
+                  Writer& writer) {
+    struct Packing {
+        std::string file;
+        std::future<std::string> bytes;
+    };
+    const std::size_t at_once = std::max(1u, std::thread::hardware_concurrency());
+    std::deque<Packing> packings;
+    const auto writeOldest = [&] {
+        try {
+            writer.write(packings.front().file, packings.front().bytes.get());
+        } catch (const std::exception& error) {
+            writer.fail({Error{.message = error.what(), .file = packings.front().file, .key = {}, .value = {}}});
+        }
+        packings.pop_front();
+    };
+    for (std::size_t i = 0; i < study.attempts.size() && !writer.failed(); ++i) {
+        auto records = reader.records(study.attempts[i].attempt_id);
+        if (!records) {
+            writer.fail(records.errors());
+            break;
+        }
+        if (!records->empty()) {
+            if (packings.size() == at_once) writeOldest();
+            packings.push_back(
+                {samplesFile(study.attempts[i]),
+                 std::async(std::launch::async, [ticks = *std::move(records)] { return gzip(samplesCsv(ticks)); })});
+        }
+        if (options.progress) {
+            options.progress(static_cast<double>(i + 1) / static_cast<double>(study.attempts.size()));
+        }
+    }
+    while (!packings.empty()) writeOldest();
+}
+
+}  // namespace
+
+Result<ExportReport> exportAll(const store::StoreReader& reader, const std::string& out_dir,
+                               const ExportOptions& options) {
+    const auto study = readStudy(reader);
+    if (!study) return study.errors();
+    auto folder = ExportFolder::begin(out_dir);
+    if (!folder) return folder.errors();
+
+    Writer writer(*folder);
+    std::vector<Table> tables = makeTables(*study);
+    for (const Table& table : tables) writer.write(table.file, toCsv(table));
+    if (options.samples) {
+        tables.push_back({kSamplesPattern,
+                          "One file per attempt, one row per recorded tick (1 kHz): "
+                          "`<participant>_<session>_t<trial_index>_a<attempt_no>.csv.gz`.",
+                          sampleColumns(),
+                          {}});
+    }
+    for (const store::ProtocolRow& protocol : study->protocols) {
+        writer.write("protocol/" + protocol.sha256 + ".toml", protocol.source_text);
+    }
+    tables.push_back(makeCodebook(tables));
+    writer.write("codebook.csv", toCsv(tables.back()));
+    writer.write("codebook.json", codebookJson(tables));
+    writer.write("README.md", readmeText(*study, tables, options.samples));
+    if (options.samples) writeSamples(reader, *study, options, writer);
+    if (writer.failed()) return writer.errors();
+    if (const auto done = folder->complete(); !done) return done.errors();
+    return ExportReport{study->attempts.size(), writer.files() + 1};
+}
+
+}  // namespace passung::exporter

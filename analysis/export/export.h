@@ -1,0 +1,29 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "core/base/result.h"
+#include "study/store/store_reader.h"
+
+/// The folder's name is a word of the language, hence `exporter`.
+namespace passung::exporter {
+
+struct ExportOptions {
+    bool samples = true;  // every recorded tick: some 100 kB per second of a trial
+    /// Called now and then with the share that is done, 0 … 1.
+    std::function<void(double)> progress;
+};
+
+struct ExportReport {
+    std::size_t attempts = 0;
+    std::size_t files = 0;
+};
+
+/// Writes the whole study as files for people and statistics programs into the folder `out_dir`: tables as CSV (UTF-8,
+/// RFC 4180, LF, NA for missing), a codebook, the protocols, README.md and SHA256SUMS. The same data gives the same
+/// bytes. The folder appears complete or not at all; an earlier export in its place is replaced, anything else refused.
+Result<ExportReport> exportAll(const store::StoreReader& reader, const std::string& out_dir,
+                               const ExportOptions& options = {});
+
+}  // namespace passung::exporter

@@ -1,0 +1,101 @@
+#include "analysis/export/samples.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "study/store/sample_codec.h"
+
+namespace passung::exporter {
+namespace {
+
+std::string padded(std::int64_t number) {
+    std::string digits = std::to_string(number);
+    if (digits.size() < 3) digits.insert(0, 3 - digits.size(), '0');
+    return digits;
+}
+
+/// Appends numbers to a text without a string of their own: a study has tens of millions of them.
+class RowText {
+public:
+    explicit RowText(std::string& text) : text_(text) {}
+
+    template <class Number>
+    void add(Number value) {
+        if constexpr (std::is_floating_point_v<Number>) {
+            if (!std::isfinite(value)) {
+                text_ += kMissing;
+                text_ += ',';
+                return;
+            }
+        }
+        std::array<char, 32> digits;
+        const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+        text_.append(digits.data(), end);
+        text_ += ',';
+    }
+    template <class Number, std::size_t count>
+    void add(const std::array<Number, count>& values) {
+        for (const Number value : values) add(value);
+    }
+    void endRow() { text_.back() = '\n'; }
+
+private:
+    std::string& text_;
+};
+
+}  // namespace
+
+std::vector<Column> sampleColumns() {
+    std::vector<Column> columns = {
+        {"tick", "Number of the tick in the attempt, from 0", "", "integer", "", 1, {}},
+        {"t_s", "Time since the attempt's first tick", "s", "number", "tick x 0.001 s", 1, {}}};
+    for (const store::Channel& channel : store::tickChannels()) {
+        const bool integer = channel.type == "uint32";
+        columns.push_back({channel.name,
+                           channel.label,
+                           channel.unit == "1" ? "" : channel.unit,
+                           integer ? "integer" : "number",
+                           "",
+                           1,
+                           {}});
+    }
+    return columns;
+}
+
+std::string samplesFile(const store::AttemptRow& attempt) {
+    return "samples/" + attempt.participant_id + "_" + std::to_string(attempt.session_ordinal) + "_t" +
+           padded(attempt.trial_index) + "_a" + std::to_string(attempt.attempt_no) + ".csv.gz";
+}
+
+std::string samplesCsv(std::span<const TickRecord> records) {
+    constexpr std::size_t kTypicalRow = 400;
+    std::string text = toCsv(Table{{}, {}, sampleColumns(), {}});
+    text.reserve(text.size() + records.size() * kTypicalRow);
+    RowText row(text);
+    for (const TickRecord& r : records) {
+        row.add(r.tick);
+        row.add(static_cast<double>(r.tick) / 1000.0);
+        row.add(r.device_position_m);
+        row.add(r.device_quaternion);
+        row.add(r.input_flags);
+        row.add(r.parameter_sequence);
+        row.add(r.hand_position_m);
+        row.add(r.hand_quaternion);
+        row.add(r.proxy_position_m);
+        row.add(r.proxy_quaternion);
+        row.add(r.force_N);
+        row.add(r.torque_Nm);
+        row.add(r.hand_depth_m);
+        row.add(r.proxy_depth_m);
+        row.add(r.quality);
+        row.add(r.status);
+        row.add(r.contacts);
+        row.add(r.iterations);
+        row.add(r.nodes_visited);
+        row.endRow();
+    }
+    return text;
+}
+
+}  // namespace passung::exporter

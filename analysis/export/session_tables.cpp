@@ -1,0 +1,143 @@
+#include "analysis/export/session_tables.h"
+
+namespace passung::exporter {
+namespace {
+
+const std::vector<std::string> kKinds = {"real", "pilot", "simulated"};
+
+}  // namespace
+
+Table makeEvents(const StudyData& study) {
+    Table table{"events.csv",
+                "One row per event of a session, in the order of time.",
+                {{"participant_id", "Code of the participant", "", "text", "", 1, {}},
+                 {"session", "Number of the participant's session, from 1", "", "integer", "", 1, {}},
+                 {"t_s", "Time from the session's start", "s", "number", "", 1, {}},
+                 {"trial_index", "Trial that it belongs to", "", "integer", "", 1, {}},
+                 {"attempt_no", "Attempt that it belongs to", "", "integer", "", 1, {}},
+                 {"source", "Who reported it", "", "text", "", 1, {}},
+                 {"event", "What happened", "", "text", "", 1, {}},
+                 {"payload_json", "More about it, as JSON", "", "text", "", 1, {}}},
+                {}};
+    for (const store::EventRow& event : study.events) {
+        table.rows.push_back({event.participant_id, cell(event.session_ordinal), secondsCell(event.t_ns),
+                              cell(event.trial_index), cell(event.attempt_no), event.source, event.event,
+                              event.payload_json});
+    }
+    return table;
+}
+
+Table makeSessions(const StudyData& study) {
+    Table table{
+        "sessions.csv",
+        "One row per session.",
+        {{"participant_id", "Code of the participant", "", "text", "", 1, {}},
+         {"kind", "Real person, pilot or simulated participant", "", "text", "", 1, kKinds},
+         {"session", "Number of the participant's session, from 1", "", "integer", "", 1, {}},
+         {"session_id", "Identifier of the session", "", "text", "", 1, {}},
+         {"station", "Place where the session ran", "", "text", "", 1, {}},
+         {"device", "Haptic device", "", "text", "", 1, {}},
+         {"device_simulated", "1 if the device is simulated", "", "0/1", "", 1, {"0", "1"}},
+         {"experimenter", "Who led the session", "", "text", "", 1, {}},
+         {"language", "Language of the texts", "", "text", "", 1, {}},
+         {"seed", "Seed of everything random in the session", "", "integer", "", 1, {}},
+         {"rng", "Random generator", "", "text", "", 1, {}},
+         {"epoch",
+          "wall: UTC is the clock's; virtual: UTC counts from 2000-01-01T00:00:00Z",
+          "",
+          "text",
+          "",
+          1,
+          {"virtual", "wall"}},
+         {"started_utc", "Start", "", "time", "", 1, {}},
+         {"ended_utc", "End", "", "time", "", 1, {}},
+         {"end_state", "How the session ended", "", "text", "", 1, {"complete", "aborted", "crashed", "withdrawn"}},
+         {"n_segments", "Runs of the program that the session took", "", "integer", "", 1, {}},
+         {"n_planned_trials", "Trials in the session's plan", "", "integer", "", 1, {}},
+         {"n_attempts", "Attempts made", "", "integer", "", 1, {}},
+         {"n_valid_attempts", "Attempts that may be analysed", "", "integer", "", 1, {}},
+         {"protocol_sha256", "SHA-256 of the protocol's text, see protocol/", "", "text", "", 1, {}},
+         {"app_version", "Version of the program", "", "text", "", 1, {}}},
+        {}};
+    for (const store::SessionRow& s : study.sessions) {
+        table.rows.push_back({s.participant_id,
+                              s.kind,
+                              cell(s.ordinal),
+                              s.session_id,
+                              s.station,
+                              s.device,
+                              cell(s.device_simulated),
+                              cell(s.experimenter),
+                              s.language,
+                              std::to_string(s.seed),
+                              s.rng,
+                              s.epoch,
+                              s.started_utc,
+                              cell(s.ended_utc),
+                              cell(s.end_state),
+                              cell(s.segments),
+                              cell(s.planned_trials),
+                              cell(s.attempts),
+                              cell(s.valid_attempts),
+                              s.protocol_sha256,
+                              s.app_version});
+    }
+    return table;
+}
+
+Table makeParticipants(const StudyData& study) {
+    Table table{"participants.csv",
+                "One row per participant.",
+                {{"participant_id", "Code of the participant", "", "text", "", 1, {}},
+                 {"kind", "Real person, pilot or simulated participant", "", "text", "", 1, kKinds},
+                 {"status",
+                  "Where the participant stands",
+                  "",
+                  "text",
+                  "",
+                  1,
+                  {"enrolled", "active", "complete", "excluded", "withdrawn"}},
+                 {"status_reason", "Why", "", "text", "", 1, {}},
+                 {"group", "Group of the between-subjects factors; all if there is none", "", "text", "", 1, {}},
+                 {"sequence_index", "Row of the counterbalancing square, from 0", "", "integer", "", 1, {}},
+                 {"replicate", "Which use of the square, from 0", "", "integer", "", 1, {}},
+                 {"created_utc", "Enrolment", "", "time", "", 1, {}},
+                 {"n_sessions", "Sessions begun", "", "integer", "", 1, {}}},
+                {}};
+    for (const store::ParticipantRow& p : study.participants) {
+        table.rows.push_back({p.participant_id, p.kind, p.status, cell(p.status_reason), cell(p.group),
+                              cell(p.sequence_index), cell(p.replicate), p.created_utc, cell(p.sessions)});
+    }
+    return table;
+}
+
+Table makeTiming(const StudyData& study) {
+    Table table{"timing.csv",
+                "One row per attempt that has ended: how well the haptic loop kept its rate. Times are NA where the "
+                "loop ran in virtual time.",
+                {{"participant_id", "Code of the participant", "", "text", "", 1, {}},
+                 {"session", "Number of the participant's session, from 1", "", "integer", "", 1, {}},
+                 {"trial_index", "Number of the trial in the session, from 0", "", "integer", "", 1, {}},
+                 {"attempt_no", "Number of the attempt at this trial, from 1", "", "integer", "", 1, {}},
+                 {"loop", "What drove the loop", "", "text", "", 1, {}},
+                 {"n_ticks", "Ticks computed", "", "integer", "", 1, {}},
+                 {"mean_us", "Computing time of a tick, mean", "µs", "number", "", 1, {}},
+                 {"sd_us", "Computing time of a tick, standard deviation", "µs", "number", "", 1, {}},
+                 {"p99_us", "Computing time of a tick, 99th percentile", "µs", "number", "", 1, {}},
+                 {"p999_us", "Computing time of a tick, 99.9th percentile", "µs", "number", "", 1, {}},
+                 {"max_us", "Computing time of a tick, largest", "µs", "number", "", 1, {}},
+                 {"overruns", "Ticks that ended after their deadline; 0 in virtual time", "", "integer", "", 1, {}},
+                 {"dropped_samples", "Ticks that could not be recorded", "", "integer", "", 1, {}}},
+                {}};
+    for (const store::AttemptRow& attempt : study.attempts) {
+        if (!attempt.timing) continue;
+        const store::TimingRow& t = *attempt.timing;
+        table.rows.push_back({attempt.participant_id, cell(attempt.session_ordinal), cell(attempt.trial_index),
+                              cell(attempt.attempt_no), t.loop, cell(t.ticks), cell(t.mean_us), cell(t.sd_us),
+                              cell(t.p99_us), cell(t.p999_us), cell(t.max_us), cell(t.overruns),
+                              cell(t.dropped_samples)});
+    }
+    return table;
+}
+
+}  // namespace passung::exporter

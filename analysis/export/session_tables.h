@@ -1,0 +1,13 @@
+#pragma once
+
+#include "analysis/export/study_data.h"
+#include "analysis/export/table.h"
+
+namespace passung::exporter {
+
+Table makeEvents(const StudyData& study);
+Table makeSessions(const StudyData& study);
+Table makeParticipants(const StudyData& study);
+Table makeTiming(const StudyData& study);
+
+}  // namespace passung::exporter

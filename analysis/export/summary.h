@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "core/base/result.h"
+#include "study/store/store_reader.h"
+
+namespace passung::exporter {
+
+/// Means per condition as a text table for a terminal, one table for each kind of participant: valid trials of the
+/// main phase, share of success, completion time, depths and forces. A mean takes the trials that have the value.
+Result<std::string> summaryTable(const store::StoreReader& reader);
+
+}  // namespace passung::exporter

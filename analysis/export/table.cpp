@@ -1,0 +1,66 @@
+#include "analysis/export/table.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace passung::exporter {
+namespace {
+
+template <class Number>
+std::string shortest(Number value) {
+    if (!std::isfinite(value)) return kMissing;
+    std::array<char, 32> digits{};
+    const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+    return {digits.data(), end};
+}
+
+template <class Fields, class Text>
+void appendLine(std::string& text, const Fields& fields, Text text_of) {
+    bool first = true;
+    for (const auto& field : fields) {
+        if (!first) text += ',';
+        first = false;
+        appendField(text, text_of(field));
+    }
+    text += '\n';
+}
+
+}  // namespace
+
+std::string cell(std::int64_t value) { return std::to_string(value); }
+std::string cell(double value) { return shortest(value); }
+std::string cell(float value) { return shortest(value); }
+std::string cell(bool value) { return value ? "1" : "0"; }
+std::string cell(const std::optional<std::string>& value) { return value.value_or(kMissing); }
+std::string cell(const std::optional<std::int64_t>& value) { return value ? cell(*value) : kMissing; }
+std::string cell(const std::optional<double>& value) { return value ? cell(*value) : kMissing; }
+
+std::string secondsCell(const std::optional<std::int64_t>& nanoseconds) {
+    if (!nanoseconds) return kMissing;
+    return cell(static_cast<double>(*nanoseconds) / 1e9);
+}
+
+void appendField(std::string& line, std::string_view text) {
+    if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
+        line += text;
+        return;
+    }
+    line += '"';
+    for (const char c : text) {
+        if (c == '"') line += '"';
+        line += c;
+    }
+    line += '"';
+}
+
+std::string toCsv(const Table& table) {
+    std::string text;
+    appendLine(text, table.columns, [](const Column& column) -> std::string_view { return column.name; });
+    for (const auto& row : table.rows) {
+        appendLine(text, row, [](const std::string& field) -> std::string_view { return field; });
+    }
+    return text;
+}
+
+}  // namespace passung::exporter

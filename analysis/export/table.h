@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace passung::exporter {
+
+/// What a missing value looks like in every file.
+inline constexpr const char* kMissing = "NA";
+
+/// A column and what the codebook says of it.
+struct Column {
+    std::string name;
+    std::string label;
+    std::string unit;     // empty: none
+    std::string type;     // "text", "number", "integer", "0/1", "time" (ISO 8601, UTC)
+    std::string formula;  // empty: as recorded
+    std::int64_t formula_version = 1;
+    std::vector<std::string> levels;  // empty: not a fixed set
+};
+
+/// One CSV file: its columns' meaning and its cells as text.
+struct Table {
+    std::string file;   // path inside the export, e.g. "trials.csv"
+    std::string about;  // one sentence for the README
+    std::vector<Column> columns;
+    std::vector<std::vector<std::string>> rows;
+};
+
+std::string cell(std::int64_t value);
+/// The shortest decimal that reads back to the same number; NA if it is not finite.
+std::string cell(double value);
+std::string cell(float value);
+std::string cell(bool value);
+std::string cell(const std::optional<std::string>& value);
+std::string cell(const std::optional<std::int64_t>& value);
+std::string cell(const std::optional<double>& value);
+
+/// Nanoseconds as seconds.
+std::string secondsCell(const std::optional<std::int64_t>& nanoseconds);
+
+/// Appends one field, quoted as RFC 4180 asks if it holds a comma, a quote or a line break.
+void appendField(std::string& line, std::string_view text);
+
+/// The whole file: header, rows, LF after each.
+std::string toCsv(const Table& table);
+
+}  // namespace passung::exporter

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "analysis/export/study_data.h"
+#include "analysis/export/table.h"
+
+namespace passung::exporter {
+
+/// The columns of trials.csv that every study has; factors and measures come in between.
+std::vector<Column> fixedColumns();
+
+/// One row per attempt, whatever became of it.
+Table makeTrials(const StudyData& study);
+
+/// One row per participant and condition: means, medians and counts.
+Table makeCells(const StudyData& study);
+
+/// One table per measure, one row per participant, one column per condition.
+std::vector<Table> makeWide(const StudyData& study);
+
+}  // namespace passung::exporter

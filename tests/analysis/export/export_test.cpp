@@ -1,0 +1,315 @@
+#include "analysis/export/export.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <map>
+
+#include "analysis/export/samples.h"
+#include "study/store/sqlite.h"
+#include "tests/analysis/export/csv_reader.h"
+#include "tests/study/store/fake_study.h"
+
+namespace passung::exporter {
+namespace {
+
+namespace fs = std::filesystem;
+using fake::require;
+
+std::string readFile(const fs::path& path) {
+    std::ifstream stream(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Path in the folder → bytes.
+std::map<std::string, std::string> readFolder(const std::string& folder) {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        if (entry.is_regular_file()) files[fs::relative(entry.path(), folder).string()] = readFile(entry.path());
+    }
+    return files;
+}
+
+/// What `command` prints, and then its exit code.
+std::pair<std::string, int> shell(const std::string& command) {
+    FILE* pipe = popen(command.c_str(), "r");
+    std::string text;
+    char buffer[4096];
+    for (std::size_t n = 0; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;) text.append(buffer, n);
+    return {text, pclose(pipe)};
+}
+
+/// Two simulated participants with `trials` attempts each (8 in the plan), an event with a hard text, and a third
+/// participant whose only attempt is left running.
+void writeStudy(const std::string& path, std::int64_t trials = 6) {
+    auto store = fake::openStore(path);
+    for (const char* code : {"S001", "S002"}) {
+        auto writer = fake::beginSession(*store, code, 8);
+        writer->appendEvent({{}, 5, "experimenter", fake::kHardText, R"({"note": "a, \"b\""})"});
+        for (std::int64_t trial = 0; trial < trials; ++trial) require(fake::writeAttempt(*writer, trial, 40));
+        require(writer->finishSession(true, 60'000'000'000));
+    }
+    auto writer = fake::beginSession(*store, "S003", 8);
+    require(writer->startAttempt(fake::attemptStart(0)));
+}
+
+void exportTo(const std::string& database, const std::string& folder, const ExportOptions& options = {}) {
+    const store::StoreReader reader = require(store::StoreReader::open(database));
+    require(exportAll(reader, folder, options));
+}
+
+class Export : public ::testing::Test {
+protected:
+    void SetUp() override {
+        writeStudy(folder_ / "s.db");
+        exportTo(folder_ / "s.db", folder_ / "out");
+        files_ = readFolder(folder_ / "out");
+    }
+    fake::CsvFile csv(const std::string& file) { return fake::readCsv(files_.at(file)); }
+
+    fake::TempFolder folder_;
+    std::map<std::string, std::string> files_;
+};
+
+TEST_F(Export, TrialsHaveOneRowPerAttemptWithFactorsAndMeasures) {
+    // Truth: closed form (what the fake study wrote)
+    const fake::CsvFile trials = csv("trials.csv");
+    ASSERT_EQ(trials.rows.size(), 13u);
+    const std::vector<std::string> leading = {"participant_id", "kind",        "group",         "session",
+                                              "station",        "device",      "block_index",   "block",
+                                              "phase",          "trial_index", "trial_in_block"};
+    EXPECT_TRUE(std::equal(leading.begin(), leading.end(), trials.header.begin()));
+    EXPECT_EQ(trials.at(7, "participant_id"), "S002");
+    EXPECT_EQ(trials.at(7, "kind"), "simulated");
+    EXPECT_EQ(trials.at(7, "trial_index"), "1");
+    EXPECT_EQ(trials.at(7, "block"), "main, \"first\"");
+    EXPECT_EQ(trials.at(7, "condition"), "penalty/0,5");
+    EXPECT_EQ(trials.at(7, "method"), "penalty");
+    EXPECT_EQ(trials.at(7, "clearance"), "0,5");
+    EXPECT_EQ(trials.at(7, "start_s"), "10");
+    EXPECT_EQ(trials.at(7, "duration_s"), "0.04");
+    EXPECT_EQ(trials.at(7, "outcome"), "success");
+    EXPECT_EQ(trials.at(7, "valid"), "1");
+    EXPECT_EQ(trials.at(7, "invalid_reason"), "NA");
+    EXPECT_EQ(trials.at(7, "completion_time_s"), "1.1");
+    EXPECT_EQ(trials.at(7, "peak_force_N"), "0.3333333333333333");
+    EXPECT_EQ(trials.at(7, "n_ticks"), "40");
+    EXPECT_FALSE(trials.has("path_length_m")) << "the protocol does not name it";
+}
+
+TEST_F(Export, ARunningAttemptClaimsNothing) {
+    // Truth: invariant (no row claims a result that did not happen)
+    const fake::CsvFile trials = csv("trials.csv");
+    EXPECT_EQ(trials.at(12, "participant_id"), "S003");
+    EXPECT_EQ(trials.at(12, "outcome"), "running");
+    EXPECT_EQ(trials.at(12, "valid"), "0");
+    for (const char* column : {"duration_s", "completion_time_s", "peak_force_N", "n_ticks"}) {
+        EXPECT_EQ(trials.at(12, column), "NA") << column;
+    }
+    EXPECT_EQ(csv("sessions.csv").at(2, "end_state"), "NA");
+}
+
+TEST_F(Export, CellsAreMeansOfTheCountedAttempts) {
+    // Truth: closed form (completion times 1.0, 1.1 … 1.5 s; conditions 0, 1, 2, 3, 0, 1)
+    const fake::CsvFile cells = csv("cells_long.csv");
+    ASSERT_EQ(cells.rows.size(), 3u * 4u);
+    EXPECT_EQ(cells.at(0, "condition"), "penalty/0.1");
+    EXPECT_EQ(cells.at(0, "n_trials"), "2");
+    EXPECT_EQ(cells.at(0, "success_share"), "1");
+    EXPECT_NEAR(std::stod(cells.at(0, "completion_time_s.mean")), (1.0 + 1.4) / 2, 1e-12);
+    EXPECT_NEAR(std::stod(cells.at(1, "completion_time_s.median")), (1.1 + 1.5) / 2, 1e-12);
+    EXPECT_EQ(cells.at(2, "n_trials"), "1");
+    EXPECT_EQ(cells.at(8, "participant_id"), "S003");
+    EXPECT_EQ(cells.at(8, "n_trials"), "0");
+    EXPECT_EQ(cells.at(8, "completion_time_s.mean"), "NA");
+    EXPECT_EQ(cells.at(8, "success_share"), "NA");
+}
+
+TEST_F(Export, WideTablesHoldTheSameMeansOneRowAPerson) {
+    // Truth: invariant (both shapes tell the same)
+    const fake::CsvFile wide = csv("wide_completion_time_s.csv");
+    const fake::CsvFile cells = csv("cells_long.csv");
+    ASSERT_EQ(wide.rows.size(), 3u);
+    const std::vector<std::string> parts = {"penalty_0.1", "penalty_0_5", "god_0.1", "god_0_5"};
+    for (std::size_t person = 0; person < 3; ++person) {
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            EXPECT_EQ(wide.at(person, "completion_time_s." + parts[i]),
+                      cells.at(person * 4 + i, "completion_time_s.mean"));
+        }
+    }
+}
+
+TEST_F(Export, EventsKeepHardTexts) {
+    // Truth: closed form (what the fake study wrote)
+    const fake::CsvFile events = csv("events.csv");
+    ASSERT_EQ(events.rows.size(), 14u);
+    const auto note =
+        std::find_if(events.rows.begin(), events.rows.end(), [](const auto& row) { return row[5] == "experimenter"; });
+    ASSERT_NE(note, events.rows.end());
+    EXPECT_EQ((*note)[6], fake::kHardText);
+    EXPECT_EQ((*note)[3], "NA");
+}
+
+TEST_F(Export, SamplesUnpackToTheRecordedTicks) {
+    // Truth: independent program (gzip) and invariant (numbers read back to the recorded bits)
+    const auto [text, code] = shell("gzip -dc '" + (folder_ / "out/samples/S001_1_t003_a1.csv.gz") + "'");
+    ASSERT_EQ(code, 0);
+    const fake::CsvFile samples = fake::readCsv(text);
+    const std::vector<TickRecord> records = fake::makeRecords(3, 40);
+    ASSERT_EQ(samples.rows.size(), records.size());
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        const TickRecord& r = records[i];
+        EXPECT_EQ(samples.at(i, "tick"), std::to_string(r.tick));
+        EXPECT_EQ(std::stod(samples.at(i, "device_z_m")), r.device_position_m[2]);
+        EXPECT_EQ(std::stod(samples.at(i, "device_qw")), r.device_quaternion[0]);
+        EXPECT_EQ(std::stof(samples.at(i, "hand_qz")), r.hand_quaternion[3]);
+        EXPECT_EQ(std::stof(samples.at(i, "proxy_x_m")), r.proxy_position_m[0]);
+        EXPECT_EQ(std::stof(samples.at(i, "force_y_N")), r.force_N[1]);
+        EXPECT_EQ(std::stof(samples.at(i, "torque_x_Nm")), r.torque_Nm[0]);
+        EXPECT_EQ(std::stof(samples.at(i, "proxy_depth_m")), r.proxy_depth_m);
+        EXPECT_EQ(samples.at(i, "status"), std::to_string(r.status));
+        EXPECT_EQ(samples.at(i, "nodes_visited"), std::to_string(r.nodes_visited));
+    }
+    EXPECT_EQ(samples.at(17, "t_s"), "0.017");
+}
+
+TEST_F(Export, NoMeasuredTimeReachesAnExportOfVirtualTime) {
+    // Truth: invariant (the fake study hands over durations, means of 4711.25 µs and a wall clock of 2001)
+    std::string all;
+    for (const auto& [file, bytes] : files_) {
+        if (file.ends_with(".gz")) {
+            all += shell("gzip -dc '" + (folder_ / "out/") + file + "'").first;
+        } else {
+            all += bytes;
+        }
+    }
+    for (const char* clue : {"4711.25", "4711.75", "2001-02-03"}) EXPECT_EQ(all.find(clue), std::string::npos) << clue;
+    for (const TickRecord& record : fake::makeRecords(3, 40)) {
+        EXPECT_EQ(all.find(std::to_string(record.duration_ns)), std::string::npos);
+    }
+    const fake::CsvFile timing = csv("timing.csv");
+    for (const char* column : {"mean_us", "sd_us", "p99_us", "p999_us", "max_us"})
+        EXPECT_EQ(timing.at(0, column), "NA");
+    EXPECT_EQ(csv("sessions.csv").at(0, "started_utc"), "2000-01-01T00:00:00.000Z");
+    EXPECT_EQ(csv("participants.csv").at(0, "created_utc"), "2000-01-01T00:00:00.000Z");
+}
+
+TEST_F(Export, EveryColumnOfEveryTableIsInTheCodebook) {
+    // Truth: invariant
+    const fake::CsvFile book = csv("codebook.csv");
+    std::map<std::string, std::vector<std::string>> described;
+    for (std::size_t i = 0; i < book.rows.size(); ++i) {
+        described[book.at(i, "file")].push_back(book.at(i, "column"));
+        EXPECT_FALSE(book.at(i, "label").empty()) << book.at(i, "column");
+        EXPECT_EQ(book.at(i, "missing"), "NA");
+    }
+    int tables = 0;
+    for (const auto& [file, bytes] : files_) {
+        if (!file.ends_with(".csv")) continue;
+        EXPECT_EQ(described[file], fake::readCsv(bytes).header) << file;
+        ++tables;
+    }
+    EXPECT_EQ(tables, 9);
+    EXPECT_TRUE(described.count("samples/*.csv.gz"));
+    const store::Database sqlite(folder_ / "json.db", store::OpenMode::Create);
+    store::Statement valid = sqlite.prepare("SELECT json_valid(?)");
+    ASSERT_TRUE(valid.bind(files_.at("codebook.json")).step());
+    EXPECT_EQ(valid.integer(0), 1) << "codebook.json is JSON";
+}
+
+TEST_F(Export, SumsAndProtocolNameAreRight) {
+    // Truth: independent program (coreutils sha256sum)
+    EXPECT_EQ(shell("cd '" + (folder_ / "out") + "' && sha256sum --strict --quiet -c SHA256SUMS").second, 0);
+    const std::string sums = files_.at("SHA256SUMS");
+    EXPECT_EQ(static_cast<std::size_t>(std::count(sums.begin(), sums.end(), '\n')), files_.size() - 1);
+    const std::string sha = csv("trials.csv").at(0, "protocol_sha256");
+    EXPECT_EQ(files_.at("protocol/" + sha + ".toml"), fake::makePlan().source_text);
+}
+
+TEST_F(Export, TheSameDatabaseGivesTheSameBytes) {
+    // Truth: invariant (determinism rule)
+    exportTo(folder_ / "s.db", folder_ / "again");
+    EXPECT_EQ(readFolder(folder_ / "again"), files_);
+}
+
+TEST_F(Export, TheSameStudyRunAgainGivesTheSameBytes) {
+    // Truth: invariant: another database, its wall clock another one, sessions stored in another order
+    const std::string path = folder_ / "other.db";
+    {
+        store::OpenOptions later = fake::options();
+        later.now_utc = "2031-02-03T04:05:06.000Z";
+        auto store = fake::openStore(path, later);
+        auto first = fake::beginSession(*store, "S001", 8);
+        auto second = fake::beginSession(*store, "S002", 8);
+        auto third = fake::beginSession(*store, "S003", 8);
+        require(third->startAttempt(fake::attemptStart(0)));
+        for (auto* writer : {second.get(), first.get()}) {
+            writer->appendEvent({{}, 5, "experimenter", fake::kHardText, R"({"note": "a, \"b\""})"});
+            for (std::int64_t trial = 0; trial < 6; ++trial) require(fake::writeAttempt(*writer, trial, 40));
+            require(writer->finishSession(true, 60'000'000'000));
+        }
+    }
+    exportTo(path, folder_ / "other");
+    EXPECT_EQ(readFolder(folder_ / "other"), files_);
+}
+
+TEST_F(Export, SamplesCanBeLeftOut) {
+    // Truth: invariant
+    exportTo(folder_ / "s.db", folder_ / "small", {.samples = false, .progress = {}});
+    auto expected = files_;
+    const auto small = readFolder(folder_ / "small");
+    for (const auto& [file, bytes] : small) EXPECT_FALSE(file.starts_with("samples")) << file;
+    EXPECT_EQ(small.at("trials.csv"), expected.at("trials.csv"));
+    EXPECT_EQ(small.at("README.md").find("samples"), std::string::npos);
+}
+
+TEST_F(Export, AnEarlierExportIsReplacedAsAWhole) {
+    // Truth: invariant
+    std::ofstream(folder_ / "out/trials.csv") << "spoilt";
+    std::ofstream(folder_ / "out/stale.csv") << "stale";
+    exportTo(folder_ / "s.db", folder_ / "out/");
+    EXPECT_EQ(readFolder(folder_ / "out"), files_);
+    EXPECT_FALSE(fs::exists(folder_ / "out.partial"));
+    EXPECT_FALSE(fs::exists(folder_ / "out.replaced"));
+}
+
+TEST_F(Export, AFolderWithSomethingElseIsRefusedAndLeftAlone) {
+    // Truth: invariant
+    const store::StoreReader reader = require(store::StoreReader::open(folder_ / "s.db"));
+    fs::create_directory(folder_ / "mine");
+    std::ofstream(folder_ / "mine/thesis.txt") << "years of work";
+    std::ofstream(folder_ / "file") << "a file";
+    for (const char* name : {"mine", "file"}) {
+        const auto refused = exportAll(reader, folder_ / name);
+        ASSERT_FALSE(refused) << name;
+        EXPECT_EQ(refused.errors()[0].file, folder_ / name);
+    }
+    EXPECT_EQ(readFolder(folder_ / "mine"), (std::map<std::string, std::string>{{"thesis.txt", "years of work"}}));
+    EXPECT_EQ(readFile(folder_ / "file"), "a file");
+    EXPECT_FALSE(exportAll(reader, ""));
+    EXPECT_FALSE(exportAll(reader, "."));
+}
+
+TEST_F(Export, ADamagedSampleLeavesNothingHalfWritten) {
+    // Truth: invariant
+    store::Database(folder_ / "s.db", store::OpenMode::ReadWrite)
+        .execute("UPDATE sample_chunk SET crc32 = crc32 + 1 WHERE chunk_no = 4");
+    const store::StoreReader reader = require(store::StoreReader::open(folder_ / "s.db"));
+    EXPECT_FALSE(exportAll(reader, folder_ / "new"));
+    EXPECT_FALSE(fs::exists(folder_ / "new"));
+    EXPECT_FALSE(fs::exists(folder_ / "new.partial"));
+    EXPECT_FALSE(exportAll(reader, folder_ / "out"));
+    EXPECT_EQ(readFolder(folder_ / "out"), files_) << "the earlier export is still there";
+}
+
+TEST(ExportSamples, ColumnsAndChannelsAgree) {
+    // Truth: invariant: as many cells as columns
+    const fake::CsvFile samples = fake::readCsv(samplesCsv(fake::makeRecords(1, 2)));
+    EXPECT_EQ(samples.header.size(), sampleColumns().size());
+    EXPECT_EQ(samples.rows.size(), 2u);
+}
+
+}  // namespace
+}  // namespace passung::exporter
