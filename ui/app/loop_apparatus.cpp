@@ -1,0 +1,103 @@
+#include "ui/app/loop_apparatus.h"
+
+#include <chrono>
+#include <thread>
+
+namespace passung::app {
+
+namespace {
+
+constexpr std::size_t kRingRecords = 8192;  // eight seconds: a writer that stalls for longer shows in the data
+
+const model::PartSpec& heldPart(const model::SceneSpec& scene) {
+    for (const auto& part : scene.parts) {
+        if (part.held) return part;
+    }
+    return scene.parts.front();  // a validated scene has one
+}
+
+/// What the display shows of the task: parts where they are drawn.
+simulated::VisibleTask visibleTask(const protocol::Condition& condition) {
+    const auto shown = [](const model::PartSpec& part) { return Pose{part.X_WP.q, part.X_WP.p + part.shown_offset}; };
+    simulated::VisibleTask task;
+    task.X_WHeldStart = shown(heldPart(condition.scene));
+    task.insertion_depth = condition.task.insertion_depth;
+    for (const auto& part : condition.scene.parts) {
+        if (part.name == condition.task.target) task.X_WTarget = shown(part);
+    }
+    return task;
+}
+
+}  // namespace
+
+std::vector<session::StageNote> stageNotes(const tick::TickModel& model) {
+    std::vector<session::StageNote> notes;
+    for (const tick::Stage& stage : model.stages) notes.push_back({stage.name, stage.reason});
+    return notes;
+}
+
+LoopApparatus::Run::Run(model::Scene built, std::unique_ptr<simulated::SimulatedDevice> held, bool show_proxy)
+    : scene(std::move(built)),
+      model(tick::makeModel(scene)),
+      device(std::move(held)),
+      ring(kRingRecords),
+      cycle(model, *device, ring, show_proxy) {}
+
+LoopApparatus::LoopApparatus(const simulated::DeviceParams& device, const simulated::HandParams& hand, Clock clock)
+    : description_(simulated::describe(device)), hand_(hand), clock_(clock) {}
+
+LoopApparatus::~LoopApparatus() = default;
+
+Result<std::vector<session::StageNote>> LoopApparatus::prepare(const protocol::Condition& condition,
+                                                               std::uint64_t seed) {
+    const simulated::DeviceParams* preset = simulated::findPreset(condition.device);
+    if (preset == nullptr)
+        return Error{.message = "no such device preset", .key = "device.preset", .value = condition.device};
+    auto scene = model::buildScene(condition.scene, parts_);
+    if (!scene) return scene.errors();
+    const model::Registration& r = condition.scene.registration;
+    auto device = std::make_unique<simulated::SimulatedDevice>(
+        *preset, hand_, visibleTask(condition), simulated::HandRegistration{r.X_WB, r.scale, r.X_DH}, seed);
+    description_ = device->description();
+    run_ = std::make_unique<Run>(std::move(*scene), std::move(device), condition.shown == protocol::ShownPose::Proxy);
+    return stageNotes(run_->model);
+}
+
+void LoopApparatus::start() {
+    if (clock_ == Clock::RealTime) run_->thread = std::make_unique<loop::RealTimeThread>(run_->cycle);
+}
+
+void LoopApparatus::advance(std::int64_t ticks) {
+    if (clock_ == Clock::Virtual) {
+        for (std::int64_t i = 0; i < ticks; ++i) run_->cycle.run(false);
+        return;
+    }
+    std::this_thread::sleep_for(std::chrono::nanoseconds(ticks * kTickNanoseconds));
+}
+
+std::size_t LoopApparatus::takeRecords(std::span<TickRecord> into) { return run_->ring.take(into); }
+
+session::LoopHealth LoopApparatus::stop() {
+    session::LoopHealth health;
+    if (run_->thread) {
+        run_->thread->stop();
+        health.loop = run_->thread->scheduling().fifo ? "real-time fifo" : "real-time normal";
+        health.overruns = run_->thread->overruns();
+    } else {
+        run_->cycle.release();
+        health.loop = "virtual";
+    }
+    const loop::TimingHistogram& timing = run_->cycle.timing();
+    health.ticks = run_->cycle.ticks();
+    health.mean_us = timing.meanMicroseconds();
+    health.sd_us = timing.deviationMicroseconds();
+    health.p99_us = timing.quantileMicroseconds(0.99);
+    health.p999_us = timing.quantileMicroseconds(0.999);
+    health.max_us = timing.maxMicroseconds();
+    health.dropped_records = run_->ring.dropped();
+    health.histogram = timing.octaves();
+    health.state_hash = run_->cycle.stateHash();
+    return health;
+}
+
+}  // namespace passung::app

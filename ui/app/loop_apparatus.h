@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+
+#include "core/loop/haptic_loop.h"
+#include "core/model/scene.h"
+#include "devices/simulated/presets.h"
+#include "devices/simulated/simulated_device.h"
+#include "study/session/apparatus.h"
+
+namespace passung::app {
+
+enum class Clock { Virtual, RealTime };
+
+/// The session's apparatus: the haptic loop on a simulated device with a simulated hand, in either clock.
+class LoopApparatus final : public session::Apparatus {
+public:
+    /// @pre `hand.validate()` is empty.
+    LoopApparatus(const simulated::DeviceParams& device, const simulated::HandParams& hand, Clock clock);
+    ~LoopApparatus() override;
+
+    const DeviceDescription& device() const override { return description_; }
+    Result<std::vector<session::StageNote>> prepare(const protocol::Condition& condition, std::uint64_t seed) override;
+    void start() override;
+    void advance(std::int64_t ticks) override;
+    std::size_t takeRecords(std::span<TickRecord> into) override;
+    session::LoopHealth stop() override;
+
+private:
+    /// Everything of one attempt; members are destroyed in reverse order, the thread first.
+    struct Run {
+        model::Scene scene;
+        tick::TickModel model;
+        std::unique_ptr<simulated::SimulatedDevice> device;
+        loop::RecordRing ring;
+        loop::HapticCycle cycle;
+        std::unique_ptr<loop::RealTimeThread> thread;
+
+        Run(model::Scene built, std::unique_ptr<simulated::SimulatedDevice> held, bool show_proxy);
+    };
+
+    DeviceDescription description_;
+    simulated::HandParams hand_;
+    Clock clock_;
+    model::PartCache parts_;
+    std::unique_ptr<Run> run_;
+};
+
+/// What runs in every tick of `model` and why.
+std::vector<session::StageNote> stageNotes(const tick::TickModel& model);
+
+}  // namespace passung::app

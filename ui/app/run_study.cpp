@@ -1,0 +1,118 @@
+#include "ui/app/run_study.h"
+
+#include <sys/utsname.h>
+
+#include <chrono>
+
+#include "devices/simulated/presets.h"
+#include "study/measures/measures.h"
+#include "study/session/participant_order.h"
+#include "study/store/identity.h"
+#include "ui/app/simulated_hand.h"
+
+namespace passung::app {
+
+namespace {
+
+std::int64_t unixMilliseconds() {
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    return std::chrono::duration_cast<std::chrono::milliseconds>(now).count();
+}
+
+std::string hostText() {
+    utsname name{};
+    uname(&name);
+    return std::string(name.sysname) + " " + name.release + " " + name.machine;
+}
+
+/// One participant: enrolled, given a slot, and through all trials.
+class StudyRun {
+public:
+    StudyRun(const protocol::StudyPlan& plan, const RunOptions& options, const RunListener& listener,
+             store::Store& store, std::string protocol_sha256)
+        : plan_(plan), options_(options), listener_(listener), store_(store), sha256_(std::move(protocol_sha256)) {}
+
+    Result<Done> participant(int number) {
+        const bool measured = options_.clock == Clock::RealTime;
+        const store::UtcClock clock =
+            measured ? store::UtcClock::wall(unixMilliseconds()) : store::UtcClock::virtualEpoch();
+        std::string code = options_.participant;
+        if (code.empty()) {
+            auto next = store_.nextCode(store::ParticipantKind::Simulated);
+            if (!next) return next.errors();
+            code = *next;
+        }
+        if (auto enrolled = store_.enrol(code, store::ParticipantKind::Simulated, clock.at(0)); !enrolled) {
+            return enrolled.errors();
+        }
+        auto slot = store_.assignSlot(sha256_, code);
+        if (!slot) return slot.errors();
+        auto ordinal = store_.nextOrdinal(code);
+        if (!ordinal) return ordinal.errors();
+        if (listener_.session) listener_.session(code, number, options_.simulated);
+
+        store::SessionStart start;
+        start.session_id = store::sessionId(plan_.name, code, *ordinal, plan_.seed);
+        start.participant = code;
+        start.protocol_sha256 = sha256_;
+        start.ordinal = *ordinal;
+        start.seed = plan_.seed;
+        start.clock = clock;
+        const simulated::DeviceParams* device = simulated::findPreset(plan_.conditions.front().device);
+        LoopApparatus apparatus(*device, simulatedHand(plan_, code), options_.clock);
+        start.device = apparatus.device();
+        if (measured) start.host = hostText();
+        start.timing_measured = measured;
+
+        const auto trials = session::planTrials(plan_, static_cast<std::size_t>(slot->number), code);
+        auto writer = store_.createSession(start, trials);
+        if (!writer) return writer.errors();
+        session::Session session({plan_, trials, code, plan_.seed, measured}, apparatus, **writer,
+                                 {listener_.acknowledge, listener_.trial});
+        return session.run();
+    }
+
+private:
+    const protocol::StudyPlan& plan_;
+    const RunOptions& options_;
+    const RunListener& listener_;
+    store::Store& store_;
+    std::string sha256_;
+};
+
+}  // namespace
+
+const std::vector<DeviceDescription>& knownDevices() {
+    static const std::vector<DeviceDescription> devices = [] {
+        std::vector<DeviceDescription> all;
+        for (const auto& preset : simulated::presets()) all.push_back(simulated::describe(preset));
+        return all;
+    }();
+    return devices;
+}
+
+const std::vector<std::string>& knownMeasures() {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all;
+        for (const auto& definition : measures::definitions()) all.push_back(definition.name);
+        return all;
+    }();
+    return names;
+}
+
+Result<Done> runStudy(const protocol::StudyPlan& plan, const RunOptions& options, const RunListener& listener) {
+    const std::int64_t now = unixMilliseconds();
+    auto opened = store::Store::open(options.database,
+                                     {.app_version = PASSUNG_VERSION, .now_utc = store::UtcClock::wall(now).at(0)});
+    if (!opened.store) return opened.errors;
+    if (listener.recovered && !opened.recovery.empty()) listener.recovered(opened.recovery);
+    auto sha256 = opened.store->importProtocol(plan);
+    if (!sha256) return sha256.errors();
+    StudyRun run(plan, options, listener, *opened.store, *sha256);
+    for (int i = 0; i < options.simulated; ++i) {
+        if (auto done = run.participant(i + 1); !done) return done;
+    }
+    return Done{};
+}
+
+}  // namespace passung::app

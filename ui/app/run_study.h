@@ -1,0 +1,39 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "core/base/result.h"
+#include "study/protocol/study_plan.h"
+#include "study/session/session.h"
+#include "study/store/store.h"
+#include "ui/app/loop_apparatus.h"
+
+namespace passung::app {
+
+struct RunOptions {
+    std::string database;
+    std::string participant;  // code of one participant; empty: the next free codes
+    int simulated = 1;        // how many simulated participants, one after another
+    Clock clock = Clock::Virtual;
+};
+
+/// What a run tells while it goes on; any of them may be empty.
+struct RunListener {
+    std::function<void(const store::RecoveryReport&)> recovered;
+    std::function<void(const std::string& participant, int number, int of)> session;
+    std::function<void(const session::TrialProgress&)> trial;
+    std::function<void(session::AttemptId, measures::Outcome)> acknowledge;
+};
+
+/// Performs the study with simulated participants on the simulated device, each a session of all planned trials, into
+/// the database. Whatever was finished before an error stays in it.
+Result<Done> runStudy(const protocol::StudyPlan& plan, const RunOptions& options, const RunListener& listener);
+
+/// Every device that a protocol may name.
+const std::vector<DeviceDescription>& knownDevices();
+
+/// Names of all measures.
+const std::vector<std::string>& knownMeasures();
+
+}  // namespace passung::app

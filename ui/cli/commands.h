@@ -1,0 +1,74 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace passung::cli {
+
+// One struct and one function per command; every function prints what a person needs and returns the exit code:
+// 0, or 1 after an error line on standard error. Wrong usage (2) is main's business.
+
+struct CheckOptions {
+    std::string protocol;
+};
+int check(const CheckOptions& options);
+
+struct ExplainOptions {
+    std::string file;      // protocol or scene
+    int participants = 0;  // 0: as many as the protocol plans
+};
+int explain(const ExplainOptions& options);
+
+struct RunOptions {
+    std::string protocol;
+    std::string database;     // empty: the study's name with .db
+    std::string participant;  // empty: the next free codes
+    int simulated = 1;
+    bool real_time = false;
+    std::optional<std::uint64_t> seed;
+    int acknowledge_fd = -1;  // open file descriptor that gets a line per durable attempt
+};
+int run(const RunOptions& options);
+
+struct ExportOptions {
+    std::string database;
+    std::string out;
+    bool samples = true;
+};
+int exportData(const ExportOptions& options);
+
+struct ReplayOptions {
+    std::string database;
+    std::int64_t attempt = 0;  // 0: all of them
+};
+int replay(const ReplayOptions& options);
+
+struct MeshOptions {
+    std::string file;
+    std::string unit = "mm";
+};
+int mesh(const MeshOptions& options);
+
+struct QueryOptions {
+    std::string field, shell, poses, out;
+    std::string unit = "mm", field_unit, shell_unit;  // empty: unit
+    double tolerance_um = 20.0, cell_mm = 0.0, spacing_mm = 1.0;
+    std::string mode = "trilinear";
+    std::optional<double> proximity_mm;
+    int budget_nodes = 0;
+    double quality = 0.0;
+    bool two_way = false;
+};
+int query(const QueryOptions& options);
+
+struct SimulateOptions {
+    std::string scene, trajectory, out;
+};
+int simulate(const SimulateOptions& options);
+
+struct DoctorOptions {
+    double seconds = 10.0;
+};
+int doctor(const DoctorOptions& options);
+
+}  // namespace passung::cli

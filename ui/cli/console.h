@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+#include "core/base/result.h"
+
+namespace passung::cli {
+
+/// Prints every error on a line of its own on standard error; returns exit code 1.
+int fail(const Errors& errors);
+
+/// A file that appears complete or not at all: written beside its place, renamed by commit().
+class OutputFile {
+public:
+    explicit OutputFile(std::string path);
+    ~OutputFile();  // without commit() nothing remains
+    OutputFile(const OutputFile&) = delete;
+    OutputFile& operator=(const OutputFile&) = delete;
+
+    void write(std::string_view text);
+    Result<Done> commit();
+
+private:
+    std::string path_, temporary_;
+    std::FILE* file_ = nullptr;
+    bool failed_ = false;
+};
+
+/// A line on standard error that replaces itself on a terminal and is left out elsewhere.
+class ProgressLine {
+public:
+    ProgressLine();
+    ~ProgressLine();  // leaves an empty line
+    void show(const std::string& text);
+
+private:
+    bool terminal_;
+    std::size_t shown_ = 0;
+};
+
+}  // namespace passung::cli

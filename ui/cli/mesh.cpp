@@ -1,0 +1,39 @@
+#include <fmt/format.h>
+
+#include "core/model/mesh_import.h"
+#include "ui/cli/commands.h"
+#include "ui/cli/console.h"
+#include "ui/cli/part_argument.h"
+
+namespace passung::cli {
+
+int mesh(const MeshOptions& options) {
+    const auto unit = metresPerUnit(options.unit);
+    if (!unit) return fail(unit.errors());
+    const auto imported = model::importMesh(options.file, *unit);
+    if (!imported) return fail(imported.errors());
+    const model::MeshReport& r = imported->report;
+    fmt::print("{}\n", options.file);
+    const auto line = [](std::string_view name, const std::string& value) { fmt::print("  {:<22}{}\n", name, value); };
+    line("format", r.format);
+    line("unit", fmt::format("{} m", r.metres_per_unit));
+    line("triangles", r.triangles == r.triangles_read ? std::to_string(r.triangles)
+                                                      : fmt::format("{} of {} read", r.triangles, r.triangles_read));
+    line("vertices", std::to_string(r.vertices));
+    line("size", fmt::format("{:.6g} x {:.6g} x {:.6g} mm", r.size.x() * 1e3, r.size.y() * 1e3, r.size.z() * 1e3));
+    line("area", fmt::format("{:.6g} mm²", r.area * 1e6));
+    line("volume",
+         r.watertight ? fmt::format("{:.6g} mm³", r.volume * 1e9) : std::string("not defined (not watertight)"));
+    line("watertight", r.watertight ? "yes" : "no");
+    line("shells", std::to_string(r.shells));
+    line("holes", std::to_string(r.holes));
+    line("boundary edges", std::to_string(r.boundary_edges));
+    line("non-manifold edges", std::to_string(r.non_manifold_edges));
+    line("inconsistent edges", std::to_string(r.inconsistent_edges));
+    line("degenerate triangles", std::to_string(r.degenerate_triangles));
+    line("duplicate triangles", std::to_string(r.duplicate_triangles));
+    for (const std::string& note : r.notes) fmt::print("  - {}\n", note);
+    return 0;
+}
+
+}  // namespace passung::cli

@@ -1,0 +1,132 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "core/base/number_table.h"
+#include "core/tick/part_query.h"
+#include "ui/cli/commands.h"
+#include "ui/cli/console.h"
+#include "ui/cli/part_argument.h"
+
+namespace passung::cli {
+
+namespace {
+
+constexpr const char* kHeader =
+    "x_m,y_m,z_m,qw,qx,qy,qz,signed_distance_m,field_error_bound_m,error_bound_m,quality,status,closest_x_m,closest_y_"
+    "m,"
+    "closest_z_m,normal_x,normal_y,normal_z,force_x_N,force_y_N,force_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,contacts,"
+    "nodes_visited,points_tested,query_us\n";
+
+Result<model::Part> build(const std::string& path, const std::string& unit, const model::PartNeeds& needs) {
+    auto spec = partArgument(path, unit);
+    if (!spec) return spec.errors();
+    auto part = model::buildPart(*spec, needs);
+    if (!part) {
+        Errors errors = part.errors();
+        for (Error& error : errors) {
+            if (error.file.empty()) error.file = path;
+        }
+        return errors;
+    }
+    return part;
+}
+
+/// Poses, all finite, quaternions of length 1 (± 1e-3), normalised.
+Result<std::vector<Pose>> readPoses(const std::string& path, NumberTable& table) {
+    auto numbers = readNumbers(path, {"x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"});
+    if (!numbers) return numbers.errors();
+    std::vector<Pose> poses;
+    Errors errors;
+    for (std::size_t i = 0; i < numbers->rows.size(); ++i) {
+        const auto& v = numbers->rows[i];
+        Pose pose{Quat(v[3], v[4], v[5], v[6]), Vec3(v[0], v[1], v[2])};
+        if (!isFinite(pose) || !(std::abs(pose.q.norm() - 1.0) < 1e-3)) {
+            errors.push_back({.message = "a pose must be finite with a quaternion of length 1 ± 0.001",
+                              .file = path,
+                              .line = static_cast<int>(i) + 2,
+                              .column = 1});
+        }
+        pose.q.normalize();
+        poses.push_back(pose);
+    }
+    if (!errors.empty()) return errors;
+    table = std::move(*numbers);
+    return poses;
+}
+
+std::string statusOf(const tick::PartQueryResult& r) {
+    std::string status;
+    const auto add = [&](bool holds, const char* word) {
+        if (!holds) return;
+        if (!status.empty()) status += '+';
+        status += word;
+    };
+    add(r.beyond_proximity, "beyond_proximity");
+    add(r.budget_reached, "budget_reached");
+    add(r.quality_overruled_budget, "quality_overruled_budget");
+    return status.empty() ? "ok" : status;
+}
+
+void writeRow(fmt::memory_buffer& text, const std::vector<double>& pose, const tick::PartQueryResult& r, double us) {
+    auto out = std::back_inserter(text);
+    for (std::size_t i = 0; i < 7; ++i) fmt::format_to(out, "{},", pose[i]);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const Vec3 closest = r.beyond_proximity ? Vec3(Vec3::Constant(nan)) : r.closest;
+    const Vec3 normal = r.beyond_proximity ? Vec3(Vec3::Constant(nan)) : r.normal;
+    fmt::format_to(out, "{},{},{},{},{}", r.signed_distance, r.field_error_bound, r.error_bound, r.quality,
+                   statusOf(r));
+    for (const Vec3& v : {closest, normal, r.wrench.force, r.wrench.torque}) {
+        for (int axis = 0; axis < 3; ++axis) fmt::format_to(out, ",{}", v[axis]);
+    }
+    fmt::format_to(out, ",{},{},{},{:.3f}\n", r.contacts, r.nodes_visited, r.points_tested, us);
+}
+
+}  // namespace
+
+int query(const QueryOptions& options) {
+    NumberTable table;
+    const auto poses = readPoses(options.poses, table);
+    if (!poses) return fail(poses.errors());
+    const model::PartNeeds common{
+        .tolerance = options.tolerance_um * 1e-6, .cell = options.cell_mm * 1e-3, .spacing = options.spacing_mm * 1e-3};
+    model::PartNeeds field_needs = common, shell_needs = common;
+    field_needs.field = shell_needs.shell = true;
+    field_needs.shell = shell_needs.field = options.two_way;
+    ProgressLine progress;
+    progress.show("building " + options.field);
+    const auto field =
+        build(options.field, options.field_unit.empty() ? options.unit : options.field_unit, field_needs);
+    if (!field) return fail(field.errors());
+    progress.show("building " + options.shell);
+    const auto shell =
+        build(options.shell, options.shell_unit.empty() ? options.unit : options.shell_unit, shell_needs);
+    if (!shell) return fail(shell.errors());
+
+    tick::PartQueryRequest request;
+    if (options.proximity_mm) request.proximity = *options.proximity_mm * 1e-3;
+    request.max_nodes = options.budget_nodes;
+    request.quality = options.quality;
+    request.two_way = options.two_way;
+    request.mode = options.mode == "linear" ? model::FieldMode::Linear : model::FieldMode::Trilinear;
+    tick::PartQuery part_query(*field, *shell, request);
+    OutputFile out(options.out);
+    out.write(kHeader);
+    fmt::memory_buffer text;
+    for (std::size_t i = 0; i < poses->size(); ++i) {
+        const auto begin = std::chrono::steady_clock::now();
+        const tick::PartQueryResult result = part_query.at((*poses)[i]);
+        const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
+        text.clear();
+        writeRow(text, table.rows[i], result, took.count());
+        out.write({text.data(), text.size()});
+        if (i % 1000 == 0) progress.show(fmt::format("{} of {} poses", i, poses->size()));
+    }
+    const auto done = out.commit();
+    return done ? 0 : fail(done.errors());
+}
+
+}  // namespace passung::cli

@@ -1,0 +1,83 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "analysis/export/summary.h"
+#include "study/protocol/protocol_reader.h"
+#include "study/store/store_reader.h"
+#include "ui/app/run_study.h"
+#include "ui/cli/commands.h"
+#include "ui/cli/console.h"
+
+namespace passung::cli {
+
+namespace {
+
+/// One line per durable attempt to whoever started the program, in one write so that lines never mix.
+void acknowledge(int fd, session::AttemptId attempt, measures::Outcome outcome) {
+    const std::string line = fmt::format("{} {}\n", static_cast<std::int64_t>(attempt), measures::outcomeName(outcome));
+    if (write(fd, line.data(), line.size()) != static_cast<ssize_t>(line.size())) {
+        std::fprintf(stderr, "warning: the acknowledgement of attempt %lld was not taken\n",
+                     static_cast<long long>(attempt));
+    }
+}
+
+void tellRecovery(const std::string& database, const store::RecoveryReport& report) {
+    for (const auto& attempt : report.crashed_attempts) {
+        fmt::print("{}: {}: was running when an earlier run was killed; kept and marked as crashed\n", database,
+                   attempt);
+    }
+    for (const auto& session : report.crashed_sessions) {
+        fmt::print("{}: {}: ended with an earlier run that was killed; marked as crashed\n", database, session);
+    }
+    std::fflush(stdout);   // it is said only once: it must not be lost if this run is killed too
+}
+
+}  // namespace
+
+int run(const RunOptions& options) {
+    auto plan = protocol::readProtocol(options.protocol, app::knownDevices(), app::knownMeasures());
+    if (!plan) return fail(plan.errors());
+    for (const auto& warning : plan->warnings) fmt::print("{}: warning: {}\n", options.protocol, warning);
+    if (options.seed) plan->seed = *options.seed;
+
+    app::RunOptions what;
+    what.database = options.database.empty() ? plan->name + ".db" : options.database;
+    what.participant = options.participant;
+    what.simulated = options.participant.empty() ? options.simulated : 1;
+    what.clock = options.real_time ? app::Clock::RealTime : app::Clock::Virtual;
+
+    std::string participant;
+    std::size_t successes = 0, finished = 0;
+    ProgressLine progress;
+    app::RunListener listener;
+    listener.recovered = [&](const store::RecoveryReport& report) { tellRecovery(what.database, report); };
+    listener.session = [&](const std::string& code, int number, int of) {
+        participant = fmt::format("{} ({} of {})", code, number, of);
+        progress.show(participant + ": preparing");
+        successes = finished = 0;
+    };
+    listener.trial = [&](const session::TrialProgress& trial) {
+        finished = trial.finished;
+        successes += trial.outcome == measures::Outcome::Success ? 1 : 0;
+        progress.show(fmt::format("{}: trial {} of {}, {} succeeded", participant, finished, trial.planned, successes));
+        if (finished != trial.planned) return;
+        progress.show("");
+        fmt::print("{}: {} trials, {} succeeded\n", participant, finished, successes);
+        std::fflush(stdout);
+    };
+    if (options.acknowledge_fd >= 0) {
+        listener.acknowledge = [&](session::AttemptId attempt, measures::Outcome outcome) {
+            acknowledge(options.acknowledge_fd, attempt, outcome);
+        };
+    }
+    if (const auto done = app::runStudy(*plan, what, listener); !done) return fail(done.errors());
+
+    const auto reader = store::StoreReader::open(what.database);
+    if (!reader) return fail(reader.errors());
+    const auto table = exporter::summaryTable(*reader);
+    if (!table) return fail(table.errors());
+    fmt::print("\n{}", *table);
+    return 0;
+}
+
+}  // namespace passung::cli

@@ -1,0 +1,73 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <iterator>
+
+#include "core/model/scene.h"
+#include "core/tick/step.h"
+#include "devices/scripted/trajectory.h"
+#include "study/protocol/scene_reader.h"
+#include "ui/app/run_study.h"
+#include "ui/cli/commands.h"
+#include "ui/cli/console.h"
+
+namespace passung::cli {
+
+namespace {
+
+constexpr const char* kHeader =
+    "tick,t_s,device_x_m,device_y_m,device_z_m,device_qw,device_qx,device_qy,device_qz,proxy_x_m,proxy_y_m,proxy_z_m,"
+    "proxy_qw,proxy_qx,proxy_qy,proxy_qz,force_x_N,force_y_N,force_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,proxy_depth_"
+    "m,"
+    "device_depth_m,contacts,quality,status,iterations,tick_us\n";
+
+void writeRow(fmt::memory_buffer& text, std::int64_t tick, const tick::TickOutput& output, double us) {
+    auto out = std::back_inserter(text);
+    const tick::TickFrame& f = output.frame;
+    fmt::format_to(out, "{},{}", tick, static_cast<double>(tick) / 1000.0);
+    for (const Pose& pose : {f.X_WH, output.X_WG}) {
+        fmt::format_to(out, ",{},{},{},{},{},{},{}", pose.p.x(), pose.p.y(), pose.p.z(), pose.q.w(), pose.q.x(),
+                       pose.q.y(), pose.q.z());
+    }
+    for (const Vec3& v : {f.F_H_W.force, f.F_H_W.torque}) fmt::format_to(out, ",{},{},{}", v.x(), v.y(), v.z());
+    fmt::format_to(out, ",{},{},{},{},{},{},{:.3f}\n", f.proxy_depth, f.hand_depth, f.contacts, f.quality, f.status,
+                   f.iterations, us);
+}
+
+}  // namespace
+
+int simulate(const SimulateOptions& options) {
+    auto spec = protocol::readScene(options.scene, app::knownDevices());
+    if (!spec) return fail(spec.errors());
+    const auto trajectory = scripted::Trajectory::read(options.trajectory);
+    if (!trajectory) return fail(trajectory.errors());
+    // The file holds poses of the held part in the world, so that the registration has nothing to do; and the run
+    // begins with its first row, wherever that is.
+    spec->registration = model::Registration{};
+    spec->start_gate = model::StartGate{};
+    model::PartCache cache;
+    ProgressLine progress;
+    progress.show("building the scene");
+    auto scene = model::buildScene(*spec, cache);
+    if (!scene) return fail(scene.errors());
+    const tick::TickModel model = tick::makeModel(*scene);
+    tick::TickState state = tick::makeState(model);
+    OutputFile out(options.out);
+    out.write(kHeader);
+    fmt::memory_buffer text;
+    for (std::int64_t i = 0; i <= trajectory->lastTick(); ++i) {
+        DeviceReading reading;
+        reading.X_BD = trajectory->at(i);
+        const auto begin = std::chrono::steady_clock::now();
+        const tick::TickOutput output = tick::step(model, state, reading);
+        const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
+        text.clear();
+        writeRow(text, i, output, took.count());
+        out.write({text.data(), text.size()});
+        if (i % 10000 == 0) progress.show(fmt::format("{} of {} ticks", i, trajectory->lastTick() + 1));
+    }
+    const auto done = out.commit();
+    return done ? 0 : fail(done.errors());
+}
+
+}  // namespace passung::cli
