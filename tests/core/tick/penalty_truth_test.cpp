@@ -72,6 +72,56 @@ TEST(PenaltyTruth, TiltedBoxIntoPlaneFeelsItsSubmergedVolumeAtItsCentroid) {
     EXPECT_NEAR(w.torque.y(), torque.y(), 0.01 * std::abs(torque.y()));
 }
 
+/// Volume of a closed mesh below z = 0 and its first moment, by clipping every triangle at the plane and summing the
+/// tetrahedra to a point of the plane: the cut face lies in the plane and adds nothing.
+struct Submerged {
+    double volume = 0.0;
+    Vec3 moment = Vec3::Zero();  // ∫ x dV
+};
+
+Submerged submerged(const model::TriangleMesh& mesh, const Pose& X_WM) {
+    Submerged sum;
+    for (const auto& t : mesh.triangles) {
+        std::vector<Vec3> polygon;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 a = X_WM * mesh.vertices[t[k]], b = X_WM * mesh.vertices[t[(k + 1) % 3]];
+            if (a.z() <= 0) polygon.push_back(a);
+            if ((a.z() < 0) != (b.z() < 0)) polygon.push_back(a + (b - a) * (a.z() / (a.z() - b.z())));
+        }
+        for (std::size_t k = 2; k < polygon.size(); ++k) {
+            const double volume = polygon[0].dot(polygon[k - 1].cross(polygon[k])) / 6;
+            sum.volume += volume;
+            sum.moment += volume * (polygon[0] + polygon[k - 1] + polygon[k]) / 4;  // centroid with the origin
+        }
+    }
+    return sum;
+}
+
+TEST(PenaltyTruth, AnyBodyAtAnyPoseFeelsItsSubmergedVolumeAtItsCentroid) {
+    // Truth: closed form (Archimedes, by the divergence theorem): F = κ V n through the centroid of V; V by exact
+    // clipping.
+    const Part plane = table();
+    Random random(17);
+    for (const model::Shape shape :
+         {model::Shape(model::Peg{0.02, 0.03, 0.002}), model::Shape(model::Box{0.02, 0.03, 0.025}),
+          model::Shape(model::BorePlate{0.03, 0.03, 0.02, 0.012, 0.015, 0.001})}) {
+        const Part body = part(shape, {.shell = true, .spacing = 0.6e-3});
+        for (int i = 0; i < 10; ++i) {
+            const Quat q = rotationFromVector(2.0 * Vec3(random.normal(), random.normal(), random.normal()));
+            double lowest = 1e300;
+            for (const Vec3& v : body.mesh.vertices) lowest = std::min(lowest, (q * v).z());
+            const Pose X_WS{q, Vec3(0.002, -0.001, -lowest - random.uniform(0.003, 0.008))};
+            const Submerged wet = submerged(body.mesh, X_WS);
+            const Wrench w = areaPenalty(plane, kTableTop, body, X_WS, kKappa);
+            const double expected = kKappa * wet.volume;
+            ASSERT_NEAR(w.force.z(), expected, 0.01 * expected) << model::kindName(shape) << " pose " << i;
+            ASSERT_LT(std::hypot(w.force.x(), w.force.y()), 0.01 * expected);
+            const Vec3 torque = (wet.moment / wet.volume - X_WS.p).cross(Vec3(0, 0, expected));
+            ASSERT_LT((w.torque - torque).norm(), 0.01 * expected * body.shell->reach());
+        }
+    }
+}
+
 TEST(PenaltyTruth, SphereInSphereMatchesTheIntegral) {
     // Truth: closed form (A in the test's comment): with a = D² + R_A², g(s) = R_B a s²/2 - R_B s⁴/4 - a s³/3 + s⁵/5,
     // F = (κπ/D²) [g(R_B) - g(D - R_A)] along the centre line, with the shell's normals. 20, 30, 48 mm: 1.47093e-7 κ.
