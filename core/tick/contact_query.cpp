@@ -130,7 +130,8 @@ QueryAnswer queryContacts(const model::DistanceField& field, const Pose& X_WF, c
         const double length = answer.normal_W.norm();
         answer.normal_W = length > 0.0 ? Vec3(traversal.R_WF * (answer.normal_W / length)) : Vec3(Vec3::Zero());
     }
-    if (shell.totalArea() > 0.0) answer.quality = 1.0 - traversal.unproven_area / shell.totalArea();
+    // Rounded sums of areas may exceed the total by a bit.
+    if (shell.totalArea() > 0.0) answer.quality = std::max(0.0, 1.0 - traversal.unproven_area / shell.totalArea());
     return answer;
 }
 

@@ -57,7 +57,7 @@ private:
             ->check(CLI::PositiveNumber)
             ->excludes(participant);
         sub->add_flag("--real-time", run_.real_time, "at 1 kHz by the clock instead of as fast as the machine goes");
-        sub->add_option("--seed", run_.seed, "instead of the protocol's");
+        sub->add_option("--seed", run_.seed, "instead of the protocol's")->check(CLI::NonNegativeNumber);
         sub->add_option("--acknowledge-fd", run_.acknowledge_fd, "file descriptor for a line per durable attempt");
     }
 

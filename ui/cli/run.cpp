@@ -29,7 +29,7 @@ void tellRecovery(const std::string& database, const store::RecoveryReport& repo
     for (const auto& session : report.crashed_sessions) {
         fmt::print("{}: {}: ended with an earlier run that was killed; marked as crashed\n", database, session);
     }
-    std::fflush(stdout);   // it is said only once: it must not be lost if this run is killed too
+    std::fflush(stdout);  // it is said only once: it must not be lost if this run is killed too
 }
 
 }  // namespace

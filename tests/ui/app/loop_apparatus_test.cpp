@@ -1,0 +1,110 @@
+#include "ui/app/loop_apparatus.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "study/protocol/protocol_reader.h"
+#include "tests/ui/cli/small_study.h"
+#include "ui/app/run_study.h"
+
+namespace passung::app {
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// The small study's conditions: "none" is rendered by penalty, "fair" by the god object heuristic.
+const protocol::Condition& condition(const std::string& name) {
+    static const auto plan =
+        protocol::readProtocolText(test::smallStudy(), "small.toml", knownDevices(), knownMeasures());
+    for (const protocol::Condition& c : plan->conditions) {
+        if (c.name == name) return c;
+    }
+    throw std::runtime_error("no condition " + name);
+}
+
+LoopApparatus makeApparatus() { return {*simulated::findPreset("sigma7"), {}, Clock::Virtual}; }
+
+Names stagesOf(const protocol::Condition& c) {
+    LoopApparatus apparatus = makeApparatus();
+    const auto stages = apparatus.prepare(c, 1);
+    Names names;
+    for (const session::StageNote& stage : *stages) {
+        EXPECT_FALSE(stage.reason.empty()) << stage.name;
+        names.push_back(stage.name);
+    }
+    return names;
+}
+
+/// Runs some ticks; all records and what stop() says.
+std::pair<std::vector<TickRecord>, session::LoopHealth> runTicks(const protocol::Condition& c, std::uint64_t seed,
+                                                                 std::int64_t ticks) {
+    LoopApparatus apparatus = makeApparatus();
+    EXPECT_TRUE(apparatus.prepare(c, seed));
+    apparatus.start();
+    std::vector<TickRecord> records;
+    std::array<TickRecord, 64> buffer;
+    for (std::int64_t done = 0; done < ticks; done += 20) {
+        apparatus.advance(20);
+        while (const std::size_t count = apparatus.takeRecords(buffer)) {
+            records.insert(records.end(), buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(count));
+        }
+    }
+    return {records, apparatus.stop()};
+}
+
+TEST(LoopApparatus, NamesTheStagesThatTheConditionCallsForAndNoOthers) {
+    // Truth: invariant (what a scene does not name does not run)
+    EXPECT_EQ(stagesOf(condition("none")),
+              (Names{"input guard", "start gate", "contacts at the hand", "penalty wrench", "output limits"}));
+    EXPECT_EQ(stagesOf(condition("fair")), (Names{"input guard", "start gate", "proxy correction", "proxy motion",
+                                                  "proxy record", "hand depth", "virtual coupling", "output limits"}));
+    protocol::Condition bare = condition("fair");
+    bare.scene.start_gate = {};
+    bare.scene.record_hand_depth = false;
+    bare.scene.contact.proxy_filter = 100.0;
+    bare.scene.limits.delay_ticks = 3;
+    EXPECT_EQ(stagesOf(bare), (Names{"input guard", "proxy correction", "proxy motion", "proxy filter", "proxy record",
+                                     "virtual coupling", "output delay", "output limits"}));
+}
+
+TEST(LoopApparatus, RefusesADeviceThatItDoesNotKnow) {
+    // Truth: invariant (an error that names key and value)
+    protocol::Condition other = condition("fair");
+    other.device = "sigma8";
+    LoopApparatus apparatus = makeApparatus();
+    const auto stages = apparatus.prepare(other, 1);
+    ASSERT_FALSE(stages);
+    EXPECT_EQ(stages.errors().front().key, "device.preset");
+    EXPECT_EQ(stages.errors().front().value, "sigma8");
+}
+
+TEST(LoopApparatus, GivesARecordForEveryTickAndTheSameHashForTheSameSeed) {
+    // Truth: invariant (in virtual time nothing but condition and seed decides)
+    const auto [records, health] = runTicks(condition("fair"), 5, 800);
+    ASSERT_EQ(records.size(), 800u);
+    for (std::size_t i = 0; i < records.size(); ++i) EXPECT_EQ(records[i].tick, static_cast<std::int64_t>(i));
+    EXPECT_EQ(health.ticks, 800);
+    EXPECT_EQ(health.loop, "virtual");
+    EXPECT_EQ(health.dropped_records, 0);
+    EXPECT_EQ(health.overruns, 0);
+    EXPECT_EQ(runTicks(condition("fair"), 5, 800).second.state_hash, health.state_hash);
+    EXPECT_NE(runTicks(condition("fair"), 6, 800).second.state_hash, health.state_hash);
+}
+
+TEST(LoopApparatus, BeginsEveryTrialAnew) {
+    // Truth: invariant (a trial does not depend on what the same apparatus did before)
+    LoopApparatus apparatus = makeApparatus();
+    std::vector<std::uint64_t> hashes;
+    for (const char* name : {"fair", "none", "fair"}) {
+        ASSERT_TRUE(apparatus.prepare(condition(name), 9));
+        apparatus.start();
+        apparatus.advance(500);
+        hashes.push_back(apparatus.stop().state_hash);
+    }
+    EXPECT_EQ(hashes[0], hashes[2]);
+    EXPECT_NE(hashes[0], hashes[1]);
+}
+
+}  // namespace
+}  // namespace passung::app

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <string>
+
+namespace passung::test {
+
+/// A study that takes some 50 ms of real time a trial: coarse field and shell, a wide and shallow hole, the hand starts
+/// near it. One condition ends by its time-out before anyone can have finished, the other in success.
+inline std::string smallStudy(const std::string& name = "small") {
+    return "passung = 1\n[study]\nname = \"" + name + "\"\n" + R"(version = "1.0"
+seed = 7
+participants = 4
+
+[scene]
+unit = "mm"
+
+[[scene.part]]
+name = "plate"
+shape = { kind = "bore_plate", width = 40, depth = 40, height = 12, bore_diameter = 22, bore_depth = 10, chamfer = 1 }
+
+[[scene.part]]
+name = "peg"
+held = true
+shape = { kind = "peg", diameter = 20, length = 20, chamfer = 1 }
+pose = { position = [4, 0, 8] }
+
+[scene.contact]
+cell_mm = 1.0
+spacing_mm = 3.0
+
+[scene.device]
+preset = "sigma7"
+
+[scene.start_gate]
+position_tolerance_mm = 5
+angle_tolerance_deg = 10
+hold_ms = 20
+
+[[factor]]
+name = "chance"
+levels = [
+  { label = "none", set = { "task.timeout_s" = 0.4, "contact.method" = "penalty" } },
+  { label = "fair", set = { "task.timeout_s" = 20, "contact.method" = "god_object_heuristic" } },
+]
+
+[task]
+type = "peg_in_hole"
+target = "plate"
+insertion_depth_mm = 6
+success_fraction = 0.9
+max_speed_mm_per_s = 20
+hold_s = 0.05
+timeout_s = 20
+leave_radius_mm = 2
+
+[[block]]
+name = "main"
+order = "williams"
+repetitions = 3
+)";
+}
+
+}  // namespace passung::test

@@ -1,0 +1,301 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "core/base/types.h"
+#include "study/protocol/protocol_reader.h"
+#include "study/store/digest.h"
+#include "study/store/sample_codec.h"
+#include "study/store/sqlite.h"
+#include "study/store/store_reader.h"
+#include "tests/analysis/export/csv_reader.h"
+#include "tests/ui/cli/program.h"
+#include "tests/ui/cli/small_study.h"
+#include "ui/app/run_study.h"
+
+namespace passung::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Every study that is shipped as an example, relative to `protocols`.
+std::vector<std::string> shippedStudies() {
+    const fs::path protocols = fs::path(PASSUNG_SOURCE_DIR) / "protocols";
+    std::vector<std::string> studies;
+    for (const auto& entry : fs::recursive_directory_iterator(protocols)) {
+        const std::string name = fs::relative(entry.path(), protocols).string();
+        if (entry.path().extension() != ".toml" || name.starts_with("invalid")) continue;
+        if (readText(entry.path()).find("\n[study]\n") != std::string::npos) studies.push_back(name);
+    }
+    std::sort(studies.begin(), studies.end());
+    return studies;
+}
+
+std::string testName(const testing::TestParamInfo<std::string>& info) {
+    std::string name = info.param.substr(0, info.param.rfind('.'));
+    for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+    return name;
+}
+
+/// An attempt's events of the session, in order of time.
+std::vector<store::EventRow> eventsOf(const store::AttemptRow& attempt, const std::vector<store::EventRow>& events) {
+    std::vector<store::EventRow> found;
+    for (const store::EventRow& event : events) {
+        if (event.source == "session" && event.participant_id == attempt.participant_id &&
+            event.session_ordinal == attempt.session_ordinal && event.trial_index == attempt.trial_index &&
+            event.attempt_no == attempt.attempt_no) {
+            found.push_back(event);
+        }
+    }
+    return found;
+}
+
+/// The tip above the target's mouth, along its axis [m].
+double heightOverMouth(const protocol::Condition& condition, const TickRecord& record) {
+    for (const model::PartSpec& part : condition.scene.parts) {
+        if (part.name != condition.task.target) continue;
+        const auto& p = record.proxy_position_m;
+        return (part.X_WP.inverse() * Vec3(p[0], p[1], p[2])).z();
+    }
+    throw std::runtime_error("no target");
+}
+
+/// The recorded ticks themselves say whether the outcome happened.
+void expectOutcomeInRecords(const store::AttemptRow& attempt, std::int64_t start_ns,
+                            const std::vector<TickRecord>& records, const protocol::Condition& condition) {
+    const std::int64_t end_tick = (*attempt.end_ns - attempt.start_ns) / kTickNanoseconds;
+    const std::int64_t start_tick = (start_ns - attempt.start_ns) / kTickNanoseconds;
+    ASSERT_LT(static_cast<std::size_t>(end_tick), records.size());
+    const auto at = [&](std::int64_t tick) { return records[static_cast<std::size_t>(tick)]; };
+    EXPECT_EQ(at(start_tick).status & kEngaged, kEngaged);
+    ASSERT_GT(start_tick, 0) << "the hand holds the start pose first";
+    EXPECT_EQ(at(start_tick - 1).status & kEngaged, 0u);
+    const protocol::PegInHoleTask& task = condition.task;
+    if (attempt.outcome == "success") {
+        const auto hold = static_cast<std::int64_t>(std::llround(task.hold / kTickSeconds));
+        for (std::int64_t tick = end_tick - hold; tick <= end_tick; ++tick) {
+            ASSERT_LE(heightOverMouth(condition, at(tick)), -task.success_fraction * task.insertion_depth + 1e-9);
+        }
+        EXPECT_LT(end_tick - start_tick, task.timeout / kTickSeconds);
+    } else {
+        ASSERT_EQ(attempt.outcome, "timeout");
+        EXPECT_EQ(end_tick - start_tick, std::llround(task.timeout / kTickSeconds));
+    }
+}
+
+class ShippedStudy : public testing::TestWithParam<std::string> {};
+
+TEST_P(ShippedStudy, RunsToItsDataFileAndEveryRowSaysWhatHappened) {
+    // Truth: invariant (an outcome is what the events, the recorded ticks and the protocol's rules say)
+    const TempFolder folder;
+    const std::string file = std::string(PASSUNG_SOURCE_DIR) + "/protocols/" + GetParam();
+    const auto plan = protocol::readProtocol(file, app::knownDevices(), app::knownMeasures());
+    ASSERT_TRUE(plan);
+    const Ended run = runProgram(folder.path(), {"run", file, "--simulated", "1"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(run.err, "");
+    for (const auto& condition : plan->conditions) {
+        EXPECT_NE(run.out.find("\n" + condition.name + " "), std::string::npos) << run.out;
+    }
+
+    const auto reader = store::StoreReader::open(folder / (plan->name + ".db"));
+    ASSERT_TRUE(reader);
+    const auto sessions = reader->sessions();
+    ASSERT_EQ(sessions->size(), 1u);
+    EXPECT_EQ(sessions->front().end_state, "complete");
+    EXPECT_EQ(sessions->front().epoch, "virtual");
+    EXPECT_TRUE(sessions->front().device_simulated);
+    const auto attempts = reader->attempts();
+    const auto events = reader->events();
+    ASSERT_TRUE(attempts && events);
+    EXPECT_EQ(static_cast<std::int64_t>(attempts->size()), sessions->front().planned_trials);
+    std::map<std::string, int> outcomes;
+    for (const store::AttemptRow& attempt : *attempts) {
+        SCOPED_TRACE("trial " + std::to_string(attempt.trial_index + 1) + ", " + attempt.condition);
+        EXPECT_EQ(attempt.kind, "simulated");
+        EXPECT_TRUE(attempt.valid) << attempt.invalid_reason.value_or("");
+        ++outcomes[attempt.outcome];
+        const auto happened = eventsOf(attempt, *events);
+        ASSERT_GE(happened.size(), 2u);
+        EXPECT_EQ(happened.front().event, "trial_started");
+        EXPECT_EQ(happened.back().event, attempt.outcome);
+        EXPECT_EQ(happened.back().t_ns, attempt.end_ns);
+        EXPECT_EQ(attempt.measures.at("success"), attempt.outcome == "success" ? 1.0 : 0.0);
+        const auto seconds = static_cast<double>(*attempt.end_ns - happened.front().t_ns) * 1e-9;
+        EXPECT_NEAR(attempt.measures.at("trial_time_s"), seconds, 1e-9);
+        const auto records = reader->records(attempt.attempt_id);
+        ASSERT_TRUE(records);
+        const auto condition = std::find_if(plan->conditions.begin(), plan->conditions.end(),
+                                            [&](const auto& c) { return c.name == attempt.condition; });
+        ASSERT_NE(condition, plan->conditions.end());
+        expectOutcomeInRecords(attempt, happened.front().t_ns, *records, *condition);
+    }
+    for (const auto& [outcome, count] : outcomes)
+        std::printf("%s: %d %s\n", GetParam().c_str(), count, outcome.c_str());
+
+    ASSERT_EQ(runProgram(folder.path(), {"export", plan->name + ".db", "--out", "tables", "--no-samples"}).exit_code,
+              0);
+    for (const char* table : {"trials.csv", "participants.csv", "sessions.csv"}) {
+        const fake::CsvFile csv = fake::readCsv(readText(folder.path() / "tables" / table));
+        EXPECT_FALSE(csv.rows.empty());
+        for (std::size_t row = 0; row < csv.rows.size(); ++row) EXPECT_EQ(csv.at(row, "kind"), "simulated") << table;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedStudy, testing::ValuesIn(shippedStudies()), testName);
+
+/// All files of a folder, by their path in it.
+std::map<std::string, std::string> contentOf(const fs::path& folder) {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        if (entry.is_regular_file()) files[fs::relative(entry.path(), folder).string()] = readText(entry.path());
+    }
+    return files;
+}
+
+std::map<std::string, std::string> exportOf(const std::string& seed) {
+    const TempFolder folder;
+    writeText(folder / "study.toml", smallStudy());
+    const std::string database = "study" + seed + ".db";
+    const Ended run =
+        runProgram(folder.path(), {"run", "study.toml", "--simulated", "2", "--seed", seed, "--db", database});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(runProgram(folder.path(), {"export", database, "--out", "tables"}).exit_code, 0);
+    return contentOf(folder.path() / "tables");
+}
+
+TEST(StudyRun, TheSameSeedExportsTheSameBytesAndAnotherSeedOthers) {
+    // Truth: invariant (in virtual time nothing but protocol and seed decides)
+    const auto first = exportOf("11");
+    const auto again = exportOf("11");
+    std::size_t samples = 0;
+    for (const auto& [path, bytes] : first) {
+        ASSERT_TRUE(again.count(path)) << path;
+        EXPECT_TRUE(again.at(path) == bytes) << path << " differs";
+        samples += path.ends_with(".csv.gz") ? 1 : 0;
+    }
+    EXPECT_EQ(first.size(), again.size());
+    EXPECT_EQ(samples, 12u);
+    const auto other = exportOf("12");
+    EXPECT_NE(other.at("trials.csv"), first.at("trials.csv"));
+}
+
+TEST(StudyRun, ParticipantsOfOneRunEqualThoseOfSeveralRuns) {
+    // Truth: invariant (who somebody is and what they do follows from seed and code, not from what ran before)
+    const TempFolder folder;
+    writeText(folder / "study.toml", smallStudy());
+    ASSERT_EQ(runProgram(folder.path(), {"run", "study.toml", "--simulated", "2", "--db", "at_once.db"}).exit_code, 0);
+    for (const char* code : {"S001", "S002"}) {
+        const Ended run = runProgram(folder.path(), {"run", "study.toml", "--participant", code, "--db", "by_one.db"});
+        ASSERT_EQ(run.exit_code, 0) << run.err;
+    }
+    for (const char* name : {"at_once", "by_one"}) {
+        ASSERT_EQ(runProgram(folder.path(), {"export", std::string(name) + ".db", "--out", name}).exit_code, 0);
+    }
+    EXPECT_TRUE(contentOf(folder.path() / "at_once") == contentOf(folder.path() / "by_one"));
+}
+
+/// A small study's database and ways to falsify it.
+class Replay : public testing::Test {
+protected:
+    void SetUp() override {
+        writeText(folder_ / "study.toml", smallStudy());
+        const Ended run = runProgram(folder_.path(), {"run", "study.toml", "--db", "study.db"});
+        ASSERT_EQ(run.exit_code, 0) << run.err;
+    }
+
+    /// Flips the lowest bit of one recorded value of attempt 2; with or without a checksum that hides it.
+    void falsify(const std::string& column, std::int64_t tick, bool fix_checksum) const {
+        const store::Database database(folder_ / "study.db", store::OpenMode::ReadWrite);
+        const auto sql =
+            "SELECT s.rowid, s.first_tick, s.n, s.data FROM sample_chunk s WHERE attempt_id=2 AND "
+            "first_tick<=? AND first_tick+n>?";
+        auto found = database.prepare(sql);
+        ASSERT_TRUE(found.bind(tick, tick).step());
+        const std::int64_t row = found.integer(0), first = found.integer(1), count = found.integer(2);
+        std::vector<std::byte> data(found.blob(3).begin(), found.blob(3).end());
+        found.reset();
+        std::int64_t offset = 0;
+        for (const store::Channel& channel : store::tickChannels()) {
+            const std::int64_t width = channel.type.ends_with("64") ? 8 : 4;
+            if (channel.name == column) {
+                data[static_cast<std::size_t>(offset + (tick - first) * width)] ^= std::byte{1};
+                const auto crc = store::crc32(data);
+                const std::span<const std::byte> bytes(data);
+                if (fix_checksum) {
+                    database.prepare("UPDATE sample_chunk SET data=?, crc32=? WHERE rowid=?")
+                        .bind(bytes, crc, row)
+                        .run();
+                } else {
+                    database.prepare("UPDATE sample_chunk SET data=? WHERE rowid=?").bind(bytes, row).run();
+                }
+                return;
+            }
+            offset += count * width;
+        }
+        FAIL() << "no column " << column;
+    }
+
+    Ended replay(const std::vector<std::string>& options = {}) const {
+        std::vector<std::string> arguments = {"replay", "study.db"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        return runProgram(folder_.path(), arguments);
+    }
+
+    TempFolder folder_;
+};
+
+TEST_F(Replay, ReproducesEveryRecordedBit) {
+    // Truth: invariant (the tick is a function of the recorded inputs)
+    const Ended all = replay();
+    EXPECT_EQ(all.exit_code, 0) << all.out << all.err;
+    EXPECT_NE(all.out.find("\n6 attempts replayed, 0 differ\n"), std::string::npos) << all.out;
+    const Ended one = replay({"--attempt", "3"});
+    EXPECT_EQ(one.exit_code, 0);
+    EXPECT_EQ(linesOf(one.out).size(), 1u) << one.out;
+    EXPECT_NE(one.out.find("attempt 3 (S001, session 1, trial 3, "), std::string::npos) << one.out;
+}
+
+TEST_F(Replay, NamesTickAndColumnOfAnOutputThatWasChanged) {
+    // Truth: invariant (one bit of one recorded force was flipped, its checksum made to fit)
+    falsify("force_y_N", 217, true);
+    const Ended changed = replay({"--attempt", "2"});
+    EXPECT_EQ(changed.exit_code, 1);
+    EXPECT_NE(changed.out.find("DIFFERS at tick 217 in force"), std::string::npos) << changed.out;
+    EXPECT_EQ(replay({"--attempt", "1"}).exit_code, 0);
+    const Ended all = replay();
+    EXPECT_EQ(all.exit_code, 1);
+    EXPECT_NE(all.out.find("\n6 attempts replayed, 1 differ\n"), std::string::npos) << all.out;
+}
+
+TEST_F(Replay, FindsTheLastBitOfAChangedInput) {
+    // Truth: invariant (the state hash covers exact outputs, also where recorded outputs are rounded)
+    falsify("device_z_m", 301, true);
+    const Ended changed = replay({"--attempt", "2"});
+    EXPECT_EQ(changed.exit_code, 1);
+    EXPECT_NE(changed.out.find("DIFFERS"), std::string::npos) << changed.out;
+}
+
+TEST_F(Replay, RefusesADamagedChunk) {
+    // Truth: invariant (one bit was flipped, the checksum is the old one)
+    falsify("force_y_N", 217, false);
+    for (const Ended& refused : {replay({"--attempt", "2"}), replay()}) {
+        EXPECT_EQ(refused.exit_code, 1);
+        EXPECT_EQ(linesOf(refused.err).size(), 1u) << refused.err;
+        EXPECT_NE(refused.err.find("attempt 2: chunk of samples from tick 0: checksum does not match"),
+                  std::string::npos)
+            << refused.err;
+    }
+    EXPECT_EQ(replay({"--attempt", "1"}).exit_code, 0);
+    const Ended exported = runProgram(folder_.path(), {"export", "study.db", "--out", "tables"});
+    EXPECT_EQ(exported.exit_code, 1);
+    EXPECT_EQ(linesOf(exported.err).size(), 1u) << exported.err;
+    EXPECT_FALSE(fs::exists(folder_ / "tables"));
+    EXPECT_FALSE(fs::exists(folder_ / "tables.partial"));
+}
+
+}  // namespace
+}  // namespace passung::test
