@@ -21,7 +21,10 @@ public:
     }
     template <std::size_t N>
     void field(const char* name, const std::array<float, N>& recorded, const std::array<float, N>& replayed) {
-        for (std::size_t i = 0; i < N; ++i) field(name, recorded[i], replayed[i]);
+        for (std::size_t i = 0; i < N && !difference; ++i) {
+            field(name, recorded[i], replayed[i]);
+            if (difference) difference->column += "[" + std::to_string(i) + "]";
+        }
     }
 
     std::optional<Difference> difference;

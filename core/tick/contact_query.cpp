@@ -40,6 +40,11 @@ struct Traversal {
         return std::max(request.collect_below, std::min(request.search_below, answer.phi));
     }
 
+    bool exceedsBudget(const model::SphereNode& node) const noexcept {
+        const int children = node.leaf ? 0 : static_cast<int>(node.count);
+        return request.max_nodes > 0 && answer.nodes_visited + children > request.max_nodes;
+    }
+
     void push(std::uint32_t node) noexcept {
         const model::SphereNode& n = shell.nodes()[node];
         const double bound = field.lowerBound(R_FS * n.centre + p_FS) - n.radius;
@@ -82,7 +87,7 @@ struct Traversal {
     void run() noexcept {
         for (std::uint32_t root = 0; root < shell.roots().size(); ++root) push(root);
         while (waiting > 0) {
-            if (request.max_nodes > 0 && answer.nodes_visited >= request.max_nodes) {
+            if (exceedsBudget(shell.nodes()[workspace.heap_.front().node])) {
                 answer.budget_reached = true;
                 break;
             }

@@ -79,6 +79,18 @@ Motion correctionOf(const TickModel& model, const TickState& state, double depth
     return u;
 }
 
+/// Pushes the proxy out of the overlap that a step's linearisation missed, around a rim for instance: the least motion
+/// that obeys the contacts found there.
+void relieve(const TickModel& model, TickState& state, TickFrame& frame, double reach) noexcept {
+    const double s = model.finest_cell;
+    for (int i = 0; i < kReliefs && overlap(state) > kRelieve * s; ++i) {
+        const ConstrainedMotion out =
+            constrainMotion(Motion::Zero(), state.manifold, state.X_WG.p, model.metric_radius, -kKeep * s, kRows);
+        if (longestPath(model, out.u) > kLongestStep * s) return;
+        look(model, state, frame, moved(state.X_WG, out.u, model.metric_radius), reach, reach);
+    }
+}
+
 }  // namespace
 
 void correctProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
@@ -129,6 +141,7 @@ void moveProxy(const TickModel& model, TickState& state, TickFrame& frame) noexc
         bool good = false;
         for (int half = 0; half <= kHalvings && !good; ++half, u *= 0.5) {
             look(model, state, frame, moved(X_here, u, model.metric_radius), next_reach, std::max(next_reach, path));
+            relieve(model, state, frame, next_reach);
             good = overlap(state) <= accepted;
             if (!good) frame.status |= kStepRejected;
         }

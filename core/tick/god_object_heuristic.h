@@ -25,8 +25,9 @@ namespace passung::tick {
 /// #4 constrained motion: the least change of u (Gauss) under  a_i · u ≥ -kKeep·s - φ_i.  Rows are added one at a time,
 /// the
 ///    most violated first, and solved by projected Gauss-Seidel: exact at convergence, never more than kRows rows. The
-///    step is cut to `reach`, checked by a query, halved until the overlap is acceptable, and repeated from the new
-///    pose up to kSubSteps times.
+///    step is cut to `reach` and checked by a query; what the linearisation missed (around a rim) is pushed out by the
+///    least motion that the contacts found there ask for; if the overlap is still not acceptable the step is halved;
+///    and all is repeated from the new pose up to kSubSteps times.
 /// #5 low-pass of the proxy, a stage of its own (only if the scene names its corner f_c), while in contact:
 ///    G_k = G_{k-1} ⊕ α (G* ⊖ G_{k-1}),  α = 1 - exp(-2π f_c T); dropped for a tick where it would cost overlap. #6
 ///    coupling: virtual_coupling.h. #7, #8 limits and sending: output_stage.h.
@@ -38,8 +39,10 @@ namespace passung::tick {
 /// Invariants: between two ticks no point of the shell moves by more than it was known to be away from the obstacle
 /// plus what was found at the next pose; overlap ≤ kAccept · s unless the scene started with more. Keeping kKeep · s of
 /// overlap instead of none lets the record tell contact from nearness.
-inline constexpr double kKeep = 0.01;    // overlap kept, per cell
-inline constexpr double kAccept = 0.05;  // overlap accepted by the test, per cell
+inline constexpr double kKeep = 0.01;     // overlap kept, per cell
+inline constexpr double kAccept = 0.05;   // overlap accepted by the test, per cell
+inline constexpr double kRelieve = 0.02;  // overlap after a step that is pushed out again, per cell
+inline constexpr int kReliefs = 2;
 inline constexpr int kSubSteps = 4;
 inline constexpr int kCorrections = 3;
 inline constexpr int kHalvings = 4;

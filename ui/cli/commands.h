@@ -33,7 +33,7 @@ int run(const RunOptions& options);
 struct ExportOptions {
     std::string database;
     std::string out;
-    bool samples = true;
+    bool no_samples = false;
 };
 int exportData(const ExportOptions& options);
 

@@ -13,9 +13,9 @@ namespace {
 
 void printDevices() {
     fmt::print("devices\n");
-    fmt::print("  {:<12}{:<44}{:>12}{:>13}\n", "simulated", "", "stable N/m", "Nm/rad");
+    fmt::print("  {:<12}{:<56}{:>12}{:>13}\n", "simulated", "", "stable N/m", "Nm/rad");
     for (const DeviceDescription& d : app::knownDevices()) {
-        fmt::print("  {:<12}{:<44}{:>12.0f}{:>13.3g}\n", d.name, d.label, d.stable_stiffness_N_per_m,
+        fmt::print("  {:<12}{:<56}{:>12.0f}{:>13.3g}\n", d.name, d.label, d.stable_stiffness_N_per_m,
                    d.stable_rotational_stiffness_Nm_per_rad);
     }
     fmt::print("  real        none: this version has drivers for simulated devices only\n");
@@ -29,10 +29,10 @@ std::string limitText(int resource) {
 
 void printLoop(const app::LoopCheck& check) {
     fmt::print("loop\n");
-    fmt::print("  real-time scheduling  {} (rtprio limit {})\n", check.scheduling.fifo ? "granted" : "refused",
-               limitText(RLIMIT_RTPRIO));
-    fmt::print("  locked memory         {} (memlock limit {})\n",
-               check.scheduling.memory_locked ? "granted" : "refused", limitText(RLIMIT_MEMLOCK));
+    fmt::print("  real-time scheduling  {} (limit of ordinary users: rtprio {})\n",
+               check.scheduling.fifo ? "granted" : "refused", limitText(RLIMIT_RTPRIO));
+    fmt::print("  locked memory         {} (memlock {})\n", check.scheduling.memory_locked ? "granted" : "refused",
+               limitText(RLIMIT_MEMLOCK));
     if (!check.scheduling.fifo) {
         fmt::print(
             "  to grant both: a file in /etc/security/limits.d with rtprio 80 and memlock unlimited for your group\n");

@@ -12,7 +12,7 @@ int exportData(const ExportOptions& options) {
     if (!reader) return fail(reader.errors());
     ProgressLine progress;
     const auto report =
-        exporter::exportAll(*reader, options.out, {.samples = options.samples, .progress = [&](double share) {
+        exporter::exportAll(*reader, options.out, {.samples = !options.no_samples, .progress = [&](double share) {
                                                        progress.show(fmt::format("exporting: {:.0f} %", 100.0 * share));
                                                    }});
     if (!report) return fail(report.errors());

@@ -42,7 +42,7 @@ private:
 
     void addStudyCommands() {
         auto* sub = command("check", "validate a protocol: every problem with its place", check_, check);
-        sub->add_option("PROTOCOL", check_.protocol)->required();
+        sub->add_option("PROTOCOL", check_.protocol, "study file (.toml)")->required();
 
         sub = command("explain", "design, orders and balance, or the stages of a scene's tick", explain_, explain);
         sub->add_option("FILE", explain_.file, "protocol or scene")->required();
@@ -50,10 +50,10 @@ private:
             ->check(CLI::PositiveNumber);
 
         sub = command("run", "perform a study with simulated participants", run_, passung::cli::run);
-        sub->add_option("PROTOCOL", run_.protocol)->required();
+        sub->add_option("PROTOCOL", run_.protocol, "study file (.toml)")->required();
         sub->add_option("--db", run_.database, "database; default: the study's name with .db");
         auto* participant = sub->add_option("--participant", run_.participant, "code of one participant");
-        sub->add_option("--simulated", run_.simulated, "number of participants")
+        sub->add_option("--simulated", run_.simulated, "number of new participants; default 1")
             ->check(CLI::PositiveNumber)
             ->excludes(participant);
         sub->add_flag("--real-time", run_.real_time, "at 1 kHz by the clock instead of as fast as the machine goes");
@@ -63,19 +63,19 @@ private:
 
     void addDataCommands() {
         auto* sub = command("export", "write all data as tables", export_, exportData);
-        sub->add_option("DB", export_.database)->required();
+        sub->add_option("DB", export_.database, "database of a study")->required();
         sub->add_option("--out", export_.out, "folder")->required();
-        sub->add_flag("!--no-samples", export_.samples, "leave out the recorded ticks");
+        sub->add_flag("--no-samples", export_.no_samples, "leave out the recorded ticks");
 
         sub = command("replay", "run recorded inputs again and compare every bit", replay_, replay);
-        sub->add_option("DB", replay_.database)->required();
+        sub->add_option("DB", replay_.database, "database of a study")->required();
         sub->add_option("--attempt", replay_.attempt, "attempt_id; default: all")->check(CLI::PositiveNumber);
     }
 
     void addCoreCommands() {
-        const CLI::IsMember units({"m", "cm", "mm", "um", "inch"});
+        const CLI::IsMember units({"m", "cm", "mm", "um", "in"});
         auto* sub = command("mesh", "report what a mesh file is like", mesh_, mesh);
-        sub->add_option("FILE", mesh_.file)->required();
+        sub->add_option("FILE", mesh_.file, "STL, OBJ, PLY, OFF, glTF, 3MF ...")->required();
         sub->add_option("--unit", mesh_.unit, "of files that have none; default mm")->check(units);
 
         sub = command("query", "distance, depth and wrench of two parts at given poses", query_, query);
@@ -87,14 +87,18 @@ private:
         sub->add_option("--cell-mm", query_.cell_mm, "of the field, instead of a tolerance")
             ->check(CLI::PositiveNumber);
         sub->add_option("--spacing-mm", query_.spacing_mm, "of the shell")->check(CLI::PositiveNumber);
-        sub->add_option("--mode", query_.mode)->check(CLI::IsMember({"trilinear", "linear"}));
-        sub->add_option("--proximity-mm", query_.proximity_mm)->check(CLI::NonNegativeNumber);
-        sub->add_option("--budget-nodes", query_.budget_nodes)->check(CLI::PositiveNumber);
-        sub->add_option("--quality", query_.quality)->check(CLI::Range(0.0, 1.0));
-        sub->add_flag("--two-way", query_.two_way);
-        sub->add_option("--unit", query_.unit)->check(units);
-        sub->add_option("--field-unit", query_.field_unit)->check(units);
-        sub->add_option("--shell-unit", query_.shell_unit)->check(units);
+        sub->add_option("--mode", query_.mode, "of interpolation: trilinear, linear")
+            ->check(CLI::IsMember({"trilinear", "linear"}));
+        sub->add_option("--proximity-mm", query_.proximity_mm, "search no farther; default unlimited")
+            ->check(CLI::NonNegativeNumber);
+        sub->add_option("--budget-nodes", query_.budget_nodes, "most tree nodes a query visits")
+            ->check(CLI::PositiveNumber);
+        sub->add_option("--quality", query_.quality, "least share of proven area; wins over the budget")
+            ->check(CLI::Range(0.0, 1.0));
+        sub->add_flag("--two-way", query_.two_way, "each part's points against the other's field");
+        sub->add_option("--unit", query_.unit, "of files that have none; default mm")->check(units);
+        sub->add_option("--field-unit", query_.field_unit, "of FIELD, instead of --unit")->check(units);
+        sub->add_option("--shell-unit", query_.shell_unit, "of SHELL, instead of --unit")->check(units);
 
         sub = command("simulate", "run a scene along a device path", simulate_, simulate);
         sub->add_option("SCENE", simulate_.scene)->required();

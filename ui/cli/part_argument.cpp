@@ -9,8 +9,8 @@ Result<double> metresPerUnit(const std::string& unit) {
     if (unit == "cm") return 1e-2;
     if (unit == "mm") return 1e-3;
     if (unit == "um") return 1e-6;
-    if (unit == "inch") return 0.0254;
-    return Error{.message = "must be m, cm, mm, um or inch", .key = "--unit", .value = unit};
+    if (unit == "in") return 0.0254;
+    return Error{.message = "must be m, cm, mm, um or in", .key = "--unit", .value = unit};
 }
 
 Result<model::PartSpec> partArgument(const std::string& path, const std::string& unit) {

@@ -7,7 +7,7 @@
 
 namespace passung::cli {
 
-/// "m", "cm", "mm", "um" or "inch" as metres.
+/// "m", "cm", "mm", "um" or "in" as metres.
 Result<double> metresPerUnit(const std::string& unit);
 
 /// A part named on the command line: a mesh file, or a .toml file with one [[part]].

@@ -78,7 +78,7 @@ TEST(Replayer, FindsOneChangedBitAndOneMissingTick) {
     auto report = replay::replay(bench.scene(), changed);
     ASSERT_TRUE(report.first_difference);
     EXPECT_EQ(report.first_difference->tick, 1500);
-    EXPECT_EQ(report.first_difference->column, "force_N");
+    EXPECT_EQ(report.first_difference->column, "force_N[2]");
 
     changed = records;
     changed[700].device_position_m[0] = std::nextafter(changed[700].device_position_m[0], 1.0);

@@ -89,7 +89,7 @@ TEST(ContactQuery, StopsAtItsBudgetAndSaysWhatItDidNotProve) {
         request.max_nodes = budget;
         const auto part = tick::PartQuery(table, ball, request).at(X_FS);
         EXPECT_TRUE(part.budget_reached);
-        EXPECT_LE(part.nodes_visited, budget + 16);  // the children of the node at hand are finished
+        EXPECT_LE(part.nodes_visited, budget);
         EXPECT_LE(part.quality, last_quality);
         EXPECT_GT(part.wrench.force.z(), 0.3 * full.wrench.force.z());
         EXPECT_LT(part.wrench.force.z(), 3.0 * full.wrench.force.z());

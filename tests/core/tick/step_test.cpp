@@ -80,8 +80,8 @@ TEST(Step, GivesTheSameBitsForTheSameInputs) {
 }
 
 TEST(Step, GodObjectOverlapsFarLessThanPenaltyOnTheSamePath) {
-    // Truth: invariant (why the method exists); depths here are the tick's own, see peg_truth_test for independent
-    // ones.
+    // Truth: invariant (why the method exists); depths here are the tick's own, see analysis/truth/peg_overlap_test for
+    // independent ones.
     double deepest[2] = {0, 0};
     for (const auto method : {model::ContactMethod::Penalty, model::ContactMethod::GodObjectHeuristic}) {
         test::Bench bench(pegAndPlate(method));
