@@ -10,6 +10,8 @@ namespace {
 
 using Optional = std::optional<double>;
 
+constexpr double kTicksPerSecond = 1000.0;  // exact, unlike a tick's length: 4028 ticks are 4.028 s to the last digit
+
 /// A trial cut to its ticks. Each tick stands for the millisecond that begins with it, so the record at end_tick only
 /// closes the last step.
 struct Trial {
@@ -44,7 +46,7 @@ Vec3 handRotation(const TickRecord& from, const TickRecord& to) {
 }
 
 double seconds(std::int64_t from_tick, std::int64_t to_tick) {
-    return static_cast<double>(to_tick - from_tick) * kTickSeconds;
+    return static_cast<double>(to_tick - from_tick) / kTicksPerSecond;
 }
 
 template <class Condition>
@@ -72,7 +74,7 @@ Trial cutTrial(std::span<const TickRecord> records, const TrialContext& context)
     trial.touch_tick = firstTick(trial.ticks, isContact);
     const Pose X_TW = context.X_WT.inverse();
     trial.engagement_tick = firstTick(trial.ticks, [&](const TickRecord& record) {
-        return tipDepthInBore(record, X_TW) >= context.engagement_depth;
+        return tipDepthInBore(record, X_TW, context.clearance) >= context.engagement_depth;
     });
     return trial;
 }
@@ -150,7 +152,8 @@ Optional insertionTime(const Trial& trial) {
 
 Optional insertionDepth(const Trial& trial) {
     if (trial.points.empty()) return std::nullopt;
-    return std::max(0.0, tipDepthInBore(trial.points.back(), trial.context.X_WT.inverse()).value_or(0.0));
+    const Pose X_TW = trial.context.X_WT.inverse();
+    return tipDepthInBore(trial.points.back(), X_TW, trial.context.clearance).value_or(0.0);
 }
 
 Optional pathLength(const Trial& trial) {
@@ -205,10 +208,15 @@ struct Measure {
 
 // Words shared by the formulas: a trial tick is a recorded tick with start tick ≤ tick < end tick. A contact tick is a
 // trial tick with |force| > 1e-6 N or |torque| > 1e-9 N·m or contacts > 0. The tip is the origin of the held part's
-// proxy; its depth counts only within 2 mm of the bore's axis.
+// proxy; it is in the bore below the mouth and within the clearance + 0.2 mm (kWallGive) of the axis.
 const std::vector<Measure>& measures() {
     static const std::vector<Measure> all = {
-        {{"success", "Success", "1", "1 if the outcome is success, else 0"}, success},
+        {{"success", "Success", "1",
+          "1 if the outcome is success, else 0; success: in every tick of the hold time the tip depth is >= success "
+          "fraction x insertion depth, the proxy's speed over the last 50 ticks is < the task's largest, and "
+          "proxy_depth_m <= 0.2 mm; tip depth: as for the approach time",
+          2},
+         success},
         {{"completion_time_s", "Completion time", "s",
           "from the first trial tick at which the hand is farther than the leave radius from its position at the start "
           "tick, to the end tick; only for success"},
@@ -218,17 +226,22 @@ const std::vector<Measure>& measures() {
           "from the start tick to the first contact tick, or to the engagement tick if that is earlier; contact tick: "
           "trial tick with |force| > 1e-6 N or |torque| > 1e-9 N m or contacts > 0; engagement tick: first trial tick "
           "with a tip depth >= the engagement depth; tip depth: -z of the proxy's origin in the target's frame, "
-          "counted "
-          "only within 2 mm of the bore's axis"},
+          "counted only below the mouth and within the radial clearance + 0.2 mm of the bore's axis",
+          2},
          approachTime},
         {{"search_time_s", "Search time", "s",
-          "from the end of the approach to the engagement tick; empty without engagement"},
+          "from the end of the approach to the engagement tick; empty without engagement; both as for the approach "
+          "time",
+          2},
          searchTime},
-        {{"insertion_time_s", "Insertion time", "s", "from the engagement tick to the end tick; only for success"},
+        {{"insertion_time_s", "Insertion time", "s",
+          "from the engagement tick, as for the approach time, to the end tick; only for success", 2},
          insertionTime},
         {{"insertion_depth_m", "Insertion depth", "m",
-          "tip depth at the last record up to the end tick; 0 above the mouth or farther than 2 mm from the bore's "
-          "axis"},
+          "tip depth at the last record up to the end tick; 0 above the mouth or farther than the radial clearance + "
+          "0.2 mm "
+          "from the bore's axis",
+          2},
          insertionDepth},
         {{"path_length_m", "Path length of the hand", "m",
           "sum of |x(k+1) - x(k)| of the hand position over the trial ticks k"},

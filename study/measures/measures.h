@@ -22,6 +22,7 @@ struct TrialContext {
     Pose X_WT;                        // target: origin at the bore's mouth, bore along -z
     double leave_radius = 0.020;      // [m]
     double engagement_depth = 0.001;  // [m]
+    double clearance = 0.0;           // [m] radial, of the held peg in the target's bore
 };
 
 /// A measure's definition: name (the column; its unit is the suffix), label, unit, formula.

@@ -17,11 +17,13 @@ bool isContact(const TickRecord& record) {
            toVec3(record.torque_Nm).norm() > kNoTorque;
 }
 
-std::optional<double> tipDepthInBore(const TickRecord& record, const Pose& X_TW) {
+std::optional<double> tipDepthInBore(const TickRecord& record, const Pose& X_TW, double clearance) {
     const Vec3 p_TG = X_TW * proxyPosition(record);
-    if (!(std::hypot(p_TG.x(), p_TG.y()) <= kBoreNeighbourhood)) return std::nullopt;
+    if (!(p_TG.z() <= 0.0 && std::hypot(p_TG.x(), p_TG.y()) <= clearance + kWallGive)) return std::nullopt;
     return -p_TG.z();
 }
+
+bool isClearOfWalls(const TickRecord& record) { return record.proxy_depth_m <= kWallGive; }
 
 Vec3 handPosition(const TickRecord& record) { return toVec3(record.hand_position_m); }
 

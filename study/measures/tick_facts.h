@@ -6,19 +6,25 @@
 
 namespace passung::measures {
 
-/// How far beside the bore's axis the held part's origin may be and still count as in the bore's neighbourhood [m].
-/// A pose criterion, no statement about material: inside a bore the origin cannot be farther off than the clearance,
-/// and a soft penalty contact may press it a little into the wall.
-inline constexpr double kBoreNeighbourhood = 0.002;
+/// How far into the wall a peg may be and still count as in the bore [m]. An upright rigid peg stays within the
+/// clearance; this covers what is no false insertion: the tip of a tilted peg (radius · tilt² / 2 + chamfer · tilt:
+/// 0.1 mm for a 20 mm peg at 0.1 rad), the error of sampled fields and points, and the overlap that lets a stiff
+/// penalty contact push back. A softer contact that lets the peg deeper in shows no bore there.
+inline constexpr double kWallGive = 0.0002;
 
 /// True if the displayed wrench is not zero or points of the held part are inside an obstacle:
 /// |force| > 1e-6 N or |torque| > 1e-9 N·m or contacts > 0. The force alone would miss contact while a guard holds
 /// the output at zero; the points alone would miss a proxy, which rests a hair above the surface.
 bool isContact(const TickRecord& record);
 
-/// Depth of the proxy's origin (the peg's tip) below the bore's mouth [m], negative above it; `X_TW` maps the world to
-/// the target's frame, whose bore runs along -z. Empty if the origin is not within `kBoreNeighbourhood` of the axis.
-std::optional<double> tipDepthInBore(const TickRecord& record, const Pose& X_TW);
+/// Depth of the proxy's origin (the peg's tip) below the bore's mouth [m], ≥ 0; empty if the tip is not in the bore:
+/// above the mouth, or farther from the axis than `clearance` (radial, [m]) + kWallGive. `X_TW` maps the world to the
+/// target's frame, whose bore runs along -z. Between chamfers a tip may be farther beside without touching; it counts
+/// only once it is as near to the axis as the bore will ask.
+std::optional<double> tipDepthInBore(const TickRecord& record, const Pose& X_TW, double clearance);
+
+/// True if the held part at the proxy's pose is nowhere deeper than kWallGive in an obstacle.
+bool isClearOfWalls(const TickRecord& record);
 
 Vec3 handPosition(const TickRecord& record);   // [m], world
 Vec3 proxyPosition(const TickRecord& record);  // [m], world

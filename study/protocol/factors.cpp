@@ -12,11 +12,14 @@ namespace passung::protocol {
 namespace {
 
 /// Columns that every export has; a factor of that name could not be told from them.
-constexpr std::array kReservedNames{"participant_id", "kind",       "group",       "session",        "station",
-                                    "device",         "block",      "phase",       "block_index",    "trial_index",
-                                    "trial_in_block", "attempt_no", "attempt_id",  "repetition",     "condition",
-                                    "start_s",        "duration_s", "outcome",     "valid",          "invalid_reason",
-                                    "n_ticks",        "overruns",   "app_version", "protocol_sha256"};
+constexpr std::array kReservedNames{
+    "participant_id",  "kind",           "group",       "session",      "station",        "device",
+    "block",           "phase",          "block_index", "trial_index",  "trial_in_block", "attempt_no",
+    "attempt_id",      "repetition",     "condition",   "start_s",      "duration_s",     "outcome",
+    "valid",           "invalid_reason", "n_ticks",     "overruns",     "app_version",    "protocol_sha256",
+    "dropped_samples", "n_trials",       "n_success",   "success_share"};
+
+constexpr std::string_view kMissing = "NA";
 
 bool isScalar(const Node& node) {
     return node.kind == Node::Kind::Boolean || node.kind == Node::Kind::Integer || node.kind == Node::Kind::Number ||
@@ -45,7 +48,9 @@ public:
             setKey(level);
         else
             report(level.place, valueText(level), "a level that is a list needs a label: { label = ..., value = ... }");
-        if (isLabel(label)) {
+        if (label == kMissing) {
+            report(level.place, fmt::format("\"{}\"", label), "stands for a missing value in exports");
+        } else if (isLabel(label)) {
             if (!labels_.insert(label).second)
                 report(level.place, fmt::format("\"{}\"", label), "two levels have this label");
         } else if (errors_.size() == before_) {

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <numbers>
@@ -6,6 +8,8 @@
 
 namespace passung::protocol {
 namespace {
+
+constexpr double kMaxLength = 10.0;  // [m], of positions and edges: more is a slip in the unit
 
 const model::Shape kHarmless = model::Sphere{1.0};  // stands in after an error
 
@@ -34,6 +38,10 @@ model::Shape readShape(const Node& table, const std::string& path, double units,
     const std::string id = "shape." + kind;
     const TableReader read(table, {"shape", id}, path, errors);
     if (errors.size() > before) return kHarmless;
+    for (const Key& key : keys())
+        if (key.table == id && read.has(key.name) && read.node(key.name)->number / units > kMaxLength)
+            read.fail(key.name, fmt::format("must be at most {} m", kMaxLength));
+    if (errors.size() > before) return kHarmless;
     const auto shape = buildShape(read, kind, units);
     for (const Error& error : model::validate(shape)) read.fail(error.key, error.message);
     return errors.size() > before ? kHarmless : shape;
@@ -59,11 +67,18 @@ double unitsPerMetre(const TableReader& read, double absent) {
     return absent;
 }
 
+Vec3 readPosition(const TableReader& read, std::string_view key, double units_per_metre) {
+    const Vec3 position = read.vector(key) / units_per_metre;
+    if (position.cwiseAbs().maxCoeff() > kMaxLength)
+        read.fail(key, fmt::format("must be within {} m along every axis", kMaxLength));
+    return position;
+}
+
 Pose readPose(const TableReader& read, std::string_view position_key, std::string_view rotation_key,
               double units_per_metre) {
     const Vec3 angles = read.vector(rotation_key) * (std::numbers::pi / 180.0);
     Pose pose;
-    pose.p = read.vector(position_key) / units_per_metre;
+    pose.p = readPosition(read, position_key, units_per_metre);
     pose.q = Eigen::AngleAxisd(angles.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(angles.y(), Vec3::UnitY()) *
              Eigen::AngleAxisd(angles.x(), Vec3::UnitX());
     return pose;
@@ -81,7 +96,9 @@ model::PartSpec readPartNode(const Node& table, const std::string& parent_path, 
     part.name = read.text("name");
     part.held = read.boolean("held");
     const double units = unitsPerMetre(read, units_per_metre);
-    part.shown_offset = read.vector("shown_offset") / units;
+    part.shown_offset = readPosition(read, "shown_offset", units);
+    if (part.held && !part.shown_offset.isZero(0.0))
+        read.fail("shown_offset", "the held part cannot be drawn elsewhere: it would move the hand's aim");
     if (const Node* pose = read.node("pose"))
         part.X_WP =
             readPose(TableReader(*pose, {"pose"}, read.pathOf("pose"), errors), "position", "rotation_deg", units);

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -17,12 +17,18 @@ namespace {
 
 constexpr std::size_t kMaxConditions = 1000;
 
-/// Where the scene stands: written in the study file, or a file of its own.
-struct SceneSource {
-    Node table;
-    std::vector<std::string_view> ids{"study_scene", "scene"};
-    std::string path = "scene";
-};
+/// Everything of a condition that can be felt or seen, as text; names of parts are none of it.
+std::string fingerprint(Condition condition) {
+    std::string meshes;
+    for (std::size_t i = 0; i < condition.scene.parts.size(); ++i) {
+        auto& part = condition.scene.parts[i];
+        if (part.name == condition.task.target) condition.task.target = std::to_string(i);
+        part.name.clear();
+        // In full: files of one name in two folders differ.
+        if (const auto* mesh = std::get_if<model::MeshFile>(&part.geometry)) meshes += mesh->path + '\n';
+    }
+    return paramsJson(condition) + meshes;
+}
 
 /// Reads one study file, step by step; every step adds to errors_.
 class ProtocolReader {
@@ -58,39 +64,21 @@ private:
         plan_.participants = static_cast<int>(read.integer("participants"));
     }
 
-    /// Nothing if there is none or it cannot be read.
-    std::optional<SceneSource> openScene() {
+    /// nullptr if there is none that can be read.
+    const Node* findScene() {
         const Node* table = root_.node("scene");
-        if (table == nullptr) return std::nullopt;
-        const Node* file = table->find("file");
-        if (file == nullptr) return SceneSource{*table};
-        const Node reduced = [&] {
-            Node only = emptyTable(table->place);
-            for (const Entry& entry : table->entries)
-                if (entry.key == "file")
-                    only.entries.push_back(entry);
-                else
-                    errors_.push_back(errorAt(entry.place, "scene." + entry.key, "", "cannot stand beside scene.file"));
-            return only;
-        }();
-        const TableReader read(reduced, {"study_scene"}, "scene", errors_);
-        if (!read.has("file")) return std::nullopt;
-        const auto path = std::filesystem::path(file->place.file).parent_path() / file->text;
-        const auto text = readFile(path.lexically_normal().string());
-        if (!text) {
-            read.fail("file", "cannot be opened");
-            return std::nullopt;
+        if (table == nullptr) return nullptr;
+        for (const Entry& entry : table->entries) {
+            if (entry.key != "file") continue;
+            errors_.push_back(errorAt(entry.place, "scene.file", valueText(entry.value),
+                                      "a study holds its scene itself, so that the stored text is all of it"));
+            return nullptr;
         }
-        auto document = parseDocument(*text, path.lexically_normal().string());
-        if (!document) {
-            errors_.insert(errors_.end(), document.errors().begin(), document.errors().end());
-            return std::nullopt;
-        }
-        return SceneSource{std::move(*document), {"scene"}, ""};
+        return table;
     }
 
     void readConditions() {
-        const auto scene = openScene();
+        const Node* scene = findScene();
         const std::size_t before = errors_.size();
         const auto factors = readFactors(root_.items("factor"), known_measures_, errors_);
         std::size_t count = 1;
@@ -103,17 +91,18 @@ private:
         // Levels that are wrong in themselves would be reported once more in every condition.
         if (errors_.size() > before) return;
         conditions_ = count;
-        if (!scene) return;
+        if (scene == nullptr) return;
+        const std::size_t sound = errors_.size();
         for (auto& levels : combinations(factors)) readCondition(*scene, factors, std::move(levels));
+        if (errors_.size() == sound) checkDistinct();
     }
 
-    void readCondition(const SceneSource& source, const std::vector<FactorContent>& factors,
-                       std::vector<std::size_t> levels) {
+    void readCondition(const Node& scene, const std::vector<FactorContent>& factors, std::vector<std::size_t> levels) {
         const auto copyOf = [&](std::string_view name) {
             const Node* table = root_.node(name);
             return table != nullptr ? *table : emptyTable(document_.place);
         };
-        StudyTables tables{source.table, copyOf("task"), copyOf("feedback")};
+        StudyTables tables{scene, copyOf("task"), copyOf("feedback")};
         Condition condition;
         for (std::size_t i = 0; i < factors.size(); ++i) {
             for (const Override& change : factors[i].overrides[levels[i]]) applyOverride(change, tables, errors_);
@@ -123,7 +112,7 @@ private:
         if (factors.empty()) condition.name = "single";
 
         const std::size_t before = errors_.size();
-        auto content = readSceneNode(tables.scene, source.ids, source.path, devices_, errors_);
+        auto content = readSceneNode(tables.scene, {"scene"}, "scene", devices_, errors_);
         if (errors_.size() == before && content.device.empty()) {
             const Node* device = tables.scene.find("device");
             errors_.push_back(errorAt(device != nullptr ? device->place : tables.scene.place, "device.preset", "",
@@ -138,6 +127,25 @@ private:
         condition.levels = std::move(levels);
         condition.params_json = paramsJson(condition);
         plan_.conditions.push_back(std::move(condition));
+    }
+
+    /// Two conditions that nobody can tell apart are one: a level that changes nothing.
+    void checkDistinct() {
+        std::map<std::string, const Condition*> seen;
+        std::vector<bool> reported(plan_.factors.size());
+        for (const Condition& condition : plan_.conditions) {
+            const auto [twin, fresh] = seen.try_emplace(fingerprint(condition), &condition);
+            if (fresh) continue;
+            const Condition& first = *twin->second;
+            const auto differ = std::mismatch(first.levels.begin(), first.levels.end(), condition.levels.begin()).first;
+            const auto factor = static_cast<std::size_t>(differ - first.levels.begin());
+            if (reported[factor]) continue;
+            reported[factor] = true;
+            errors_.push_back(
+                errorAt(root_.items("factor")[factor].place, "factor." + plan_.factors[factor].name, "",
+                        fmt::format("conditions \"{}\" and \"{}\" are the same in everything but their labels",
+                                    first.name, condition.name)));
+        }
     }
 
     ShownPose readFeedback(const Node& table) {
@@ -171,6 +179,10 @@ private:
                 block.trials = static_cast<int>(read.integer("trials"));
             plan_.blocks.push_back(std::move(block));
         }
+        const auto is_main = [](const Block& block) { return block.phase == Phase::Main; };
+        if (!tables.empty() && std::none_of(plan_.blocks.begin(), plan_.blocks.end(), is_main))
+            errors_.push_back(errorAt(tables.front().place, "block", "",
+                                      "a study needs a block with phase = \"main\": analyses leave practice out"));
     }
 
     void readMeasures() {

@@ -25,6 +25,9 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
 /// Reads one part. Lengths are in its own `unit`, else `units_per_metre` make a metre.
 model::PartSpec readPartNode(const Node& table, const std::string& parent_path, double units_per_metre, Errors& errors);
 
+/// Reads a vector of lengths [m]. Errors: farther than 10 m along an axis.
+Vec3 readPosition(const TableReader& read, std::string_view key, double units_per_metre);
+
 /// Reads `position_key` (lengths) and `rotation_key` (degrees, R = Rz·Ry·Rx).
 Pose readPose(const TableReader& read, std::string_view position_key, std::string_view rotation_key,
               double units_per_metre);

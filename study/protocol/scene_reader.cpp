@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "study/protocol/scene_node.h"
@@ -13,6 +14,7 @@ namespace {
 
 constexpr double kDefaultStiffness = 1000.0;         // [N/m], without a device
 constexpr double kDefaultRotationalStiffness = 1.0;  // [N·m/rad], without a device
+constexpr double kMaxShellPoints = 2e6;              // more take minutes to sample and do not fit a tick
 
 std::vector<model::PartSpec> readParts(const TableReader& read, const Node& scene, const std::string& path,
                                        double units, Errors& errors) {
@@ -118,6 +120,57 @@ void readCoupling(const TableReader& read, const DeviceDescription* device, bool
         "rotational_damping_Nms_per_rad", device != nullptr ? device->recommended_rotational_damping_Nms_per_rad : 0.0);
 }
 
+/// The device's stable maximum was found under these circumstances only: under others nothing is known to be stable.
+void checkStability(const TableReader& device_table, const TableReader& contact_table, const TableReader& registration,
+                    const DeviceDescription* device, const model::SceneSpec& scene) {
+    if (device == nullptr) return;
+    const bool linear = device->stable_stiffness_N_per_m > 0.0;
+    const bool rotational = device->stable_rotational_stiffness_Nm_per_rad > 0.0;
+    const auto refuse = [&](const TableReader& read, const char* key, const std::string& remedy) {
+        read.fail(key, fmt::format("the stable maximum of {} is not known for this; {}", device->name, remedy));
+    };
+    const auto checkDamping = [&](const char* key, double damping, double recommended) {
+        if (damping != recommended)
+            refuse(contact_table, key, fmt::format("leave it out or set the recommended {}", recommended));
+    };
+    if (linear) checkDamping("damping_Ns_per_m", scene.contact.damping, device->recommended_damping_Ns_per_m);
+    if (rotational)
+        checkDamping("rotational_damping_Nms_per_rad", scene.contact.rotational_damping,
+                     device->recommended_rotational_damping_Nms_per_rad);
+    if (!linear && !rotational) return;
+    if (scene.limits.delay_ticks != 0) refuse(device_table, "delay_ticks", "leave it out or set 0");
+    if (scene.registration.scale != 1.0) refuse(registration, "scale", "leave it out or set 1");
+}
+
+/// Area of a shape's surface, roughly [m²]: what a bore takes from its plate and a chamfer from an edge is small.
+double roughArea(const model::Shape& shape) {
+    const auto round = [](double diameter, double length) {
+        return std::numbers::pi * diameter * (0.5 * diameter + length);
+    };
+    const auto block = [](double x, double y, double z) { return 2.0 * (x * y + y * z + z * x); };
+    if (const auto* s = std::get_if<model::Sphere>(&shape)) return std::numbers::pi * s->diameter * s->diameter;
+    if (const auto* s = std::get_if<model::Cylinder>(&shape)) return round(s->diameter, s->length);
+    if (const auto* s = std::get_if<model::Peg>(&shape)) return round(s->diameter, s->length);
+    if (const auto* s = std::get_if<model::Sheet>(&shape)) return s->width * s->depth;
+    if (const auto* s = std::get_if<model::Box>(&shape)) return block(s->width, s->depth, s->height);
+    const auto& plate = std::get<model::BorePlate>(shape);
+    return block(plate.width, plate.depth, plate.height);
+}
+
+/// Refuses a spacing that gives the held part too many points. A mesh is judged when it is loaded.
+void checkSpacing(const TableReader& contact_table, const model::SceneSpec& scene) {
+    for (const auto& part : scene.parts) {
+        const auto* shape = std::get_if<model::Shape>(&part.geometry);
+        if (!part.held || shape == nullptr) continue;
+        const double area = roughArea(*shape), spacing = scene.contact.spacing;
+        if (area > kMaxShellPoints * spacing * spacing)
+            contact_table.fail(
+                "spacing_mm",
+                fmt::format("gives {} about {:.2g} points, more than {:g}; at least {:.2g}", part.name,
+                            area / (spacing * spacing), kMaxShellPoints, 1e3 * std::sqrt(area / kMaxShellPoints)));
+    }
+}
+
 model::ContactSpec readContact(const TableReader& read, const DeviceDescription* device, bool device_named) {
     model::ContactSpec contact;
     contact.method =
@@ -172,8 +225,14 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     const DeviceDescription* device = findDevice(device_table, devices);
     content.device = device_table.text("preset");
     content.scene.limits = readLimits(device_table, device);
-    content.scene.contact = readContact(open("contact"), device, device_table.has("preset"));
-    content.scene.registration = readRegistration(open("registration"), units);
+    const auto contact_table = open("contact");
+    content.scene.contact = readContact(contact_table, device, device_table.has("preset"));
+    const auto registration_table = open("registration");
+    content.scene.registration = readRegistration(registration_table, units);
+    if (errors.size() == before) {
+        checkStability(device_table, contact_table, registration_table, device, content.scene);
+        checkSpacing(contact_table, content.scene);
+    }
     content.scene.start_gate = readStartGate(open("start_gate"));
     open("effects");
     // What only the model itself can judge has no line of its own.

@@ -28,6 +28,7 @@ struct Factor {
 /// How a peg-in-hole trial is judged. Poses are of the held part in the target's frame (its bore's mouth, axis -z).
 struct PegInHoleTask {
     std::string target;               // name of the part with the bore
+    double clearance = 0.0;           // [m] radial, of the peg in that bore: what their diameters leave
     double insertion_depth = 0.020;   // [m] of the tip below the mouth that counts as fully inserted
     double success_fraction = 0.95;   // of that depth
     double max_speed = 0.005;         // [m/s] while the depth is held

@@ -13,9 +13,20 @@ const T* shapeOf(const model::PartSpec& part) {
     return shape != nullptr ? std::get_if<T>(shape) : nullptr;
 }
 
-const model::PartSpec* heldPart(const model::SceneSpec& scene) {
-    for (const auto& part : scene.parts)
-        if (part.held) return &part;
+/// The held peg; nullptr after reporting, where the held part's form is written, that it is none: success is judged by
+/// the clearance, which only a peg has.
+const model::Peg* findPeg(const StudyTables& tables, const model::SceneSpec& scene, Errors& errors) {
+    for (const auto& part : scene.parts) {
+        if (!part.held) continue;
+        if (const auto* peg = shapeOf<model::Peg>(part)) return peg;
+        for (const Node& node : tables.scene.find("part")->items) {
+            if (node.find("name")->text != part.name) continue;
+            const Node* shape = node.find("shape");
+            const Node* form = shape != nullptr ? shape->find("kind") : node.find("mesh");
+            errors.push_back(errorAt(form->place, fmt::format("part.{}.{}", part.name, shape ? "shape.kind" : "mesh"),
+                                     valueText(*form), "the held part must have the shape peg in a peg_in_hole task"));
+        }
+    }
     return nullptr;
 }
 
@@ -50,6 +61,19 @@ void checkFit(const StudyTables& tables, const std::string& target, const model:
     }
 }
 
+/// A part that is fully inserted before it leaves the sphere about its start would never start the clock.
+void checkWay(const TableReader& read, const model::SceneSpec& scene, const PegInHoleTask& task) {
+    Vec3 start = Vec3::Zero(), end = Vec3::Zero();
+    for (const auto& part : scene.parts) {
+        if (part.held) start = part.X_WP.p;
+        if (part.name == task.target) end = part.X_WP.p + part.X_WP.q * Vec3(0, 0, -task.insertion_depth);
+    }
+    const double way = (end - start).norm();
+    if (!(task.leave_radius < way))
+        read.fail("leave_radius_mm",
+                  fmt::format("must be less than the way from the start to full depth, {:.6g} mm", 1e3 * way));
+}
+
 }  // namespace
 
 PegInHoleTask readTask(const StudyTables& tables, const model::SceneSpec& scene, Errors& errors) {
@@ -75,9 +99,10 @@ PegInHoleTask readTask(const StudyTables& tables, const model::SceneSpec& scene,
     if (plate == nullptr) return task;
     if (task.insertion_depth > plate->bore_depth)
         read.fail("insertion_depth_mm", fmt::format("the bore is only {:.6g} mm deep", 1e3 * plate->bore_depth));
-    const auto* held = heldPart(scene);
-    const auto* peg = held != nullptr ? shapeOf<model::Peg>(*held) : nullptr;
+    const auto* peg = findPeg(tables, scene, errors);
     if (peg == nullptr) return task;
+    checkWay(read, scene, task);
+    task.clearance = 0.5 * (plate->bore_diameter - peg->diameter);
     if (task.insertion_depth > peg->length)
         read.fail("insertion_depth_mm", fmt::format("the peg is only {:.6g} mm long", 1e3 * peg->length));
     checkFit(tables, task.target, *peg, *plate, errors);

@@ -8,6 +8,7 @@ namespace passung::session {
 
 SuccessRule::SuccessRule(const protocol::PegInHoleTask& task, const Pose& X_WT)
     : X_TW_(X_WT.inverse()),
+      clearance_(task.clearance),
       min_depth_(task.success_fraction * task.insertion_depth),
       max_step_(task.max_speed * static_cast<double>(kSpeedTicks) * kTickSeconds),
       hold_ticks_(std::llround(task.hold / kTickSeconds)) {}
@@ -15,7 +16,7 @@ SuccessRule::SuccessRule(const protocol::PegInHoleTask& task, const Pose& X_WT)
 bool SuccessRule::isRestingInBore(const TickRecord& record) const {
     if (known_ < kSpeedTicks) return false;
     const Vec3& before = positions_[static_cast<std::size_t>(record.tick % kSpeedTicks)];
-    return measures::tipDepthInBore(record, X_TW_) >= min_depth_ &&
+    return measures::tipDepthInBore(record, X_TW_, clearance_) >= min_depth_ && measures::isClearOfWalls(record) &&
            (measures::proxyPosition(record) - before).norm() < max_step_;
 }
 

@@ -11,7 +11,9 @@ namespace passung::session {
 
 /// When a peg-in-hole trial has succeeded. All of this must hold in every tick for `hold` seconds:
 /// - the proxy's origin (the peg's tip) is at least success_fraction × insertion_depth below the bore's mouth and
-///   within measures::kBoreNeighbourhood of its axis;
+///   in the bore (measures::tipDepthInBore);
+/// - the held part at the proxy's pose overlaps nothing by more than measures::kWallGive: a part that a soft contact
+///   lets into the material has not been inserted;
 /// - its speed is below max_speed, as the mean over the last kSpeedTicks: the distance between two positions so far
 ///   apart in time, because the difference of neighbouring ticks is mostly the encoder's quantum and tremor.
 /// A missing tick starts the hold anew: what was not recorded is not counted as held.
@@ -29,6 +31,7 @@ private:
     bool isRestingInBore(const TickRecord& record) const;
 
     Pose X_TW_;
+    double clearance_;  // [m]
     double min_depth_;  // [m]
     double max_step_;   // [m] per kSpeedTicks
     std::int64_t hold_ticks_;

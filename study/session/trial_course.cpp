@@ -41,6 +41,7 @@ measures::TrialContext TrialCourse::context() const {
     context.X_WT = X_WT_;
     context.leave_radius = task_.leave_radius;
     context.engagement_depth = task_.engagement_depth;
+    context.clearance = task_.clearance;
     return context;
 }
 
@@ -59,7 +60,7 @@ void TrialCourse::noteMilestones(const TickRecord& record, std::vector<TrialEven
         touched_ = true;
         events.push_back({record.tick, "first_contact"});
     }
-    if (!engaged_ && measures::tipDepthInBore(record, X_WT_.inverse()) >= task_.engagement_depth) {
+    if (!engaged_ && measures::tipDepthInBore(record, X_WT_.inverse(), task_.clearance) >= task_.engagement_depth) {
         engaged_ = true;
         events.push_back({record.tick, "engaged"});
     }

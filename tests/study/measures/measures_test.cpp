@@ -77,6 +77,12 @@ TEST(Measures, StraightLineHasTheLengthOfItsStepsAndItsClockStartsOutsideTheLeav
     EXPECT_DOUBLE_EQ(*values.at("rotation_path_rad"), 0.0);
 }
 
+TEST(Measures, TimesAreTheNearestNumbersToTheirMilliseconds) {
+    // Truth: closed form. 4028 times the nearest double to 0.001 is 4.0280000000000005.
+    const auto values = measure(restingTicks(4029), contextUntil(4028));
+    EXPECT_EQ(values.at("trial_time_s"), 4.028);
+}
+
 TEST(Measures, CompletionTimeIsEmptyWithoutSuccess) {
     // Truth: closed form (definition)
     auto records = restingTicks(1001);
@@ -215,16 +221,34 @@ TEST(Measures, PartThatGoesInWithoutTouchingDoesNotSearch) {
 }
 
 TEST(Measures, DepthCountsOnTheAxisOfATurnedTargetAndNotBesideIt) {
-    // Truth: closed form. The bore's axis is the world's y: its mouth at (0.1, 0.2, 0.3), 5 mm in is y = 0.195.
+    // Truth: closed form. The bore's axis is the world's y: its mouth at (0.1, 0.2, 0.3), 5 mm in is y = 0.195; 0.5 mm
+    // of clearance and 0.2 mm of give.
     TrialContext context = contextUntil(10);
     context.X_WT.q = Quat(Eigen::AngleAxisd(-pi / 2.0, Vec3::UnitX()));  // z of the target to the world's y
     context.X_WT.p = Vec3(0.1, 0.2, 0.3);
+    context.clearance = 5e-4;
     auto records = restingTicks(11);
-    for (TickRecord& record : records) record.proxy_position_m = {0.1f, 0.195f, 0.3015f};
+    for (TickRecord& record : records) record.proxy_position_m = {0.1f, 0.195f, 0.3006f};
     EXPECT_NEAR(*measure(records, context).at("insertion_depth_m"), 0.005, 1e-7);
-    for (TickRecord& record : records) record.proxy_position_m = {0.1f, 0.195f, 0.3025f};
+    for (TickRecord& record : records) record.proxy_position_m = {0.1f, 0.195f, 0.3008f};
     EXPECT_DOUBLE_EQ(*measure(records, context).at("insertion_depth_m"), 0.0);
     EXPECT_FALSE(measure(records, context).at("search_time_s"));
+}
+
+TEST(Measures, PegPressedIntoTheWallBesideTheBoreIsNeitherEngagedNorInserted) {
+    // Truth: closed form. 15 mm deep in the material, 1.9 mm beside the axis, 0.5 mm of clearance: no engagement, and
+    // the approach ends with the contact.
+    TrialContext context = contextUntil(1000, Outcome::Timeout);
+    context.clearance = 5e-4;
+    auto records = restingTicks(1001);
+    for (std::size_t i = 300; i < records.size(); ++i) {
+        records[i].contacts = 9;
+        records[i].proxy_position_m = {0.0019f, 0.0f, -0.015f};
+    }
+    const auto values = measure(records, context);
+    EXPECT_EQ(values.at("approach_time_s"), 0.3);
+    EXPECT_FALSE(values.at("search_time_s"));
+    EXPECT_EQ(values.at("insertion_depth_m"), 0.0);
 }
 
 TEST(Measures, TicksOutsideTheTrialAreIgnored) {

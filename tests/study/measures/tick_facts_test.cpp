@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace passung::measures {
 namespace {
 
@@ -23,17 +25,36 @@ TEST(TickFacts, ForceOrTorqueOrAContactPointMakesContact) {
     EXPECT_FALSE(isContact(faint));
 }
 
-TEST(TickFacts, TipDepthIsPositiveBelowTheMouthAndEmptyBesideTheBore) {
-    // Truth: closed form. Target's mouth at z = 0.25; the neighbourhood ends 2 mm beside the axis, diagonally too.
+TEST(TickFacts, TipIsInTheBoreBelowTheMouthAndWithinTheClearanceAndTheWallsGive) {
+    // Truth: closed form. Target's mouth at z = 0.25; 0.1 mm of clearance and 0.2 mm of give end 0.3 mm beside the
+    // axis, diagonally at 0.212 mm each.
     Pose X_TW;
     X_TW.p.z() = -0.25;
+    const auto depthAt = [&X_TW](double x, double y, double z, double clearance) {
+        TickRecord record;
+        record.proxy_position_m = {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
+        return tipDepthInBore(record, X_TW, clearance);
+    };
+    EXPECT_DOUBLE_EQ(depthAt(0.0, 0.0, 0.125, 1e-4).value(), 0.125);
+    EXPECT_DOUBLE_EQ(depthAt(0.0, 0.0, 0.25, 1e-4).value(), 0.0);
+    EXPECT_FALSE(depthAt(0.0, 0.0, 0.2501, 1e-4));
+    EXPECT_TRUE(depthAt(0.00021, 0.00021, 0.125, 1e-4));
+    EXPECT_FALSE(depthAt(0.00022, 0.00022, 0.125, 1e-4));
+    EXPECT_FALSE(depthAt(0.0006, 0.0, 0.125, 1e-4));
+    EXPECT_TRUE(depthAt(0.0006, 0.0, 0.125, 5e-4));
+    EXPECT_FALSE(depthAt(0.0, std::nan(""), 0.125, 1e-4));
+}
+
+TEST(TickFacts, PartIsClearOfWallsUpToTheirGive) {
+    // Truth: closed form (definition)
     TickRecord record;
-    record.proxy_position_m = {0.0f, 0.0f, 0.125f};
-    EXPECT_DOUBLE_EQ(tipDepthInBore(record, X_TW).value(), 0.125);
-    record.proxy_position_m = {0.0013f, 0.0013f, 0.5f};
-    EXPECT_DOUBLE_EQ(tipDepthInBore(record, X_TW).value(), -0.25);
-    record.proxy_position_m = {0.0015f, 0.0015f, 0.125f};
-    EXPECT_FALSE(tipDepthInBore(record, X_TW));
+    EXPECT_TRUE(isClearOfWalls(record));
+    record.proxy_depth_m = 0.00019f;
+    EXPECT_TRUE(isClearOfWalls(record));
+    record.proxy_depth_m = 0.00021f;
+    EXPECT_FALSE(isClearOfWalls(record));
+    record.proxy_depth_m = std::nanf("");
+    EXPECT_FALSE(isClearOfWalls(record));
 }
 
 }  // namespace

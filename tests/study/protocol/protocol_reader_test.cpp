@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-
 #include "tests/study/protocol/fake_devices.h"
 
 namespace passung::protocol {
@@ -19,13 +16,13 @@ version = "2"
 seed = 42
 participants = 4
 )";
-const std::string kScene = R"([[scene.part]]
-name = "plate"
-shape = { kind = "bore_plate", width = 60, depth = 60, height = 30, bore_diameter = 21, bore_depth = 25 }
-[[scene.part]]
-name = "peg"
-held = true
-shape = { kind = "peg", diameter = 20, length = 50 }
+const std::string kScene = R"([scene]
+part = [
+  { name = "plate", shape = { kind = "bore_plate", width = 60, depth = 60, height = 30, bore_diameter = 21, bore_depth = 25 } },
+  { name = "peg", held = true, shape = { kind = "peg", diameter = 20, length = 50 }, pose = { position = [0, 0, 30] } },
+]
+
+# The device is a table of its own, so that a test can leave it out.
 [scene.device]
 preset = "arm"
 )";
@@ -215,32 +212,61 @@ TEST(ProtocolReader, WarnsOfUnbalancedNumbers) {
     EXPECT_TRUE(listed->warnings.empty());
 }
 
-TEST(ProtocolReader, ReadsASceneFromItsOwnFile) {
-    // Truth: invariant: errors name the file that holds the mistake; levels those of the study.
-    const auto folder = std::filesystem::path(testing::TempDir()) / "passung_protocol_reader";
-    std::filesystem::create_directories(folder);
-    std::string scene = kScene;
-    for (std::size_t at; (at = scene.find("scene.")) != std::string::npos;) scene.erase(at, 6);
-    std::ofstream(folder / "scene.toml") << scene;
-    const std::string study = kHead + "[scene]\nfile = \"scene.toml\"\n" + kTask + kFactors + kBlock;
-    std::ofstream(folder / "study.toml") << study;
-    const auto devices = fakeDevices();
-    const auto plan = readProtocol((folder / "study.toml").string(), devices, kMeasures);
-    ASSERT_TRUE(plan) << toString(plan.errors()[0]);
-    EXPECT_EQ(plan->conditions[3].scene.contact.stiffness, 4000.0);
+TEST(ProtocolReader, HoldsItsSceneItself) {
+    // Truth: closed form: a scene of another file would not be in the stored text; not by way of a factor either.
+    const std::string rest = kTask + kBlock + "order = \"listed\"\n";
+    EXPECT_EQ(errorsOf(kHead + "[scene]\nfile = \"scene.toml\"\n" + rest),
+              "p.toml:8:1: error: scene.file: \"scene.toml\": a study holds its scene itself, so that the stored text "
+              "is all of it");
+    const auto lines =
+        errorsOf(kHead + kScene + kTask +
+                 "[[factor]]\nname = \"f\"\nkey = \"file\"\nlevels = [\"a.toml\", \"b.toml\"]\n" + kBlock);
+    EXPECT_TRUE(lines.starts_with("p.toml:21:7: error: scene.file: unknown key")) << lines;
+}
 
-    std::ofstream(folder / "scene.toml", std::ios::app) << "max_forc_N = 3\n";
-    const auto wrong = readProtocol((folder / "study.toml").string(), devices, kMeasures);
-    ASSERT_FALSE(wrong);
-    ASSERT_EQ(wrong.errors().size(), 1u);
-    EXPECT_EQ(toString(wrong.errors()[0]), (folder / "scene.toml").string() +
-                                               ":10:1: error: device.max_forc_N: unknown key; did you mean "
-                                               "\"max_force_N\"?");
-    std::filesystem::remove_all(folder);
-    EXPECT_EQ(
-        errorsOf(kHead + "[scene]\nfile = \"none.toml\"\nunit = \"mm\"\n" + kTask + kBlock + "order = \"listed\"\n"),
-        "p.toml:8:8: error: scene.file: \"none.toml\": cannot be opened\n"
-        "p.toml:9:1: error: scene.unit: cannot stand beside scene.file");
+TEST(ProtocolReader, RefusesConditionsThatAreTheSame) {
+    // Truth: closed form: 1 and 1.0 are one number, and a part's name is nothing that can be felt.
+    const auto with = [](const std::string& factor) {
+        return errorsOf(kHead + kScene + kTask + kFactors + "[[factor]]\n" + factor + kBlock);
+    };
+    EXPECT_EQ(with("name = \"s\"\nkey = \"contact.spacing_mm\"\nlevels = [1, { label = \"one\", value = 1.0 }]\n"),
+              "p.toml:28:1: error: factor.s: conditions \"penalty/1000/1\" and \"penalty/1000/one\" are the same in "
+              "everything but their labels");
+    EXPECT_EQ(with("name = \"s\"\nkey = \"part.peg.name\"\nlevels = [\"peg\", \"pin\"]\n"),
+              "p.toml:28:1: error: factor.s: conditions \"penalty/1000/peg\" and \"penalty/1000/pin\" are the same in "
+              "everything but their labels");
+    EXPECT_EQ(with("name = \"s\"\nkey = \"contact.spacing_mm\"\nlevels = [1, 2]\n"), "");
+}
+
+TEST(ProtocolReader, NeedsAMainBlock) {
+    // Truth: closed form: the only block, in line 28, is practice.
+    EXPECT_EQ(errorsOf(kHead + kScene + kTask + kFactors + kBlock + "phase = \"practice\"\n"),
+              "p.toml:28:1: error: block: a study needs a block with phase = \"main\": analyses leave practice out");
+}
+
+TEST(ProtocolReader, RefusesNamesThatExportsCouldNotTellApart) {
+    // Truth: closed form: columns of the exported tables, and their mark of a missing value.
+    const auto with = [](const std::string& name, const std::string& level) {
+        return errorsOf(kHead + kScene + kTask + "[[factor]]\nname = \"" + name +
+                        "\"\nkey = \"contact.spacing_mm\"\nlevels = [1, { label = \"" + level + "\", value = 2 }]\n" +
+                        kBlock);
+    };
+    for (const std::string name : {"n_trials", "n_success", "success_share", "dropped_samples", "n_ticks"})
+        EXPECT_EQ(with(name, "x"), "p.toml:20:8: error: factor." + name + ".name: \"" + name +
+                                       "\": is a column of every export; choose another name");
+    EXPECT_EQ(with("m", "NA"), "p.toml:22:14: error: factor.m.levels: \"NA\": stands for a missing value in exports");
+    EXPECT_EQ(with("m", "na"), "");
+}
+
+TEST(ProtocolReader, StartsTheClockBeforeTheHoleIsReached) {
+    // Truth: closed form: from 30 mm above the mouth to 20 mm below it are 50 mm.
+    const auto with = [](const std::string& radius) {
+        return errorsOf(kHead + kScene + kTask + "leave_radius_mm = " + radius + "\n" + kFactors + kBlock);
+    };
+    EXPECT_EQ(with("51"),
+              "p.toml:19:19: error: task.leave_radius_mm: 51: must be less than the way from the start to "
+              "full depth, 50 mm");
+    EXPECT_EQ(with("49"), "");
 }
 
 TEST(ProtocolReader, DescribesEveryNumberInDeterministicJson) {
