@@ -51,7 +51,8 @@ std::string readmeText(const StudyData& study, const std::vector<Table>& tables,
         "| `SHA256SUMS` | For `sha256sum -c SHA256SUMS`. |\n\n"
         "Read in R: `trials <- read.csv(\"trials.csv\")`; in Python: `trials = pandas.read_csv(\"trials.csv\")`. "
         "Analyse the rows with `valid` = 1 and `phase` = `main`; `cells_long.csv` and the wide tables count only "
-        "those that ended in success, failure or timeout.\n";
+        "those that ended in success, failure or timeout, and of each participant one session per protocol: the "
+        "complete one, else the latest (`counted` = 1 in `sessions.csv`). `trials.csv` holds all sessions.\n";
     return text;
 }
 

@@ -22,7 +22,8 @@ struct ExportReport {
 
 /// Writes the whole study as files for people and statistics programs into the folder `out_dir`: tables as CSV (UTF-8,
 /// RFC 4180, LF, NA for missing), a codebook, the protocols, README.md and SHA256SUMS. The same data gives the same
-/// bytes. The folder appears complete or not at all; an earlier export in its place is replaced, anything else refused.
+/// bytes. The folder appears complete or not at all; an earlier export in its place is replaced; a folder
+/// with any other file is refused.
 Result<ExportReport> exportAll(const store::StoreReader& reader, const std::string& out_dir,
                                const ExportOptions& options = {});
 

@@ -1,6 +1,10 @@
 #include "analysis/export/export_folder.h"
 
+#include <cerrno>
+#include <cstdlib>
 #include <fstream>
+#include <set>
+#include <system_error>
 
 #include "analysis/export/codebook.h"
 #include "study/store/digest.h"
@@ -21,28 +25,63 @@ bool isEarlierExport(const fs::path& folder) {
     return codebook.good() && start == kCodebookStart;
 }
 
+/// The first thing in `folder` that its SHA256SUMS does not list; empty if there is none.
+fs::path strangerIn(const fs::path& folder) {
+    std::set<std::string> listed = {"SHA256SUMS"};
+    std::ifstream sums(folder / "SHA256SUMS");
+    for (std::string sum, path; sums >> sum && sums.get() && sums.get() && std::getline(sums, path);) {
+        listed.insert(path);
+    }
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        if (entry.is_directory() && !entry.is_symlink()) continue;
+        if (listed.count(entry.path().lexically_relative(folder).generic_string()) == 0) return entry.path();
+    }
+    return {};
+}
+
+/// An empty folder or an earlier export and nothing else may be replaced.
+Result<Done> checkReplaceable(const fs::path& folder) {
+    std::error_code error;
+    if (!fs::exists(fs::symlink_status(folder, error))) return Done{};
+    if (!fs::is_directory(folder, error)) return folderError(folder, "exists and is not a folder");
+    try {
+        if (fs::is_empty(folder)) return Done{};
+        if (!isEarlierExport(folder)) {
+            return folderError(folder, "exists and holds something else than an export: name another folder");
+        }
+        if (const fs::path stranger = strangerIn(folder); !stranger.empty()) {
+            return folderError(stranger,
+                               "does not belong to the earlier export in this folder and would be lost: "
+                               "move it away or name another folder");
+        }
+    } catch (const fs::filesystem_error& failed) {
+        return folderError(folder, "cannot be read: " + failed.code().message());
+    }
+    return Done{};
+}
+
 /// `folder` without a slash at its end, so that a name can be added to it.
 fs::path plain(const std::string& folder) {
     const fs::path path = fs::path(folder).lexically_normal();
     return path.has_filename() ? path : path.parent_path();
 }
 
-fs::path sibling(const fs::path& folder, const char* suffix) {
-    return folder.parent_path() / (folder.filename().string() + suffix);
-}
+constexpr const char* kNew = "new";
+constexpr const char* kReplaced = "replaced";
 
 }  // namespace
 
-ExportFolder::ExportFolder(fs::path folder) : folder_(std::move(folder)), partial_(sibling(folder_, ".partial")) {}
+ExportFolder::ExportFolder(fs::path folder, fs::path workshop)
+    : folder_(std::move(folder)), workshop_(std::move(workshop)) {}
 
 ExportFolder::ExportFolder(ExportFolder&& other) noexcept
-    : folder_(std::move(other.folder_)), partial_(std::move(other.partial_)), sums_(std::move(other.sums_)) {
-    other.partial_.clear();
+    : folder_(std::move(other.folder_)), workshop_(std::move(other.workshop_)), sums_(std::move(other.sums_)) {
+    other.workshop_.clear();
 }
 
 ExportFolder::~ExportFolder() {
     std::error_code ignored;
-    if (!partial_.empty()) fs::remove_all(partial_, ignored);
+    if (!workshop_.empty()) fs::remove_all(workshop_, ignored);
 }
 
 Result<ExportFolder> ExportFolder::begin(const std::string& name) {
@@ -51,23 +90,21 @@ Result<ExportFolder> ExportFolder::begin(const std::string& name) {
     if (folder.empty() || folder.filename() == "." || folder.filename() == "..") {
         return folderError(name, "name a folder of its own for the export");
     }
-    if (fs::exists(folder, error)) {
-        if (!fs::is_directory(folder, error)) return folderError(folder, "exists and is not a folder");
-        if (!fs::is_empty(folder, error) && !isEarlierExport(folder)) {
-            return folderError(folder, "exists and holds something else than an export: name another folder");
-        }
-    }
+    if (const auto checked = checkReplaceable(folder); !checked) return checked.errors();
     if (folder.has_parent_path()) fs::create_directories(folder.parent_path(), error);
-    const fs::path partial = sibling(folder, ".partial");
-    fs::remove_all(partial, error);  // of an export that was killed
-    if (!fs::create_directory(partial, error)) {
-        return folderError(partial, "cannot be created: " + error.message());
+    std::string workshop = folder.string() + ".partial.XXXXXX";
+    if (mkdtemp(workshop.data()) == nullptr) {
+        return folderError(workshop, "cannot be created: " + std::generic_category().message(errno));
     }
-    return ExportFolder(folder);
+    ExportFolder made(folder, workshop);
+    if (!fs::create_directory(made.workshop_ / kNew, error)) {
+        return folderError(made.workshop_ / kNew, "cannot be created: " + error.message());
+    }
+    return made;
 }
 
 Result<Done> ExportFolder::write(const std::string& path, std::string_view bytes) {
-    const fs::path file = partial_ / path;
+    const fs::path file = workshop_ / kNew / path;
     std::error_code error;
     fs::create_directories(file.parent_path(), error);
     std::ofstream stream(file, std::ios::binary);
@@ -83,20 +120,24 @@ Result<Done> ExportFolder::complete() {
     for (const auto& [path, sum] : sums_) sums += sum + "  " + path + "\n";
     if (auto written = write("SHA256SUMS", sums); !written) return written;
 
-    const fs::path old = sibling(folder_, ".replaced");
+    // Somebody may have put a file there meanwhile.
+    if (auto checked = checkReplaceable(folder_); !checked) return checked;
+    const fs::path old = workshop_ / kReplaced;
     std::error_code error;
-    fs::remove_all(old, error);
     const bool replaces = fs::exists(folder_, error);
     if (replaces) fs::rename(folder_, old, error);
-    if (!error) fs::rename(partial_, folder_, error);
-    if (error) {
-        const std::string reason = error.message();
-        if (replaces && !fs::exists(folder_, error)) fs::rename(old, folder_, error);
-        return folderError(folder_, "cannot be put in place: " + reason);
+    if (!error) fs::rename(workshop_ / kNew, folder_, error);
+    if (!error) return Done{};
+
+    const std::string reason = error.message();
+    if (fs::exists(old, error)) {
+        fs::rename(old, folder_, error);
+        if (error) {
+            workshop_.clear();
+            return folderError(old, "is the earlier export, which could not be put back: " + error.message());
+        }
     }
-    partial_.clear();
-    fs::remove_all(old, error);
-    return Done{};
+    return folderError(folder_, "cannot be put in place: " + reason);
 }
 
 }  // namespace passung::exporter

@@ -9,11 +9,12 @@
 
 namespace passung::exporter {
 
-/// A folder that appears complete or not at all: files go to `<folder>.partial`, which takes the folder's place at the
-/// end. What is not completed is removed.
+/// A folder that appears complete or not at all: files go to a folder of their own beside it,
+/// `<folder>.partial.<random>`, and take its place at the end. What is not completed is removed. An earlier export is
+/// replaced, but nothing that its SHA256SUMS does not list is ever deleted.
 class ExportFolder {
 public:
-    /// Fails if `folder` exists and is neither empty nor an earlier export.
+    /// Fails if `folder` exists and is neither empty nor an earlier export without further files.
     static Result<ExportFolder> begin(const std::string& folder);
     ~ExportFolder();
     ExportFolder(ExportFolder&& other) noexcept;
@@ -26,10 +27,10 @@ public:
     Result<Done> complete();
 
 private:
-    explicit ExportFolder(std::filesystem::path folder);
+    ExportFolder(std::filesystem::path folder, std::filesystem::path workshop);
 
     std::filesystem::path folder_;
-    std::filesystem::path partial_;  // empty: nothing to remove
+    std::filesystem::path workshop_;  // holds the new files, then the replaced ones; empty: nothing to remove
     std::map<std::string, std::string> sums_;
 };
 

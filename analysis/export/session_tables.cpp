@@ -1,5 +1,7 @@
 #include "analysis/export/session_tables.h"
 
+#include <set>
+
 namespace passung::exporter {
 namespace {
 
@@ -11,6 +13,7 @@ Table makeEvents(const StudyData& study) {
     Table table{"events.csv",
                 "One row per event of a session, in the order of time.",
                 {{"participant_id", "Code of the participant", "", "text", "", 1, {}},
+                 {"kind", "Real person, pilot or simulated participant", "", "text", "", 1, kKinds},
                  {"session", "Number of the participant's session, from 1", "", "integer", "", 1, {}},
                  {"t_s", "Time from the session's start", "s", "number", "", 1, {}},
                  {"trial_index", "Trial that it belongs to", "", "integer", "", 1, {}},
@@ -20,7 +23,7 @@ Table makeEvents(const StudyData& study) {
                  {"payload_json", "More about it, as JSON", "", "text", "", 1, {}}},
                 {}};
     for (const store::EventRow& event : study.events) {
-        table.rows.push_back({event.participant_id, cell(event.session_ordinal), secondsCell(event.t_ns),
+        table.rows.push_back({event.participant_id, event.kind, cell(event.session_ordinal), secondsCell(event.t_ns),
                               cell(event.trial_index), cell(event.attempt_no), event.source, event.event,
                               event.payload_json});
     }
@@ -52,6 +55,14 @@ Table makeSessions(const StudyData& study) {
          {"started_utc", "Start", "", "time", "", 1, {}},
          {"ended_utc", "End", "", "time", "", 1, {}},
          {"end_state", "How the session ended", "", "text", "", 1, {"complete", "aborted", "crashed", "withdrawn"}},
+         {"counted",
+          "1 if the tables of cells count this session: the one that the participant completed under this protocol, "
+          "else the latest",
+          "",
+          "0/1",
+          "",
+          1,
+          {"0", "1"}},
          {"n_segments", "Runs of the program that the session took", "", "integer", "", 1, {}},
          {"n_planned_trials", "Trials in the session's plan", "", "integer", "", 1, {}},
          {"n_attempts", "Attempts made", "", "integer", "", 1, {}},
@@ -59,6 +70,7 @@ Table makeSessions(const StudyData& study) {
          {"protocol_sha256", "SHA-256 of the protocol's text, see protocol/", "", "text", "", 1, {}},
          {"app_version", "Version of the program", "", "text", "", 1, {}}},
         {}};
+    const std::set<std::string> counted = countedSessions(study);
     for (const store::SessionRow& s : study.sessions) {
         table.rows.push_back({s.participant_id,
                               s.kind,
@@ -75,6 +87,7 @@ Table makeSessions(const StudyData& study) {
                               s.started_utc,
                               cell(s.ended_utc),
                               cell(s.end_state),
+                              cell(counted.count(s.session_id) != 0),
                               cell(s.segments),
                               cell(s.planned_trials),
                               cell(s.attempts),
@@ -116,6 +129,7 @@ Table makeTiming(const StudyData& study) {
                 "One row per attempt that has ended: how well the haptic loop kept its rate. Times are NA where the "
                 "loop ran in virtual time.",
                 {{"participant_id", "Code of the participant", "", "text", "", 1, {}},
+                 {"kind", "Real person, pilot or simulated participant", "", "text", "", 1, kKinds},
                  {"session", "Number of the participant's session, from 1", "", "integer", "", 1, {}},
                  {"trial_index", "Number of the trial in the session, from 0", "", "integer", "", 1, {}},
                  {"attempt_no", "Number of the attempt at this trial, from 1", "", "integer", "", 1, {}},
@@ -132,10 +146,10 @@ Table makeTiming(const StudyData& study) {
     for (const store::AttemptRow& attempt : study.attempts) {
         if (!attempt.timing) continue;
         const store::TimingRow& t = *attempt.timing;
-        table.rows.push_back({attempt.participant_id, cell(attempt.session_ordinal), cell(attempt.trial_index),
-                              cell(attempt.attempt_no), t.loop, cell(t.ticks), cell(t.mean_us), cell(t.sd_us),
-                              cell(t.p99_us), cell(t.p999_us), cell(t.max_us), cell(t.overruns),
-                              cell(t.dropped_samples)});
+        table.rows.push_back({attempt.participant_id, attempt.kind, cell(attempt.session_ordinal),
+                              cell(attempt.trial_index), cell(attempt.attempt_no), t.loop, cell(t.ticks),
+                              cell(t.mean_us), cell(t.sd_us), cell(t.p99_us), cell(t.p999_us), cell(t.max_us),
+                              cell(t.overruns), cell(t.dropped_samples)});
     }
     return table;
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
-#include <set>
 
 #include "analysis/export/trial_tables.h"
 
@@ -69,7 +68,20 @@ std::string levelOf(const store::Levels& levels, const std::string& factor) {
     return kMissing;
 }
 
+std::set<std::string> countedSessions(const StudyData& study) {
+    std::map<std::pair<std::string, std::string>, const store::SessionRow*> chosen;  // participant, protocol
+    for (const store::SessionRow& session : study.sessions) {
+        const store::SessionRow*& best = chosen[{session.participant_id, session.protocol_sha256}];
+        const auto rank = [](const store::SessionRow& s) { return std::pair(s.end_state == "complete", s.ordinal); };
+        if (!best || rank(session) > rank(*best)) best = &session;
+    }
+    std::set<std::string> ids;
+    for (const auto& [key, session] : chosen) ids.insert(session->session_id);
+    return ids;
+}
+
 std::vector<Cell> cellsOf(const StudyData& study) {
+    const std::set<std::string> counted = countedSessions(study);
     // participant, then the protocol's place in the list
     std::map<std::pair<std::string, std::size_t>, std::vector<const store::AttemptRow*>> by_person;
     for (const store::AttemptRow& attempt : study.attempts) {
@@ -86,7 +98,10 @@ std::vector<Cell> cellsOf(const StudyData& study) {
             if (condition.protocol_sha256 != first.protocol_sha256) continue;
             Cell cell{first.participant_id, first.kind, first.group, first.protocol_sha256, &condition, {}};
             for (const store::AttemptRow* attempt : attempts) {
-                if (attempt->counts() && attempt->condition == condition.condition) cell.attempts.push_back(attempt);
+                if (attempt->counts() && attempt->condition == condition.condition &&
+                    counted.count(attempt->session_id) != 0) {
+                    cell.attempts.push_back(attempt);
+                }
             }
             cells.push_back(std::move(cell));
         }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,11 @@ Result<StudyData> readStudy(const store::StoreReader& reader);
 /// The label of `factor`, NA where the condition does not have it.
 std::string levelOf(const store::Levels& levels, const std::string& factor);
 
-/// Attempts that count in means (AttemptRow::counts()), of one participant under one protocol and condition.
+/// Of each participant and protocol the one session that means are taken over: the complete one, else the latest.
+std::set<std::string> countedSessions(const StudyData& study);
+
+/// Attempts that count in means (AttemptRow::counts()) of the counted session, of one participant under one protocol
+/// and condition.
 struct Cell {
     std::string participant_id;
     std::string kind;

@@ -87,8 +87,11 @@ Result<std::string> summaryTable(const store::StoreReader& reader) {
             lines.push_back(conditionLine(condition.condition, attempts));
         }
         if (!text.empty()) text += '\n';
-        text += fmt::format("{} participants: {}. Means over valid main trials; depths are the trial's largest.\n",
-                            kind, people.size());
+        text += fmt::format(
+            "{} participants: {}. Means over valid main trials; depths are the trial's largest, mean force over "
+            "contact "
+            "time.\n",
+            kind, people.size());
         text += aligned(lines);
     }
     return text.empty() ? std::string("no trials yet\n") : text;

@@ -11,7 +11,8 @@ const std::vector<std::string>& kinds() {
     return names;
 }
 
-constexpr const char* kCounted = "over the valid attempts of the main phase that ended in success, failure or timeout";
+constexpr const char* kCounted =
+    "over the counted session's valid attempts of the main phase that ended in success, failure or timeout";
 
 std::vector<Column> whoColumns() {
     return {{"participant_id", "Code of the participant", "", "text", "", 1, {}},
@@ -25,7 +26,7 @@ std::vector<Column> leadingColumns() {
     const std::vector<Column> more = {
         {"session", "Number of the participant's session, from 1", "", "integer", "", 1, {}},
         {"station", "Place where the session ran", "", "text", "", 1, {}},
-        {"device", "Haptic device", "", "text", "", 1, {}},
+        {"device", "Haptic device of the attempt", "", "text", "", 1, {}},
         {"block_index", "Number of the block, from 0", "", "integer", "", 1, {}},
         {"block", "Name of the block", "", "text", "", 1, {}},
         {"phase", "Phase of the block", "", "text", "", 1, {"practice", "main", "catch", "adaptive"}},

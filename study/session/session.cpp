@@ -8,6 +8,7 @@
 
 #include "core/base/assert.h"
 #include "core/base/random.h"
+#include "study/protocol/json.h"
 
 namespace passung::session {
 namespace {
@@ -29,7 +30,7 @@ Result<Pose> targetPose(const protocol::Condition& condition) {
 }  // namespace
 
 std::uint64_t attemptSeed(const SessionSetup& setup, const design::PlannedTrial& trial, int attempt_no) {
-    const std::string purpose = fmt::format("simulated|{}|{}", trial.trial_index, attempt_no);
+    const std::string purpose = fmt::format("simulated|{}|{}|{}", setup.ordinal, trial.trial_index, attempt_no);
     return streamSeed(setup.plan.name, setup.participant, trial.phase, purpose, setup.seed);
 }
 
@@ -181,7 +182,7 @@ void Session::appendEvents(const std::vector<TrialEvent>& events) {
         event.source = "session";
         event.event = happened.name;
         if (event.event == "aborted")
-            event.payload_json = fmt::format(R"({{"reason":"{}"}})", attempt_->course.abortReason());
+            event.payload_json = protocol::JsonObject().text("reason", attempt_->course.abortReason()).str();
         sink_.appendEvent(event);
     }
 }
@@ -200,7 +201,7 @@ void Session::fail(const char* stage, const Errors& errors) {
     event.t_ns = session_ns_;
     event.source = "session";
     event.event = "session_failed";
-    event.payload_json = fmt::format(R"({{"stage":"{}"}})", stage);
+    event.payload_json = protocol::JsonObject().text("stage", stage).str();
     sink_.appendEvent(event);
     finish(SessionState::Failed);
 }

@@ -22,6 +22,7 @@ struct SessionSetup {
     std::string participant;                   // code
     std::uint64_t seed = 0;                    // of the study
     bool timing_measured = true;               // false in virtual time
+    int ordinal = 1;                           // number of the participant's session
 };
 
 /// A trial that is over and durable.
@@ -107,7 +108,8 @@ private:
 };
 
 /// Seed of everything random in the simulated device and hand during one attempt: the study's stream "simulated" of
-/// this participant, trial and attempt. Independent of how many trials ran before, so a resumed session draws the same.
+/// this participant, session, trial and attempt. Independent of how many trials ran before, so a resumed session draws
+/// the same.
 std::uint64_t attemptSeed(const SessionSetup& setup, const design::PlannedTrial& trial, int attempt_no);
 
 }  // namespace passung::session

@@ -38,11 +38,14 @@ RecoveryReport markCrashed(const Database& database) {
             "SELECT participant_id || ', session ' || ordinal FROM session WHERE end_state IS NULL ORDER BY rowid");
         while (sessions.step()) report.crashed_sessions.push_back(sessions.text(0));
     }
-    if (report.empty()) return report;
     database.execute(
         "UPDATE attempt SET outcome='crashed', valid=0, invalid_reason='the program ended during the attempt' "
         "WHERE outcome='running'; "
-        "UPDATE session SET end_state='crashed' WHERE end_state IS NULL");
+        "UPDATE session SET end_state='crashed' WHERE end_state IS NULL; "
+        // No session runs now: whoever was in one gives the row of the square back to the next participant.
+        "UPDATE participant SET status='enrolled', status_reason=(SELECT 'session ' || max(ordinal) || ' did not "
+        "complete' FROM session s WHERE s.participant_id=participant.participant_id) WHERE status='active'; "
+        "UPDATE design_slot SET state='free', participant_id=NULL WHERE state='assigned'");
     transaction.commit();
     return report;
 }

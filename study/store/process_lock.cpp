@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 
 namespace passung::store {
 namespace {
@@ -19,24 +20,41 @@ bool isCurrent(const std::string& path, int descriptor) {
            held.st_dev == named.st_dev;
 }
 
+Error lockError(const std::string& database_path, std::string message) {
+    return Error{.message = std::move(message), .file = database_path, .key = {}, .value = {}};
+}
+
+/// The one path that stands for the database however it was named. Several hard links would have no such path (and
+/// SQLite a log for each), and locking the file itself instead is no way out: closing any descriptor of it ends the
+/// locks that SQLite holds on it in this process.
+Result<std::string> properPath(const std::string& database_path) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    if (fs::is_symlink(fs::symlink_status(database_path, error)) && !fs::exists(database_path, error)) {
+        return lockError(database_path, "is a symbolic link to a file that does not exist");
+    }
+    const fs::path path = fs::weakly_canonical(database_path, error);
+    if (error) return lockError(database_path, "cannot be found: " + error.message());
+    if (fs::is_regular_file(path, error) && fs::hard_link_count(path, error) > 1 && !error) {
+        return lockError(database_path, "has several names (hard links): leave one, or copy the file");
+    }
+    return path.string();
+}
+
 }  // namespace
 
 Result<ProcessLock> ProcessLock::take(const std::string& database_path) {
-    const std::string path = database_path + ".lock";
+    const auto proper = properPath(database_path);
+    if (!proper) return proper.errors();
+    const std::string path = *proper + ".lock";
     for (;;) {
         const int descriptor = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
         if (descriptor < 0) {
-            return Error{.message = std::string("cannot be opened for writing: ") + std::strerror(errno),
-                         .file = database_path,
-                         .key = {},
-                         .value = {}};
+            return lockError(database_path, std::string("cannot be opened for writing: ") + std::strerror(errno));
         }
         if (flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
             close(descriptor);
-            return Error{.message = "another program is writing this database; end it first",
-                         .file = database_path,
-                         .key = {},
-                         .value = {}};
+            return lockError(database_path, "another program is writing this database; end it first");
         }
         if (isCurrent(path, descriptor)) return ProcessLock(path, descriptor);
         close(descriptor);

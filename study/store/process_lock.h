@@ -6,8 +6,9 @@
 
 namespace passung::store {
 
-/// Lets one process at a time write a database: an advisory lock on `<database>.lock`, which the system releases
-/// however the process ends. SQLite's own locks last only for a transaction, and recovery must not meet a live session.
+/// Lets one process at a time write a database: an advisory lock on `<database>.lock` (links resolved), which the
+/// system releases however the process ends. SQLite's own locks last only for a transaction, and recovery must not meet
+/// a live session.
 class ProcessLock {
 public:
     /// Fails at once if another process (or another store of this one) holds it.

@@ -99,7 +99,7 @@ struct AttemptRow {
     std::string group;
     std::int64_t session_ordinal = 1;
     std::string station;
-    std::string device;
+    std::string device;  // of this attempt: a factor may vary it
     std::int64_t block_index = 0;
     std::string block;
     std::string phase;
@@ -131,6 +131,7 @@ struct AttemptRow {
 
 struct EventRow {
     std::string participant_id;
+    std::string kind;
     std::int64_t session_ordinal = 1;
     std::int64_t t_ns = 0;
     std::optional<std::int64_t> trial_index;

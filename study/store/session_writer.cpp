@@ -36,6 +36,33 @@ void insertTiming(const Database& database, std::int64_t attempt_id, const sessi
         .run();
 }
 
+/// Has every planned main trial an attempt that counts?
+bool isWhole(const Database& database, const std::string& session_id) {
+    Statement lacking = database.prepare(
+        "SELECT 1 FROM trial_plan t WHERE t.session_id=? AND t.phase='main' AND NOT EXISTS(SELECT 1 FROM attempt a "
+        "WHERE a.trial_id=t.trial_id AND a.valid AND a.outcome IN('success','failure','timeout')) LIMIT 1");
+    return !lacking.bind(session_id).step();
+}
+
+/// After a whole session participant and slot are complete; otherwise the slot is free for the next participant.
+void settleParticipant(const Database& database, const std::string& session_id, bool whole) {
+    database
+        .prepare(whole ? "UPDATE participant SET status='complete' WHERE status='active' AND "
+                         "participant_id=(SELECT participant_id FROM session WHERE session_id=?)"
+                       : "UPDATE participant SET status='enrolled', status_reason=(SELECT 'session ' || ordinal || "
+                         "' did not complete' FROM session WHERE session_id=?1) WHERE status='active' AND "
+                         "participant_id=(SELECT participant_id FROM session WHERE session_id=?1)")
+        .bind(session_id)
+        .run();
+    database
+        .prepare(std::string(whole ? "UPDATE design_slot SET state='complete'"
+                                   : "UPDATE design_slot SET state='free', participant_id=NULL") +
+                 " WHERE state='assigned' AND (participant_id, protocol_sha256)="
+                 "(SELECT participant_id, protocol_sha256 FROM session WHERE session_id=?)")
+        .bind(session_id)
+        .run();
+}
+
 }  // namespace
 
 SessionWriter::SessionWriter(WriterThread& thread, Rows rows, UtcClock clock)
@@ -191,24 +218,12 @@ Result<Done> SessionWriter::finishSession(bool complete, std::int64_t end_ns) {
                 "WHERE segment_id=? AND outcome='running'")
             .bind(rows_.segment_id)
             .run();
+        const bool whole = complete && isWhole(database, rows_.session_id);
         database.prepare("UPDATE session SET ended_utc=?, end_state=? WHERE session_id=?")
-            .bind(clock_.at(end_ns), complete ? "complete" : "aborted", rows_.session_id)
+            .bind(clock_.at(end_ns), whole ? "complete" : "aborted", rows_.session_id)
             .run();
         database.prepare("UPDATE segment SET closed_clean=1 WHERE segment_id=?").bind(rows_.segment_id).run();
-        if (complete) {
-            database
-                .prepare(
-                    "UPDATE participant SET status='complete' WHERE status='active' AND "
-                    "participant_id=(SELECT participant_id FROM session WHERE session_id=?)")
-                .bind(rows_.session_id)
-                .run();
-            database
-                .prepare(
-                    "UPDATE design_slot SET state='complete' WHERE state='assigned' AND "
-                    "participant_id=(SELECT participant_id FROM session WHERE session_id=?)")
-                .bind(rows_.session_id)
-                .run();
-        }
+        settleParticipant(database, rows_.session_id, whole);
         transaction.commit();
         return Done{};
     });

@@ -93,14 +93,39 @@ void insertSlots(const Database& database, const std::string& sha256, const char
     for (std::int64_t i = 0; i < sequences; ++i) insert.bind(sha256, kOneGroup, i, replicate, kind).run();
 }
 
+/// Rows of the square and everybody's order follow from the seed: one protocol has one seed in a database.
+void requireSeed(const Database& database, const std::string& sha256, std::uint64_t seed) {
+    Statement find = database.prepare("SELECT seed FROM session WHERE protocol_sha256=? AND seed<>? LIMIT 1");
+    if (!find.bind(sha256, seed).step()) return;
+    throw std::runtime_error("the sessions of this protocol in this database have seed " +
+                             std::to_string(static_cast<std::uint64_t>(find.integer(0))) + ", not " +
+                             std::to_string(seed) + ": use that seed or another database");
+}
+
+/// The plan's JSON must say the seed in force, which may be another than the protocol's own.
+void storeSeed(const Database& database, const std::string& sha256, std::uint64_t seed) {
+    database
+        .prepare(
+            "UPDATE protocol_version SET expanded_json=json_replace(expanded_json, '$.seed', json(?2)) "
+            "WHERE protocol_sha256=?1 AND json_extract(expanded_json, '$.seed')<>?3")
+        .bind(sha256, std::to_string(seed), seed)
+        .run();
+}
+
 std::string importPlan(const Database& database, const protocol::StudyPlan& plan, const OpenOptions& options) {
     const std::string sha256 = sha256Hex(plan.source_text);
     Transaction transaction(database);
-    if (database.prepare("SELECT 1 FROM protocol_version WHERE protocol_sha256=?").bind(sha256).step()) return sha256;
+    if (database.prepare("SELECT 1 FROM protocol_version WHERE protocol_sha256=?").bind(sha256).step()) {
+        requireSeed(database, sha256, plan.seed);
+        storeSeed(database, sha256, plan.seed);
+        transaction.commit();
+        return sha256;
+    }
     database.prepare("INSERT INTO protocol_version VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
         .bind(sha256, plan.name, plan.version, plan.source_text, plan.expanded_json, schemaNumber(),
               options.app_version, options.now_utc, plan.title, sequenceCount(plan))
         .run();
+    storeSeed(database, sha256, plan.seed);
     insertFactors(database, sha256, plan);
     insertConditions(database, sha256, plan);
     insertMeasures(database, sha256, plan);
@@ -130,10 +155,19 @@ std::string kindOf(const Database& database, const std::string& participant) {
     return find.text(0);
 }
 
+void refuseComplete(const Database& database, const std::string& sha256, const std::string& participant) {
+    Statement find = database.prepare(
+        "SELECT ordinal FROM session WHERE protocol_sha256=? AND participant_id=? AND end_state='complete'");
+    if (!find.bind(sha256, participant).step()) return;
+    throw std::runtime_error("participant " + participant + " has completed this protocol in session " + find.text(0) +
+                             "; nobody takes part twice");
+}
+
 Slot takeSlot(const Database& database, const std::string& sha256, const std::string& participant) {
     Transaction transaction(database);
     const std::int64_t sequences = sequencesOf(database, sha256);
     const std::string kind = kindOf(database, participant);
+    refuseComplete(database, sha256, participant);
     Statement own =
         database.prepare("SELECT protocol_sha256, sequence_index, replicate FROM design_slot WHERE participant_id=?");
     if (own.bind(participant).step()) {
@@ -159,11 +193,16 @@ Slot takeSlot(const Database& database, const std::string& sha256, const std::st
     return slot;
 }
 
-bool insertParticipant(const Database& database, const std::string& code, const char* kind,
+bool insertParticipant(const Database& database, const std::string& code, ParticipantKind wanted,
                        const std::string& created_utc) {
+    const char* kind = kindName(wanted);
     if (!isParticipantCode(code)) {
         throw std::runtime_error("participant code '" + code +
                                  "' is not a capital letter, then capital letters, digits, '_' or '-', then a digit");
+    }
+    if (code.front() != codeLetter(wanted)) {
+        throw std::runtime_error("participant code '" + code + "': codes of " + kind + " participants begin with " +
+                                 codeLetter(wanted));
     }
     Transaction transaction(database);
     Statement find = database.prepare("SELECT kind FROM participant WHERE participant_id=?");
@@ -209,6 +248,8 @@ SessionWriter::Rows insertSession(const Database& database, const SessionStart& 
     const std::string started_utc = start.clock.at(0);
     const auto orNull = [](const std::string& text) { return text.empty() ? std::nullopt : std::optional(text); };
     Transaction transaction(database);
+    requireSeed(database, start.protocol_sha256, start.seed);
+    refuseComplete(database, start.protocol_sha256, start.participant);
     database.prepare("INSERT INTO session VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, NULL, NULL, ?)")
         .bind(start.session_id, start.participant, start.protocol_sha256, start.ordinal, start.station,
               orNull(start.experimenter), start.language, start.seed, start.random_name, started_utc,
@@ -228,7 +269,10 @@ SessionWriter::Rows insertSession(const Database& database, const SessionStart& 
     if (start.timing_measured) {
         rows.timing_stream_id = insertStream(database, rows.segment_id, "tick_timing", timingChannels());
     }
-    database.prepare("UPDATE participant SET status='active' WHERE participant_id=? AND status='enrolled'")
+    database
+        .prepare(
+            "UPDATE participant SET status='active', status_reason=NULL "
+            "WHERE participant_id=? AND status='enrolled'")
         .bind(start.participant)
         .run();
     transaction.commit();
@@ -266,7 +310,7 @@ Result<std::string> Store::importProtocol(const protocol::StudyPlan& plan) {
 
 Result<bool> Store::enrol(const std::string& code, ParticipantKind kind, const std::string& created_utc) {
     return thread_->call(
-        [&](const Database& database) { return insertParticipant(database, code, kindName(kind), created_utc); });
+        [&](const Database& database) { return insertParticipant(database, code, kind, created_utc); });
 }
 
 Result<std::string> Store::nextCode(ParticipantKind kind) {

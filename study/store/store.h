@@ -74,25 +74,29 @@ public:
     Store& operator=(const Store&) = delete;
 
     /// Stores the protocol with its text, factors, conditions, measures and a free slot for every planned participant.
-    /// Returns the SHA-256 of the text. Importing the same text again changes nothing.
+    /// Returns the SHA-256 of the text. Importing the same text again changes nothing; another seed than that of the
+    /// sessions of this protocol is refused.
     Result<std::string> importProtocol(const protocol::StudyPlan& plan);
 
-    /// True if the participant is new, false if already enrolled with this kind; another kind is an error.
+    /// True if the participant is new, false if already enrolled with this kind; another kind is an error, and so is a
+    /// code that does not begin with the kind's letter.
     Result<bool> enrol(const std::string& code, ParticipantKind kind, const std::string& created_utc);
 
     /// The first unused code of the kind: P001, P002 … for real participants.
     Result<std::string> nextCode(ParticipantKind kind);
 
     /// The participant's slot: the one they have, else the free one with the lowest replicate, then sequence_index;
-    /// a further replicate if none is free. Each kind of participant has slots of its own, so that simulated people
-    /// never use up a place of the design.
+    /// a further replicate if none is free. It is theirs for good once a session completes; a session that does not
+    /// gives it back. Refused to whoever has completed the protocol. Each kind of participant has slots of its own, so
+    /// that simulated people never use up a place of the design.
     Result<Slot> assignSlot(const std::string& protocol_sha256, const std::string& participant);
 
     /// 1 for a participant's first session.
     Result<int> nextOrdinal(const std::string& participant);
 
-    /// Writes session, segment and the complete plan of trials in one transaction. The writer must not outlive the
-    /// store.
+    /// Writes session, segment and the complete plan of trials in one transaction. Refused to a participant who has
+    /// completed this protocol, and with another seed than the protocol's earlier sessions. The writer must not outlive
+    /// the store.
     Result<std::unique_ptr<SessionWriter>> createSession(const SessionStart& start,
                                                          std::span<const design::PlannedTrial> plan);
 

@@ -42,7 +42,8 @@ std::vector<Row> readAll(Statement statement, Read read) {
 constexpr std::string_view kAttemptColumns =
     "SELECT a.attempt_id, s.session_id, s.participant_id, pa.kind, "
     "coalesce((SELECT d.between_group FROM design_slot d WHERE d.participant_id=s.participant_id), 'all'), s.ordinal, "
-    "s.station, json_extract(g.device_json, '$.name'), t.block_index, t.block, t.phase, t.trial_index, "
+    "s.station, coalesce(json_extract(a.params_json, '$.device'), json_extract(g.device_json, '$.name')), "
+    "t.block_index, t.block, t.phase, t.trial_index, "
     "t.trial_in_block, t.repetition, a.attempt_no, c.condition, c.levels_json, a.start_ns, a.end_ns, a.outcome, "
     "a.valid, a.invalid_reason, a.params_json, a.stages_json, a.seed, a.state_hash, s.protocol_sha256, g.app_version, "
     "m.loop, m.ticks, m.mean_us, m.sd_us, m.p99_us, m.p999_us, m.max_us, m.overruns, m.dropped_samples "
@@ -276,15 +277,23 @@ Result<AttemptRow> StoreReader::attempt(std::int64_t attempt_id) const {
 Result<std::vector<EventRow>> StoreReader::events() const {
     return guarded(path_, [&] {
         return readAll<EventRow>(
-            database_->prepare("SELECT s.participant_id, s.ordinal, e.t_ns, t.trial_index, a.attempt_no, e.source, "
-                               "e.event, e.payload_json FROM event e JOIN segment g USING(segment_id) "
-                               "JOIN session s USING(session_id) LEFT JOIN attempt a ON a.attempt_id=e.attempt_id "
-                               "LEFT JOIN trial_plan t USING(trial_id) "
-                               "ORDER BY s.participant_id, s.ordinal, g.segment_id, e.t_ns, e.event_id"),
+            database_->prepare(
+                "SELECT s.participant_id, p.kind, s.ordinal, e.t_ns, t.trial_index, a.attempt_no, e.source, "
+                "e.event, e.payload_json FROM event e JOIN segment g USING(segment_id) "
+                "JOIN session s USING(session_id) JOIN participant p USING(participant_id) "
+                "LEFT JOIN attempt a ON a.attempt_id=e.attempt_id "
+                "LEFT JOIN trial_plan t USING(trial_id) "
+                "ORDER BY s.participant_id, s.ordinal, g.segment_id, e.t_ns, e.event_id"),
             [](const Statement& row) {
-                return EventRow{
-                    row.text(0), row.integer(1), row.integer(2), row.optionalInteger(3), row.optionalInteger(4),
-                    row.text(5), row.text(6),    row.text(7)};
+                return EventRow{row.text(0),
+                                row.text(1),
+                                row.integer(2),
+                                row.integer(3),
+                                row.optionalInteger(4),
+                                row.optionalInteger(5),
+                                row.text(6),
+                                row.text(7),
+                                row.text(8)};
             });
     });
 }

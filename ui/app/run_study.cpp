@@ -67,7 +67,7 @@ public:
         const auto trials = session::planTrials(plan_, static_cast<std::size_t>(slot->number), code);
         auto writer = store_.createSession(start, trials);
         if (!writer) return writer.errors();
-        session::Session session({plan_, trials, code, plan_.seed, measured}, apparatus, **writer,
+        session::Session session({plan_, trials, code, plan_.seed, measured, *ordinal}, apparatus, **writer,
                                  {listener_.acknowledge, listener_.trial});
         return session.run();
     }

@@ -47,22 +47,31 @@ int run(const RunOptions& options) {
     what.clock = options.real_time ? app::Clock::RealTime : app::Clock::Virtual;
 
     std::string participant;
-    std::size_t successes = 0, finished = 0;
+    std::size_t successes = 0, finished = 0, invalid = 0;
+    bool complete = true;
     ProgressLine progress;
     app::RunListener listener;
     listener.recovered = [&](const store::RecoveryReport& report) { tellRecovery(what.database, report); };
     listener.session = [&](const std::string& code, int number, int of) {
         participant = fmt::format("{} ({} of {})", code, number, of);
         progress.show(participant + ": preparing");
-        successes = finished = 0;
+        successes = finished = invalid = 0;
+        complete = true;
     };
     listener.trial = [&](const session::TrialProgress& trial) {
         finished = trial.finished;
         successes += trial.outcome == measures::Outcome::Success ? 1 : 0;
+        const bool counts = trial.valid && trial.outcome != measures::Outcome::Aborted;
+        invalid += counts ? 0 : 1;
+        complete = complete && (counts || trial.trial.phase != "main");
         progress.show(fmt::format("{}: trial {} of {}, {} succeeded", participant, finished, trial.planned, successes));
         if (finished != trial.planned) return;
         progress.show("");
-        fmt::print("{}: {} trials, {} succeeded\n", participant, finished, successes);
+        fmt::print("{}: {} trials, {} succeeded{}\n", participant, finished, successes,
+                   invalid == 0 ? "" : fmt::format(", {} invalid", invalid));
+        if (!complete) {
+            fmt::print("{}: the session is not complete; its place in the design is free again\n", participant);
+        }
         std::fflush(stdout);
     };
     if (options.acknowledge_fd >= 0) {

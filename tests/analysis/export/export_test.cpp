@@ -41,12 +41,12 @@ std::pair<std::string, int> shell(const std::string& command) {
     return {text, pclose(pipe)};
 }
 
-/// Two simulated participants with `trials` attempts each (8 in the plan), an event with a hard text, and a third
+/// Two simulated participants with `trials` attempts each, an event with a hard text, and a third
 /// participant whose only attempt is left running.
 void writeStudy(const std::string& path, std::int64_t trials = 6) {
     auto store = fake::openStore(path);
     for (const char* code : {"S001", "S002"}) {
-        auto writer = fake::beginSession(*store, code, 8);
+        auto writer = fake::beginSession(*store, code, trials);
         writer->appendEvent({{}, 5, "experimenter", fake::kHardText, R"({"note": "a, \"b\""})"});
         for (std::int64_t trial = 0; trial < trials; ++trial) require(fake::writeAttempt(*writer, trial, 40));
         require(writer->finishSession(true, 60'000'000'000));
@@ -146,10 +146,10 @@ TEST_F(Export, EventsKeepHardTexts) {
     const fake::CsvFile events = csv("events.csv");
     ASSERT_EQ(events.rows.size(), 14u);
     const auto note =
-        std::find_if(events.rows.begin(), events.rows.end(), [](const auto& row) { return row[5] == "experimenter"; });
+        std::find_if(events.rows.begin(), events.rows.end(), [](const auto& row) { return row[6] == "experimenter"; });
     ASSERT_NE(note, events.rows.end());
-    EXPECT_EQ((*note)[6], fake::kHardText);
-    EXPECT_EQ((*note)[3], "NA");
+    EXPECT_EQ((*note)[7], fake::kHardText);
+    EXPECT_EQ((*note)[4], "NA");
 }
 
 TEST_F(Export, SamplesUnpackToTheRecordedTicks) {
@@ -241,8 +241,8 @@ TEST_F(Export, TheSameStudyRunAgainGivesTheSameBytes) {
         store::OpenOptions later = fake::options();
         later.now_utc = "2031-02-03T04:05:06.000Z";
         auto store = fake::openStore(path, later);
-        auto first = fake::beginSession(*store, "S001", 8);
-        auto second = fake::beginSession(*store, "S002", 8);
+        auto first = fake::beginSession(*store, "S001", 6);
+        auto second = fake::beginSession(*store, "S002", 6);
         auto third = fake::beginSession(*store, "S003", 8);
         require(third->startAttempt(fake::attemptStart(0)));
         for (auto* writer : {second.get(), first.get()}) {
@@ -268,11 +268,21 @@ TEST_F(Export, SamplesCanBeLeftOut) {
 TEST_F(Export, AnEarlierExportIsReplacedAsAWhole) {
     // Truth: invariant
     std::ofstream(folder_ / "out/trials.csv") << "spoilt";
-    std::ofstream(folder_ / "out/stale.csv") << "stale";
     exportTo(folder_ / "s.db", folder_ / "out/");
     EXPECT_EQ(readFolder(folder_ / "out"), files_);
-    EXPECT_FALSE(fs::exists(folder_ / "out.partial"));
-    EXPECT_FALSE(fs::exists(folder_ / "out.replaced"));
+    for (const auto& entry : fs::directory_iterator(folder_ / "")) {
+        EXPECT_EQ(entry.path().filename().string().find(".partial"), std::string::npos) << entry.path();
+    }
+}
+
+TEST_F(Export, AStrangersFileInAnEarlierExportIsNamedAndKept) {
+    // Truth: invariant
+    std::ofstream(folder_ / "out/analysis.R") << "years of work";
+    const store::StoreReader reader = require(store::StoreReader::open(folder_ / "s.db"));
+    const auto refused = exportAll(reader, folder_ / "out");
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.errors()[0].file, folder_ / "out/analysis.R");
+    EXPECT_EQ(readFile(folder_ / "out/analysis.R"), "years of work");
 }
 
 TEST_F(Export, AFolderWithSomethingElseIsRefusedAndLeftAlone) {

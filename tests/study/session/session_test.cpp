@@ -269,6 +269,8 @@ TEST_F(SessionTest, SeedBelongsToParticipantTrialAndAttemptAndNotToWhatRanBefore
     EXPECT_NE(attemptSeed(resumed, trials_[1], 2), apparatus_.seeds[1]);
     const SessionSetup other{plan_, {trials_[1]}, "P002", 7, false};
     EXPECT_NE(attemptSeed(other, trials_[1], 1), apparatus_.seeds[1]);
+    const SessionSetup again{plan_, {trials_[1]}, "P001", 7, false, 2};
+    EXPECT_NE(attemptSeed(again, trials_[1], 1), apparatus_.seeds[1]);
 }
 
 TEST_F(SessionTest, TimeOutCountsFromTheStartOfTheTrial) {

@@ -154,7 +154,7 @@ inline std::unique_ptr<store::SessionWriter> beginSession(store::Store& store, c
     require(store.assignSlot(start.protocol_sha256, participant));
     start.participant = participant;
     start.ordinal = require(store.nextOrdinal(participant));
-    start.seed = 42;
+    start.seed = plan.seed;
     start.session_id = store::sessionId(plan.name, participant, start.ordinal, start.seed);
     start.device.name = "sigma7";
     start.device.label = kHardText;

@@ -76,7 +76,7 @@ TEST(Store, AWholeSessionReadsBackAsItWasWritten) {
     const std::string path = folder / "s.db";
     {
         auto store = fake::openStore(path);
-        auto writer = fake::beginSession(*store, "S001", 5);
+        auto writer = fake::beginSession(*store, "S001", 4);
         for (int trial = 0; trial < 4; ++trial) require(fake::writeAttempt(*writer, trial, 2345));
         require(writer->finishSession(true, 99'000'000'000));
     }
@@ -104,7 +104,7 @@ TEST(Store, AWholeSessionReadsBackAsItWasWritten) {
     ASSERT_EQ(sessions.size(), 1u);
     EXPECT_EQ(sessions[0].end_state, "complete");
     EXPECT_EQ(sessions[0].ended_utc, "2000-01-01T00:01:39.000Z");
-    EXPECT_EQ(sessions[0].planned_trials, 5);
+    EXPECT_EQ(sessions[0].planned_trials, 4);
     EXPECT_EQ(require(reader.protocols())[0].source_text, fake::makePlan().source_text);
     EXPECT_EQ(require(reader.events()).size(), 4u);
     EXPECT_EQ(require(reader.participants())[0].status, "complete");
@@ -408,6 +408,56 @@ TEST(Store, TwoSessionsAtOnceKeepTheirDataApart) {
         EXPECT_TRUE(fake::sameStoredBits(require(reader.records(attempt.attempt_id)),
                                          fake::makeRecords(static_cast<std::uint64_t>(attempt.trial_index), 1700)));
     }
+}
+
+TEST(Store, ACrashedOrIncompleteSessionGivesItsSlotBack) {
+    // Truth: invariant (the next participant gets the same row of the square)
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    {
+        auto store = fake::openStore(path);
+        fake::beginSession(*store, "S001", 1);  // never ends
+    }
+    auto store = fake::openStore(path);
+    auto writer = fake::beginSession(*store, "S002", 2);
+    require(fake::writeAttempt(*writer, 0, 20));
+    require(writer->finishSession(true, 0));  // one main trial lacks
+    writer = fake::beginSession(*store, "S003", 1);
+    require(fake::writeAttempt(*writer, 0, 20));
+    require(writer->finishSession(true, 0));
+    const Database database(path, OpenMode::ReadOnly);
+    EXPECT_EQ(rows(database, "SELECT end_state FROM session ORDER BY participant_id"), "crashed\naborted\ncomplete\n");
+    EXPECT_EQ(rows(database, "SELECT status FROM participant ORDER BY 1"), "complete\nenrolled\nenrolled\n");
+    EXPECT_EQ(rows(database,
+                   "SELECT participant_id || sequence_index || state FROM design_slot "
+                   "WHERE participant_id NOT NULL"),
+              "S0030complete\n");
+}
+
+TEST(Store, NobodyCompletesAProtocolTwiceAndItsSeedStays) {
+    // Truth: invariant
+    const fake::TempFolder folder;
+    auto store = fake::openStore(folder / "s.db");
+    auto writer = fake::beginSession(*store, "S001", 1);
+    require(fake::writeAttempt(*writer, 0, 20));
+    require(writer->finishSession(true, 0));
+    EXPECT_THROW(fake::beginSession(*store, "S001", 1), std::runtime_error);
+    protocol::StudyPlan plan = fake::makePlan();
+    plan.seed = 8;
+    EXPECT_FALSE(store->importProtocol(plan));
+    EXPECT_FALSE(store->enrol("P001", ParticipantKind::Simulated, ""));
+}
+
+TEST(Store, ASymbolicLinkIsNoWayAroundTheLock) {
+    // Truth: invariant (one process writes)
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    auto first = fake::openStore(path);
+    std::filesystem::create_symlink(path, folder / "link.db");
+    EXPECT_FALSE(Store::open(folder / "link.db", fake::options()).store);
+    first.reset();
+    std::filesystem::create_hard_link(path, folder / "hard.db");
+    EXPECT_FALSE(Store::open(folder / "hard.db", fake::options()).store);
 }
 
 TEST(Store, AnotherFormulaUnderAnOldNameIsRefused) {

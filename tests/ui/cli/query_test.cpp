@@ -226,7 +226,7 @@ TEST_F(Query, UnitsOfOptionsAndFilesMeanTheSameParts) {
         {"box.toml", "ball_m.toml", "--shell-unit", "m"},
         {"box_m.toml", "ball.toml", "--unit", "m", "--shell-unit", "mm"},
         {"box_says_m.toml", "ball_cm.toml"},
-        {"box_says_m.toml", "ball_cm.toml", "--unit", "inch"},
+        {"box_says_m.toml", "ball_cm.toml", "--unit", "in"},
     };
     for (const auto& arguments : same) {
         const fake::CsvFile r = query(arguments[0], arguments[1], {arguments.begin() + 2, arguments.end()});

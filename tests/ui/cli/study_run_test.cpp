@@ -147,6 +147,31 @@ TEST_P(ShippedStudy, RunsToItsDataFileAndEveryRowSaysWhatHappened) {
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedStudy, testing::ValuesIn(shippedStudies()), testName);
 
+/// Times of all trials of a study's only participant, ascending; a trial that did not succeed counts its time-out.
+std::vector<double> trialTimes(const std::string& study) {
+    const TempFolder folder;
+    const std::string file = std::string(PASSUNG_SOURCE_DIR) + "/protocols/" + study;
+    EXPECT_EQ(runProgram(folder.path(), {"run", file, "--simulated", "1", "--db", "s.db"}).exit_code, 0);
+    const auto reader = store::StoreReader::open(folder / "s.db");
+    const auto attempts = reader->attempts();
+    std::vector<double> times;
+    for (const auto& attempt : *attempts) times.push_back(attempt.measures.at("trial_time_s"));
+    std::sort(times.begin(), times.end());
+    return times;
+}
+
+TEST(StudyRun, AHoleThatIsNotWhereItIsDrawnCostsTimeOrFails) {
+    // Truth: invariant (who knows only what is felt and seen must search). Every tick through the real core, session
+    // and store; nothing but the display's place of the hole differs between the two studies, and the names of the
+    // streams.
+    const auto seen = trialTimes("peg_in_hole/study.toml"), hidden = trialTimes("peg_in_hole/hidden_offset.toml");
+    ASSERT_EQ(seen.size(), hidden.size());
+    const double ratio = hidden[hidden.size() / 2] / seen[seen.size() / 2];
+    std::printf("median trial time: hole where it is drawn %.2f s, 3 mm away %.2f s\n", seen[seen.size() / 2],
+                hidden[hidden.size() / 2]);
+    EXPECT_GT(ratio, 1.3);
+}
+
 /// All files of a folder, by their path in it.
 std::map<std::string, std::string> contentOf(const fs::path& folder) {
     std::map<std::string, std::string> files;
