@@ -107,7 +107,7 @@ do for [panel=1:4] {
     set tmargin at screen is_overlap ? 0.880 : 0.395
     set bmargin at screen is_overlap ? 0.445 : 0.095
     set border 3 lc rgb faint lw 1
-    set xrange [0.8:9.0]; set xtics 1,1,9 nomirror scale 0.5 textcolor rgb ink offset 0,0.2
+    set xrange [0.8:8.0]; set xtics 1,1,8 nomirror scale 0.5 textcolor rgb ink offset 0,0.2
     if (is_overlap) {
         set format x ""; unset xlabel
         set logscale y; set yrange [1:3000]
@@ -126,22 +126,22 @@ do for [panel=1:4] {
     }
     top = is_overlap ? 3000 : 8; bottom = is_overlap ? 1 : 0
     set object 1 rectangle from approach,bottom to engaged,top fc rgb searching fs solid noborder behind
-    set object 2 rectangle from engaged,bottom to (end < 9 ? end : 9),top fc rgb inserting fs solid noborder behind
+    set object 2 rectangle from engaged,bottom to (end < 8 ? end : 8),top fc rgb inserting fs solid noborder behind
     if (is_overlap) {
         set label 1 (is_penalty ? "{/:Bold d}   Penalty" : "{/:Bold e}   God object") at graph 0, screen 0.965 left textcolor rgb ink
         set label 2 "{/*0.87 approach}" at 0.5*(0.8+approach), screen 0.905 center textcolor rgb faint
         set label 3 "{/*0.87 search}" at 0.5*(approach+engaged), screen 0.905 center textcolor rgb "#9a7b1f"
         set label 4 "{/*0.87 insertion}" at 0.5*(engaged+end), screen 0.905 center textcolor rgb "#3b6f8f"
         if (is_penalty) {
-            set label 5 "{/*0.87 hand = shown peg}" at 0.5*(approach+engaged), 270 center textcolor rgb hand front
+            set label 5 "{/*0.87 hand = peg}" at 6.1, 900 left textcolor rgb hand front
             set label 6 sprintf("{/*0.87 at most %.2f mm}", penalty_largest_hand/1000) \
-                at 0.5*(approach+engaged), 165 center textcolor rgb hand front
+                at 6.1, 550 left textcolor rgb hand front
         } else {
-            set label 5 sprintf("{/*0.87 hand, at most %.2f mm}", god_largest_hand/1000) \
-                at 0.5*(approach+engaged), 2100 center textcolor rgb hand front
-            set label 6 "{/*0.87 shown peg (proxy)}" at 0.5*(approach+engaged), 80 center textcolor rgb proxy front
+            set label 5 sprintf("{/*0.87 hand: %.2f mm}", god_largest_hand/1000) \
+                at 5.6, 900 left textcolor rgb hand front
+            set label 6 "{/*0.87 shown peg}" at 5.6, 8 left textcolor rgb proxy front
             set label 7 sprintf("{/*0.87 at most %.0f µm}", god_largest_proxy) \
-                at 0.5*(approach+engaged), 49 center textcolor rgb proxy front
+                at 5.6, 4.9 left textcolor rgb proxy front
         }
         if (is_penalty) {
             plot file using 1:6 with lines lw 1.8 lc rgb hand
