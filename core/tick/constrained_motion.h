@@ -18,7 +18,9 @@ struct ConstrainedMotion {
 /// step #4 of god_object_heuristic.h. `keep_out` [m] is the φ that a contact must keep (slightly negative).
 ///   min ½|u - wanted|²  s.t. rows.  Dual: u = wanted + Σ λ_i a_i, λ_i ≥ 0; projected Gauss-Seidel sweeps
 ///   λ_i ← max(0, λ_i + (b_i - a_i·u)/(a_i·a_i)). The most violated contact joins the rows until none is violated by
-///   more than kTolerance; every contact outside the rows is then satisfied as well.
+///   more than kTolerance; if that is reached, every contact outside the rows is satisfied as well.
+/// The sweeps or rows may end before: `converged` is then false, contacts may still be violated, and the caller has to
+/// test the pose. Opposite rows (a peg between two walls) make the sweeps slow, so that tight fits often end there.
 /// Limit cases: no contact violated → wanted. One row → the projection onto its plane. rt-safe, bounded.
 ConstrainedMotion constrainMotion(const Motion& wanted, const ContactManifold& manifold, const Vec3& p_WO,
                                   double metric_radius, double keep_out, int max_rows) noexcept;

@@ -12,25 +12,29 @@ namespace passung::tick {
 /// o the held part's origin, s the finest cell, ρ = metric_radius.
 /// A small motion u = (Δx, ρ Δφ) of the proxy changes φ_i to first order by  a_i · u,  a_i = (g_i, (r_i × g_i) / ρ).
 ///
-/// #1 contacts at the previous proxy G_{k-1}, not at the hand: that is what keeps the overlap small. All points that
-/// this
-///    tick's motion could reach are taken (φ < reach), not only those inside: a constraint that is known before it is
-///    violated cannot be jumped.
-/// #2 correction of the previous proxy if its overlap p_max exceeds kKeep · s: rotation by θ about the penalty torque,
-/// the
-///    least squares of  θ h_i = p_i  over the contacts with a lever h_i = n_i · (T̂ × r_i), and translation along the
-///    penalty force, shared by  λ = ‖F‖ / (‖F‖ + ‖T‖/ρ):  Δx = λ p_max F̂,  Δφ = (1 - λ) θ T̂.  Accepted only if the
-///    query at the corrected pose finds less overlap; halved otherwise, at most kCorrections times.
+/// #1 contacts at the previous proxy G_{k-1}, not at the hand: that is what keeps the overlap small.
+///    All points that this tick's motion could reach are taken (φ < reach), not only those inside: a constraint that
+///    is known before it is violated cannot be jumped.
+///
+/// #2 correction of the previous proxy if its overlap p_max exceeds kAccept · s.
+///    Rotation by θ about the penalty torque, the least squares of  θ h_i = p_i  over the contacts with a lever
+///    h_i = n_i · (T̂ × r_i), and translation along the penalty force, shared by  λ = ‖F‖ / (‖F‖ + ‖T‖/ρ):
+///    Δx = λ p_max F̂,  Δφ = (1 - λ) θ T̂.  Accepted only if the query at the corrected pose finds less overlap, else
+///    halved; at most kCorrections times.
+///
 /// #3 unconstrained motion  u = (x_H - x_G, ρ log(R_H R_Gᵀ)).
-/// #4 constrained motion: the least change of u (Gauss) under  a_i · u ≥ -kKeep·s - φ_i.  Rows are added one at a time,
-/// the
-///    most violated first, and solved by projected Gauss-Seidel: exact at convergence, never more than kRows rows. The
-///    step is cut to `reach` and checked by a query; what the linearisation missed (around a rim) is pushed out by the
-///    least motion that the contacts found there ask for; if the overlap is still not acceptable the step is halved;
-///    and all is repeated from the new pose up to kSubSteps times.
+///
+/// #4 constrained motion: the least change of u (Gauss) under  a_i · u ≥ -kKeep·s - φ_i,  see constrained_motion.h.
+///    The step is cut to `reach` and checked by a query. What the linearisation missed (around a rim) is pushed out by
+///    the least motion that the contacts found there ask for; if the overlap is still not acceptable the step is
+///    halved; and all is repeated from the new pose up to kSubSteps times.
+///
 /// #5 low-pass of the proxy, a stage of its own (only if the scene names its corner f_c), while in contact:
-///    G_k = G_{k-1} ⊕ α (G* ⊖ G_{k-1}),  α = 1 - exp(-2π f_c T); dropped for a tick where it would cost overlap. #6
-///    coupling: virtual_coupling.h. #7, #8 limits and sending: output_stage.h.
+///    G_k = G_{k-1} ⊕ α (G* ⊖ G_{k-1}),  α = 1 - exp(-2π f_c T); dropped for a tick where it would cost overlap.
+///
+/// #6 coupling: virtual_coupling.h.
+///
+/// #7, #8 limits and sending: output_stage.h.
 ///
 /// Why ρ² = K_φ / K: the proxy then minimises the coupling's energy  ½K|x_H - x_G|² + ½K_φ|φ|²  under the constraints.
 /// At the minimum the coupling wrench is a sum of contact forces λ_i a_i, λ_i ≥ 0, so that no friction is felt that

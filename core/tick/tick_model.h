@@ -72,7 +72,7 @@ struct TickState {
     Pose X_WG;
     ContactManifold manifold;      // at X_WG, points with φ < manifold_reach
     double manifold_reach = -1.0;  // < 0: nothing known
-    double clearance = 0.0;        // lower bound of φ at X_WG [m]
+    double clearance = 0.0;        // least interpolated φ at X_WG, no proven bound [m]
     double last_motion = 0.0;      // of the proxy, in the metric of metric_radius [m]
     Pose X_WG_last;                // for the proxy filter
     bool has_last_proxy = false;
