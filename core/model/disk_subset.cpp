@@ -1,7 +1,5 @@
 #include "core/model/disk_subset.h"
 
-#include <limits>
-
 #include "core/model/mesh.h"
 
 namespace passung::model {
@@ -53,13 +51,13 @@ std::vector<std::uint32_t> diskSubset(std::span<const Vec3> positions, std::span
     return chosen;
 }
 
-void assignNearest(std::span<const Vec3> positions, std::span<const Vec3> normals, double radius,
-                   std::span<const std::uint32_t> chosen, std::vector<std::uint32_t>& nearest) {
+std::vector<std::uint32_t> assignNearest(std::span<const Vec3> positions, std::span<const Vec3> normals, double radius,
+                                         std::span<const std::uint32_t> chosen) {
     PointBuckets buckets(positions, radius);
     for (std::uint32_t k = 0; k < chosen.size(); ++k) buckets.insert(positions[chosen[k]], k);
-    nearest.resize(positions.size(), 0);
+    std::vector<std::uint32_t> nearest(positions.size(), kNoPoint);
     for (std::size_t i = 0; i < positions.size(); ++i) {
-        double best = std::numeric_limits<double>::infinity();
+        double best = radius * radius;
         buckets.visitAround(positions[i], [&](std::uint32_t k) {
             if (!facesAlike(normals[i], normals[chosen[k]])) return;
             const double d = (positions[i] - positions[chosen[k]]).squaredNorm();
@@ -69,6 +67,7 @@ void assignNearest(std::span<const Vec3> positions, std::span<const Vec3> normal
             }
         });
     }
+    return nearest;
 }
 
 }  // namespace passung::model

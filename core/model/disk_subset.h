@@ -50,15 +50,18 @@ private:
     std::vector<std::int32_t> first_, next_;  // linked lists: bucket → point → point, -1 ends
 };
 
-/// Indices of a Poisson-disk subset: no two of them that face within 60° of each other are closer than `radius`, and
-/// every other point has one within `radius`. Points are tried in the order of `order`.
+/// Indices of a Poisson-disk subset of the points in `order`, which are tried in that order: no two of them that face
+/// within 60° of each other are closer than `radius`, and every point tried is one of them or has such a one closer
+/// than `radius`. A point without a normal (zero) faces nobody and is always taken.
 std::vector<std::uint32_t> diskSubset(std::span<const Vec3> positions, std::span<const Vec3> normals, double radius,
                                       std::span<const std::uint32_t> order);
 
-/// Sets for each point the place in `chosen` of the nearest chosen point within `radius` that faces within 60° of it;
-/// `nearest` keeps its value where there is none (there is always one for a fresh result of diskSubset).
-void assignNearest(std::span<const Vec3> positions, std::span<const Vec3> normals, double radius,
-                   std::span<const std::uint32_t> chosen, std::vector<std::uint32_t>& nearest);
+inline constexpr std::uint32_t kNoPoint = ~0u;
+
+/// For each point the place in `chosen` of the nearest chosen point closer than `radius` that faces within 60° of it,
+/// or kNoPoint (for the result of diskSubset with the same radius: only points without a normal).
+std::vector<std::uint32_t> assignNearest(std::span<const Vec3> positions, std::span<const Vec3> normals, double radius,
+                                         std::span<const std::uint32_t> chosen);
 
 /// True if two surface normals are within 60°.
 inline bool facesAlike(const Vec3& a, const Vec3& b) { return a.dot(b) > 0.5; }

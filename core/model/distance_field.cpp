@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "core/model/interpolation.h"
 #include "core/model/parallel.h"
 
 namespace passung::model {
@@ -10,44 +12,30 @@ namespace passung::model {
 namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{2} << 30;
-constexpr double kFloatRounding = 1e-8;  // [m], of a distance below 0.1 m stored as a float, with a margin
+constexpr double kFloatRounding = 0x1p-24 * (1.0 + 0x1p-20);  // of a value stored as a float, relative
+constexpr double kArithmetic = 0x1p-45;  // 128 roundings of a coordinate: far more than a query makes
 
-/// Weight of each corner (bit 0: x, bit 1: y, bit 2: z) at the local coordinates u in [0, 1]³.
-std::array<double, 8> trilinearWeights(const Vec3& u) {
-    std::array<double, 8> w{};
-    for (int i = 0; i < 8; ++i) {
-        w[static_cast<std::size_t>(i)] =
-            ((i & 1) ? u.x() : 1.0 - u.x()) * ((i & 2) ? u.y() : 1.0 - u.y()) * ((i & 4) ? u.z() : 1.0 - u.z());
+/// φ less `offset` at `count` nodes that follow each other by `step` along x.
+void sampleRow(const DistanceSource& source, const Vec3& first, double step, int count, double offset, float* row) {
+    double last_distance = 0.0;
+    bool inside = false;
+    for (int x = 0; x < count; ++x) {
+        const Vec3 p = first + step * Vec3(x, 0.0, 0.0);
+        const double d = source.distance(p);
+        // On closed geometry a node farther from the surface than from its neighbour lies on the neighbour's side.
+        const bool same_side = source.closed && last_distance > step;
+        if (!source.open_sheet && !same_side) inside = source.inside(p);
+        last_distance = d;
+        row[x] = static_cast<float>((inside ? -d : d) - offset);
     }
-    return w;
-}
-
-/// The corner nearest to u, which is the centre of the thesis's voxel around the point.
-unsigned nearestCorner(const Vec3& u) {
-    return (u.x() > 0.5 ? 1u : 0u) | (u.y() > 0.5 ? 2u : 0u) | (u.z() > 0.5 ? 4u : 0u);
-}
-
-/// The thesis's V_I as weights of four corners: value at the nearest one and one-sided differences to its three
-/// neighbours on the point's side. (Sagardia 2019, eqs. 3.28-3.29, with V = -φ.)
-std::array<double, 8> oneSidedWeights(const Vec3& u) {
-    std::array<double, 8> w{};
-    const unsigned c = nearestCorner(u);
-    w[c] = 1.0;
-    for (int axis = 0; axis < 3; ++axis) {
-        const unsigned bit = 1u << axis;
-        const double away = (c & bit) ? 1.0 - u[axis] : u[axis];  // in cells, towards the neighbour
-        w[c ^ bit] += away;
-        w[c] -= away;
-    }
-    return w;
 }
 
 }  // namespace
 
 struct DistanceField::Cell {
-    std::array<double, 8> corner;  // φ, bit order as above
-    Vec3 u;                        // local coordinates in [0, 1]³
-    double edge;                   // [m]
+    Corners corner;  // φ
+    Vec3 u;          // local coordinates in [0, 1]³
+    double edge;     // [m]
 };
 
 std::size_t DistanceField::coarseNode(int x, int y, int z) const noexcept {
@@ -71,6 +59,7 @@ Result<DistanceField> DistanceField::build(const DistanceSource& source, double 
     // Between the two sides of a sheet the distance has a kink that interpolation cannot show: keep the zero level
     // one cell in front of it.
     field.sheet_offset_ = source.open_sheet ? cell : 0.0;
+    field.bound_proven_ = source.closed || source.open_sheet;
 
     const double margin = source.bounds.size().maxCoeff() + band + field.brick_edge_;
     field.origin_ = source.bounds.low - Vec3::Constant(margin);
@@ -84,6 +73,8 @@ Result<DistanceField> DistanceField::build(const DistanceSource& source, double 
         }
         field.coarse_cells_[axis] = static_cast<int>(cells);
     }
+    const Vec3 reach = field.origin_.cwiseAbs().cwiseMax((source.bounds.high + Vec3::Constant(margin)).cwiseAbs());
+    field.arithmetic_ = kArithmetic * (reach.maxCoeff() + field.brick_edge_);
     field.sampleCoarse(source);
     field.sampleBricks(source, band);
     if (field.memoryBytes() > kMaxBytes) {
@@ -98,18 +89,8 @@ void DistanceField::sampleCoarse(const DistanceSource& source) {
     parallelFor(static_cast<std::size_t>(nz) * static_cast<std::size_t>(ny), [&](std::size_t row) {
         const int y = static_cast<int>(row % static_cast<std::size_t>(ny));
         const int z = static_cast<int>(row / static_cast<std::size_t>(ny));
-        double last_distance = 0.0;
-        bool last_inside = false;
-        for (int x = 0; x < nx; ++x) {
-            const Vec3 p = origin_ + brick_edge_ * Vec3(x, y, z);
-            const double d = source.distance(p);
-            // A node farther from the surface than from its neighbour lies on the neighbour's side.
-            bool inside = false;
-            if (!source.open_sheet) inside = last_distance > brick_edge_ ? last_inside : source.inside(p);
-            last_distance = d;
-            last_inside = inside;
-            coarse_[coarseNode(x, y, z)] = static_cast<float>((inside ? -d : d) - sheet_offset_);
-        }
+        sampleRow(source, origin_ + brick_edge_ * Vec3(0.0, y, z), brick_edge_, nx, sheet_offset_,
+                  &coarse_[coarseNode(0, y, z)]);
     });
 }
 
@@ -124,7 +105,7 @@ void DistanceField::sampleBricks(const DistanceSource& source, double band) {
             for (int x = 0; x < coarse_cells_[0]; ++x) {
                 // The corner's distance bounds the centre's: ask for the exact one only where it can matter.
                 const double corner = std::abs(static_cast<double>(coarse_[coarseNode(x, y, z)]) + sheet_offset_);
-                if (corner > band + 2.0 * half_diagonal + kFloatRounding) continue;
+                if (corner * (1.0 - kFloatRounding) > band + sheet_offset_ + 2.0 * half_diagonal) continue;
                 const Vec3 centre = origin_ + brick_edge_ * (Vec3(x, y, z) + Vec3::Constant(0.5));
                 if (source.distance(centre) > band + sheet_offset_ + half_diagonal) continue;
                 brick_of_cell_[coarseCell(x, y, z)] = static_cast<std::int32_t>(places.size());
@@ -136,21 +117,10 @@ void DistanceField::sampleBricks(const DistanceSource& source, double band) {
     parallelFor(places.size(), [&](std::size_t b) {
         const auto& place = places[b];
         const Vec3 low = origin_ + brick_edge_ * Vec3(place[0], place[1], place[2]);
-        std::size_t i = b * kBrickSamples;
-        for (int z = 0; z < kBrickNodes; ++z) {
-            for (int y = 0; y < kBrickNodes; ++y) {
-                double last_distance = 0.0;
-                bool last_inside = false;
-                for (int x = 0; x < kBrickNodes; ++x, ++i) {
-                    const Vec3 p = low + cell_ * Vec3(x, y, z);
-                    const double d = source.distance(p);
-                    bool inside = false;
-                    if (!source.open_sheet) inside = last_distance > cell_ ? last_inside : source.inside(p);
-                    last_distance = d;
-                    last_inside = inside;
-                    bricks_[i] = static_cast<float>((inside ? -d : d) - sheet_offset_);
-                }
-            }
+        for (int row = 0; row < kBrickNodes * kBrickNodes; ++row) {
+            const Vec3 first = low + cell_ * Vec3(0.0, row % kBrickNodes, row / kBrickNodes);
+            sampleRow(source, first, cell_, kBrickNodes, sheet_offset_,
+                      &bricks_[b * kBrickSamples + static_cast<std::size_t>(row * kBrickNodes)]);
         }
     });
 }
@@ -221,28 +191,41 @@ FieldSample DistanceField::sample(const Vec3& p, FieldMode mode) const noexcept 
         }
         return s;
     }
-    // Along x, then y, then z; the differences on the way are the gradient.
-    const double x00 = c[0] + u.x() * (c[1] - c[0]), x10 = c[2] + u.x() * (c[3] - c[2]);
-    const double x01 = c[4] + u.x() * (c[5] - c[4]), x11 = c[6] + u.x() * (c[7] - c[6]);
-    const double y0 = x00 + u.y() * (x10 - x00), y1 = x01 + u.y() * (x11 - x01);
-    const double dx0 = (c[1] - c[0]) + u.y() * ((c[3] - c[2]) - (c[1] - c[0]));
-    const double dx1 = (c[5] - c[4]) + u.y() * ((c[7] - c[6]) - (c[5] - c[4]));
-    const double dy0 = x10 - x00, dy1 = x11 - x01;
-    return {y0 + u.z() * (y1 - y0), Vec3(dx0 + u.z() * (dx1 - dx0), dy0 + u.z() * (dy1 - dy0), y1 - y0) / cell.edge};
+    return {trilinearValue(c, u), trilinearSlope(c, u) / cell.edge};
+}
+
+/// The float that holds a corner is off by half a unit in its last place, the weighted sum by the weighted sum of that.
+double DistanceField::rounding(const Cell& cell, double weights) const noexcept {
+    double largest = 0.0;
+    for (const double c : cell.corner) largest = std::max(largest, std::abs(c));
+    return kFloatRounding * weights * largest + arithmetic_;
+}
+
+/// An upper bound of the unsigned distance from the cell's point to the surface: that of each corner and the way there.
+double DistanceField::farthestSurface(const Cell& cell) const noexcept {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < 8; ++i)
+        nearest = std::min(nearest, std::abs(cell.corner[i]) + cell.edge * (cornerAt(i) - cell.u).norm());
+    return nearest + rounding(cell, 1.0);
 }
 
 double DistanceField::lowerBound(const Vec3& p) const noexcept {
     Cell cell;
-    if (!locate(p, cell)) return boxDistance(p) - sheet_offset_;
-    const auto& c = cell.corner;
+    if (!locate(p, cell)) return boxDistance(p) - sheet_offset_ - arithmetic_;
+    if (!bound_proven_) return -farthestSurface(cell);
+    const Corners w = trilinearWeights(cell.u);
+    const double off = rounding(cell, 1.0);
+    double mean = 0.0, mean_square = 0.0;
+    for (std::size_t i = 0; i < 8; ++i) {
+        const double d = std::max(0.0, cell.corner[i] + sheet_offset_ - off);
+        mean += w[i] * cell.corner[i];
+        mean_square += w[i] * d * d;
+    }
     const Vec3& u = cell.u;
-    const double x00 = c[0] + u.x() * (c[1] - c[0]), x10 = c[2] + u.x() * (c[3] - c[2]);
-    const double x01 = c[4] + u.x() * (c[5] - c[4]), x11 = c[6] + u.x() * (c[7] - c[6]);
-    const double y0 = x00 + u.y() * (x10 - x00), y1 = x01 + u.y() * (x11 - x01);
-    // Σ w_i |c_i - p| ≤ sqrt(Σ w_i |c_i - p|²) (Jensen) = edge · sqrt(Σ_axis u(1-u)): the corners' mean square
-    // distance.
-    const double variance = u.x() * (1.0 - u.x()) + u.y() * (1.0 - u.y()) + u.z() * (1.0 - u.z());
-    return y0 + u.z() * (y1 - y0) - cell.edge * std::sqrt(variance) - kFloatRounding;
+    const double spread = cell.edge * cell.edge * u.cwiseProduct(Vec3::Ones() - u).sum();
+    const double near = mean - std::sqrt(spread) - off;
+    const double far = mean_square * (1.0 - 1e-12) - spread;
+    return far > 0.0 ? std::max(near, std::sqrt(far) - sheet_offset_ - arithmetic_) : near;
 }
 
 double DistanceField::errorBound(const Vec3& p, FieldMode mode) const noexcept {
@@ -250,15 +233,16 @@ double DistanceField::errorBound(const Vec3& p, FieldMode mode) const noexcept {
     if (!locate(p, cell)) {
         // The true value lies between the distance to the part's box and the distance to its farthest corner.
         const Vec3 far = (p - surface_bounds_.low).cwiseAbs().cwiseMax((p - surface_bounds_.high).cwiseAbs());
-        return far.norm() - boxDistance(p);
+        return far.norm() - boxDistance(p) + arithmetic_;
     }
-    const auto w = mode == FieldMode::Linear ? oneSidedWeights(cell.u) : trilinearWeights(cell.u);
-    double bound = 0.0;
+    if (!bound_proven_) return std::abs(sample(p, mode).phi) + farthestSurface(cell);
+    const Corners w = mode == FieldMode::Linear ? oneSidedWeights(cell.u) : trilinearWeights(cell.u);
+    double bound = 0.0, weights = 0.0;
     for (std::size_t i = 0; i < 8; ++i) {
-        const Vec3 corner((i & 1) ? 1.0 : 0.0, (i & 2) ? 1.0 : 0.0, (i & 4) ? 1.0 : 0.0);
-        bound += std::abs(w[i]) * (corner - cell.u).norm();
+        bound += std::abs(w[i]) * (cornerAt(i) - cell.u).norm();
+        weights += std::abs(w[i]);
     }
-    return bound * cell.edge + kFloatRounding;
+    return bound * cell.edge + rounding(cell, weights);
 }
 
 }  // namespace passung::model

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -18,6 +19,7 @@ struct DistanceSource {
     std::function<double(const Vec3&)> distance;  // unsigned, exact
     std::function<bool(const Vec3&)> inside;      // never called for an open sheet
     bool open_sheet = false;                      // no inside: two-sided, thickened by one cell on each side
+    bool closed = false;  // `inside` changes at the surface only, so that the signed distance is 1-Lipschitz
 };
 
 /// Value of the interpolated field.
@@ -42,11 +44,22 @@ public:
     FieldSample sample(const Vec3& p, FieldMode mode) const noexcept;
 
     /// A rigorous lower bound of the true φ at `p`; cheaper than sample() by the gradient.
+    ///   No holes, the larger of two, with the trilinear weights w and S = Σ w_i |c_i - p|² = edge² Σ_axis u (1 - u):
+    ///     near the surface: exact samples of a 1-Lipschitz function,  φ(p) ≥ Σ w_i (φ_i - |c_i - p|) ≥ Σ w_i φ_i - √S;
+    ///     far from it: d² - |p|² is the least of linear functions of p (d the distance to the solid or sheet), hence
+    ///     concave and nowhere below its interpolant,  d(p)² ≥ Σ w_i d_i² - S. (For a convex part d - bound ≤ S/d.)
+    ///   Holes left open (boundProven() is false): where the surface goes on is unknown, so is the sign between two
+    ///   nodes. All that is certain of every surface that contains the triangles is |φ(p)| ≤ their distance d(p), and
+    ///   d(p) ≤ min_i (|φ_i| + |c_i - p|); the bound is the negative of that, and a query prunes next to nothing.
     double lowerBound(const Vec3& p) const noexcept;
 
     /// A rigorous bound of |sample(p).phi - true φ(p)| [m], offset of an open sheet not included.
-    ///   Exact samples of a 1-Lipschitz function: |interpolant - φ(p)| ≤ Σ |w_i| · |c_i - p| (+ |1 - Σ w_i| = 0).
+    ///   No holes: |interpolant - φ(p)| ≤ Σ |w_i| |c_i - p| (+ |1 - Σ w_i| = 0).
+    ///   Holes left open: |interpolant| + the upper bound of d(p) above.
     double errorBound(const Vec3& p, FieldMode mode) const noexcept;
+
+    /// False if the geometry has holes that were left open: see lowerBound and errorBound.
+    bool boundProven() const { return bound_proven_; }
 
     double cell() const { return cell_; }
     /// How far the zero level lies in front of an open sheet's surface, on both sides [m]; 0 for solids.
@@ -61,6 +74,8 @@ private:
     struct Cell;  // the eight corners around a point
     bool locate(const Vec3& p, Cell& cell) const noexcept;
     double boxDistance(const Vec3& p) const noexcept;
+    double rounding(const Cell& cell, double weights) const noexcept;
+    double farthestSurface(const Cell& cell) const noexcept;
     void sampleCoarse(const DistanceSource& source);
     void sampleBricks(const DistanceSource& source, double band);
     std::size_t coarseNode(int x, int y, int z) const noexcept;
@@ -73,6 +88,8 @@ private:
     double brick_edge_ = 0.0;            // coarse cell [m]
     double inverse_brick_edge_ = 0.0;
     double sheet_offset_ = 0.0;
+    double arithmetic_ = 0.0;  // what rounding in double precision may add up to [m]
+    bool bound_proven_ = true;
     std::vector<float> coarse_;                // nodes
     std::vector<std::int32_t> brick_of_cell_;  // -1: none
     std::vector<float> bricks_;                // brickCount × 9³, x fastest

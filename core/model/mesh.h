@@ -29,4 +29,8 @@ struct Bounds {
 
 Bounds boundsOf(const TriangleMesh& mesh);
 
+/// FNV-1a over the counts, the exact bits of all vertices and all triangles, in order: two meshes with the same hash
+/// are the same geometry. The same on every machine. A shape is identified by the hash of its tessellation.
+std::uint64_t contentHash(const TriangleMesh& mesh);
+
 }  // namespace passung::model

@@ -9,15 +9,23 @@
 
 namespace passung::model {
 
+/// What a mesh bounds, decided when it is repaired.
+enum class SurfaceKind {
+    Solid,       // closed, or all holes were closed: every edge is used as often in one direction as in the other
+    HoledSolid,  // has an inside by the winding number, but some open edges were left
+    OpenSheet,   // has no inside: felt on both sides
+};
+
 /// What a loaded mesh is like and what was done about it. Edges are those of the mesh after welding and dropping,
-/// before triangles were turned; a count of what was wrong stays although it was put right.
+/// before triangles were turned; a count of what was wrong stays although it was put right. Triangles that close holes
+/// are counted on their own.
 struct MeshReport {
     std::string file;
     std::string format;
     double metres_per_unit = 1e-3;
     std::size_t triangles_read = 0;
-    std::size_t triangles = 0;             // after the repair
-    std::size_t vertices = 0;              // after the repair
+    std::size_t triangles = 0;             // after the repair, before holes were closed
+    std::size_t vertices = 0;              // after the repair, before holes were closed
     std::size_t welded_vertices = 0;       // equal positions joined; usual: STL repeats every corner
     std::size_t degenerate_triangles = 0;  // without area: dropped
     std::size_t duplicate_triangles = 0;   // same three corners, whichever way round: dropped but for the first
@@ -27,12 +35,16 @@ struct MeshReport {
     std::size_t inconsistent_edges = 0;    // two neighbours run the same way along an edge
     std::size_t turned_triangles = 0;      // the smaller side of such a quarrel: turned to agree with the other
     std::size_t shells = 0;                // pieces that hang together by edges
-    bool watertight = false;               // after the repair every edge is used once in each direction
-    bool turned_inside_out = false;        // negative volume: all triangles were turned
-    Vec3 size = Vec3::Zero();              // [m]
-    double area = 0.0;                     // [m²]
-    double volume = 0.0;                   // [m³]; of a watertight mesh, otherwise 0
-    std::vector<std::string> notes;        // sentences: each defect and what was done about it
+    bool watertight = false;               // every edge is used once in each direction, before holes were closed
+    bool turned_inside_out = false;        // the inside was outside: all triangles were turned
+    SurfaceKind kind = SurfaceKind::OpenSheet;
+    std::size_t closed_holes = 0;
+    std::size_t closing_triangles = 0;  // added for that: ImportedMesh::mesh has triangles + closing_triangles
+    std::size_t open_edges_left = 0;    // of a solid: cracks, and holes that could not be closed
+    Vec3 size = Vec3::Zero();           // [m]
+    double area = 0.0;                  // [m²], before holes were closed
+    double volume = 0.0;                // [m³]; of a solid, its holes closed; otherwise 0
+    std::vector<std::string> notes;     // sentences: each defect and what was done about it
 };
 
 struct ImportedMesh {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <string>
@@ -7,7 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/model/hole_closing.h"
 #include "core/model/mesh_import.h"
+#include "core/model/triangle_tree.h"
 
 namespace passung::model {
 
@@ -16,6 +19,8 @@ namespace {
 /// A triangle is without area if its doubled area is below this share of its longest edge squared: what rounding leaves
 /// of three points in a line, far below anything that a part is made of.
 constexpr double kFlat = 1e-12;
+
+constexpr double kInsideBalance = 0.5;  // halfway between a sheet (0) and a solid (1)
 
 constexpr std::uint32_t kNone = ~0u;
 
@@ -212,6 +217,25 @@ bool isWatertight(const std::vector<HalfEdge>& edges) {
     return tight;
 }
 
+/// The edges that are not used as often in one direction as in the other; each runs as a triangle on its free side
+/// would.
+std::vector<DirectedEdge> openEdges(const std::vector<HalfEdge>& edges) {
+    std::vector<DirectedEdge> open;
+    forEachEdge(edges, [&](const HalfEdge* use, std::size_t count) {
+        int balance = 0;
+        for (std::size_t k = 0; k < count; ++k) balance += use[k].forward ? 1 : -1;
+        for (; balance > 0; --balance) open.push_back({use->high, use->low});
+        for (; balance < 0; ++balance) open.push_back({use->low, use->high});
+    });
+    return open;
+}
+
+void turnAll(TriangleMesh& mesh, std::vector<DirectedEdge>& open, MeshReport& report) {
+    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+    for (DirectedEdge& edge : open) std::swap(edge[0], edge[1]);
+    report.turned_inside_out = true;
+}
+
 /// By the divergence theorem, about the middle of the mesh for the sake of rounding.
 double enclosedVolume(const TriangleMesh& mesh, const Vec3& middle) {
     double six_volumes = 0.0;
@@ -248,11 +272,41 @@ void writeNotes(MeshReport& r) {
          "triangles were turned to agree with their neighbours.");
     if (r.boundary_edges > 0)
         r.notes.push_back("The surface is open: " + counted(r.boundary_edges, "edge", "edges") +
-                          " of one triangle only, in " + counted(r.holes, "chain", "chains") +
-                          " (holes, or the border of a sheet); left as they are.");
+                          " of one triangle only, in " + counted(r.holes, "chain", "chains") + ".");
     note(r.non_manifold_edges, "edge belongs to three or more triangles; left as it is.",
          "edges belong to three or more triangles; left as they are.");
     if (r.turned_inside_out) r.notes.push_back("The surface was inside out: all triangles were turned.");
+    if (r.closed_holes > 0)
+        r.notes.push_back(counted(r.closed_holes, "hole was", "holes were") + " closed with " +
+                          counted(r.closing_triangles, "triangle.", "triangles."));
+    if (r.kind == SurfaceKind::HoledSolid)
+        r.notes.push_back(counted(r.open_edges_left, "open edge was", "open edges were") +
+                          " left: the winding number decides what is inside, and no error bound of a distance field is "
+                          "proven.");
+    if (r.kind == SurfaceKind::OpenSheet && r.triangles > 0)
+        r.notes.push_back(
+            "The surface has no inside: it is treated as a sheet, felt on both sides one cell of the distance field in "
+            "front of it.");
+}
+
+/// Decides what is inside, turns a surface that is inside out, closes holes.
+void settleInside(TriangleMesh& mesh, std::vector<DirectedEdge> open, const Bounds& bounds, MeshReport& report) {
+    if (mesh.triangles.empty()) return;
+    if (open.empty()) {
+        report.kind = SurfaceKind::Solid;
+        if (enclosedVolume(mesh, 0.5 * (bounds.low + bounds.high)) < 0.0) turnAll(mesh, open, report);
+    } else {
+        const TriangleTree tree(mesh);
+        const double balance = insideBalance(mesh, tree);
+        if (!(std::abs(balance) > kInsideBalance)) return;
+        if (balance < 0.0) turnAll(mesh, open, report);
+        const HoleClosing closing = closeHoles(mesh, open, tree, balance < 0.0 ? -1.0 : 1.0);
+        report.closed_holes = closing.holes;
+        report.closing_triangles = closing.triangles;
+        report.open_edges_left = closing.edges_left;
+        report.kind = closing.edges_left == 0 ? SurfaceKind::Solid : SurfaceKind::HoledSolid;
+    }
+    if (report.kind == SurfaceKind::Solid) report.volume = enclosedVolume(mesh, 0.5 * (bounds.low + bounds.high));
 }
 
 }  // namespace
@@ -273,18 +327,11 @@ ImportedMesh repairMesh(TriangleMesh mesh) {
     }
     report.watertight = isWatertight(edges);
     const Bounds bounds = boundsOf(mesh);
-    if (report.watertight) {
-        report.volume = enclosedVolume(mesh, 0.5 * (bounds.low + bounds.high));
-        report.turned_inside_out = report.volume < 0.0;
-        if (report.turned_inside_out) {
-            for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-            report.volume = -report.volume;
-        }
-    }
     report.area = surfaceArea(mesh);
     report.size = mesh.vertices.empty() ? Vec3(Vec3::Zero()) : bounds.size();
     report.triangles = mesh.triangles.size();
     report.vertices = mesh.vertices.size();
+    settleInside(mesh, openEdges(edges), bounds, report);
     writeNotes(report);
     return {std::move(mesh), std::move(report)};
 }

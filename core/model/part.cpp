@@ -3,35 +3,31 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <limits>
 #include <memory>
 
 #include "core/base/random.h"
+#include "core/model/interpolation.h"
 #include "core/model/triangle_tree.h"
 
 namespace passung::model {
 
 namespace {
 
-constexpr double kBandCells = 4.0;    // bricks reach this many cells from the surface
+constexpr double kBandCells = 6.0;    // bricks reach this many cells from the surface
 constexpr double kChordShare = 0.05;  // of the tolerance: the mesh of a shape must not spoil what the field holds
-constexpr double kFinestShare = 1.0 / 1024;  // of the longest side: chooseCell stops there
-constexpr int kErrorProbes = 400;
+constexpr double kCoarsestShare = 1.0 / 32;        // of the longest side: chooseCell begins there
+constexpr double kCoarsestSheetShare = 1.0 / 256;  // of a sheet, whose zero level lies a cell in front of it
+constexpr double kFinestShare = 1.0 / 1024;        // chooseCell stops there
+constexpr std::size_t kErrorProbes = 400;
+constexpr int kMostTries = 4000;  // to find so many points
 constexpr double kProbeQuantile = 0.9;
 
-/// A surface that is not closed and has no side that most of its triangles agree to call inside.
-bool isOpenSheet(const TriangleMesh& mesh, const MeshReport& report, const TriangleTree& tree) {
-    if (report.watertight) return false;
-    const double step = 1e-3 * boundsOf(mesh).size().norm();
-    std::size_t inside = 0, tried = 0;
-    const std::size_t stride = std::max<std::size_t>(1, mesh.triangles.size() / 500);
-    for (std::size_t i = 0; i < mesh.triangles.size(); i += stride) {
-        const auto& t = mesh.triangles[i];
-        const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-        const Vec3 behind = (a + b + c) / 3.0 - step * (b - a).cross(c - a).normalized();
-        inside += tree.inside(behind) ? 1 : 0;
-        ++tried;
-    }
-    return 2 * inside < tried;
+std::string inMillimetres(double metres) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.3g mm", 1e3 * metres);
+    return text.data();
 }
 
 /// A point within `reach` of the surface.
@@ -47,6 +43,35 @@ Vec3 pointNear(const TriangleMesh& mesh, double reach, Random& random) {
     return a + u * (mesh.vertices[t[1]] - a) + v * (mesh.vertices[t[2]] - a) + offset;
 }
 
+/// What trilinear interpolation of cells of edge `cell`, placed at random around points near the zero level, errs by at
+/// the quantile kProbeQuantile [m].
+double probedError(const DistanceSource& source, const TriangleMesh& mesh, double cell) {
+    const auto signedAt = [&](const Vec3& p) {
+        const double d = source.distance(p);
+        return !source.open_sheet && source.inside(p) ? -d : d;
+    };
+    // The zero level of a sheet lies one cell in front of it: cells that the sheet cuts, where the distance has a kink,
+    // are behind that.
+    const double reach = source.open_sheet ? 2.0 * cell : cell;
+    const double nearest = source.open_sheet ? cell : 0.0;
+    Random random(1);
+    std::vector<double> errors;
+    for (int tried = 0; errors.size() < kErrorProbes && tried < kMostTries; ++tried) {
+        const Vec3 p = pointNear(mesh, reach, random);
+        const Vec3 u(random.uniform(), random.uniform(), random.uniform());
+        const double truth = signedAt(p);
+        if (std::abs(truth) < nearest) continue;
+        Corners corners{};
+        for (std::size_t c = 0; c < 8; ++c) corners[c] = signedAt(p + cell * (cornerAt(c) - u));
+        errors.push_back(std::abs(trilinearValue(corners, u) - truth));
+    }
+    if (errors.empty()) return std::numeric_limits<double>::infinity();
+    const auto quantile =
+        errors.begin() + static_cast<std::ptrdiff_t>(kProbeQuantile * static_cast<double>(errors.size()));
+    std::nth_element(errors.begin(), quantile, errors.end());
+    return *quantile;
+}
+
 }  // namespace
 
 DistanceSource exactSource(const Part& part) {
@@ -55,13 +80,15 @@ DistanceSource exactSource(const Part& part) {
     if (part.shape) {
         const Shape shape = *part.shape;
         source.open_sheet = std::holds_alternative<Sheet>(shape);
+        source.closed = !source.open_sheet;
         source.distance = [shape](const Vec3& p) { return std::abs(signedDistance(shape, p)); };
         source.inside = [shape](const Vec3& p) { return signedDistance(shape, p) < 0.0; };
         return source;
     }
     // Shared by the two functions, which may be copied.
     const auto tree = std::make_shared<const TriangleTree>(part.mesh);
-    source.open_sheet = isOpenSheet(part.mesh, part.report, *tree);
+    source.open_sheet = part.report.kind == SurfaceKind::OpenSheet;
+    source.closed = part.report.kind == SurfaceKind::Solid;
     source.distance = [tree](const Vec3& p) { return tree->closest(p).distance; };
     source.inside = [tree](const Vec3& p) { return tree->inside(p); };
     return source;
@@ -69,30 +96,8 @@ DistanceSource exactSource(const Part& part) {
 
 double chooseCell(const DistanceSource& source, const TriangleMesh& mesh, double tolerance) {
     const double longest = source.bounds.size().maxCoeff();
-    double cell = longest / 32.0;
-    const auto signedAt = [&](const Vec3& p) {
-        const double d = source.distance(p);
-        return !source.open_sheet && source.inside(p) ? -d : d;
-    };
-    for (; cell > kFinestShare * longest; cell *= 0.5) {
-        Random random(1);
-        std::vector<double> errors;
-        for (int i = 0; i < kErrorProbes; ++i) {
-            const Vec3 p = pointNear(mesh, cell, random);
-            const Vec3 u(random.uniform(), random.uniform(), random.uniform());
-            double interpolated = 0.0;
-            for (int c = 0; c < 8; ++c) {
-                const Vec3 corner((c & 1) ? 1.0 : 0.0, (c & 2) ? 1.0 : 0.0, (c & 4) ? 1.0 : 0.0);
-                double w = 1.0;
-                for (int axis = 0; axis < 3; ++axis) w *= corner[axis] > 0.5 ? u[axis] : 1.0 - u[axis];
-                interpolated += w * signedAt(p + cell * (corner - u));
-            }
-            errors.push_back(std::abs(interpolated - signedAt(p)));
-        }
-        const auto quantile = errors.begin() + static_cast<std::ptrdiff_t>(kProbeQuantile * kErrorProbes);
-        std::nth_element(errors.begin(), quantile, errors.end());
-        if (*quantile <= tolerance) break;
-    }
+    double cell = longest * (source.open_sheet ? kCoarsestSheetShare : kCoarsestShare);
+    while (cell > kFinestShare * longest && probedError(source, mesh, cell) > tolerance) cell *= 0.5;
     return cell;
 }
 
@@ -102,8 +107,9 @@ Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs) {
     if (const auto* shape = std::get_if<Shape>(&spec.geometry)) {
         if (auto errors = validate(*shape); !errors.empty()) return errors;
         part.shape = *shape;
-        part.chord_error = kChordShare * needs.tolerance;
-        ImportedMesh checked = repairMesh(tessellate(*shape, part.chord_error));
+        const double asked = kChordShare * needs.tolerance;
+        part.chord_error = chordError(*shape, asked);
+        ImportedMesh checked = repairMesh(tessellate(*shape, asked));
         part.mesh = std::move(checked.mesh);
         part.report = std::move(checked.report);
         part.report.format = kindName(*shape);
@@ -124,6 +130,9 @@ Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs) {
             return errors;
         }
         part.field = std::move(*field);
+        if (source.open_sheet)
+            part.report.notes.push_back("The sheet is felt " + inMillimetres(part.field->sheetOffset()) +
+                                        " in front of its surface, on both sides.");
     }
     if (needs.shell) part.shell.emplace(samplePoints(part.mesh, needs.spacing));
     return part;

@@ -28,7 +28,7 @@ struct Part {
     std::optional<Shape> shape;  // if parametric: its closed form is the truth
     TriangleMesh mesh;           // part frame, metres
     MeshReport report;
-    double chord_error = 0.0;  // of the mesh against the shape [m]
+    double chord_error = 0.0;  // of the mesh against the shape, as reached [m]
     std::optional<DistanceField> field;
     std::optional<SphereTree> shell;
 };
@@ -40,9 +40,10 @@ Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs);
 /// The result holds what it needs; `part` may go.
 DistanceSource exactSource(const Part& part);
 
-/// The largest cell (halving from 1/32 of the part's longest side) whose trilinear error, measured at fixed random
-/// points within a cell of the surface, is ≤ `tolerance` for 90 % of them. Points at sharp edges err more at any cell
-/// size; DistanceField::errorBound holds everywhere.
+/// The largest cell (halving from 1/32 of the part's longest side, down to 1/1024) whose trilinear error, measured at
+/// fixed random points near the zero level, is ≤ `tolerance` for 90 % of them. Points at sharp edges err more at any
+/// cell size; DistanceField::errorBound holds everywhere.
+/// An open sheet begins at 1/256: its zero level lies one cell in front of the surface, and that is the greater error.
 double chooseCell(const DistanceSource& source, const TriangleMesh& mesh, double tolerance);
 
 }  // namespace passung::model

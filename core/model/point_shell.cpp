@@ -89,6 +89,19 @@ void relax(const Candidates& all, const std::vector<std::uint32_t>& patch, std::
     }
 }
 
+/// The patch of each candidate. Where a sample has moved away, or has turned by moving, candidates may be left without
+/// one that faces them: then some of them become samples too.
+std::vector<std::uint32_t> assignPatches(const Candidates& all, double radius, std::vector<std::uint32_t>& samples) {
+    std::vector<std::uint32_t> patch = assignNearest(all.positions, all.normals, radius, samples);
+    std::vector<std::uint32_t> left;
+    for (std::uint32_t i = 0; i < patch.size(); ++i)
+        if (patch[i] == kNoPoint) left.push_back(i);
+    if (left.empty()) return patch;
+    const auto added = diskSubset(all.positions, all.normals, radius, left);
+    samples.insert(samples.end(), added.begin(), added.end());
+    return assignNearest(all.positions, all.normals, radius, samples);
+}
+
 void appendPatches(const Candidates& all, const std::vector<std::uint32_t>& patch,
                    const std::vector<std::uint32_t>& samples, PointShell& shell) {
     std::vector<Vec3> area_vector(samples.size(), Vec3::Zero());
@@ -163,12 +176,11 @@ PointShell samplePoints(const TriangleMesh& mesh, double spacing) {
     shuffle(order, random);
     const double radius = kDiskShare * spacing;
     std::vector<std::uint32_t> samples = diskSubset(all.positions, all.normals, radius, order);
-    std::vector<std::uint32_t> patch;
-    assignNearest(all.positions, all.normals, radius, samples, patch);
+    std::vector<std::uint32_t> patch = assignPatches(all, radius, samples);
     for (int i = 0; i < kRelaxations; ++i) {
         relax(all, patch, samples);
         // A relaxed sample may have moved away from a candidate by up to a patch: search twice as far.
-        assignNearest(all.positions, all.normals, 2.0 * radius, samples, patch);
+        patch = assignPatches(all, 2.0 * radius, samples);
     }
     appendPatches(all, patch, samples, shell);
     appendEdges(mesh, spacing, shell);

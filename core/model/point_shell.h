@@ -26,8 +26,8 @@ struct PointShell {
 /// Samples `mesh` about `spacing` [m] apart; the same mesh and spacing give the same points.
 ///   Candidates: the triangles, cut until no edge is longer than 0.4 spacings; each candidate is a cut triangle's
 ///   centroid with its area. A Poisson-disk subset of them, relaxed by Lloyd's iteration, becomes the samples; a
-///   candidate belongs to the nearest sample whose normal is within 60° of its own, so that no patch joins two sides of
-///   a wall.
+///   candidate belongs to the nearest sample whose normal is within 60° of its own, and becomes a sample if there is
+///   none, so that no patch joins two sides of a wall.
 /// A patch's area is the sum of its candidates' areas and its normal that of the summed area vectors, so that
 /// Σ area = area of the mesh and Σ area · normal = 0 on a closed mesh up to the patches' curvature.
 PointShell samplePoints(const TriangleMesh& mesh, double spacing);

@@ -49,8 +49,13 @@ std::vector<Error> validate(const Shape& shape);
 /// Exact signed distance [m] of `point` (part frame, [m]): positive outside. A sheet has no inside: unsigned.
 double signedDistance(const Shape& shape, const Vec3& point);
 
-/// Triangles of the shape, watertight except for the sheet, outward orientation, with a chord error ≤ `chord_error` [m]
-/// on curved faces. Vertices on round faces lie on the true surface.
+/// Triangles of the shape, watertight except for the sheet, outward orientation. Vertices on round faces lie on the
+/// true surface; the faces between them are within `chord_error` [m] of it, unless that would take more than 2048
+/// segments a turn: chordError() says what is reached.
 TriangleMesh tessellate(const Shape& shape, double chord_error);
+
+/// The chord error that tessellate(shape, asked) reaches [m]: no point of the triangles is farther from the true
+/// surface and no point of that farther from the triangles.
+double chordError(const Shape& shape, double asked);
 
 }  // namespace passung::model

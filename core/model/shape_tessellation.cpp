@@ -16,7 +16,8 @@ using Index = std::uint32_t;
 using Ring = std::vector<Index>;  // counter-clockwise seen from +z
 
 constexpr int kFewestSegments = 12;
-constexpr int kMostSegments = 2048;  // its chord error is 1.2e-6 of the radius: below any tolerance that is asked for
+constexpr int kMostSegments = 2048;        // then the chord error is 1.2e-6 of the radius
+constexpr double kVertexRounding = 1e-15;  // of a vertex on a round face, per radius
 
 /// Segments of a circle so that the sagitta r(1 - cos(π/n)) stays within `chord_error`; divisible by 4, so that the
 /// extreme points on the axes are vertices.
@@ -26,6 +27,11 @@ int segmentsFor(double radius, double chord_error) {
     const double wanted = half_angle > 0.0 ? pi / half_angle : kMostSegments;
     const int segments = static_cast<int>(std::ceil(std::min<double>(wanted, kMostSegments)));
     return std::clamp((segments + 3) / 4 * 4, kFewestSegments, kMostSegments);
+}
+
+/// Sagitta of a circle of segmentsFor(radius, asked) segments.
+double sagittaFor(double radius, double asked) {
+    return radius * (1.0 - std::cos(pi / segmentsFor(radius, asked)) + kVertexRounding);
 }
 
 /// Appends vertices and triangles; every face is given counter-clockwise as seen from outside.
@@ -255,10 +261,26 @@ TriangleMesh tessellateShape(const BorePlate& plate, double chord_error) {
     return builder.take();
 }
 
+double reachedError(const Sphere& sphere, double asked) {
+    const double radius = 0.5 * sphere.diameter;
+    return radius * (octantError(rowsFor(radius, asked)) + kVertexRounding);
+}
+double reachedError(const Box&, double) { return 0.0; }
+double reachedError(const Sheet&, double) { return 0.0; }
+double reachedError(const Cylinder& cylinder, double asked) { return sagittaFor(0.5 * cylinder.diameter, asked); }
+double reachedError(const Peg& peg, double asked) { return sagittaFor(0.5 * peg.diameter, asked); }
+double reachedError(const BorePlate& plate, double asked) {
+    return sagittaFor(0.5 * plate.bore_diameter + plate.chamfer, asked);  // of the widest circle
+}
+
 }  // namespace
 
 TriangleMesh tessellate(const Shape& shape, double chord_error) {
     return std::visit([&](const auto& s) { return tessellateShape(s, chord_error); }, shape);
+}
+
+double chordError(const Shape& shape, double asked) {
+    return std::visit([&](const auto& s) { return reachedError(s, asked); }, shape);
 }
 
 }  // namespace passung::model

@@ -56,7 +56,7 @@ void enclose(std::span<const SurfacePoint> points, std::span<const std::uint32_t
 }
 
 /// Groups `items` (shell points, representatives of a level) into clusters of about eight.
-Level cluster(std::span<const SurfacePoint> points, const std::vector<std::uint32_t>& items, double radius) {
+Level clustered(std::span<const SurfacePoint> points, const std::vector<std::uint32_t>& items, double radius) {
     std::vector<Vec3> positions, normals;
     for (const std::uint32_t i : items) {
         positions.push_back(points[i].position);
@@ -65,8 +65,7 @@ Level cluster(std::span<const SurfacePoint> points, const std::vector<std::uint3
     std::vector<std::uint32_t> order(items.size());
     std::iota(order.begin(), order.end(), 0u);
     const auto chosen = diskSubset(positions, normals, radius, order);
-    std::vector<std::uint32_t> nearest;
-    assignNearest(positions, normals, radius, chosen, nearest);
+    std::vector<std::uint32_t> nearest = assignNearest(positions, normals, radius, chosen);
     // A point without a direction (a knife edge) faces nobody: its own choice of cluster is itself.
     for (std::uint32_t k = 0; k < chosen.size(); ++k) nearest[chosen[k]] = k;
     Level level;
@@ -76,52 +75,43 @@ Level cluster(std::span<const SurfacePoint> points, const std::vector<std::uint3
     return level;
 }
 
-}  // namespace
-
-SphereTree::SphereTree(const PointShell& shell) : total_area_(shell.total_area), cover_radius_(shell.cover_radius) {
-    const auto& points = shell.points;
-    double sum = 0.0, largest = 0.0;
+/// Bottom up: level 0 groups the points, each next level groups the clusters of the one below.
+std::vector<Level> groupUpwards(std::span<const SurfacePoint> points, double total_area) {
     Bounds bounds;
-    for (const auto& point : points) {
-        sum += point.position.squaredNorm();
-        largest = std::max(largest, point.position.squaredNorm());
-        bounds.extend(point.position);
-    }
-    gyration_radius_ = std::sqrt(sum / static_cast<double>(points.size()));
-    reach_ = std::sqrt(largest);
-
-    // Bottom up: level 0 groups the points, each next level groups the clusters of the one below.
+    for (const auto& point : points) bounds.extend(point.position);
+    const double size = std::max(bounds.size().norm(), 1e-9);
+    double radius = kLevelRatio * std::sqrt(std::max(total_area, 1e-12) / static_cast<double>(points.size()));
     std::vector<Level> levels;
     std::vector<std::uint32_t> items(points.size());
     std::iota(items.begin(), items.end(), 0u);
-    double radius = kLevelRatio * std::sqrt(std::max(total_area_, 1e-12) / static_cast<double>(points.size()));
-    const double size = std::max(bounds.size().norm(), 1e-9);
     do {
-        levels.push_back(cluster(points, items, radius));
+        levels.push_back(clustered(points, items, radius));
         items = levels.back().representative;
         radius *= kLevelRatio;
     } while (items.size() > kMaxRoots && radius < kLevelRatio * size);
-    levels_ = static_cast<int>(levels.size());
+    return levels;
+}
 
-    // Top down: breadth first, children contiguous. `clusters` are the level's clusters in node order.
-    root_count_ = levels.back().members.size();
-    std::vector<std::uint32_t> clusters(root_count_);
+/// Top down: nodes breadth first, the children of a node and the points of a leaf contiguous.
+void layOutDownwards(std::span<const SurfacePoint> points, const std::vector<Level>& levels,
+                     std::vector<SphereNode>& nodes, std::vector<SurfacePoint>& ordered) {
+    std::vector<std::uint32_t> clusters(levels.back().members.size());  // of the level, in node order
     std::iota(clusters.begin(), clusters.end(), 0u);
     std::size_t first_node = 0;
     for (std::size_t l = levels.size(); l-- > 0;) {
         std::vector<std::uint32_t> next;
-        nodes_.resize(first_node + clusters.size());
+        nodes.resize(first_node + clusters.size());
         for (std::size_t k = 0; k < clusters.size(); ++k) {
             const auto& members = levels[l].members[clusters[k]];
-            SphereNode& node = nodes_[first_node + k];
+            SphereNode& node = nodes[first_node + k];
             const SurfacePoint& representative = points[levels[l].representative[clusters[k]]];
             node.point = representative.position;
             node.normal = representative.normal;
             node.leaf = l == 0;
             node.count = static_cast<std::uint32_t>(members.size());
             if (node.leaf) {
-                node.first = static_cast<std::uint32_t>(points_.size());
-                for (const std::uint32_t i : members) points_.push_back(points[i]);
+                node.first = static_cast<std::uint32_t>(ordered.size());
+                for (const std::uint32_t i : members) ordered.push_back(points[i]);
             } else {
                 node.first = static_cast<std::uint32_t>(first_node + clusters.size() + next.size());
                 next.insert(next.end(), members.begin(), members.end());
@@ -130,20 +120,40 @@ SphereTree::SphereTree(const PointShell& shell) : total_area_(shell.total_area),
         first_node += clusters.size();
         clusters = std::move(next);
     }
+}
 
-    // Bottom up again: the points below every node are a contiguous range, because children are.
-    std::vector<std::array<std::uint32_t, 2>> range(nodes_.size());
+/// Bottom up again: spheres and areas.
+void encloseUpwards(std::span<const SurfacePoint> ordered, std::vector<SphereNode>& nodes) {
+    std::vector<std::array<std::uint32_t, 2>> range(nodes.size());  // the points below, contiguous as children are
     std::vector<std::uint32_t> below;
-    for (std::size_t i = nodes_.size(); i-- > 0;) {
-        SphereNode& node = nodes_[i];
+    for (std::size_t i = nodes.size(); i-- > 0;) {
+        SphereNode& node = nodes[i];
         range[i] = node.leaf ? std::array{node.first, node.first + node.count}
                              : std::array{range[node.first][0], range[node.first + node.count - 1][1]};
         below.resize(range[i][1] - range[i][0]);
         std::iota(below.begin(), below.end(), range[i][0]);
-        enclose(points_, below, node);
+        enclose(ordered, below, node);
         node.area = 0.0;
-        for (const std::uint32_t p : below) node.area += points_[p].area;
+        for (const std::uint32_t p : below) node.area += ordered[p].area;
     }
+}
+
+}  // namespace
+
+SphereTree::SphereTree(const PointShell& shell) : total_area_(shell.total_area), cover_radius_(shell.cover_radius) {
+    double sum = 0.0, largest = 0.0;
+    for (const auto& point : shell.points) {
+        sum += point.position.squaredNorm();
+        largest = std::max(largest, point.position.squaredNorm());
+    }
+    gyration_radius_ = std::sqrt(sum / static_cast<double>(shell.points.size()));
+    reach_ = std::sqrt(largest);
+
+    const std::vector<Level> levels = groupUpwards(shell.points, total_area_);
+    levels_ = static_cast<int>(levels.size());
+    root_count_ = levels.back().members.size();
+    layOutDownwards(shell.points, levels, nodes_, points_);
+    encloseUpwards(points_, nodes_);
 }
 
 }  // namespace passung::model

@@ -54,6 +54,24 @@ TEST(DistanceField, LowerBoundIsNeverAboveTheTrueDistance) {
     }
 }
 
+TEST(DistanceField, LowerBoundFarFromAConvexPartIsAsNearAsDerived) {
+    // Truth: closed form. d - bound ≤ S/d with S ≤ 3/4 of the squared edge of a coarse cell, plus rounding.
+    constexpr double kCell = 0.7e-3, kEdge = DistanceField::kBrickCells * kCell;
+    Random random(4);
+    for (const Shape& shape : {Shape{Sphere{0.03}}, Shape{Box{0.02, 0.03, 0.04}}, Shape{Cylinder{0.02, 0.03}}}) {
+        const Part part = fieldOf(shape, kCell);
+        int far = 0;
+        for (int i = 0; i < 20000; ++i) {
+            const Vec3 p = anywhere(part.field->bounds(), 0.03, random);
+            const double d = signedDistance(shape, p);
+            if (d < 2.0 * kEdge) continue;
+            ++far;
+            ASSERT_LE(d - part.field->lowerBound(p), 0.75 * kEdge * kEdge / d + 1e-8) << kindName(shape);
+        }
+        EXPECT_GT(far, 5000);
+    }
+}
+
 TEST(DistanceField, TrilinearErrorOnAWallFallsWithTheSquareOfTheCell) {
     // Truth: closed form; worst error near a cylinder of radius R is at most about 0.13 s²/R (theory of interpolation).
     const double R = 0.01;
@@ -100,6 +118,63 @@ TEST(DistanceField, HoldsAnOpenSheetOffByItsStatedOffsetOnBothSides) {
             const FieldSample s = part.field->sample(Vec3(0.003, 0.002, side * z), FieldMode::Trilinear);
             EXPECT_NEAR(s.phi, z - part.field->sheetOffset(), 0.02e-3);
             EXPECT_NEAR(s.gradient.z(), side, 0.05);
+        }
+    }
+}
+
+TEST(DistanceField, OfASheetStaysSmallAndItsBoundHoldsInFrontOfTheOffset) {
+    // Truth: closed form: the distance to the rectangle less the stated offset.
+    const Shape shape = Sheet{0.1, 0.1};
+    PartSpec spec;
+    spec.geometry = shape;
+    const auto part = buildPart(spec, {.field = true, .tolerance = 20e-6});
+    ASSERT_TRUE(part);
+    const DistanceField& field = *part->field;
+    EXPECT_LT(field.memoryBytes(), 50u << 20);
+    EXPECT_LE(field.sheetOffset(), 0.1 / 256);
+    EXPECT_NE(part->report.notes.back().find("0.391 mm"), std::string::npos) << part->report.notes.back();
+    Random random(6);
+    int good = 0, near = 0;
+    for (int i = 0; i < 40000; ++i) {
+        const Vec3 p = anywhere(field.bounds(), i % 2 ? 0.002 : 0.15, random);
+        const double truth = signedDistance(shape, p) - field.sheetOffset();
+        const double error = std::abs(field.sample(p, FieldMode::Trilinear).phi - truth);
+        ASSERT_LE(error, field.errorBound(p, FieldMode::Trilinear)) << p.transpose();
+        ASSERT_LE(field.lowerBound(p), truth) << p.transpose();
+        if (std::abs(truth) > 0.3e-3 || truth < 0.0) continue;
+        ++near;
+        good += error <= 20e-6 ? 1 : 0;
+    }
+    EXPECT_GT(good, 0.9 * near);
+}
+
+TEST(DistanceField, BoundsHoldForLargePartsWhereFloatsRoundTheMost) {
+    // Truth: closed form. At the nodes nothing is interpolated: only the rounding of the stored floats is left, 6e-8 of
+    // the distance. Points lie within 1e-9 of a cell of nodes of the fine cells and of the coarse grid.
+    for (const double size : {1.0, 10.0}) {
+        for (const Shape& shape : {Shape(Sphere{size}), Shape(Box{size, 0.7 * size, 0.3 * size})}) {
+            const double cell = size / 40.0, brick = 8.0 * cell;
+            const Part part = fieldOf(shape, cell);
+            const Vec3 origin = part.field->bounds().low - Vec3::Constant(size + 4.0 * cell + brick);
+            Random random(7);
+            double worst = 0.0;
+            for (int i = 0; i < 20000; ++i) {
+                const double edge = i % 2 ? cell : brick;
+                Vec3 p = anywhere(part.field->bounds(), i % 2 ? 2.0 * cell : 0.9 * size, random);
+                for (int k = 0; k < 3; ++k)
+                    p[k] =
+                        origin[k] + edge * (std::round((p[k] - origin[k]) / edge) + 1e-9 * random.uniform(-1.0, 1.0));
+                if (i % 8 == 0) p = anywhere(part.field->bounds(), size, random);
+                const double truth = signedDistance(shape, p);
+                ASSERT_LE(part.field->lowerBound(p), truth) << kindName(shape) << " at " << p.transpose();
+                for (const FieldMode mode : {FieldMode::Trilinear, FieldMode::Linear}) {
+                    const double error = std::abs(part.field->sample(p, mode).phi - truth);
+                    const double bound = part.field->errorBound(p, mode);
+                    ASSERT_LE(error, bound) << kindName(shape) << " at " << p.transpose();
+                    if (bound < 1e-6 * size) worst = std::max(worst, error / bound);
+                }
+            }
+            EXPECT_GT(worst, 0.2) << "the points do not come near the bound";
         }
     }
 }

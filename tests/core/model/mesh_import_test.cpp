@@ -265,9 +265,11 @@ TEST_F(MeshImport, ReportsAHole) {
     EXPECT_EQ(result->report.holes, 1u);
     EXPECT_EQ(result->report.boundary_edges, 3u);
     EXPECT_EQ(result->report.triangles, 11u);
-    EXPECT_EQ(result->report.volume, 0.0);
-    ASSERT_EQ(result->report.notes.size(), 1u);
+    ASSERT_EQ(result->report.notes.size(), 2u);
     EXPECT_NE(result->report.notes[0].find("open: 3 edges"), std::string::npos) << result->report.notes[0];
+    EXPECT_EQ(result->report.notes[1], "1 hole was closed with 1 triangle.");
+    EXPECT_EQ(result->mesh.triangles.size(), 12u);
+    EXPECT_NEAR(result->report.volume, 2.4e-5, 1e-10);
 }
 
 TEST_F(MeshImport, TurnsAFlippedTriangle) {
@@ -308,7 +310,8 @@ TEST_F(MeshImport, DropsDuplicateAndDegenerateTriangles) {
 }
 
 TEST_F(MeshImport, ReportsEdgesOfThreeTriangles) {
-    // Truth: closed form. A fin on one edge of a box: that edge has three triangles, the fin two open ones.
+    // Truth: closed form. A fin on one edge of a box: that edge has three triangles, the fin two open ones. The box is
+    // a solid, the fin is no hole of it.
     TriangleMesh mesh = boxMesh();
     mesh.vertices.emplace_back(0.05, 0.05, 0.0);
     mesh.triangles.push_back({0, 1, 8});
@@ -317,7 +320,10 @@ TEST_F(MeshImport, ReportsEdgesOfThreeTriangles) {
     EXPECT_EQ(result->report.non_manifold_edges, 1u);
     EXPECT_EQ(result->report.boundary_edges, 2u);
     EXPECT_FALSE(result->report.watertight);
-    EXPECT_EQ(result->report.notes.size(), 2u);
+    EXPECT_EQ(result->report.kind, SurfaceKind::HoledSolid);
+    EXPECT_EQ(result->report.open_edges_left, 3u);
+    EXPECT_EQ(result->mesh.triangles.size(), 13u);
+    EXPECT_EQ(result->report.notes.size(), 3u);
 }
 
 TEST_F(MeshImport, CountsShells) {

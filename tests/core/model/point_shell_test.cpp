@@ -2,11 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/model/shape.h"
 #include "core/model/sphere_tree.h"
+#include "tests/support/broken_mesh.h"
 
 namespace passung::model {
 namespace {
@@ -139,6 +140,33 @@ TEST(SphereTree, DoesNotJoinTheTwoSidesOfAThinWall) {
             if (point.area == 0.0) continue;
             if (first == nullptr) first = &point;
             ASSERT_GT(point.normal.dot(first->normal), -0.5);
+        }
+    }
+}
+
+TEST(PointShell, EveryTriangleHasASampleNearThatFacesItWithin60Degrees) {
+    // Truth: invariant. Wavy balls no larger than the disk of a sample, divided by direction alone: relaxed samples
+    // turn away from a part of their patch. Triangles are so small that each is one candidate, and a sample lies on the
+    // middle of one, which gives its direction.
+    for (const double diameter : {0.4e-3, 0.8e-3, 1.2e-3, 1.6e-3, 2.0e-3}) {
+        const TriangleMesh mesh = test::wavySphere(diameter, 2.5e-4 * diameter);
+        const PointShell shell = samplePoints(mesh, kSpacing);
+        std::vector<Vec3> middles, normals;
+        for (const auto& t : mesh.triangles) {
+            const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+            middles.push_back((a + b + c) / 3.0);
+            normals.push_back((b - a).cross(c - a).normalized());
+        }
+        std::vector<std::size_t> samples;
+        for (const auto& point : shell.points)
+            for (std::size_t i = 0; i < middles.size(); ++i)
+                if (point.area > 0.0 && (middles[i] - point.position).norm() < 1e-12) samples.push_back(i);
+        ASSERT_GT(samples.size(), 4u);
+        for (std::size_t i = 0; i < middles.size(); ++i) {
+            const bool faced = std::any_of(samples.begin(), samples.end(), [&](std::size_t s) {
+                return normals[s].dot(normals[i]) > 0.5 - 1e-9 && (middles[s] - middles[i]).norm() < 1.5 * kSpacing;
+            });
+            ASSERT_TRUE(faced) << "ball of " << diameter << " at " << middles[i].transpose();
         }
     }
 }

@@ -235,6 +235,35 @@ TEST(Tessellation, StaysCoarseAndStaysFiniteAtTheEnds) {
     EXPECT_EQ(tessellate(Cylinder{0.02, 0.03}, 1e-18).triangles.size(), 4u * 2048u);
 }
 
+TEST(Tessellation, ReachesNoSmallerChordErrorThanItSays) {
+    // Truth: closed form. The middle of a chord of n segments is r(1 - cos π/n) off; 2048 segments are the most. The
+    // worst point of the triangles is looked for on a lattice over each: it must lie within the error that is said, and
+    // nearly reach it.
+    for (const double asked : {1e-4, 1e-6, 1e-9}) {
+        for (const Shape& shape : {Shape(Sphere{1.0}), Shape(Cylinder{2.0, 0.5}), Shape(Peg{1.5, 0.5, 0.1}),
+                                   Shape(BorePlate{3.0, 3.0, 0.5, 2.0, 0.3, 0.05}), Shape(Sphere{0.02})}) {
+            const TriangleMesh mesh = tessellate(shape, asked);
+            const double said = chordError(shape, asked);
+            double worst = 0.0;
+            for (const auto& t : mesh.triangles)
+                for (int i = 0; i <= 6; ++i)
+                    for (int j = 0; i + j <= 6; ++j) {
+                        const Vec3 p =
+                            (i * mesh.vertices[t[0]] + j * mesh.vertices[t[1]] + (6 - i - j) * mesh.vertices[t[2]]) / 6;
+                        worst = std::max(worst, std::abs(signedDistance(shape, p)));
+                    }
+            EXPECT_LE(worst, said + 1e-15) << described(shape) << " asked " << asked;
+            EXPECT_GT(worst, 0.9 * said) << described(shape) << " asked " << asked;
+            if (asked < 1e-8) {
+                EXPECT_GT(said, asked) << described(shape);
+            }
+        }
+    }
+    EXPECT_LE(chordError(Sphere{0.02}, 1e-6), 1e-6);
+    EXPECT_EQ(chordError(Box{1.0, 1.0, 1.0}, 1e-9), 0.0);
+    EXPECT_EQ(chordError(Sheet{1.0, 1.0}, 1e-9), 0.0);
+}
+
 std::vector<std::string> keysOf(const Shape& shape) {
     std::vector<std::string> keys;
     for (const Error& error : validate(shape)) keys.push_back(error.key);
