@@ -3,12 +3,13 @@
 cmake_policy(VERSION 3.25)
 
 # Each room and the rooms it may include besides itself. Arrows point only upward.
-set(core_rooms "core/base core/model core/tick core/loop core/replay")
+set(core_rooms "core/base core/model core/tick core/query core/loop core/replay")
 set(study_rooms "study/protocol study/design study/questionnaire study/measures study/person")
 set(rooms
   "core/base           |"
   "core/model          | core/base"
   "core/tick           | core/base core/model"
+  "core/query          | core/base core/model core/tick"
   "core/loop           | core/base core/model core/tick"
   "core/replay         | core/base core/model core/tick"
   "devices             | core/base core/loop"
@@ -38,17 +39,20 @@ set(libraries
   "OpenSSL  | ^openssl/                        | study/store analysis/export tests      | cpp"
   "FCL      | ^fcl/                            | analysis/truth tests                   | cpp"
   "spdlog   | ^spdlog/                         | ui tests                               | cpp"
-  "CLI11    | ^CLI/                            | ui/cli ui/app                          | cpp"
+  "CLI11    | ^CLI/                            | ui/cli ui/app tests                    | cpp"
+  "ODE      | ^ode/                            | tests                                  | cpp"
+  "Bullet   | ^(btBullet|Bullet)               | tests                                  | cpp"
+  "OpenVDB  | ^openvdb/                        | tests                                  | cpp"
   "Qt       | ^Q[A-Zt]                         | ui                                     | any"
   "gtest    | ^g(test|mock)/                   | tests                                  | any"
-  "POSIX    | ^(sys|linux|arpa|netinet)/|^(unistd|pthread|sched|fcntl|poll|semaphore|signal|time|dlfcn|termios)[.]h$ | core/loop devices study/store ui tests | cpp")
+  "POSIX    | ^(sys|linux|arpa|netinet)/|^(unistd|pthread|sched|fcntl|poll|semaphore|signal|time|dlfcn|termios|malloc)[.]h$ | core/loop devices study/store ui tests | cpp")
 
 # The tick: a positive list. What is not here allocates, locks, throws, waits or talks to the system.
 set(tick_standard_headers algorithm array atomic bit bitset cassert cfloat climits cmath compare concepts cstddef
   cstdint cstdlib cstring initializer_list iterator limits numbers numeric optional span tuple type_traits utility
   variant vector)
 # Rooms without a thread or a lock of their own.
-set(threadless_rooms core/base core/replay study/protocol study/design study/questionnaire study/measures
+set(threadless_rooms core/base core/query core/replay study/protocol study/design study/questionnaire study/measures
   study/person study/session)
 set(thread_headers barrier condition_variable future latch mutex semaphore shared_mutex stop_token thread)
 

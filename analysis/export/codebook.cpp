@@ -1,6 +1,6 @@
 #include "analysis/export/codebook.h"
 
-#include "study/store/json_text.h"
+#include "study/protocol/json.h"
 
 namespace passung::exporter {
 namespace {
@@ -12,13 +12,13 @@ std::string joined(const std::vector<std::string>& levels) {
 }
 
 std::string columnJson(const Column& column) {
-    using store::jsonString;
-    std::string json = "{\"label\": " + jsonString(column.label) + ", \"unit\": " + jsonString(column.unit) +
-                       ", \"type\": " + jsonString(column.type) + ", \"levels\": [";
-    for (std::size_t i = 0; i < column.levels.size(); ++i) json += (i > 0 ? ", " : "") + jsonString(column.levels[i]);
-    return json + "], \"formula\": " + jsonString(column.formula) +
-           ", \"formula_version\": " + std::to_string(column.formula_version) +
-           ", \"missing\": " + jsonString(kMissing) + "}";
+    using protocol::jsonText;
+    std::string json = "{\"label\": " + jsonText(column.label) + ", \"unit\": " + jsonText(column.unit) +
+                       ", \"type\": " + jsonText(column.type) + ", \"levels\": [";
+    for (std::size_t i = 0; i < column.levels.size(); ++i) json += (i > 0 ? ", " : "") + jsonText(column.levels[i]);
+    return json + "], \"formula\": " + jsonText(column.formula) +
+           ", \"formula_version\": " + std::to_string(column.formula_version) + ", \"missing\": " + jsonText(kMissing) +
+           "}";
 }
 
 }  // namespace
@@ -53,10 +53,10 @@ Table makeCodebook(std::span<const Table> tables) {
 std::string codebookJson(std::span<const Table> tables) {
     std::string json = std::string(kCodebookStart) + "\n  \"files\": {";
     for (std::size_t i = 0; i < tables.size(); ++i) {
-        json += (i > 0 ? ",\n    " : "\n    ") + store::jsonString(tables[i].file) + ": {";
+        json += (i > 0 ? ",\n    " : "\n    ") + protocol::jsonText(tables[i].file) + ": {";
         for (std::size_t k = 0; k < tables[i].columns.size(); ++k) {
             const Column& column = tables[i].columns[k];
-            json += (k > 0 ? ",\n      " : "\n      ") + store::jsonString(column.name) + ": " + columnJson(column);
+            json += (k > 0 ? ",\n      " : "\n      ") + protocol::jsonText(column.name) + ": " + columnJson(column);
         }
         json += "\n    }";
     }

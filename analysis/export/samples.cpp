@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "study/measures/period_clock.h"
 #include "study/store/sample_codec.h"
 
 namespace passung::exporter {
@@ -49,7 +50,13 @@ private:
 std::vector<Column> sampleColumns() {
     std::vector<Column> columns = {
         {"tick", "Number of the tick in the attempt, from 0", "", "integer", "", 1, {}},
-        {"t_s", "Time since the attempt's first tick", "s", "number", "tick x 0.001 s", 1, {}}};
+        {"t_s",
+         "Time since the attempt's first tick",
+         "s",
+         "number",
+         "0.001 s x sum of periods over the ticks after the first; a tick that was not recorded counts as one period",
+         2,
+         {}}};
     for (const store::Channel& channel : store::tickChannels()) {
         const bool integer = channel.type == "uint32";
         columns.push_back({channel.name,
@@ -73,13 +80,14 @@ std::string samplesCsv(std::span<const TickRecord> records) {
     std::string text = toCsv(Table{{}, {}, sampleColumns(), {}});
     text.reserve(text.size() + records.size() * kTypicalRow);
     RowText row(text);
+    measures::PeriodClock clock;
     for (const TickRecord& r : records) {
         row.add(r.tick);
-        row.add(static_cast<double>(r.tick) / 1000.0);
+        row.add(static_cast<double>(clock.at(r)) / 1000.0);
         row.add(r.device_position_m);
         row.add(r.device_quaternion);
         row.add(r.input_flags);
-        row.add(r.parameter_sequence);
+        row.add(r.periods);
         row.add(r.hand_position_m);
         row.add(r.hand_quaternion);
         row.add(r.proxy_position_m);

@@ -2,26 +2,24 @@
 
 #include <set>
 
+#include "study/protocol/participant.h"
+
 namespace passung::exporter {
-namespace {
-
-const std::vector<std::string> kKinds = {"real", "pilot", "simulated"};
-
-}  // namespace
 
 Table makeEvents(const StudyData& study) {
-    Table table{"events.csv",
-                "One row per event of a session, in the order of time.",
-                {{"participant_id", "Code of the participant", "", "text", "", 1, {}},
-                 {"kind", "Real person, pilot or simulated participant", "", "text", "", 1, kKinds},
-                 {"session", "Number of the participant's session, from 1", "", "integer", "", 1, {}},
-                 {"t_s", "Time from the session's start", "s", "number", "", 1, {}},
-                 {"trial_index", "Trial that it belongs to", "", "integer", "", 1, {}},
-                 {"attempt_no", "Attempt that it belongs to", "", "integer", "", 1, {}},
-                 {"source", "Who reported it", "", "text", "", 1, {}},
-                 {"event", "What happened", "", "text", "", 1, {}},
-                 {"payload_json", "More about it, as JSON", "", "text", "", 1, {}}},
-                {}};
+    Table table{
+        "events.csv",
+        "One row per event of a session, in the order of time.",
+        {{"participant_id", "Code of the participant", "", "text", "", 1, {}},
+         {"kind", "Real person, pilot or simulated participant", "", "text", "", 1, protocol::participantKindNames()},
+         {"session", "Number of the participant's session, from 1", "", "integer", "", 1, {}},
+         {"t_s", "Time from the session's start", "s", "number", "", 1, {}},
+         {"trial_index", "Trial that it belongs to", "", "integer", "", 1, {}},
+         {"attempt_no", "Attempt that it belongs to", "", "integer", "", 1, {}},
+         {"source", "Who reported it", "", "text", "", 1, {}},
+         {"event", "What happened", "", "text", "", 1, {}},
+         {"payload_json", "More about it, as JSON", "", "text", "", 1, {}}},
+        {}};
     for (const store::EventRow& event : study.events) {
         table.rows.push_back({event.participant_id, event.kind, cell(event.session_ordinal), secondsCell(event.t_ns),
                               cell(event.trial_index), cell(event.attempt_no), event.source, event.event,
@@ -35,7 +33,7 @@ Table makeSessions(const StudyData& study) {
         "sessions.csv",
         "One row per session.",
         {{"participant_id", "Code of the participant", "", "text", "", 1, {}},
-         {"kind", "Real person, pilot or simulated participant", "", "text", "", 1, kKinds},
+         {"kind", "Real person, pilot or simulated participant", "", "text", "", 1, protocol::participantKindNames()},
          {"session", "Number of the participant's session, from 1", "", "integer", "", 1, {}},
          {"session_id", "Identifier of the session", "", "text", "", 1, {}},
          {"station", "Place where the session ran", "", "text", "", 1, {}},
@@ -99,24 +97,25 @@ Table makeSessions(const StudyData& study) {
 }
 
 Table makeParticipants(const StudyData& study) {
-    Table table{"participants.csv",
-                "One row per participant.",
-                {{"participant_id", "Code of the participant", "", "text", "", 1, {}},
-                 {"kind", "Real person, pilot or simulated participant", "", "text", "", 1, kKinds},
-                 {"status",
-                  "Where the participant stands",
-                  "",
-                  "text",
-                  "",
-                  1,
-                  {"enrolled", "active", "complete", "excluded", "withdrawn"}},
-                 {"status_reason", "Why", "", "text", "", 1, {}},
-                 {"group", "Group of the between-subjects factors; all if there is none", "", "text", "", 1, {}},
-                 {"sequence_index", "Row of the counterbalancing square, from 0", "", "integer", "", 1, {}},
-                 {"replicate", "Which use of the square, from 0", "", "integer", "", 1, {}},
-                 {"created_utc", "Enrolment", "", "time", "", 1, {}},
-                 {"n_sessions", "Sessions begun", "", "integer", "", 1, {}}},
-                {}};
+    Table table{
+        "participants.csv",
+        "One row per participant.",
+        {{"participant_id", "Code of the participant", "", "text", "", 1, {}},
+         {"kind", "Real person, pilot or simulated participant", "", "text", "", 1, protocol::participantKindNames()},
+         {"status",
+          "Where the participant stands",
+          "",
+          "text",
+          "",
+          1,
+          {"enrolled", "active", "complete", "excluded", "withdrawn"}},
+         {"status_reason", "Why", "", "text", "", 1, {}},
+         {"group", "Group of the between-subjects factors; all if there is none", "", "text", "", 1, {}},
+         {"sequence_index", "Row of the counterbalancing square, from 0", "", "integer", "", 1, {}},
+         {"replicate", "Which use of the square, from 0", "", "integer", "", 1, {}},
+         {"created_utc", "Enrolment", "", "time", "", 1, {}},
+         {"n_sessions", "Sessions begun", "", "integer", "", 1, {}}},
+        {}};
     for (const store::ParticipantRow& p : study.participants) {
         table.rows.push_back({p.participant_id, p.kind, p.status, cell(p.status_reason), cell(p.group),
                               cell(p.sequence_index), cell(p.replicate), p.created_utc, cell(p.sessions)});
@@ -125,24 +124,31 @@ Table makeParticipants(const StudyData& study) {
 }
 
 Table makeTiming(const StudyData& study) {
-    Table table{"timing.csv",
-                "One row per attempt that has ended: how well the haptic loop kept its rate. Times are NA where the "
-                "loop ran in virtual time.",
-                {{"participant_id", "Code of the participant", "", "text", "", 1, {}},
-                 {"kind", "Real person, pilot or simulated participant", "", "text", "", 1, kKinds},
-                 {"session", "Number of the participant's session, from 1", "", "integer", "", 1, {}},
-                 {"trial_index", "Number of the trial in the session, from 0", "", "integer", "", 1, {}},
-                 {"attempt_no", "Number of the attempt at this trial, from 1", "", "integer", "", 1, {}},
-                 {"loop", "What drove the loop", "", "text", "", 1, {}},
-                 {"n_ticks", "Ticks computed", "", "integer", "", 1, {}},
-                 {"mean_us", "Computing time of a tick, mean", "µs", "number", "", 1, {}},
-                 {"sd_us", "Computing time of a tick, standard deviation", "µs", "number", "", 1, {}},
-                 {"p99_us", "Computing time of a tick, 99th percentile", "µs", "number", "", 1, {}},
-                 {"p999_us", "Computing time of a tick, 99.9th percentile", "µs", "number", "", 1, {}},
-                 {"max_us", "Computing time of a tick, largest", "µs", "number", "", 1, {}},
-                 {"overruns", "Ticks that ended after their deadline; 0 in virtual time", "", "integer", "", 1, {}},
-                 {"dropped_samples", "Ticks that could not be recorded", "", "integer", "", 1, {}}},
-                {}};
+    Table table{
+        "timing.csv",
+        "One row per attempt that has ended: how well the haptic loop kept its rate. Times are NA where the "
+        "loop ran in virtual time.",
+        {{"participant_id", "Code of the participant", "", "text", "", 1, {}},
+         {"kind", "Real person, pilot or simulated participant", "", "text", "", 1, protocol::participantKindNames()},
+         {"session", "Number of the participant's session, from 1", "", "integer", "", 1, {}},
+         {"trial_index", "Number of the trial in the session, from 0", "", "integer", "", 1, {}},
+         {"attempt_no", "Number of the attempt at this trial, from 1", "", "integer", "", 1, {}},
+         {"loop", "What drove the loop", "", "text", "", 1, {}},
+         {"n_ticks", "Ticks computed", "", "integer", "", 1, {}},
+         {"mean_us", "Computing time of a tick, mean", "µs", "number", "", 1, {}},
+         {"sd_us", "Computing time of a tick, standard deviation", "µs", "number", "", 1, {}},
+         {"p99_us", "Computing time of a tick, 99th percentile", "µs", "number", "", 1, {}},
+         {"p999_us", "Computing time of a tick, 99.9th percentile", "µs", "number", "", 1, {}},
+         {"max_us", "Computing time of a tick, largest", "µs", "number", "", 1, {}},
+         {"overruns",
+          "Cycles that were missed because an earlier one took too long; 0 in virtual time",
+          "",
+          "integer",
+          "",
+          1,
+          {}},
+         {"dropped_samples", "Ticks that could not be recorded", "", "integer", "", 1, {}}},
+        {}};
     for (const store::AttemptRow& attempt : study.attempts) {
         if (!attempt.timing) continue;
         const store::TimingRow& t = *attempt.timing;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "analysis/export/study_data.h"
+#include "study/protocol/participant.h"
 
 namespace passung::exporter {
 namespace {
@@ -70,7 +71,7 @@ Result<std::string> summaryTable(const store::StoreReader& reader) {
     const auto study = readStudy(reader);
     if (!study) return study.errors();
     std::string text;
-    for (const char* kind : {"real", "pilot", "simulated"}) {
+    for (const std::string& kind : protocol::participantKindNames()) {
         std::set<std::string> people;
         for (const store::AttemptRow& attempt : study->attempts) {
             if (attempt.kind == kind) people.insert(attempt.participant_id);

@@ -3,21 +3,19 @@
 #include <algorithm>
 #include <iterator>
 
+#include "study/protocol/participant.h"
+
 namespace passung::exporter {
 namespace {
-
-const std::vector<std::string>& kinds() {
-    static const std::vector<std::string> names = {"real", "pilot", "simulated"};
-    return names;
-}
 
 constexpr const char* kCounted =
     "over the counted session's valid attempts of the main phase that ended in success, failure or timeout";
 
 std::vector<Column> whoColumns() {
-    return {{"participant_id", "Code of the participant", "", "text", "", 1, {}},
-            {"kind", "Real person, pilot or simulated participant", "", "text", "", 1, kinds()},
-            {"group", "Group of the between-subjects factors; all if there is none", "", "text", "", 1, {}}};
+    return {
+        {"participant_id", "Code of the participant", "", "text", "", 1, {}},
+        {"kind", "Real person, pilot or simulated participant", "", "text", "", 1, protocol::participantKindNames()},
+        {"group", "Group of the between-subjects factors; all if there is none", "", "text", "", 1, {}}};
 }
 
 /// Columns of trials.csv before the factors.
@@ -61,7 +59,13 @@ std::vector<Column> resultColumns() {
 std::vector<Column> closingColumns() {
     return {
         {"n_ticks", "Ticks that the haptic loop computed", "", "integer", "", 1, {}},
-        {"overruns", "Ticks that ended after their deadline; 0 in virtual time", "", "integer", "", 1, {}},
+        {"overruns",
+         "Cycles that were missed because an earlier one took too long; 0 in virtual time",
+         "",
+         "integer",
+         "",
+         1,
+         {}},
         {"dropped_samples", "Ticks that were computed but could not be recorded", "", "integer", "", 1, {}},
         {"protocol_sha256", "SHA-256 of the protocol's text, see protocol/", "", "text", "", 1, {}},
         {"app_version", "Version of the program", "", "text", "", 1, {}},

@@ -1,8 +1,21 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 namespace passung {
+
+/// The mechanism of a simulated device: what its handle feels like without a wrench.
+struct DeviceMechanism {
+    double mass_kg = 0;
+    double inertia_kg_m2 = 0;
+    double damping_Ns_per_m = 0;
+    double rotational_damping_Nms_per_rad = 0;
+    double coulomb_force_N = 0;
+    double coulomb_torque_Nm = 0;
+    double quantum_m = 0;  // encoder step
+    double rotational_quantum_rad = 0;
+};
 
 /// What a device can do, as values: used to validate protocols, to limit the output and to describe a session.
 struct DeviceDescription {
@@ -24,6 +37,7 @@ struct DeviceDescription {
     double recommended_damping_Ns_per_m = 0;
     double recommended_rotational_damping_Nms_per_rad = 0;
     std::string stability_source;
+    std::optional<DeviceMechanism> mechanism;  // only of a simulated device: of a real one it is not known exactly
 };
 
 }  // namespace passung

@@ -8,30 +8,104 @@ namespace passung {
 
 namespace {
 
+/// Length of the cell that `line` begins with: up to the next comma that is not within quotes.
+std::size_t cellLength(std::string_view line) {
+    bool quoted = false;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        if (line[i] == '"') quoted = !quoted;  // a doubled quote inside opens and closes again
+        if (line[i] == ',' && !quoted) return i;
+    }
+    return line.size();
+}
+
 std::vector<std::string_view> cells(std::string_view line) {
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     std::vector<std::string_view> result;
     for (;;) {
-        const std::size_t comma = line.find(',');
-        result.push_back(line.substr(0, comma));
-        if (comma == std::string_view::npos) return result;
-        line.remove_prefix(comma + 1);
+        const std::size_t length = cellLength(line);
+        result.push_back(line.substr(0, length));
+        if (length == line.size()) return result;
+        line.remove_prefix(length + 1);
     }
 }
 
 std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && (text.front() == ' ' || text.front() == '+')) text.remove_prefix(1);
+    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
     while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
     return text;
 }
 
+/// The whole cell as a number; a leading plus is understood.
+bool readNumber(std::string_view text, double& value) {
+    if (text.starts_with('+')) text.remove_prefix(1);
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return problem == std::errc() && end == text.data() + text.size();
+}
+
+bool readLine(std::ifstream& file, std::string& line) {
+    if (!std::getline(file, line)) return false;
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    return true;
+}
+
+std::string joined(const std::vector<std::string>& texts) {
+    std::string line;
+    for (std::size_t i = 0; i < texts.size(); ++i) line += (i == 0 ? "" : ",") + texts[i];
+    return line;
+}
+
+/// Reads the rows below the header.
+class RowReader {
+public:
+    RowReader(const std::string& path, std::size_t numbers, NumberTable& table)
+        : path_(path), numbers_(numbers), table_(table) {}
+
+    void read(const std::string& line, int number) {
+        const auto row = cells(line);
+        if (row.size() != table_.columns.size()) {
+            errors.push_back({.message = "a row needs " + std::to_string(table_.columns.size()) + " values",
+                              .file = path_,
+                              .line = number,
+                              .column = 1,
+                              .value = std::to_string(row.size())});
+            return;
+        }
+        std::vector<double> values(numbers_);
+        std::vector<std::string> texts;
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            const std::string_view text = trimmed(row[i]);
+            texts.emplace_back(text);
+            if (i >= numbers_ || readNumber(text, values[i])) continue;
+            errors.push_back({.message = "must be a number",
+                              .file = path_,
+                              .line = number,
+                              .column = static_cast<int>(row[i].data() - line.data()) + 1,
+                              .key = table_.columns[i],
+                              .value = std::string(text)});
+        }
+        table_.rows.push_back(std::move(values));
+        table_.texts.push_back(std::move(texts));
+        table_.lines.push_back(number);
+    }
+
+    Errors errors;
+
+private:
+    const std::string& path_;
+    std::size_t numbers_;
+    NumberTable& table_;
+};
+
 }  // namespace
+
+std::string NumberTable::headerLine() const { return joined(columns); }
+
+std::string NumberTable::rowLine(std::size_t row) const { return joined(texts[row]); }
 
 Result<NumberTable> readNumbers(const std::string& path, const std::vector<std::string>& required) {
     std::ifstream file(path);
     if (!file) return Error{.message = "cannot be read", .file = path};
     std::string line;
-    if (!std::getline(file, line)) return Error{.message = "is empty; a header row is required", .file = path};
+    if (!readLine(file, line)) return Error{.message = "is empty; a header row is required", .file = path};
     NumberTable table;
     for (const auto name : cells(line)) table.columns.emplace_back(trimmed(name));
     for (std::size_t i = 0; i < required.size(); ++i) {
@@ -42,36 +116,11 @@ Result<NumberTable> readNumbers(const std::string& path, const std::vector<std::
                      .column = 1,
                      .value = i < table.columns.size() ? table.columns[i] : "missing"};
     }
-    Errors errors;
-    for (int number = 2; std::getline(file, line); ++number) {
-        if (trimmed(line).empty() || trimmed(line) == "\r") continue;
-        const auto row = cells(line);
-        if (row.size() != table.columns.size()) {
-            errors.push_back({.message = "a row needs " + std::to_string(table.columns.size()) + " values",
-                              .file = path,
-                              .line = number,
-                              .column = 1,
-                              .value = std::to_string(row.size())});
-            continue;
-        }
-        std::vector<double> values;
-        for (const auto cell : row) {
-            const std::string_view text = trimmed(cell);
-            double value = 0.0;
-            const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-            if (problem != std::errc() || end != text.data() + text.size()) {
-                errors.push_back({.message = "must be a number",
-                                  .file = path,
-                                  .line = number,
-                                  .column = static_cast<int>(cell.data() - line.data()) + 1,
-                                  .key = table.columns[values.size()],
-                                  .value = std::string(text)});
-            }
-            values.push_back(value);
-        }
-        table.rows.push_back(std::move(values));
+    RowReader reader(path, required.size(), table);
+    for (int number = 2; readLine(file, line); ++number) {
+        if (!trimmed(line).empty()) reader.read(line, number);
     }
-    if (!errors.empty()) return errors;
+    if (!reader.errors.empty()) return reader.errors;
     if (table.rows.empty()) return Error{.message = "has no rows", .file = path};
     return table;
 }

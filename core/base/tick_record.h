@@ -12,7 +12,7 @@ namespace passung {
 enum TickStatus : std::uint32_t {
     kStatusOk = 0,
     kInputHeld = 1u << 0,         // bad input sample: the last good pose was used
-    kInputRejected = 1u << 1,     // bad input for more than one tick: zero wrench
+    kInputRejected = 1u << 1,     // no sample to go by, mostly bad input for more than one tick: zero wrench
     kDeviceStale = 1u << 2,       // no fresh sample
     kNonFiniteLatched = 1u << 3,  // a computed wrench was not finite: zero until re-armed
     kForceLimited = 1u << 4,      // the device's force or torque limit acted
@@ -21,7 +21,9 @@ enum TickStatus : std::uint32_t {
     kIterationLimit = 1u << 7,    // a solver stopped at its iteration cap
     kContactCap = 1u << 8,        // more contacts than the manifold holds
     kStepRejected = 1u << 9,      // the proxy's step was shortened by the acceptance test
-    kOverrun = 1u << 10,          // the previous cycle ended after its deadline
+    kOverrun = 1u << 10,          // the previous cycle ended after its deadline: DeviceReading::periods > 1
+    kInputNotAPose = 1u << 11,    // fresh, but not finite, no rotation or out of any device's reach
+    kInputJump = 1u << 12,        // fresh, but farther from the last good sample than the device can move
     kEngaged = 1u << 16,          // the hand has reached the start pose: contact is rendered
 };
 
@@ -30,6 +32,7 @@ struct DeviceReading {
     Pose X_BD;                  // handle in the device's base frame
     bool fresh = true;          // false: the device had nothing new
     std::uint32_t buttons = 0;  // bit per button
+    std::uint32_t periods = 1;  // haptic periods since the previous tick: 1, more after missed cycles; set by the loop
 };
 
 /// One tick: its exact inputs, from which a replay reproduces everything else, and its outputs.
@@ -40,7 +43,7 @@ struct TickRecord {
     std::array<double, 3> device_position_m{};  // raw reading, device base frame
     std::array<double, 4> device_quaternion{};  // w, x, y, z
     std::uint32_t input_flags = 0;              // bit 0: fresh; bits 8…31: buttons 0…23
-    std::uint32_t parameter_sequence = 0;       // which set of parameters was in force
+    std::uint32_t periods = 1;                  // as in DeviceReading
     // outputs as they are stored: 32-bit floats; scene frame W unless said otherwise
     std::array<float, 3> hand_position_m{};  // X_WH: the held part where the device asks it to be
     std::array<float, 4> hand_quaternion{};
@@ -48,12 +51,15 @@ struct TickRecord {
     std::array<float, 4> proxy_quaternion{};
     std::array<float, 3> force_N{};    // on the hand, after the output stage
     std::array<float, 3> torque_Nm{};  // about the held part's origin
-    float hand_depth_m = 0.0f;         // deepest point of the held part at X_WH, ≥ 0
-    float proxy_depth_m = 0.0f;        // the same at X_WG
-    float quality = 1.0f;              // area fraction of the shell proven or evaluated
-    std::uint32_t status = 0;          // TickStatus bits
-    std::uint32_t contacts = 0;        // points inside an obstacle at the proxy
-    std::uint32_t iterations = 0;      // proxy sub-steps
+    // Depth of the held part's deepest sample point in an obstacle, ≥ 0; the points lie about ContactSpec::spacing
+    // apart, and what stands between them, such as an obstacle's edge, may be deeper (measured by
+    // obstacle_edge_test.cpp).
+    float hand_depth_m = 0.0f;     // at X_WH
+    float proxy_depth_m = 0.0f;    // at X_WG
+    float quality = 1.0f;          // area fraction of the shell proven or evaluated
+    std::uint32_t status = 0;      // TickStatus bits
+    std::uint32_t contacts = 0;    // points inside an obstacle at the proxy
+    std::uint32_t iterations = 0;  // proxy sub-steps
     std::uint32_t nodes_visited = 0;
     // measured, never compared by a replay
     std::int64_t duration_ns = 0;  // of the tick's computation

@@ -27,4 +27,10 @@ bool isFinite(const Pose& pose) noexcept { return pose.p.allFinite() && pose.q.c
 
 bool isFinite(const Wrench& wrench) noexcept { return wrench.force.allFinite() && wrench.torque.allFinite(); }
 
+bool isRotation(const Quat& q, double tolerance) noexcept { return std::abs(q.norm() - 1.0) < tolerance; }
+
+bool isRigid(const Pose& pose, double tolerance) noexcept {
+    return pose.p.allFinite() && isRotation(pose.q, tolerance);
+}
+
 }  // namespace passung

@@ -45,4 +45,13 @@ Quat rotationFromVector(const Vec3& v) noexcept;
 bool isFinite(const Pose& pose) noexcept;
 bool isFinite(const Wrench& wrench) noexcept;
 
+/// Of a quaternion's length: files and drivers give rounded numbers.
+inline constexpr double kUnitTolerance = 1e-3;
+
+/// True if `q` is finite and of length 1 ± `tolerance` (exclusive), so that normalising it loses nothing. rt-safe.
+bool isRotation(const Quat& q, double tolerance = kUnitTolerance) noexcept;
+
+/// True if `pose` is finite and its quaternion a rotation within `tolerance`. rt-safe.
+bool isRigid(const Pose& pose, double tolerance = kUnitTolerance) noexcept;
+
 }  // namespace passung

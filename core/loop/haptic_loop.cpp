@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "core/loop/cadence.h"
+
 namespace passung::loop {
 
 namespace {
@@ -35,9 +37,10 @@ void sleepUntil(std::int64_t nanoseconds) noexcept {
 HapticCycle::HapticCycle(const tick::TickModel& model, HapticDevice& device, RecordRing& ring, bool show_proxy)
     : model_(model), state_(tick::makeState(model)), device_(device), ring_(ring), show_proxy_(show_proxy) {}
 
-void HapticCycle::run(bool late) noexcept {
+void HapticCycle::run(std::uint32_t missed) noexcept {
     const std::int64_t tick = state_.tick;
-    const DeviceReading reading = device_.read();
+    DeviceReading reading = device_.read();
+    reading.periods = 1 + missed;
     const std::int64_t begin = now();
     const tick::TickOutput output = tick::step(model_, state_, reading);
     const std::int64_t duration = now() - begin;
@@ -46,7 +49,6 @@ void HapticCycle::run(bool late) noexcept {
 
     TickRecord record = tick::makeRecord(tick, reading, output);
     record.duration_ns = duration;
-    if (late) record.status |= kOverrun;
     ring_.tryPush(record);
 
     if (tick == 0 || tick * kDisplayHz / 1000 != (tick - 1) * kDisplayHz / 1000) {
@@ -69,22 +71,15 @@ void RealTimeThread::main() {
     priority.sched_priority = kPriority;
     fifo_.store(pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority) == 0);
     locked_.store(mlockall(MCL_CURRENT | MCL_FUTURE) == 0);
-    std::int64_t deadline = now() + kTickNanoseconds;
-    bool late = false;
+    Cadence cadence(now() + kTickNanoseconds);
+    std::int64_t missed = 0;
     while (running_.load(std::memory_order_relaxed)) {
-        sleepUntil(deadline);
-        lateness_.add(now() - deadline);
-        cycle_.run(late);
+        sleepUntil(cadence.due());
+        lateness_.add(now() - cadence.due());
+        cycle_.run(static_cast<std::uint32_t>(missed));
+        overruns_.fetch_add(missed, std::memory_order_relaxed);
         ticks_.store(cycle_.ticks(), std::memory_order_release);
-        deadline += kTickNanoseconds;
-        const std::int64_t end = now();
-        late = end > deadline;
-        if (late) {
-            // Cycles that were missed are not made up for: the next one is the next whole period from here.
-            const std::int64_t missed = (end - deadline) / kTickNanoseconds + 1;
-            overruns_.fetch_add(missed, std::memory_order_relaxed);
-            deadline += missed * kTickNanoseconds;
-        }
+        missed = cadence.finish(now());
     }
     cycle_.release();
     if (locked_.load()) munlockall();

@@ -20,8 +20,9 @@ public:
     /// `show_proxy`: the display draws the proxy, otherwise the device's pose. Borrows everything.
     HapticCycle(const tick::TickModel& model, HapticDevice& device, RecordRing& ring, bool show_proxy);
 
-    /// One cycle. `late`: the previous one ended after its deadline, for the record. rt-safe.
-    void run(bool late) noexcept;
+    /// One cycle. `missed`: cycles that were missed since the previous one, because it ended after its deadline; for
+    /// the record, which else could not tell how much time lies between two ticks. rt-safe.
+    void run(std::uint32_t missed = 0) noexcept;
 
     /// Commands a zero wrench. rt-safe.
     void release() noexcept { device_.command(Wrench{}); }
@@ -58,6 +59,7 @@ public:
     void stop();
 
     std::int64_t ticks() const noexcept { return ticks_.load(std::memory_order_acquire); }
+    /// Cycles missed between the first tick and the last: the records' periods less one each, summed up.
     std::int64_t overruns() const noexcept { return overruns_.load(std::memory_order_relaxed); }
     Scheduling scheduling() const noexcept { return {fifo_.load(), locked_.load()}; }
     /// How late the cycles began; read after stop().

@@ -29,7 +29,7 @@
 namespace passung::loop {
 namespace {
 
-constexpr int kMaxDegree = kMaxDelayTicks + 3;
+constexpr int kMaxDegree = kMaxDeviceDelayTicks + 3;
 
 // Coefficient i belongs to z^i.
 struct Polynomial {
@@ -41,7 +41,7 @@ bool inRange(const SampledWall& w) {
     return std::isfinite(w.mass) && w.mass > 0 && std::isfinite(w.damping) && w.damping >= 0 &&
            std::isfinite(w.stiffness) && w.stiffness >= 0 && std::isfinite(w.virtual_damping) &&
            w.virtual_damping >= 0 && std::isfinite(w.period) && w.period > 0 && w.delay_ticks >= 0 &&
-           w.delay_ticks <= kMaxDelayTicks;
+           w.delay_ticks <= kMaxDeviceDelayTicks;
 }
 
 Polynomial characteristicPolynomial(const SampledWall& w) {

@@ -12,10 +12,12 @@ struct SampledWall {
     double stiffness = 1000.0;     // K [N/m], ≥ 0
     double virtual_damping = 0.0;  // B [N·s/m], ≥ 0
     double period = 1e-3;          // T [s], > 0
-    int delay_ticks = 0;           // d, 0 … kMaxDelayTicks
+    int delay_ticks = 0;           // d, 0 … kMaxDeviceDelayTicks
 };
 
-inline constexpr int kMaxDelayTicks = 24;
+/// Longest delay of a device itself that the model covers [ticks]. What a scene adds has a limit of its own
+/// (model::kMaxDelayTicks).
+inline constexpr int kMaxDeviceDelayTicks = 24;
 
 /// True if every motion against the wall dies out (exact for the model; the border itself counts as unstable).
 /// Values out of range, NaN included, are not stable.

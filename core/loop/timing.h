@@ -6,7 +6,7 @@
 
 namespace passung::loop {
 
-/// Distribution of tick durations in fixed memory: eight buckets per octave above 100 ns.
+/// Distribution of durations in fixed memory: eight buckets per octave from 100 ns to 1.7 s.
 class TimingHistogram {
 public:
     static constexpr int kOctaves = 24;
@@ -19,7 +19,9 @@ public:
     double meanMicroseconds() const;
     double deviationMicroseconds() const;
     double maxMicroseconds() const { return static_cast<double>(max_) * 1e-3; }
-    /// Upper edge of the bucket that holds the quantile `q` in [0, 1]: at most 9 % above the true value.
+    /// Upper edge of the bucket that holds the quantile `q` in [0, 1], never above the largest duration: at most 9 %
+    /// above the true value if that is from 100 ns to 1.6 s. What is shorter shares one bucket and counts as up to
+    /// 109 ns; what is longer counts as 1.7 s at least.
     double quantileMicroseconds(double q) const;
     /// Ticks per octave: entry i counts durations in [2^i, 2^(i+1)) × 0.1 µs, the first also everything below.
     std::vector<std::int64_t> octaves() const;

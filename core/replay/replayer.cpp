@@ -51,7 +51,7 @@ std::optional<Difference> compare(const TickRecord& recorded, const TickRecord& 
     comparison.field("hand_depth_m", recorded.hand_depth_m, replayed.hand_depth_m);
     comparison.field("proxy_depth_m", recorded.proxy_depth_m, replayed.proxy_depth_m);
     comparison.field("quality", recorded.quality, replayed.quality);
-    comparison.field("status", recorded.status & ~static_cast<std::uint32_t>(kOverrun), replayed.status);
+    comparison.field("status", recorded.status, replayed.status);
     comparison.field("contacts", recorded.contacts, replayed.contacts);
     comparison.field("iterations", recorded.iterations, replayed.iterations);
     comparison.field("nodes_visited", recorded.nodes_visited, replayed.nodes_visited);

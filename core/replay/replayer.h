@@ -23,8 +23,8 @@ struct ReplayReport {
     std::uint64_t state_hash = 0;                // over the exact outputs of all ticks
 };
 
-/// Runs the recorded inputs of one attempt through the tick again and compares every recorded output bit for bit;
-/// durations and the overrun bit are measurements and not compared.
+/// Runs the recorded inputs of one attempt (missed periods included) through the tick again and compares every recorded
+/// output bit for bit; durations are measurements of the recorded run and not compared.
 /// @pre `records` are the attempt's ticks from tick 0 without gaps (gap: reported as a difference in "tick").
 ReplayReport replay(const model::Scene& scene, std::span<const TickRecord> records);
 

@@ -3,84 +3,185 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace passung::tick {
 
 namespace {
 
-constexpr int kMaxRows = 32;
-constexpr int kSweeps = 40;
-constexpr double kTolerance = 1e-7;     // [m], of a constraint
-constexpr double kLeastGradient = 0.1;  // a flatter field (a medial axis) says nothing about direction
+constexpr double kIndependent = 1e-7;  // a unit row is independent if more than this of it is left
+constexpr double kFarther = 4.0;       // per removed overlap: a motion that is bent by more has been sent far away
 
-struct Row {
-    Motion a;
-    double b;
-    double norm2;
-    double lambda;
+/// The motion's problem with all that stays the same while it is solved.
+struct Problem {
+    const Motion& wanted;
+    const ContactManifold& manifold;
+    const Vec3& p_WO;
+    double metric_radius;
+    double keep_out;
+    bool relaxed = false;
+
+    double least(const ContactPoint& contact) const noexcept {
+        const double b = keep_out - contact.phi;
+        return relaxed || contact.radius > 0.0 ? std::min(b, 0.0) : b;
+    }
 };
 
-Row rowOf(const ContactPoint& contact, const Vec3& p_WO, double metric_radius, double keep_out) {
-    Row row;
-    row.a.head<3>() = contact.gradient;
-    row.a.tail<3>() = (contact.position - p_WO).cross(contact.gradient) / metric_radius;
-    row.b = keep_out - contact.phi;
-    row.norm2 = row.a.squaredNorm();
+struct Row {
+    Motion a = Motion::Zero();  // unit
+    double b = 0.0;
+    double lambda = 0.0;
+};
+
+/// The most violated contact as a row; false if there is none.
+bool mostViolated(const Problem& problem, const Motion& u, Row& row) noexcept {
+    const Vec3 dx = u.head<3>();
+    const Vec3 dphi = u.tail<3>() / problem.metric_radius;
+    double violation = kMotionTolerance;
+    const ContactPoint* worst = nullptr;
+    for (const ContactPoint& contact : problem.manifold) {
+        const Vec3 motion = dx + dphi.cross(contact.position - problem.p_WO);
+        const double missing = problem.least(contact) - contact.gradient.dot(motion);
+        if (missing > violation && contact.gradient.squaredNorm() > kLeastGradient * kLeastGradient) {
+            violation = missing;
+            worst = &contact;
+        }
+    }
+    if (worst == nullptr) return false;
+    row.a.head<3>() = worst->gradient;
+    row.a.tail<3>() = (worst->position - problem.p_WO).cross(worst->gradient) / problem.metric_radius;
+    const double length = row.a.norm();
+    row.a /= length;
+    row.b = problem.least(*worst) / length;
     row.lambda = 0.0;
-    return row;
+    return true;
 }
 
-/// Sweeps until no row is violated by more than the tolerance; returns false at the cap.
-bool solve(std::array<Row, kMaxRows>& rows, std::size_t count, Motion& u) {
-    for (int sweep = 0; sweep < kSweeps; ++sweep) {
-        double worst = 0.0;
-        for (std::size_t i = 0; i < count; ++i) {
-            Row& row = rows[i];
-            const double lambda = std::max(0.0, row.lambda + (row.b - row.a.dot(u)) / row.norm2);
-            const double change = lambda - row.lambda;
-            row.lambda = lambda;
-            u += change * row.a;
-            worst = std::max(worst, std::abs(change) * std::sqrt(row.norm2));
+/// The active rows N = Q R.
+class ActiveSet {
+public:
+    int size() const noexcept { return count_; }
+    Row& operator[](int i) noexcept { return rows_[static_cast<std::size_t>(i)]; }
+
+    /// r = N⁺ a and z = a - N r, the latter by Gram-Schmidt twice.
+    void split(const Motion& a, Motion& z, Motion& r) const noexcept {
+        Motion q = Motion::Zero();
+        z = a;
+        for (int pass = 0; pass < 2; ++pass) {
+            for (int i = 0; i < count_; ++i) {
+                const double along = Q_.col(i).dot(z);
+                q[i] += along;
+                z -= along * Q_.col(i);
+            }
         }
-        if (worst < kTolerance) return true;
+        r.setZero();
+        for (int i = count_ - 1; i >= 0; --i) {
+            double sum = q[i];
+            for (int k = i + 1; k < count_; ++k) sum -= R_(i, k) * r[k];
+            r[i] = sum / R_(i, i);
+        }
     }
-    return false;
+
+    /// @pre `row` is independent of the others, fewer than six.
+    void add(const Row& row) noexcept {
+        Motion rest = row.a;
+        R_.col(count_).setZero();
+        for (int pass = 0; pass < 2; ++pass) {
+            for (int i = 0; i < count_; ++i) {
+                const double along = Q_.col(i).dot(rest);
+                R_(i, count_) += along;
+                rest -= along * Q_.col(i);
+            }
+        }
+        R_(count_, count_) = rest.norm();
+        Q_.col(count_) = rest / R_(count_, count_);
+        rows_[static_cast<std::size_t>(count_++)] = row;
+    }
+
+    void drop(int which) noexcept {
+        const std::array<Row, 6> rows = rows_;
+        const int count = count_;
+        count_ = 0;
+        for (int i = 0; i < count; ++i) {
+            if (i != which) add(rows[static_cast<std::size_t>(i)]);
+        }
+    }
+
+private:
+    std::array<Row, 6> rows_;
+    Eigen::Matrix<double, 6, 6> Q_ = Eigen::Matrix<double, 6, 6>::Zero(), R_ = Eigen::Matrix<double, 6, 6>::Zero();
+    int count_ = 0;
+};
+
+enum class Taken { Yes, Infeasible, Capped };
+
+/// Takes `row` up, letting others go where they are in the way.
+Taken takeUp(Row row, ActiveSet& active, Motion& u, int& iterations) noexcept {
+    while (++iterations <= kMaxIterations) {
+        Motion z, r;
+        active.split(row.a, z, r);
+        const double z2 = z.squaredNorm();
+        constexpr double kNever = std::numeric_limits<double>::infinity();
+        const double full =
+            active.size() < 6 && z2 > kIndependent * kIndependent ? (row.b - row.a.dot(u)) / z2 : kNever;
+        double partial = kNever;
+        int let_go = -1;
+        for (int i = 0; i < active.size(); ++i) {
+            if (!(r[i] > 1e-12) || !(active[i].lambda / r[i] < partial)) continue;
+            partial = active[i].lambda / r[i];
+            let_go = i;
+        }
+        const double t = std::min(full, partial);
+        if (t == kNever) return Taken::Infeasible;
+        if (full < kNever) u += t * z;
+        for (int i = 0; i < active.size(); ++i) active[i].lambda = std::max(0.0, active[i].lambda - t * r[i]);
+        row.lambda += t;
+        if (t == full) {
+            active.add(row);
+            return Taken::Yes;
+        }
+        active.drop(let_go);
+    }
+    return Taken::Capped;
+}
+
+/// False if the rows have no common solution.
+bool solve(const Problem& problem, ConstrainedMotion& result) noexcept {
+    ActiveSet active;
+    Row row;
+    result.u = problem.wanted;
+    result.iterations = 0;
+    result.converged = true;
+    while (mostViolated(problem, result.u, row)) {
+        const Taken taken = takeUp(row, active, result.u, result.iterations);
+        if (taken == Taken::Infeasible) return false;
+        if (taken == Taken::Capped) {
+            result.converged = false;
+            break;
+        }
+    }
+    result.active = active.size();
+    return true;
 }
 
 }  // namespace
 
 ConstrainedMotion constrainMotion(const Motion& wanted, const ContactManifold& manifold, const Vec3& p_WO,
-                                  double metric_radius, double keep_out, int max_rows) noexcept {
-    std::array<Row, kMaxRows> rows;
-    const auto cap = static_cast<std::size_t>(std::min(max_rows, kMaxRows));
-    std::size_t count = 0;
+                                  double metric_radius, double keep_out) noexcept {
+    Problem problem{wanted, manifold, p_WO, metric_radius, keep_out};
     ConstrainedMotion result;
-    result.u = wanted;
-    for (;;) {
-        double violation = kTolerance;
-        const ContactPoint* worst = nullptr;
-        const Vec3 dx = result.u.head<3>();
-        const Vec3 dphi = result.u.tail<3>() / metric_radius;
-        for (const ContactPoint& contact : manifold) {
-            const Vec3 motion = dx + dphi.cross(contact.position - p_WO);
-            const double missing = keep_out - contact.phi - contact.gradient.dot(motion);
-            if (missing > violation && contact.gradient.squaredNorm() > kLeastGradient * kLeastGradient) {
-                violation = missing;
-                worst = &contact;
-            }
-        }
-        if (worst == nullptr) break;
-        if (count == cap) {
-            result.converged = false;
-            break;
-        }
-        rows[count++] = rowOf(*worst, p_WO, metric_radius, keep_out);
-        if (!solve(rows, count, result.u)) {
-            result.converged = false;
-            break;
-        }
+    double deepest = 0.0;  // what standing still would leave to be removed
+    for (const ContactPoint& contact : manifold) deepest = std::max(deepest, problem.least(contact));
+    bool found = solve(problem, result);
+    const double bend = (result.u - wanted).norm();
+    if (deepest > 0.0 && !(found && result.converged && bend <= wanted.norm() + kFarther * deepest)) {
+        problem.relaxed = result.relaxed = true;
+        found = solve(problem, result);
     }
-    result.rows = static_cast<int>(count);
+    if (!found) {  // rounding only: these rows allow u = 0
+        result.u.setZero();
+        result.converged = false;
+    }
     return result;
 }
 

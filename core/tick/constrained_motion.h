@@ -9,20 +9,33 @@ using Motion = Eigen::Matrix<double, 6, 1>;
 
 struct ConstrainedMotion {
     Motion u = Motion::Zero();
-    int rows = 0;           // contacts that became constraints
-    bool converged = true;  // false: the cap of rows or sweeps was reached
+    int active = 0;         // contacts that hold the motion, at most six
+    int iterations = 0;     // contacts taken up or let go
+    bool relaxed = false;   // the overlap could not be removed within this motion: it is only kept from growing
+    bool converged = true;  // false: kMaxIterations reached; contacts may be violated
 };
 
-/// The motion nearest to `wanted` that obeys  a_i · u ≥ keep_out - φ_i  for all contacts of `manifold`,
-///   a_i = (g_i, (r_i × g_i)/ρ),  r_i = P_i - p_WO:
-/// step #4 of god_object_heuristic.h. `keep_out` [m] is the φ that a contact must keep (slightly negative).
-///   min ½|u - wanted|²  s.t. rows.  Dual: u = wanted + Σ λ_i a_i, λ_i ≥ 0; projected Gauss-Seidel sweeps
-///   λ_i ← max(0, λ_i + (b_i - a_i·u)/(a_i·a_i)). The most violated contact joins the rows until none is violated by
-///   more than kTolerance; if that is reached, every contact outside the rows is satisfied as well.
-/// The sweeps or rows may end before: `converged` is then false, contacts may still be violated, and the caller has to
-/// test the pose. Opposite rows (a peg between two walls) make the sweeps slow, so that tight fits often end there.
-/// Limit cases: no contact violated → wanted. One row → the projection onto its plane. rt-safe, bounded.
+inline constexpr int kMaxIterations = 200;
+inline constexpr double kMotionTolerance = 1e-9;  // [m], of a constraint
+
+/// The motion nearest to `wanted` that obeys all contacts of `manifold`, by Gauss's principle of least constraint:
+///   min ½|u - w|²   s.t.   a_i · u ≥ b_i,   a_i = (g_i, (r_i × g_i)/ρ),  r_i = P_i - p_WO,  b_i = keep_out - φ_i
+/// g_i the gradient of φ, `keep_out` [m] the φ that a contact must keep (slightly negative), ρ = `metric_radius` [m].
+///
+/// Source: Goldfarb and Idnani (1983), dual active set, for a unit Hessian. With N the active rows, λ their multipliers
+/// and u = w + N λ, λ ≥ 0, the most violated row a is taken up along
+///   r = N⁺ a,  z = a - N r:   u += t z,  λ -= t r,  λ_a += t,   t = min((b - a·u)/|z|², min over r_j > 0 of λ_j/r_j);
+/// where the second is smaller, row j is let go and the step repeated. Active rows are independent, hence at most six;
+/// N is kept as Q R. Exact when it ends, and it ends because the dual objective grows with each row taken up.
+///
+/// Rows that ask for more than standing still (b_i > 0: overlap to be removed) may have no common solution, or only one
+/// far away (a part pressed between two walls). Then b_i becomes min(b_i, 0), `relaxed`: u = 0 obeys that always, and
+/// |u - w| ≤ |w|. A sphere that stands for points not looked at (ContactPoint::radius > 0) never asks for more than 0.
+/// Contacts whose field is flatter than kLeastGradient (a medial axis) say nothing about direction and are left out.
+/// Limit cases: no contact violated → wanted. One → the projection onto its plane. rt-safe, bounded.
 ConstrainedMotion constrainMotion(const Motion& wanted, const ContactManifold& manifold, const Vec3& p_WO,
-                                  double metric_radius, double keep_out, int max_rows) noexcept;
+                                  double metric_radius, double keep_out) noexcept;
+
+inline constexpr double kLeastGradient = 0.1;
 
 }  // namespace passung::tick

@@ -5,6 +5,12 @@
 
 namespace passung::tick {
 
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
 /// State of one traversal; the steps of queryContacts.
 struct Traversal {
     const model::DistanceField& field;
@@ -45,9 +51,10 @@ struct Traversal {
         return request.max_nodes > 0 && answer.nodes_visited + children > request.max_nodes;
     }
 
-    void push(std::uint32_t node) noexcept {
+    /// `above`: the bound of the node's parent holds for its points too.
+    void push(std::uint32_t node, double above) noexcept {
         const model::SphereNode& n = shell.nodes()[node];
-        const double bound = field.lowerBound(R_FS * n.centre + p_FS) - n.radius;
+        const double bound = std::max(above, field.lowerBound(R_FS * n.centre + p_FS) - n.radius);
         ++answer.nodes_visited;
         if (bound >= pruneAbove()) return;
         workspace.heap_[waiting++] = {bound, node};
@@ -61,11 +68,12 @@ struct Traversal {
         return workspace.heap_[waiting].node;
     }
 
-    void evaluate(const Vec3& position, const Vec3& normal, double area) noexcept {
+    /// `above`: a lower bound of φ there that is already known.
+    void evaluate(const Vec3& position, const Vec3& normal, double area, double above) noexcept {
         const Vec3 p_F = R_FS * position + p_FS;
         const model::FieldSample s = field.sample(p_F, request.mode);
         ++answer.points_tested;
-        if (request.prove) answer.lower_bound = std::min(answer.lower_bound, field.lowerBound(p_F));
+        if (request.prove) answer.lower_bound = std::min(answer.lower_bound, std::max(above, field.lowerBound(p_F)));
         if (s.phi < answer.phi) {
             answer.found = true;
             answer.phi = s.phi;
@@ -84,8 +92,21 @@ struct Traversal {
         if (!manifold.tryPush(contact)) answer.manifold_full = true;
     }
 
+    /// The sphere of a node that is not looked into.
+    void standIn(const model::SphereNode& node, double bound) noexcept {
+        if (!(bound < request.collect_below)) return;
+        const Vec3 centre_F = R_FS * node.centre + p_FS;
+        ContactPoint contact;
+        contact.position = X_WF * centre_F;
+        contact.gradient = R_WF * field.sample(centre_F, request.mode).gradient;
+        contact.normal = -contact.gradient;
+        contact.phi = bound;
+        contact.radius = node.radius;
+        if (!manifold.tryPush(contact)) answer.manifold_full = true;
+    }
+
     void run() noexcept {
-        for (std::uint32_t root = 0; root < shell.roots().size(); ++root) push(root);
+        for (std::uint32_t root = 0; root < shell.roots().size(); ++root) push(root, -kInfinity);
         while (waiting > 0) {
             if (exceedsBudget(shell.nodes()[workspace.heap_.front().node])) {
                 answer.budget_reached = true;
@@ -96,19 +117,20 @@ struct Traversal {
             if (bound >= pruneAbove()) continue;
             const std::uint32_t end = node.first + node.count;
             if (!node.leaf) {
-                for (std::uint32_t child = node.first; child < end; ++child) push(child);
+                for (std::uint32_t child = node.first; child < end; ++child) push(child, bound);
                 continue;
             }
             for (std::uint32_t i = node.first; i < end; ++i) {
                 const model::SurfacePoint& point = shell.points()[i];
-                evaluate(point.position, point.normal, point.area);
+                evaluate(point.position, point.normal, point.area, bound);
             }
         }
         while (waiting > 0) {  // the budget ended
             double bound = 0.0;
             const model::SphereNode& node = shell.nodes()[pop(bound)];
             if (bound >= pruneAbove()) continue;
-            evaluate(node.point, node.normal, node.area);
+            evaluate(node.point, node.normal, node.area, bound);
+            if (request.spheres) standIn(node, bound);
             answer.lower_bound = std::min(answer.lower_bound, bound);
             unproven_area += node.area;
         }

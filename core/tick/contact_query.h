@@ -9,13 +9,14 @@
 
 namespace passung::tick {
 
-/// One shell point near or inside an obstacle; world frame.
+/// One shell point near or inside an obstacle, or a sphere that stands for points nobody looked at; world frame.
 struct ContactPoint {
-    Vec3 position;      // p_WP [m]
-    Vec3 normal;        // of the shell, unit, outward from the held part; of the field (turned) for edge samples
-    Vec3 gradient;      // of φ, as interpolated
-    double phi = 0.0;   // [m], < 0 inside the obstacle
-    double area = 0.0;  // [m²]
+    Vec3 position;        // p_WP [m]
+    Vec3 normal;          // of the shell, unit, outward from the held part; of the field (turned) for edge samples
+    Vec3 gradient;        // of φ, as interpolated
+    double phi = 0.0;     // [m], < 0 inside the obstacle
+    double area = 0.0;    // [m²]
+    double radius = 0.0;  // of a sphere [m]: `position` is then its centre and `phi` a lower bound of what it holds
 };
 
 /// Contact manifold of one query or of several (it is appended to). Memory is sized once.
@@ -59,7 +60,8 @@ struct QueryRequest {
     double search_below = 0.0;   // the deepest or closest point is searched up to this φ [m]
     int max_nodes = 0;           // budget (the thesis's η_c, in nodes so that it is deterministic); 0 = none
     model::FieldMode mode = model::FieldMode::Trilinear;
-    bool prove = false;  // also find QueryAnswer::lower_bound; costs about as much again
+    bool prove = false;    // also find QueryAnswer::lower_bound; costs about as much again
+    bool spheres = false;  // a node left over by the budget also enters the manifold as a sphere
 };
 
 struct QueryAnswer {
@@ -83,7 +85,8 @@ struct QueryAnswer {
 ///   is pruned with proof. A leaf's points are all evaluated.
 ///   Limit cases: everything far → the roots are all that is visited; a budget that ends → each node still waiting is
 ///   represented by its own point with the area of all points below (the wrench stays consistent), and `quality`
-///   says which share of the area was proven or evaluated.
+///   says which share of the area was proven or evaluated. With `spheres` its sphere enters the manifold besides, with
+///   φ = b: what keeps the sphere out keeps its points out.
 /// Appends to `manifold`. rt-safe; the number of steps is bounded by the number of nodes.
 /// @pre `workspace` has room for all nodes of `shell`; poses are finite.
 QueryAnswer queryContacts(const model::DistanceField& field, const Pose& X_WF, const model::SphereTree& shell,

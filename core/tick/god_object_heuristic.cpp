@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "core/tick/constrained_motion.h"
-#include "core/tick/penalty.h"
+#include "core/tick/obstacle_query.h"
 
 namespace passung::tick {
 
@@ -31,16 +31,24 @@ double longestPath(const TickModel& model, const Motion& u) noexcept {
 
 double overlap(const TickState& state) noexcept { return std::max(0.0, -state.clearance); }
 
-/// Looks around the proxy: all contacts within `reach`, and how far the nearest one is if none is.
+/// Looks around the proxy: all contacts within `reach`, and up to `search` [m] how far the nearest one is if none is.
+/// Room beyond the reach is used without another look, so that it has to be proven.
 void look(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_WG, double reach,
           double search) noexcept {
     state.scratch.clear();
-    const QueryAnswer answer = queryObstacles(model, X_WG, reach, search, state.workspace, state.scratch);
+    QueryRequest request{.collect_below = reach, .search_below = search, .spheres = true};
+    QueryAnswer answer = queryObstacles(model, X_WG, request, state.workspace, state.scratch);
     account(answer, frame);
     std::swap(state.manifold, state.scratch);
     state.X_WG = X_WG;
     state.manifold_reach = reach;
     state.clearance = answer.phi;
+    if (!(answer.phi > reach)) return;
+    request.prove = true;
+    state.scratch.clear();
+    answer = queryObstacles(model, X_WG, request, state.workspace, state.scratch);
+    account(answer, frame);
+    state.clearance = std::max(reach, answer.lower_bound);
 }
 
 Motion unconstrainedMotion(const TickModel& model, const Pose& X_WG, const Pose& X_WH) noexcept {
@@ -50,12 +58,14 @@ Motion unconstrainedMotion(const TickModel& model, const Pose& X_WG, const Pose&
     return u;
 }
 
+bool isInside(const ContactPoint& contact) noexcept { return contact.phi < 0.0 && !(contact.radius > 0.0); }
+
 /// Direction of the correction: translation along the penalty force, rotation about its torque, shared by λ.
 Motion correctionOf(const TickModel& model, const TickState& state, double depth) noexcept {
     const double rho = model.metric_radius;
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
     for (const ContactPoint& c : state.manifold) {
-        if (!(c.phi < 0.0)) continue;
+        if (!isInside(c)) continue;
         const Vec3 f = -c.phi * c.gradient;
         force += f;
         torque += (c.position - state.X_WG.p).cross(f);
@@ -70,7 +80,7 @@ Motion correctionOf(const TickModel& model, const TickState& state, double depth
     double ph = 0.0, hh = 0.0;
     for (const ContactPoint& c : state.manifold) {
         const double lever = c.gradient.dot(axis.cross(c.position - state.X_WG.p));
-        if (!(c.phi < 0.0) || !(lever > kLeastLever * rho)) continue;
+        if (!isInside(c) || !(lever > kLeastLever * rho)) continue;
         ph += -c.phi * lever;
         hh += lever * lever;
     }
@@ -85,7 +95,7 @@ void relieve(const TickModel& model, TickState& state, TickFrame& frame, double 
     const double s = model.finest_cell;
     for (int i = 0; i < kReliefs && overlap(state) > kRelieve * s; ++i) {
         const ConstrainedMotion out =
-            constrainMotion(Motion::Zero(), state.manifold, state.X_WG.p, model.metric_radius, -kKeep * s, kRows);
+            constrainMotion(Motion::Zero(), state.manifold, state.X_WG.p, model.metric_radius, -kKeep * s);
         if (longestPath(model, out.u) > kLongestStep * s) return;
         look(model, state, frame, moved(state.X_WG, out.u, model.metric_radius), reach, reach);
     }
@@ -95,6 +105,11 @@ void relieve(const TickModel& model, TickState& state, TickFrame& frame, double 
 
 void correctProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
     const double s = model.finest_cell;
+    if (frame.relocated) {
+        state.X_WG = frame.X_WH;
+        state.manifold_reach = -1.0;
+        state.has_last_proxy = state.has_last_stretch = false;
+    }
     if (state.manifold_reach < 0.0) look(model, state, frame, state.X_WG, kLongestStep * s, kLongestStep * s);
     for (int i = 0; i < kCorrections && overlap(state) > kAccept * s; ++i) {
         const Pose X_before = state.X_WG;
@@ -129,7 +144,7 @@ void moveProxy(const TickModel& model, TickState& state, TickFrame& frame) noexc
         // Step as far as the contacts are known, farther only where there is proven room.
         const double known = std::max(state.manifold_reach, state.clearance);
         const ConstrainedMotion constrained =
-            constrainMotion(wanted, state.manifold, state.X_WG.p, model.metric_radius, -kKeep * s, kRows);
+            constrainMotion(wanted, state.manifold, state.X_WG.p, model.metric_radius, -kKeep * s);
         if (!constrained.converged) frame.status |= kIterationLimit;
         Motion u = constrained.u;
         const double step_path = longestPath(model, u);
@@ -138,19 +153,21 @@ void moveProxy(const TickModel& model, TickState& state, TickFrame& frame) noexc
         const Pose X_here = state.X_WG;
         const double accepted = std::max(kAccept * s, overlap(state));
         const double next_reach = std::clamp(kReachGrowth * std::min(step_path, path), reach, kLongestStep * s);
-        bool good = false;
-        for (int half = 0; half <= kHalvings && !good; ++half, u *= 0.5) {
+        bool good = false, whole = step_path <= known;
+        for (int half = 0; half <= kHalvings; ++half, u *= 0.5) {
             look(model, state, frame, moved(X_here, u, model.metric_radius), next_reach, std::max(next_reach, path));
             relieve(model, state, frame, next_reach);
             good = overlap(state) <= accepted;
-            if (!good) frame.status |= kStepRejected;
+            if (good) break;
+            frame.status |= kStepRejected;
+            whole = false;
         }
         frame.iterations = static_cast<std::uint32_t>(sub_step + 1);
         if (!good) {
             look(model, state, frame, X_here, next_reach, next_reach);
             break;
         }
-        if (step_path <= known) break;  // the whole constrained motion was made
+        if (whole) break;  // the whole constrained motion was made
         reach = next_reach;
     }
     state.last_motion = unconstrainedMotion(model, X_before, state.X_WG).norm();
@@ -173,12 +190,13 @@ void filterProxy(const TickModel& model, TickState& state, TickFrame& frame) noe
 
 void describeProxy(const TickModel&, TickState& state, TickFrame& frame) noexcept {
     frame.proxy_depth = overlap(state);
-    for (const ContactPoint& contact : state.manifold) frame.contacts += contact.phi < 0.0 ? 1u : 0u;
+    for (const ContactPoint& contact : state.manifold) frame.contacts += isInside(contact) ? 1u : 0u;
 }
 
 void measureHandDepth(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
     state.scratch.clear();
-    const QueryAnswer answer = queryObstacles(model, frame.X_WH, -1e300, 0.0, state.workspace, state.scratch);
+    const QueryAnswer answer =
+        queryObstacles(model, frame.X_WH, {.collect_below = -1e300}, state.workspace, state.scratch);
     frame.nodes_visited += static_cast<std::uint32_t>(answer.nodes_visited);
     frame.hand_depth = std::max(0.0, -answer.phi);
 }

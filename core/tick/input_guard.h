@@ -4,12 +4,23 @@
 
 namespace passung::tick {
 
+inline constexpr double kFarthestReading = 1e3;  // [m] from the device's base: no device reaches so far
+inline constexpr int kAgreeingSamples = 3;       // that it takes to believe a device that is suddenly elsewhere
+inline constexpr int kLongestSearchGap = 4;      // ticks between two of them: down to 250 Hz
+
 /// Stage: a device that lies or stalls.
-///   Reads the raw reading; writes the last good pose, X_WH, input_usable.
-///   A sample is bad if it is not finite, has no unit quaternion, is not fresh, or has moved farther from the last good
-///   one than max_speed and max_spin allow for the time in between. One bad sample: the last good pose holds. More:
-///   the output is zero until a good one comes (the allowed distance grows with time, so that a device that was really
-///   carried elsewhere comes back).
+///   Reads the raw reading; writes the last good pose, X_WH, input_usable, sample_periods.
+///   A sample is bad if it is not fresh (kDeviceStale), is no pose (kInputNotAPose: not finite, no unit quaternion,
+///   farther than kFarthestReading) or does not follow from the last good one (kInputJump: moved farther than max_speed
+///   and max_spin allow for the time in between; q and -q are the same rotation). What then acts is a second bit:
+///   - kInputHeld: one bad sample, the last good pose holds;
+///   - kInputRejected: more of them, or no good sample yet: the output is zero until a good one comes.
+///   Back again: the first sample that follows from the last good one (the allowed distance grows with time), or, where
+///   none does, the last of kAgreeingSamples jumps that follow from one another: a device that really is elsewhere, or
+///   whose last good sample was the false one, is back within kAgreeingSamples ticks.
+///   The first sample of all, and the first after rejected ones, has nothing to be judged by and is taken at its word;
+///   but it is not held against a jump: the output is zero until samples agree again.
+///   Limit case: a device that is slower than the tick (fresh every other tick) is held on each tick between.
 void guardInput(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
 
 /// Stage: the trial begins when the hand holds the start pose.

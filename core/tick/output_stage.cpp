@@ -6,17 +6,21 @@ namespace passung::tick {
 
 namespace {
 
-/// The factor in (0, 1] that keeps `v` within `limit`, rounding included; a zero vector needs none.
+/// The factor in (0, 1] that keeps `v` within `limit`; a zero vector needs none. Taken apart into largest component and
+/// ratio, so that no finite vector is too long; the last factor covers the rounding of both and of who checks.
 double factorWithin(const Vec3& v, double limit) noexcept {
-    const double length = v.norm();
-    return length > limit ? limit / length * (1.0 - 0x1p-50) : 1.0;
+    const double largest = v.cwiseAbs().maxCoeff();
+    if (!(largest > 0.0)) return 1.0;
+    const double ratio = (v / largest).norm();
+    return largest * ratio > limit ? limit / largest / ratio * (1.0 - 0x1p-48) : 1.0;
 }
 
-/// The factor that keeps `v` from rising faster than `rise` above its predecessor's share along `v`.
-double factorRising(const Vec3& v, const Vec3& last, double rise) noexcept {
-    const double length = v.norm();
-    if (!(length > 0.0)) return 1.0;
-    return factorWithin(v, std::max(0.0, last.dot(v) / length) + rise);
+/// The factor that keeps `v` from rising by more than `rise` above the share along `v` of `last` or of `at_sample`.
+double factorRising(const Vec3& v, const Vec3& last, const Vec3& at_sample, double rise) noexcept {
+    const double largest = v.cwiseAbs().maxCoeff();
+    if (!(largest > 0.0)) return 1.0;
+    const Vec3 direction = (v / largest).normalized();
+    return factorWithin(v, std::max({0.0, last.dot(direction), at_sample.dot(direction)}) + rise);
 }
 
 /// From the held part's origin and world axes to the handle's origin and device base axes, or back.
@@ -34,7 +38,7 @@ Wrench toHeldPart(const Wrench& F_D_B, const Pose& X_WB, const Vec3& p_DH_W) noe
 
 void delayOutput(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
     const auto length = static_cast<std::int64_t>(model.limits.delay_ticks) + 1;
-    state.delay_line[static_cast<std::size_t>(state.tick % length)] = frame.F_H_W;
+    state.delay_line[static_cast<std::size_t>(state.tick % length)] = frame.input_usable ? frame.F_H_W : Wrench{};
     frame.F_H_W = state.delay_line[static_cast<std::size_t>((state.tick + 1) % length)];
 }
 
@@ -47,7 +51,7 @@ void limitOutput(const TickModel& model, TickState& state, TickFrame& frame) noe
     if (!frame.input_usable || state.latched) {
         frame.F_D_B = Wrench{};
         frame.F_H_W = Wrench{};
-        state.last_sent = Wrench{};
+        state.last_sent = state.sent_at_sample = Wrench{};
         return;
     }
     if (!limits.actuates_torque || limits.max_torque == 0.0) wrench.torque.setZero();
@@ -58,14 +62,16 @@ void limitOutput(const TickModel& model, TickState& state, TickFrame& frame) noe
 
     const double rise = limits.max_force_rate * kTickSeconds;
     const double torque_rise = rise * limits.max_torque / limits.max_force;
-    const double rising = std::min(factorRising(wrench.force, state.last_sent.force, rise),
-                                   factorRising(wrench.torque, state.last_sent.torque, torque_rise));
-    if (rising < 1.0) frame.status |= kRateLimited;
-    wrench = {rising * wrench.force, rising * wrench.torque};
+    const Wrench &last = state.last_sent, &at_sample = state.sent_at_sample;
+    const double force_rising = factorRising(wrench.force, last.force, at_sample.force, rise);
+    const double torque_rising = factorRising(wrench.torque, last.torque, at_sample.torque, torque_rise);
+    if (force_rising < 1.0 || torque_rising < 1.0) frame.status |= kRateLimited;
+    wrench = {force_rising * wrench.force, torque_rising * wrench.torque};
 
     frame.F_D_B = wrench;
     frame.F_H_W = toHeldPart(wrench, model.registration.X_WB, p_DH_W);
     state.last_sent = wrench;
+    if (frame.sample_periods > 0) state.sent_at_sample = wrench;
 }
 
 }  // namespace passung::tick

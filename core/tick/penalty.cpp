@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/tick/obstacle_query.h"
+
 namespace passung::tick {
 
 namespace {
@@ -21,45 +23,29 @@ Vec3 dampingAlong(const Vec3& load, const Vec3& velocity, double damping) noexce
     return std::max(along, -size) * direction;
 }
 
-}  // namespace
-
-QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, double collect_below, double search_below,
-                           QueryWorkspace& workspace, ContactManifold& manifold) noexcept {
-    QueryAnswer best;
-    best.phi = search_below;
-    for (const Obstacle& obstacle : model.obstacles) {
-        const QueryRequest request{collect_below, best.phi, model.contact.budget_nodes, model.contact.mode};
-        QueryAnswer answer =
-            queryContacts(*obstacle.field, obstacle.X_WF, *model.shell, X_WS, request, workspace, manifold);
-        answer.nodes_visited += best.nodes_visited;
-        answer.points_tested += best.points_tested;
-        answer.quality = std::min(answer.quality, best.quality);
-        answer.budget_reached = answer.budget_reached || best.budget_reached;
-        answer.manifold_full = answer.manifold_full || best.manifold_full;
-        if (answer.found || !best.found) {
-            best = answer;
-        } else {
-            best.nodes_visited = answer.nodes_visited;
-            best.points_tested = answer.points_tested;
-            best.quality = answer.quality;
-            best.budget_reached = answer.budget_reached;
-            best.manifold_full = answer.manifold_full;
-        }
+/// From sample to sample: see renderPenalty.
+void measureHandVelocity(TickState& state, const TickFrame& frame) noexcept {
+    if (!frame.input_usable) {
+        state.has_last_hand = false;
+        state.V_H_last = Twist{};
+        return;
     }
-    return best;
+    if (frame.sample_periods == 0) return;
+    if (state.has_last_hand) {
+        const double elapsed = kTickSeconds * static_cast<double>(frame.sample_periods);
+        state.V_H_last.v = (frame.X_WH.p - state.X_WH_last.p) / elapsed;
+        state.V_H_last.w = rotationVector(frame.X_WH.q * state.X_WH_last.q.conjugate()) / elapsed;
+    }
+    state.X_WH_last = frame.X_WH;
+    state.has_last_hand = true;
 }
 
-void account(const QueryAnswer& answer, TickFrame& frame) noexcept {
-    frame.nodes_visited += static_cast<std::uint32_t>(answer.nodes_visited);
-    frame.quality = std::min(frame.quality, answer.quality);
-    if (answer.budget_reached) frame.status |= kBudgetReached;
-    if (answer.manifold_full) frame.status |= kContactCap;
-}
+}  // namespace
 
 void findContactsAtHand(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
     state.X_WG = frame.X_WH;
     state.manifold.clear();
-    const QueryAnswer answer = queryObstacles(model, frame.X_WH, 0.0, 0.0, state.workspace, state.manifold);
+    const QueryAnswer answer = queryObstacles(model, frame.X_WH, QueryRequest{}, state.workspace, state.manifold);
     account(answer, frame);
     frame.contacts = countInside(state.manifold);
     frame.hand_depth = frame.proxy_depth = std::max(0.0, -answer.phi);
@@ -87,17 +73,12 @@ Wrench penaltyWrench(const model::ContactSpec& contact, const ContactManifold& m
 }
 
 void renderPenalty(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
+    measureHandVelocity(state, frame);
     Wrench wrench = penaltyWrench(model.contact, state.manifold, frame.X_WH.p);
-    if (state.has_last_hand) {
-        const Vec3 v = (frame.X_WH.p - state.X_WH_last.p) / kTickSeconds;
-        const Vec3 w = rotationVector(frame.X_WH.q * state.X_WH_last.q.conjugate()) / kTickSeconds;
-        const Vec3 force_damping = dampingAlong(wrench.force, v, model.contact.damping);
-        const Vec3 torque_damping = dampingAlong(wrench.torque, w, model.contact.rotational_damping);
-        wrench.force += force_damping;
-        wrench.torque += torque_damping;
-    }
-    state.X_WH_last = frame.X_WH;
-    state.has_last_hand = true;
+    const Vec3 force_damping = dampingAlong(wrench.force, state.V_H_last.v, model.contact.damping);
+    const Vec3 torque_damping = dampingAlong(wrench.torque, state.V_H_last.w, model.contact.rotational_damping);
+    wrench.force += force_damping;
+    wrench.torque += torque_damping;
     frame.F_H_W = wrench;
 }
 

@@ -26,14 +26,9 @@ inline constexpr double kLeastCoherence = 0.2;
 /// Stage: the wrench of the manifold on the hand, with viscous damping along the force while in contact:
 ///   F += -b (v · F̂) F̂,  b = damping, v the hand's velocity; the same for the torque.
 /// A damper may not pull: its part is limited so that F · F̂ stays ≥ 0.
+/// v is the change from sample to sample over the time between them, so that a held tick, on which the hand only seems
+/// to stand, keeps the last v and the next sample is not taken for twice as fast. After rejected ticks v starts from
+/// zero: what lies between is no motion.
 void renderPenalty(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
-
-/// Contact points with φ < `collect_below` of all obstacles for the held part at `X_WS`. Returns the deepest or closest
-/// answer; nodes and quality are added up.
-QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, double collect_below, double search_below,
-                           QueryWorkspace& workspace, ContactManifold& manifold) noexcept;
-
-/// Books a query's cost and completeness in the frame.
-void account(const QueryAnswer& answer, TickFrame& frame) noexcept;
 
 }  // namespace passung::tick

@@ -45,13 +45,18 @@ void store(std::array<float, 4>& into, const Quat& q) noexcept {
 
 }  // namespace
 
-TickOutput step(const TickModel& model, TickState& state, const DeviceReading& reading) noexcept {
+TickOutput step(const TickModel& model, TickState& state, const DeviceReading& reading,
+                const StageWatch* watch) noexcept {
     TickFrame frame;
     frame.reading = reading;
-    for (const Stage& stage : model.stages) {
-        if (state.engaged || stage.before_start) stage.run(model, state, frame);
+    for (std::size_t i = 0; i < model.stages.size(); ++i) {
+        const Stage& stage = model.stages[i];
+        if (!state.engaged && !stage.before_start) continue;
+        stage.run(model, state, frame);
+        if (watch != nullptr) watch->after(watch->context, i);
     }
     if (state.engaged) frame.status |= kEngaged;
+    if (reading.periods > 1) frame.status |= kOverrun;
     mixOutputs(state.hash, frame, state.X_WG);
     ++state.tick;
     return {frame.F_D_B, frame, state.X_WG};
@@ -65,6 +70,7 @@ TickRecord makeRecord(std::int64_t tick, const DeviceReading& reading, const Tic
     const Quat& q = reading.X_BD.q;
     record.device_quaternion = {q.w(), q.x(), q.y(), q.z()};
     record.input_flags = (reading.fresh ? 1u : 0u) | reading.buttons << 8;
+    record.periods = reading.periods;
     store(record.hand_position_m, frame.X_WH.p);
     store(record.hand_quaternion, frame.X_WH.q);
     store(record.proxy_position_m, output.X_WG.p);
@@ -88,6 +94,7 @@ DeviceReading readingOf(const TickRecord& record) noexcept {
     reading.X_BD = {Quat(q[0], q[1], q[2], q[3]), Vec3(p[0], p[1], p[2])};
     reading.fresh = (record.input_flags & 1u) != 0;
     reading.buttons = record.input_flags >> 8;
+    reading.periods = record.periods;
     return reading;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "core/tick/tick_model.h"
 
 namespace passung::tick {
@@ -11,10 +13,17 @@ struct TickOutput {
     Pose X_WG;        // proxy of the held part
 };
 
+/// Who is told after every stage of a tick that it has run, to measure what it costs. @pre `after` is rt-safe.
+struct StageWatch {
+    void (*after)(void* context, std::size_t stage) noexcept;  // `stage`: place in the model's list
+    void* context;
+};
+
 /// One tick of the haptic loop: a plain function over values. Same model, state and reading: same bits.
 ///   It walks the model's stages; each reads and writes only state and frame. Nothing allocates, locks or throws, and
 ///   every loop has a bound. rt-safe.
-TickOutput step(const TickModel& model, TickState& state, const DeviceReading& reading) noexcept;
+TickOutput step(const TickModel& model, TickState& state, const DeviceReading& reading,
+                const StageWatch* watch = nullptr) noexcept;
 
 /// The record of a tick: inputs exact, outputs as 32-bit floats. rt-safe.
 TickRecord makeRecord(std::int64_t tick, const DeviceReading& reading, const TickOutput& output) noexcept;

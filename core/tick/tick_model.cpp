@@ -88,8 +88,8 @@ TickState makeState(const TickModel& model) {
     TickState state;
     state.engaged = model.start_gate.hold_ticks <= 0;
     state.X_WG = model.X_WG_start;
-    // Nodes stand in for their points when a budget ends, and every obstacle may touch every point.
-    const std::size_t points = model.shell->points().size() + model.shell->nodes().size();
+    // When a budget ends a node stands in by a point and a sphere, and every obstacle may touch every point.
+    const std::size_t points = model.shell->points().size() + 2 * model.shell->nodes().size();
     const std::size_t capacity = points * model.obstacles.size();
     state.manifold = ContactManifold(capacity);
     state.scratch = ContactManifold(capacity);

@@ -19,10 +19,14 @@ struct TickFrame {
     DeviceReading reading;      // as the device gave it
     Pose X_WH;                  // held part where the device asks it to be, after the input guard
     bool input_usable = false;  // false: the output is zero
-    Wrench F_H_W;               // on the hand, about the held part's origin, world axes
-    Wrench F_D_B;               // what is sent: on the hand, about the handle's origin, device base axes
-    double proxy_depth = 0.0;   // [m], ≥ 0
-    double hand_depth = 0.0;    // [m], ≥ 0
+    bool relocated = false;     // the device is believed to be where it cannot have come from: the past is void
+    // Periods between this tick's sample and the good one before it; 0: no new sample (X_WH is held), nothing has
+    // moved.
+    std::int64_t sample_periods = 0;
+    Wrench F_H_W;              // on the hand, about the held part's origin, world axes
+    Wrench F_D_B;              // what is sent: on the hand, about the handle's origin, device base axes
+    double proxy_depth = 0.0;  // [m], ≥ 0
+    double hand_depth = 0.0;   // [m], ≥ 0
     double quality = 1.0;
     std::uint32_t status = 0;  // TickStatus bits
     std::uint32_t contacts = 0;
@@ -64,7 +68,11 @@ struct TickState {
     // input guard
     bool has_good_pose = false;
     Pose X_BD_good;
-    std::int64_t ticks_since_good = 0;
+    bool good_confirmed = false;  // a sample that followed it, or those that led to it, agree with X_BD_good
+    std::int64_t periods_since_good = 0;
+    Pose X_BD_other;        // the last sample that does not follow from X_BD_good
+    int other_samples = 0;  // that led to it, each following from the one before
+    std::int64_t periods_since_other = 0;
     // start gate
     bool engaged = false;
     int held_ticks = 0;
@@ -72,19 +80,22 @@ struct TickState {
     Pose X_WG;
     ContactManifold manifold;      // at X_WG, points with φ < manifold_reach
     double manifold_reach = -1.0;  // < 0: nothing known
-    double clearance = 0.0;        // least interpolated φ at X_WG, no proven bound [m]
+    double clearance = 0.0;        // least φ at X_WG as interpolated; beyond the reach a proven lower bound [m]
     double last_motion = 0.0;      // of the proxy, in the metric of metric_radius [m]
     Pose X_WG_last;                // for the proxy filter
     bool has_last_proxy = false;
     // penalty damping
-    Pose X_WH_last;
+    Pose X_WH_last;  // at the last new sample
+    Twist V_H_last;  // measured there
     bool has_last_hand = false;
     // coupling
-    Vec3 last_stretch = Vec3::Zero(), last_twist = Vec3::Zero();
+    Vec3 last_stretch = Vec3::Zero(), last_twist = Vec3::Zero();  // at the last new sample
+    Vec3 last_stretch_rate = Vec3::Zero(), last_twist_rate = Vec3::Zero();
     bool has_last_stretch = false;
     // output
-    Wrench last_sent;      // F_D_B of the previous tick
-    bool latched = false;  // a computed wrench was not finite
+    Wrench last_sent;       // F_D_B of the previous tick
+    Wrench sent_at_sample;  // F_D_B of the last tick with a new sample
+    bool latched = false;   // a computed wrench was not finite
     std::array<Wrench, model::kMaxDelayTicks + 1> delay_line{};
     std::uint64_t hash = 0xcbf29ce484222325u;  // of all outputs so far, exact bits
     // scratch memory

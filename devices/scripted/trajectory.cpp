@@ -21,7 +21,7 @@ Result<Trajectory> Trajectory::read(const std::string& path) {
     const auto problem = [&](std::size_t row, const char* key, double value, const char* requirement) {
         errors.push_back({.message = requirement,
                           .file = path,
-                          .line = static_cast<int>(row) + 2,
+                          .line = table->lines[row],
                           .column = 1,
                           .key = key,
                           .value = std::to_string(value)});
@@ -33,8 +33,9 @@ Result<Trajectory> Trajectory::read(const std::string& path) {
             problem(i, "t_s", row.t, "times must be finite and rise from row to row");
         }
         if (isFinite(row.pose)) {
-            const double length = row.pose.q.norm();
-            if (!(std::abs(length - 1.0) < 1e-3)) problem(i, "qw", length, "the quaternion's length must be 1 ± 0.001");
+            if (!isRotation(row.pose.q)) {
+                problem(i, "qw", row.pose.q.norm(), "the quaternion's length must be 1 ± 0.001");
+            }
             row.pose.q.normalize();
         } else if (i == 0) {
             problem(i, "x_m", row.pose.p.x(), "the first pose must be finite");

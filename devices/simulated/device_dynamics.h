@@ -3,6 +3,7 @@
 #include <array>
 
 #include "core/base/types.h"
+#include "core/loop/stability.h"
 #include "devices/simulated/presets.h"
 
 namespace passung::simulated {
@@ -51,7 +52,7 @@ private:
     Pose X_BD_;
     Twist V_BD_B_;
     Wrench acting_;
-    std::array<Wrench, kMaxCommandDelay + 1> pending_{};  // ring: the command of tick k at k modulo its size
+    std::array<Wrench, loop::kMaxDeviceDelayTicks + 1> pending_{};  // ring: the command of tick k at k modulo its size
     std::size_t next_ = 0;
 };
 

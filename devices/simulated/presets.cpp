@@ -11,10 +11,12 @@
 namespace passung::simulated {
 namespace {
 
-// Where a value comes from. Only the first two were read somewhere; check the others against a data sheet before
-// printing them as facts about the device.
+// Where a value comes from. Those of thesis and driver were read somewhere; check the others against a data sheet
+// before printing them as facts about the device.
 constexpr std::string_view kThesis = "stated in the thesis (Sagardia 2019, figure 2.2)";
+constexpr std::string_view kThesisPeak = "peak force stated in the thesis (Sagardia 2019, figure 2.2)";
 constexpr std::string_view kDriver = "published driver limit (CHAI3D, safe value, not the data sheet's)";
+constexpr std::string_view kDriverPeak = "published driver limit (CHAI3D), equal to the device's peak";
 constexpr std::string_view kRecalled = "recalled, unverified";
 constexpr std::string_view kProposed = "proposed here";
 constexpr std::string_view kAbsent = "not known or not present";
@@ -37,7 +39,8 @@ DeviceParams sigma7() {
         .rotational_quantum = {2.3e-4, kRecalled},
         .max_force = {12.0, kDriver},
         .max_torque = {0.2, kDriver},
-        .peak_force = {20.0, kThesis},
+        .continuous_force = {0.0, kAbsent},
+        .peak_force = {20.0, kThesisPeak},
         .peak_torque = {0.4, kRecalled},
         .max_force_rate = {5000.0, kProposed},
         .workspace_radius = {0.075, kDriver},
@@ -66,7 +69,8 @@ DeviceParams hug() {
         .rotational_quantum = {1e-4, kProposed},
         .max_force = {100.0, kProposed},
         .max_torque = {10.0, kProposed},
-        .peak_force = {150.0, kThesis},
+        .continuous_force = {0.0, kAbsent},
+        .peak_force = {150.0, kThesisPeak},
         .peak_torque = {0.0, kAbsent},
         .max_force_rate = {10000.0, kProposed},
         .workspace_radius = {0.47, kThesis},  // half of the largest length, 0.94 m
@@ -95,7 +99,8 @@ DeviceParams virtuose6d() {
         .rotational_quantum = {2e-4, kProposed},
         .max_force = {10.0, kRecalled},
         .max_torque = {1.0, kRecalled},
-        .peak_force = {35.0, kThesis},
+        .continuous_force = {10.0, kRecalled},
+        .peak_force = {35.0, kThesisPeak},
         .peak_torque = {3.1, kRecalled},
         .max_force_rate = {5000.0, kProposed},
         .workspace_radius = {0.225, kRecalled},  // half of a cube's edge
@@ -124,7 +129,8 @@ DeviceParams falcon() {
         .rotational_quantum = {0.0, kAbsent},
         .max_force = {8.0, kDriver},
         .max_torque = {0.0, kAbsent},
-        .peak_force = {8.9, kThesis},
+        .continuous_force = {0.0, kAbsent},
+        .peak_force = {8.9, kThesisPeak},
         .peak_torque = {0.0, kAbsent},
         .max_force_rate = {2000.0, kProposed},
         .workspace_radius = {0.04, kDriver},
@@ -151,9 +157,10 @@ DeviceParams whi() {
         .coulomb_torque = {2e-3, kProposed},
         .quantum = {50e-6, kProposed},
         .rotational_quantum = {5e-4, kProposed},
-        .max_force = {40.0, kThesis},
+        .max_force = {40.0, kThesisPeak},
         .max_torque = {0.0, kAbsent},
-        .peak_force = {40.0, kThesis},
+        .continuous_force = {0.0, kAbsent},
+        .peak_force = {40.0, kThesisPeak},
         .peak_torque = {0.0, kAbsent},
         .max_force_rate = {5000.0, kProposed},
         .workspace_radius = {0.25, kThesis},  // half of the largest length, 0.5 m
@@ -180,8 +187,9 @@ DeviceParams touch() {
         .coulomb_torque = {5e-4, kProposed},
         .quantum = {55e-6, kRecalled},
         .rotational_quantum = {1e-3, kProposed},
-        .max_force = {3.3, kDriver},
+        .max_force = {3.3, kDriverPeak},
         .max_torque = {0.0, kAbsent},
+        .continuous_force = {0.88, kRecalled},
         .peak_force = {3.3, kRecalled},
         .peak_torque = {0.0, kAbsent},
         .max_force_rate = {2000.0, kProposed},
@@ -211,8 +219,8 @@ StableStiffness stableStiffness(const loop::SampledWall& wall, const Sourced& ve
 
 std::vector<Error> DeviceParams::validate() const {
     std::vector<Error> errors;
-    const auto require = [&](bool ok, const char* key, double value, const char* requirement) {
-        if (!ok) errors.push_back({.message = requirement, .key = key, .value = fmt::format("{}", value)});
+    const auto require = [&](bool ok, const char* key, double value, std::string requirement) {
+        if (!ok) errors.push_back({.message = std::move(requirement), .key = key, .value = fmt::format("{}", value)});
     };
     const auto positive = [&](const char* key, const Sourced& s) {
         require(std::isfinite(s.value) && s.value > 0, key, s.value, "must be finite and above 0");
@@ -223,7 +231,8 @@ std::vector<Error> DeviceParams::validate() const {
     require(sensed_degrees == 3 || sensed_degrees == 6, "sensed_degrees", sensed_degrees, "must be 3 or 6");
     require(actuated_degrees == 3 || actuated_degrees == 6, "actuated_degrees", actuated_degrees, "must be 3 or 6");
     require(actuated_degrees <= sensed_degrees, "actuated_degrees", actuated_degrees, "must not exceed sensed_degrees");
-    require(delay_ticks >= 0 && delay_ticks <= kMaxCommandDelay, "delay_ticks", delay_ticks, "must be 0 to 24");
+    require(delay_ticks >= 0 && delay_ticks <= loop::kMaxDeviceDelayTicks, "delay_ticks", delay_ticks,
+            fmt::format("must be 0 to {}", loop::kMaxDeviceDelayTicks));
     positive("mass", mass);
     positive("inertia", inertia);
     notNegative("damping", damping);
@@ -233,6 +242,7 @@ std::vector<Error> DeviceParams::validate() const {
     notNegative("quantum", quantum);
     notNegative("rotational_quantum", rotational_quantum);
     positive("max_force", max_force);
+    notNegative("continuous_force", continuous_force);
     notNegative("max_torque", max_torque);
     require(actuated_degrees == 6 || !(max_torque.value > 0), "max_torque", max_torque.value,
             "must be 0 where torque is not actuated");
@@ -259,6 +269,15 @@ DeviceDescription describe(const DeviceParams& p) {
     d.workspace_radius_m = p.workspace_radius.value;
     d.recommended_damping_Ns_per_m = p.recommended_damping.value;
     d.recommended_rotational_damping_Nms_per_rad = p.recommended_rotational_damping.value;
+
+    d.mechanism = DeviceMechanism{.mass_kg = p.mass.value,
+                                  .inertia_kg_m2 = p.inertia.value,
+                                  .damping_Ns_per_m = p.damping.value,
+                                  .rotational_damping_Nms_per_rad = p.rotational_damping.value,
+                                  .coulomb_force_N = p.coulomb_force.value,
+                                  .coulomb_torque_Nm = p.coulomb_torque.value,
+                                  .quantum_m = p.quantum.value,
+                                  .rotational_quantum_rad = p.rotational_quantum.value};
 
     const StableStiffness linear = stableStiffness({.mass = p.mass.value,
                                                     .damping = p.damping.value,

@@ -20,7 +20,7 @@ struct DeviceParams {
     std::string_view label;    // for people
     int sensed_degrees = 6;    // 3: the handle does not turn
     int actuated_degrees = 6;  // 3: force only
-    int delay_ticks = 0;       // whole ticks between command and effect, 0 … kMaxCommandDelay
+    int delay_ticks = 0;       // whole ticks between command and effect, 0 … loop::kMaxDeviceDelayTicks
     std::string_view degrees_source;
     Sourced mass;                            // felt at the handle [kg], > 0
     Sourced inertia;                         // felt about the handle's origin [kg·m²], > 0
@@ -30,8 +30,9 @@ struct DeviceParams {
     Sourced coulomb_torque;                  // [N·m]
     Sourced quantum;                         // encoder step of each coordinate [m]
     Sourced rotational_quantum;              // of each component of the rotation vector from home [rad]
-    Sourced max_force;                       // held for long [N], > 0: what the output is limited to
+    Sourced max_force;                       // what the output is limited to [N], > 0; a peak where the source says so
     Sourced max_torque;                      // [N·m]; 0 where torque is not actuated
+    Sourced continuous_force;                // that the motors hold for long [N]; 0 = not known; information only
     Sourced peak_force;                      // for moments [N]; information only
     Sourced peak_torque;                     // [N·m]
     Sourced max_force_rate;                  // of rising force [N/s], > 0
@@ -44,8 +45,6 @@ struct DeviceParams {
     /// Everything out of range; key = field.
     std::vector<Error> validate() const;
 };
-
-inline constexpr int kMaxCommandDelay = 24;  // ticks
 
 /// Share of the exact stability border that a study may use.
 inline constexpr double kStableShare = 0.7;

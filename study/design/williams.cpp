@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/base/assert.h"
+#include "study/design/counted.h"
 
 namespace passung::design {
 namespace {
@@ -23,8 +24,6 @@ CountRange rangeOf(const std::vector<int>& counts) {
 std::string rangeText(const CountRange& range) {
     return range.even() ? fmt::format("{}", range.low) : fmt::format("{}-{}", range.low, range.high);
 }
-
-const char* plural(std::size_t count) { return count == 1 ? "" : "s"; }
 
 }  // namespace
 
@@ -70,8 +69,8 @@ std::string balanceSentence(std::size_t participants, std::size_t conditions) {
     const std::size_t rows = williamsRows(conditions);
     const std::size_t squares = participants / rows;
     if (participants % rows == 0)
-        return fmt::format("{} participant{} = {} complete Williams square{} of {}{}", participants,
-                           plural(participants), squares, plural(squares), conditions,
+        return fmt::format("{} = {} of {}{}", counted(participants, "participant"),
+                           counted(squares, "complete Williams square"), conditions,
                            rows == conditions ? "" : fmt::format(" ({} rows)", rows));
     const auto balance = balanceOf(assignedRows(participants, conditions));
     return fmt::format("{} is not a multiple of {}: position counts {}, neighbour counts {}; balanced with {}{}",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "study/measures/period_clock.h"
 #include "study/measures/tick_facts.h"
 
 namespace passung::measures {
@@ -10,19 +11,30 @@ namespace {
 
 using Optional = std::optional<double>;
 
-constexpr double kTicksPerSecond = 1000.0;  // exact, unlike a tick's length: 4028 ticks are 4.028 s to the last digit
+constexpr const char* kDepthOfSamples =
+    "; depth is that of the held part's sample points, which lie about contact.spacing_mm apart: an obstacle's edge "
+    "between two of them reaches deeper than it says";
 
-/// A trial cut to its ticks. Each tick stands for the millisecond that begins with it, so the record at end_tick only
-/// closes the last step.
+constexpr double kPeriodsPerSecond =
+    1000.0;  // exact, unlike a period's length: 4028 of them are 4.028 s to the last digit
+
+/// A trial cut to its ticks. Each tick stands for the time that begins with it and ends with the next one, so the
+/// record at end_tick only closes the last step. Times are haptic periods after the start tick.
 struct Trial {
     const TrialContext& context;
     std::span<const TickRecord> ticks;   // start_tick ≤ tick < end_tick: the formulas' "trial ticks"
     std::span<const TickRecord> points;  // the same and the record at end_tick
-    std::optional<std::int64_t> leave_tick;
-    std::optional<std::int64_t> touch_tick;       // first contact tick
-    std::optional<std::int64_t> engagement_tick;  // first tick with the tip deep enough in the bore
+    std::int64_t end = 0;                // time of the end tick
+    std::optional<std::int64_t> leave;
+    std::optional<std::int64_t> touch;       // first contact tick
+    std::optional<std::int64_t> engagement;  // first tick with the tip deep enough in the bore
 
     bool succeeded() const { return context.outcome == Outcome::Success; }
+    /// Periods that tick `i` stands for; 1 where the next tick was not recorded.
+    double lengthOf(std::size_t i) const {
+        const bool followed = i + 1 < points.size() && points[i + 1].tick == points[i].tick + 1;
+        return followed ? points[i + 1].periods : 1.0;
+    }
 };
 
 double magnitude(const std::array<float, 3>& vector) { return Vec3(vector[0], vector[1], vector[2]).norm(); }
@@ -45,16 +57,7 @@ Vec3 handRotation(const TickRecord& from, const TickRecord& to) {
     return step.vec() * ((step.w() < 0.0 ? -angle : angle) / sine);
 }
 
-double seconds(std::int64_t from_tick, std::int64_t to_tick) {
-    return static_cast<double>(to_tick - from_tick) / kTicksPerSecond;
-}
-
-template <class Condition>
-std::optional<std::int64_t> firstTick(std::span<const TickRecord> ticks, Condition condition) {
-    const auto found = std::find_if(ticks.begin(), ticks.end(), condition);
-    if (found == ticks.end()) return std::nullopt;
-    return found->tick;
-}
+double seconds(std::int64_t from, std::int64_t to) { return static_cast<double>(to - from) / kPeriodsPerSecond; }
 
 Trial cutTrial(std::span<const TickRecord> records, const TrialContext& context) {
     const auto firstFrom = [records](std::int64_t tick) {
@@ -64,25 +67,26 @@ Trial cutTrial(std::span<const TickRecord> records, const TrialContext& context)
     const auto begin = firstFrom(context.start_tick);
     const auto end = std::max(begin, firstFrom(context.end_tick));
     const auto point_end = std::max(end, firstFrom(context.end_tick + 1));
-    Trial trial{context, {begin, end}, {begin, point_end}, {}, {}, {}};
-    if (trial.ticks.empty()) return trial;
-
-    const Vec3 start = handPosition(trial.ticks.front());
-    trial.leave_tick = firstTick(trial.ticks, [&](const TickRecord& record) {
-        return (handPosition(record) - start).norm() > context.leave_radius;
-    });
-    trial.touch_tick = firstTick(trial.ticks, isContact);
+    Trial trial{context, {begin, end}, {begin, point_end}, 0, {}, {}, {}};
+    PeriodClock clock(context.start_tick);
     const Pose X_TW = context.X_WT.inverse();
-    trial.engagement_tick = firstTick(trial.ticks, [&](const TickRecord& record) {
-        return tipDepthInBore(record, X_TW, context.clearance) >= context.engagement_depth;
-    });
+    for (const TickRecord& record : trial.ticks) {
+        const std::int64_t time = clock.at(record);
+        const double way = (handPosition(record) - handPosition(trial.ticks.front())).norm();
+        if (!trial.leave && way > context.leave_radius) trial.leave = time;
+        if (!trial.touch && isContact(record)) trial.touch = time;
+        if (!trial.engagement && tipDepthInBore(record, X_TW, context.clearance) >= context.engagement_depth)
+            trial.engagement = time;
+    }
+    for (const TickRecord& record : trial.points.subspan(trial.ticks.size())) clock.at(record);
+    trial.end = clock.until(context.end_tick);
     return trial;
 }
 
 /// First contact, or engagement where the part went in without touching anything before.
 std::optional<std::int64_t> approachEnd(const Trial& trial) {
-    if (!trial.engagement_tick) return trial.touch_tick;
-    return std::min(trial.touch_tick.value_or(*trial.engagement_tick), *trial.engagement_tick);
+    if (!trial.engagement) return trial.touch;
+    return std::min(trial.touch.value_or(*trial.engagement), *trial.engagement);
 }
 
 template <class Quantity>
@@ -125,29 +129,29 @@ Optional largest(const Trial& trial) {
 Optional success(const Trial& trial) { return trial.succeeded() ? 1.0 : 0.0; }
 
 Optional completionTime(const Trial& trial) {
-    if (!trial.succeeded() || !trial.leave_tick) return std::nullopt;
-    return seconds(*trial.leave_tick, trial.context.end_tick);
+    if (!trial.succeeded() || !trial.leave) return std::nullopt;
+    return seconds(*trial.leave, trial.end);
 }
 
 Optional trialTime(const Trial& trial) {
     if (trial.context.end_tick < trial.context.start_tick) return std::nullopt;
-    return seconds(trial.context.start_tick, trial.context.end_tick);
+    return seconds(0, trial.end);
 }
 
 Optional approachTime(const Trial& trial) {
     const auto end = approachEnd(trial);
     if (!end) return std::nullopt;
-    return seconds(trial.context.start_tick, *end);
+    return seconds(0, *end);
 }
 
 Optional searchTime(const Trial& trial) {
-    if (!trial.engagement_tick) return std::nullopt;
-    return seconds(*approachEnd(trial), *trial.engagement_tick);
+    if (!trial.engagement) return std::nullopt;
+    return seconds(*approachEnd(trial), *trial.engagement);
 }
 
 Optional insertionTime(const Trial& trial) {
-    if (!trial.succeeded() || !trial.engagement_tick) return std::nullopt;
-    return seconds(*trial.engagement_tick, trial.context.end_tick);
+    if (!trial.succeeded() || !trial.engagement) return std::nullopt;
+    return seconds(*trial.engagement, trial.end);
 }
 
 Optional insertionDepth(const Trial& trial) {
@@ -177,13 +181,23 @@ Optional contactOnsets(const Trial& trial) {
     });
 }
 
-Optional contactTime(const Trial& trial) {
+/// Sum of a quantity times the periods that its tick stands for.
+template <class Quantity>
+Optional sumOverTime(const Trial& trial, Quantity quantity) {
     if (trial.ticks.empty()) return std::nullopt;
-    return seconds(0, std::count_if(trial.ticks.begin(), trial.ticks.end(), isContact));
+    double sum = 0.0;
+    for (std::size_t i = 0; i < trial.ticks.size(); ++i) sum += quantity(trial.ticks[i]) * trial.lengthOf(i);
+    return sum;
+}
+
+Optional contactTime(const Trial& trial) {
+    const Optional periods = sumOverTime(trial, [](const TickRecord& record) { return isContact(record) ? 1.0 : 0.0; });
+    if (!periods) return std::nullopt;
+    return *periods / kPeriodsPerSecond;
 }
 
 Optional impulse(const Trial& trial) {
-    return sumOverTicks(trial, [](const TickRecord& record) { return forceOf(record) * kTickSeconds; });
+    return sumOverTime(trial, [](const TickRecord& record) { return forceOf(record) * kTickSeconds; });
 }
 
 Optional work(const Trial& trial) {
@@ -214,28 +228,36 @@ const std::vector<Measure>& measures() {
         {{"success", "Success", "1",
           "1 if the outcome is success, else 0; success: in every tick of the hold time the tip depth is >= success "
           "fraction x insertion depth, the proxy's speed over the last 50 ticks is < the task's largest, and "
-          "proxy_depth_m <= 0.2 mm; tip depth: as for the approach time",
-          2},
+          "proxy_depth_m <= 0.2 mm; tip depth: as for the approach time; time: as for the trial time",
+          3},
          success},
         {{"completion_time_s", "Completion time", "s",
           "from the first trial tick at which the hand is farther than the leave radius from its position at the start "
-          "tick, to the end tick; only for success"},
+          "tick, to the end tick; only for success; time: as for the trial time",
+          2},
          completionTime},
-        {{"trial_time_s", "Trial time", "s", "from the start tick to the end tick; 1 tick = 1 ms"}, trialTime},
+        {{"trial_time_s", "Trial time", "s",
+          "from the start tick to the end tick; time between two ticks: 1 ms x the sum of the column periods of the "
+          "ticks after the first, up to the second (1 each in virtual time, more after missed cycles)",
+          2},
+         trialTime},
         {{"approach_time_s", "Approach time", "s",
           "from the start tick to the first contact tick, or to the engagement tick if that is earlier; contact tick: "
           "trial tick with |force| > 1e-6 N or |torque| > 1e-9 N m or contacts > 0; engagement tick: first trial tick "
           "with a tip depth >= the engagement depth; tip depth: -z of the proxy's origin in the target's frame, "
-          "counted only below the mouth and within the radial clearance + 0.2 mm of the bore's axis",
-          2},
+          "counted only below the mouth and within the radial clearance + 0.2 mm of the bore's axis; time: as for the "
+          "trial time",
+          3},
          approachTime},
         {{"search_time_s", "Search time", "s",
           "from the end of the approach to the engagement tick; empty without engagement; both as for the approach "
-          "time",
-          2},
+          "time; time: as for the trial time",
+          3},
          searchTime},
         {{"insertion_time_s", "Insertion time", "s",
-          "from the engagement tick, as for the approach time, to the end tick; only for success", 2},
+          "from the engagement tick, as for the approach time, to the end tick; only for success; time: as for the "
+          "trial time",
+          3},
          insertionTime},
         {{"insertion_depth_m", "Insertion depth", "m",
           "tip depth at the last record up to the end tick; 0 above the mouth or farther than the radial clearance + "
@@ -253,7 +275,9 @@ const std::vector<Measure>& measures() {
           "number of contact ticks whose preceding trial tick is no contact tick; contact at the start tick counts; no "
           "minimum pause"},
          contactOnsets},
-        {{"contact_time_s", "Contact time", "s", "number of contact ticks x 1 ms"}, contactTime},
+        {{"contact_time_s", "Contact time", "s",
+          "sum over the contact ticks k of periods(k+1) x 1 ms, 1 ms where tick k+1 was not recorded", 2},
+         contactTime},
         {{"mean_force_N", "Mean force", "N", "mean of |force| over the contact ticks; empty without contact"},
          meanInContact<forceOf>},
         {{"peak_force_N", "Peak force", "N", "largest |force| over the trial ticks"}, largest<forceOf>},
@@ -261,21 +285,25 @@ const std::vector<Measure>& measures() {
          meanInContact<torqueOf>},
         {{"peak_torque_Nm", "Peak torque", "N m", "largest |torque| over the trial ticks"}, largest<torqueOf>},
         {{"mean_hand_depth_m", "Mean depth at the hand's pose", "m",
-          "mean of hand_depth_m over the contact ticks; empty without contact"},
+          std::string("mean of hand_depth_m over the contact ticks; empty without contact") + kDepthOfSamples},
          meanInContact<handDepthOf>},
-        {{"max_hand_depth_m", "Largest depth at the hand's pose", "m", "largest hand_depth_m over the trial ticks"},
+        {{"max_hand_depth_m", "Largest depth at the hand's pose", "m",
+          std::string("largest hand_depth_m over the trial ticks") + kDepthOfSamples},
          largest<handDepthOf>},
         {{"mean_proxy_depth_m", "Mean depth at the proxy's pose", "m",
-          "mean of proxy_depth_m over the contact ticks; empty without contact"},
+          std::string("mean of proxy_depth_m over the contact ticks; empty without contact") + kDepthOfSamples},
          meanInContact<proxyDepthOf>},
-        {{"max_proxy_depth_m", "Largest depth at the proxy's pose", "m", "largest proxy_depth_m over the trial ticks"},
+        {{"max_proxy_depth_m", "Largest depth at the proxy's pose", "m",
+          std::string("largest proxy_depth_m over the trial ticks") + kDepthOfSamples},
          largest<proxyDepthOf>},
-        {{"impulse_Ns", "Impulse", "N s", "sum of |force| x 1 ms over the trial ticks"}, impulse},
+        {{"impulse_Ns", "Impulse", "N s",
+          "sum over the trial ticks k of |force(k)| x periods(k+1) x 1 ms, 1 ms where tick k+1 was not recorded", 2},
+         impulse},
         {{"work_J", "Work of the hand", "J",
           "-sum over the trial ticks k of force(k).(x(k+1) - x(k)) + torque(k).theta(k), x the hand position and theta "
           "its rotation vector from k to k+1 in world axes; positive: the hand put energy into the scene"},
          work},
-        {{"saturated_share", "Share of time at the force limit", "1",
+        {{"saturated_share", "Share of ticks at the force limit", "1",
           "trial ticks with status bit 4 (force or torque limited) / trial ticks"},
          saturatedShare},
     };

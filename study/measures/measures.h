@@ -44,8 +44,8 @@ struct Value {
 
 /// Every measure of one trial from its recorded ticks, in the order of definitions().
 /// `records` are in order of their ticks; those outside [start_tick, end_tick] are ignored. The formulas take them as
-/// consecutive: where records are missing, a step spans the gap and the missing ticks count for no duration.
-/// Only stored values enter, so every measure can be computed again from an export of the samples.
+/// consecutive: where records are missing, a step spans the gap; times count a missing tick as one period, sums over
+/// ticks leave it out. Only stored values enter, so every measure can be computed again from an export of the samples.
 std::vector<Value> computeMeasures(std::span<const TickRecord> records, const TrialContext& context);
 
 }  // namespace passung::measures

@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "core/base/assert.h"
-
 namespace passung::protocol {
 
 std::string jsonText(std::string_view text) {
@@ -14,6 +12,8 @@ std::string jsonText(std::string_view text) {
         if (c == '"' || c == '\\') {
             result += '\\';
             result += c;
+        } else if (c == '\n') {
+            result += "\\n";
         } else if (static_cast<unsigned char>(c) < 0x20) {
             result += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
         } else {
@@ -24,7 +24,7 @@ std::string jsonText(std::string_view text) {
 }
 
 std::string jsonNumber(double value) {
-    PASSUNG_ASSERT(std::isfinite(value));
+    if (!std::isfinite(value)) return "null";
     return fmt::format("{}", value + 0.0);  // turns -0 into 0
 }
 

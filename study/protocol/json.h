@@ -12,7 +12,7 @@ namespace passung::protocol {
 /// JSON text of a string, quoted and escaped.
 std::string jsonText(std::string_view text);
 
-/// Shortest decimal that reads back as the same double. @pre finite.
+/// Shortest decimal that reads back as the same double; `null` if it is not finite, which JSON cannot say.
 std::string jsonNumber(double value);
 
 std::string jsonNumbers(const std::vector<double>& values);

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/model/scene_spec.h"
+
 namespace passung::protocol {
 namespace {
 
@@ -36,6 +38,7 @@ constexpr std::array kKeys{
     Key{"protocol", "task", Table, kAny, "", "!", "What a trial asks for and how it is judged."},
     Key{"protocol", "feedback", Table, kAny, "", "(its defaults)", "What the participant is given to feel and see."},
     Key{"protocol", "block", Tables, kAny, "", "!", "Blocks of trials in the order in which they run."},
+    Key{"protocol", "loop", Table, kAny, "", "(its defaults)", "How well the haptic loop must keep its rate."},
     Key{"protocol", "measures", Texts, kAny, "", "(all)", "Names of the measures to store for every trial."},
 
     Key{"study", "name", Name, kAny, "", "!", "Short name; part of every random stream, so renaming a study changes its orders."},
@@ -56,7 +59,7 @@ constexpr std::array kKeys{
     Key{"part_file", "part", Tables, kAny, "", "!", "Exactly one part."},
 
     Key{"part", "name", Name, kAny, "", "!", "Unique; factors address the part by it."},
-    Key{"part", "mesh", Text, kAny, "", "(a shape)", "Mesh file, relative to the file that names it. Its content is not stored with the data: keep it beside the study."},
+    Key{"part", "mesh", Text, kAny, "", "(a shape)", "Mesh file, relative to the file that names it. Not its content is stored with the data but the SHA-256 of this one file: keep it beside the study; a replay refuses another."},
     Key{"part", "shape", Table, kAny, "", "(a mesh)", "Parametric shape."},
     Key{"part", "pose", Table, kAny, "", "(identity)", "Part to world at the start."},
     Key{"part", "held", Boolean, kAny, "", "false", "The part in the hand."},
@@ -86,7 +89,7 @@ constexpr std::array kKeys{
     Key{"shape.bore_plate", "chamfer", Length, atLeast(0), "", "0", "45 degree chamfer at the mouth; 0 = sharp."},
 
     Key{"contact", "method", Choice, kAny, "penalty|god_object_heuristic", "god_object_heuristic", "How penetration becomes force: springs in every contact, or a proxy that stays outside and is coupled to the hand."},
-    Key{"contact", "variant", Choice, kAny, "max_normalised|area_weighted|raw", "max_normalised", "Weighting of the penalty; unused by other methods. Only max_normalised keeps to the stiffness: raw adds it up over all points, area_weighted has area_stiffness_N_per_m3 instead; neither is held below the device's stable maximum."},
+    Key{"contact", "variant", Choice, kAny, "max_normalised|area_weighted|raw", "max_normalised", "Weighting of the penalty; unused by other methods. Only max_normalised keeps to the stiffness: raw adds it up over all points, area_weighted has area_stiffness_N_per_m3 instead; neither is held below the device's stable maximum, and `check` warns of them."},
     Key{"contact", "stiffness_N_per_m", Stiffness, above(0), "", "(\"max\"; without a device preset 1000)", "Number, or fraction of the device's stable maximum: \"max\", \"0.5 max\"; never above it. The maximum is known only for the recommended damping, no added delay and scale 1."},
     Key{"contact", "rotational_stiffness_Nm_per_rad", Stiffness, atLeast(0), "", "(the same fraction of the device's maximum as the stiffness; without a device preset 1)", "As the stiffness, for rotations."},
     Key{"contact", "damping_Ns_per_m", Number, atLeast(0), "", "(1 times the device's recommended damping; without a device preset 0)", "Damping of the coupling between hand and scene; with a device preset only what it recommends."},
@@ -103,7 +106,7 @@ constexpr std::array kKeys{
     Key{"device", "max_force_N", Number, above(0), "", "(the device's)", "Tightens the device's limit."},
     Key{"device", "max_torque_Nm", Number, atLeast(0), "", "(the device's)", "Tightens the device's limit."},
     Key{"device", "max_force_rate_N_per_s", Number, above(0), "", "(the device's)", "Tightens the device's limit of rising force."},
-    Key{"device", "delay_ticks", Integer, from(0, 100), "", "0", "Milliseconds added between command and effect, beside the device's own delay; with a device preset only 0."},
+    Key{"device", "delay_ticks", Integer, from(0, model::kMaxDelayTicks), "", "0", "Milliseconds added between command and effect, beside the device's own delay; with a device preset only 0."},
 
     Key{"registration", "position", LengthVector, kAny, "", "(zero)", "Origin of the device's base in the world."},
     Key{"registration", "rotation_deg", Vector, kAny, "", "(zero)", "Rotation of the device's base, as in a pose."},
@@ -143,6 +146,8 @@ constexpr std::array kKeys{
     Key{"block", "repetitions", Integer, from(1, 1000), "", "1", "Passes through the order."},
     Key{"block", "order", Choice, kAny, "williams|random|listed", "williams", "The participant's row of a Williams square, a new shuffle for every pass, or as listed."},
     Key{"block", "trials", Integer, atLeast(1), "", "(all)", "Only the first so many conditions of each pass."},
+
+    Key{"loop", "max_missed_share", Number, from(0, 1), "", "0.01", "An attempt that missed a larger part of the cycles between start and end of its trial is not valid. In virtual time no cycle is missed."},
 };
 
 /// Tables in the order of the documentation: id, heading, sentence.
@@ -173,6 +178,7 @@ constexpr std::array kTables{
     TableInfo{"task", "`[task]`", ""},
     TableInfo{"feedback", "`[feedback]`", ""},
     TableInfo{"block", "`[[block]]`", ""},
+    TableInfo{"loop", "`[loop]`", ""},
 };
 // clang-format on
 

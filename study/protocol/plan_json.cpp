@@ -100,6 +100,7 @@ std::string taskJson(const PegInHoleTask& task) {
     return JsonObject()
         .text("type", "peg_in_hole")
         .text("target", task.target)
+        .number("clearance_m", task.clearance)
         .number("insertion_depth_m", task.insertion_depth)
         .number("success_fraction", task.success_fraction)
         .number("max_speed_m_per_s", task.max_speed)
@@ -186,6 +187,7 @@ std::string expandedJson(const StudyPlan& plan) {
         .json("factors", listOf(plan.factors, factorJson))
         .json("conditions", listOf(plan.conditions, conditionJson))
         .json("blocks", listOf(plan.blocks, blockJson))
+        .json("loop", JsonObject().number("max_missed_share", plan.max_missed_share).str())
         .json("measures", listOf(plan.measures, [](const std::string& name) { return jsonText(name); }))
         .str();
 }

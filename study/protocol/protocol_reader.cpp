@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
@@ -44,9 +45,11 @@ public:
         readStudy();
         readConditions();
         readBlocks();
+        readLoop();
         readMeasures();
         tidy(errors_);
         if (!errors_.empty()) return errors_;
+        listMeshes();
         warn();
         plan_.expanded_json = expandedJson(plan_);
         return std::move(plan_);
@@ -185,6 +188,13 @@ private:
                                       "a study needs a block with phase = \"main\": analyses leave practice out"));
     }
 
+    void readLoop() {
+        const Node* table = root_.node("loop");
+        const Node absent = emptyTable(document_.place);
+        const TableReader read(table != nullptr ? *table : absent, {"loop"}, "loop", errors_);
+        plan_.max_missed_share = read.number("max_missed_share");
+    }
+
     void readMeasures() {
         if (!root_.has("measures")) {
             plan_.measures.assign(known_measures_.begin(), known_measures_.end());
@@ -206,16 +216,38 @@ private:
         }
     }
 
+    void listMeshes() {
+        const auto folder = std::filesystem::path(document_.place.file).parent_path();
+        std::map<std::string, std::string> names;  // by path
+        for (const Condition& condition : plan_.conditions)
+            for (const model::PartSpec& part : condition.scene.parts)
+                if (const auto* mesh = std::get_if<model::MeshFile>(&part.geometry)) {
+                    const std::filesystem::path path(mesh->path);
+                    const bool below = path.is_relative() == folder.is_relative() && !folder.empty();
+                    names[mesh->path] =
+                        below ? path.lexically_relative(folder).generic_string() : path.generic_string();
+                }
+        for (const auto& [path, name] : names) plan_.meshes.push_back({name, path});
+    }
+
     void warn() {
-        const bool williams = std::any_of(plan_.blocks.begin(), plan_.blocks.end(),
-                                          [](const Block& block) { return block.order == BlockOrder::Williams; });
-        const std::size_t n = plan_.conditions.size();
-        const std::size_t rows = n % 2 == 0 ? n : 2 * n;
-        if (williams && static_cast<std::size_t>(plan_.participants) % rows != 0)
-            plan_.warnings.push_back(
-                fmt::format("study.participants = {} is not a multiple of the {} rows of the Williams square: orders "
-                            "will not be balanced",
-                            plan_.participants, rows));
+        using model::PenaltyVariant;
+        for (const PenaltyVariant variant : {PenaltyVariant::Raw, PenaltyVariant::AreaWeighted}) {
+            std::vector<std::string_view> names;
+            for (const Condition& condition : plan_.conditions) {
+                const auto& contact = condition.scene.contact;
+                if (contact.method == model::ContactMethod::Penalty && contact.variant == variant)
+                    names.push_back(condition.name);
+            }
+            if (names.empty()) continue;
+            const bool raw = variant == PenaltyVariant::Raw;
+            plan_.warnings.push_back(fmt::format(
+                "contact.variant = \"{}\" {}, so that nothing keeps the stiffness below the device's stable maximum; "
+                "conditions: {}",
+                raw ? "raw" : "area_weighted",
+                raw ? "adds the stiffness up over all points in contact" : "has a stiffness that grows with the area",
+                fmt::join(names, ", ")));
+        }
     }
 
     const Node& document_;

@@ -63,6 +63,12 @@ struct Block {
     int trials = 0;  // 0 = every condition of the pass; else the first so many (practice)
 };
 
+/// A mesh file that a study names.
+struct MeshSource {
+    std::string name;  // as the protocol writes it
+    std::string path;  // as it can be opened from here
+};
+
 /// A protocol, validated and complete: what runs is decided here and nowhere else.
 struct StudyPlan {
     std::string name;
@@ -73,7 +79,9 @@ struct StudyPlan {
     std::vector<Factor> factors;
     std::vector<Condition> conditions;  // the first factor varies slowest
     std::vector<Block> blocks;
+    double max_missed_share = 0.01;     // of a trial's cycles: an attempt that missed more is not valid
     std::vector<std::string> measures;  // names, all known to study/measures
+    std::vector<MeshSource> meshes;     // each once; their content is no part of the text
     std::string source_text;            // the file, byte for byte
     std::string source_path;
     std::string expanded_json;          // factors, conditions, blocks after expansion

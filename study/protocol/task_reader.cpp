@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "study/protocol/scene_parts.h"
 #include "study/protocol/table_reader.h"
 
 namespace passung::protocol {
@@ -16,16 +17,15 @@ const T* shapeOf(const model::PartSpec& part) {
 /// The held peg; nullptr after reporting, where the held part's form is written, that it is none: success is judged by
 /// the clearance, which only a peg has.
 const model::Peg* findPeg(const StudyTables& tables, const model::SceneSpec& scene, Errors& errors) {
-    for (const auto& part : scene.parts) {
-        if (!part.held) continue;
-        if (const auto* peg = shapeOf<model::Peg>(part)) return peg;
-        for (const Node& node : tables.scene.find("part")->items) {
-            if (node.find("name")->text != part.name) continue;
-            const Node* shape = node.find("shape");
-            const Node* form = shape != nullptr ? shape->find("kind") : node.find("mesh");
-            errors.push_back(errorAt(form->place, fmt::format("part.{}.{}", part.name, shape ? "shape.kind" : "mesh"),
-                                     valueText(*form), "the held part must have the shape peg in a peg_in_hole task"));
-        }
+    const model::PartSpec* held = heldPart(scene);
+    if (held == nullptr) return nullptr;
+    if (const auto* peg = shapeOf<model::Peg>(*held)) return peg;
+    for (const Node& node : tables.scene.find("part")->items) {
+        if (node.find("name")->text != held->name) continue;
+        const Node* shape = node.find("shape");
+        const Node* form = shape != nullptr ? shape->find("kind") : node.find("mesh");
+        errors.push_back(errorAt(form->place, fmt::format("part.{}.{}", held->name, shape ? "shape.kind" : "mesh"),
+                                 valueText(*form), "the held part must have the shape peg in a peg_in_hole task"));
     }
     return nullptr;
 }
@@ -33,14 +33,13 @@ const model::Peg* findPeg(const StudyTables& tables, const model::SceneSpec& sce
 /// The target's bore; nullptr after reporting why there is none.
 const model::BorePlate* findBore(const TableReader& read, const model::SceneSpec& scene) {
     const auto name = read.text("target");
-    for (const auto& part : scene.parts) {
-        if (part.name != name) continue;
-        const auto* plate = shapeOf<model::BorePlate>(part);
-        if (part.held)
+    if (const model::PartSpec* part = partNamed(scene, name)) {
+        const auto* plate = shapeOf<model::BorePlate>(*part);
+        if (part->held)
             read.fail("target", "must not be the held part");
         else if (plate == nullptr)
             read.fail("target", "must be a part with the shape bore_plate");
-        return part.held ? nullptr : plate;
+        return part->held ? nullptr : plate;
     }
     std::vector<std::string_view> names;
     for (const auto& part : scene.parts) names.push_back(part.name);
@@ -63,12 +62,8 @@ void checkFit(const StudyTables& tables, const std::string& target, const model:
 
 /// A part that is fully inserted before it leaves the sphere about its start would never start the clock.
 void checkWay(const TableReader& read, const model::SceneSpec& scene, const PegInHoleTask& task) {
-    Vec3 start = Vec3::Zero(), end = Vec3::Zero();
-    for (const auto& part : scene.parts) {
-        if (part.held) start = part.X_WP.p;
-        if (part.name == task.target) end = part.X_WP.p + part.X_WP.q * Vec3(0, 0, -task.insertion_depth);
-    }
-    const double way = (end - start).norm();
+    const Vec3 end = partNamed(scene, task.target)->X_WP * Vec3(0, 0, -task.insertion_depth);
+    const double way = (end - heldPart(scene)->X_WP.p).norm();
     if (!(task.leave_radius < way))
         read.fail("leave_radius_mm",
                   fmt::format("must be less than the way from the start to full depth, {:.6g} mm", 1e3 * way));

@@ -4,15 +4,13 @@
 
 #include <algorithm>
 
+#include "study/design/counted.h"
 #include "study/design/williams.h"
+#include "study/protocol/participant.h"
 #include "study/session/participant_order.h"
 
 namespace passung::session {
 namespace {
-
-const char* plural(std::size_t count) { return count == 1 ? "" : "s"; }
-
-std::string participantCode(int number) { return fmt::format("P{:03}", number); }
 
 std::string factorsText(const protocol::StudyPlan& plan) {
     if (plan.factors.empty()) return "";
@@ -47,9 +45,9 @@ std::string blocksText(const protocol::StudyPlan& plan) {
     std::string text = "Blocks\n";
     for (const auto& block : plan.blocks) {
         const std::size_t trials = trialsPerPass(plan, block);
-        text += fmt::format("  {:<{}}  {}, order {}, {} trial{} x {} repetition{}\n", block.name, width,
-                            protocol::phaseName(block.phase), protocol::blockOrderName(block.order), trials,
-                            plural(trials), block.repetitions, plural(static_cast<std::size_t>(block.repetitions)));
+        text += fmt::format("  {:<{}}  {}, order {}, {} x {}\n", block.name, width, protocol::phaseName(block.phase),
+                            protocol::blockOrderName(block.order), design::counted(trials, "trial"),
+                            design::counted(static_cast<std::size_t>(block.repetitions), "repetition"));
     }
     return text + "\n";
 }
@@ -85,17 +83,29 @@ bool hasWilliams(const protocol::StudyPlan& plan) {
 
 }  // namespace
 
+std::vector<std::string> planWarnings(const protocol::StudyPlan& plan) {
+    std::vector<std::string> warnings = plan.warnings;
+    if (!hasWilliams(plan) || plan.conditions.empty()) return warnings;
+    const std::size_t rows = design::williamsRows(plan.conditions.size());
+    if (static_cast<std::size_t>(plan.participants) % rows != 0)
+        warnings.push_back(
+            fmt::format("study.participants = {} is not a multiple of the {} rows of the Williams square: orders will "
+                        "not be balanced",
+                        plan.participants, rows));
+    return warnings;
+}
+
 std::string describePlan(const protocol::StudyPlan& plan, int participants) {
     std::string text =
-        fmt::format("{}\nstudy {}, version {}, seed {}, {} participant{} planned\n\n", plan.title, plan.name,
-                    plan.version, plan.seed, plan.participants, plural(static_cast<std::size_t>(plan.participants)));
+        fmt::format("{}\nstudy {}, version {}, seed {}, {} planned\n\n", plan.title, plan.name, plan.version, plan.seed,
+                    design::counted(static_cast<std::size_t>(plan.participants), "participant"));
     text += factorsText(plan) + conditionsText(plan) + blocksText(plan);
 
     text += "Orders (numbers of conditions; blocks parted by |)\n";
     double longest = 0.0;
     std::size_t count = 0;
     for (int number = 1; number <= participants; ++number) {
-        const auto code = participantCode(number);
+        const auto code = protocol::participantCode(protocol::ParticipantKind::Real, number);
         const auto trials = planTrials(plan, static_cast<std::size_t>(number - 1), code);
         text += fmt::format("  {}  {}\n", code, orderText(plan, trials));
         longest = std::max(longest, longestSession(plan, trials));
@@ -106,10 +116,10 @@ std::string describePlan(const protocol::StudyPlan& plan, int participants) {
                             design::balanceSentence(static_cast<std::size_t>(participants), plan.conditions.size()));
 
     text += fmt::format(
-        "\nDuration\n  {} trial{} a participant, at most {:.1f} min (every trial to its time-out, pauses not "
+        "\nDuration\n  {} a participant, at most {:.1f} min (every trial to its time-out, pauses not "
         "counted)\n",
-        count, plural(count), longest / 60.0);
-    for (const auto& warning : plan.warnings) text += fmt::format("\nwarning: {}\n", warning);
+        design::counted(count, "trial"), longest / 60.0);
+    for (const auto& warning : planWarnings(plan)) text += fmt::format("\nwarning: {}\n", warning);
     return text;
 }
 

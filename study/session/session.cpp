@@ -9,6 +9,7 @@
 #include "core/base/assert.h"
 #include "core/base/random.h"
 #include "study/protocol/json.h"
+#include "study/protocol/scene_parts.h"
 
 namespace passung::session {
 namespace {
@@ -18,8 +19,7 @@ constexpr std::size_t kTakeAtOnce = 256;  // records
 
 /// Pose of the task's target in the world.
 Result<Pose> targetPose(const protocol::Condition& condition) {
-    for (const model::PartSpec& part : condition.scene.parts)
-        if (part.name == condition.task.target) return part.X_WP;
+    if (const auto* part = protocol::partNamed(condition.scene, condition.task.target)) return part->X_WP;
     Error error;
     error.message = fmt::format("condition {} has no part of this name", condition.name);
     error.key = "target";
@@ -83,7 +83,7 @@ void Session::beginTrial() {
 
     const auto id = sink_.startAttempt(start);
     if (!id) return fail("start attempt", id.errors());
-    attempt_.emplace(Attempt{*id, condition, TrialCourse(condition.task, *X_WT), {}});
+    attempt_.emplace(Attempt{*id, condition, TrialCourse(condition.task, *X_WT), {}, {}});
     apparatus_.start();
     state_ = SessionState::InTrial;
 }
@@ -123,6 +123,7 @@ void Session::judge(std::span<const TickRecord> records) {
     std::vector<TrialEvent> events;
     for (const TickRecord& record : records) {
         attempt_->missing_ticks += record.tick - attempt_->next_tick;
+        attempt_->clock.at(record);
         attempt_->next_tick = record.tick + 1;
         if (attempt_->course.ended()) continue;
         attempt_->course.follow(record, events);
@@ -134,10 +135,11 @@ void Session::judge(std::span<const TickRecord> records) {
 void Session::finishTrial() {
     LoopHealth health = apparatus_.stop();
     takeRecords();
-    const std::int64_t ticks = std::max(attempt_->next_tick, health.ticks);
+    // From tick 0 to where a next tick would be.
+    const std::int64_t periods = attempt_->clock.until(std::max(attempt_->next_tick, health.ticks));
     const AttemptEnd end = describeEnd(std::move(health));
     const auto finished = sink_.finishAttempt(attempt_->id, end);
-    session_ns_ += ticks * kTickNanoseconds;
+    session_ns_ += periods * kTickNanoseconds;
     const Attempt attempt = *std::exchange(attempt_, std::nullopt);
     if (!finished) return fail("finish attempt", finished.errors());
 
@@ -157,7 +159,7 @@ AttemptEnd Session::describeEnd(LoopHealth health) const {
     const TrialCourse& course = attempt_->course;
     const measures::TrialContext context = course.context();
     AttemptEnd end;
-    end.end_ns = session_ns_ + context.end_tick * kTickNanoseconds;
+    end.end_ns = session_ns_ + course.endTime() * kTickNanoseconds;
     end.outcome = context.outcome;
     end.measures = measures::computeMeasures(attempt_->records, context);
     end.timing_measured = setup_.timing_measured;
@@ -169,6 +171,9 @@ AttemptEnd Session::describeEnd(LoopHealth health) const {
         end.invalid_reason = fmt::format("{} tick records lost", health.dropped_records);
     else if (course.rejectedTicks() > 0)
         end.invalid_reason = fmt::format("no usable device input in {} ticks", course.rejectedTicks());
+    else if (static_cast<double>(course.missedCycles()) >
+             setup_.plan.max_missed_share * static_cast<double>(course.length()))
+        end.invalid_reason = fmt::format("loop: {} of {} cycles missed", course.missedCycles(), course.length());
     end.valid = end.invalid_reason.empty();
     end.health = std::move(health);
     return end;
@@ -178,7 +183,7 @@ void Session::appendEvents(const std::vector<TrialEvent>& events) {
     for (const TrialEvent& happened : events) {
         Event event;
         event.attempt = attempt_->id;
-        event.t_ns = session_ns_ + happened.tick * kTickNanoseconds;
+        event.t_ns = session_ns_ + happened.time * kTickNanoseconds;
         event.source = "session";
         event.event = happened.name;
         if (event.event == "aborted")

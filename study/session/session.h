@@ -50,8 +50,8 @@ enum class SessionState { BetweenTrials, InTrial, Complete, Failed };
 
 /// Runs the planned trials one after another: prepares the apparatus, records every tick into the sink, lets
 /// TrialCourse decide, computes the measures and finishes the attempt durably. It has no clock: session time is the
-/// ticks that the apparatus made, laid end to end over the attempts. The first error of apparatus or sink ends the
-/// session as incomplete; attempts finished before it stay as they are.
+/// haptic periods that the apparatus' records tell of, ticks and missed cycles, laid end to end over the attempts. The
+/// first error of apparatus or sink ends the session as incomplete; attempts finished before it stay as they are.
 class Session {
 public:
     static constexpr std::int64_t kTicksPerLook = 20;
@@ -80,6 +80,7 @@ private:
         const protocol::Condition& condition;
         TrialCourse course;
         std::vector<TickRecord> records;  // of the running trial, for its measures
+        measures::PeriodClock clock;
         std::int64_t next_tick = 0;
         std::int64_t missing_ticks = 0;
         int silent_looks = 0;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/base/tick_record.h"
+#include "study/measures/period_clock.h"
 #include "study/protocol/study_plan.h"
 
 namespace passung::session {
@@ -16,6 +17,7 @@ namespace passung::session {
 ///   lets into the material has not been inserted;
 /// - its speed is below max_speed, as the mean over the last kSpeedTicks: the distance between two positions so far
 ///   apart in time, because the difference of neighbouring ticks is mostly the encoder's quantum and tremor.
+/// Time counts missed cycles too (measures::PeriodClock).
 /// A missing tick starts the hold anew: what was not recorded is not counted as held.
 class SuccessRule {
 public:
@@ -28,17 +30,22 @@ public:
     bool fulfilledAt(const TickRecord& record);
 
 private:
-    bool isRestingInBore(const TickRecord& record) const;
+    bool isRestingInBore(const TickRecord& record, std::int64_t time) const;
 
     Pose X_TW_;
     double clearance_;  // [m]
     double min_depth_;  // [m]
-    double max_step_;   // [m] per kSpeedTicks
-    std::int64_t hold_ticks_;
-    std::array<Vec3, kSpeedTicks> positions_;  // the proxy at tick k stands at k modulo kSpeedTicks
-    std::int64_t known_ = 0;                   // consecutive ticks seen
+    double max_speed_;  // [m/s]
+    std::int64_t hold_periods_;
+    struct Place {
+        Vec3 position;
+        std::int64_t time;  // [periods]
+    };
+    std::array<Place, kSpeedTicks> places_;  // the proxy at tick k stands at k modulo kSpeedTicks
+    measures::PeriodClock clock_;
+    std::int64_t known_ = 0;  // consecutive ticks seen
     std::int64_t last_tick_ = 0;
-    std::optional<std::int64_t> resting_since_;
+    std::optional<std::int64_t> resting_since_;  // [periods]
 };
 
 }  // namespace passung::session

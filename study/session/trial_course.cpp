@@ -9,10 +9,11 @@
 namespace passung::session {
 
 TrialCourse::TrialCourse(const protocol::PegInHoleTask& task, const Pose& X_WT)
-    : task_(task), X_WT_(X_WT), success_rule_(task, X_WT), timeout_ticks_(std::llround(task.timeout / kTickSeconds)) {}
+    : task_(task), X_WT_(X_WT), success_rule_(task, X_WT), timeout_(std::llround(task.timeout / kTickSeconds)) {}
 
 void TrialCourse::follow(const TickRecord& record, std::vector<TrialEvent>& events) {
     PASSUNG_ASSERT(!ended());
+    clock_.at(record);
     if (record.status & kNonFiniteLatched) return abort(record.tick, "a computed wrench was not finite", events);
     if (state_ == TrialState::AwaitingStart) awaitStart(record, events);
     if (state_ != TrialState::Running) return;
@@ -20,7 +21,7 @@ void TrialCourse::follow(const TickRecord& record, std::vector<TrialEvent>& even
     noteMilestones(record, events);
     if (record.status & kInputRejected) ++rejected_ticks_;
     if (success_rule_.fulfilledAt(record)) return end(TrialState::Succeeded, record.tick, "success", events);
-    if (record.tick - *start_tick_ >= timeout_ticks_) end(TrialState::TimedOut, record.tick, "timeout", events);
+    if (clock_.periods() - *start_time_ >= timeout_) end(TrialState::TimedOut, record.tick, "timeout", events);
 }
 
 void TrialCourse::abort(std::int64_t tick, std::string reason, std::vector<TrialEvent>& events) {
@@ -49,8 +50,10 @@ void TrialCourse::awaitStart(const TickRecord& record, std::vector<TrialEvent>& 
     if (record.status & kEngaged) {
         state_ = TrialState::Running;
         start_tick_ = record.tick;
-        events.push_back({record.tick, "trial_started"});
-    } else if (record.tick >= kStartLimitTicks) {
+        start_time_ = clock_.periods();
+        missed_at_start_ = clock_.missed();
+        events.push_back({clock_.periods(), "trial_started"});
+    } else if (clock_.periods() >= kStartLimit) {
         abort(record.tick, "start pose not reached", events);
     }
 }
@@ -58,18 +61,19 @@ void TrialCourse::awaitStart(const TickRecord& record, std::vector<TrialEvent>& 
 void TrialCourse::noteMilestones(const TickRecord& record, std::vector<TrialEvent>& events) {
     if (!touched_ && measures::isContact(record)) {
         touched_ = true;
-        events.push_back({record.tick, "first_contact"});
+        events.push_back({clock_.periods(), "first_contact"});
     }
     if (!engaged_ && measures::tipDepthInBore(record, X_WT_.inverse(), task_.clearance) >= task_.engagement_depth) {
         engaged_ = true;
-        events.push_back({record.tick, "engaged"});
+        events.push_back({clock_.periods(), "engaged"});
     }
 }
 
 void TrialCourse::end(TrialState state, std::int64_t tick, const char* event, std::vector<TrialEvent>& events) {
     state_ = state;
     end_tick_ = tick;
-    events.push_back({tick, event});
+    end_time_ = clock_.until(tick);
+    events.push_back({end_time_, event});
 }
 
 }  // namespace passung::session

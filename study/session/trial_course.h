@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "study/measures/measures.h"
+#include "study/measures/period_clock.h"
 #include "study/session/success_rule.h"
 
 namespace passung::session {
@@ -15,24 +16,25 @@ enum class TrialState { AwaitingStart, Running, Succeeded, TimedOut, Aborted };
 /// Something that happened in a trial: trial_started, first_contact, engaged (the tip is in the bore), success,
 /// timeout, aborted.
 struct TrialEvent {
-    std::int64_t tick = 0;
+    std::int64_t time = 0;  // haptic periods since the attempt's tick 0: ticks and missed cycles
     const char* name = "";
 };
 
 /// One attempt, decided record by record: AwaitingStart → Running → Succeeded | TimedOut, and from the first two →
 /// Aborted. The trial starts at the first tick with kEngaged. A fulfilled success rule wins over a time-out in the same
-/// tick. Aborted by itself if the start pose is not reached within kStartLimitTicks, or if a wrench was not finite (the
+/// tick. Time counts missed cycles as well as ticks. Aborted by itself if the start pose is not reached within
+/// kStartLimit, or if a wrench was not finite (the
 /// output is then zero, so whatever followed would not be the condition's contact).
 class TrialCourse {
 public:
-    static constexpr std::int64_t kStartLimitTicks = 60'000;
+    static constexpr std::int64_t kStartLimit = 60'000;  // [periods]
 
     TrialCourse(const protocol::PegInHoleTask& task, const Pose& X_WT);
 
     /// Takes the next record and appends what happened in it. @pre not ended()
     void follow(const TickRecord& record, std::vector<TrialEvent>& events);
 
-    /// Ends the attempt from outside. @pre not ended()
+    /// Ends the attempt from outside, at `tick`. @pre not ended()
     void abort(std::int64_t tick, std::string reason, std::vector<TrialEvent>& events);
 
     TrialState state() const { return state_; }
@@ -42,6 +44,14 @@ public:
     /// @pre ended(); an empty trial (end before start) if it never started.
     measures::TrialContext context() const;
     const std::string& abortReason() const { return abort_reason_; }
+
+    /// When the attempt ended [periods since its tick 0]. @pre ended()
+    std::int64_t endTime() const { return end_time_; }
+
+    /// Of the periods between the trial's start and its end so many had no tick.
+    std::int64_t missedCycles() const { return clock_.missed() - missed_at_start_; }
+    /// Length of the trial [periods]; 0 if it never started. @pre ended()
+    std::int64_t length() const { return start_time_ ? end_time_ - *start_time_ : 0; }
 
     /// Ticks of the running trial without usable device input, hence without a wrench.
     std::int64_t rejectedTicks() const { return rejected_ticks_; }
@@ -54,10 +64,14 @@ private:
     protocol::PegInHoleTask task_;
     Pose X_WT_;
     SuccessRule success_rule_;
-    std::int64_t timeout_ticks_;
+    std::int64_t timeout_;  // [periods]
+    measures::PeriodClock clock_;
     TrialState state_ = TrialState::AwaitingStart;
     std::optional<std::int64_t> start_tick_;
+    std::optional<std::int64_t> start_time_;  // [periods]
+    std::int64_t missed_at_start_ = 0;
     std::int64_t end_tick_ = 0;
+    std::int64_t end_time_ = 0;
     std::string abort_reason_;
     std::int64_t rejected_ticks_ = 0;
     bool touched_ = false;

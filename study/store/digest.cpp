@@ -6,6 +6,8 @@
 #include <array>
 #include <stdexcept>
 
+#include "study/store/hex_text.h"
+
 namespace passung::store {
 
 std::string sha256Hex(std::string_view bytes) {
@@ -14,14 +16,7 @@ std::string sha256Hex(std::string_view bytes) {
     if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &length, EVP_sha256(), nullptr) != 1) {
         throw std::runtime_error("SHA-256 is not available");
     }
-    constexpr std::string_view kDigits = "0123456789abcdef";
-    std::string hex;
-    hex.reserve(2 * length);
-    for (unsigned int i = 0; i < length; ++i) {
-        hex += kDigits[digest[i] >> 4];
-        hex += kDigits[digest[i] & 15];
-    }
-    return hex;
+    return hexText(std::span(digest).first(length));
 }
 
 std::uint32_t crc32(std::span<const std::byte> bytes) {

@@ -25,6 +25,12 @@ CREATE TABLE protocol_version(
     imported_utc TEXT NOT NULL,
     title TEXT NOT NULL,
     sequences INTEGER NOT NULL CHECK(sequences > 0)) STRICT;
+CREATE TABLE mesh_file(
+    protocol_sha256 TEXT NOT NULL REFERENCES protocol_version,
+    mesh TEXT NOT NULL,
+    sha256 TEXT NOT NULL,
+    bytes INTEGER NOT NULL,
+    PRIMARY KEY(protocol_sha256, mesh)) STRICT, WITHOUT ROWID;
 CREATE TABLE factor(
     protocol_sha256 TEXT NOT NULL REFERENCES protocol_version,
     factor TEXT NOT NULL,

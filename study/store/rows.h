@@ -21,6 +21,14 @@ struct ProtocolRow {
     std::string app_version;
 };
 
+/// A mesh file that a protocol names, as it was when the protocol was imported.
+struct MeshRow {
+    std::string protocol_sha256;
+    std::string mesh;    // as the protocol writes it
+    std::string sha256;  // of the file's bytes
+    std::int64_t bytes = 0;
+};
+
 struct FactorRow {
     std::string protocol_sha256;
     std::string factor;

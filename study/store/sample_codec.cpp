@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include "core/base/assert.h"
+#include "study/protocol/json.h"
 #include "study/store/digest.h"
-#include "study/store/json_text.h"
 
 namespace passung::store {
 namespace {
@@ -51,8 +51,9 @@ Layout makeTickLayout() {
                    offsetof(TickRecord, device_quaternion));
     layout.add("input_flags", "uint32", "1", "Bit 0: fresh reading; bits 8-31: buttons 0-23",
                offsetof(TickRecord, input_flags));
-    layout.add("parameter_sequence", "uint32", "1", "Number of the parameter set in force",
-               offsetof(TickRecord, parameter_sequence));
+    layout.add("periods", "uint32", "1",
+               "Haptic periods of 1 ms since the previous tick: 1, more after missed cycles; tick 0: 1",
+               offsetof(TickRecord, periods));
     layout.addAxes("hand_", "xyz", "_m", "float32", "m", "Held part where the device asks it to be, scene frame",
                    offsetof(TickRecord, hand_position_m));
     layout.addAxes("hand_q", "wxyz", "", "float32", "1", "Orientation asked by the device, scene frame",
@@ -65,9 +66,11 @@ Layout makeTickLayout() {
                    offsetof(TickRecord, force_N));
     layout.addAxes("torque_", "xyz", "_Nm", "float32", "N·m",
                    "Torque on the hand about the held part's origin, scene axes", offsetof(TickRecord, torque_Nm));
-    layout.add("hand_depth_m", "float32", "m", "Deepest point of the held part at the hand's pose",
+    layout.add("hand_depth_m", "float32", "m",
+               "Depth of the held part's deepest sample point (contact.spacing_mm apart) at the hand's pose",
                offsetof(TickRecord, hand_depth_m));
-    layout.add("proxy_depth_m", "float32", "m", "Deepest point of the held part at the proxy's pose",
+    layout.add("proxy_depth_m", "float32", "m",
+               "Depth of the held part's deepest sample point (contact.spacing_mm apart) at the proxy's pose",
                offsetof(TickRecord, proxy_depth_m));
     layout.add("quality", "float32", "1", "Area fraction of the point shell that was proven or evaluated",
                offsetof(TickRecord, quality));
@@ -143,19 +146,23 @@ const std::vector<Channel>& tickChannels() { return tickLayout().channels; }
 const std::vector<Channel>& timingChannels() { return timingLayout().channels; }
 
 std::string encodingText() {
-    return "columns-v1: one blob holds n consecutive ticks, tick number of row i = first_tick + i, time since the "
-           "attempt's tick 0 = tick * 0.001 s. The columns of channels_json follow one another in that order, each as "
+    return "columns-v1: one blob holds n consecutive ticks, tick number of row i = first_tick + i. Time since the "
+           "attempt's tick 0 = 0.001 s * sum of the column periods over the ticks after it (in virtual time: 0.001 s * "
+           "tick); that of the chunk's first tick is t0_ns less the attempt's start_ns. The columns of channels_json "
+           "follow one another in that order, each as "
            "n values of its type, little-endian, without padding or compression. crc32 = CRC-32 (zlib) of the blob.";
 }
 
 std::string channelsJson(const std::vector<Channel>& channels) {
-    std::string json = "[";
-    for (const Channel& channel : channels) {
-        if (json.size() > 1) json += ',';
-        json += "{\"name\":" + jsonString(channel.name) + ",\"type\":" + jsonString(channel.type) +
-                ",\"unit\":" + jsonString(channel.unit) + ",\"label\":" + jsonString(channel.label) + "}";
-    }
-    return json + "]";
+    std::vector<std::string> items;
+    for (const Channel& channel : channels)
+        items.push_back(protocol::JsonObject()
+                            .text("name", channel.name)
+                            .text("type", channel.type)
+                            .text("unit", channel.unit)
+                            .text("label", channel.label)
+                            .str());
+    return protocol::jsonList(items);
 }
 
 Chunk encodeTicks(std::span<const TickRecord> records) { return encode(tickLayout(), records); }

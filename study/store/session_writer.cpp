@@ -1,7 +1,7 @@
 #include "study/store/session_writer.h"
 
-#include "study/store/identity.h"
-#include "study/store/json_text.h"
+#include "study/store/hex_text.h"
+#include "study/store/session_json.h"
 #include "study/store/sqlite.h"
 #include "study/store/writer_thread.h"
 
@@ -113,27 +113,29 @@ Result<session::AttemptId> SessionWriter::startAttempt(const session::AttemptSta
         return attempt_id;
     });
     if (!id) return id.errors();
-    open_ = OpenAttempt{session::AttemptId{*id}, start.start_ns, {}};
+    open_ = OpenAttempt{session::AttemptId{*id}, start.start_ns, {}, {}};
     return open_->id;
 }
 
 void SessionWriter::insertChunk(const Database& database, std::int64_t stream_id, std::int64_t chunk_no,
-                                std::int64_t attempt_id, std::int64_t start_ns, const Chunk& chunk) {
+                                std::int64_t attempt_id, std::int64_t t0_ns, const Chunk& chunk) {
     database.prepare("INSERT INTO sample_chunk VALUES(?, ?, ?, ?, ?, ?, ?, ?)")
-        .bind(stream_id, chunk_no, attempt_id, chunk.first_tick, chunk.count,
-              start_ns + chunk.first_tick * kTickNanoseconds, chunk.crc32, std::span<const std::byte>(chunk.data))
+        .bind(stream_id, chunk_no, attempt_id, chunk.first_tick, chunk.count, t0_ns, chunk.crc32,
+              std::span<const std::byte>(chunk.data))
         .run();
 }
 
 void SessionWriter::insertChunks(const Database& database, std::int64_t attempt_id, std::int64_t start_ns,
-                                 std::span<const TickRecord> records) {
+                                 measures::PeriodClock clock, std::span<const TickRecord> records) {
     while (!records.empty()) {
         const std::size_t count = consecutiveTicks(records);
         const auto run = records.first(count);
-        insertChunk(database, rows_.tick_stream_id, next_chunk_, attempt_id, start_ns, encodeTicks(run));
+        const std::int64_t t0_ns = start_ns + clock.at(run.front()) * kTickNanoseconds;
+        insertChunk(database, rows_.tick_stream_id, next_chunk_, attempt_id, t0_ns, encodeTicks(run));
         if (rows_.timing_stream_id) {
-            insertChunk(database, *rows_.timing_stream_id, next_chunk_, attempt_id, start_ns, encodeTiming(run));
+            insertChunk(database, *rows_.timing_stream_id, next_chunk_, attempt_id, t0_ns, encodeTiming(run));
         }
+        for (const TickRecord& record : run) clock.at(record);
         ++next_chunk_;  // a number that a rollback leaves unused does no harm
         records = records.subspan(count);
     }
@@ -156,11 +158,14 @@ void SessionWriter::appendRecords(session::AttemptId attempt, std::span<const Ti
     if (ready == 0) return;
     std::vector<TickRecord> chunk(pending.begin(), pending.begin() + static_cast<std::ptrdiff_t>(ready));
     pending.erase(pending.begin(), pending.begin() + static_cast<std::ptrdiff_t>(ready));
-    postGuarded([this, attempt, start_ns = open_->start_ns, chunk = std::move(chunk)](const Database& database) {
-        Transaction transaction(database, Durability::Normal);
-        insertChunks(database, static_cast<std::int64_t>(attempt), start_ns, chunk);
-        transaction.commit();
-    });
+    const measures::PeriodClock before = open_->clock;
+    for (const TickRecord& record : chunk) open_->clock.at(record);
+    postGuarded(
+        [this, attempt, start_ns = open_->start_ns, before, chunk = std::move(chunk)](const Database& database) {
+            Transaction transaction(database, Durability::Normal);
+            insertChunks(database, static_cast<std::int64_t>(attempt), start_ns, before, chunk);
+            transaction.commit();
+        });
 }
 
 void SessionWriter::appendEvent(const session::Event& event) {
@@ -181,7 +186,7 @@ void SessionWriter::appendEvent(const session::Event& event) {
 void SessionWriter::storeEnd(const Database& database, const OpenAttempt& attempt, const session::AttemptEnd& end) {
     const auto attempt_id = static_cast<std::int64_t>(attempt.id);
     Transaction transaction(database, Durability::Full);
-    insertChunks(database, attempt_id, attempt.start_ns, attempt.pending);
+    insertChunks(database, attempt_id, attempt.start_ns, attempt.clock, attempt.pending);
     database
         .prepare(
             "UPDATE attempt SET end_ns=?, outcome=?, valid=?, invalid_reason=?, state_hash=?, timing_measured=? "

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "study/measures/period_clock.h"
 #include "study/session/trial_sink.h"
 #include "study/store/sample_codec.h"
 #include "study/store/utc_clock.h"
@@ -44,13 +45,14 @@ private:
         session::AttemptId id{};
         std::int64_t start_ns = 0;
         std::vector<TickRecord> pending;  // not yet handed to the writer thread
+        measures::PeriodClock clock;      // up to the last record that was handed over
     };
 
-    // in the writer thread
+    // in the writer thread; `clock` stands at the record before the first one
     void insertChunks(const Database& database, std::int64_t attempt_id, std::int64_t start_ns,
-                      std::span<const TickRecord> records);
+                      measures::PeriodClock clock, std::span<const TickRecord> records);
     void insertChunk(const Database& database, std::int64_t stream_id, std::int64_t chunk_no, std::int64_t attempt_id,
-                     std::int64_t start_ns, const Chunk& chunk);
+                     std::int64_t t0_ns, const Chunk& chunk);
     void storeEnd(const Database& database, const OpenAttempt& attempt, const session::AttemptEnd& end);
     void throwFailure();
     template <class Work>

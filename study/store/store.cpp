@@ -4,11 +4,13 @@
 
 #include "study/design/williams.h"
 #include "study/measures/measures.h"
+#include "study/protocol/document.h"
+#include "study/protocol/json.h"
 #include "study/store/digest.h"
-#include "study/store/json_text.h"
 #include "study/store/open_database.h"
 #include "study/store/process_lock.h"
 #include "study/store/revisions.h"
+#include "study/store/session_json.h"
 #include "study/store/writer_thread.h"
 
 namespace passung::store {
@@ -17,12 +19,9 @@ namespace {
 constexpr const char* kOneGroup = "all";  // no between factor
 
 std::string levelsJson(const protocol::Factor& factor) {
-    std::string json = "[";
-    for (const protocol::Level& level : factor.levels) {
-        if (json.size() > 1) json += ',';
-        json += jsonString(level.label);
-    }
-    return json + "]";
+    std::vector<std::string> labels;
+    for (const protocol::Level& level : factor.levels) labels.push_back(protocol::jsonText(level.label));
+    return protocol::jsonList(labels);
 }
 
 const char* factorKindName(protocol::FactorKind kind) {
@@ -112,11 +111,39 @@ void storeSeed(const Database& database, const std::string& sha256, std::uint64_
         .run();
 }
 
-std::string importPlan(const Database& database, const protocol::StudyPlan& plan, const OpenOptions& options) {
+struct MeshContent {
+    std::string mesh, sha256;
+    std::int64_t bytes;
+};
+
+Result<std::vector<MeshContent>> readMeshes(const protocol::StudyPlan& plan) {
+    std::vector<MeshContent> meshes;
+    for (const protocol::MeshSource& mesh : plan.meshes) {
+        const auto bytes = protocol::readFile(mesh.path);
+        if (!bytes) return bytes.errors();
+        meshes.push_back({mesh.name, sha256Hex(*bytes), static_cast<std::int64_t>(bytes->size())});
+    }
+    return meshes;
+}
+
+/// The text of a protocol stands for its meshes too: data of one protocol must be of one geometry.
+void requireMeshes(const Database& database, const std::string& sha256, const std::vector<MeshContent>& meshes) {
+    Statement find = database.prepare("SELECT sha256 FROM mesh_file WHERE protocol_sha256=? AND mesh=?");
+    for (const MeshContent& mesh : meshes) {
+        if (find.bind(sha256, mesh.mesh).step() && find.text(0) == mesh.sha256) continue;
+        throw std::runtime_error("the mesh file " + mesh.mesh +
+                                 " has changed since this protocol was stored: restore it, or give the protocol a new "
+                                 "version");
+    }
+}
+
+std::string importPlan(const Database& database, const protocol::StudyPlan& plan,
+                       const std::vector<MeshContent>& meshes, const OpenOptions& options) {
     const std::string sha256 = sha256Hex(plan.source_text);
     Transaction transaction(database);
     if (database.prepare("SELECT 1 FROM protocol_version WHERE protocol_sha256=?").bind(sha256).step()) {
         requireSeed(database, sha256, plan.seed);
+        requireMeshes(database, sha256, meshes);
         storeSeed(database, sha256, plan.seed);
         transaction.commit();
         return sha256;
@@ -126,12 +153,15 @@ std::string importPlan(const Database& database, const protocol::StudyPlan& plan
               options.app_version, options.now_utc, plan.title, sequenceCount(plan))
         .run();
     storeSeed(database, sha256, plan.seed);
+    Statement insert_mesh = database.prepare("INSERT INTO mesh_file VALUES(?, ?, ?, ?)");
+    for (const MeshContent& mesh : meshes) insert_mesh.bind(sha256, mesh.mesh, mesh.sha256, mesh.bytes).run();
     insertFactors(database, sha256, plan);
     insertConditions(database, sha256, plan);
     insertMeasures(database, sha256, plan);
     const std::int64_t sequences = sequenceCount(plan);
     for (std::int64_t first = 0; first < plan.participants; first += sequences) {
-        insertSlots(database, sha256, kindName(ParticipantKind::Real), first / sequences, sequences);
+        insertSlots(database, sha256, protocol::participantKindName(protocol::ParticipantKind::Real), first / sequences,
+                    sequences);
     }
     transaction.commit();
     return sha256;
@@ -193,16 +223,16 @@ Slot takeSlot(const Database& database, const std::string& sha256, const std::st
     return slot;
 }
 
-bool insertParticipant(const Database& database, const std::string& code, ParticipantKind wanted,
+bool insertParticipant(const Database& database, const std::string& code, protocol::ParticipantKind wanted,
                        const std::string& created_utc) {
-    const char* kind = kindName(wanted);
-    if (!isParticipantCode(code)) {
+    const char* kind = protocol::participantKindName(wanted);
+    if (!protocol::isParticipantCode(code)) {
         throw std::runtime_error("participant code '" + code +
                                  "' is not a capital letter, then capital letters, digits, '_' or '-', then a digit");
     }
-    if (code.front() != codeLetter(wanted)) {
+    if (code.front() != protocol::codeLetter(wanted)) {
         throw std::runtime_error("participant code '" + code + "': codes of " + kind + " participants begin with " +
-                                 codeLetter(wanted));
+                                 protocol::codeLetter(wanted));
     }
     Transaction transaction(database);
     Statement find = database.prepare("SELECT kind FROM participant WHERE participant_id=?");
@@ -305,20 +335,22 @@ Store::Opened Store::open(const std::string& path, const OpenOptions& options) {
 }
 
 Result<std::string> Store::importProtocol(const protocol::StudyPlan& plan) {
-    return thread_->call([&](const Database& database) { return importPlan(database, plan, options_); });
+    const auto meshes = readMeshes(plan);
+    if (!meshes) return meshes.errors();
+    return thread_->call([&](const Database& database) { return importPlan(database, plan, *meshes, options_); });
 }
 
-Result<bool> Store::enrol(const std::string& code, ParticipantKind kind, const std::string& created_utc) {
+Result<bool> Store::enrol(const std::string& code, protocol::ParticipantKind kind, const std::string& created_utc) {
     return thread_->call(
         [&](const Database& database) { return insertParticipant(database, code, kind, created_utc); });
 }
 
-Result<std::string> Store::nextCode(ParticipantKind kind) {
+Result<std::string> Store::nextCode(protocol::ParticipantKind kind) {
     return thread_->call([&](const Database& database) {
         Statement find = database.prepare("SELECT 1 FROM participant WHERE participant_id=?");
         std::int64_t number = 1;
-        while (find.bind(participantCode(kind, number)).step()) ++number;
-        return participantCode(kind, number);
+        while (find.bind(protocol::participantCode(kind, number)).step()) ++number;
+        return protocol::participantCode(kind, number);
     });
 }
 

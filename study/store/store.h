@@ -10,6 +10,7 @@
 #include "core/base/random.h"
 #include "core/base/result.h"
 #include "study/design/trial_order.h"
+#include "study/protocol/participant.h"
 #include "study/protocol/study_plan.h"
 #include "study/store/identity.h"
 #include "study/store/session_writer.h"
@@ -73,17 +74,18 @@ public:
     Store(const Store&) = delete;
     Store& operator=(const Store&) = delete;
 
-    /// Stores the protocol with its text, factors, conditions, measures and a free slot for every planned participant.
-    /// Returns the SHA-256 of the text. Importing the same text again changes nothing; another seed than that of the
-    /// sessions of this protocol is refused.
+    /// Stores the protocol with its text, factors, conditions, measures, the SHA-256 of every mesh file that it names
+    /// and a free slot for every planned participant. Returns the SHA-256 of the text. Importing the same text again
+    /// changes nothing; another seed than that of the sessions of this protocol is refused, and so is a mesh file with
+    /// another content.
     Result<std::string> importProtocol(const protocol::StudyPlan& plan);
 
     /// True if the participant is new, false if already enrolled with this kind; another kind is an error, and so is a
     /// code that does not begin with the kind's letter.
-    Result<bool> enrol(const std::string& code, ParticipantKind kind, const std::string& created_utc);
+    Result<bool> enrol(const std::string& code, protocol::ParticipantKind kind, const std::string& created_utc);
 
     /// The first unused code of the kind: P001, P002 … for real participants.
-    Result<std::string> nextCode(ParticipantKind kind);
+    Result<std::string> nextCode(protocol::ParticipantKind kind);
 
     /// The participant's slot: the one they have, else the free one with the lowest replicate, then sequence_index;
     /// a further replicate if none is free. It is theirs for good once a session completes; a session that does not

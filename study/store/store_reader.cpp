@@ -184,6 +184,18 @@ Result<std::vector<ProtocolRow>> StoreReader::protocols() const {
     });
 }
 
+Result<std::vector<MeshRow>> StoreReader::meshes() const {
+    return guarded(path_, [&] {
+        return readAll<MeshRow>(
+            database_->prepare("SELECT m.protocol_sha256, m.mesh, m.sha256, m.bytes FROM mesh_file m "
+                               "JOIN protocol_version p USING(protocol_sha256)" +
+                               std::string(kByProtocol) + ", m.mesh"),
+            [](const Statement& row) {
+                return MeshRow{row.text(0), row.text(1), row.text(2), row.integer(3)};
+            });
+    });
+}
+
 Result<std::vector<FactorRow>> StoreReader::factors() const {
     return guarded(path_, [&] {
         return readAll<FactorRow>(

@@ -24,6 +24,7 @@ public:
     const std::string& path() const { return path_; }
 
     Result<std::vector<ProtocolRow>> protocols() const;    // by name, version, hash
+    Result<std::vector<MeshRow>> meshes() const;           // protocols as above, meshes by name
     Result<std::vector<FactorRow>> factors() const;        // protocols as above, factors as the protocol lists them
     Result<std::vector<ConditionRow>> conditions() const;  // likewise
     Result<std::vector<MeasureRow>> measures() const;

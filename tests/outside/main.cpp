@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "core/model/part.h"
+#include "core/query/part_query.h"
 #include "core/tick/contact_query.h"
 
 using namespace passung;
@@ -29,5 +30,11 @@ int main() {
     // A shell point lies within one spacing of the lowest point of the ball: it is less than s²/2r higher.
     const double sampling = spacing * spacing / 0.02, tolerance = sampling + 10e-6;
     std::printf("%zu contacts, phi = %.1f um\n", manifold.size(), 1e6 * answer.phi);
-    return answer.found && std::abs(answer.phi + depth) < tolerance && manifold.size() > 0 ? 0 : 1;
+    if (!(answer.found && std::abs(answer.phi + depth) < tolerance && manifold.size() > 0)) return 1;
+
+    // The same as one call, with proven bounds.
+    const query::PartQueryResult result = query::PartQuery(*field_part, *shell_part, {}).at(X_WF.inverse() * X_WS);
+    std::printf("signed distance %.1f um, proven to %.1f um\n", 1e6 * result.signed_distance, 1e6 * result.error_bound);
+    return result.signed_distance == answer.phi && std::abs(result.signed_distance + depth) <= result.error_bound ? 0
+                                                                                                                  : 1;
 }

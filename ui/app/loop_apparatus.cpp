@@ -3,28 +3,22 @@
 #include <chrono>
 #include <thread>
 
+#include "study/protocol/scene_parts.h"
+
 namespace passung::app {
 
 namespace {
 
 constexpr std::size_t kRingRecords = 8192;  // eight seconds: a writer that stalls for longer shows in the data
 
-const model::PartSpec& heldPart(const model::SceneSpec& scene) {
-    for (const auto& part : scene.parts) {
-        if (part.held) return part;
-    }
-    return scene.parts.front();  // a validated scene has one
-}
-
 /// What the display shows of the task: parts where they are drawn.
 simulated::VisibleTask visibleTask(const protocol::Condition& condition) {
     const auto shown = [](const model::PartSpec& part) { return Pose{part.X_WP.q, part.X_WP.p + part.shown_offset}; };
     simulated::VisibleTask task;
-    task.X_WHeldStart = shown(heldPart(condition.scene));
+    if (const auto* held = protocol::heldPart(condition.scene)) task.X_WHeldStart = shown(*held);
     task.insertion_depth = condition.task.insertion_depth;
-    for (const auto& part : condition.scene.parts) {
-        if (part.name == condition.task.target) task.X_WTarget = shown(part);
-    }
+    if (const auto* target = protocol::partNamed(condition.scene, condition.task.target))
+        task.X_WTarget = shown(*target);
     return task;
 }
 
@@ -69,7 +63,7 @@ void LoopApparatus::start() {
 
 void LoopApparatus::advance(std::int64_t ticks) {
     if (clock_ == Clock::Virtual) {
-        for (std::int64_t i = 0; i < ticks; ++i) run_->cycle.run(false);
+        for (std::int64_t i = 0; i < ticks; ++i) run_->cycle.run();
         return;
     }
     std::this_thread::sleep_for(std::chrono::nanoseconds(ticks * kTickNanoseconds));

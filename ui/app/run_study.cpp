@@ -38,11 +38,11 @@ public:
             measured ? store::UtcClock::wall(unixMilliseconds()) : store::UtcClock::virtualEpoch();
         std::string code = options_.participant;
         if (code.empty()) {
-            auto next = store_.nextCode(store::ParticipantKind::Simulated);
+            auto next = store_.nextCode(protocol::ParticipantKind::Simulated);
             if (!next) return next.errors();
             code = *next;
         }
-        if (auto enrolled = store_.enrol(code, store::ParticipantKind::Simulated, clock.at(0)); !enrolled) {
+        if (auto enrolled = store_.enrol(code, protocol::ParticipantKind::Simulated, clock.at(0)); !enrolled) {
             return enrolled.errors();
         }
         auto slot = store_.assignSlot(sha256_, code);

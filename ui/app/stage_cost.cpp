@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "core/loop/timing.h"
-#include "core/tick/penalty.h"
+#include "core/tick/obstacle_query.h"
 #include "core/tick/step.h"
 
 namespace passung::app {
@@ -20,9 +20,39 @@ Vec3 wayToContact(const tick::TickModel& model, tick::TickState& state) {
     if (model.obstacles.empty()) return Vec3(0.02, 0.0, 0.0);
     state.scratch.clear();
     const tick::QueryAnswer answer =
-        tick::queryObstacles(model, model.X_WG_start, 0.0, 1.0, state.workspace, state.scratch);
+        tick::queryObstacles(model, model.X_WG_start, {.search_below = 1.0}, state.workspace, state.scratch);
     return -(answer.phi + kPressed) * answer.normal_W;
 }
+
+/// Takes the time between the ends of neighbouring stages.
+class StageTimes {
+public:
+    explicit StageTimes(std::size_t stages) : timing_(stages) {}
+
+    /// One tick of the loop's own walk; `counted`: its times go into the distributions.
+    void step(const tick::TickModel& model, tick::TickState& state, const DeviceReading& reading, bool counted) {
+        counted_ = counted;
+        const tick::StageWatch watch{&StageTimes::after, this};
+        last_ = Clock::now();
+        tick::step(model, state, reading, &watch);
+    }
+
+    const loop::TimingHistogram& of(std::size_t stage) const { return timing_[stage]; }
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    static void after(void* context, std::size_t stage) noexcept {
+        auto& self = *static_cast<StageTimes*>(context);
+        const Clock::time_point now = Clock::now();
+        if (self.counted_) self.timing_[stage].add(std::chrono::nanoseconds(now - self.last_).count());
+        self.last_ = Clock::now();
+    }
+
+    std::vector<loop::TimingHistogram> timing_;
+    Clock::time_point last_;
+    bool counted_ = false;
+};
 
 }  // namespace
 
@@ -33,25 +63,19 @@ std::vector<StageCost> measureStages(const model::Scene& scene) {
     // Poses are those of the held part: the registration has nothing to do, and the gate is open.
     model.registration = model::Registration{};
     state.engaged = true;
-    std::vector<loop::TimingHistogram> timing(model.stages.size());
+    StageTimes times(model.stages.size());
     const Vec3 aside = way.unitOrthogonal();
     for (int i = 0; i < kApproachTicks + kTicks; ++i) {
-        tick::TickFrame frame;
         const double share = std::min(1.0, static_cast<double>(i) / kApproachTicks);
         const double slide = kSlide * std::sin(2e-3 * std::numbers::pi * std::max(0, i - kApproachTicks));
-        frame.reading.X_BD = {model.X_WG_start.q, model.X_WG_start.p + share * way + slide * aside};
-        for (std::size_t s = 0; s < model.stages.size(); ++s) {
-            const auto begin = std::chrono::steady_clock::now();
-            model.stages[s].run(model, state, frame);
-            const auto took = std::chrono::steady_clock::now() - begin;
-            if (i >= kApproachTicks) timing[s].add(took.count());
-        }
-        ++state.tick;
+        DeviceReading reading;
+        reading.X_BD = {model.X_WG_start.q, model.X_WG_start.p + share * way + slide * aside};
+        times.step(model, state, reading, i >= kApproachTicks);
     }
     std::vector<StageCost> costs;
     for (std::size_t s = 0; s < model.stages.size(); ++s) {
-        costs.push_back({model.stages[s].name, model.stages[s].reason, timing[s].quantileMicroseconds(0.5),
-                         timing[s].quantileMicroseconds(0.99)});
+        costs.push_back({model.stages[s].name, model.stages[s].reason, times.of(s).quantileMicroseconds(0.5),
+                         times.of(s).quantileMicroseconds(0.99)});
     }
     return costs;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -40,6 +41,7 @@ int exportData(const ExportOptions& options);
 struct ReplayOptions {
     std::string database;
     std::int64_t attempt = 0;  // 0: all of them
+    std::string meshes;  // folder that the protocol's mesh paths start from; empty: here, else beside the database
 };
 int replay(const ReplayOptions& options);
 

@@ -7,14 +7,26 @@
 
 namespace passung::cli {
 
+namespace {
+
+/// errno right after a call that failed; never 0.
+int failure() { return errno != 0 ? errno : EIO; }
+
+}  // namespace
+
 int fail(const Errors& errors) {
     for (const Error& error : errors) std::fprintf(stderr, "%s\n", toString(error).c_str());
     return 1;
 }
 
+void warn(const std::string& file, const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings)
+        std::fprintf(stderr, "%s: warning: %s\n", file.c_str(), warning.c_str());
+}
+
 OutputFile::OutputFile(std::string path) : path_(std::move(path)), temporary_(path_ + ".part") {
     file_ = std::fopen(temporary_.c_str(), "wb");
-    failed_ = file_ == nullptr;
+    if (file_ == nullptr) error_ = failure();
 }
 
 OutputFile::~OutputFile() {
@@ -24,17 +36,23 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::write(std::string_view text) {
-    if (failed_) return;
-    failed_ = std::fwrite(text.data(), 1, text.size(), file_) != text.size();
+    if (error_ == 0 && std::fwrite(text.data(), 1, text.size(), file_) != text.size()) error_ = failure();
 }
 
 Result<Done> OutputFile::commit() {
-    bool good = !failed_ && std::fflush(file_) == 0;
-    if (file_ != nullptr) good = std::fclose(file_) == 0 && good;
     const bool opened = file_ != nullptr;
-    file_ = nullptr;
-    if (good && std::rename(temporary_.c_str(), path_.c_str()) == 0) return Done{};
-    const std::string reason = std::strerror(errno);
+    // The number of the first failure: every later call may change it.
+    const auto note = [this](bool good) {
+        if (!good && error_ == 0) error_ = failure();
+    };
+    if (opened) {
+        note(std::fflush(file_) == 0);
+        note(std::fclose(file_) == 0);
+        file_ = nullptr;
+        if (error_ == 0) note(std::rename(temporary_.c_str(), path_.c_str()) == 0);
+    }
+    if (error_ == 0) return Done{};
+    const std::string reason = std::strerror(error_);
     if (opened) std::remove(temporary_.c_str());
     return Error{.message = "cannot be written: " + reason, .file = path_};
 }

@@ -11,6 +11,9 @@ namespace passung::cli {
 /// Prints every error on a line of its own on standard error; returns exit code 1.
 int fail(const Errors& errors);
 
+/// Prints every warning about `file` on a line of its own on standard error.
+void warn(const std::string& file, const std::vector<std::string>& warnings);
+
 /// A file that appears complete or not at all: written beside its place, renamed by commit().
 class OutputFile {
 public:
@@ -25,7 +28,7 @@ public:
 private:
     std::string path_, temporary_;
     std::FILE* file_ = nullptr;
-    bool failed_ = false;
+    int error_ = 0;  // errno of the first failure
 };
 
 /// A line on standard error that replaces itself on a terminal and is left out elsewhere.

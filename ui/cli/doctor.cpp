@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <string_view>
 
 #include "ui/app/loop_check.h"
 #include "ui/app/run_study.h"
@@ -27,6 +29,22 @@ std::string limitText(int resource) {
     return limit.rlim_cur == RLIM_INFINITY ? "unlimited" : std::to_string(limit.rlim_cur);
 }
 
+/// The program and the libraries that it was built with.
+void printVersions() {
+    fmt::print("versions\n");
+    const auto line = [](std::string_view name, std::string_view version) {
+        fmt::print("  {:<12}{}\n", name, version);
+    };
+    line("passung", PASSUNG_VERSION);
+    for (std::string_view rest = PASSUNG_LIBRARIES; !rest.empty();) {
+        const std::string_view library = rest.substr(0, rest.find(','));
+        rest.remove_prefix(std::min(rest.size(), library.size() + 1));
+        const std::size_t space = library.find(' ');
+        line(library.substr(0, space), library.substr(space + 1));
+    }
+    line("compiler", __VERSION__);
+}
+
 void printLoop(const app::LoopCheck& check) {
     fmt::print("loop\n");
     fmt::print("  real-time scheduling  {} (limit of ordinary users: rtprio {})\n",
@@ -46,7 +64,7 @@ void printLoop(const app::LoopCheck& check) {
 }  // namespace
 
 int doctor(const DoctorOptions& options) {
-    fmt::print("passung {}\n", PASSUNG_VERSION);
+    printVersions();
     printDevices();
     const char* display = std::getenv("DISPLAY");
     fmt::print("display\n  {}\n", display != nullptr ? display : "none (DISPLAY is not set)");

@@ -1,8 +1,9 @@
 #include <fmt/format.h>
 
-#include <fstream>
 #include <map>
 
+#include "study/protocol/document.h"
+#include "study/protocol/plan_json.h"
 #include "study/protocol/protocol_reader.h"
 #include "study/protocol/scene_reader.h"
 #include "study/session/plan_text.h"
@@ -15,13 +16,13 @@ namespace passung::cli {
 
 namespace {
 
-/// A protocol has a [study] table, a scene has not.
-bool isProtocol(const std::string& path) {
-    std::ifstream file(path);
-    for (std::string line; std::getline(file, line);) {
-        if (line.starts_with("[study]")) return true;
-    }
-    return false;
+/// A study says so by its `passung` or `study` key, a scene has neither.
+Result<bool> isStudy(const std::string& path) {
+    const auto text = protocol::readFile(path);
+    if (!text) return text.errors();
+    const auto document = protocol::parseDocument(*text, path);
+    if (!document) return document.errors();
+    return document->find("study") != nullptr || document->find("passung") != nullptr;
 }
 
 Result<Done> printStages(const model::SceneSpec& spec, model::PartCache& cache) {
@@ -34,18 +35,34 @@ Result<Done> printStages(const model::SceneSpec& spec, model::PartCache& cache) 
     return Done{};
 }
 
-/// What decides which stages run; conditions that agree in it share a table.
-std::string effectsOf(const model::SceneSpec& spec) {
-    const auto& c = spec.contact;
-    return fmt::format("{} {} {} {}", static_cast<int>(c.method), c.proxy_filter > 0.0, spec.limits.delay_ticks > 0,
-                       spec.start_gate.hold_ticks > 0);
+/// Everything that decides which stages run and what they cost: geometry, resolution, method. Conditions that agree in
+/// it share a table; stiffness, limits, task and display change no cost.
+std::string costKey(protocol::Condition condition) {
+    condition.device.clear();
+    condition.shown = protocol::ShownPose::Proxy;
+    condition.task = {};
+    model::ContactSpec& contact = condition.scene.contact;
+    contact.stiffness = contact.rotational_stiffness = contact.area_stiffness = 1.0;
+    contact.damping = contact.rotational_damping = 0.0;
+    model::OutputLimits limits;
+    limits.delay_ticks = condition.scene.limits.delay_ticks;
+    condition.scene.limits = limits;
+    std::string meshes;  // in full: files of one name in two folders differ
+    for (const auto& part : condition.scene.parts)
+        if (const auto* mesh = std::get_if<model::MeshFile>(&part.geometry)) meshes += mesh->path + '\n';
+    return protocol::paramsJson(condition) + meshes;
 }
 
 Result<Done> explainEffects(const protocol::StudyPlan& plan, model::PartCache& cache) {
     fmt::print("\nEffects, their cost measured on this machine in sliding contact\n");
-    std::map<std::string, std::vector<const protocol::Condition*>> groups;
-    for (const auto& condition : plan.conditions) groups[effectsOf(condition.scene)].push_back(&condition);
-    for (const auto& [effects, conditions] : groups) {
+    std::vector<std::vector<const protocol::Condition*>> groups;  // as the protocol lists their first
+    std::map<std::string, std::size_t> places;
+    for (const auto& condition : plan.conditions) {
+        const auto [place, fresh] = places.try_emplace(costKey(condition), groups.size());
+        if (fresh) groups.emplace_back();
+        groups[place->second].push_back(&condition);
+    }
+    for (const auto& conditions : groups) {
         fmt::print("\n  conditions");
         for (const auto* condition : conditions)
             fmt::print(" {}{}", condition->name, condition == conditions.back() ? "" : ",");
@@ -59,7 +76,9 @@ Result<Done> explainEffects(const protocol::StudyPlan& plan, model::PartCache& c
 
 int explain(const ExplainOptions& options) {
     model::PartCache cache;
-    if (!isProtocol(options.file)) {
+    const auto is_study = isStudy(options.file);
+    if (!is_study) return fail(is_study.errors());
+    if (!*is_study) {
         const auto spec = protocol::readScene(options.file, app::knownDevices());
         if (!spec) return fail(spec.errors());
         const auto done = printStages(*spec, cache);

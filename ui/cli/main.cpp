@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <functional>
 
 #include "ui/cli/commands.h"
 
@@ -70,6 +71,9 @@ private:
         sub = command("replay", "run recorded inputs again and compare every bit", replay_, replay);
         sub->add_option("DB", replay_.database, "database of a study")->required();
         sub->add_option("--attempt", replay_.attempt, "attempt_id; default: all")->check(CLI::PositiveNumber);
+        sub->add_option("--meshes", replay_.meshes,
+                        "folder that the protocol's mesh paths start from; default: here, else beside DB")
+            ->check(CLI::ExistingDirectory);
     }
 
     void addCoreCommands() {

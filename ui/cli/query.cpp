@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cmath>
 #include <iterator>
 #include <limits>
+#include <string_view>
 
 #include "core/base/number_table.h"
-#include "core/tick/part_query.h"
+#include "core/query/part_query.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 #include "ui/cli/part_argument.h"
@@ -15,11 +15,12 @@ namespace passung::cli {
 
 namespace {
 
-constexpr const char* kHeader =
-    "x_m,y_m,z_m,qw,qx,qy,qz,signed_distance_m,field_error_bound_m,error_bound_m,quality,status,closest_x_m,closest_y_"
-    "m,"
-    "closest_z_m,normal_x,normal_y,normal_z,force_x_N,force_y_N,force_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,contacts,"
-    "nodes_visited,points_tested,query_us\n";
+const std::vector<std::string> kPoseColumns = {"x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"};
+
+constexpr const char* kResultColumns =
+    ",signed_distance_m,field_error_bound_m,error_bound_m,quality,status,closest_x_m,closest_y_m,closest_z_m,normal_x,"
+    "normal_y,normal_z,force_x_N,force_y_N,force_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,contacts,nodes_visited,points_"
+    "tested,query_us";
 
 Result<model::Part> build(const std::string& path, const std::string& unit, const model::PartNeeds& needs) {
     auto spec = partArgument(path, unit);
@@ -37,17 +38,26 @@ Result<model::Part> build(const std::string& path, const std::string& unit, cons
 
 /// Poses, all finite, quaternions of length 1 (± 1e-3), normalised.
 Result<std::vector<Pose>> readPoses(const std::string& path, NumberTable& table) {
-    auto numbers = readNumbers(path, {"x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"});
+    auto numbers = readNumbers(path, kPoseColumns);
     if (!numbers) return numbers.errors();
     std::vector<Pose> poses;
     Errors errors;
+    for (std::size_t i = kPoseColumns.size(); i < numbers->columns.size(); ++i) {
+        const std::string& name = numbers->columns[i];
+        if (std::string(kResultColumns).append(",").find("," + name + ",") == std::string::npos) continue;
+        errors.push_back({.message = "is the name of a result; give this column another",
+                          .file = path,
+                          .line = 1,
+                          .column = 1,
+                          .value = name});
+    }
     for (std::size_t i = 0; i < numbers->rows.size(); ++i) {
         const auto& v = numbers->rows[i];
         Pose pose{Quat(v[3], v[4], v[5], v[6]), Vec3(v[0], v[1], v[2])};
-        if (!isFinite(pose) || !(std::abs(pose.q.norm() - 1.0) < 1e-3)) {
+        if (!isRigid(pose)) {
             errors.push_back({.message = "a pose must be finite with a quaternion of length 1 ± 0.001",
                               .file = path,
-                              .line = static_cast<int>(i) + 2,
+                              .line = numbers->lines[i],
                               .column = 1});
         }
         pose.q.normalize();
@@ -58,7 +68,7 @@ Result<std::vector<Pose>> readPoses(const std::string& path, NumberTable& table)
     return poses;
 }
 
-std::string statusOf(const tick::PartQueryResult& r) {
+std::string statusOf(const query::PartQueryResult& r) {
     std::string status;
     const auto add = [&](bool holds, const char* word) {
         if (!holds) return;
@@ -71,9 +81,10 @@ std::string statusOf(const tick::PartQueryResult& r) {
     return status.empty() ? "ok" : status;
 }
 
-void writeRow(fmt::memory_buffer& text, const std::vector<double>& pose, const tick::PartQueryResult& r, double us) {
+/// `input`: the row as the file writes it.
+void writeRow(fmt::memory_buffer& text, std::string_view input, const query::PartQueryResult& r, double us) {
     auto out = std::back_inserter(text);
-    for (std::size_t i = 0; i < 7; ++i) fmt::format_to(out, "{},", pose[i]);
+    fmt::format_to(out, "{},", input);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const Vec3 closest = r.beyond_proximity ? Vec3(Vec3::Constant(nan)) : r.closest;
     const Vec3 normal = r.beyond_proximity ? Vec3(Vec3::Constant(nan)) : r.normal;
@@ -106,22 +117,22 @@ int query(const QueryOptions& options) {
         build(options.shell, options.shell_unit.empty() ? options.unit : options.shell_unit, shell_needs);
     if (!shell) return fail(shell.errors());
 
-    tick::PartQueryRequest request;
+    query::PartQueryRequest request;
     if (options.proximity_mm) request.proximity = *options.proximity_mm * 1e-3;
     request.max_nodes = options.budget_nodes;
     request.quality = options.quality;
     request.two_way = options.two_way;
     request.mode = options.mode == "linear" ? model::FieldMode::Linear : model::FieldMode::Trilinear;
-    tick::PartQuery part_query(*field, *shell, request);
+    query::PartQuery part_query(*field, *shell, request);
     OutputFile out(options.out);
-    out.write(kHeader);
+    out.write(table.headerLine() + kResultColumns + '\n');
     fmt::memory_buffer text;
     for (std::size_t i = 0; i < poses->size(); ++i) {
         const auto begin = std::chrono::steady_clock::now();
-        const tick::PartQueryResult result = part_query.at((*poses)[i]);
+        const query::PartQueryResult result = part_query.at((*poses)[i]);
         const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
         text.clear();
-        writeRow(text, table.rows[i], result, took.count());
+        writeRow(text, table.rowLine(i), result, took.count());
         out.write({text.data(), text.size()});
         if (i % 1000 == 0) progress.show(fmt::format("{} of {} poses", i, poses->size()));
     }

@@ -1,10 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <map>
 
 #include "core/replay/replayer.h"
+#include "study/protocol/document.h"
 #include "study/protocol/protocol_reader.h"
-#include "study/store/identity.h"
+#include "study/store/digest.h"
+#include "study/store/hex_text.h"
 #include "study/store/store_reader.h"
 #include "ui/app/run_study.h"
 #include "ui/cli/commands.h"
@@ -14,13 +18,28 @@ namespace passung::cli {
 
 namespace {
 
+enum class Verdict { Same, Differs, NotProven };
+
 /// Replays attempts of one database; parts and protocols are built once.
 class Replays {
 public:
-    explicit Replays(const store::StoreReader& reader) : reader_(reader) {}
+    Replays(const store::StoreReader& reader, const std::string& meshes) : reader_(reader) {
+        // Where the protocol's file was is not stored: a path of one machine means nothing on another.
+        if (!meshes.empty()) {
+            folders_ = {meshes};
+        } else {
+            folders_ = {"", std::filesystem::path(reader.path()).parent_path()};
+        }
+    }
 
-    /// Prints one line per attempt; true if every bit was the same.
-    Result<bool> replay(const store::AttemptRow& attempt) {
+    /// Prints one line per attempt.
+    Result<Verdict> replay(const store::AttemptRow& attempt) {
+        const auto records = reader_.records(attempt.attempt_id);
+        if (!records) return records.errors();
+        if (records->empty()) {
+            fmt::print("{}: NOT PROVEN: no tick of it is recorded ({})\n", nameOf(attempt), attempt.outcome);
+            return Verdict::NotProven;
+        }
         auto plan = planOf(attempt.protocol_sha256);
         if (!plan) return plan.errors();
         const auto& conditions = (*plan)->conditions;
@@ -32,30 +51,37 @@ public:
         }
         auto scene = model::buildScene(condition->scene, parts_);
         if (!scene) return scene.errors();
-        const auto records = reader_.records(attempt.attempt_id);
-        if (!records) return records.errors();
-        const replay::ReplayReport report = replay::replay(*scene, *records);
-        return tell(attempt, report);
+        return tell(attempt, replay::replay(*scene, *records));
     }
 
 private:
-    bool tell(const store::AttemptRow& attempt, const replay::ReplayReport& report) const {
-        const std::string name =
-            fmt::format("attempt {} ({}, session {}, trial {}, {})", attempt.attempt_id, attempt.participant_id,
-                        attempt.session_ordinal, attempt.trial_index + 1, attempt.condition);
+    static std::string nameOf(const store::AttemptRow& attempt) {
+        return fmt::format("attempt {} ({}, session {}, trial {}, {})", attempt.attempt_id, attempt.participant_id,
+                           attempt.session_ordinal, attempt.trial_index + 1, attempt.condition);
+    }
+
+    static Verdict tell(const store::AttemptRow& attempt, const replay::ReplayReport& report) {
+        const std::string name = nameOf(attempt);
         if (report.first_difference) {
             const auto& d = *report.first_difference;
             fmt::print("{}: DIFFERS at tick {} in {}: recorded {}, replayed {}\n", name, d.tick, d.column, d.recorded,
                        d.replayed);
-            return false;
+            return Verdict::Differs;
         }
         const std::string hash = store::hexText(report.state_hash);
-        if (!attempt.state_hash.empty() && attempt.state_hash != hash) {
+        if (attempt.state_hash.empty()) {
+            fmt::print(
+                "{}: NOT PROVEN: {} ticks, every recorded bit the same, but there is no state hash to compare "
+                "({})\n",
+                name, report.ticks, attempt.outcome);
+            return Verdict::NotProven;
+        }
+        if (attempt.state_hash != hash) {
             fmt::print("{}: DIFFERS in the state hash: recorded {}, replayed {}\n", name, attempt.state_hash, hash);
-            return false;
+            return Verdict::Differs;
         }
         fmt::print("{}: {} ticks, every recorded bit the same, state hash {}\n", name, report.ticks, hash);
-        return true;
+        return Verdict::Same;
     }
 
     Result<const protocol::StudyPlan*> planOf(const std::string& sha256) {
@@ -64,15 +90,60 @@ private:
         if (!rows) return rows.errors();
         for (const auto& row : *rows) {
             if (row.sha256 != sha256) continue;
-            auto plan = protocol::readProtocolText(row.source_text, reader_.path() + ":" + row.name,
-                                                   app::knownDevices(), app::knownMeasures());
+            auto plan = readPlan(row);
             if (!plan) return plan.errors();
             return &plans_.emplace(sha256, std::move(*plan)).first->second;
         }
         return Error{.message = "is not in the database", .key = "protocol", .value = sha256};
     }
 
+    /// The stored protocol with the mesh files of the first folder that has them all.
+    Result<protocol::StudyPlan> readPlan(const store::ProtocolRow& row) {
+        Errors errors;
+        for (const std::filesystem::path& folder : folders_) {
+            auto plan = protocol::readProtocolText(row.source_text, (folder / (row.name + ".toml")).string(),
+                                                   app::knownDevices(), app::knownMeasures());
+            if (!plan) {
+                if (errors.empty()) errors = plan.errors();
+                continue;
+            }
+            if (const auto same = compareMeshes(row.sha256, *plan); !same) return same.errors();
+            return plan;
+        }
+        errors.push_back({.message =
+                              "the stored protocol cannot be read here; its mesh paths start from this folder or "
+                              "the database's: --meshes names another",
+                          .file = reader_.path()});
+        return errors;
+    }
+
+    /// A replay with another geometry would prove nothing.
+    Result<Done> compareMeshes(const std::string& sha256, const protocol::StudyPlan& plan) const {
+        const auto rows = reader_.meshes();
+        if (!rows) return rows.errors();
+        Errors errors;
+        for (const protocol::MeshSource& mesh : plan.meshes) {
+            const auto stored = std::find_if(rows->begin(), rows->end(), [&](const store::MeshRow& row) {
+                return row.protocol_sha256 == sha256 && row.mesh == mesh.name;
+            });
+            const auto bytes = protocol::readFile(mesh.path);
+            if (!bytes) return bytes.errors();
+            if (stored == rows->end()) {
+                errors.push_back({.message = "the database does not know this mesh file", .file = mesh.path});
+            } else if (const std::string found = store::sha256Hex(*bytes); found != stored->sha256) {
+                errors.push_back(
+                    {.message = "is not the mesh file of the recorded trials, whose SHA-256 is " + stored->sha256,
+                     .file = mesh.path,
+                     .key = "SHA-256",
+                     .value = found});
+            }
+        }
+        if (!errors.empty()) return errors;
+        return Done{};
+    }
+
     const store::StoreReader& reader_;
+    std::vector<std::filesystem::path> folders_;
     model::PartCache parts_;
     std::map<std::string, protocol::StudyPlan> plans_;
 };
@@ -91,16 +162,21 @@ int replay(const ReplayOptions& options) {
         auto all = reader->attempts();
         if (!all) return fail(all.errors());
         attempts = std::move(*all);
+        if (attempts.empty()) return fail({{.message = "holds no attempts", .file = options.database}});
     }
-    Replays replays(*reader);
-    std::size_t different = 0;
+    Replays replays(*reader, options.meshes);
+    std::size_t different = 0, unproven = 0;
     for (const auto& attempt : attempts) {
-        const auto same = replays.replay(attempt);
-        if (!same) return fail(same.errors());
-        different += *same ? 0 : 1;
+        const auto verdict = replays.replay(attempt);
+        if (!verdict) return fail(verdict.errors());
+        different += *verdict == Verdict::Differs ? 1 : 0;
+        unproven += *verdict == Verdict::NotProven ? 1 : 0;
     }
-    if (attempts.size() > 1) fmt::print("{} attempts replayed, {} differ\n", attempts.size(), different);
-    return different == 0 ? 0 : 1;
+    if (attempts.size() > 1) {
+        fmt::print("{} attempts replayed, {} differ{}\n", attempts.size(), different,
+                   unproven == 0 ? "" : fmt::format(", {} could not be proven", unproven));
+    }
+    return different + unproven == 0 ? 0 : 1;
 }
 
 }  // namespace passung::cli

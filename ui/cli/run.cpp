@@ -3,6 +3,7 @@
 
 #include "analysis/export/summary.h"
 #include "study/protocol/protocol_reader.h"
+#include "study/session/plan_text.h"
 #include "study/store/store_reader.h"
 #include "ui/app/run_study.h"
 #include "ui/cli/commands.h"
@@ -37,7 +38,7 @@ void tellRecovery(const std::string& database, const store::RecoveryReport& repo
 int run(const RunOptions& options) {
     auto plan = protocol::readProtocol(options.protocol, app::knownDevices(), app::knownMeasures());
     if (!plan) return fail(plan.errors());
-    for (const auto& warning : plan->warnings) fmt::print("{}: warning: {}\n", options.protocol, warning);
+    warn(options.protocol, session::planWarnings(*plan));
     if (options.seed) plan->seed = *options.seed;
 
     app::RunOptions what;

@@ -19,13 +19,31 @@ std::string file(const std::string& text) {
 
 TEST(NumberTable, ReadsNumbersNanAndForeignLineEnds) {
     // Truth: closed form (the text itself).
-    const auto table = readNumbers(file("a,b,more\r\n1,-2.5e-3,3\r\nnan,+4,inf\r\n\n"), {"a", "b"});
+    const auto table = readNumbers(file("a,b\r\n1,-2.5e-3\r\nnan, +4\r\ninf,0\r\n\n"), {"a", "b"});
     ASSERT_TRUE(table);
-    ASSERT_EQ(table->rows.size(), 2u);
+    ASSERT_EQ(table->rows.size(), 3u);
     EXPECT_EQ(table->rows[0][1], -2.5e-3);
     EXPECT_TRUE(std::isnan(table->rows[1][0]));
-    EXPECT_TRUE(std::isinf(table->rows[1][2]));
-    EXPECT_EQ(table->columns[2], "more");
+    EXPECT_EQ(table->rows[1][1], 4.0);
+    EXPECT_TRUE(std::isinf(table->rows[2][0]));
+}
+
+TEST(NumberTable, KeepsFurtherColumnsAsTheyAreWritten) {
+    // Truth: closed form (the text itself): a comma in quotes parts nothing, a quote is doubled.
+    const auto table = readNumbers(file("a,b,note,\"x, y\"\n1,2,\"one, \"\"or\"\" two\",0.10\n3,4,,7\n"), {"a", "b"});
+    ASSERT_TRUE(table);
+    EXPECT_EQ(table->headerLine(), "a,b,note,\"x, y\"");
+    ASSERT_EQ(table->texts.size(), 2u);
+    EXPECT_EQ(table->rowLine(0), "1,2,\"one, \"\"or\"\" two\",0.10");
+    EXPECT_EQ(table->rowLine(1), "3,4,,7");
+    EXPECT_EQ(table->rows[0], (std::vector<double>{1, 2}));
+}
+
+TEST(NumberTable, KnowsTheLineOfEveryRow) {
+    // Truth: closed form (the text itself): empty lines count as lines and are no rows.
+    const auto table = readNumbers(file("a\n1\n\n  \r\n2\n\n3\n\n"), {"a"});
+    ASSERT_TRUE(table);
+    EXPECT_EQ(table->lines, (std::vector<int>{2, 5, 7}));
 }
 
 TEST(NumberTable, NamesThePlaceOfEveryBadCell) {

@@ -1,12 +1,14 @@
 #include "core/loop/haptic_loop.h"
 
 #include <gtest/gtest.h>
+#include <time.h>
 
 #include <algorithm>
 #include <cmath>
 #include <thread>
 
 #include "core/base/random.h"
+#include "core/loop/cadence.h"
 #include "tests/support/rt_guard.h"
 #include "tests/support/scenes.h"
 
@@ -47,13 +49,14 @@ TEST(HapticCycle, RecordsEveryTickAndShowsSixtyImagesASecond) {
     StillDevice device(kPressed);
     loop::RecordRing ring(2048);
     loop::HapticCycle cycle(bench.model(), device, ring, true);
-    for (int i = 0; i < 1000; ++i) cycle.run(i == 500);
+    for (int i = 0; i < 1000; ++i) cycle.run(i == 500 ? 3 : 0);
     std::vector<TickRecord> records(2048);
     records.resize(ring.take(records));
     ASSERT_EQ(records.size(), 1000u);
     for (std::size_t i = 0; i < records.size(); ++i) {
         EXPECT_EQ(records[i].tick, static_cast<std::int64_t>(i));
         EXPECT_EQ((records[i].status & kOverrun) != 0, i == 500);
+        EXPECT_EQ(records[i].periods, i == 500 ? 4u : 1u);
     }
     EXPECT_EQ(device.images, 60);
     EXPECT_NEAR(device.last_image.X_WShown.p.z(), 0.01, 1e-4);  // the proxy
@@ -71,7 +74,7 @@ TEST(HapticCycle, AllocatesLocksAndWritesNothing) {
     loop::RecordRing ring(1024);  // fills up: dropping must be as quiet
     loop::HapticCycle cycle(bench.model(), device, ring, true);
     support::RtGuard guard;
-    for (int i = 0; i < 10000; ++i) cycle.run(false);
+    for (int i = 0; i < 10000; ++i) cycle.run();
     EXPECT_EQ(guard.violations(), 0) << guard.describe();
     EXPECT_EQ(ring.dropped(), 10000 - 1024);
 }
@@ -95,6 +98,79 @@ TEST(RealTimeThread, RunsCyclesAndStopsWithAZeroWrench) {
         EXPECT_EQ(thread.ticks(), cycle.ticks());
     }
     EXPECT_EQ(device.last.force.norm(), 0.0);
+}
+
+TEST(Cadence, MissesTheCyclesThatAreDueBeforeTheLastOneEnds) {
+    // Truth: closed form. Cycles due every 1 000 000 ns from 5 on; each row: when the cycle ends after it was due, and
+    // how many are missed. One that ends just when the next is due misses none.
+    constexpr std::int64_t ms = kTickNanoseconds;
+    loop::Cadence cadence(5);
+    std::int64_t due = 5;
+    for (const auto& [took, missed] : std::vector<std::pair<std::int64_t, std::int64_t>>{
+             {ms / 2, 0}, {ms, 0}, {ms + 1, 1}, {2 * ms, 1}, {2 * ms + 1, 2}, {ms / 3, 0}, {100 * ms, 99}}) {
+        EXPECT_EQ(cadence.due(), due);
+        EXPECT_EQ(cadence.finish(due + took), missed) << took;
+        due += (1 + missed) * ms;
+    }
+    EXPECT_EQ(cadence.due(), due);
+}
+
+/// Takes two and a half periods for its eleventh and its twenty-first reading, by a clock that it only ever looks at.
+class SlowDevice final : public loop::HapticDevice {
+public:
+    const DeviceDescription& description() const override { return description_; }
+    DeviceReading read() noexcept override {
+        if (readings_ == 10 || readings_ == 20) {
+            for (const std::int64_t end = now() + 5 * kTickNanoseconds / 2; now() < end;) continue;
+        }
+        ++readings_;
+        return {kPressed};
+    }
+    void command(const Wrench&) noexcept override {}
+
+private:
+    static std::int64_t now() noexcept {
+        timespec t{};
+        clock_gettime(CLOCK_MONOTONIC, &t);
+        return static_cast<std::int64_t>(t.tv_sec) * 1'000'000'000 + t.tv_nsec;
+    }
+    int readings_ = 0;
+    DeviceDescription description_;
+};
+
+TEST(RealTimeThread, RecordsEveryCycleThatASlowDeviceMadeItMiss) {
+    // Truth: invariant. A cycle of 2.5 periods or more lets at least two pass; a busy machine may add to it.
+    test::Bench bench = ballInTable();
+    SlowDevice device;
+    loop::RecordRing ring(4096);
+    loop::HapticCycle cycle(bench.model(), device, ring, true);
+    loop::RealTimeThread thread(cycle);
+    std::vector<TickRecord> records, some(256);
+    const auto takeAll = [&] {
+        while (const std::size_t count = ring.take(some))
+            records.insert(records.end(), some.begin(), some.begin() + static_cast<std::ptrdiff_t>(count));
+    };
+    while (records.size() < 30) takeAll();
+    thread.stop();
+    takeAll();
+    std::int64_t missed = 0;
+    for (const TickRecord& record : records) {
+        EXPECT_GE(record.periods, record.tick == 11 || record.tick == 21 ? 3u : 1u) << record.tick;
+        EXPECT_EQ((record.status & kOverrun) != 0, record.periods > 1) << record.tick;
+        missed += record.periods - 1;
+    }
+    EXPECT_EQ(thread.overruns(), missed);
+}
+
+TEST(TimingHistogram, ShorterThanAHundredNanosecondsIsOneBucket) {
+    // Truth: closed form. 1 ns is told as the largest, 40 ns, next to a long one as the bucket's edge, 100 · 2^(1/8)
+    // ns.
+    loop::TimingHistogram histogram;
+    histogram.add(1);
+    histogram.add(40);
+    EXPECT_DOUBLE_EQ(histogram.quantileMicroseconds(0.5), 0.040);
+    histogram.add(1000);
+    EXPECT_DOUBLE_EQ(histogram.quantileMicroseconds(0.5), 0.1 * std::exp2(0.125));
 }
 
 TEST(TimingHistogram, QuantilesAreWithinABucketOfTheTruth) {

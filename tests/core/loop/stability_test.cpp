@@ -171,7 +171,7 @@ TEST(Stability, NonsenseIsNeverStable) {
     EXPECT_FALSE(isStable(bad));
     EXPECT_EQ(stableStiffnessBorder(bad), 0);
     bad = good;
-    bad.delay_ticks = kMaxDelayTicks + 1;
+    bad.delay_ticks = kMaxDeviceDelayTicks + 1;
     EXPECT_FALSE(isStable(bad));
     bad = good;
     bad.stiffness = -1;

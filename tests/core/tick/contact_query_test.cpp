@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "core/base/random.h"
 #include "core/model/part.h"
-#include "core/tick/part_query.h"
+#include "core/tick/penalty.h"
 
 namespace passung {
 namespace {
@@ -25,10 +27,19 @@ Pose somewhere(double reach, Random& random) {
             Vec3(random.uniform(-reach, reach), random.uniform(-reach, reach), random.uniform(-reach, reach))};
 }
 
+/// A peg of 20 mm about to enter, in or anywhere near a bore with 0.2 mm of radial clearance.
+Pose pegInPlate(int i, Random& random) {
+    if (i % 4 != 0) return somewhere(0.04, random);
+    return {rotationFromVector(1e-3 * Vec3(random.normal(), random.normal(), 0)),
+            Vec3(random.uniform(-2e-4, 2e-4), random.uniform(-2e-4, 2e-4), -0.01)};
+}
+
+const model::Shape kPlate = model::BorePlate{0.05, 0.05, 0.02, 0.0204, 0.02, 0.001};
+const model::Shape kPeg = model::Peg{0.02, 0.04, 0.001};
+
 struct BruteForce {
     double phi = 1e300;
     std::size_t inside = 0;
-    Vec3 area_force = Vec3::Zero();
 };
 
 /// Every point of the shell through the same field, without the tree.
@@ -38,27 +49,21 @@ BruteForce bruteForce(const model::Part& field, const Pose& X_WF, const model::P
         const Vec3 p = X_WF.inverse() * (X_WS * point.position);
         const double phi = field.field->sample(p, model::FieldMode::Trilinear).phi;
         result.phi = std::min(result.phi, phi);
-        if (!(phi < 0.0)) continue;
-        ++result.inside;
-        result.area_force += point.area * phi * (X_WS.q * point.normal);
+        result.inside += phi < 0.0 ? 1 : 0;
     }
     return result;
 }
 
 TEST(ContactQuery, FindsExactlyWhatTestingEveryPointFinds) {
     // Truth: invariant. The tree prunes only what is proven to be out of reach.
-    const model::Part plate = build(model::BorePlate{0.05, 0.05, 0.02, 0.0204, 0.02, 0.001});
-    const model::Part peg = build(model::Peg{0.02, 0.04, 0.001});
+    const model::Part plate = build(kPlate), peg = build(kPeg);
     tick::QueryWorkspace workspace(peg.shell->nodes().size());
     tick::ContactManifold manifold(peg.shell->points().size());
     Random random(1);
     int touching = 0;
     for (int i = 0; i < 500; ++i) {
         const Pose X_WF = somewhere(0.2, random);
-        const Pose X_FS = i % 4 == 0 ? Pose{rotationFromVector(1e-3 * Vec3(random.normal(), random.normal(), 0)),
-                                            Vec3(random.uniform(-2e-4, 2e-4), random.uniform(-2e-4, 2e-4), -0.01)}
-                                     : somewhere(0.04, random);
-        const Pose X_WS = X_WF * X_FS;
+        const Pose X_WS = X_WF * pegInPlate(i, random);
         manifold.clear();
         tick::QueryRequest request;
         request.search_below = 1.0;
@@ -75,66 +80,81 @@ TEST(ContactQuery, FindsExactlyWhatTestingEveryPointFinds) {
     EXPECT_LT(touching, 450);
 }
 
-TEST(ContactQuery, StopsAtItsBudgetAndSaysWhatItDidNotProve) {
-    // Truth: invariant. Quality falls with the budget; the whole tree gives quality 1; the wrench stays near the full
-    // one because unexpanded nodes stand in with their area.
-    const model::Part table = build(model::Box{0.06, 0.06, 0.02});
-    const model::Part ball = build(model::Sphere{0.03}, 0.5e-3);
-    tick::PartQueryRequest request;
-    const Pose X_FS{Quat::Identity(), Vec3(0, 0, 0.01 + 0.015 - 0.003)};
-    const auto full = tick::PartQuery(table, ball, request).at(X_FS);
-    EXPECT_EQ(full.quality, 1.0);
-    double last_quality = 1.1;
-    for (const int budget : {60, 30, 15}) {
-        request.max_nodes = budget;
-        const auto part = tick::PartQuery(table, ball, request).at(X_FS);
-        EXPECT_TRUE(part.budget_reached);
-        EXPECT_LE(part.nodes_visited, budget);
-        EXPECT_LE(part.quality, last_quality);
-        EXPECT_GT(part.wrench.force.z(), 0.3 * full.wrench.force.z());
-        EXPECT_LT(part.wrench.force.z(), 3.0 * full.wrench.force.z());
-        last_quality = part.quality;
+TEST(ContactQuery, ManifoldHoldsEveryPointThatIsTrulyNearOnceAndNoneThatIsFar) {
+    // Truth: closed form of the plate. φ is read with an error of at most e(p), so what is truly below the limit by
+    // more than e must be there, and what is truly above it by more than e must not.
+    const model::Part plate = build(kPlate), peg = build(kPeg);
+    const auto points = peg.shell->points();
+    const double limit = 0.3e-3;
+    tick::QueryWorkspace workspace(peg.shell->nodes().size());
+    tick::ContactManifold manifold(points.size());
+    const auto keyOf = [](const Vec3& p) {  // points lie tenths of a millimetre apart, poses round to far below a nm
+        return std::array{std::llround(p.x() * 1e9), std::llround(p.y() * 1e9), std::llround(p.z() * 1e9)};
+    };
+    Random random(2);
+    int certain = 0, excluded = 0;
+    for (int i = 0; i < 200; ++i) {
+        const Pose X_FS = pegInPlate(i, random);
+        manifold.clear();
+        tick::queryContacts(*plate.field, Pose{}, *peg.shell, X_FS, {.collect_below = limit, .search_below = limit},
+                            workspace, manifold);
+        std::map<std::array<long long, 3>, int> times;
+        for (const auto& contact : manifold) ++times[keyOf(contact.position)];
+        for (const auto& point : points) {
+            const Vec3 p = X_FS * point.position;
+            const double truth = model::signedDistance(kPlate, p);
+            const double error = plate.field->errorBound(p, model::FieldMode::Trilinear);
+            const auto found = times.find(keyOf(p));
+            const int count = found == times.end() ? 0 : found->second;
+            ASSERT_LE(count, 1) << "pose " << i << ", point " << point.position.transpose();
+            if (truth < limit - error) {
+                ASSERT_EQ(count, 1) << "pose " << i << ", point " << point.position.transpose() << " φ " << truth;
+                ++certain;
+            } else if (truth > limit + error) {
+                ASSERT_EQ(count, 0) << "pose " << i << ", point " << point.position.transpose() << " φ " << truth;
+                ++excluded;
+            }
+        }
+        ASSERT_LE(times.size(), points.size());
     }
-    EXPECT_LT(last_quality, 1.0);
-    request.quality = 1.0;  // a floor wins over the budget, and says so
-    const auto floor = tick::PartQuery(table, ball, request).at(X_FS);
-    EXPECT_TRUE(floor.quality_overruled_budget);
-    EXPECT_EQ(floor.signed_distance, full.signed_distance);
+    EXPECT_GT(certain, 10000);
+    EXPECT_GT(excluded, 10000);
 }
 
-TEST(PartQuery, TwoWaysOfASphereInAPlaneAgreeOnDepthAndWrench) {
-    // Truth: closed form. h = 2 mm; F = κ π h² (3R - h) / 3 from the sphere's side.
-    const model::Part table = build(model::Box{0.08, 0.08, 0.04}, 0.7e-3);
-    const model::Part ball = build(model::Sphere{0.04}, 0.7e-3);
-    tick::PartQueryRequest request;
-    request.two_way = true;
-    const double h = 0.002, R = 0.02;
-    const auto r = tick::PartQuery(table, ball, request).at({Quat::Identity(), Vec3(0, 0, 0.02 + R - h)});
-    EXPECT_NEAR(r.signed_distance, -h, r.error_bound);
-    const double expected = 1e9 * 3.14159265358979 * h * h * (3 * R - h) / 3;
-    EXPECT_NEAR(r.wrench.force.z(), expected, 0.05 * expected);
-    EXPECT_LT(r.wrench.torque.norm(), 0.02 * expected * R);
-}
-
-TEST(PartQuery, DistanceIsWithinItsBoundOfTheTruthNearAndFar) {
-    // Truth: closed form of two spheres.
-    const model::Part a = build(model::Sphere{0.03}), b = build(model::Sphere{0.02});
-    Random random(3);
-    for (const double reach : {0.02, 0.05, 0.5, 5.0}) {
-        for (int i = 0; i < 100; ++i) {
-            const Pose X_FS = somewhere(reach, random);
-            // The point of b's surface that lies nearest to a's centre.
-            const double truth = std::abs(X_FS.p.norm() - 0.01) - 0.015;
-            const auto r = tick::PartQuery(a, b, {}).at(X_FS);
-            ASSERT_LE(std::abs(r.signed_distance - truth), r.error_bound);
-            ASSERT_FALSE(r.beyond_proximity);
+TEST(ContactQuery, ABudgetKeepsTheWeightOfAPlatePressedFlatAndSaysWhatItDidNotProve) {
+    // Truth: closed form. A plate of 20 mm lies 1 mm deep on a table: F = κ A h, and its sides cancel. The lower face
+    // is flat and equally deep, so a node that stands in with its point and the area below gives what its points would
+    // give; 1 % is for nodes that join points of the lower face and samples of its rim.
+    const model::Part table = build(model::Box{0.06, 0.06, 0.02});
+    const model::Part plate = build(model::Box{0.02, 0.02, 0.008}, 0.5e-3);
+    const double h = 1e-3, kappa = 1e9;
+    const Pose X_WS{Quat::Identity(), Vec3(0.003, -0.002, 0.01 + 0.004 - h)};
+    model::ContactSpec contact;
+    contact.variant = model::PenaltyVariant::AreaWeighted;
+    contact.area_stiffness = kappa;
+    tick::QueryWorkspace workspace(plate.shell->nodes().size());
+    tick::ContactManifold manifold(plate.shell->nodes().size() + plate.shell->points().size());
+    const double truth = kappa * 0.02 * 0.02 * h;
+    double last_quality = 1.1;
+    for (const int budget : {0, 200, 100, 60, 30}) {
+        manifold.clear();
+        const auto answer = tick::queryContacts(*table.field, Pose{}, *plate.shell, X_WS,
+                                                {.search_below = 1.0, .max_nodes = budget}, workspace, manifold);
+        const Wrench wrench = tick::penaltyWrench(contact, manifold, X_WS.p);
+        EXPECT_EQ(answer.budget_reached, budget > 0) << budget;
+        if (budget > 0) {
+            EXPECT_LE(answer.nodes_visited, budget);
+        }
+        EXPECT_NEAR(wrench.force.z(), truth, 0.01 * truth) << budget;
+        EXPECT_NEAR(answer.phi, -h, 1e-8) << budget << ": the field is exact on a plane up to its floats";
+        EXPECT_LE(answer.quality, last_quality) << budget;
+        last_quality = answer.quality;
+        if (budget == 0) {
+            EXPECT_LT(wrench.force.head<2>().norm(), 0.01 * truth);
+            EXPECT_EQ(answer.quality, 1.0);
         }
     }
-    tick::PartQueryRequest request;
-    request.proximity = 0.01;
-    const auto far = tick::PartQuery(a, b, request).at({Quat::Identity(), Vec3(0.2, 0, 0)});
-    EXPECT_TRUE(far.beyond_proximity);
-    EXPECT_EQ(far.signed_distance, 0.01);
+    EXPECT_LT(last_quality, 1.0);
 }
 
 }  // namespace

@@ -86,7 +86,11 @@ TEST(Step, GodObjectOverlapsFarLessThanPenaltyOnTheSamePath) {
     for (const auto method : {model::ContactMethod::Penalty, model::ContactMethod::GodObjectHeuristic}) {
         test::Bench bench(pegAndPlate(method));
         double& worst = deepest[method == model::ContactMethod::Penalty ? 0 : 1];
-        for (int i = 0; i < kTicks; ++i) worst = std::max(worst, bench.step(path(i)).frame.proxy_depth);
+        for (int i = 0; i < kTicks; ++i) {
+            const auto out = bench.step(path(i));
+            worst = std::max(worst, out.frame.proxy_depth);
+            ASSERT_EQ(out.frame.status & (kIterationLimit | kContactCap), 0u) << "tick " << i;
+        }
     }
     EXPECT_GT(deepest[0], 0.3e-3);
     EXPECT_LT(deepest[1], 0.05 * 0.5e-3 + 1e-6);

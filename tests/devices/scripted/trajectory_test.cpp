@@ -38,6 +38,13 @@ TEST(Trajectory, IsBrokenBetweenRowsOfWhichOneIsNan) {
     EXPECT_EQ(path->at(30).p.x(), 3.0);
 }
 
+TEST(Trajectory, NamesTheLineOfABadRowAlsoBelowEmptyLines) {
+    // Truth: closed form (header, row, two empty lines, the row whose time does not rise).
+    const auto path = read("0,0,0,0,1,0,0,0\n\n\n0,0,0,0,1,0,0,0\n");
+    ASSERT_FALSE(path);
+    EXPECT_EQ(path.errors().front().line, 5);
+}
+
 TEST(Trajectory, RefusesTimesThatDoNotRiseAndRotationsThatAreNone) {
     // Truth: invariant.
     EXPECT_FALSE(read("0,0,0,0,1,0,0,0\n0,0,0,0,1,0,0,0\n"));

@@ -113,7 +113,7 @@ TEST(DeviceDynamics, HeldHandleNeverGainsEnergy) {
 
 TEST(DeviceDynamics, CommandActsAfterExactlyItsDelay) {
     // Truth: invariant; the command of cycle k moves the handle in cycle k + d and not before.
-    for (const int d : {0, 1, 3, kMaxCommandDelay}) {
+    for (const int d : {0, 1, 3, loop::kMaxDeviceDelayTicks}) {
         DeviceParams p = smoothDevice();
         p.delay_ticks = d;
         DeviceDynamics device(p, {});

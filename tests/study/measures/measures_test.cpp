@@ -83,6 +83,29 @@ TEST(Measures, TimesAreTheNearestNumbersToTheirMilliseconds) {
     EXPECT_EQ(values.at("trial_time_s"), 4.028);
 }
 
+TEST(Measures, MissedCyclesStretchTheTimesThatTheyFallInto) {
+    // Truth: closed form. Leaves at tick 200, touches at 400, engages at 600, ends at 1000. Of missed cycles 5 lie
+    // before the start tick's record, 10 before leaving, 20 in the approach after it, 30 in the search, 40 in the
+    // insertion.
+    auto records = restingTicks(1001);
+    for (std::size_t i = 200; i < records.size(); ++i) records[i].hand_position_m = {0.1f, 0.0f, 0.5f};
+    for (std::size_t i = 400; i < records.size(); ++i) records[i].force_N = {0.0f, 0.0f, 2.0f};
+    for (std::size_t i = 600; i < records.size(); ++i) putTipAt(records[i], 0.005);
+    records[0].periods = 6;
+    records[100].periods = 11;
+    records[300].periods = 21;
+    records[500].periods = 31;
+    records[1000].periods = 41;
+    const auto values = measure(records, contextUntil(1000));
+    EXPECT_DOUBLE_EQ(*values.at("trial_time_s"), 1.100);
+    EXPECT_DOUBLE_EQ(*values.at("completion_time_s"), 0.890);
+    EXPECT_DOUBLE_EQ(*values.at("approach_time_s"), 0.430);
+    EXPECT_DOUBLE_EQ(*values.at("search_time_s"), 0.230);
+    EXPECT_DOUBLE_EQ(*values.at("insertion_time_s"), 0.440);
+    EXPECT_DOUBLE_EQ(*values.at("contact_time_s"), 0.670);  // ticks 400…999 and the 70 periods that two of them last
+    EXPECT_NEAR(*values.at("impulse_Ns"), 2.0 * 0.670, 1e-12);
+}
+
 TEST(Measures, CompletionTimeIsEmptyWithoutSuccess) {
     // Truth: closed form (definition)
     auto records = restingTicks(1001);

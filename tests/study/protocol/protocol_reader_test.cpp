@@ -1,6 +1,10 @@
 #include "study/protocol/protocol_reader.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
 
 #include "tests/study/protocol/fake_devices.h"
 
@@ -197,19 +201,54 @@ TEST(ProtocolReader, ReadsBlocks) {
               "p.toml:30:10: error: block.main.trials: 5: must be at most the number of conditions, 4");
 }
 
-TEST(ProtocolReader, WarnsOfUnbalancedNumbers) {
-    // Truth: closed form: four conditions need multiples of four; order "listed" needs none.
-    auto head = kHead;
-    head.replace(head.find("participants = 4"), 16, "participants = 6");
-    const auto plan = read(head + kScene + kTask + kFactors + kBlock);
-    ASSERT_TRUE(plan);
-    ASSERT_EQ(plan->warnings.size(), 1u);
-    EXPECT_EQ(
-        plan->warnings[0],
-        "study.participants = 6 is not a multiple of the 4 rows of the Williams square: orders will not be balanced");
-    const auto listed = read(head + kScene + kTask + kFactors + kBlock + "order = \"listed\"\n");
-    ASSERT_TRUE(listed);
-    EXPECT_TRUE(listed->warnings.empty());
+TEST(ProtocolReader, WarnsOfPenaltiesThatNoStiffnessLimits) {
+    // Truth: invariant: raw and area_weighted are allowed, but nobody holds them below the device's stable maximum.
+    EXPECT_TRUE(read(kHead + kScene + kTask + kFactors + kBlock)->warnings.empty());
+    const std::string method = "[scene.contact]\nmethod = \"penalty\"\nvariant = ";
+    for (const std::string variant : {"raw", "area_weighted"}) {
+        const auto plan =
+            read(kHead + kScene + method + '"' + variant + "\"\n" + kTask + kBlock + "order = \"listed\"\n");
+        ASSERT_TRUE(plan);
+        ASSERT_EQ(plan->warnings.size(), 1u);
+        EXPECT_TRUE(plan->warnings[0].starts_with("contact.variant = \"" + variant + "\"")) << plan->warnings[0];
+        EXPECT_TRUE(plan->warnings[0].ends_with("conditions: single")) << plan->warnings[0];
+    }
+    const auto god =
+        read(kHead + kScene + "[scene.contact]\nvariant = \"raw\"\n" + kTask + kBlock + "order = \"listed\"\n");
+    ASSERT_TRUE(god);
+    EXPECT_TRUE(god->warnings.empty()) << "the god object does not use the variant";
+}
+
+TEST(ProtocolReader, TakesTheShareOfCyclesThatMayBeMissed) {
+    // Truth: closed form: the documented default, a value, and one out of range.
+    const std::string text = kHead + kScene + kTask + kFactors + kBlock;
+    EXPECT_EQ(read(text)->max_missed_share, 0.01);
+    EXPECT_EQ(read(text + "[loop]\nmax_missed_share = 0.05\n")->max_missed_share, 0.05);
+    EXPECT_EQ(errorsOf(text + "[loop]\nmax_missed_share = 1.5\n"),
+              "p.toml:31:20: error: loop.max_missed_share: 1.5: must be from 0 to 1");
+}
+
+TEST(ProtocolReader, ListsTheMeshFilesThatItNames) {
+    // Truth: closed form: names as the protocol writes them, paths from here, each file once.
+    const auto folder = std::filesystem::path(testing::TempDir()) / ("passung_meshes_" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder / "parts");
+    std::ofstream(folder / "parts/b.stl") << "solid\n";
+    const std::string scene = R"([scene]
+part = [
+  { name = "plate", shape = { kind = "bore_plate", width = 60, depth = 60, height = 30, bore_diameter = 21, bore_depth = 25 } },
+  { name = "wall", mesh = "parts/../parts/b.stl" },
+  { name = "peg", held = true, shape = { kind = "peg", diameter = 20, length = 50 }, pose = { position = [0, 0, 30] } },
+]
+[scene.device]
+preset = "arm"
+)";
+    const auto plan = readProtocolText(kHead + scene + kTask + kFactors + kBlock, (folder / "p.toml").string(),
+                                       fakeDevices(), kMeasures);
+    ASSERT_TRUE(plan) << toString(plan.errors().front());
+    ASSERT_EQ(plan->meshes.size(), 1u);
+    EXPECT_EQ(plan->meshes[0].name, "parts/b.stl");
+    EXPECT_EQ(plan->meshes[0].path, (folder / "parts/b.stl").string());
+    std::filesystem::remove_all(folder);
 }
 
 TEST(ProtocolReader, HoldsItsSceneItself) {
@@ -276,8 +315,9 @@ TEST(ProtocolReader, DescribesEveryNumberInDeterministicJson) {
     ASSERT_TRUE(first && second);
     EXPECT_EQ(first->expanded_json, second->expanded_json);
     const auto& params = first->conditions[1].params_json;
-    for (const std::string part : {R"("device":"arm")", R"("stiffness_N_per_m":4000,)", R"("bore_diameter_m":0.021,)",
-                                   R"("timeout_s":30,)", R"("position_m":[0,0,0],"quaternion_wxyz":[1,0,0,0])"})
+    for (const std::string part :
+         {R"("device":"arm")", R"("stiffness_N_per_m":4000,)", R"("bore_diameter_m":0.021,)", R"("timeout_s":30,)",
+          R"("clearance_m":0.000500000000)", R"("position_m":[0,0,0],"quaternion_wxyz":[1,0,0,0])"})
         EXPECT_NE(params.find(part), std::string::npos) << part << " in " << params;
     EXPECT_NE(first->expanded_json.find(params), std::string::npos);
 }

@@ -63,6 +63,18 @@ TEST(PlanText, RepeatsTheWarnings) {
     EXPECT_NE(describePlan(plan, 1).find("\nwarning: too few\n"), std::string::npos);
 }
 
+TEST(PlanText, WarnsOfUnbalancedNumbers) {
+    // Truth: closed form: four conditions need multiples of four; order "listed" needs none.
+    auto plan = smallPlan();
+    EXPECT_TRUE(planWarnings(plan).empty());
+    plan.participants = 6;
+    EXPECT_EQ(planWarnings(plan),
+              std::vector<std::string>{"study.participants = 6 is not a multiple of the 4 rows of the Williams square: "
+                                       "orders will not be balanced"});
+    plan.blocks[1].order = protocol::BlockOrder::Listed;
+    EXPECT_TRUE(planWarnings(plan).empty());
+}
+
 TEST(ParticipantOrder, FollowsTheBlocksOfTheProtocol) {
     // Truth: closed form: block 0 has 2 practice trials, block 1 three passes of four.
     const auto trials = planTrials(smallPlan(), 0, "P001");

@@ -341,6 +341,58 @@ TEST_F(SessionTest, TicksWithoutUsableInputMakeTheAttemptInvalid) {
     EXPECT_EQ(sink_.ends.at(0).invalid_reason, "no usable device input in 10 ticks");
 }
 
+/// The same script after `missed` cycles before `tick`.
+Records withMissed(Records records, std::size_t tick, std::uint32_t missed) {
+    records[tick].periods += missed;
+    records[tick].status |= kOverrun;
+    return records;
+}
+
+TEST_F(SessionTest, MissedCyclesStretchTheTrialAndTheSession) {
+    // Truth: closed form. 10 cycles are missed before tick 500: what happens later is 10 ms later, the trial 10 ms
+    // longer; 10 of 1460 cycles are 0.7 %, less than the 1 % that make an attempt invalid.
+    planTrials({withMissed(successScript(), 500, 10), successScript()});
+    ASSERT_TRUE(runSession());
+    const AttemptEnd& end = sink_.ends.at(0);
+    EXPECT_EQ(end.outcome, Outcome::Success);
+    EXPECT_TRUE(end.valid) << end.invalid_reason;
+    EXPECT_EQ(end.end_ns, (kSuccessTick + 10) * kMs);
+    EXPECT_DOUBLE_EQ(value(end, "trial_time_s").value(), 1.46);
+    EXPECT_DOUBLE_EQ(value(end, "approach_time_s").value(), 0.91);
+    const auto times = eventTimes();
+    EXPECT_EQ(std::vector<std::string>(times.begin(), times.begin() + 4),
+              (std::vector<std::string>{"trial_started@100", "first_contact@1010", "engaged@1010", "success@1560"}));
+    EXPECT_EQ(sink_.starts.at(1).start_ns, 1570 * kMs);
+}
+
+TEST_F(SessionTest, TooManyMissedCyclesMakeTheAttemptInvalid) {
+    // Truth: closed form. 20 of 1470 cycles are 1.4 %; before the start of the trial they do no harm; the protocol may
+    // allow more.
+    planTrials({withMissed(successScript(), 500, 20), withMissed(successScript(), 50, 20)});
+    ASSERT_TRUE(runSession());
+    EXPECT_FALSE(sink_.ends.at(0).valid);
+    EXPECT_EQ(sink_.ends[0].invalid_reason, "loop: 20 of 1470 cycles missed");
+    EXPECT_EQ(sink_.ends[0].outcome, Outcome::Success);
+    EXPECT_TRUE(sink_.ends.at(1).valid) << sink_.ends[1].invalid_reason;
+    EXPECT_DOUBLE_EQ(value(sink_.ends[1], "trial_time_s").value(), 1.45);
+    plan_.max_missed_share = 0.02;
+    trials_.clear();
+    planTrials({withMissed(successScript(), 500, 20)});
+    ASSERT_TRUE(runSession());
+    EXPECT_TRUE(sink_.ends.at(2).valid) << sink_.ends[2].invalid_reason;
+}
+
+TEST_F(SessionTest, TimeOutCountsMissedCycles) {
+    // Truth: closed form. 2 s after tick 100 is tick 2090 if 10 cycles were missed on the way.
+    for (auto& condition : plan_.conditions) condition.task.timeout = 2.0;
+    planTrials({withMissed(script(4000, 100, kNever), 600, 10)});
+    ASSERT_TRUE(runSession());
+    EXPECT_EQ(sink_.ends.at(0).outcome, Outcome::Timeout);
+    EXPECT_EQ(sink_.ends[0].end_ns, 2100 * kMs);
+    EXPECT_DOUBLE_EQ(value(sink_.ends[0], "trial_time_s").value(), 2.0);
+    EXPECT_EQ(sink_.ticks.at(AttemptId{1}).size(), 2100u);  // looks of 20 ticks: 0…2090 is in the 105th
+}
+
 TEST_F(SessionTest, LatchedOutputAbortsTheAttempt) {
     // Truth: invariant: without force nothing that follows may count as success.
     Records records = successScript();

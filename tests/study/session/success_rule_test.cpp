@@ -36,6 +36,18 @@ TEST(SuccessRule, IsFulfilledWhenTheHoldEndsAndNotOneTickEarlier) {
     EXPECT_EQ(firstFulfilled(2000, [](std::int64_t tick) { return tipAt(tick, 0.0191); }), kFirstRest + kHold);
 }
 
+TEST(SuccessRule, HoldAndSpeedCountMissedCycles) {
+    // Truth: closed form. Every other cycle is missed: the hold's 500 periods are 250 ticks, and 8 µm a tick are 4
+    // mm/s, slower than 5 mm/s, although they would be 8 mm/s at a tick a millisecond.
+    const auto missing = [](std::int64_t tick, std::uint32_t periods) {
+        TickRecord record = tipAt(tick, 0.0191 + 8e-6 * static_cast<double>(tick));
+        record.periods = periods;
+        return record;
+    };
+    EXPECT_EQ(firstFulfilled(400, [&](std::int64_t tick) { return missing(tick, 2); }), kFirstRest + kHold / 2);
+    EXPECT_EQ(firstFulfilled(400, [&](std::int64_t tick) { return missing(tick, 1); }), -1);
+}
+
 TEST(SuccessRule, JustBelowTheDepthIsNeverEnough) {
     // Truth: closed form. 95 % of 20 mm are 19 mm.
     EXPECT_EQ(firstFulfilled(5000, [](std::int64_t tick) { return tipAt(tick, 0.01899); }), -1);

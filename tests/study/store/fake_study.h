@@ -71,7 +71,7 @@ inline std::vector<TickRecord> makeRecords(std::uint64_t seed, std::size_t count
         fill(r.device_position_m);
         fill(r.device_quaternion);
         r.input_flags = static_cast<std::uint32_t>(random.next());
-        r.parameter_sequence = static_cast<std::uint32_t>(random.next());
+        r.periods = i % 16 == 15 ? 3 : 1;
         fill(r.hand_position_m);
         fill(r.hand_quaternion);
         fill(r.proxy_position_m);
@@ -94,11 +94,10 @@ inline std::vector<TickRecord> makeRecords(std::uint64_t seed, std::size_t count
 inline bool sameStoredBits(const TickRecord& a, const TickRecord& b) {
     const auto same = [](const auto& x, const auto& y) { return std::memcmp(&x, &y, sizeof x) == 0; };
     return a.tick == b.tick && same(a.device_position_m, b.device_position_m) &&
-           same(a.device_quaternion, b.device_quaternion) && a.input_flags == b.input_flags &&
-           a.parameter_sequence == b.parameter_sequence && same(a.hand_position_m, b.hand_position_m) &&
-           same(a.hand_quaternion, b.hand_quaternion) && same(a.proxy_position_m, b.proxy_position_m) &&
-           same(a.proxy_quaternion, b.proxy_quaternion) && same(a.force_N, b.force_N) &&
-           same(a.torque_Nm, b.torque_Nm) && same(a.hand_depth_m, b.hand_depth_m) &&
+           same(a.device_quaternion, b.device_quaternion) && a.input_flags == b.input_flags && a.periods == b.periods &&
+           same(a.hand_position_m, b.hand_position_m) && same(a.hand_quaternion, b.hand_quaternion) &&
+           same(a.proxy_position_m, b.proxy_position_m) && same(a.proxy_quaternion, b.proxy_quaternion) &&
+           same(a.force_N, b.force_N) && same(a.torque_Nm, b.torque_Nm) && same(a.hand_depth_m, b.hand_depth_m) &&
            same(a.proxy_depth_m, b.proxy_depth_m) && same(a.quality, b.quality) && a.status == b.status &&
            a.contacts == b.contacts && a.iterations == b.iterations && a.nodes_visited == b.nodes_visited;
 }
@@ -150,7 +149,7 @@ inline std::unique_ptr<store::SessionWriter> beginSession(store::Store& store, c
     const protocol::StudyPlan plan = makePlan();
     store::SessionStart start;
     start.protocol_sha256 = require(store.importProtocol(plan));
-    require(store.enrol(participant, store::ParticipantKind::Simulated, store::UtcClock::virtualEpoch().at(0)));
+    require(store.enrol(participant, protocol::ParticipantKind::Simulated, store::UtcClock::virtualEpoch().at(0)));
     require(store.assignSlot(start.protocol_sha256, participant));
     start.participant = participant;
     start.ordinal = require(store.nextOrdinal(participant));

@@ -4,25 +4,11 @@
 
 #include <set>
 
+#include "study/protocol/participant.h"
 #include "study/store/utc_clock.h"
 
 namespace passung::store {
 namespace {
-
-TEST(Identity, CodesBeginWithTheKindsLetterAndGrowBeyondThreeDigits) {
-    // Truth: closed form (the documented pattern)
-    EXPECT_EQ(participantCode(ParticipantKind::Real, 1), "P001");
-    EXPECT_EQ(participantCode(ParticipantKind::Simulated, 42), "S042");
-    EXPECT_EQ(participantCode(ParticipantKind::Pilot, 1000), "T1000");
-}
-
-TEST(Identity, CodesThatCouldLeaveAFolderOrNameAPersonAreRefused) {
-    // Truth: invariant (a code names files)
-    for (const char* good : {"P001", "A1", "GROUP-B_7"}) EXPECT_TRUE(isParticipantCode(good)) << good;
-    for (const char* bad : {"", "P", "p001", "P00a", "1P1", "P/../1", "P 1", "Müller1", "Anna1"}) {
-        EXPECT_FALSE(isParticipantCode(bad)) << bad;
-    }
-}
 
 TEST(Identity, SessionsOfDifferentPeopleOrdinalsAndSeedsDiffer) {
     // Truth: invariant
@@ -31,7 +17,7 @@ TEST(Identity, SessionsOfDifferentPeopleOrdinalsAndSeedsDiffer) {
         for (int person = 1; person <= 50; ++person) {
             for (int ordinal = 1; ordinal <= 3; ++ordinal) {
                 for (const std::uint64_t seed : {0u, 1u, 2u}) {
-                    const auto code = participantCode(ParticipantKind::Real, person);
+                    const auto code = protocol::participantCode(protocol::ParticipantKind::Real, person);
                     const std::string id = sessionId(study, code, ordinal, seed);
                     EXPECT_EQ(id, sessionId(study, code, ordinal, seed));
                     EXPECT_EQ(id.size(), 16u);

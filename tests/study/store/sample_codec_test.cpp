@@ -84,6 +84,9 @@ TEST(SampleCodec, LayoutIsWhatItsDescriptionSays) {
         if (channel.name == "input_flags") {
             EXPECT_TRUE(holds(r.input_flags));
         }
+        if (channel.name == "periods") {
+            EXPECT_TRUE(holds(r.periods));
+        }
         if (channel.name == "proxy_y_m") {
             EXPECT_TRUE(holds(r.proxy_position_m[1]));
         }
@@ -102,7 +105,7 @@ TEST(SampleCodec, LayoutIsWhatItsDescriptionSays) {
         offset += 10 * width;
     }
     EXPECT_EQ(offset, chunk.data.size());
-    EXPECT_EQ(checked, 8);
+    EXPECT_EQ(checked, 9);
 }
 
 TEST(SampleCodec, AChunkEndsAtAGapAndAtItsLargestSize) {

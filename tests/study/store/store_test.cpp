@@ -70,6 +70,46 @@ TEST(Store, TablesHoldEveryColumnOfTheDocumentedOutline) {
     }
 }
 
+TEST(Store, ChunksBeginWhereTheMissedCyclesBeforeThemPutThem) {
+    // Truth: closed form. Of the fake ticks every sixteenth comes after two missed cycles: 62 of the first 1000, so
+    // that tick 1000 is at 1000 + 2 · 62 ms; 125 of the first 2000.
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    {
+        auto store = fake::openStore(path);
+        auto writer = fake::beginSession(*store, "S001", 1);
+        require(fake::writeAttempt(*writer, 0, 2345));
+        require(writer->finishSession(true, 99'000'000'000));
+    }
+    const Database database(path, OpenMode::ReadOnly);
+    EXPECT_EQ(rows(database, "SELECT first_tick || ' ' || t0_ns FROM sample_chunk ORDER BY first_tick"),
+              "0 0\n1000 1124000000\n2000 2250000000\n");
+}
+
+TEST(Store, AProtocolKeepsTheMeshesThatItWasImportedWith) {
+    // Truth: closed form (SHA-256 of "abc", FIPS 180-2) and invariant: one protocol, one geometry.
+    const fake::TempFolder folder;
+    std::ofstream(folder / "a.stl") << "abc";
+    protocol::StudyPlan plan = fake::makePlan();
+    plan.meshes = {{"parts/a.stl", folder / "a.stl"}};
+    const std::string path = folder / "s.db";
+    auto store = fake::openStore(path);
+    const std::string sha256 = require(store->importProtocol(plan));
+    const auto meshes = require(require(StoreReader::open(path)).meshes());
+    ASSERT_EQ(meshes.size(), 1u);
+    EXPECT_EQ(meshes[0].protocol_sha256, sha256);
+    EXPECT_EQ(meshes[0].mesh, "parts/a.stl");
+    EXPECT_EQ(meshes[0].sha256, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    EXPECT_EQ(meshes[0].bytes, 3);
+    EXPECT_EQ(require(store->importProtocol(plan)), sha256) << "the same again is fine";
+    std::ofstream(folder / "a.stl") << "abd";
+    const auto changed = store->importProtocol(plan);
+    ASSERT_FALSE(changed);
+    EXPECT_NE(changed.errors()[0].message.find("parts/a.stl has changed"), std::string::npos);
+    std::filesystem::remove(folder / "a.stl");
+    EXPECT_FALSE(store->importProtocol(plan)) << "a mesh that is not there";
+}
+
 TEST(Store, AWholeSessionReadsBackAsItWasWritten) {
     // Truth: invariant (what goes in comes out)
     const fake::TempFolder folder;
@@ -278,22 +318,22 @@ TEST(Store, SlotsGoRowByRowAndKindsDoNotShareThem) {
     const std::string sha = require(store->importProtocol(fake::makePlan(4)));
     ASSERT_EQ(design::williamsRows(4), 4u);
     for (int i = 1; i <= 6; ++i) {
-        const std::string code = require(store->nextCode(ParticipantKind::Simulated));
+        const std::string code = require(store->nextCode(protocol::ParticipantKind::Simulated));
         EXPECT_EQ(code, "S00" + std::to_string(i));
-        EXPECT_TRUE(require(store->enrol(code, ParticipantKind::Simulated, "")));
-        EXPECT_FALSE(require(store->enrol(code, ParticipantKind::Simulated, ""))) << "known already";
+        EXPECT_TRUE(require(store->enrol(code, protocol::ParticipantKind::Simulated, "")));
+        EXPECT_FALSE(require(store->enrol(code, protocol::ParticipantKind::Simulated, ""))) << "known already";
         const Slot slot = require(store->assignSlot(sha, code));
         EXPECT_EQ(slot.number, i - 1);
         EXPECT_EQ(slot.sequence_index, (i - 1) % 4);
         EXPECT_EQ(slot.replicate, (i - 1) / 4);
         EXPECT_EQ(require(store->assignSlot(sha, code)).number, slot.number) << "keeps its slot";
     }
-    const std::string real = require(store->nextCode(ParticipantKind::Real));
+    const std::string real = require(store->nextCode(protocol::ParticipantKind::Real));
     EXPECT_EQ(real, "P001");
-    require(store->enrol(real, ParticipantKind::Real, ""));
+    require(store->enrol(real, protocol::ParticipantKind::Real, ""));
     EXPECT_EQ(require(store->assignSlot(sha, real)).number, 0);
-    EXPECT_FALSE(store->enrol("S001", ParticipantKind::Real, "")) << "a simulated code never turns real";
-    EXPECT_FALSE(store->enrol("Anna", ParticipantKind::Real, ""));
+    EXPECT_FALSE(store->enrol("S001", protocol::ParticipantKind::Real, "")) << "a simulated code never turns real";
+    EXPECT_FALSE(store->enrol("Anna", protocol::ParticipantKind::Real, ""));
     EXPECT_FALSE(store->assignSlot(sha, "P999"));
     EXPECT_FALSE(store->assignSlot("no such protocol", real));
 }
@@ -308,7 +348,7 @@ TEST(Store, ASessionIsWrittenWholeOrNotAtAll) {
     start.protocol_sha256 = require(store->importProtocol(plan));
     start.session_id = "x";
     start.participant = "S001";
-    require(store->enrol("S001", ParticipantKind::Simulated, ""));
+    require(store->enrol("S001", protocol::ParticipantKind::Simulated, ""));
     auto trials = fake::makeTrials(plan, 8);
     trials.back().condition = 99;
     EXPECT_FALSE(store->createSession(start, trials));
@@ -445,7 +485,7 @@ TEST(Store, NobodyCompletesAProtocolTwiceAndItsSeedStays) {
     protocol::StudyPlan plan = fake::makePlan();
     plan.seed = 8;
     EXPECT_FALSE(store->importProtocol(plan));
-    EXPECT_FALSE(store->enrol("P001", ParticipantKind::Simulated, ""));
+    EXPECT_FALSE(store->enrol("P001", protocol::ParticipantKind::Simulated, ""));
 }
 
 TEST(Store, ASymbolicLinkIsNoWayAroundTheLock) {

@@ -102,6 +102,32 @@ protected:
     TempFolder folder_;
 };
 
+TEST_F(Query, KeepsFurtherColumnsAndNamesTheLineOfABadPose) {
+    // Truth: closed form (the text itself): "the input columns, then" the results.
+    writeText(folder_ / "poses.csv",
+              "x_m,y_m,z_m,qw,qx,qy,qz,label,weight\n0.05,0,0,1,0,0,0,\"far, right\",0.10\n\n0,0,0.045,1,0,0,0,,7\n");
+    const std::vector<std::string> command = {"query",     "box.toml", "ball.toml", "--poses",
+                                              "poses.csv", "--out",    "r.csv"};
+    ASSERT_EQ(runProgram(folder_.path(), command).exit_code, 0);
+    const fake::CsvFile r = fake::readCsv(readText(folder_ / "r.csv"));
+    ASSERT_EQ(r.rows.size(), 2u);
+    EXPECT_EQ(std::vector<std::string>(r.header.begin() + 7, r.header.begin() + 10),
+              (std::vector<std::string>{"label", "weight", "signed_distance_m"}));
+    EXPECT_EQ(r.at(0, "label"), "far, right");
+    EXPECT_EQ(r.at(0, "weight"), "0.10");
+    EXPECT_EQ(r.at(1, "label"), "");
+    EXPECT_NEAR(std::stod(r.at(1, "signed_distance_m")), 0.025, largestBound(0.025));
+
+    writeText(folder_ / "poses.csv", "x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,1,0,0,0\n\n\n0,0,0,2,0,0,0\n");
+    const Ended bad = runProgram(folder_.path(), command);
+    EXPECT_EQ(bad.exit_code, 1);
+    EXPECT_TRUE(bad.err.starts_with("poses.csv:5:1: error: ")) << bad.err;
+    writeText(folder_ / "poses.csv", "x_m,y_m,z_m,qw,qx,qy,qz,status\n0,0,0,1,0,0,0,ok\n");
+    const Ended twice = runProgram(folder_.path(), command);
+    EXPECT_EQ(twice.exit_code, 1);
+    EXPECT_TRUE(twice.err.starts_with("poses.csv:1:1: error: status: ")) << twice.err;
+}
+
 /// Beside, above and at an edge of the box; touching; inside by up to 2 mm. The ball's deepest point is where the field
 /// falls straight, so that the pair's distance is the centre's less the radius.
 const std::vector<Vec3> kPlaces = {{0.050, 0.003, 0.001},    {0.001, 0.002, 0.045},  {0.040, 0.035, 0.002},
@@ -135,7 +161,10 @@ TEST_F(Query, DistanceOfBallAndBoxIsTheClosedFormWithinTheStatedBound) {
             EXPECT_NEAR(boxDistance(closest), number(r, i, "signed_distance_m"), number(r, i, "field_error_bound_m"));
             const Vec3 normal = vector(r, i, "normal", "");
             EXPECT_NEAR(normal.norm(), 1.0, 1e-9);
-            EXPECT_GT(normal.dot(kPlaces[i] - closest), 0.99 * kBall) << "out of the box, towards the ball's centre";
+            // The field's direction next to contact is that of fine cells. Farther away cells are 10 mm wide, and half
+            // a cell over the 11 mm to the corner of pose 3 lets it err by up to 0.45 rad.
+            EXPECT_GT(normal.dot(kPlaces[i] - closest), (truth < 1e-3 ? 0.99 : std::cos(0.45)) * kBall)
+                << "out of the box, towards the ball's centre";
         }
     }
 }

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -302,6 +303,75 @@ TEST_F(Replay, FindsTheLastBitOfAChangedInput) {
     const Ended changed = replay({"--attempt", "2"});
     EXPECT_EQ(changed.exit_code, 1);
     EXPECT_NE(changed.out.find("DIFFERS"), std::string::npos) << changed.out;
+}
+
+TEST_F(Replay, ProvesNothingWithoutTicksOrWithoutAHash) {
+    // Truth: invariant (an attempt that was not compared is not the same)
+    {
+        const store::Database database(folder_ / "study.db", store::OpenMode::ReadWrite);
+        database.execute("UPDATE attempt SET state_hash=NULL WHERE attempt_id=1");
+        database.execute("DELETE FROM sample_chunk WHERE attempt_id=2");
+        database.execute("UPDATE attempt SET state_hash=NULL WHERE attempt_id=2");
+    }
+    for (const auto& [attempt, why] : {std::pair{"1", "there is no state hash"}, {"2", "no tick of it is recorded"}}) {
+        const Ended ended = replay({"--attempt", attempt});
+        EXPECT_EQ(ended.exit_code, 1);
+        EXPECT_NE(ended.out.find("NOT PROVEN"), std::string::npos) << ended.out;
+        EXPECT_NE(ended.out.find(why), std::string::npos) << ended.out;
+    }
+    const Ended all = replay();
+    EXPECT_EQ(all.exit_code, 1);
+    EXPECT_NE(all.out.find("\n6 attempts replayed, 0 differ, 2 could not be proven\n"), std::string::npos) << all.out;
+}
+
+/// A closed tetrahedron with edges of some centimetres along the axes, as text STL [mm].
+std::string tetrahedron(double edge) {
+    const std::string e = std::to_string(edge);
+    const std::array<std::string, 4> corners = {"0 0 0", e + " 0 0", "0 " + e + " 0", "0 0 " + e};
+    std::string text = "solid t\n";
+    for (const auto& [a, b, c] : {std::array{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}) {
+        text += "facet normal 0 0 0\nouter loop\n";
+        for (const int corner : {a, b, c}) text += "vertex " + corners[static_cast<std::size_t>(corner)] + "\n";
+        text += "endloop\nendfacet\n";
+    }
+    return text + "endsolid t\n";
+}
+
+TEST(ReplayOfMeshes, NeedsTheMeshesThatTheTrialsWereMadeWith) {
+    // Truth: invariant (another geometry proves nothing; where the file was is not stored)
+    const TempFolder folder;
+    fs::create_directories(folder.path() / "lab/parts");
+    fs::create_directories(folder.path() / "elsewhere");
+    std::string study = smallStudy();
+    study.insert(study.find("[[scene.part]]"),
+                 "[[scene.part]]\nname = \"mark\"\nmesh = \"parts/mark.stl\"\npose = { position = [200, 0, 0] }\n\n");
+    writeText(folder / "lab/study.toml", study);
+    writeText(folder / "lab/parts/mark.stl", tetrahedron(20));
+    ASSERT_EQ(runProgram(folder.path(), {"run", "lab/study.toml", "--db", "study.db"}).exit_code, 0);
+
+    const auto replay = [&](const fs::path& from, std::vector<std::string> options) {
+        options.insert(options.begin(), {"replay", folder / "study.db", "--attempt", "1"});
+        return runProgram(from, options);
+    };
+    const Ended here = replay(folder.path() / "lab", {});
+    EXPECT_EQ(here.exit_code, 0) << here.out << here.err;
+    EXPECT_EQ(replay(folder.path() / "elsewhere", {"--meshes", folder / "lab"}).exit_code, 0);
+    const Ended missing = replay(folder.path() / "elsewhere", {});
+    EXPECT_EQ(missing.exit_code, 1);
+    EXPECT_NE(missing.err.find("\"parts/mark.stl\": there is no such file"), std::string::npos) << missing.err;
+    EXPECT_NE(missing.err.find("--meshes"), std::string::npos) << missing.err;
+    fs::rename(folder.path() / "study.db", folder.path() / "lab/study.db");
+    const Ended beside = runProgram(folder.path() / "elsewhere", {"replay", folder / "lab/study.db", "--attempt", "1"});
+    EXPECT_EQ(beside.exit_code, 0) << beside.err;
+
+    writeText(folder / "lab/parts/mark.stl", tetrahedron(20.5));
+    const Ended changed = runProgram(folder.path() / "lab", {"replay", "study.db"});
+    EXPECT_EQ(changed.exit_code, 1);
+    EXPECT_NE(changed.err.find("parts/mark.stl: error: SHA-256: "), std::string::npos) << changed.err;
+    EXPECT_EQ(linesOf(changed.err).size(), 1u) << changed.err;
+    const Ended again = runProgram(folder.path() / "lab", {"run", "study.toml", "--db", "study.db"});
+    EXPECT_EQ(again.exit_code, 1) << "one protocol, one geometry";
+    EXPECT_NE(again.err.find("parts/mark.stl has changed"), std::string::npos) << again.err;
 }
 
 TEST_F(Replay, RefusesADamagedChunk) {

@@ -1,15 +1,53 @@
-#include "core/tick/part_query.h"
+#include "core/query/part_query.h"
 
 #include <algorithm>
 
 #include "core/tick/penalty.h"
 
-namespace passung::tick {
+namespace passung::query {
 
 namespace {
 
 std::size_t nodesOf(const model::Part& part) { return part.shell ? part.shell->nodes().size() : 0; }
 std::size_t pointsOf(const model::Part& part) { return part.shell ? part.shell->points().size() : 0; }
+
+/// Sets the error bound from the interval and the distance reported.
+void boundError(PartQueryResult& result) {
+    const double above = result.beyond_proximity ? 0.0 : result.upper_bound - result.signed_distance;
+    result.error_bound = std::max({0.0, above, result.signed_distance - result.lower_bound});
+}
+
+/// The interval that one direction proves, from what the traversal found; see PartQuery.
+void proveInterval(const model::Part& field, const model::Part& shell, const tick::QueryAnswer& answer,
+                   model::FieldMode mode, PartQueryResult& result) {
+    const double chords = shell.chord_error + field.chord_error;
+    const double offset = field.field->sheetOffset();
+    // Branches were pruned where nothing lies below answer.phi, which another mode may have read below the points' own
+    // lower bounds.
+    const double least = std::min(answer.lower_bound, answer.phi);
+    result.lower_bound = least + offset - shell.shell->coverRadius() - chords;
+    result.upper_bound = std::numeric_limits<double>::infinity();
+    result.field_error_bound = answer.phi - least;
+    if (answer.found) {
+        const double error = field.field->errorBound(answer.closest_F, mode);
+        result.upper_bound = answer.phi + error + offset + chords;
+        result.field_error_bound = std::max(result.field_error_bound, error);
+    }
+    boundError(result);
+}
+
+/// Merges the interval of the way back into `result`, whose distance is already the smaller of both; see PartQuery.
+void mergeInterval(const PartQueryResult& back, PartQueryResult& result) {
+    const bool apart = result.lower_bound + back.lower_bound > 0.0;
+    result.upper_bound = std::min(result.upper_bound, back.upper_bound);
+    result.lower_bound =
+        apart ? std::max(result.lower_bound, back.lower_bound) : std::min(result.lower_bound, back.lower_bound);
+    if (apart && !result.beyond_proximity) {
+        result.signed_distance = std::clamp(result.signed_distance, result.lower_bound, result.upper_bound);
+    }
+    result.field_error_bound = std::max(result.field_error_bound, back.field_error_bound);
+    boundError(result);
+}
 
 }  // namespace
 
@@ -21,10 +59,10 @@ PartQuery::PartQuery(const model::Part& field, const model::Part& shell, const P
       manifold_(std::max(nodesOf(field) + pointsOf(field), nodesOf(shell) + pointsOf(shell))) {}
 
 PartQueryResult PartQuery::oneWay(const model::Part& field, const model::Part& shell, const Pose& X_FS) {
-    QueryRequest request{
+    tick::QueryRequest request{
         .search_below = request_.proximity, .max_nodes = request_.max_nodes, .mode = request_.mode, .prove = true};
     manifold_.clear();
-    QueryAnswer answer = queryContacts(*field.field, Pose{}, *shell.shell, X_FS, request, workspace_, manifold_);
+    tick::QueryAnswer answer = queryContacts(*field.field, Pose{}, *shell.shell, X_FS, request, workspace_, manifold_);
     PartQueryResult result;
     if (answer.quality < request_.quality) {
         request.max_nodes = 0;
@@ -40,25 +78,18 @@ PartQueryResult PartQuery::oneWay(const model::Part& field, const model::Part& s
     result.beyond_proximity = !answer.found;
     result.nodes_visited = answer.nodes_visited;
     result.points_tested = answer.points_tested;
-
-    const double cover = shell.shell->coverRadius() + shell.chord_error + field.field->sheetOffset();
-    const double below = answer.phi - answer.lower_bound;
     if (answer.found) {
         result.closest = answer.closest_F;
         result.normal = answer.normal_W;
-        const double above = field.field->errorBound(answer.closest_F, request_.mode);
-        result.field_error_bound = std::max(below, above);
-        result.error_bound = std::max(below, above) + cover;
-    } else {
-        result.field_error_bound = below;
-        result.error_bound = below + cover;
     }
+    proveInterval(field, shell, answer, request_.mode, result);
+
     model::ContactSpec contact;
     contact.variant = model::PenaltyVariant::AreaWeighted;
     contact.area_stiffness = request_.area_stiffness;
-    result.wrench = penaltyWrench(contact, manifold_, X_FS.p);
+    result.wrench = tick::penaltyWrench(contact, manifold_, X_FS.p);
     result.contacts = static_cast<int>(
-        std::count_if(manifold_.begin(), manifold_.end(), [](const ContactPoint& c) { return c.phi < 0.0; }));
+        std::count_if(manifold_.begin(), manifold_.end(), [](const tick::ContactPoint& c) { return c.phi < 0.0; }));
     return result;
 }
 
@@ -78,17 +109,16 @@ PartQueryResult PartQuery::at(const Pose& X_FS) {
     result.quality = std::min(result.quality, back.quality);
     result.budget_reached = result.budget_reached || back.budget_reached;
     result.quality_overruled_budget = result.quality_overruled_budget || back.quality_overruled_budget;
-    if (!back.beyond_proximity && back.signed_distance < result.signed_distance) {
+    if (!back.beyond_proximity && (result.beyond_proximity || back.signed_distance < result.signed_distance)) {
         result.signed_distance = back.signed_distance;
-        result.field_error_bound = back.field_error_bound;
-        result.error_bound = back.error_bound;
         result.beyond_proximity = false;
         // The closest point of FIELD, carried to SHELL's surface along SHELL's own normal there.
         const Vec3 out_of_shell = X_FS.q * back.normal;
         result.closest = X_FS * back.closest - back.signed_distance * out_of_shell;
         result.normal = -out_of_shell;
     }
+    mergeInterval(back, result);
     return result;
 }
 
-}  // namespace passung::tick
+}  // namespace passung::query

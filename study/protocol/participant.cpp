@@ -1,0 +1,55 @@
+#include "study/protocol/participant.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace passung::protocol {
+
+const char* participantKindName(ParticipantKind kind) {
+    switch (kind) {
+        case ParticipantKind::Real:
+            return "real";
+        case ParticipantKind::Pilot:
+            return "pilot";
+        case ParticipantKind::Simulated:
+            break;
+    }
+    return "simulated";
+}
+
+const std::vector<std::string>& participantKindNames() {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all;
+        for (const auto kind : {ParticipantKind::Real, ParticipantKind::Pilot, ParticipantKind::Simulated})
+            all.emplace_back(participantKindName(kind));
+        return all;
+    }();
+    return names;
+}
+
+char codeLetter(ParticipantKind kind) {
+    switch (kind) {
+        case ParticipantKind::Real:
+            return 'P';
+        case ParticipantKind::Pilot:
+            return 'T';
+        case ParticipantKind::Simulated:
+            break;
+    }
+    return 'S';
+}
+
+std::string participantCode(ParticipantKind kind, std::int64_t number) {
+    return fmt::format("{}{:03}", codeLetter(kind), number);
+}
+
+bool isParticipantCode(std::string_view code) {
+    const auto isCapital = [](char c) { return c >= 'A' && c <= 'Z'; };
+    const auto isDigit = [](char c) { return c >= '0' && c <= '9'; };
+    return code.size() >= 2 && code.size() <= 32 && isCapital(code.front()) && isDigit(code.back()) &&
+           std::all_of(code.begin(), code.end(),
+                       [&](char c) { return isCapital(c) || isDigit(c) || c == '_' || c == '-'; });
+}
+
+}  // namespace passung::protocol

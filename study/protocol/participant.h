@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace passung::protocol {
+
+/// Who takes part in a study. Data of different kinds is never mixed.
+enum class ParticipantKind { Real, Pilot, Simulated };
+const char* participantKindName(ParticipantKind kind);  // "real", "pilot", "simulated": as stored
+
+/// The names of all kinds.
+const std::vector<std::string>& participantKindNames();
+
+/// Letter that begins the codes of a kind: P for real, T for pilot, S for simulated participants.
+char codeLetter(ParticipantKind kind);
+
+/// "P001" for number 1; grows beyond three digits.
+std::string participantCode(ParticipantKind kind, std::int64_t number);
+
+/// A code names files: a capital letter first, a digit last, only capital letters, digits, '_' and '-' between, at most
+/// 32 characters.
+bool isParticipantCode(std::string_view code);
+
+}  // namespace passung::protocol

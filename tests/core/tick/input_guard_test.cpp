@@ -1,0 +1,296 @@
+#include "core/tick/input_guard.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/base/random.h"
+
+namespace passung {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::uint32_t kWhatIsWrong = kDeviceStale | kInputNotAPose | kInputJump;
+constexpr std::uint32_t kWhatIsDone = kInputHeld | kInputRejected;
+
+Pose at(double x) { return {Quat::Identity(), Vec3(x, 0, 0)}; }
+Pose turned(double angle) { return {rotationFromVector(Vec3(0, angle, 0)), Vec3::Zero()}; }
+DeviceReading stale(const Pose& X_BD) { return {.X_BD = X_BD, .fresh = false}; }
+
+/// The guard alone: 20 m/s and 200 rad/s, so 20 mm and 0.2 rad a tick; device space is the scene.
+class Guard {
+public:
+    tick::TickFrame give(const DeviceReading& reading) {
+        tick::TickFrame frame;
+        frame.reading = reading;
+        tick::guardInput(model_, state_, frame);
+        return frame;
+    }
+    tick::TickFrame give(const Pose& X_BD) { return give(DeviceReading{X_BD}); }
+    void rest(int ticks) {
+        for (int i = 0; i < ticks; ++i) give(at(0));
+    }
+
+private:
+    tick::TickModel model_;
+    tick::TickState state_;
+};
+
+struct Fault {
+    const char* name;
+    DeviceReading reading;
+    std::uint32_t bit;
+};
+
+/// Each kind of bad sample of a device that rests at 0.
+std::vector<Fault> everyFault() {
+    const auto quaternion = [](double w, double x) { return DeviceReading{Pose{Quat(w, x, 0, 0), Vec3::Zero()}}; };
+    return {{"not a number", DeviceReading{at(kNan)}, kInputNotAPose},
+            {"infinite", DeviceReading{at(-std::numeric_limits<double>::infinity())}, kInputNotAPose},
+            {"no number in the quaternion", quaternion(kNan, 0), kInputNotAPose},
+            {"quaternion of length 0", quaternion(0, 0), kInputNotAPose},
+            {"quaternion of length 1.01", quaternion(1.01, 0), kInputNotAPose},
+            {"a kilometre away", DeviceReading{at(1001)}, kInputNotAPose},
+            {"finite, its square is not", DeviceReading{at(1e300)}, kInputNotAPose},
+            {"a metre away", DeviceReading{at(1)}, kInputJump},
+            {"turned by a radian", quaternion(std::cos(0.5), std::sin(0.5)), kInputJump},
+            {"not fresh", stale(at(0)), kDeviceStale}};
+}
+
+TEST(InputGuard, TakesAGoodDeviceFromItsFirstSampleOn) {
+    // Truth: invariant. The first pose is used as it is; nothing is reported; one tick between samples.
+    Guard guard;
+    for (int i = 0; i < 100; ++i) {
+        const auto frame = guard.give(at(0.3 + 0.019 * i));
+        EXPECT_TRUE(frame.input_usable);
+        EXPECT_EQ(frame.status, 0u);
+        EXPECT_EQ(frame.sample_periods, 1);
+        EXPECT_EQ(frame.X_WH.p.x(), 0.3 + 0.019 * i);
+    }
+}
+
+TEST(InputGuard, HoldsOneBadSampleRejectsMoreAndSaysWhatIsWrong) {
+    // Truth: invariant (the stage's contract), for each kind of bad sample: exactly the bits that fit, and back with
+    // the first good one.
+    for (const auto& [name, bad, bit] : everyFault()) {
+        SCOPED_TRACE(name);
+        Guard guard;
+        guard.rest(5);
+        auto frame = guard.give(bad);
+        EXPECT_TRUE(frame.input_usable);
+        EXPECT_EQ(frame.status, bit | kInputHeld);
+        EXPECT_EQ(frame.sample_periods, 0);
+        EXPECT_EQ(frame.X_WH.p.norm(), 0.0);
+        frame = guard.give(bad);
+        EXPECT_FALSE(frame.input_usable);
+        EXPECT_EQ(frame.status, bit | kInputRejected);
+        EXPECT_EQ(frame.sample_periods, 0);
+        EXPECT_EQ(frame.X_WH.p.norm(), 0.0);
+        frame = guard.give(at(0));
+        EXPECT_TRUE(frame.input_usable);
+        EXPECT_EQ(frame.status, 0u);
+        EXPECT_EQ(frame.sample_periods, 3);
+    }
+}
+
+TEST(InputGuard, RejectsWhatIsBadBeforeAnyGoodSample) {
+    // Truth: invariant. There is nothing to hold and nothing to jump from.
+    for (const auto& [name, bad, bit] : everyFault()) {
+        if (bit == kInputJump) continue;
+        SCOPED_TRACE(name);
+        Guard guard;
+        const auto frame = guard.give(bad);
+        EXPECT_FALSE(frame.input_usable);
+        EXPECT_EQ(frame.status, bit | kInputRejected);
+        EXPECT_TRUE(isFinite(frame.X_WH));
+        EXPECT_TRUE(guard.give(at(0)).input_usable);
+    }
+}
+
+TEST(InputGuard, JudgesAJumpByTheTimeSinceTheLastGoodSample) {
+    // Truth: closed form. 20 mm and 0.2 rad a tick; after one bad sample twice as much.
+    const auto statusOf = [](const Pose& X_BD, int bad_samples) {
+        Guard guard;
+        guard.rest(5);
+        for (int i = 0; i < bad_samples; ++i) guard.give(stale(at(0)));
+        return guard.give(X_BD).status & kWhatIsWrong;
+    };
+    for (const int bad : {0, 1, 9}) {
+        EXPECT_EQ(statusOf(at(0.0199 * (bad + 1)), bad), 0u);
+        EXPECT_EQ(statusOf(at(0.0201 * (bad + 1)), bad), static_cast<std::uint32_t>(kInputJump));
+        EXPECT_EQ(statusOf(turned(0.199 * (bad + 1)), bad), 0u);
+        EXPECT_EQ(statusOf(turned(0.201 * (bad + 1)), bad), static_cast<std::uint32_t>(kInputJump));
+    }
+}
+
+TEST(InputGuard, ForgetsAWildFirstSampleWithinThreeGoodOnes) {
+    // Truth: invariant. The wild pose is not held against the good samples: zero at once, back with the third.
+    for (const Pose& wild : {at(999), at(-3), turned(3)}) {
+        Guard guard;
+        guard.give(wild);
+        for (int i = 1; i < tick::kAgreeingSamples; ++i) {
+            const auto frame = guard.give(at(0.001 * i));
+            EXPECT_FALSE(frame.input_usable) << i;
+            EXPECT_EQ(frame.status, static_cast<std::uint32_t>(kInputJump | kInputRejected)) << i;
+        }
+        auto frame = guard.give(at(0.004));
+        EXPECT_TRUE(frame.input_usable);
+        EXPECT_EQ(frame.status, 0u);
+        EXPECT_EQ(frame.X_WH.p.x(), 0.004);
+        frame = guard.give(wild);
+        EXPECT_EQ(frame.status, static_cast<std::uint32_t>(kInputJump | kInputHeld)) << "now the good one is believed";
+        EXPECT_EQ(frame.X_WH.p.x(), 0.004);
+    }
+}
+
+TEST(InputGuard, BelievesADeviceThatIsSuddenlyElsewhereAfterThreeSamplesThatAgree) {
+    // Truth: invariant. Held, zero, then there; also for a device that has a new sample on every other tick only, and
+    // then moves up to 40 mm from one to the next.
+    for (const bool slow : {false, true}) {
+        Guard guard;
+        guard.rest(5);
+        std::vector<bool> usable;
+        for (int i = 0; i < 3; ++i) {
+            if (slow && i > 0) usable.push_back(guard.give(stale(at(0))).input_usable);
+            usable.push_back(guard.give(at(5 + (slow ? 0.03 : 0.015) * i)).input_usable);
+        }
+        EXPECT_EQ(usable,
+                  slow ? (std::vector<bool>{true, false, false, false, true}) : (std::vector<bool>{true, false, true}));
+        EXPECT_EQ(guard.give(at(5.045)).X_WH.p.x(), 5.045);
+    }
+}
+
+TEST(InputGuard, NeverBelievesJumpsThatDoNotAgree) {
+    // Truth: invariant. Places 20 m or more apart and 20 m or more from the last good one: 300 ticks reach 6 m.
+    Guard guard;
+    guard.rest(5);
+    Random random(3);
+    double last = 0;
+    for (int i = 0; i < 300; ++i) {
+        double x;
+        do {
+            x = 20.0 * static_cast<double>(1 + random.below(40));
+        } while (x == last);
+        last = x;
+        const auto frame = guard.give(at(x));
+        ASSERT_EQ(frame.X_WH.p.x(), 0.0) << i;
+        ASSERT_EQ(frame.status, kInputJump | (i == 0 ? kInputHeld : kInputRejected)) << i;
+    }
+}
+
+TEST(InputGuard, NeverBelievesAWildPlaceThatReturnsOnceInAWhile) {
+    // Truth: invariant. The same place each time: between good samples, or among samples that are no pose with more
+    // ticks between than kLongestSearchGap. 200 ticks reach 4 m.
+    Guard among_good, among_nothing;
+    among_good.rest(5);
+    among_nothing.rest(5);
+    for (int i = 0; i < 200; ++i) {
+        const bool every_second = i % 2 == 0;
+        auto frame = among_good.give(at(every_second ? 900 : 0));
+        ASSERT_EQ(frame.status, every_second ? static_cast<std::uint32_t>(kInputJump | kInputHeld) : kStatusOk) << i;
+        ASSERT_EQ(frame.X_WH.p.x(), 0.0) << i;
+        frame = among_nothing.give(at(i % (tick::kLongestSearchGap + 1) == 0 ? 900 : kNan));
+        ASSERT_EQ(frame.input_usable, i == 0) << i;
+        ASSERT_EQ(frame.X_WH.p.x(), 0.0) << i;
+    }
+}
+
+TEST(InputGuard, FindsADeviceAgainThatWasCarriedWhileItWasSilent) {
+    // Truth: closed form. 1 m in 1 s is 1 m/s: no jump. But the pose is unconfirmed: it is not held when it is denied.
+    Guard guard;
+    guard.rest(5);
+    for (int i = 0; i < 1000; ++i) {
+        ASSERT_EQ(guard.give(stale(at(0))).status, kDeviceStale | (i == 0 ? kInputHeld : kInputRejected));
+    }
+    auto frame = guard.give(at(1));
+    EXPECT_EQ(frame.status, 0u);
+    EXPECT_EQ(frame.sample_periods, 1001);
+    frame = guard.give(at(0));
+    EXPECT_EQ(frame.status, static_cast<std::uint32_t>(kInputJump | kInputRejected));
+    guard.give(at(0));
+    EXPECT_TRUE(guard.give(at(0)).input_usable);
+}
+
+TEST(InputGuard, TakesTheOtherSignOfAQuaternionForTheSameRotation) {
+    // Truth: closed form. q and -q: neither a jump nor less allowed to turn.
+    Guard guard;
+    for (int i = 0; i < 100; ++i) {
+        Pose X_BD = turned(0.19 * i);
+        if (i % 2 == 1) X_BD.q.coeffs() *= -1.0;
+        const auto frame = guard.give(X_BD);
+        ASSERT_EQ(frame.status, 0u) << i;
+        ASSERT_NEAR(rotationVector(frame.X_WH.q * turned(0.19 * i).q.conjugate()).norm(), 0.0, 1e-12);
+    }
+}
+
+TEST(InputGuard, NormalisesARoundedQuaternion) {
+    // Truth: closed form. Lengths within 1e-3 of 1 are a driver's rounding.
+    for (const double length : {0.9991, 1.0009}) {
+        Guard guard;
+        Pose X_BD = turned(0.7);
+        X_BD.q.coeffs() *= length;
+        const auto frame = guard.give(X_BD);
+        EXPECT_EQ(frame.status, 0u);
+        EXPECT_NEAR(frame.X_WH.q.norm(), 1.0, 1e-15);
+        EXPECT_NEAR(frame.X_WH.q.coeffs().dot(turned(0.7).q.coeffs()), 1.0, 1e-15);
+    }
+}
+
+TEST(InputGuard, HoldsBetweenTheSamplesOfADeviceThatIsSlowerThanTheTick) {
+    // Truth: invariant. New on every other tick: usable all the time, two ticks between samples.
+    Guard guard;
+    guard.give(at(0));
+    for (int i = 1; i < 100; ++i) {
+        const bool fresh = i % 2 == 0;
+        const auto frame = guard.give(DeviceReading{.X_BD = at(0.001 * i), .fresh = fresh});
+        EXPECT_TRUE(frame.input_usable);
+        EXPECT_EQ(frame.status, fresh ? kStatusOk : static_cast<std::uint32_t>(kDeviceStale | kInputHeld));
+        EXPECT_EQ(frame.sample_periods, fresh ? 2 : 0);
+        EXPECT_EQ(frame.X_WH.p.x(), fresh ? 0.001 * i : 0.001 * (i - 1));
+    }
+}
+
+TEST(InputGuard, IsNeverLockedAndSaysExactlyWhenItActs) {
+    // Truth: invariant. 500 storms of hostile readings; after each, the third of three samples that agree is usable.
+    Guard guard;
+    Random random(11);
+    const auto faults = everyFault();
+    for (int storm = 0; storm < 500; ++storm) {
+        const auto length = random.below(40);
+        for (std::uint64_t i = 0; i < length; ++i) {
+            DeviceReading reading{at(random.uniform(-3, 3) * (random.below(2) == 0 ? 1.0 : 100.0))};
+            if (random.below(3) == 0) reading = faults[random.below(faults.size())].reading;
+            const auto frame = guard.give(reading);
+            ASSERT_TRUE(isFinite(frame.X_WH));
+            const bool wrong = (frame.status & kWhatIsWrong) != 0, done = (frame.status & kWhatIsDone) != 0;
+            ASSERT_EQ(wrong, done);
+            ASSERT_EQ(frame.sample_periods == 0, wrong);
+            ASSERT_EQ(frame.input_usable, (frame.status & kInputRejected) == 0);
+            if (!wrong) {
+                ASSERT_EQ(frame.X_WH.p, reading.X_BD.p);
+            }
+        }
+        const double place = random.uniform(-500, 500);
+        for (int i = 1; i < tick::kAgreeingSamples; ++i) guard.give(at(place));
+        ASSERT_TRUE(guard.give(at(place + 0.001)).input_usable) << storm;
+    }
+}
+
+TEST(InputGuard, CountsMissedPeriodsAsTimeThatHasPassed) {
+    // Truth: closed form. 55 mm in three periods are 18 m/s; held over them, a pose would be three periods old.
+    Guard guard;
+    guard.rest(10);
+    DeviceReading late{at(0.055)};
+    late.periods = 3;
+    const auto frame = guard.give(late);
+    EXPECT_TRUE(frame.input_usable);
+    EXPECT_EQ(frame.sample_periods, 3);
+    late = stale(at(0.055));
+    late.periods = 3;
+    EXPECT_FALSE(guard.give(late).input_usable);
+}
+
+}  // namespace
+}  // namespace passung

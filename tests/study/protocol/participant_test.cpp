@@ -1,0 +1,29 @@
+#include "study/protocol/participant.h"
+
+#include <gtest/gtest.h>
+
+namespace passung::protocol {
+namespace {
+
+TEST(Participant, CodesBeginWithTheKindsLetterAndGrowBeyondThreeDigits) {
+    // Truth: closed form (the documented pattern)
+    EXPECT_EQ(participantCode(ParticipantKind::Real, 1), "P001");
+    EXPECT_EQ(participantCode(ParticipantKind::Simulated, 42), "S042");
+    EXPECT_EQ(participantCode(ParticipantKind::Pilot, 1000), "T1000");
+}
+
+TEST(Participant, CodesThatCouldLeaveAFolderOrNameAPersonAreRefused) {
+    // Truth: invariant (a code names files)
+    for (const char* good : {"P001", "A1", "GROUP-B_7"}) EXPECT_TRUE(isParticipantCode(good)) << good;
+    for (const char* bad : {"", "P", "p001", "P00a", "1P1", "P/../1", "P 1", "Müller1", "Anna1"}) {
+        EXPECT_FALSE(isParticipantCode(bad)) << bad;
+    }
+}
+
+TEST(Participant, KindsAreNamedAsTheDatabaseAllowsThem) {
+    // Truth: closed form (the schema's CHECK)
+    EXPECT_EQ(participantKindNames(), (std::vector<std::string>{"real", "pilot", "simulated"}));
+}
+
+}  // namespace
+}  // namespace passung::protocol
