@@ -18,12 +18,13 @@ enum TickStatus : std::uint32_t {
     kForceLimited = 1u << 4,      // the device's force or torque limit acted
     kRateLimited = 1u << 5,       // the limit of rising force acted
     kBudgetReached = 1u << 6,     // a query stopped at its node budget
-    kIterationLimit = 1u << 7,    // a solver stopped at its iteration cap
+    kIterationLimit = 1u << 7,    // the solver or the proxy's sub-steps stopped at their cap: the proxy lags
     kContactCap = 1u << 8,        // more contacts than the manifold holds
     kStepRejected = 1u << 9,      // the proxy's step was shortened by the acceptance test
     kOverrun = 1u << 10,          // the previous cycle ended after its deadline: DeviceReading::periods > 1
     kInputNotAPose = 1u << 11,    // fresh, but not finite, no rotation or out of any device's reach
     kInputJump = 1u << 12,        // fresh, but farther from the last good sample than the device can move
+    kInputRelocated = 1u << 13,   // jumps that agreed were believed: the device is elsewhere than it can have come from
     kEngaged = 1u << 16,          // the hand has reached the start pose: contact is rendered
 };
 

@@ -37,7 +37,7 @@ struct Row {
 bool mostViolated(const Problem& problem, const Motion& u, Row& row) noexcept {
     const Vec3 dx = u.head<3>();
     const Vec3 dphi = u.tail<3>() / problem.metric_radius;
-    double violation = kMotionTolerance;
+    double violation = std::max(kMotionTolerance, 2.0 * kIndependent * problem.wanted.norm());
     const ContactPoint* worst = nullptr;
     for (const ContactPoint& contact : problem.manifold) {
         const Vec3 motion = dx + dphi.cross(contact.position - problem.p_WO);

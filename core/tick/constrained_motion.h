@@ -16,7 +16,7 @@ struct ConstrainedMotion {
 };
 
 inline constexpr int kMaxIterations = 200;
-inline constexpr double kMotionTolerance = 1e-9;  // [m], of a constraint
+inline constexpr double kMotionTolerance = 1e-9;  // [m], of a constraint; 2e-7 of a wanted motion above 5 mm
 
 /// The motion nearest to `wanted` that obeys all contacts of `manifold`, by Gauss's principle of least constraint:
 ///   min ½|u - w|²   s.t.   a_i · u ≥ b_i,   a_i = (g_i, (r_i × g_i)/ρ),  r_i = P_i - p_WO,  b_i = keep_out - φ_i

@@ -42,13 +42,14 @@ void look(const TickModel& model, TickState& state, TickFrame& frame, const Pose
     std::swap(state.manifold, state.scratch);
     state.X_WG = X_WG;
     state.manifold_reach = reach;
-    state.clearance = answer.phi;
-    if (!(answer.phi > reach)) return;
+    state.clearance = state.room = answer.phi;
+    for (const ContactPoint& contact : state.manifold) state.room = std::min(state.room, contact.phi);
+    if (!(state.room > reach)) return;
     request.prove = true;
     state.scratch.clear();
     answer = queryObstacles(model, X_WG, request, state.workspace, state.scratch);
     account(answer, frame);
-    state.clearance = std::max(reach, answer.lower_bound);
+    state.room = std::max(reach, answer.lower_bound);
 }
 
 Motion unconstrainedMotion(const TickModel& model, const Pose& X_WG, const Pose& X_WH) noexcept {
@@ -132,26 +133,32 @@ void moveProxy(const TickModel& model, TickState& state, TickFrame& frame) noexc
     const double s = model.finest_cell;
     const Pose X_before = state.X_WG;
     double reach = std::clamp(kReachGrowth * state.last_motion, kShortestReach * s, kLongestStep * s);
+    bool arrived = false;
     for (int sub_step = 0; sub_step < kSubSteps; ++sub_step) {
         const Motion wanted = unconstrainedMotion(model, state.X_WG, frame.X_WH);
         const double path = longestPath(model, wanted);
-        if (path < kStill) break;
-        if (state.clearance > path) {  // nothing is in the way: arrive
+        arrived = path < kStill;
+        if (arrived) break;
+        frame.iterations = static_cast<std::uint32_t>(sub_step + 1);
+        const Pose X_here = state.X_WG;
+        const double accepted = std::max(kAccept * s, overlap(state));
+        if (state.room > path) {  // nothing is in the way: arrive
             look(model, state, frame, frame.X_WH, reach, std::max(reach, 2.0 * path));
-            frame.iterations = static_cast<std::uint32_t>(sub_step + 1);
-            break;
+            arrived = overlap(state) <= accepted;
+            if (arrived) break;
+            frame.status |= kStepRejected;
+            look(model, state, frame, X_here, reach, reach);
         }
         // Step as far as the contacts are known, farther only where there is proven room.
-        const double known = std::max(state.manifold_reach, state.clearance);
+        const double known = std::max(state.manifold_reach, state.room);
         const ConstrainedMotion constrained =
             constrainMotion(wanted, state.manifold, state.X_WG.p, model.metric_radius, -kKeep * s);
         if (!constrained.converged) frame.status |= kIterationLimit;
         Motion u = constrained.u;
         const double step_path = longestPath(model, u);
-        if (step_path < kStill) break;
+        arrived = step_path < kStill;
+        if (arrived) break;
         if (step_path > known) u *= known / step_path;
-        const Pose X_here = state.X_WG;
-        const double accepted = std::max(kAccept * s, overlap(state));
         const double next_reach = std::clamp(kReachGrowth * std::min(step_path, path), reach, kLongestStep * s);
         bool good = false, whole = step_path <= known;
         for (int half = 0; half <= kHalvings; ++half, u *= 0.5) {
@@ -162,14 +169,12 @@ void moveProxy(const TickModel& model, TickState& state, TickFrame& frame) noexc
             frame.status |= kStepRejected;
             whole = false;
         }
-        frame.iterations = static_cast<std::uint32_t>(sub_step + 1);
-        if (!good) {
-            look(model, state, frame, X_here, next_reach, next_reach);
-            break;
-        }
-        if (whole) break;  // the whole constrained motion was made
+        arrived = good && whole;  // the whole constrained motion was made
+        if (!good) look(model, state, frame, X_here, next_reach, next_reach);
+        if (!good || whole) break;
         reach = next_reach;
     }
+    if (!arrived) frame.status |= kIterationLimit;
     state.last_motion = unconstrainedMotion(model, X_before, state.X_WG).norm();
 }
 

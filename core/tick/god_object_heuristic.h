@@ -22,9 +22,8 @@ namespace passung::tick {
 ///    Δx = λ p_max F̂,  Δφ = (1 - λ) θ T̂.  Accepted only if the query at the corrected pose finds less overlap, else
 ///    halved; at most kCorrections times.
 ///
-///    Where the input guard believes the device to be elsewhere than it can have come from (three false readings at the
-///    start, a handle that was carried while its sensor was off), the proxy is set to the hand before: a spring from
-///    the old place would throw the hand across the room.
+///    Where the input guard believes the device to be elsewhere than it can have come from (a false first reading), the
+///    proxy is set to the hand before: a spring from the old place would throw the hand across the room.
 ///
 /// #3 unconstrained motion  u = (x_H - x_G, ρ log(R_H R_Gᵀ)).
 ///
@@ -32,9 +31,10 @@ namespace passung::tick {
 ///    The step is no longer than what is known around the proxy: `reach`, or farther where free room is proven. It is
 ///    checked by a query. What the linearisation missed (around a rim) is pushed out by the least motion that the
 ///    contacts found there ask for; if the overlap is still not acceptable the step is halved; and all is repeated from
-///    the new pose up to kSubSteps times. Where a budget ends a query early, spheres stand for the points that nobody
-///    looked at (contact_query.h): they may leave and slide but not go deeper, so that the proxy stops too early
-///    rather than pass.
+///    the new pose up to kSubSteps times; next to a surface that is about kSubSteps / 2 cells per tick, and a faster
+///    hand leaves the proxy behind (kIterationLimit). Where a budget ends a query early, spheres stand for the points
+///    that nobody looked at (contact_query.h): they may leave and slide but not go deeper, so that the proxy stops too
+///    early rather than pass.
 ///
 /// #5 low-pass of the proxy, a stage of its own (only if the scene names its corner f_c), while in contact:
 ///    G_k = G_{k-1} ⊕ α (G* ⊖ G_{k-1}),  α = 1 - exp(-2π f_c T); dropped for a tick where it would cost overlap.
@@ -49,8 +49,9 @@ namespace passung::tick {
 /// Limit cases: no contact in reach → G = H. One plane → G is H's projection onto it; the overlap there is kKeep · s.
 /// Invariants: between two ticks no point of the shell moves by more than it was known to be away from the obstacle
 /// plus what was found at the next pose; overlap ≤ kAccept · s unless the scene started with more. Keeping kKeep · s of
-/// overlap instead of none lets the record tell contact from nearness. Overlap is that of the shell's points: an
-/// obstacle's edge or corner may stand between them (point_shell.h, cover radius).
+/// overlap instead of none lets the record tell contact from nearness. Overlap is that of the shell's points with φ as
+/// interpolated: at an obstacle's edges the field itself errs by more (DistanceField::errorBound), and an edge or
+/// corner may stand between the points (point_shell.h, cover radius).
 inline constexpr double kKeep = 0.01;     // overlap kept, per cell
 inline constexpr double kAccept = 0.05;   // overlap accepted by the test, per cell
 inline constexpr double kRelieve = 0.02;  // overlap after a step that is pushed out again, per cell

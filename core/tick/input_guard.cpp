@@ -20,7 +20,7 @@ bool agreesWithOthers(const TickModel& model, TickState& state, const Pose& X_BD
     state.other_samples = agrees ? state.other_samples + 1 : 1;
     state.X_BD_other = X_BD;
     state.periods_since_other = 0;
-    return state.other_samples >= kAgreeingSamples;
+    return state.other_samples >= (state.good_confirmed ? kAgreeingSamplesToMove : kAgreeingSamples);
 }
 
 /// The sample becomes the last good one.
@@ -47,6 +47,7 @@ std::uint32_t takeReading(const TickModel& model, TickState& state, TickFrame& f
     } else if (agreesWithOthers(model, state, X_BD)) {
         accept(state, frame, true);
         frame.relocated = true;
+        frame.status |= kInputRelocated;
     } else {
         return kInputJump;
     }

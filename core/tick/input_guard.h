@@ -4,9 +4,10 @@
 
 namespace passung::tick {
 
-inline constexpr double kFarthestReading = 1e3;  // [m] from the device's base: no device reaches so far
-inline constexpr int kAgreeingSamples = 3;       // that it takes to believe a device that is suddenly elsewhere
-inline constexpr int kLongestSearchGap = 4;      // ticks between two of them: down to 250 Hz
+inline constexpr double kFarthestReading = 1e3;     // [m] from the device's base: no device reaches so far
+inline constexpr int kAgreeingSamples = 3;          // jumps that it takes to doubt a pose that nobody confirmed
+inline constexpr int kAgreeingSamplesToMove = 200;  // and one that was confirmed: a driver may be stuck for a while
+inline constexpr int kLongestSearchGap = 4;         // ticks between two of them: down to 250 Hz
 
 /// Stage: a device that lies or stalls.
 ///   Reads the raw reading; writes the last good pose, X_WH, input_usable, sample_periods.
@@ -16,11 +17,12 @@ inline constexpr int kLongestSearchGap = 4;      // ticks between two of them: d
 ///   - kInputHeld: one bad sample, the last good pose holds;
 ///   - kInputRejected: more of them, or no good sample yet: the output is zero until a good one comes.
 ///   Back again: the first sample that follows from the last good one (the allowed distance grows with time), or, where
-///   none does, the last of kAgreeingSamples jumps that follow from one another: a device that really is elsewhere, or
-///   whose last good sample was the false one, is back within kAgreeingSamples ticks.
-///   The first sample of all, and the first after rejected ones, has nothing to be judged by and is taken at its word;
-///   but it is not held against a jump: the output is zero until samples agree again.
-///   Limit case: a device that is slower than the tick (fresh every other tick) is held on each tick between.
+///   none does, the last of so many jumps that follow from one another (kInputRelocated). Few where the last good
+///   sample was confirmed by no other and may be the false one: then the device is back within kAgreeingSamples ticks.
+///   Many where it was, so that a driver that repeats one wrong pose for a fifth of a second moves nothing. The first
+///   sample of all, and the first after rejected ones, has nothing to be judged by and is taken at its word; but it is
+///   not held against a jump: the output is zero until samples agree again. Limit case: a device that is slower than
+///   the tick (fresh every other tick) is held on each tick between.
 void guardInput(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
 
 /// Stage: the trial begins when the hand holds the start pose.

@@ -80,7 +80,8 @@ struct TickState {
     Pose X_WG;
     ContactManifold manifold;      // at X_WG, points with φ < manifold_reach
     double manifold_reach = -1.0;  // < 0: nothing known
-    double clearance = 0.0;        // least φ at X_WG as interpolated; beyond the reach a proven lower bound [m]
+    double clearance = 0.0;        // least φ of the points that were looked at, as interpolated [m]
+    double room = 0.0;             // least φ known of any point: beyond the reach proven, spheres included [m]
     double last_motion = 0.0;      // of the proxy, in the metric of metric_radius [m]
     Pose X_WG_last;                // for the proxy filter
     bool has_last_proxy = false;

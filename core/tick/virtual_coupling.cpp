@@ -4,10 +4,12 @@ namespace passung::tick {
 
 namespace {
 
+constexpr double kNoStretch = 1e-8;  // [m], [rad]: what rounding leaves of none, and has no direction
+
 /// stiffness · x + damping · rate, without a part against x; nothing without x.
 Vec3 springAndDamper(const Vec3& x, const Vec3& rate, double stiffness, double damping) noexcept {
     const double square = x.squaredNorm();
-    if (!(square > 0.0)) return Vec3::Zero();
+    if (!(square > kNoStretch * kNoStretch)) return Vec3::Zero();
     const Vec3 load = stiffness * x + damping * rate;
     const double along = load.dot(x);
     return along >= 0.0 ? load : Vec3(load - along / square * x);

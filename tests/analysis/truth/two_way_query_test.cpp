@@ -138,8 +138,8 @@ TEST(TwoWayQuery, ErrorBoundHoldsForEdgesAcrossEdges) {
 }
 
 TEST(TwoWayQuery, TheFinerShellSharpensTheBoundOnceThePartsAreProvenApart) {
-    // Truth: closed form of two balls 0.7 mm apart. The coarse shell alone cannot tell whether they touch; what the fine
-    // one proves is more than the coarse one doubts, so that the finer interval holds for both.
+    // Truth: closed form of two balls 0.7 mm apart. The coarse shell alone cannot tell whether they touch; what the
+    // fine one proves is more than the coarse one doubts, so that the finer interval holds for both.
     const auto ball = [](double diameter, double spacing) {
         model::PartSpec spec;
         spec.geometry = model::Shape{model::Sphere{diameter}};

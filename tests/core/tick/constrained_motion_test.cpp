@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "core/base/random.h"
@@ -167,7 +168,7 @@ TEST(ConstrainedMotion, EndsOnContactsThatAreNearlyDependent) {
     for (int trial = 0; trial < 300; ++trial) {
         std::vector<ContactPoint> contacts;
         for (int i = 0; i < 300; ++i) {
-            const double angle = 2.0 * 3.14159265358979 * i / 300;
+            const double angle = 2.0 * std::numbers::pi * i / 300;
             const Vec3 out(std::cos(angle), std::sin(angle), 0.0);
             const Vec3 noise = randomVector(random, 1e-3);
             contacts.push_back(contactAt(0.01 * out + Vec3(0, 0, 0.01 * (i % 3)), (-out + noise),
@@ -201,6 +202,45 @@ TEST(ConstrainedMotion, KeepsAnOverlapFromGrowingWhereItCannotBeRemoved) {
     Motion truth = wanted;
     truth[0] = 0.0;
     EXPECT_LT((result.u - truth).norm(), 1e-9);
+}
+
+TEST(ConstrainedMotion, EndsWhenTheHandIsFarAndWallsAreNearlyParallel) {
+    // Truth: invariant. Two opposite walls whose gradients are noisy in the last digits that a float holds, the hand up
+    // to a metre away: solved, to the tolerance that the header states.
+    Random random(5);
+    for (const double noise : {0.0, 1e-8, 1e-7}) {
+        for (const double size : {0.01, 0.1, 1.0}) {
+            for (int trial = 0; trial < 100; ++trial) {
+                std::vector<ContactPoint> contacts;
+                for (int i = 0; i < 40; ++i) {
+                    const double side = i % 2 == 0 ? 1.0 : -1.0;
+                    const Vec3 position(side * 0.01, random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02));
+                    contacts.push_back(
+                        contactAt(position, side * Vec3::UnitX() + randomVector(random, noise),
+                                  kKeepOut + (random.uniform() < 0.5 ? 0.0 : random.uniform(0.0, 1e-5))));
+                }
+                Motion wanted;
+                wanted << randomVector(random, size), randomVector(random, std::min(size, 0.05));
+                const auto result = solve(wanted, contacts);
+                ASSERT_TRUE(result.converged) << noise << " " << size << " " << trial;
+                ASSERT_LE(worstViolation(result.u, contacts), std::max(1e-9, 2e-7 * wanted.norm()) * (1.0 + 1e-9));
+            }
+        }
+    }
+}
+
+TEST(ConstrainedMotion, IsNotSentFarAwayByAWedgeThatIsALittleTooNarrow) {
+    // Truth: closed form. Two walls that close by 1e-4 per unit and overlap by 1 um each: the way out is 20 mm along
+    // the wedge. The motion stays within what was wanted.
+    std::vector<ContactPoint> contacts;
+    for (const double side : {1.0, -1.0}) {
+        contacts.push_back(contactAt(Vec3(0.0, -side * 0.001, 0.0), Vec3(1e-4, side, 0.0).normalized(), -2e-6));
+    }
+    Motion wanted = Motion::Zero();
+    wanted << 0, 1e-4, 0, 0, 0, 0;
+    const auto result = solve(wanted, contacts);
+    EXPECT_TRUE(result.relaxed);
+    EXPECT_LE((result.u - wanted).norm(), wanted.norm() * (1.0 + 1e-9));
 }
 
 TEST(ConstrainedMotion, NeverAsksASphereThatStandsInToMoveOut) {

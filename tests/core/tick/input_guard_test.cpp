@@ -137,7 +137,8 @@ TEST(InputGuard, ForgetsAWildFirstSampleWithinThreeGoodOnes) {
         }
         auto frame = guard.give(at(0.004));
         EXPECT_TRUE(frame.input_usable);
-        EXPECT_EQ(frame.status, 0u);
+        EXPECT_TRUE(frame.relocated);
+        EXPECT_EQ(frame.status, static_cast<std::uint32_t>(kInputRelocated));
         EXPECT_EQ(frame.X_WH.p.x(), 0.004);
         frame = guard.give(wild);
         EXPECT_EQ(frame.status, static_cast<std::uint32_t>(kInputJump | kInputHeld)) << "now the good one is believed";
@@ -145,21 +146,44 @@ TEST(InputGuard, ForgetsAWildFirstSampleWithinThreeGoodOnes) {
     }
 }
 
-TEST(InputGuard, BelievesADeviceThatIsSuddenlyElsewhereAfterThreeSamplesThatAgree) {
-    // Truth: invariant. Held, zero, then there; also for a device that has a new sample on every other tick only, and
+TEST(InputGuard, BelievesThreeSamplesThatAgreeAgainstAFirstThatNobodyConfirmed) {
+    // Truth: invariant. Zero, zero, then there; also for a device that has a new sample on every other tick only, and
     // then moves up to 40 mm from one to the next.
     for (const bool slow : {false, true}) {
         Guard guard;
-        guard.rest(5);
+        guard.give(at(0));
         std::vector<bool> usable;
         for (int i = 0; i < 3; ++i) {
             if (slow && i > 0) usable.push_back(guard.give(stale(at(0))).input_usable);
             usable.push_back(guard.give(at(5 + (slow ? 0.03 : 0.015) * i)).input_usable);
         }
-        EXPECT_EQ(usable,
-                  slow ? (std::vector<bool>{true, false, false, false, true}) : (std::vector<bool>{true, false, true}));
+        EXPECT_EQ(usable, slow ? (std::vector<bool>{false, false, false, false, true})
+                               : (std::vector<bool>{false, false, true}));
         EXPECT_EQ(guard.give(at(5.045)).X_WH.p.x(), 5.045);
     }
+}
+
+TEST(InputGuard, LetsADriverRepeatOneWrongPoseForAFifthOfASecond) {
+    // Truth: invariant. 5 m away is out of reach for 250 ticks: zero all the while, and back at once; after
+    // kAgreeingSamplesToMove of them the device is believed to be there.
+    for (const int wrong : {2, 3, 10, tick::kAgreeingSamplesToMove - 1}) {
+        Guard guard;
+        guard.rest(5);
+        for (int i = 0; i < wrong; ++i) {
+            const auto frame = guard.give(at(5));
+            ASSERT_EQ(frame.input_usable, i == 0) << i;
+            ASSERT_EQ(frame.X_WH.p.x(), 0.0);
+        }
+        const auto frame = guard.give(at(0.001));
+        EXPECT_TRUE(frame.input_usable);
+        EXPECT_FALSE(frame.relocated);
+    }
+    Guard guard;
+    guard.rest(5);
+    tick::TickFrame frame;
+    for (int i = 0; i < tick::kAgreeingSamplesToMove; ++i) frame = guard.give(at(5));
+    EXPECT_TRUE(frame.relocated);
+    EXPECT_EQ(frame.X_WH.p.x(), 5.0);
 }
 
 TEST(InputGuard, NeverBelievesJumpsThatDoNotAgree) {
@@ -253,7 +277,8 @@ TEST(InputGuard, HoldsBetweenTheSamplesOfADeviceThatIsSlowerThanTheTick) {
 }
 
 TEST(InputGuard, IsNeverLockedAndSaysExactlyWhenItActs) {
-    // Truth: invariant. 500 storms of hostile readings; after each, the third of three samples that agree is usable.
+    // Truth: invariant. 500 storms of hostile readings; after each, samples that agree are usable again,
+    // at the latest after kAgreeingSamplesToMove.
     Guard guard;
     Random random(11);
     const auto faults = everyFault();
@@ -273,7 +298,7 @@ TEST(InputGuard, IsNeverLockedAndSaysExactlyWhenItActs) {
             }
         }
         const double place = random.uniform(-500, 500);
-        for (int i = 1; i < tick::kAgreeingSamples; ++i) guard.give(at(place));
+        for (int i = 1; i < tick::kAgreeingSamplesToMove; ++i) guard.give(at(place));
         ASSERT_TRUE(guard.give(at(place + 0.001)).input_usable) << storm;
     }
 }

@@ -144,5 +144,15 @@ TEST(VirtualCoupling, StaysContinuousThroughABadSampleOfAHandThatPressesAndSlide
     EXPECT_GT(last, 5.0);
 }
 
+TEST(VirtualCoupling, TakesRoundingForNoStretch) {
+    // Truth: invariant. The tick after contact: what rounding leaves of the stretch has no direction to damp along.
+    Coupling coupling;
+    coupling.render(Pose{}, hand(0));
+    const Pose X_WH = hand(1);
+    const Wrench w = coupling.render({X_WH.q, X_WH.p + Vec3(3e-18, -1e-20, -2e-18)}, X_WH);
+    EXPECT_EQ(w.force, Vec3(Vec3::Zero()));
+    EXPECT_EQ(w.torque, Vec3(Vec3::Zero()));
+}
+
 }  // namespace
 }  // namespace passung
