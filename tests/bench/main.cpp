@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <functional>
+#include <string>
+
+#include "tests/bench/contact_rows.h"
+#include "tests/bench/marks.h"
+#include "tests/bench/million_rows.h"
+#include "tests/bench/part_rows.h"
+#include "tests/bench/sampling_rows.h"
+#include "tests/bench/true_poses.h"
+
+using namespace passung;
+using namespace passung::bench;
+
+namespace {
+
+struct Options {
+    std::string out, filter, make_poses, data = PASSUNG_BENCH_DATA;
+    bool check = false, quick = false;
+    std::size_t poses = 500;
+    std::uint64_t seed = 1;
+};
+
+int fail(const Errors& errors) {
+    for (const Error& error : errors) fmt::print(stderr, "{}\n", toString(error));
+    return 1;
+}
+
+/// True if what we say about ourselves can be believed: errors are numbers, and every error bound stated holds.
+bool trustworthy(const std::vector<Row>& rows) {
+    bool fine = true;
+    for (const Row& row : rows) {
+        if (!row.ours) continue;
+        const auto complain = [&](const std::string& what) {
+            fmt::print(stderr, "error: {}: {}: {}: {}\n", row.group, row.method, row.settings, what);
+            fine = false;
+        };
+        if (!std::isfinite(row.distance_error_um.max) && row.group != kMillionGroup)
+            complain("an error is not a number");
+        if (row.bound_broken > 0.0) complain(fmt::format("{} answers are outside their own bound", row.bound_broken));
+    }
+    return fine;
+}
+
+int run(const Options& options) {
+    Extent extent;
+    extent.few_settings = options.quick;
+    extent.repetitions = options.quick ? 1 : 5;
+    extent.wanted = [&](const std::string& group, const std::string& method) {
+        return options.filter.empty() || (group + " " + method).find(options.filter) != std::string::npos;
+    };
+    auto bunny = loadBunny(options.data + "/bunny.off");
+    if (!bunny) return fail(bunny.errors());
+
+    if (!options.make_poses.empty()) {
+        const auto written = writeTruePoses(makeContactScene(*bunny, options.poses, options.seed), options.make_poses);
+        return written ? 0 : fail(written.errors());
+    }
+
+    const auto scene = readTruePoses(*bunny, options.data + "/bunny_torus_poses.csv", options.poses);
+    if (!scene) return fail(scene.errors());
+    std::vector<Row> rows;
+    using Group = std::function<Result<std::vector<Row>>()>;
+    const std::vector<Group> groups{
+        [&] { return contactRows(*scene, extent); }, [&] { return millionRows(*scene, extent); },
+        [&] { return samplingRows(*bunny, extent); }, [&] { return partRows(*bunny, extent); }};
+    for (const Group& group : groups) {
+        const auto measured = group();
+        if (!measured) return fail(measured.errors());
+        fmt::print("{}", table(*measured));
+        std::fflush(stdout);
+        rows.insert(rows.end(), measured->begin(), measured->end());
+    }
+    if (!options.out.empty()) {
+        std::ofstream out(options.out);
+        out << csvHeader();
+        for (const Row& row : rows) out << csvLine(row);
+        if (!out.flush()) return fail({{.message = "cannot be written", .file = options.out}});
+    }
+    bool fine = trustworthy(rows);
+    if (options.check) {
+        const std::vector<Mark> marks = judge(rows);
+        fmt::print("{}", describe(marks));
+        fine = allMet(marks) && fine;
+    }
+    return fine ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{"Contact queries of Passung beside FCL, ODE, Bullet and OpenVDB: time and error on the same poses."};
+    Options options;
+    app.add_option("--out", options.out, "CSV file for all rows");
+    app.add_option("--filter", options.filter, "only rows whose group and method contain this text");
+    auto* check = app.add_flag("--check", options.check, "compare with the marks; exit 1 if one is missed");
+    app.add_option("--poses", options.poses, "poses of each kind")->check(CLI::Range(1, 100'000));
+    app.add_option("--make-poses", options.make_poses, "only find poses and their truth, into this file (minutes)");
+    app.add_option("--seed", options.seed, "of the poses that are made");
+    app.add_option("--data", options.data, "folder of bunny.off and bunny_torus_poses.csv");
+    app.add_flag("--quick", options.quick, "few settings, one repetition: to see that it works")->excludes(check);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
+    return run(options);
+}

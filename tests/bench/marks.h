@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tests/bench/row.h"
+
+namespace passung::bench {
+
+/// A figure that the program has to reach: met if value ≤ limit.
+struct Mark {
+    std::string name;
+    double value = kNotGiven;  // NaN: nothing measured, or no setting is accurate enough
+    double limit = 0.0;
+    std::string unit = {};
+    std::string note = {};  // which setting, and what stands against it
+    bool met() const { return value <= limit; }
+};
+
+/// A speed counts only at a setting whose worst errors are ≤ 20 µm and ≤ 1 % / 0.5° (force), ≤ 1 % (torque).
+bool isAccurate(const Row& row);
+
+std::vector<Mark> judge(const std::vector<Row>& rows);
+std::string describe(const std::vector<Mark>& marks);
+bool allMet(const std::vector<Mark>& marks);
+
+}  // namespace passung::bench

@@ -1,0 +1,155 @@
+#include "tests/bench/ours.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "core/tick/penalty.h"
+#include "tests/bench/contact_scene.h"
+#include "tests/bench/stopwatch.h"
+
+namespace passung::bench {
+
+namespace {
+
+class WholeQuery : public Method {
+public:
+    WholeQuery(const model::Part& field, const model::Part& shell, const query::PartQueryRequest& request)
+        : query_(field, shell, request) {}
+
+    Answer at(const Pose& X_FS) override {
+        const query::PartQueryResult result = query_.at(X_FS);
+        return {.signed_distance = result.signed_distance,
+                .error_bound = result.error_bound,
+                .wrench = result.wrench,
+                .contacts = static_cast<double>(result.contacts)};
+    }
+
+private:
+    query::PartQuery query_;
+};
+
+class PenaltyTick : public Method {
+public:
+    PenaltyTick(const model::Part& field, const model::Part& shell)
+        : field_(*field.field),
+          shell_(*shell.shell),
+          workspace_(shell_.nodes().size()),
+          manifold_(shell_.nodes().size() + shell_.points().size()) {
+        contact_.variant = model::PenaltyVariant::AreaWeighted;
+        contact_.area_stiffness = kAreaStiffness;
+    }
+
+    Answer at(const Pose& X_FS) override {
+        manifold_.clear();
+        const tick::QueryAnswer found =
+            tick::queryContacts(field_, Pose{}, shell_, X_FS, tick::QueryRequest{}, workspace_, manifold_);
+        return {.signed_distance = found.found ? found.phi : kNotGiven,
+                .wrench = tick::penaltyWrench(contact_, manifold_, X_FS.p),
+                .contacts = static_cast<double>(manifold_.size())};
+    }
+
+private:
+    const model::DistanceField& field_;
+    const model::SphereTree& shell_;
+    tick::QueryWorkspace workspace_;
+    tick::ContactManifold manifold_;
+    model::ContactSpec contact_;
+};
+
+void writeOff(const model::TriangleMesh& mesh, const std::string& file) {
+    std::ofstream out(file);
+    out << "OFF\n" << mesh.vertices.size() << ' ' << mesh.triangles.size() << " 0\n";
+    for (const Vec3& v : mesh.vertices) out << fmt::format("{} {} {}\n", v.x(), v.y(), v.z());
+    for (const auto& t : mesh.triangles) out << "3 " << t[0] << ' ' << t[1] << ' ' << t[2] << '\n';
+}
+
+Candidate candidate(const char* name, const BuiltPart& field, const BuiltPart& shell, double tolerance, double spacing,
+                    bool two_way) {
+    return {.name = name,
+            .settings = fmt::format("tolerance {:g} um (cell {:.3g} mm), spacing {:g} mm ({} points){}",
+                                    1e6 * tolerance, 1e3 * field.part.field->cell(), 1e3 * spacing,
+                                    shell.part.shell->points().size(), two_way ? ", two-way" : ""),
+            .build_s = field.field_s + field.shell_s + shell.field_s + shell.shell_s,
+            .memory_bytes = field.bytes() + shell.bytes(),
+            .ours = true,
+            .two_way = two_way};
+}
+
+}  // namespace
+
+double BuiltPart::bytes() const {
+    double sum = 0.0;
+    if (part.field) sum += static_cast<double>(part.field->memoryBytes());
+    if (part.shell) sum += static_cast<double>(part.shell->nodes().size_bytes() + part.shell->points().size_bytes());
+    return sum;
+}
+
+PartStore::PartStore(model::TriangleMesh mesh) {
+    static int count = 0;
+    const auto name = fmt::format("passung_bench_{}_{}.off", getpid(), count++);
+    file_ = (std::filesystem::temp_directory_path() / name).string();
+    writeOff(mesh, file_);
+    const auto import = build({}, import_s_);
+}
+
+PartStore::~PartStore() {
+    std::error_code ignored;
+    std::filesystem::remove(file_, ignored);
+}
+
+Result<model::Part> PartStore::build(const model::PartNeeds& needs, double& seconds) const {
+    model::PartSpec spec;
+    spec.name = "bench";
+    spec.geometry = model::MeshFile{file_, 1.0};
+    const WallClock watch;
+    auto part = model::buildPart(spec, needs);
+    seconds = watch.seconds();
+    return part;
+}
+
+Result<const BuiltPart*> PartStore::get(double tolerance, double spacing) {
+    const auto found = parts_.find({tolerance, spacing});
+    if (found != parts_.end()) return &found->second;
+    BuiltPart built;
+    model::PartNeeds needs{.field = tolerance > 0.0, .shell = false};
+    if (needs.field) needs.tolerance = tolerance;
+    auto part = build(needs, built.field_s);
+    if (!part) return part.errors();
+    built.field_s = needs.field ? std::max(0.0, built.field_s - import_s_) : 0.0;
+    built.part = std::move(*part);
+    if (spacing > 0.0) {
+        auto shell = build({.field = false, .shell = true, .spacing = spacing}, built.shell_s);
+        if (!shell) return shell.errors();
+        built.shell_s = std::max(0.0, built.shell_s - import_s_);
+        built.part.shell = std::move(shell->shell);
+    }
+    return &parts_.insert_or_assign({tolerance, spacing}, std::move(built)).first->second;
+}
+
+Result<BuiltPart> PartStore::withCell(double cell) const {
+    BuiltPart built;
+    auto part = build({.field = true, .cell = cell}, built.field_s);
+    if (!part) return part.errors();
+    built.field_s = std::max(0.0, built.field_s - import_s_);
+    built.part = std::move(*part);
+    return built;
+}
+
+Candidate ourQuery(const BuiltPart& field, const BuiltPart& shell, double tolerance, double spacing,
+                   const query::PartQueryRequest& request) {
+    Candidate result = candidate("passung query", field, shell, tolerance, spacing, request.two_way);
+    result.method = std::make_unique<WholeQuery>(field.part, shell.part, request);
+    return result;
+}
+
+Candidate ourTick(const BuiltPart& field, const BuiltPart& shell, double tolerance, double spacing) {
+    Candidate result = candidate("passung tick", field, shell, tolerance, spacing, false);
+    result.method = std::make_unique<PenaltyTick>(field.part, shell.part);
+    return result;
+}
+
+}  // namespace passung::bench

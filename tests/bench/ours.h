@@ -1,0 +1,49 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "core/base/result.h"
+#include "core/model/part.h"
+#include "core/query/part_query.h"
+#include "tests/bench/method.h"
+
+namespace passung::bench {
+
+/// A part built as a scene builds it, with what that took.
+struct BuiltPart {
+    model::Part part;
+    double field_s = 0.0, shell_s = 0.0;  // wall time, all cores; import not included
+    double bytes() const;
+};
+
+/// Builds parts from triangles once per setting; 0: no field, no shell.
+class PartStore {
+public:
+    explicit PartStore(model::TriangleMesh mesh);
+    ~PartStore();
+    PartStore(const PartStore&) = delete;
+    PartStore& operator=(const PartStore&) = delete;
+
+    /// The field by tolerance [m], the shell by spacing [m].
+    Result<const BuiltPart*> get(double tolerance, double spacing);
+
+    /// The field by its cell [m].
+    Result<BuiltPart> withCell(double cell) const;
+
+private:
+    Result<model::Part> build(const model::PartNeeds& needs, double& seconds) const;
+
+    std::string file_;  // parts come from files
+    double import_s_ = 0.0;
+    std::map<std::pair<double, double>, BuiltPart> parts_;
+};
+
+/// The whole query with its proven bounds, as `passung query` answers it. The parts must outlive the method.
+Candidate ourQuery(const BuiltPart& field, const BuiltPart& shell, double tolerance, double spacing,
+                   const query::PartQueryRequest& request);
+
+/// What one tick of the penalty method does: all points inside, no proof.
+Candidate ourTick(const BuiltPart& field, const BuiltPart& shell, double tolerance, double spacing);
+
+}  // namespace passung::bench

@@ -1,0 +1,113 @@
+#include "tests/bench/row.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <numeric>
+
+namespace passung::bench {
+
+namespace {
+
+std::string number(double value, const char* missing) {
+    return std::isnan(value) ? missing : fmt::format("{:.5g}", value);
+}
+
+std::string cell(double value) {
+    if (std::isnan(value)) return "-";
+    const double size = std::abs(value);
+    return size >= 100.0 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
+}
+
+}  // namespace
+
+Times summarise(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    const std::size_t n = values.size();
+    const auto rank = static_cast<std::size_t>(std::ceil(0.99 * static_cast<double>(n)));
+    return {.mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(n),
+            .median = 0.5 * (values[(n - 1) / 2] + values[n / 2]),
+            .p99 = values[std::max<std::size_t>(rank, 1) - 1],
+            .max = values.back()};
+}
+
+std::string csvHeader() {
+    return "group,method,settings,samples,time_mean_us,time_median_us,time_p99_us,time_max_us,time_per_point_ns,"
+           "distance_error_mean_um,distance_error_p99_um,distance_error_max_um,error_bound_max_um,bounds_broken,"
+           "force_error_mean_percent,force_error_p99_percent,force_error_max_percent,force_turn_mean_deg,force_turn_"
+           "p99_deg,force_turn_max_deg,"
+           "torque_error_mean_percent,torque_error_p99_percent,torque_error_max_percent,wrong_signs_percent,contacts_"
+           "mean,memory_MB,build_s\n";
+}
+
+std::string csvLine(const Row& row) {
+    std::string line = fmt::format("{},{},\"{}\",{}", row.group, row.method, row.settings, row.samples);
+    for (const double value : {row.time_us.mean,
+                               row.time_us.median,
+                               row.time_us.p99,
+                               row.time_us.max,
+                               row.ns_per_point,
+                               row.distance_error_um.mean,
+                               row.distance_error_um.p99,
+                               row.distance_error_um.max,
+                               row.bound_max_um,
+                               row.bound_broken,
+                               row.force_error_percent.mean,
+                               row.force_error_percent.p99,
+                               row.force_error_percent.max,
+                               row.force_turn_deg.mean,
+                               row.force_turn_deg.p99,
+                               row.force_turn_deg.max,
+                               row.torque_error_percent.mean,
+                               row.torque_error_percent.p99,
+                               row.torque_error_percent.max,
+                               row.wrong_signs_percent,
+                               row.contacts_mean,
+                               row.memory_MB,
+                               row.build_s})
+        line += "," + number(value, "NA");
+    return line + "\n";
+}
+
+std::string table(const std::vector<Row>& rows) {
+    std::string text, group;
+    for (const Row& row : rows) {
+        if (row.group != group) {
+            group = row.group;
+            text += "\n" + group + "\n";
+        }
+        text += "  " + row.method + ": " + row.settings + "\n   ";
+        const auto add = [&](const char* label, std::initializer_list<double> values, const char* unit) {
+            if (std::isnan(*values.begin())) return;
+            text += fmt::format("  {} ", label);
+            const char* between = "";
+            for (const double value : values) {
+                text += between + cell(value);
+                between = " / ";
+            }
+            text += unit;
+        };
+        add("time mean/median/p99/max", {row.time_us.mean, row.time_us.median, row.time_us.p99, row.time_us.max},
+            " us");
+        add("a point", {row.ns_per_point}, " ns");
+        add("| distance error mean/p99/max",
+            {row.distance_error_um.mean, row.distance_error_um.p99, row.distance_error_um.max}, " um");
+        add("bound", {row.bound_max_um}, " um");
+        add("broken", {row.bound_broken}, "");
+        add("| force error mean/p99/max",
+            {row.force_error_percent.mean, row.force_error_percent.p99, row.force_error_percent.max}, " %");
+        add("", {row.force_turn_deg.mean, row.force_turn_deg.p99, row.force_turn_deg.max}, " deg");
+        add("torque", {row.torque_error_percent.mean, row.torque_error_percent.p99, row.torque_error_percent.max},
+            " %");
+        add("| wrong signs", {row.wrong_signs_percent}, " %");
+        add("| contacts", {row.contacts_mean}, "");
+        add("| memory", {row.memory_MB}, " MB");
+        add("build", {row.build_s}, " s");
+        text += "\n";
+    }
+    return text;
+}
+
+}  // namespace passung::bench

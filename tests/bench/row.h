@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tests/bench/method.h"
+
+namespace passung::bench {
+
+struct Times {
+    double mean = kNotGiven, median = kNotGiven, p99 = kNotGiven, max = kNotGiven;  // p99: nearest rank
+};
+
+/// @pre not empty
+Times summarise(std::vector<double> values);
+
+/// One measured setting of one method. What does not apply is NaN: NA in the CSV, - in the table.
+struct Row {
+    std::string group, method, settings;
+    bool ours = false;
+    std::size_t samples = 0;
+    Times time_us = {};  // of one query; of the fastest repetition of each pose
+    double ns_per_point = kNotGiven;
+    Times distance_error_um = {};     // |signed distance - truth|
+    double bound_max_um = kNotGiven;  // the largest error bound that the method stated
+    double bound_broken = kNotGiven;  // poses whose error is larger than the bound stated for them
+    Times force_error_percent = {};   // | |F| - |F_truth| | / |F_truth|
+    Times force_turn_deg = {};        // between F and F_truth
+    Times torque_error_percent =
+        {};  // |T - T_truth| / (|F_truth| · lever), lever = the tool's farthest point from its origin
+    double wrong_signs_percent = kNotGiven;
+    double contacts_mean = kNotGiven;
+    double memory_MB = kNotGiven;
+    double build_s = kNotGiven;
+};
+
+std::string csvHeader();
+std::string csvLine(const Row& row);
+
+/// All rows, grouped, for a terminal.
+std::string table(const std::vector<Row>& rows);
+
+}  // namespace passung::bench
