@@ -120,7 +120,9 @@ Result<ExportReport> exportAll(const store::StoreReader& reader, const std::stri
                                const ExportOptions& options) {
     const auto study = readStudy(reader);
     if (!study) return study.errors();
-    auto folder = ExportFolder::begin(out_dir);
+    std::vector<std::string> names;
+    for (const store::ProtocolRow& protocol : study->protocols) names.push_back(protocol.name);
+    auto folder = ExportFolder::begin(out_dir, std::move(names));
     if (!folder) return folder.errors();
 
     Writer writer(*folder);

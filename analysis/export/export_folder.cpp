@@ -1,13 +1,17 @@
 #include "analysis/export/export_folder.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <fstream>
 #include <set>
 #include <system_error>
+#include <utility>
 
 #include "analysis/export/codebook.h"
+#include "study/protocol/document.h"
 #include "study/store/digest.h"
+#include "study/store/folder_lock.h"
 
 namespace passung::exporter {
 namespace {
@@ -39,8 +43,23 @@ fs::path strangerIn(const fs::path& folder) {
     return {};
 }
 
-/// An empty folder or an earlier export and nothing else may be replaced.
-Result<Done> checkReplaceable(const fs::path& folder) {
+/// Names of the studies whose protocols an earlier export holds.
+std::vector<std::string> studiesIn(const fs::path& folder) {
+    std::vector<std::string> names;
+    if (!fs::is_directory(folder / "protocol")) return names;
+    for (const auto& entry : fs::directory_iterator(folder / "protocol")) {
+        const auto text = protocol::readFile(entry.path().string());
+        if (!text) continue;
+        const auto document = protocol::parseDocument(*text, entry.path().string());
+        const auto* study = document ? document->find("study") : nullptr;
+        const auto* name = study != nullptr ? study->find("name") : nullptr;
+        if (name != nullptr) names.push_back(name->text);
+    }
+    return names;
+}
+
+/// An empty folder or an earlier export of one of `studies` and nothing else may be replaced.
+Result<Done> checkReplaceable(const fs::path& folder, const std::vector<std::string>& studies) {
     std::error_code error;
     if (!fs::exists(fs::symlink_status(folder, error))) return Done{};
     if (!fs::is_directory(folder, error)) return folderError(folder, "exists and is not a folder");
@@ -53,6 +72,14 @@ Result<Done> checkReplaceable(const fs::path& folder) {
             return folderError(stranger,
                                "does not belong to the earlier export in this folder and would be lost: "
                                "move it away or name another folder");
+        }
+        const auto earlier = studiesIn(folder);
+        const auto is_ours = [&](const std::string& name) {
+            return std::find(studies.begin(), studies.end(), name) != studies.end();
+        };
+        if (!earlier.empty() && std::none_of(earlier.begin(), earlier.end(), is_ours)) {
+            return folderError(folder,
+                               "holds the export of another study, " + earlier.front() + ": name another folder");
         }
     } catch (const fs::filesystem_error& failed) {
         return folderError(folder, "cannot be read: " + failed.code().message());
@@ -67,15 +94,36 @@ fs::path plain(const std::string& folder) {
 }
 
 constexpr const char* kNew = "new";
+constexpr std::size_t kRandomLetters = 6;  // of mkdtemp
 constexpr const char* kReplaced = "replaced";
+constexpr std::string_view kPartial = ".partial.";
+
+/// Removes workshops of `folder` that no export works in any more.
+void removeAbandoned(const fs::path& folder) {
+    std::error_code ignored;
+    const std::string start = folder.filename().string() + std::string(kPartial);
+    const fs::path parent = folder.has_parent_path() ? folder.parent_path() : fs::path(".");
+    std::vector<fs::path> found;
+    for (fs::directory_iterator entry(parent, ignored), end; !ignored && entry != end; entry.increment(ignored)) {
+        const std::string name = entry->path().filename().string();
+        if (name.starts_with(start) && name.size() == start.size() + kRandomLetters) found.push_back(entry->path());
+    }
+    for (const fs::path& workshop : found) {
+        if (const auto lock = store::FolderLock::take(workshop)) fs::remove_all(workshop, ignored);
+    }
+}
 
 }  // namespace
 
-ExportFolder::ExportFolder(fs::path folder, fs::path workshop)
-    : folder_(std::move(folder)), workshop_(std::move(workshop)) {}
+ExportFolder::ExportFolder(fs::path folder, std::vector<std::string> studies)
+    : folder_(std::move(folder)), studies_(std::move(studies)) {}
 
 ExportFolder::ExportFolder(ExportFolder&& other) noexcept
-    : folder_(std::move(other.folder_)), workshop_(std::move(other.workshop_)), sums_(std::move(other.sums_)) {
+    : folder_(std::move(other.folder_)),
+      studies_(std::move(other.studies_)),
+      lock_(std::move(other.lock_)),
+      workshop_(std::move(other.workshop_)),
+      sums_(std::move(other.sums_)) {
     other.workshop_.clear();
 }
 
@@ -84,19 +132,22 @@ ExportFolder::~ExportFolder() {
     if (!workshop_.empty()) fs::remove_all(workshop_, ignored);
 }
 
-Result<ExportFolder> ExportFolder::begin(const std::string& name) {
+Result<ExportFolder> ExportFolder::begin(const std::string& name, std::vector<std::string> studies) {
     const fs::path folder = plain(name);
     std::error_code error;
     if (folder.empty() || folder.filename() == "." || folder.filename() == "..") {
         return folderError(name, "name a folder of its own for the export");
     }
-    if (const auto checked = checkReplaceable(folder); !checked) return checked.errors();
+    if (const auto checked = checkReplaceable(folder, studies); !checked) return checked.errors();
     if (folder.has_parent_path()) fs::create_directories(folder.parent_path(), error);
-    std::string workshop = folder.string() + ".partial.XXXXXX";
+    removeAbandoned(folder);
+    std::string workshop = folder.string() + std::string(kPartial) + std::string(kRandomLetters, 'X');
     if (mkdtemp(workshop.data()) == nullptr) {
         return folderError(workshop, "cannot be created: " + std::generic_category().message(errno));
     }
-    ExportFolder made(folder, workshop);
+    ExportFolder made(folder, std::move(studies));
+    made.workshop_ = workshop;
+    if (auto lock = store::FolderLock::take(workshop)) made.lock_.emplace(std::move(*lock));
     if (!fs::create_directory(made.workshop_ / kNew, error)) {
         return folderError(made.workshop_ / kNew, "cannot be created: " + error.message());
     }
@@ -121,7 +172,7 @@ Result<Done> ExportFolder::complete() {
     if (auto written = write("SHA256SUMS", sums); !written) return written;
 
     // Somebody may have put a file there meanwhile.
-    if (auto checked = checkReplaceable(folder_); !checked) return checked;
+    if (auto checked = checkReplaceable(folder_, studies_); !checked) return checked;
     const fs::path old = workshop_ / kReplaced;
     std::error_code error;
     const bool replaces = fs::exists(folder_, error);

@@ -2,10 +2,13 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/result.h"
+#include "study/store/folder_lock.h"
 
 namespace passung::exporter {
 
@@ -14,8 +17,9 @@ namespace passung::exporter {
 /// replaced, but nothing that its SHA256SUMS does not list is ever deleted.
 class ExportFolder {
 public:
-    /// Fails if `folder` exists and is neither empty nor an earlier export without further files.
-    static Result<ExportFolder> begin(const std::string& folder);
+    /// Fails if `folder` exists and is neither empty nor an earlier export without further files, or if that export
+    /// is of none of `studies` (names). What an export of the same folder that was killed has left is removed.
+    static Result<ExportFolder> begin(const std::string& folder, std::vector<std::string> studies);
     ~ExportFolder();
     ExportFolder(ExportFolder&& other) noexcept;
     ExportFolder& operator=(ExportFolder&&) = delete;
@@ -27,10 +31,12 @@ public:
     Result<Done> complete();
 
 private:
-    ExportFolder(std::filesystem::path folder, std::filesystem::path workshop);
+    ExportFolder(std::filesystem::path folder, std::vector<std::string> studies);
 
     std::filesystem::path folder_;
-    std::filesystem::path workshop_;  // holds the new files, then the replaced ones; empty: nothing to remove
+    std::vector<std::string> studies_;
+    std::optional<store::FolderLock> lock_;  // of the workshop
+    std::filesystem::path workshop_;         // holds the new files, then the replaced ones; empty: nothing to remove
     std::map<std::string, std::string> sums_;
 };
 

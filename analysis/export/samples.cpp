@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "analysis/export/status_bits.h"
 #include "study/measures/period_clock.h"
 #include "study/store/sample_codec.h"
 
@@ -63,7 +64,7 @@ std::vector<Column> sampleColumns() {
                            channel.label,
                            channel.unit == "1" ? "" : channel.unit,
                            integer ? "integer" : "number",
-                           "",
+                           channel.name == "status" ? statusBitsText() : "",
                            1,
                            {}});
     }

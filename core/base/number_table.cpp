@@ -110,7 +110,9 @@ Result<NumberTable> readNumbers(const std::string& path, const std::vector<std::
     for (const auto name : cells(line)) table.columns.emplace_back(trimmed(name));
     for (std::size_t i = 0; i < required.size(); ++i) {
         if (i < table.columns.size() && table.columns[i] == required[i]) continue;
-        return Error{.message = "the header's column " + std::to_string(i + 1) + " must be " + required[i],
+        return Error{.message = "the header must be " + joined(required) +
+                                " (further columns may follow): its column " + std::to_string(i + 1) + " must be " +
+                                required[i],
                      .file = path,
                      .line = 1,
                      .column = 1,

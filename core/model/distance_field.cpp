@@ -76,8 +76,7 @@ Result<DistanceField> DistanceField::build(const DistanceSource& source, double 
     const Vec3 reach = field.origin_.cwiseAbs().cwiseMax((source.bounds.high + Vec3::Constant(margin)).cwiseAbs());
     field.arithmetic_ = kArithmetic * (reach.maxCoeff() + field.brick_edge_);
     field.sampleCoarse(source);
-    field.sampleBricks(source, band);
-    if (field.memoryBytes() > kMaxBytes) {
+    if (!field.sampleBricks(source, band)) {
         return Error{.message = "the distance field needs more than 2 GiB: choose larger cells"};
     }
     return field;
@@ -94,11 +93,12 @@ void DistanceField::sampleCoarse(const DistanceSource& source) {
     });
 }
 
-void DistanceField::sampleBricks(const DistanceSource& source, double band) {
+bool DistanceField::sampleBricks(const DistanceSource& source, double band) {
     brick_of_cell_.assign(static_cast<std::size_t>(coarse_cells_[0]) * static_cast<std::size_t>(coarse_cells_[1]) *
                               static_cast<std::size_t>(coarse_cells_[2]),
                           -1);
     const double half_diagonal = 0.5 * std::sqrt(3.0) * brick_edge_;
+    const std::size_t most = (kMaxBytes - std::min(kMaxBytes, memoryBytes())) / (kBrickSamples * sizeof(float));
     std::vector<std::array<int, 3>> places;
     for (int z = 0; z < coarse_cells_[2]; ++z) {
         for (int y = 0; y < coarse_cells_[1]; ++y) {
@@ -108,6 +108,7 @@ void DistanceField::sampleBricks(const DistanceSource& source, double band) {
                 if (corner * (1.0 - kFloatRounding) > band + sheet_offset_ + 2.0 * half_diagonal) continue;
                 const Vec3 centre = origin_ + brick_edge_ * (Vec3(x, y, z) + Vec3::Constant(0.5));
                 if (source.distance(centre) > band + sheet_offset_ + half_diagonal) continue;
+                if (places.size() == most) return false;
                 brick_of_cell_[coarseCell(x, y, z)] = static_cast<std::int32_t>(places.size());
                 places.push_back({x, y, z});
             }
@@ -123,6 +124,7 @@ void DistanceField::sampleBricks(const DistanceSource& source, double band) {
                       &bricks_[b * kBrickSamples + static_cast<std::size_t>(row * kBrickNodes)]);
         }
     });
+    return true;
 }
 
 std::size_t DistanceField::memoryBytes() const {

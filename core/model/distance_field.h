@@ -77,7 +77,7 @@ private:
     double rounding(const Cell& cell, double weights) const noexcept;
     double farthestSurface(const Cell& cell) const noexcept;
     void sampleCoarse(const DistanceSource& source);
-    void sampleBricks(const DistanceSource& source, double band);
+    bool sampleBricks(const DistanceSource& source, double band);  // false: more than 2 GiB
     std::size_t coarseNode(int x, int y, int z) const noexcept;
     std::size_t coarseCell(int x, int y, int z) const noexcept;
 

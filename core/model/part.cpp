@@ -24,10 +24,17 @@ constexpr std::size_t kErrorProbes = 400;
 constexpr int kMostTries = 4000;  // to find so many points
 constexpr double kProbeQuantile = 0.9;
 
-std::string inMillimetres(double metres) {
+std::string number(const char* format, double value) {
     std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.3g mm", 1e3 * metres);
+    std::snprintf(text.data(), text.size(), format, value);
     return text.data();
+}
+
+std::string inMillimetres(double metres) { return number("%.3g mm", 1e3 * metres); }
+
+Errors keyedByPart(const PartSpec& spec, Errors errors) {
+    for (auto& error : errors) error.key = "part " + spec.name;
+    return errors;
 }
 
 /// A point within `reach` of the surface.
@@ -101,6 +108,16 @@ double chooseCell(const DistanceSource& source, const TriangleMesh& mesh, double
     return cell;
 }
 
+std::optional<std::string> tooManyPoints(const Vec3& size, double area, double spacing) {
+    const double points = area / (spacing * spacing);
+    if (!(points > kMaxShellPoints)) return std::nullopt;
+    const auto length = [&](int axis) { return number("%.4g", 1e3 * size[axis]); };
+    const double enough = 1.005 * std::sqrt(area / kMaxShellPoints);  // rounded to three digits, still enough
+    return "points " + inMillimetres(spacing) + " apart on a part of " + length(0) + " x " + length(1) + " x " +
+           length(2) + " mm are about " + number("%.2g", points) + ", more than " + number("%.2g", kMaxShellPoints) +
+           ": check its unit, or choose a spacing of at least " + inMillimetres(enough);
+}
+
 Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs) {
     Part part;
     part.name = spec.name;
@@ -120,15 +137,15 @@ Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs) {
         part.mesh = std::move(imported->mesh);
         part.report = std::move(imported->report);
     }
+    if (needs.shell) {
+        if (const auto excess = tooManyPoints(part.report.size, part.report.area, needs.spacing))
+            return keyedByPart(spec, {Error{.message = *excess}});
+    }
     if (needs.field) {
         const DistanceSource source = exactSource(part);
         const double cell = needs.cell > 0.0 ? needs.cell : chooseCell(source, part.mesh, needs.tolerance);
         auto field = DistanceField::build(source, cell, kBandCells * cell);
-        if (!field) {
-            Errors errors = field.errors();
-            for (auto& error : errors) error.key = "part " + spec.name;
-            return errors;
-        }
+        if (!field) return keyedByPart(spec, field.errors());
         part.field = std::move(*field);
         if (source.open_sheet)
             part.report.notes.push_back("The sheet is felt " + inMillimetres(part.field->sheetOffset()) +

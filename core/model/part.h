@@ -33,7 +33,14 @@ struct Part {
     std::optional<SphereTree> shell;
 };
 
-/// Errors: unreadable mesh, invalid shape, a field too large.
+/// Most points of a point shell, roughly: more take gigabytes and minutes to sample and do not fit a tick.
+inline constexpr double kMaxShellPoints = 2e6;
+
+/// Says that points `spacing` apart on a surface of this size and area would be more than kMaxShellPoints, mostly
+/// because the unit is not what its author meant, and what to change; nothing if they are not. SI units.
+std::optional<std::string> tooManyPoints(const Vec3& size, double area, double spacing);
+
+/// Errors: unreadable mesh, invalid shape, a field too large, a shell of too many points.
 Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs);
 
 /// Exact distances to the geometry of `part`: the closed form of a shape, the triangles of a mesh.

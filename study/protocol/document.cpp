@@ -78,6 +78,25 @@ const Node* Node::find(std::string_view key) const {
 
 Node* Node::find(std::string_view key) { return const_cast<Node*>(std::as_const(*this).find(key)); }
 
+std::optional<FileKind> kindOf(const Node& document) {
+    if (document.find("study") != nullptr || document.find("passung") != nullptr) return FileKind::Study;
+    for (const char* key : {"contact", "device", "registration", "start_gate", "effects"})
+        if (document.find(key) != nullptr) return FileKind::Scene;
+    if (document.find("part") != nullptr) return FileKind::Part;
+    return std::nullopt;
+}
+
+std::optional<std::string> otherKind(const Node& document, FileKind wanted) {
+    const auto kind = kindOf(document);
+    if (!kind || *kind == wanted || (*kind == FileKind::Part && wanted == FileKind::Scene)) return std::nullopt;
+    const auto name = [](FileKind k) {
+        return k == FileKind::Study   ? "a study file (it has a [study])"
+               : k == FileKind::Scene ? "a scene file ([[part]], [contact], [device] at its top level, no [study])"
+                                      : "a part file ([[part]] and nothing else)";
+    };
+    return fmt::format("is {}; wanted here is {}", name(*kind), name(wanted));
+}
+
 Node emptyTable(const Place& place) {
     Node node;
     node.place = place;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,6 +42,15 @@ struct Entry {
     Place place;
     Node value;
 };
+
+/// What a file describes, by its top-level keys: a study has `study` or `passung`; a scene `contact`, `device`,
+/// `registration`, `start_gate` or `effects`; a part file parts and nothing of these.
+enum class FileKind { Study, Scene, Part };
+std::optional<FileKind> kindOf(const Node& document);  // nothing: none of them
+
+/// One sentence that says what the file is and what was wanted, if it is of another kind that cannot be read as
+/// `wanted` (a part file may be a scene).
+std::optional<std::string> otherKind(const Node& document, FileKind wanted);
 
 /// A table without keys that stands at `place`.
 Node emptyTable(const Place& place);

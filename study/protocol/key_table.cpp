@@ -303,7 +303,7 @@ std::optional<std::string_view> closestWord(std::string_view word, std::span<con
     return best;
 }
 
-std::string keyTable() {
+std::string keyTable(std::span<const DeviceDescription> devices, std::span<const KnownWord> measures) {
     std::string text =
         "# Keys of study, scene and part files\n\n"
         "Printed by the program from the table that its reader uses. Files are TOML; a key that is not listed is an\n"
@@ -321,6 +321,17 @@ std::string keyTable() {
                                 range.starts_with("must be ") ? range.substr(8) : range, fallbackText(key), key.doc);
         }
     }
+    text += "\n## Device presets\n\nWhat `preset` in `[device]` may name. \"max\" of a stiffness is the stable one.\n";
+    text +=
+        "\n| preset | device | stable N/m | stable Nm/rad | force N | torque Nm |\n| --- | --- | --- | --- | --- | --- "
+        "|\n";
+    for (const auto& device : devices)
+        text += fmt::format("| {} | {} | {:.6g} | {:.6g} | {:.6g} | {:.6g} |\n", device.name, device.label,
+                            device.stable_stiffness_N_per_m, device.stable_rotational_stiffness_Nm_per_rad,
+                            device.max_force_N, device.max_torque_Nm);
+    text += "\n## Measures\n\nWhat `measures` may name; the codebook of an export has the formulas.\n";
+    text += "\n| measure | meaning |\n| --- | --- |\n";
+    for (const auto& measure : measures) text += fmt::format("| {} | {} |\n", measure.name, measure.meaning);
     return text;
 }
 

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/device_description.h"
+
 namespace passung::protocol {
 
 /// What may stand behind a key.
@@ -67,7 +69,13 @@ std::string requirement(const Range& range);
 /// The word most like `word`, if any is close enough to be meant.
 std::optional<std::string_view> closestWord(std::string_view word, std::span<const std::string_view> candidates);
 
-/// The documentation of all keys as Markdown: the text of protocols/KEYS.md.
-std::string keyTable();
+/// A word that a file may name, and what it stands for.
+struct KnownWord {
+    std::string name, meaning;
+};
+
+/// The documentation of all keys as Markdown, and of the presets and measures that may be named: the text of
+/// protocols/KEYS.md.
+std::string keyTable(std::span<const DeviceDescription> devices, std::span<const KnownWord> measures);
 
 }  // namespace passung::protocol

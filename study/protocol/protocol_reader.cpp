@@ -11,6 +11,7 @@
 #include "study/protocol/factors.h"
 #include "study/protocol/plan_json.h"
 #include "study/protocol/scene_node.h"
+#include "study/protocol/start_pose.h"
 #include "study/protocol/task_reader.h"
 
 namespace passung::protocol {
@@ -125,6 +126,7 @@ private:
         condition.device = std::move(content.device);
         if (errors_.size() == before && root_.has("task")) condition.task = readTask(tables, condition.scene, errors_);
         condition.shown = readFeedback(tables.feedback);
+        if (errors_.size() == before) checkStartPose(tables.scene, "scene", condition.scene, errors_);
         if (errors_.size() > before) return;
         condition.levels_json = levelsJson(plan_.factors, levels);
         condition.levels = std::move(levels);
@@ -273,6 +275,7 @@ Result<StudyPlan> readProtocolText(const std::string& text, const std::string& p
                                    std::span<const std::string> known_measures) {
     const auto document = parseDocument(text, path);
     if (!document) return document.errors();
+    if (const auto other = otherKind(*document, FileKind::Study)) return errorAt(document->place, "", "", *other);
     auto plan = ProtocolReader(*document, devices, known_measures).read();
     if (!plan) return plan.errors();
     plan->source_text = text;

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "core/model/part.h"
 #include "study/protocol/scene_node.h"
 
 namespace passung::protocol {
@@ -14,7 +15,6 @@ namespace {
 
 constexpr double kDefaultStiffness = 1000.0;         // [N/m], without a device
 constexpr double kDefaultRotationalStiffness = 1.0;  // [N·m/rad], without a device
-constexpr double kMaxShellPoints = 2e6;              // more take minutes to sample and do not fit a tick
 
 std::vector<model::PartSpec> readParts(const TableReader& read, const Node& scene, const std::string& path,
                                        double units, Errors& errors) {
@@ -142,16 +142,21 @@ void checkStability(const TableReader& device_table, const TableReader& contact_
     if (scene.registration.scale != 1.0) refuse(registration, "scale", "leave it out or set 1");
 }
 
-/// Area of a shape's surface, roughly [m²]: what a bore takes from its plate and a chamfer from an edge is small.
-double roughArea(const model::Shape& shape) {
+struct Extent {
+    Vec3 size;    // [m]
+    double area;  // of the surface, roughly [m²]: what a bore takes from its plate and a chamfer from an edge is small
+};
+
+Extent extentOf(const model::Shape& shape) {
     const auto round = [](double diameter, double length) {
-        return std::numbers::pi * diameter * (0.5 * diameter + length);
+        return Extent{{diameter, diameter, length}, std::numbers::pi * diameter * (0.5 * diameter + length)};
     };
-    const auto block = [](double x, double y, double z) { return 2.0 * (x * y + y * z + z * x); };
-    if (const auto* s = std::get_if<model::Sphere>(&shape)) return std::numbers::pi * s->diameter * s->diameter;
+    const auto block = [](double x, double y, double z) { return Extent{{x, y, z}, 2.0 * (x * y + y * z + z * x)}; };
+    if (const auto* s = std::get_if<model::Sphere>(&shape))
+        return {Vec3::Constant(s->diameter), std::numbers::pi * s->diameter * s->diameter};
     if (const auto* s = std::get_if<model::Cylinder>(&shape)) return round(s->diameter, s->length);
     if (const auto* s = std::get_if<model::Peg>(&shape)) return round(s->diameter, s->length);
-    if (const auto* s = std::get_if<model::Sheet>(&shape)) return s->width * s->depth;
+    if (const auto* s = std::get_if<model::Sheet>(&shape)) return {{s->width, s->depth, 0.0}, s->width * s->depth};
     if (const auto* s = std::get_if<model::Box>(&shape)) return block(s->width, s->depth, s->height);
     const auto& plate = std::get<model::BorePlate>(shape);
     return block(plate.width, plate.depth, plate.height);
@@ -162,12 +167,9 @@ void checkSpacing(const TableReader& contact_table, const model::SceneSpec& scen
     for (const auto& part : scene.parts) {
         const auto* shape = std::get_if<model::Shape>(&part.geometry);
         if (!part.held || shape == nullptr) continue;
-        const double area = roughArea(*shape), spacing = scene.contact.spacing;
-        if (area > kMaxShellPoints * spacing * spacing)
-            contact_table.fail(
-                "spacing_mm",
-                fmt::format("gives {} about {:.2g} points, more than {:g}; at least {:.2g}", part.name,
-                            area / (spacing * spacing), kMaxShellPoints, 1e3 * std::sqrt(area / kMaxShellPoints)));
+        const auto [size, area] = extentOf(*shape);
+        if (const auto excess = model::tooManyPoints(size, area, scene.contact.spacing))
+            contact_table.fail("spacing_mm", fmt::format("part {}: {}", part.name, *excess));
     }
 }
 
@@ -252,6 +254,7 @@ Result<model::SceneSpec> readSceneText(const std::string& text, const std::strin
                                        std::span<const DeviceDescription> devices) {
     const auto document = parseDocument(text, path);
     if (!document) return document.errors();
+    if (const auto other = otherKind(*document, FileKind::Scene)) return errorAt(document->place, "", "", *other);
     Errors errors;
     auto content = readSceneNode(*document, {"scene"}, "", devices, errors);
     tidy(errors);
@@ -264,6 +267,7 @@ Result<model::PartSpec> readPart(const std::string& path, double metres_per_unit
     if (!text) return text.errors();
     const auto document = parseDocument(*text, path);
     if (!document) return document.errors();
+    if (const auto other = otherKind(*document, FileKind::Part)) return errorAt(document->place, "", "", *other);
     Errors errors;
     const TableReader read(*document, {"part_file"}, "", errors);
     const auto& parts = read.items("part");

@@ -47,6 +47,25 @@ Result<Done> Session::run() {
     return Done{};
 }
 
+void Session::interrupt(const std::string& reason) {
+    const bool complete = state_ == SessionState::BetweenTrials && finished_ == setup_.trials.size();
+    if (state_ == SessionState::InTrial) {
+        std::vector<TrialEvent> events;
+        attempt_->course.abort(attempt_->next_tick, reason, events);
+        appendEvents(events);
+        finishTrial();
+    }
+    if (state_ != SessionState::BetweenTrials) return;
+    if (complete) return finish(SessionState::Complete);
+    Event event;
+    event.t_ns = session_ns_;
+    event.source = "session";
+    event.event = "session_interrupted";
+    event.payload_json = protocol::JsonObject().text("reason", reason).str();
+    sink_.appendEvent(event);
+    finish(SessionState::Interrupted);
+}
+
 SessionState Session::advance() {
     switch (state_) {
         case SessionState::BetweenTrials:
@@ -60,6 +79,7 @@ SessionState Session::advance() {
             break;
         case SessionState::Complete:
         case SessionState::Failed:
+        case SessionState::Interrupted:
             break;
     }
     return state_;

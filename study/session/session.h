@@ -45,8 +45,8 @@ struct SessionListener {
     std::function<void(const TrialProgress&)> progress;
 };
 
-/// BetweenTrials → InTrial → BetweenTrials … → Complete, and from the first two → Failed.
-enum class SessionState { BetweenTrials, InTrial, Complete, Failed };
+/// BetweenTrials → InTrial → BetweenTrials … → Complete, and from the first two → Failed or Interrupted.
+enum class SessionState { BetweenTrials, InTrial, Complete, Failed, Interrupted };
 
 /// Runs the planned trials one after another: prepares the apparatus, records every tick into the sink, lets
 /// TrialCourse decide, computes the measures and finishes the attempt durably. It has no clock: session time is the
@@ -65,6 +65,11 @@ public:
     /// One bounded piece of work: begin the next trial, watch the running one for kTicksPerLook, or close the session.
     /// Whatever is to be done to a session from outside is done between two calls.
     SessionState advance();
+
+    /// Ends the session from outside, between two calls of advance(): a running trial is stored as aborted for
+    /// `reason`, the session as not complete. A session without a trial left is complete all the
+    /// same; nothing happens to one that is over.
+    void interrupt(const std::string& reason);
 
     /// Advances until the session is Complete or Failed.
     Result<Done> run();

@@ -137,6 +137,20 @@ void requireMeshes(const Database& database, const std::string& sha256, const st
     }
 }
 
+/// One file holds one study, and a version of it is one text: else rows of two designs could not be told apart.
+void requireSameStudy(const Database& database, const protocol::StudyPlan& plan) {
+    Statement other = database.prepare("SELECT name FROM protocol_version WHERE name<>? LIMIT 1");
+    if (other.bind(plan.name).step()) {
+        throw std::runtime_error("holds the study " + other.text(0) + ", not " + plan.name +
+                                 ": one database per study, name another with --db");
+    }
+    Statement same = database.prepare("SELECT 1 FROM protocol_version WHERE name=? AND version=? LIMIT 1");
+    if (same.bind(plan.name, plan.version).step()) {
+        throw std::runtime_error("the protocol has changed since version " + plan.version +
+                                 " of it was stored here: restore its text, or give the protocol a new version");
+    }
+}
+
 std::string importPlan(const Database& database, const protocol::StudyPlan& plan,
                        const std::vector<MeshContent>& meshes, const OpenOptions& options) {
     const std::string sha256 = sha256Hex(plan.source_text);
@@ -148,6 +162,7 @@ std::string importPlan(const Database& database, const protocol::StudyPlan& plan
         transaction.commit();
         return sha256;
     }
+    requireSameStudy(database, plan);
     database.prepare("INSERT INTO protocol_version VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
         .bind(sha256, plan.name, plan.version, plan.source_text, plan.expanded_json, schemaNumber(),
               options.app_version, options.now_utc, plan.title, sequenceCount(plan))
@@ -228,11 +243,13 @@ bool insertParticipant(const Database& database, const std::string& code, protoc
     const char* kind = protocol::participantKindName(wanted);
     if (!protocol::isParticipantCode(code)) {
         throw std::runtime_error("participant code '" + code +
-                                 "' is not a capital letter, then capital letters, digits, '_' or '-', then a digit");
+                                 "' is not a capital letter, then capital letters, digits, '_' or '-', then a digit, "
+                                 "such as " +
+                                 protocol::participantCode(wanted, 1));
     }
     if (code.front() != protocol::codeLetter(wanted)) {
         throw std::runtime_error("participant code '" + code + "': codes of " + kind + " participants begin with " +
-                                 protocol::codeLetter(wanted));
+                                 protocol::codeLetter(wanted) + ", such as " + protocol::participantCode(wanted, 1));
     }
     Transaction transaction(database);
     Statement find = database.prepare("SELECT kind FROM participant WHERE participant_id=?");

@@ -32,7 +32,7 @@ public:
              store::Store& store, std::string protocol_sha256)
         : plan_(plan), options_(options), listener_(listener), store_(store), sha256_(std::move(protocol_sha256)) {}
 
-    Result<Done> participant(int number) {
+    Result<RunEnd> participant(int number) {
         const bool measured = options_.clock == Clock::RealTime;
         const store::UtcClock clock =
             measured ? store::UtcClock::wall(unixMilliseconds()) : store::UtcClock::virtualEpoch();
@@ -69,7 +69,15 @@ public:
         if (!writer) return writer.errors();
         session::Session session({plan_, trials, code, plan_.seed, measured, *ordinal}, apparatus, **writer,
                                  {listener_.acknowledge, listener_.trial});
-        return session.run();
+        while (session.state() == session::SessionState::BetweenTrials ||
+               session.state() == session::SessionState::InTrial) {
+            if (options_.interrupted && options_.interrupted())
+                session.interrupt("interrupted");
+            else
+                session.advance();
+        }
+        if (session.state() == session::SessionState::Failed) return session.errors();
+        return session.state() == session::SessionState::Interrupted ? RunEnd::Interrupted : RunEnd::Complete;
     }
 
 private:
@@ -100,7 +108,7 @@ const std::vector<std::string>& knownMeasures() {
     return names;
 }
 
-Result<Done> runStudy(const protocol::StudyPlan& plan, const RunOptions& options, const RunListener& listener) {
+Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& options, const RunListener& listener) {
     const std::int64_t now = unixMilliseconds();
     auto opened = store::Store::open(options.database,
                                      {.app_version = PASSUNG_VERSION, .now_utc = store::UtcClock::wall(now).at(0)});
@@ -110,9 +118,9 @@ Result<Done> runStudy(const protocol::StudyPlan& plan, const RunOptions& options
     if (!sha256) return sha256.errors();
     StudyRun run(plan, options, listener, *opened.store, *sha256);
     for (int i = 0; i < options.simulated; ++i) {
-        if (auto done = run.participant(i + 1); !done) return done;
+        if (auto end = run.participant(i + 1); !end || *end == RunEnd::Interrupted) return end;
     }
-    return Done{};
+    return RunEnd::Complete;
 }
 
 }  // namespace passung::app

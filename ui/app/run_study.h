@@ -16,7 +16,11 @@ struct RunOptions {
     std::string participant;  // code of one participant; empty: the next free codes
     int simulated = 1;        // how many simulated participants, one after another
     Clock clock = Clock::Virtual;
+    std::function<bool()> interrupted;  // asked every few ticks: true ends the run; empty: never
 };
+
+/// How a run ended that met no error.
+enum class RunEnd { Complete, Interrupted };
 
 /// What a run tells while it goes on; any of them may be empty.
 struct RunListener {
@@ -27,8 +31,9 @@ struct RunListener {
 };
 
 /// Performs the study with simulated participants on the simulated device, each a session of all planned trials, into
-/// the database. Whatever was finished before an error stays in it.
-Result<Done> runStudy(const protocol::StudyPlan& plan, const RunOptions& options, const RunListener& listener);
+/// the database. Whatever was finished before an error stays in it. An interruption stores the running trial as aborted
+/// and closes the session as aborted, both with the reason "interrupted".
+Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& options, const RunListener& listener);
 
 /// Every device that a protocol may name.
 const std::vector<DeviceDescription>& knownDevices();

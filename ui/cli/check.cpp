@@ -1,5 +1,10 @@
 #include <fmt/format.h>
 
+#include <map>
+#include <utility>
+
+#include "core/model/mesh_import.h"
+#include "core/model/part.h"
 #include "study/protocol/protocol_reader.h"
 #include "study/session/participant_order.h"
 #include "study/session/plan_text.h"
@@ -9,9 +14,36 @@
 
 namespace passung::cli {
 
+namespace {
+
+/// Meshes are readable, and their size suits the spacing: what `run` would find at the first trial only.
+Result<Done> checkMeshes(const protocol::StudyPlan& plan) {
+    std::map<std::pair<std::string, double>, model::MeshReport> reports;
+    for (const auto& condition : plan.conditions) {
+        for (const auto& part : condition.scene.parts) {
+            const auto* file = std::get_if<model::MeshFile>(&part.geometry);
+            if (file == nullptr) continue;
+            const auto [place, fresh] = reports.try_emplace({file->path, file->metres_per_unit});
+            if (fresh) {
+                auto mesh = model::importMesh(file->path, file->metres_per_unit);
+                if (!mesh) return mesh.errors();
+                place->second = std::move(mesh->report);
+            }
+            const auto& report = place->second;
+            if (!part.held) continue;
+            if (const auto excess = model::tooManyPoints(report.size, report.area, condition.scene.contact.spacing))
+                return Error{.message = *excess, .file = plan.source_path, .key = "part " + part.name};
+        }
+    }
+    return Done{};
+}
+
+}  // namespace
+
 int check(const CheckOptions& options) {
     const auto plan = protocol::readProtocol(options.protocol, app::knownDevices(), app::knownMeasures());
     if (!plan) return fail(plan.errors());
+    if (const auto meshes = checkMeshes(*plan); !meshes) return fail(meshes.errors());
     warn(options.protocol, session::planWarnings(*plan));
     const std::size_t trials = session::planTrials(*plan, 0, "S001").size();
     fmt::print("{}: ok: {} {}, {} conditions, {} trials for each of {} participants\n", options.protocol, plan->name,

@@ -4,6 +4,8 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
 
 namespace passung::cli {
 
@@ -22,6 +24,16 @@ int fail(const Errors& errors) {
 void warn(const std::string& file, const std::vector<std::string>& warnings) {
     for (const std::string& warning : warnings)
         std::fprintf(stderr, "%s: warning: %s\n", file.c_str(), warning.c_str());
+}
+
+Result<Done> refuseOverwriting(const std::string& out, const std::vector<std::string>& inputs) {
+    for (const std::string& input : inputs) {
+        std::error_code none;  // a file that is not there is another one
+        if (std::filesystem::equivalent(out, input, none) && !none)
+            return Error{.message = "is an input of this command and would be lost: name another file for --out",
+                         .file = out};
+    }
+    return Done{};
 }
 
 OutputFile::OutputFile(std::string path) : path_(std::move(path)), temporary_(path_ + ".part") {

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/result.h"
 
@@ -13,6 +14,9 @@ int fail(const Errors& errors);
 
 /// Prints every warning about `file` on a line of its own on standard error.
 void warn(const std::string& file, const std::vector<std::string>& warnings);
+
+/// Refuses an output that is one of the input files, which would be lost.
+Result<Done> refuseOverwriting(const std::string& out, const std::vector<std::string>& inputs);
 
 /// A file that appears complete or not at all: written beside its place, renamed by commit().
 class OutputFile {

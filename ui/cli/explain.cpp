@@ -16,13 +16,12 @@ namespace passung::cli {
 
 namespace {
 
-/// A study says so by its `passung` or `study` key, a scene has neither.
 Result<bool> isStudy(const std::string& path) {
     const auto text = protocol::readFile(path);
     if (!text) return text.errors();
     const auto document = protocol::parseDocument(*text, path);
     if (!document) return document.errors();
-    return document->find("study") != nullptr || document->find("passung") != nullptr;
+    return protocol::kindOf(*document) == protocol::FileKind::Study;
 }
 
 Result<Done> printStages(const model::SceneSpec& spec, model::PartCache& cache) {

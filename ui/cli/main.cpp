@@ -1,9 +1,13 @@
 #include <CLI/CLI.hpp>
 
+#include <charconv>
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <functional>
 
+#include "study/protocol/key_table.h"
 #include "ui/cli/commands.h"
 
 // The command line: names, options and their help. What a command does is in its own file.
@@ -13,6 +17,38 @@ namespace {
 using namespace passung::cli;
 
 constexpr int kWrongUsage = 2;
+
+/// Checks the word of an option: CLI11's own checks print the limits of the type, digit by digit.
+template <class Number, class Accept>
+CLI::Validator numberThat(Accept accept, const std::string& requirement) {
+    return CLI::Validator(
+        [accept, requirement](std::string& text) {
+            const std::string_view digits = text.starts_with('+') ? std::string_view(text).substr(1) : text;
+            Number value{};
+            const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+            const bool read = problem == std::errc() && end == digits.data() + digits.size();
+            return read && accept(value) ? std::string() : "must be " + requirement + ", not \"" + text + '"';
+        },
+        "");
+}
+
+template <class Number = std::int64_t>
+CLI::Validator wholeFrom(int low) {
+    return numberThat<Number>([low](Number value) { return value >= static_cast<Number>(low); },
+                              "a whole number ≥ " + std::to_string(low));
+}
+
+CLI::Validator above0() {
+    return numberThat<double>([](double value) { return std::isfinite(value) && value > 0.0; }, "a number > 0");
+}
+
+CLI::Validator atLeast0() {
+    return numberThat<double>([](double value) { return std::isfinite(value) && value >= 0.0; }, "a number ≥ 0");
+}
+
+CLI::Validator between(double low, double high, const std::string& words) {
+    return numberThat<double>([low, high](double value) { return value >= low && value <= high; }, words);
+}
 
 class CommandLine {
 public:
@@ -25,6 +61,7 @@ public:
     }
 
     int run(int argc, char** argv) {
+        if (argc > 1 && argv[1][0] != '-' && !isCommand(argv[1])) return refuse(argv[1]);
         try {
             app_.parse(argc, argv);
         } catch (const CLI::ParseError& error) {
@@ -34,6 +71,25 @@ public:
     }
 
 private:
+    bool isCommand(const std::string& word) const {
+        for (const CLI::App* command : app_.get_subcommands({}))
+            if (command->get_name() == word) return true;
+        return false;
+    }
+
+    /// A first word that is no command: says which word, which may be meant and which there are.
+    int refuse(const std::string& word) const {
+        std::vector<std::string_view> names;
+        for (const CLI::App* command : app_.get_subcommands({})) names.push_back(command->get_name());
+        std::string all;
+        for (const std::string_view name : names) all.append(all.empty() ? "" : ", ").append(name);
+        const auto close = passung::protocol::closestWord(word, names);
+        const std::string meant = close ? "; did you mean \"" + std::string(*close) + "\"?" : "";
+        std::fprintf(stderr, "error: unknown command \"%s\"%s\ncommands: %s\n", word.c_str(), meant.c_str(),
+                     all.c_str());
+        return kWrongUsage;
+    }
+
     template <class Options>
     CLI::App* command(const char* name, const char* help, Options& options, int (*function)(const Options&)) {
         CLI::App* sub = app_.add_subcommand(name, help);
@@ -47,18 +103,17 @@ private:
 
         sub = command("explain", "design, orders and balance, or the stages of a scene's tick", explain_, explain);
         sub->add_option("FILE", explain_.file, "protocol or scene")->required();
-        sub->add_option("--participants", explain_.participants, "how many orders to print")
-            ->check(CLI::PositiveNumber);
+        sub->add_option("--participants", explain_.participants, "how many orders to print")->check(wholeFrom<int>(1));
 
         sub = command("run", "perform a study with simulated participants", run_, passung::cli::run);
         sub->add_option("PROTOCOL", run_.protocol, "study file (.toml)")->required();
         sub->add_option("--db", run_.database, "database; default: the study's name with .db");
-        auto* participant = sub->add_option("--participant", run_.participant, "code of one participant");
+        auto* participant = sub->add_option("--participant", run_.participant, "code of one participant, such as S001");
         sub->add_option("--simulated", run_.simulated, "number of new participants; default 1")
-            ->check(CLI::PositiveNumber)
+            ->check(wholeFrom<int>(1))
             ->excludes(participant);
         sub->add_flag("--real-time", run_.real_time, "at 1 kHz by the clock instead of as fast as the machine goes");
-        sub->add_option("--seed", run_.seed, "instead of the protocol's")->check(CLI::NonNegativeNumber);
+        sub->add_option("--seed", run_.seed, "instead of the protocol's")->check(wholeFrom<std::uint64_t>(0));
         sub->add_option("--acknowledge-fd", run_.acknowledge_fd, "file descriptor for a line per durable attempt");
     }
 
@@ -70,7 +125,7 @@ private:
 
         sub = command("replay", "run recorded inputs again and compare every bit", replay_, replay);
         sub->add_option("DB", replay_.database, "database of a study")->required();
-        sub->add_option("--attempt", replay_.attempt, "attempt_id; default: all")->check(CLI::PositiveNumber);
+        sub->add_option("--attempt", replay_.attempt, "attempt_id; default: all")->check(wholeFrom(1));
         sub->add_option("--meshes", replay_.meshes,
                         "folder that the protocol's mesh paths start from; default: here, else beside DB")
             ->check(CLI::ExistingDirectory);
@@ -85,32 +140,43 @@ private:
         sub = command("query", "distance, depth and wrench of two parts at given poses", query_, query);
         sub->add_option("FIELD", query_.field, "mesh or part.toml")->required();
         sub->add_option("SHELL", query_.shell, "mesh or part.toml")->required();
-        sub->add_option("--poses", query_.poses, "CSV of poses of SHELL in FIELD")->required();
-        sub->add_option("--out", query_.out, "CSV of results")->required();
-        sub->add_option("--tolerance-um", query_.tolerance_um, "of the field")->check(CLI::PositiveNumber);
-        sub->add_option("--cell-mm", query_.cell_mm, "of the field, instead of a tolerance")
-            ->check(CLI::PositiveNumber);
-        sub->add_option("--spacing-mm", query_.spacing_mm, "of the shell")->check(CLI::PositiveNumber);
+        sub->add_option("--poses", query_.poses,
+                        "CSV of poses of SHELL in FIELD, in metres; header: x_m,y_m,z_m,qw,qx,qy,qz")
+            ->required();
+        sub->add_option("--out", query_.out,
+                        "CSV of results: the poses and what was found; force_* and torque_* are the penalty on SHELL "
+                        "about its origin, 1e9 N/m3 times depth times area, for comparisons; no device's force")
+            ->required();
+        sub->add_option("--tolerance-um", query_.tolerance_um, "of the field")->check(above0());
+        sub->add_option("--cell-mm", query_.cell_mm, "of the field, instead of a tolerance")->check(above0());
+        sub->add_option("--spacing-mm", query_.spacing_mm, "of the shell")->check(above0());
         sub->add_option("--mode", query_.mode, "of interpolation: trilinear, linear")
             ->check(CLI::IsMember({"trilinear", "linear"}));
         sub->add_option("--proximity-mm", query_.proximity_mm, "search no farther; default unlimited")
-            ->check(CLI::NonNegativeNumber);
+            ->check(atLeast0());
         sub->add_option("--budget-nodes", query_.budget_nodes, "most tree nodes a query visits")
-            ->check(CLI::PositiveNumber);
+            ->check(wholeFrom<int>(1));
         sub->add_option("--quality", query_.quality, "least share of proven area; wins over the budget")
-            ->check(CLI::Range(0.0, 1.0));
+            ->check(between(0.0, 1.0, "a number from 0 to 1"));
         sub->add_flag("--two-way", query_.two_way, "each part's points against the other's field");
         sub->add_option("--unit", query_.unit, "of files that have none; default mm")->check(units);
         sub->add_option("--field-unit", query_.field_unit, "of FIELD, instead of --unit")->check(units);
         sub->add_option("--shell-unit", query_.shell_unit, "of SHELL, instead of --unit")->check(units);
 
         sub = command("simulate", "run a scene along a device path", simulate_, simulate);
-        sub->add_option("SCENE", simulate_.scene)->required();
-        sub->add_option("--trajectory", simulate_.trajectory, "CSV of device poses")->required();
-        sub->add_option("--out", simulate_.out, "CSV of ticks")->required();
+        sub->add_option("SCENE", simulate_.scene, "scene file (.toml), not a study")->required();
+        sub->add_option("--trajectory", simulate_.trajectory,
+                        "CSV of poses of the held part in the world, in seconds and metres; header: "
+                        "t_s,x_m,y_m,z_m,qw,qx,qy,qz")
+            ->required();
+        sub->add_option("--out", simulate_.out,
+                        "CSV of ticks; force_* and torque_* are what the device would be told: on the hand, in the "
+                        "world, about the held part's origin, after all limits")
+            ->required();
 
         sub = command("doctor", "devices, permissions and a check of the loop", doctor_, doctor);
-        sub->add_option("--seconds", doctor_.seconds, "of the loop check")->check(CLI::Range(0.1, 3600.0));
+        sub->add_option("--seconds", doctor_.seconds, "of the loop check")
+            ->check(between(0.1, 3600.0, "a number from 0.1 to 3600"));
     }
 
     CLI::App app_;

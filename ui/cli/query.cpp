@@ -99,6 +99,8 @@ void writeRow(fmt::memory_buffer& text, std::string_view input, const query::Par
 }  // namespace
 
 int query(const QueryOptions& options) {
+    if (const auto free = refuseOverwriting(options.out, {options.field, options.shell, options.poses}); !free)
+        return fail(free.errors());
     NumberTable table;
     const auto poses = readPoses(options.poses, table);
     if (!poses) return fail(poses.errors());

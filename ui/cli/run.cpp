@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <csignal>
+
 #include "analysis/export/summary.h"
 #include "study/protocol/protocol_reader.h"
 #include "study/session/plan_text.h"
@@ -33,6 +35,16 @@ void tellRecovery(const std::string& database, const store::RecoveryReport& repo
     std::fflush(stdout);  // it is said only once: it must not be lost if this run is killed too
 }
 
+volatile std::sig_atomic_t stop_asked = 0;
+
+/// The first SIGINT or SIGTERM asks the run to end; a second one of its kind ends the program at once.
+void listenForSignals() {
+    struct sigaction action {};
+    action.sa_handler = [](int) { stop_asked = 1; };
+    action.sa_flags = static_cast<int>(SA_RESTART | SA_RESETHAND);
+    for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
+}
+
 }  // namespace
 
 int run(const RunOptions& options) {
@@ -47,13 +59,16 @@ int run(const RunOptions& options) {
     what.simulated = options.participant.empty() ? options.simulated : 1;
     what.clock = options.real_time ? app::Clock::RealTime : app::Clock::Virtual;
 
-    std::string participant;
+    listenForSignals();
+    what.interrupted = [] { return stop_asked != 0; };
+    std::string code, participant;
     std::size_t successes = 0, finished = 0, invalid = 0;
     bool complete = true;
     ProgressLine progress;
     app::RunListener listener;
     listener.recovered = [&](const store::RecoveryReport& report) { tellRecovery(what.database, report); };
-    listener.session = [&](const std::string& code, int number, int of) {
+    listener.session = [&](const std::string& who, int number, int of) {
+        code = who;
         participant = fmt::format("{} ({} of {})", code, number, of);
         progress.show(participant + ": preparing");
         successes = finished = invalid = 0;
@@ -80,7 +95,17 @@ int run(const RunOptions& options) {
             acknowledge(options.acknowledge_fd, attempt, outcome);
         };
     }
-    if (const auto done = app::runStudy(*plan, what, listener); !done) return fail(done.errors());
+    const auto end = app::runStudy(*plan, what, listener);
+    if (!end) return fail(end.errors());
+    if (*end == app::RunEnd::Interrupted) {
+        progress.show("");
+        return fail(
+            {{.message = fmt::format("interrupted: {} trials of {} are stored, the last of them and the session "
+                                     "as aborted; its place in the design is free again, and the same command "
+                                     "with --participant {} begins a new session of all trials",
+                                     finished, code, code),
+              .file = what.database}});
+    }
 
     const auto reader = store::StoreReader::open(what.database);
     if (!reader) return fail(reader.errors());

@@ -37,6 +37,8 @@ void writeRow(fmt::memory_buffer& text, std::int64_t tick, const tick::TickOutpu
 }  // namespace
 
 int simulate(const SimulateOptions& options) {
+    if (const auto free = refuseOverwriting(options.out, {options.scene, options.trajectory}); !free)
+        return fail(free.errors());
     auto spec = protocol::readScene(options.scene, app::knownDevices());
     if (!spec) return fail(spec.errors());
     const auto trajectory = scripted::Trajectory::read(options.trajectory);

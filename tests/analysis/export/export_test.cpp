@@ -1,6 +1,9 @@
 #include "analysis/export/export.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -8,6 +11,7 @@
 #include <map>
 
 #include "analysis/export/samples.h"
+#include "analysis/export/status_bits.h"
 #include "study/store/sqlite.h"
 #include "tests/analysis/export/csv_reader.h"
 #include "tests/study/store/fake_study.h"
@@ -285,6 +289,54 @@ TEST_F(Export, AStrangersFileInAnEarlierExportIsNamedAndKept) {
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.errors()[0].file, folder_ / "out/analysis.R");
     EXPECT_EQ(readFile(folder_ / "out/analysis.R"), "years of work");
+}
+
+TEST_F(Export, TheExportOfAnotherStudyIsRefusedAndLeftAlone) {
+    // Truth: invariant (nobody's tables are replaced by those of another study)
+    const auto rename = [&](const std::string& name) {
+        store::Database(folder_ / "s.db", store::OpenMode::ReadWrite)
+            .execute("UPDATE protocol_version SET name='" + name + "', source_text='[study]\nname = \"" + name +
+                     "\"\n'");
+    };
+    rename("first");
+    exportTo(folder_ / "s.db", folder_ / "out");
+    const auto before = readFolder(folder_ / "out");
+    rename("second");
+    const store::StoreReader reader = require(store::StoreReader::open(folder_ / "s.db"));
+    const auto refused = exportAll(reader, folder_ / "out");
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.errors()[0].message.find("another study, first"), std::string::npos);
+    EXPECT_EQ(readFolder(folder_ / "out"), before);
+}
+
+TEST_F(Export, WhatAKilledExportLeftIsRemovedByTheNext) {
+    // Truth: invariant (the names are those of mkdtemp; a folder that another program has locked is at work)
+    const std::string left = folder_ / "out.partial.abc123", busy = folder_ / "out.partial.def456";
+    const std::string other = folder_ / "out2.partial.abc123", notes = folder_ / "out.partial.notes.md";
+    for (const std::string& path : {left, busy, other, notes}) fs::create_directories(path + "/new");
+    const int lock = open(busy.c_str(), O_RDONLY | O_DIRECTORY);
+    ASSERT_EQ(flock(lock, LOCK_EX | LOCK_NB), 0);
+    exportTo(folder_ / "s.db", folder_ / "out");
+    close(lock);
+    EXPECT_FALSE(fs::exists(left));
+    for (const std::string& path : {busy, other, notes}) EXPECT_TRUE(fs::exists(path)) << path;
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "."), {}), 5) << "database, export and the other three";
+}
+
+TEST(StatusBits, TheCodebookExplainsEveryOne) {
+    // Truth: closed form (core/base/tick_record.h)
+    std::string formula;
+    for (const Column& column : sampleColumns())
+        if (column.name == "status") formula = column.formula;
+    EXPECT_NE(formula.find("; 65536 = engaged: "), std::string::npos) << formula;
+    EXPECT_NE(formula.find(": 1 = bad device input, the last good pose was used; 2 = "), std::string::npos) << formula;
+    for (unsigned bit = 0; bit < 32; ++bit) {
+        const bool used = bit <= 13 || bit == 16;
+        const char* meaning = statusBitMeaning(static_cast<TickStatus>(1u << bit));
+        EXPECT_EQ(meaning != nullptr, used) << bit;
+        if (meaning == nullptr) continue;
+        EXPECT_NE(formula.find(std::to_string(1u << bit) + " = " + meaning), std::string::npos);
+    }
 }
 
 TEST_F(Export, AFolderWithSomethingElseIsRefusedAndLeftAlone) {

@@ -6,15 +6,27 @@
 #include <fstream>
 #include <set>
 
+#include "devices/simulated/presets.h"
+#include "study/measures/measures.h"
+
 namespace passung::protocol {
 namespace {
+
+std::string completeTable() {
+    std::vector<DeviceDescription> devices;
+    for (const auto& preset : simulated::presets()) devices.push_back(simulated::describe(preset));
+    std::vector<KnownWord> known;
+    for (const auto& measure : measures::definitions()) known.push_back({measure.name, measure.label});
+    return keyTable(devices, known);
+}
 
 TEST(KeyTable, IsWhatTheShippedDocumentSays) {
     // Truth: regression (protocols/KEYS.md; set PASSUNG_WRITE_KEYS=1 to write it anew after a change of the table).
     const std::string path = PASSUNG_SOURCE_DIR "/protocols/KEYS.md";
-    if (std::getenv("PASSUNG_WRITE_KEYS") != nullptr) std::ofstream(path, std::ios::binary) << keyTable();
+    const std::string text = completeTable();
+    if (std::getenv("PASSUNG_WRITE_KEYS") != nullptr) std::ofstream(path, std::ios::binary) << text;
     std::ifstream stream(path, std::ios::binary);
-    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}), keyTable());
+    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}), text);
 }
 
 TEST(KeyTable, DocumentsEveryKeyOnce) {
@@ -27,9 +39,18 @@ TEST(KeyTable, DocumentsEveryKeyOnce) {
         EXPECT_FALSE(key.doc.empty()) << key.name;
         EXPECT_TRUE(key.doc.ends_with('.')) << key.name;
     }
-    const auto text = keyTable();
+    const auto text = keyTable({}, {});
     for (std::size_t at = text.find("\n| `"); at != std::string::npos; at = text.find("\n| `", at + 1)) ++rows;
     EXPECT_EQ(rows, keys().size());
+}
+
+TEST(KeyTable, NamesEveryPresetAndEveryMeasure) {
+    // Truth: invariant: whoever writes a file finds in the document what it may name.
+    const auto text = completeTable();
+    for (const auto& preset : simulated::presets())
+        EXPECT_NE(text.find("\n| " + simulated::describe(preset).name + " | "), std::string::npos);
+    for (const auto& measure : measures::definitions())
+        EXPECT_NE(text.find("\n| " + measure.name + " | "), std::string::npos) << measure.name;
 }
 
 TEST(KeyTable, DefaultsLieInTheirRanges) {

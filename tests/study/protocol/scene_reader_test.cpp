@@ -164,8 +164,8 @@ TEST(SceneReader, BoundsLengths) {
     EXPECT_EQ(errorsOf("[[part]]\nname = \"b\"\nheld = true\nshape = { kind = \"sphere\", diameter = 10001 }\n"),
               "s.toml:4:39: error: part.b.shape.diameter: 10001: must be at most 10 m");
     EXPECT_EQ(errorsOf(kParts + "[contact]\nspacing_mm = 0.03\n"),
-              "s.toml:12:14: error: contact.spacing_mm: 0.03: gives peg about 4.2e+06 points, more than 2e+06; at "
-              "least 0.043");
+              "s.toml:12:14: error: contact.spacing_mm: 0.03: part peg: points 0.03 mm apart on a part of 20 x 20 x "
+              "50 mm are about 4.2e+06, more than 2e+06: check its unit, or choose a spacing of at least 0.0436 mm");
     EXPECT_EQ(errorsOf(kParts + "[contact]\nspacing_mm = 0.05\n"), "");
     EXPECT_EQ(errorsOf(kParts + "[contact]\ncell_mm = 0.001\nspacing_mm = 1000\n"),
               "s.toml:12:11: error: contact.cell_mm: 0.001: must be from 0.01 to 100\n"

@@ -463,6 +463,37 @@ TEST_F(SessionTest, UnknownTargetIsAnErrorThatNamesIt) {
     EXPECT_EQ(result.errors().at(0).value, "disc");
 }
 
+TEST_F(SessionTest, AnInterruptionKeepsTheRunningTrialAsAborted) {
+    // Truth: closed form: two looks of 20 ticks were taken of the second trial, which had not started by then.
+    planTrials({successScript(), successScript()});
+    Session session({plan_, trials_, "P001", 7, false}, apparatus_, sink_, {});
+    while (sink_.ends.empty()) session.advance();
+    for (int i = 0; i < 3; ++i) session.advance();
+    session.interrupt("interrupted");
+    EXPECT_EQ(session.state(), SessionState::Interrupted);
+    EXPECT_EQ(session.advance(), SessionState::Interrupted) << "it is over";
+    ASSERT_EQ(sink_.ends.size(), 2u);
+    EXPECT_EQ(sink_.ends[0].outcome, Outcome::Success);
+    EXPECT_EQ(sink_.ends[1].outcome, Outcome::Aborted);
+    EXPECT_EQ(sink_.ends[1].invalid_reason, "interrupted");
+    EXPECT_FALSE(sink_.ends[1].valid);
+    EXPECT_EQ(sink_.ticks[AttemptId{2}].size(), 40u);
+    EXPECT_EQ(sink_.complete, false);
+    EXPECT_EQ(sink_.events.back().event, "session_interrupted");
+    EXPECT_EQ(sink_.events.back().payload_json, R"({"reason":"interrupted"})");
+    EXPECT_EQ(std::count(log_.begin(), log_.end(), "stop"), 2) << "the motors are off";
+}
+
+TEST_F(SessionTest, AnInterruptionAfterTheLastTrialLeavesTheSessionComplete) {
+    // Truth: invariant: nothing was left to do.
+    planTrials({successScript()});
+    Session session({plan_, trials_, "P001", 7, false}, apparatus_, sink_, {});
+    while (sink_.ends.empty()) session.advance();
+    session.interrupt("interrupted");
+    EXPECT_EQ(session.state(), SessionState::Complete);
+    EXPECT_EQ(sink_.complete, true);
+}
+
 TEST_F(SessionTest, SessionThatIsDroppedInATrialStopsTheApparatus) {
     // Truth: invariant: motors never stay on behind a session that is gone.
     planTrials({successScript()});

@@ -500,6 +500,29 @@ TEST(Store, ASymbolicLinkIsNoWayAroundTheLock) {
     EXPECT_FALSE(Store::open(folder / "hard.db", fake::options()).store);
 }
 
+TEST(Store, ADatabaseHoldsOneStudyAndOneTextPerVersion) {
+    // Truth: invariant (rows of two designs under one name and version could not be told apart)
+    const fake::TempFolder folder;
+    auto store = fake::openStore(folder / "s.db");
+    require(store->importProtocol(fake::makePlan()));
+    protocol::StudyPlan changed = fake::makePlan();
+    changed.source_text += "# changed\n";
+    const auto same_version = store->importProtocol(changed);
+    ASSERT_FALSE(same_version);
+    EXPECT_NE(same_version.errors()[0].message.find("new version"), std::string::npos);
+    changed.version = "1.1";
+    EXPECT_TRUE(store->importProtocol(changed));
+    changed.source_text += "# and another\n";
+    changed.name = "another";
+    const auto other_study = store->importProtocol(changed);
+    ASSERT_FALSE(other_study);
+    EXPECT_NE(other_study.errors()[0].message.find("holds the study fake, not another"), std::string::npos);
+    EXPECT_TRUE(store->importProtocol(fake::makePlan())) << "what is stored already goes on";
+    const auto code = store->enrol("s1", protocol::ParticipantKind::Simulated, "");
+    ASSERT_FALSE(code);
+    EXPECT_NE(code.errors()[0].message.find("such as S001"), std::string::npos);
+}
+
 TEST(Store, AnotherFormulaUnderAnOldNameIsRefused) {
     // Truth: invariant (one column never means two things)
     const fake::TempFolder folder;
@@ -508,6 +531,7 @@ TEST(Store, AnotherFormulaUnderAnOldNameIsRefused) {
     Database(path, OpenMode::ReadWrite).execute("UPDATE measure SET formula_version=99 WHERE measure='peak_force_N'");
     protocol::StudyPlan plan = fake::makePlan();
     plan.source_text += "# changed\n";
+    plan.version = "1.1";
     const auto imported = fake::openStore(path)->importProtocol(plan);
     ASSERT_FALSE(imported);
     EXPECT_NE(imported.errors()[0].message.find("peak_force_N"), std::string::npos);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "study/store/sqlite.h"
 #include "tests/ui/cli/program.h"
 #include "tests/ui/cli/small_study.h"
 
@@ -165,6 +166,122 @@ TEST_F(ExitCode, IsOneForAnExportIntoSomebodysFolder) {
     EXPECT_EQ(linesOf(refused.err).size(), 1u) << refused.err;
     EXPECT_EQ(refused.err.substr(0, 12), "full: error:") << refused.err;
     EXPECT_EQ(filesIn(folder_ / "full"), Arguments{"precious.txt"});
+}
+
+TEST_F(ExitCode, AUnitSlipIsRefusedBeforeAnythingIsBuilt) {
+    // Truth: closed form: right triangles of 30 m sides have 450 m2, three of them and one of 779 m2 make 2129 m2; at
+    // 1 mm that is 2.1e9 points. The peg of 20 x 20 mm in m: pi 20 (10 + 20) m2; 10 m is the most of an edge.
+    writeText(
+        folder_ / "tetra.stl",
+        "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0 30 0\nvertex 30 0 0\nendloop\nendfacet\n"
+        "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 30 0 0\nvertex 0 0 30\nendloop\nendfacet\n"
+        "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0 0 30\nvertex 0 30 0\nendloop\nendfacet\n"
+        "facet normal 0 0 1\nouter loop\nvertex 30 0 0\nvertex 0 30 0\nvertex 0 0 30\nendloop\nendfacet\nendsolid "
+        "t\n");
+    const Ended query = runProgram(folder_.path(), {"query", "ball.toml", "tetra.stl", "--poses", "poses.csv", "--out",
+                                                    "r.csv", "--cell-mm", "2", "--shell-unit", "m"});
+    EXPECT_EQ(query.exit_code, 1);
+    EXPECT_EQ(query.err,
+              "tetra.stl: error: part tetra.stl: points 1 mm apart on a part of 3e+04 x 3e+04 x 3e+04 mm are about "
+              "2.1e+09, more than 2e+06: check its unit, or choose a spacing of at least 32.8 mm\n");
+    std::string slip = smallStudy();
+    slip.replace(slip.find("unit = \"mm\""), 11, "unit = \"cm\"");
+    slip.replace(slip.find("spacing_mm = 3.0"), 16, "spacing_mm = 0.2");
+    slip.replace(slip.find("position = [4, 0, 8]"), 20, "position = [4, 0, 9]");
+    writeText(folder_ / "slip.toml", slip);
+    for (const char* command : {"check", "run"}) {
+        const Ended ended = runProgram(folder_.path(), {command, "slip.toml"});
+        EXPECT_EQ(ended.exit_code, 1);
+        EXPECT_EQ(linesOf(ended.err).size(), 1u) << ended.err;
+        EXPECT_NE(ended.err.find("0.2 mm apart on a part of 200 x 200 x 200 mm are about 4.7e+06, more than 2e+06: "
+                                 "check its unit"),
+                  std::string::npos)
+            << ended.err;
+    }
+}
+
+TEST_F(ExitCode, IsOneForAnOutputThatIsAnInput) {
+    // Truth: invariant (an input is never lost; another name of it is the same file)
+    fs::create_symlink("poses.csv", folder_.path() / "link.csv");
+    const std::vector<Arguments> wrong = {
+        {"query", "ball.toml", "ball.toml", "--poses", "poses.csv", "--out", "poses.csv"},
+        {"query", "ball.toml", "ball.toml", "--poses", "poses.csv", "--out", "./ball.toml"},
+        {"query", "ball.toml", "ball.toml", "--poses", "link.csv", "--out", "poses.csv"},
+        {"simulate", "scene.toml", "--trajectory", "path.csv", "--out", "path.csv"},
+        {"simulate", "scene.toml", "--trajectory", "path.csv", "--out", "scene.toml"},
+    };
+    for (const Arguments& arguments : wrong) {
+        SCOPED_TRACE(joined(arguments));
+        const std::string before = readText(folder_ / arguments.back());
+        const Ended ended = runProgram(folder_.path(), arguments);
+        EXPECT_EQ(ended.exit_code, 1);
+        EXPECT_EQ(
+            ended.err,
+            arguments.back() + ": error: is an input of this command and would be lost: name another file for --out\n");
+        EXPECT_EQ(readText(folder_ / arguments.back()), before);
+    }
+}
+
+TEST_F(ExitCode, AFileOfAnotherKindIsNamedAsWhatItIs) {
+    // Truth: invariant (one line: what it is, what is wanted)
+    const std::vector<std::pair<Arguments, std::string>> mixed = {
+        {{"simulate", "study.toml", "--trajectory", "path.csv", "--out", "t.csv"},
+         "study.toml:1:1: error: is a study file (it has a [study]); wanted here is a scene file"},
+        {{"query", "study.toml", "ball.toml", "--poses", "poses.csv", "--out", "r.csv"},
+         "study.toml:1:1: error: is a study file (it has a [study]); wanted here is a part file"},
+        {{"query", "ball.toml", "scene.toml", "--poses", "poses.csv", "--out", "r.csv", "--cell-mm", "2"},
+         "scene.toml:1:1: error: is a scene file"},
+        {{"check", "scene.toml"}, "scene.toml:1:1: error: is a scene file"},
+        {{"check", "ball.toml"}, "ball.toml:1:1: error: is a part file"},
+    };
+    for (const auto& [arguments, begins] : mixed) {
+        SCOPED_TRACE(joined(arguments));
+        const Ended ended = runProgram(folder_.path(), arguments);
+        EXPECT_EQ(ended.exit_code, 1);
+        EXPECT_EQ(linesOf(ended.err).size(), 1u) << ended.err;
+        EXPECT_EQ(ended.err.substr(0, begins.size()), begins);
+    }
+    const Ended header =
+        runProgram(folder_.path(), {"query", "ball.toml", "ball.toml", "--poses", "path.csv", "--out", "r.csv"});
+    EXPECT_NE(header.err.find("must be x_m,y_m,z_m,qw,qx,qy,qz"), std::string::npos) << header.err;
+}
+
+TEST_F(ExitCode, WrongWordsAndNumbersAreNamed) {
+    // Truth: invariant (what was written, what is wanted)
+    const std::vector<std::pair<Arguments, std::string>> wrong = {
+        {{"chek", "study.toml"}, "unknown command \"chek\"; did you mean \"check\"?"},
+        {{"run", "study.toml", "--simulated", "0"}, "must be a whole number ≥ 1, not \"0\""},
+        {{"run", "study.toml", "--seed", "abc"}, "must be a whole number ≥ 0, not \"abc\""},
+        {{"run", "study.toml", "--seed", "-1"}, "must be a whole number ≥ 0, not \"-1\""},
+        {{"doctor", "--seconds", "0"}, "must be a number from 0.1 to 3600, not \"0\""},
+    };
+    for (const auto& [arguments, words] : wrong) {
+        SCOPED_TRACE(joined(arguments));
+        const Ended ended = runProgram(folder_.path(), arguments);
+        EXPECT_EQ(ended.exit_code, 2);
+        EXPECT_NE(ended.err.find(words), std::string::npos) << ended.err;
+        for (const std::string& line : linesOf(ended.err)) EXPECT_LT(line.size(), 160u) << line;
+    }
+}
+
+TEST_F(ExitCode, AnInterruptedRunEndsCleanlyAndSaysHowToGoOn) {
+    // Truth: invariant (the signal comes once the first trial is durable; 50 participants would take minutes)
+    for (const int signal : {SIGINT, SIGTERM}) {
+        Program program(folder_.path(), {"run", "study.toml", "--db", "s.db", "--simulated", "50"}, true);
+        EXPECT_NE(program.nextAcknowledgement(), "");
+        program.send(signal);
+        EXPECT_EQ(program.wait(), 1);
+        EXPECT_NE(program.err().find("s.db: error: interrupted: "), std::string::npos) << program.err();
+        EXPECT_EQ(linesOf(program.err()).size(), 1u) << program.err();
+        const store::Database database(folder_ / "s.db", store::OpenMode::ReadOnly);
+        EXPECT_EQ(database.integer("SELECT count(*) FROM attempt WHERE outcome IN ('running', 'crashed')"), 0);
+        EXPECT_EQ(database.integer("SELECT count(*) FROM session WHERE end_state IS NULL OR end_state='crashed'"), 0);
+        EXPECT_GE(database.integer("SELECT count(*) FROM session WHERE end_state='aborted'"), 1);
+        EXPECT_GE(database.integer("SELECT count(*) FROM event WHERE event='session_interrupted'"), 1);
+    }
+    const Ended again = runProgram(folder_.path(), {"run", "study.toml", "--db", "s.db"});
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_EQ(again.out.find("killed"), std::string::npos) << again.out;
 }
 
 TEST_F(ExitCode, IsZeroForHelpAndVersion) {

@@ -106,7 +106,8 @@ public:
         }
     }
 
-    void killNow() const { kill(child_, SIGKILL); }
+    void killNow() const { send(SIGKILL); }
+    void send(int signal) const { kill(child_, signal); }
 
     /// Exit code, or minus the signal that ended it.
     int wait() {
