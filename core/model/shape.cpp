@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
+#include <string_view>
 #include <utility>
 
 namespace passung::model {
@@ -20,89 +20,6 @@ struct Overloaded : Ts... {
 template <class... Ts>
 Overloaded(Ts...) -> Overloaded<Ts...>;
 
-double square(double x) { return x * x; }
-
-/// Squared distance of (x, y) to the segment from (ax, ay) to (bx, by).
-double squaredToSegment(double x, double y, double ax, double ay, double bx, double by) {
-    const double ex = bx - ax, ey = by - ay;
-    const double px = x - ax, py = y - ay;
-    const double length2 = ex * ex + ey * ey;
-    const double t = length2 > 0.0 ? std::clamp((px * ex + py * ey) / length2, 0.0, 1.0) : 0.0;
-    return square(px - t * ex) + square(py - t * ey);
-}
-
-/// Signed distance to a box with half edges h about the origin, from the excesses q = |p| - h.
-template <class Excess>
-double fromExcess(const Excess& q) {
-    return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
-}
-
-double distanceTo(const Sphere& s, const Vec3& p) { return p.norm() - 0.5 * s.diameter; }
-
-double distanceTo(const Box& b, const Vec3& p) {
-    const Vec3 q = p.cwiseAbs() - 0.5 * Vec3(b.width, b.depth, b.height);
-    return fromExcess(q);
-}
-
-double distanceTo(const Cylinder& c, const Vec3& p) {
-    const double r = std::sqrt(square(p.x()) + square(p.y()));
-    const Eigen::Vector2d q(r - 0.5 * c.diameter, std::abs(p.z()) - 0.5 * c.length);
-    return fromExcess(q);
-}
-
-double distanceTo(const Sheet& s, const Vec3& p) {
-    const double dx = std::max(std::abs(p.x()) - 0.5 * s.width, 0.0);
-    const double dy = std::max(std::abs(p.y()) - 0.5 * s.depth, 0.0);
-    return std::sqrt(square(dx) + square(dy) + square(p.z()));
-}
-
-/// A solid of revolution: the nearest surface point lies in the half plane of p, so the distance to the profile in
-/// (r, z) is the distance. The profile is convex: inside means below all of its lines.
-double distanceTo(const Peg& peg, const Vec3& p) {
-    const double r = std::sqrt(square(p.x()) + square(p.y()));
-    const double z = p.z();
-    const double radius = 0.5 * peg.diameter, c = peg.chamfer, length = peg.length;
-    const double d2 = std::min(
-        {squaredToSegment(r, z, 0.0, 0.0, radius - c, 0.0), squaredToSegment(r, z, radius - c, 0.0, radius, c),
-         squaredToSegment(r, z, radius, c, radius, length), squaredToSegment(r, z, radius, length, 0.0, length)});
-    const bool inside = z > 0.0 && z < length && r < radius && r - z < radius - c;
-    return inside ? -std::sqrt(d2) : std::sqrt(d2);
-}
-
-/// Squared distance to a horizontal rectangle (half edges hx, hy, about the axis) without the open disc of `hole`
-/// inside it, `dz` above or below. In the plane: from outside the rectangle its border is nearest, and the hole does
-/// not reach that; from inside the hole its rim is.
-double squaredToFace(double ex, double ey, double r, double hole, double dz) {
-    if (r < hole) return square(hole - r) + square(dz);
-    return square(std::max(ex, 0.0)) + square(std::max(ey, 0.0)) + square(dz);
-}
-
-/// Least distance over the pieces of the surface; the sign from membership. Pieces: top face, bottom face, the nearer
-/// of each pair of sides, and (in r, z) chamfer cone, bore wall, floor of a blind bore.
-double distanceTo(const BorePlate& plate, const Vec3& p) {
-    const double r = std::sqrt(square(p.x()) + square(p.y()));
-    const double z = p.z();
-    const double bore = 0.5 * plate.bore_diameter, mouth = bore + plate.chamfer;
-    const bool through = plate.bore_depth >= plate.height;
-    const double floor_z = through ? -plate.height : -plate.bore_depth;
-    // How far p is beyond the planes of the box, per axis; ≤ 0 between them.
-    const double ex = std::abs(p.x()) - 0.5 * plate.width;
-    const double ey = std::abs(p.y()) - 0.5 * plate.depth;
-    const double ez = std::max(z, -plate.height - z);
-
-    const double side_z2 = square(std::max(ez, 0.0));
-    double d2 = std::min(square(ex) + square(std::max(ey, 0.0)), square(ey) + square(std::max(ex, 0.0))) + side_z2;
-    d2 = std::min(d2, squaredToFace(ex, ey, r, mouth, z));
-    d2 = std::min(d2, squaredToFace(ex, ey, r, through ? bore : 0.0, z + plate.height));
-    d2 = std::min(d2, squaredToSegment(r, z, bore, -plate.chamfer, bore, floor_z));
-    if (plate.chamfer > 0.0) d2 = std::min(d2, squaredToSegment(r, z, mouth, 0.0, bore, -plate.chamfer));
-    if (!through) d2 = std::min(d2, square(std::max(r - bore, 0.0)) + square(z - floor_z));
-
-    const bool in_cavity = (through || z > floor_z) && r < bore + std::max(0.0, z + plate.chamfer);
-    const bool inside = ex < 0.0 && ey < 0.0 && ez < 0.0 && !in_cavity;
-    return inside ? -std::sqrt(d2) : std::sqrt(d2);
-}
-
 /// Collects what is wrong with the values of one shape.
 class Check {
 public:
@@ -111,11 +28,14 @@ public:
     void length(const char* key, double value) {
         if (!(value > 0.0 && value <= kLargest)) add(key, value, "must be a length above 0 m, at most 1000 m");
     }
-    void chamfer(double value, double limit, const std::string& requirement) {
-        if (!(value >= 0.0 && value <= kLargest))
-            add("chamfer", value, "must be a length, 0 m or more (0 = sharp)");
-        else if (!(value < limit))
-            add("chamfer", value, requirement);
+    void chamfer(double value) {
+        if (!(value >= 0.0 && value <= kLargest)) add("chamfer", value, "must be a length, 0 m or more (0 = sharp)");
+    }
+    /// True if it is, by more than rounding: of what is between the two something must be left.
+    bool less(const char* key, double value, double limit, const std::string& requirement) {
+        const bool fits = value < limit * (1.0 - 1e-9);
+        if (!fits) add(key, value, requirement);
+        return fits;
     }
     void add(const char* key, double value, const std::string& requirement) {
         std::array<char, 32> text{};
@@ -134,87 +54,138 @@ private:
     std::vector<Error> errors_;
 };
 
-void validateLengths(const Sphere& s, Check& check) { check.length("diameter", s.diameter); }
+using Dimensions = std::vector<Dimension>;
 
-void validateLengths(const Box& b, Check& check) {
-    check.length("width", b.width);
-    check.length("depth", b.depth);
-    check.length("height", b.height);
+Dimensions dimensionsOf(const Sphere& s) { return {{"diameter", s.diameter}}; }
+Dimensions dimensionsOf(const Box& b) { return {{"width", b.width}, {"depth", b.depth}, {"height", b.height}}; }
+Dimensions dimensionsOf(const Cylinder& c) { return {{"diameter", c.diameter}, {"length", c.length}}; }
+Dimensions dimensionsOf(const Torus& t) { return {{"diameter", t.diameter}, {"tube_diameter", t.tube_diameter}}; }
+Dimensions dimensionsOf(const Sheet& s) { return {{"width", s.width}, {"depth", s.depth}}; }
+Dimensions dimensionsOf(const Peg& p) {
+    return {{"diameter", p.diameter}, {"length", p.length}, {"chamfer", p.chamfer}};
+}
+Dimensions dimensionsOf(const SquarePeg& p) {
+    return {{"width", p.width}, {"depth", p.depth}, {"length", p.length}, {"chamfer", p.chamfer}};
+}
+Dimensions dimensionsOf(const KeyedPeg& p) {
+    return {{"diameter", p.diameter},
+            {"length", p.length},
+            {"key_width", p.key_width},
+            {"key_height", p.key_height},
+            {"chamfer", p.chamfer}};
+}
+Dimensions dimensionsOf(const BorePlate& p) {
+    return {{"width", p.width},           {"depth", p.depth},
+            {"height", p.height},         {"bore_diameter", p.bore_diameter},
+            {"bore_depth", p.bore_depth}, {"chamfer", p.chamfer}};
+}
+Dimensions dimensionsOf(const SquareBorePlate& p) {
+    return {{"width", p.width},
+            {"depth", p.depth},
+            {"height", p.height},
+            {"pocket_width", p.pocket_width},
+            {"pocket_depth", p.pocket_depth},
+            {"bore_depth", p.bore_depth},
+            {"chamfer", p.chamfer}};
+}
+Dimensions dimensionsOf(const KeyedBorePlate& p) {
+    return {{"width", p.width},           {"depth", p.depth},
+            {"height", p.height},         {"bore_diameter", p.bore_diameter},
+            {"key_width", p.key_width},   {"key_height", p.key_height},
+            {"bore_depth", p.bore_depth}, {"chamfer", p.chamfer}};
 }
 
-void validateLengths(const Cylinder& c, Check& check) {
-    check.length("diameter", c.diameter);
-    check.length("length", c.length);
+constexpr const char* kMouthInside = "the widened mouth must lie inside the plate's top face";
+
+/// Rules between several dimensions, each of which is a length.
+template <class AnyShape>
+void checkTogether(const AnyShape&, Check&) {}
+
+void checkTogether(const Torus& t, Check& check) {
+    check.less("tube_diameter", t.tube_diameter, t.diameter, "must be less than the diameter");
 }
 
-void validateLengths(const Sheet& s, Check& check) {
-    check.length("width", s.width);
-    check.length("depth", s.depth);
+void checkTogether(const Peg& p, Check& check) {
+    check.less("chamfer", p.chamfer, std::min(0.5 * p.diameter, p.length),
+               "must be less than half the diameter and less than the length");
 }
 
-void validateLengths(const Peg& p, Check& check) {
-    check.length("diameter", p.diameter);
-    check.length("length", p.length);
-    if (!check.empty()) return;
-    check.chamfer(p.chamfer, std::min(0.5 * p.diameter, p.length),
-                  "must be less than half the diameter and less than the length");
+void checkTogether(const SquarePeg& p, Check& check) {
+    check.less("chamfer", p.chamfer, std::min({0.5 * p.width, 0.5 * p.depth, p.length}),
+               "must be less than half the width, half the depth and the length");
 }
 
-void validateLengths(const BorePlate& p, Check& check) {
-    check.length("width", p.width);
-    check.length("depth", p.depth);
-    check.length("height", p.height);
-    check.length("bore_diameter", p.bore_diameter);
-    check.length("bore_depth", p.bore_depth);
-    if (!check.empty()) return;
-    const double half = 0.5 * std::min(p.width, p.depth);
-    check.chamfer(p.chamfer, std::min(p.bore_depth, p.height), "must be less than the depth of the bore");
-    if (!check.empty()) return;
-    if (!(0.5 * p.bore_diameter < half))
-        check.add("bore_diameter", p.bore_diameter, "must be less than the plate's width and depth");
-    else if (!(0.5 * p.bore_diameter + p.chamfer < half))
-        check.add("chamfer", p.chamfer, "the widened mouth must lie inside the plate's top face");
+void checkTogether(const KeyedPeg& p, Check& check) {
+    check.less("key_width", p.key_width, p.diameter, "must be less than the diameter") &&
+        check.less("chamfer", p.chamfer, std::min(0.5 * p.key_width, p.length),
+                   "must be less than half the key's width and less than the length");
+}
+
+template <class Plate>
+bool checkChamferDepth(const Plate& p, Check& check) {
+    return check.less("chamfer", p.chamfer, std::min(p.bore_depth, p.height),
+                      "must be less than the depth of the bore");
+}
+
+void checkTogether(const BorePlate& p, Check& check) {
+    const double half = 0.5 * std::min(p.width, p.depth), bore = 0.5 * p.bore_diameter;
+    checkChamferDepth(p, check) &&
+        check.less("bore_diameter", p.bore_diameter, 2.0 * half, "must be less than the plate's width and depth") &&
+        check.less("chamfer", p.chamfer, half - bore, kMouthInside);
+}
+
+void checkTogether(const SquareBorePlate& p, Check& check) {
+    checkChamferDepth(p, check) &&
+        check.less("pocket_width", p.pocket_width, p.width, "must be less than the plate's width") &&
+        check.less("pocket_depth", p.pocket_depth, p.depth, "must be less than the plate's depth") &&
+        check.less("chamfer", p.chamfer, 0.5 * std::min(p.width - p.pocket_width, p.depth - p.pocket_depth),
+                   kMouthInside);
+}
+
+void checkTogether(const KeyedBorePlate& p, Check& check) {
+    const double bore = 0.5 * p.bore_diameter, beside_key = 0.5 * p.width - bore;
+    checkChamferDepth(p, check) &&
+        check.less("bore_diameter", p.bore_diameter, std::min(p.width, p.depth),
+                   "must be less than the plate's width and depth") &&
+        check.less("key_width", p.key_width, p.bore_diameter, "must be less than the diameter of the bore") &&
+        check.less("key_height", p.key_height, beside_key, "the keyway must end inside the plate") &&
+        check.less("chamfer", p.chamfer, std::min(beside_key - p.key_height, 0.5 * p.depth - bore), kMouthInside);
 }
 
 }  // namespace
 
 const char* kindName(const Shape& shape) {
-    return std::visit(Overloaded{[](const Sphere&) { return "sphere"; }, [](const Box&) { return "box"; },
-                                 [](const Cylinder&) { return "cylinder"; }, [](const Sheet&) { return "sheet"; },
-                                 [](const Peg&) { return "peg"; }, [](const BorePlate&) { return "bore_plate"; }},
-                      shape);
+    return std::visit(
+        Overloaded{[](const Sphere&) { return "sphere"; }, [](const Box&) { return "box"; },
+                   [](const Cylinder&) { return "cylinder"; }, [](const Torus&) { return "torus"; },
+                   [](const Sheet&) { return "sheet"; }, [](const Peg&) { return "peg"; },
+                   [](const SquarePeg&) { return "square_peg"; }, [](const KeyedPeg&) { return "keyed_peg"; },
+                   [](const BorePlate&) { return "bore_plate"; },
+                   [](const SquareBorePlate&) { return "square_bore_plate"; },
+                   [](const KeyedBorePlate&) { return "keyed_bore_plate"; }},
+        shape);
+}
+
+std::vector<Dimension> namedDimensions(const Shape& shape) {
+    return std::visit([](const auto& s) { return dimensionsOf(s); }, shape);
 }
 
 std::vector<double> dimensions(const Shape& shape) {
-    using Values = std::vector<double>;
-    return std::visit(Overloaded{[](const Sphere& s) { return Values{s.diameter}; },
-                                 [](const Box& b) {
-                                     return Values{b.width, b.depth, b.height};
-                                 },
-                                 [](const Cylinder& c) {
-                                     return Values{c.diameter, c.length};
-                                 },
-                                 [](const Sheet& s) {
-                                     return Values{s.width, s.depth};
-                                 },
-                                 [](const Peg& p) {
-                                     return Values{p.diameter, p.length, p.chamfer};
-                                 },
-                                 [](const BorePlate& p) {
-                                     return Values{p.width,         p.depth,      p.height,
-                                                   p.bore_diameter, p.bore_depth, p.chamfer};
-                                 }},
-                      shape);
+    std::vector<double> values;
+    for (const auto& dimension : namedDimensions(shape)) values.push_back(dimension.value);
+    return values;
 }
 
 std::vector<Error> validate(const Shape& shape) {
     Check check(kindName(shape));
-    std::visit([&](const auto& s) { validateLengths(s, check); }, shape);
+    for (const auto& [key, value] : namedDimensions(shape)) {
+        if (std::string_view(key) == "chamfer")
+            check.chamfer(value);
+        else
+            check.length(key, value);
+    }
+    if (check.empty()) std::visit([&](const auto& s) { checkTogether(s, check); }, shape);
     return check.take();
-}
-
-double signedDistance(const Shape& shape, const Vec3& point) {
-    return std::visit([&](const auto& s) { return distanceTo(s, point); }, shape);
 }
 
 }  // namespace passung::model

@@ -11,8 +11,8 @@
 namespace passung::model {
 
 /// Parametric shapes, lengths in metres. The closed form of each is the truth for what is built from it.
-/// Frames: peg: origin at the centre of the tip face, body along +z; bore plate: origin at the centre of the bore's
-/// mouth on the top face z = 0, body below; the others: origin at the centre.
+/// Frames: pegs: origin on the tip face at the centre of its circle or rectangle, body along +z; plates with a bore or
+/// pocket: origin at the centre of its mouth on the top face z = 0, body below; the others: origin at the centre.
 struct Sphere {
     double diameter;
 };
@@ -22,6 +22,10 @@ struct Box {
 struct Cylinder {
     double diameter, length;
 };  // axis z
+struct Torus {
+    double diameter;       // of the ring's circle
+    double tube_diameter;  // less than the diameter
+};                         // axis z
 struct Sheet {
     double width, depth;
 };  // zero thickness, open, plane z = 0
@@ -34,13 +38,48 @@ struct BorePlate {
     double bore_depth;  // = height or more: a through bore
     double chamfer;     // 45° at the mouth; 0 = sharp
 };
+struct SquarePeg {
+    double width, depth, length;  // x, y, z
+    double chamfer;               // 45° along the tip's four edges, meeting at the corners
+};
+/// A round peg with a parallel key along its whole length, on the side of +x.
+struct KeyedPeg {
+    double diameter, length;
+    double key_width;   // along y, less than the diameter
+    double key_height;  // the key's top is the plane x = diameter / 2 + key_height
+    double chamfer;     // 45° at the tip, of the round body and of the key
+};
+struct SquareBorePlate {
+    double width, depth, height;        // x, y, z
+    double pocket_width, pocket_depth;  // x, y
+    double bore_depth;                  // along z; = height or more: through
+    double chamfer;                     // 45° along the mouth's four edges
+};
+/// A bore with a keyway along its whole depth, on the side of +x.
+struct KeyedBorePlate {
+    double width, depth, height;  // x, y, z
+    double bore_diameter;
+    double key_width, key_height;  // of the keyway, as of KeyedPeg
+    double bore_depth;             // = height or more: through
+    double chamfer;                // 45° at the mouth, of the bore and of the keyway
+};
 
-using Shape = std::variant<Sphere, Box, Cylinder, Sheet, Peg, BorePlate>;
+using Shape = std::variant<Sphere, Box, Cylinder, Torus, Sheet, Peg, SquarePeg, KeyedPeg, BorePlate, SquareBorePlate,
+                           KeyedBorePlate>;
 
 /// The kind's name in scene files ("bore_plate").
 const char* kindName(const Shape& shape);
 
-/// The dimensions in the order of the struct's members [m].
+/// One dimension: its key in scene files and its value [m].
+struct Dimension {
+    const char* key;
+    double value;
+};
+
+/// The dimensions in the order of the struct's members.
+std::vector<Dimension> namedDimensions(const Shape& shape);
+
+/// Their values alone [m].
 std::vector<double> dimensions(const Shape& shape);
 
 /// Every value that is out of range: keys named as in a scene file, values in metres.

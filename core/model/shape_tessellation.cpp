@@ -1,19 +1,20 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <numbers>
+#include <utility>
 #include <vector>
 
+#include "core/model/profile.h"
 #include "core/model/shape.h"
+#include "core/model/triangle_builder.h"
 
 namespace passung::model {
 
 namespace {
 
 using std::numbers::pi;
-using Index = std::uint32_t;
-using Ring = std::vector<Index>;  // counter-clockwise seen from +z
+using Index = TriangleBuilder::Index;
+using Ring = TriangleBuilder::Ring;
 
 constexpr int kFewestSegments = 12;
 constexpr int kMostSegments = 2048;        // then the chord error is 1.2e-6 of the radius
@@ -33,84 +34,6 @@ int segmentsFor(double radius, double chord_error) {
 double sagittaFor(double radius, double asked) {
     return radius * (1.0 - std::cos(pi / segmentsFor(radius, asked)) + kVertexRounding);
 }
-
-/// Appends vertices and triangles; every face is given counter-clockwise as seen from outside.
-class Builder {
-public:
-    Index vertex(double x, double y, double z) {
-        mesh_.vertices.emplace_back(x, y, z);
-        return static_cast<Index>(mesh_.vertices.size() - 1);
-    }
-    void triangle(Index a, Index b, Index c) { mesh_.triangles.push_back({a, b, c}); }
-    void quad(Index a, Index b, Index c, Index d) {
-        triangle(a, b, c);
-        triangle(a, c, d);
-    }
-
-    Ring ring(double radius, double z, int segments) {
-        Ring result;
-        for (int k = 0; k < segments; ++k) {
-            const auto [c, s] = direction(k, segments);
-            result.push_back(vertex(radius * c, radius * s, z));
-        }
-        return result;
-    }
-    Ring rectangle(double half_width, double half_depth, double z) {
-        return {vertex(half_width, half_depth, z), vertex(-half_width, half_depth, z),
-                vertex(-half_width, -half_depth, z), vertex(half_width, -half_depth, z)};
-    }
-
-    /// Disc around a new centre vertex, facing up or down.
-    void disc(const Ring& rim, double z, bool up) {
-        const Index centre = vertex(0.0, 0.0, z);
-        for (std::size_t k = 0; k < rim.size(); ++k) {
-            const Index a = rim[k], b = rim[(k + 1) % rim.size()];
-            up ? triangle(centre, a, b) : triangle(centre, b, a);
-        }
-    }
-    /// The band between two rings of equal size; it faces away from the axis if `upper` lies above `lower`, toward the
-    /// axis if the two are exchanged.
-    void band(const Ring& lower, const Ring& upper) {
-        for (std::size_t k = 0; k < lower.size(); ++k) {
-            const std::size_t next = (k + 1) % lower.size();
-            quad(lower[k], lower[next], upper[next], upper[k]);
-        }
-    }
-    /// Rectangle (corners in the four quadrants, in order) without the polygon `rim` around the axis. Each corner sees
-    /// the whole quarter of the rim in its quadrant; one triangle per side of the rectangle joins two quarters.
-    void faceWithHole(const Ring& corners, const Ring& rim, bool up) {
-        const std::size_t n = rim.size(), quarter = n / 4;
-        for (std::size_t q = 0; q < 4; ++q) {
-            const Index corner = corners[q];
-            for (std::size_t k = q * quarter; k < (q + 1) * quarter; ++k)
-                up ? triangle(corner, rim[(k + 1) % n], rim[k]) : triangle(corner, rim[k], rim[(k + 1) % n]);
-            const Index next = corners[(q + 1) % 4], middle = rim[(q + 1) * quarter % n];
-            up ? triangle(corner, next, middle) : triangle(next, corner, middle);
-        }
-    }
-
-    TriangleMesh take() { return std::move(mesh_); }
-
-private:
-    /// Cosine and sine of 2π k/n, mirrored from the first quarter so that the polygon is exactly symmetric.
-    static std::array<double, 2> direction(int k, int n) {
-        const int quarter = n / 4, q = k / quarter, j = k % quarter;
-        const double angle = 2.0 * pi * j / n;
-        const double c = std::cos(angle), s = std::sin(angle);
-        switch (q) {
-            case 0:
-                return {c, s};
-            case 1:
-                return {-s, c};
-            case 2:
-                return {-c, -s};
-            default:
-                return {s, -c};
-        }
-    }
-
-    TriangleMesh mesh_;
-};
 
 /// Largest distance between the sphere of radius 1 and a triangle with corners on it: at its circumcentre, or nearer.
 double sphereError(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -151,7 +74,7 @@ int rowsFor(double radius, double chord_error) {
 TriangleMesh tessellateShape(const Sphere& sphere, double chord_error) {
     const double radius = 0.5 * sphere.diameter;
     const int rows = rowsFor(radius, chord_error);
-    Builder builder;
+    TriangleBuilder builder;
     const auto makeRing = [&](int i, double hemisphere) {
         if (i == 0) return Ring{builder.vertex(0.0, 0.0, hemisphere * radius)};
         if (i == rows) return builder.ring(radius, 0.0, 4 * i);
@@ -187,7 +110,7 @@ TriangleMesh tessellateShape(const Sphere& sphere, double chord_error) {
 }
 
 TriangleMesh tessellateShape(const Box& box, double) {
-    Builder builder;
+    TriangleBuilder builder;
     const Ring low = builder.rectangle(0.5 * box.width, 0.5 * box.depth, -0.5 * box.height);
     const Ring high = builder.rectangle(0.5 * box.width, 0.5 * box.depth, 0.5 * box.height);
     builder.band(low, high);
@@ -197,7 +120,7 @@ TriangleMesh tessellateShape(const Box& box, double) {
 }
 
 TriangleMesh tessellateShape(const Sheet& sheet, double) {
-    Builder builder;
+    TriangleBuilder builder;
     const Ring corners = builder.rectangle(0.5 * sheet.width, 0.5 * sheet.depth, 0.0);
     builder.quad(corners[0], corners[1], corners[2], corners[3]);
     return builder.take();
@@ -206,7 +129,7 @@ TriangleMesh tessellateShape(const Sheet& sheet, double) {
 TriangleMesh tessellateShape(const Cylinder& cylinder, double chord_error) {
     const double radius = 0.5 * cylinder.diameter, half = 0.5 * cylinder.length;
     const int segments = segmentsFor(radius, chord_error);
-    Builder builder;
+    TriangleBuilder builder;
     const Ring low = builder.ring(radius, -half, segments);
     const Ring high = builder.ring(radius, half, segments);
     builder.disc(low, -half, false);
@@ -215,10 +138,37 @@ TriangleMesh tessellateShape(const Cylinder& cylinder, double chord_error) {
     return builder.take();
 }
 
+/// Rings around the axis, one for each vertex of the tube's circle. In the half plane of a ring's vertices a triangle
+/// lies within the tube's sagitta; between two such half planes its points come nearer to the axis by the ring's
+/// sagitta at the most. Each gets half of the chord error.
+struct TorusSteps {
+    int around, along_tube;
+    double error;
+};
+
+TorusSteps stepsFor(const Torus& torus, double chord_error) {
+    const double tube = 0.5 * torus.tube_diameter, widest = 0.5 * torus.diameter + tube;
+    const double half = 0.5 * chord_error;
+    return {segmentsFor(widest, half), segmentsFor(tube, half), sagittaFor(widest, half) + sagittaFor(tube, half)};
+}
+
+TriangleMesh tessellateShape(const Torus& torus, double chord_error) {
+    const double radius = 0.5 * torus.diameter, tube = 0.5 * torus.tube_diameter;
+    const TorusSteps steps = stepsFor(torus, chord_error);
+    TriangleBuilder builder;
+    std::vector<Ring> rings;
+    for (int k = 0; k < steps.along_tube; ++k) {
+        const auto [c, s] = TriangleBuilder::direction(k, steps.along_tube);
+        rings.push_back(builder.ring(radius + tube * c, tube * s, steps.around));
+    }
+    for (std::size_t k = 0; k < rings.size(); ++k) builder.band(rings[k], rings[(k + 1) % rings.size()]);
+    return builder.take();
+}
+
 TriangleMesh tessellateShape(const Peg& peg, double chord_error) {
     const double radius = 0.5 * peg.diameter;
     const int segments = segmentsFor(radius, chord_error);
-    Builder builder;
+    TriangleBuilder builder;
     const Ring edge = builder.ring(radius, peg.chamfer, segments);
     const Ring end = builder.ring(radius, peg.length, segments);
     if (peg.chamfer > 0.0) {
@@ -238,7 +188,7 @@ TriangleMesh tessellateShape(const BorePlate& plate, double chord_error) {
     const bool through = plate.bore_depth >= plate.height;
     const double floor_z = through ? -plate.height : -plate.bore_depth;
     const int segments = segmentsFor(mouth, chord_error);
-    Builder builder;
+    TriangleBuilder builder;
     const Ring top = builder.rectangle(0.5 * plate.width, 0.5 * plate.depth, 0.0);
     const Ring bottom = builder.rectangle(0.5 * plate.width, 0.5 * plate.depth, -plate.height);
     const Ring neck = builder.ring(bore, -plate.chamfer, segments);
@@ -261,6 +211,55 @@ TriangleMesh tessellateShape(const BorePlate& plate, double chord_error) {
     return builder.take();
 }
 
+template <class AnyPeg>
+TriangleMesh tessellatePeg(const AnyPeg& peg, double chord_error) {
+    const auto profile = profileOf(peg);
+    const ProfileSteps steps = profile.stepsFor(-peg.chamfer, 0.0, chord_error);
+    TriangleBuilder builder;
+    Ring last;
+    for (const double t : steps.levels) {
+        const Ring next = builder.ring(profile.grown(t).outline(steps).points, peg.chamfer + t);
+        last.empty() ? builder.disc(next, 0.0, false) : builder.band(last, next);
+        last = next;
+    }
+    const Ring end = builder.ring(profile.outline(steps).points, peg.length);
+    builder.band(last, end);
+    builder.disc(end, peg.length, true);
+    return builder.take();
+}
+
+template <class Plate>
+TriangleMesh tessellatePocketPlate(const Plate& plate, double chord_error) {
+    const auto profile = profileOf(plate);
+    const ProfileSteps steps = profile.stepsFor(0.0, plate.chamfer, chord_error);
+    const bool through = plate.bore_depth >= plate.height;
+    const double floor_z = through ? -plate.height : -plate.bore_depth;
+    TriangleBuilder builder;
+    const Ring top = builder.rectangle(0.5 * plate.width, 0.5 * plate.depth, 0.0);
+    const Ring bottom = builder.rectangle(0.5 * plate.width, 0.5 * plate.depth, -plate.height);
+    builder.band(bottom, top);
+    const Outline outline = profile.outline(steps);
+    Ring last = builder.ring(outline.points, floor_z);
+    if (through) {
+        builder.faceWithHole(bottom, last, outline.on_axis, false);
+    } else {
+        builder.disc(last, floor_z, true);
+        builder.quad(bottom[3], bottom[2], bottom[1], bottom[0]);
+    }
+    for (const double t : steps.levels) {
+        const Ring next = builder.ring(profile.grown(t).outline(steps).points, t - plate.chamfer);
+        builder.band(next, last);  // the wall faces the axis
+        last = next;
+    }
+    builder.faceWithHole(top, last, outline.on_axis, true);
+    return builder.take();
+}
+
+TriangleMesh tessellateShape(const SquarePeg& peg, double error) { return tessellatePeg(peg, error); }
+TriangleMesh tessellateShape(const KeyedPeg& peg, double error) { return tessellatePeg(peg, error); }
+TriangleMesh tessellateShape(const SquareBorePlate& plate, double error) { return tessellatePocketPlate(plate, error); }
+TriangleMesh tessellateShape(const KeyedBorePlate& plate, double error) { return tessellatePocketPlate(plate, error); }
+
 double reachedError(const Sphere& sphere, double asked) {
     const double radius = 0.5 * sphere.diameter;
     return radius * (octantError(rowsFor(radius, asked)) + kVertexRounding);
@@ -268,6 +267,15 @@ double reachedError(const Sphere& sphere, double asked) {
 double reachedError(const Box&, double) { return 0.0; }
 double reachedError(const Sheet&, double) { return 0.0; }
 double reachedError(const Cylinder& cylinder, double asked) { return sagittaFor(0.5 * cylinder.diameter, asked); }
+double reachedError(const Torus& torus, double asked) { return stepsFor(torus, asked).error; }
+double reachedError(const SquarePeg&, double) { return 0.0; }
+double reachedError(const KeyedPeg& peg, double asked) {
+    return profileOf(peg).stepsFor(-peg.chamfer, 0.0, asked).error;
+}
+double reachedError(const SquareBorePlate&, double) { return 0.0; }
+double reachedError(const KeyedBorePlate& plate, double asked) {
+    return profileOf(plate).stepsFor(0.0, plate.chamfer, asked).error;
+}
 double reachedError(const Peg& peg, double asked) { return sagittaFor(0.5 * peg.diameter, asked); }
 double reachedError(const BorePlate& plate, double asked) {
     return sagittaFor(0.5 * plate.bore_diameter + plate.chamfer, asked);  // of the widest circle

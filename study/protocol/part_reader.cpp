@@ -18,12 +18,23 @@ model::Shape buildShape(const TableReader& read, const std::string& kind, double
     if (kind == "sphere") return model::Sphere{length("diameter")};
     if (kind == "box") return model::Box{length("width"), length("depth"), length("height")};
     if (kind == "cylinder") return model::Cylinder{length("diameter"), length("length")};
+    if (kind == "torus") return model::Torus{length("diameter"), length("tube_diameter")};
     if (kind == "sheet") return model::Sheet{length("width"), length("depth")};
-    if (kind == "peg") return model::Peg{length("diameter"), length("length"), length("chamfer")};
-    const bool through = read.text("bore_depth") == "through";
-    const double bore_depth = length(through ? "height" : "bore_depth");
-    return model::BorePlate{length("width"),         length("depth"), length("height"),
-                            length("bore_diameter"), bore_depth,      length("chamfer")};
+    const double chamfer = length("chamfer");
+    if (kind == "peg") return model::Peg{length("diameter"), length("length"), chamfer};
+    if (kind == "square_peg") return model::SquarePeg{length("width"), length("depth"), length("length"), chamfer};
+    if (kind == "keyed_peg")
+        return model::KeyedPeg{length("diameter"), length("length"), length("key_width"), length("key_height"),
+                               chamfer};
+    const double width = length("width"), depth = length("depth"), height = length("height");
+    const double bore_depth = read.text("bore_depth") == "through" ? height : length("bore_depth");
+    if (kind == "square_bore_plate")
+        return model::SquareBorePlate{width,      depth,  height, length("pocket_width"), length("pocket_depth"),
+                                      bore_depth, chamfer};
+    const double bore = length("bore_diameter");
+    if (kind == "bore_plate") return model::BorePlate{width, depth, height, bore, bore_depth, chamfer};
+    return model::KeyedBorePlate{width,      depth,  height, bore, length("key_width"), length("key_height"),
+                                 bore_depth, chamfer};
 }
 
 model::Shape readShape(const Node& table, const std::string& path, double units, Errors& errors) {

@@ -14,33 +14,15 @@ std::string poseJson(const Pose& pose) {
         .str();
 }
 
-struct ShapeJson {
-    JsonObject object;
-
-    void operator()(const model::Sphere& s) { object.number("diameter_m", s.diameter); }
-    void operator()(const model::Box& s) {
-        object.number("width_m", s.width).number("depth_m", s.depth).number("height_m", s.height);
-    }
-    void operator()(const model::Cylinder& s) { object.number("diameter_m", s.diameter).number("length_m", s.length); }
-    void operator()(const model::Sheet& s) { object.number("width_m", s.width).number("depth_m", s.depth); }
-    void operator()(const model::Peg& s) {
-        object.number("diameter_m", s.diameter).number("length_m", s.length).number("chamfer_m", s.chamfer);
-    }
-    void operator()(const model::BorePlate& s) {
-        object.number("width_m", s.width).number("depth_m", s.depth).number("height_m", s.height);
-        object.number("bore_diameter_m", s.bore_diameter).number("bore_depth_m", s.bore_depth);
-        object.number("chamfer_m", s.chamfer);
-    }
-};
-
 std::string partJson(const model::PartSpec& part) {
     JsonObject json;
     json.text("name", part.name).boolean("held", part.held);
     if (const auto* shape = std::get_if<model::Shape>(&part.geometry)) {
-        ShapeJson shape_json;
-        shape_json.object.text("kind", model::kindName(*shape));
-        std::visit(shape_json, *shape);
-        json.json("shape", shape_json.object.str());
+        JsonObject shape_json;
+        shape_json.text("kind", model::kindName(*shape));
+        for (const auto& [key, value] : model::namedDimensions(*shape))
+            shape_json.number(std::string(key) + "_m", value);
+        json.json("shape", shape_json.str());
     } else {
         const auto& mesh = std::get<model::MeshFile>(part.geometry);
         // Without its folder: where a lab keeps its files must not change what is exported.

@@ -144,30 +144,41 @@ void checkStability(const TableReader& device_table, const TableReader& contact_
 
 struct Extent {
     Vec3 size;    // [m]
-    double area;  // of the surface, roughly [m²]: what a bore takes from its plate and a chamfer from an edge is small
+    double area;  // of the surface, roughly [m²]: what a bore takes, a chamfer or a key adds is small
 };
 
-Extent extentOf(const model::Shape& shape) {
-    const auto round = [](double diameter, double length) {
-        return Extent{{diameter, diameter, length}, std::numbers::pi * diameter * (0.5 * diameter + length)};
-    };
-    const auto block = [](double x, double y, double z) { return Extent{{x, y, z}, 2.0 * (x * y + y * z + z * x)}; };
-    if (const auto* s = std::get_if<model::Sphere>(&shape))
-        return {Vec3::Constant(s->diameter), std::numbers::pi * s->diameter * s->diameter};
-    if (const auto* s = std::get_if<model::Cylinder>(&shape)) return round(s->diameter, s->length);
-    if (const auto* s = std::get_if<model::Peg>(&shape)) return round(s->diameter, s->length);
-    if (const auto* s = std::get_if<model::Sheet>(&shape)) return {{s->width, s->depth, 0.0}, s->width * s->depth};
-    if (const auto* s = std::get_if<model::Box>(&shape)) return block(s->width, s->depth, s->height);
-    const auto& plate = std::get<model::BorePlate>(shape);
-    return block(plate.width, plate.depth, plate.height);
+Extent roundExtent(double diameter, double length) {
+    return {{diameter, diameter, length}, std::numbers::pi * diameter * (0.5 * diameter + length)};
 }
+
+Extent blockExtent(double x, double y, double z) { return {{x, y, z}, 2.0 * (x * y + y * z + z * x)}; }
+
+struct ExtentOf {
+    Extent operator()(const model::Sphere& s) const {
+        return {Vec3::Constant(s.diameter), std::numbers::pi * s.diameter * s.diameter};
+    }
+    Extent operator()(const model::Box& s) const { return blockExtent(s.width, s.depth, s.height); }
+    Extent operator()(const model::Cylinder& s) const { return roundExtent(s.diameter, s.length); }
+    Extent operator()(const model::Torus& s) const {
+        const double outer = s.diameter + s.tube_diameter;
+        return {{outer, outer, s.tube_diameter}, std::numbers::pi * std::numbers::pi * s.diameter * s.tube_diameter};
+    }
+    Extent operator()(const model::Sheet& s) const { return {{s.width, s.depth, 0.0}, s.width * s.depth}; }
+    Extent operator()(const model::Peg& s) const { return roundExtent(s.diameter, s.length); }
+    Extent operator()(const model::SquarePeg& s) const { return blockExtent(s.width, s.depth, s.length); }
+    Extent operator()(const model::KeyedPeg& s) const { return roundExtent(s.diameter, s.length); }
+    template <class Plate>
+    Extent operator()(const Plate& plate) const {
+        return blockExtent(plate.width, plate.depth, plate.height);
+    }
+};
 
 /// Refuses a spacing that gives the held part too many points. A mesh is judged when it is loaded.
 void checkSpacing(const TableReader& contact_table, const model::SceneSpec& scene) {
     for (const auto& part : scene.parts) {
         const auto* shape = std::get_if<model::Shape>(&part.geometry);
         if (!part.held || shape == nullptr) continue;
-        const auto [size, area] = extentOf(*shape);
+        const auto [size, area] = std::visit(ExtentOf{}, *shape);
         if (const auto excess = model::tooManyPoints(size, area, scene.contact.spacing))
             contact_table.fail("spacing_mm", fmt::format("part {}: {}", part.name, *excess));
     }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -53,6 +54,37 @@ TEST(SceneReader, ReadsLengthsInTheFilesUnit) {
     EXPECT_TRUE(peg.held);
     EXPECT_EQ(peg.X_WP.p, Vec3(0.020, 0.0, 0.030));
     EXPECT_EQ(scene->parts[0].shown_offset, Vec3(0, 0, 0.001));
+}
+
+TEST(SceneReader, ReadsEveryShape) {
+    // Truth: closed form: millimetres to metres, every key another number.
+    const auto shapeOf = [](const std::string& keys) {
+        const auto scene = read("[[part]]\nname = \"a\"\nheld = true\nshape = { kind = " + keys + " }\n");
+        return scene ? std::get<model::Shape>(scene->parts[0].geometry) : model::Shape(model::Sphere{0.0});
+    };
+    const auto valuesOf = [&](const std::string& keys) {
+        std::string text;
+        const auto shape = shapeOf(keys);
+        text += model::kindName(shape);
+        for (const auto& [key, value] : model::namedDimensions(shape)) {
+            text += ' ';
+            text += key;
+            text += ' ' + std::to_string(std::lround(1e3 * value));
+        }
+        return text;
+    };
+    EXPECT_EQ(valuesOf(R"("torus", tube_diameter = 12, diameter = 40)"), "torus diameter 40 tube_diameter 12");
+    EXPECT_EQ(valuesOf(R"("square_peg", length = 50, width = 20, depth = 15, chamfer = 2)"),
+              "square_peg width 20 depth 15 length 50 chamfer 2");
+    EXPECT_EQ(valuesOf(R"("keyed_peg", diameter = 20, length = 50, key_height = 3, key_width = 6)"),
+              "keyed_peg diameter 20 length 50 key_width 6 key_height 3 chamfer 0");
+    EXPECT_EQ(valuesOf(R"("square_bore_plate", width = 60, depth = 50, height = 30, pocket_width = 21, )"
+                       "pocket_depth = 16, bore_depth = 25, chamfer = 1"),
+              "square_bore_plate width 60 depth 50 height 30 pocket_width 21 pocket_depth 16 bore_depth 25 chamfer 1");
+    EXPECT_EQ(valuesOf(R"("keyed_bore_plate", width = 60, depth = 50, height = 30, bore_diameter = 21, )"
+                       R"(key_width = 7, key_height = 4, bore_depth = "through")"),
+              "keyed_bore_plate width 60 depth 50 height 30 bore_diameter 21 key_width 7 key_height 4 bore_depth 30 "
+              "chamfer 0");
 }
 
 TEST(SceneReader, KnowsItsUnits) {
@@ -201,8 +233,9 @@ TEST(SceneReader, ReportsWhatDoesNotFitTogetherWhereItIsWritten) {
               "s.toml:4:43: error: part.p.shape.length: unknown key; known keys: kind, diameter");
     EXPECT_EQ(
         errorsOf(start + "shape = { kind = \"pyramid\", diameter = 20 }\n"),
-        "s.toml:4:18: error: part.p.shape.kind: \"pyramid\": must be \"sphere\", \"box\", \"cylinder\", \"sheet\", "
-        "\"peg\" or \"bore_plate\"");
+        "s.toml:4:18: error: part.p.shape.kind: \"pyramid\": must be \"sphere\", \"box\", \"cylinder\", \"torus\", "
+        "\"sheet\", \"peg\", \"square_peg\", \"keyed_peg\", \"bore_plate\", \"square_bore_plate\" or "
+        "\"keyed_bore_plate\"");
     EXPECT_EQ(errorsOf(start + "pose = { position = [1, 2] }\n"),
               "s.toml:1:1: error: part.p: needs a shape or a mesh\n"
               "s.toml:4:21: error: part.p.pose.position: [1, 2]: must be a list of three numbers");
