@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <numbers>
+#include <utility>
 
+#include "core/model/iso_fit.h"
 #include "study/protocol/scene_node.h"
 
 namespace passung::protocol {
@@ -13,7 +16,56 @@ constexpr double kMaxLength = 10.0;  // [m], of positions and edges: more is a s
 
 const model::Shape kHarmless = model::Sphere{1.0};  // stands in after an error
 
-model::Shape buildShape(const TableReader& read, const std::string& kind, double units) {
+/// What a kind's fit decides: the key of its diameter, and whether that is a hole's. Kinds without one take no fit.
+struct FittedKind {
+    std::string_view kind, key;
+    bool hole;
+};
+constexpr std::array kFittedKinds{
+    FittedKind{"peg", "diameter", false},
+    FittedKind{"keyed_peg", "diameter", false},
+    FittedKind{"bore_plate", "bore_diameter", true},
+    FittedKind{"keyed_bore_plate", "bore_diameter", true},
+};
+
+const FittedKind* fittedKind(std::string_view kind) {
+    const auto found = std::find_if(kFittedKinds.begin(), kFittedKinds.end(),
+                                    [&](const FittedKind& fitted) { return fitted.kind == kind; });
+    return found != kFittedKinds.end() ? &*found : nullptr;
+}
+
+/// The diameter [m] that the fit gives; reports what keeps it from that.
+double readFit(const TableReader& read, const FittedKind& fitted, double units, Errors& errors) {
+    const std::size_t before = errors.size();
+    const auto fit = model::parseFit(read.text("fit"));
+    if (!fit) read.fail("fit", fit.errors()[0].message);
+    if (read.has(fitted.key)) read.fail("fit", fmt::format("gives the {}, which stands here too", fitted.key));
+    if (!read.has("nominal_diameter")) read.fail("nominal_diameter", "required by the fit");
+    if (errors.size() > before) return 0.0;
+    const double nominal = read.number("nominal_diameter") / units;
+    const auto word = read.text("deviation");
+    const auto clearance = word == "min"   ? model::Clearance::Min
+                           : word == "max" ? model::Clearance::Max
+                                           : model::Clearance::Mean;
+    const auto diameter =
+        fitted.hole ? model::holeDiameter(*fit, nominal, clearance) : model::shaftDiameter(*fit, nominal, clearance);
+    if (!diameter) read.fail(diameter.errors()[0].key, diameter.errors()[0].message);
+    return diameter ? *diameter : 0.0;
+}
+
+/// The diameter [m] of a kind that may have a fit; 0 if it may not, and after an error.
+double readDiameter(const TableReader& read, const std::string& kind, double units, Errors& errors) {
+    const FittedKind* fitted = fittedKind(kind);
+    if (fitted == nullptr) return 0.0;
+    if (read.has("fit")) return readFit(read, *fitted, units, errors);
+    for (const char* key : {"nominal_diameter", "deviation"})
+        if (read.has(key)) read.fail(key, "needs a fit");
+    if (!read.has(fitted->key)) read.fail(fitted->key, "required");
+    return read.number(fitted->key) / units;
+}
+
+/// `fitted`: see readDiameter.
+model::Shape buildShape(const TableReader& read, const std::string& kind, double units, double fitted) {
     const auto length = [&](const char* name) { return read.number(name) / units; };
     if (kind == "sphere") return model::Sphere{length("diameter")};
     if (kind == "box") return model::Box{length("width"), length("depth"), length("height")};
@@ -21,19 +73,17 @@ model::Shape buildShape(const TableReader& read, const std::string& kind, double
     if (kind == "torus") return model::Torus{length("diameter"), length("tube_diameter")};
     if (kind == "sheet") return model::Sheet{length("width"), length("depth")};
     const double chamfer = length("chamfer");
-    if (kind == "peg") return model::Peg{length("diameter"), length("length"), chamfer};
+    if (kind == "peg") return model::Peg{fitted, length("length"), chamfer};
     if (kind == "square_peg") return model::SquarePeg{length("width"), length("depth"), length("length"), chamfer};
     if (kind == "keyed_peg")
-        return model::KeyedPeg{length("diameter"), length("length"), length("key_width"), length("key_height"),
-                               chamfer};
+        return model::KeyedPeg{fitted, length("length"), length("key_width"), length("key_height"), chamfer};
     const double width = length("width"), depth = length("depth"), height = length("height");
     const double bore_depth = read.text("bore_depth") == "through" ? height : length("bore_depth");
     if (kind == "square_bore_plate")
         return model::SquareBorePlate{width,      depth,  height, length("pocket_width"), length("pocket_depth"),
                                       bore_depth, chamfer};
-    const double bore = length("bore_diameter");
-    if (kind == "bore_plate") return model::BorePlate{width, depth, height, bore, bore_depth, chamfer};
-    return model::KeyedBorePlate{width,      depth,  height, bore, length("key_width"), length("key_height"),
+    if (kind == "bore_plate") return model::BorePlate{width, depth, height, fitted, bore_depth, chamfer};
+    return model::KeyedBorePlate{width,      depth,  height, fitted, length("key_width"), length("key_height"),
                                  bore_depth, chamfer};
 }
 
@@ -47,13 +97,16 @@ model::Shape readShape(const Node& table, const std::string& path, double units,
     if (errors.size() > before) return kHarmless;
 
     const std::string id = "shape." + kind;
-    const TableReader read(table, {"shape", id}, path, errors);
+    std::vector<std::string_view> ids{"shape", id};
+    if (fittedKind(kind) != nullptr) ids.emplace_back("shape.fit");
+    const TableReader read(table, std::move(ids), path, errors);
     if (errors.size() > before) return kHarmless;
     for (const Key& key : keys())
         if (key.table == id && read.has(key.name) && read.node(key.name)->number / units > kMaxLength)
             read.fail(key.name, fmt::format("must be at most {} m", kMaxLength));
+    const double fitted = readDiameter(read, kind, units, errors);
     if (errors.size() > before) return kHarmless;
-    const auto shape = buildShape(read, kind, units);
+    const auto shape = buildShape(read, kind, units, fitted);
     for (const Error& error : model::validate(shape)) read.fail(error.key, error.message);
     return errors.size() > before ? kHarmless : shape;
 }

@@ -47,16 +47,20 @@ const model::BorePlate* findBore(const TableReader& read, const model::SceneSpec
     return nullptr;
 }
 
-/// Reports a bore that is too narrow for the peg where the bore's diameter is written.
+/// Reports a bore that is too narrow for the peg where the bore's diameter, or its fit, is written.
 void checkFit(const StudyTables& tables, const std::string& target, const model::Peg& peg,
               const model::BorePlate& plate, Errors& errors) {
     if (peg.diameter < plate.bore_diameter) return;
     for (const Node& part : tables.scene.find("part")->items) {
         const Node* shape = part.find("shape");
         if (part.find("name")->text != target || shape == nullptr) continue;
-        const Node& value = *shape->find("bore_diameter");
-        errors.push_back(errorAt(value.place, fmt::format("part.{}.shape.bore_diameter", target), valueText(value),
-                                 "must be larger than the peg's diameter"));
+        const bool fitted = shape->find("fit") != nullptr;
+        const char* key = fitted ? "fit" : "bore_diameter";
+        const Node& value = *shape->find(key);
+        const auto message = fitted ? fmt::format("gives a bore of {:.7g} mm, not larger than the peg's {:.7g} mm",
+                                                  1e3 * plate.bore_diameter, 1e3 * peg.diameter)
+                                    : std::string("must be larger than the peg's diameter");
+        errors.push_back(errorAt(value.place, fmt::format("part.{}.shape.{}", target, key), valueText(value), message));
     }
 }
 

@@ -87,6 +87,62 @@ TEST(SceneReader, ReadsEveryShape) {
               "chamfer 0");
 }
 
+const std::string kPartStart = "[[part]]\nname = \"p\"\nheld = true\n";
+
+/// A part of one shape, alone in a scene.
+std::string partOf(const std::string& shape) { return kPartStart + "shape = { " + shape + " }\n"; }
+
+TEST(SceneReader, MakesDiametersOfFits) {
+    // Truth: closed form: 20 H7 is 20.000 to 20.021, 20 g6 19.980 to 19.993 mm. The shaft's part goes to a peg, the
+    // hole's to a plate; the nominal diameter is in the file's unit.
+    const auto diameterOf = [](const std::string& shape) {
+        const auto scene = read(partOf(shape));
+        EXPECT_TRUE(scene) << errorsOf(partOf(shape));
+        if (!scene) return 0.0;
+        for (const auto& [key, value] : model::namedDimensions(std::get<model::Shape>(scene->parts[0].geometry)))
+            if (std::string(key).ends_with("diameter")) return value;
+        return 0.0;
+    };
+    const std::string fit = R"(, fit = "H7/g6", nominal_diameter = 20)";
+    const std::string plate = "width = 60, depth = 50, height = 30, bore_depth = 25";
+    const std::string key = ", key_width = 6, key_height = 3";
+    EXPECT_NEAR(diameterOf(R"(kind = "peg", length = 50)" + fit), 0.0199865, 1e-15);
+    EXPECT_NEAR(diameterOf(R"(kind = "peg", length = 50, deviation = "min")" + fit), 0.019993, 1e-15);
+    EXPECT_NEAR(diameterOf(R"(kind = "peg", length = 50, deviation = "max")" + fit), 0.01998, 1e-15);
+    EXPECT_NEAR(diameterOf(R"(kind = "keyed_peg", length = 50)" + key + fit), 0.0199865, 1e-15);
+    EXPECT_NEAR(diameterOf(R"(kind = "bore_plate", )" + plate + fit), 0.0200105, 1e-15);
+    EXPECT_NEAR(diameterOf(R"(kind = "bore_plate", deviation = "min", )" + plate + fit), 0.02, 1e-15);
+    EXPECT_NEAR(diameterOf(R"(kind = "keyed_bore_plate", deviation = "max", )" + plate + key + fit), 0.020021, 1e-15);
+    const auto inches =
+        read("unit = \"in\"\n" + partOf(R"(kind = "peg", length = 2, fit = "H8/h7", nominal_diameter = 1)"));
+    ASSERT_TRUE(inches);
+    EXPECT_NEAR(std::get<model::Peg>(std::get<model::Shape>(inches->parts[0].geometry)).diameter, 0.0254 - 10.5e-6,
+                1e-15);
+}
+
+TEST(SceneReader, ReportsWhatIsWrongWithAFitWhereItIsWritten) {
+    // Truth: closed form: one line per rule.
+    const std::string peg = R"(kind = "peg", length = 50, )";
+    const auto lines = [&](const std::string& keys) { return errorsOf(partOf(peg + keys)); };
+    EXPECT_EQ(lines("chamfer = 0"), "s.toml:4:9: error: part.p.shape.diameter: required");
+    EXPECT_EQ(lines(R"(fit = "H7/g6")"), "s.toml:4:9: error: part.p.shape.nominal_diameter: required by the fit");
+    EXPECT_EQ(lines(R"(diameter = 20, fit = "H7/g6", nominal_diameter = 20)"),
+              "s.toml:4:59: error: part.p.shape.fit: \"H7/g6\": gives the diameter, which stands here too");
+    EXPECT_EQ(lines(R"(fit = "g6", nominal_diameter = 20)"),
+              "s.toml:4:44: error: part.p.shape.fit: \"g6\": must be a hole's and a shaft's tolerance class, such as "
+              "\"H7/g6\"");
+    EXPECT_EQ(
+        lines(R"(fit = "H7/g6", nominal_diameter = 501)"),
+        "s.toml:4:72: error: part.p.shape.nominal_diameter: 501: must be above 0 and at most 500 mm for an ISO 286 "
+        "fit");
+    EXPECT_EQ(lines(R"(diameter = 20, deviation = "min")"),
+              "s.toml:4:65: error: part.p.shape.deviation: \"min\": needs a fit");
+    EXPECT_EQ(lines(R"(fit = "H7/g6", nominal_diameter = 20, deviation = "middle")"),
+              "s.toml:4:88: error: part.p.shape.deviation: \"middle\": must be \"mean\", \"min\" or \"max\"");
+    EXPECT_EQ(errorsOf(partOf(R"(kind = "sphere", diameter = 20, fit = "H7/g6")")),
+              "s.toml:4:43: error: part.p.shape.fit: unknown key; known keys: kind, diameter");
+}
+
 TEST(SceneReader, KnowsItsUnits) {
     // Truth: closed form: definition of the units; the part's own unit wins.
     const std::string sphere = "[[part]]\nname = \"ball\"\nheld = true\nshape = { kind = \"sphere\", diameter = 2 }\n";
