@@ -24,9 +24,22 @@ Result<bool> isStudy(const std::string& path) {
     return protocol::kindOf(*document) == protocol::FileKind::Study;
 }
 
+/// The sizes that shapes have in the end, whatever gave them: a fit, a factor.
+void printShapes(const model::SceneSpec& spec) {
+    for (const auto& part : spec.parts) {
+        const auto* shape = std::get_if<model::Shape>(&part.geometry);
+        if (shape == nullptr) continue;
+        std::string text;
+        for (const auto& [key, value] : model::namedDimensions(*shape))
+            text += fmt::format(", {} {:.7g}", key, 1e3 * value);
+        fmt::print("  {:<22}{}{} mm\n", part.name, model::kindName(*shape), text);
+    }
+}
+
 Result<Done> printStages(const model::SceneSpec& spec, model::PartCache& cache) {
     const auto scene = model::buildScene(spec, cache);
     if (!scene) return scene.errors();
+    printShapes(spec);
     fmt::print("  {:<22}{:>10}{:>10}  {}\n", "stage of the tick", "median µs", "p99 µs", "why it runs");
     for (const app::StageCost& cost : app::measureStages(*scene)) {
         fmt::print("  {:<22}{:>10.1f}{:>10.1f}  {}\n", cost.name, cost.median_us, cost.p99_us, cost.reason);

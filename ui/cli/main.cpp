@@ -133,8 +133,8 @@ private:
 
     void addCoreCommands() {
         const CLI::IsMember units({"m", "cm", "mm", "um", "in"});
-        auto* sub = command("mesh", "report what a mesh file is like", mesh_, mesh);
-        sub->add_option("FILE", mesh_.file, "STL, OBJ, PLY, OFF, glTF, 3MF ...")->required();
+        auto* sub = command("mesh", "report what a mesh file, or the mesh of a shape, is like", mesh_, mesh);
+        sub->add_option("FILE", mesh_.file, "STL, OBJ, PLY, OFF, glTF, 3MF ... or part.toml")->required();
         sub->add_option("--unit", mesh_.unit, "of files that have none; default mm")->check(units);
 
         sub = command("query", "distance, depth and wrench of two parts at given poses", query_, query);

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "core/model/mesh_import.h"
+#include "core/model/part.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 #include "ui/cli/part_argument.h"
@@ -8,15 +8,21 @@
 namespace passung::cli {
 
 int mesh(const MeshOptions& options) {
-    const auto unit = metresPerUnit(options.unit);
-    if (!unit) return fail(unit.errors());
-    const auto imported = model::importMesh(options.file, *unit);
-    if (!imported) return fail(imported.errors());
-    const model::MeshReport& r = imported->report;
+    const auto spec = partArgument(options.file, options.unit);
+    if (!spec) return fail(spec.errors());
+    const auto part = model::buildPart(*spec, {});
+    if (!part) return fail(part.errors());
+    const model::MeshReport& r = part->report;
     fmt::print("{}\n", options.file);
     const auto line = [](std::string_view name, const std::string& value) { fmt::print("  {:<22}{}\n", name, value); };
     line("format", r.format);
-    line("unit", fmt::format("{} m", r.metres_per_unit));
+    if (part->shape) {
+        for (const auto& [key, value] : model::namedDimensions(*part->shape))
+            line(key, fmt::format("{:.7g} mm", 1e3 * value));
+        line("chord error", fmt::format("{:.2g} mm", 1e3 * part->chord_error));
+    } else {
+        line("unit", fmt::format("{} m", r.metres_per_unit));
+    }
     line("triangles", r.triangles == r.triangles_read ? std::to_string(r.triangles)
                                                       : fmt::format("{} of {} read", r.triangles, r.triangles_read));
     line("vertices", std::to_string(r.vertices));

@@ -4,6 +4,9 @@
 
 namespace passung::cli {
 
+namespace {
+
+/// One of `unit` in metres.
 Result<double> metresPerUnit(const std::string& unit) {
     if (unit == "m") return 1.0;
     if (unit == "cm") return 1e-2;
@@ -12,6 +15,8 @@ Result<double> metresPerUnit(const std::string& unit) {
     if (unit == "in") return 0.0254;
     return Error{.message = "must be m, cm, mm, um or in", .key = "--unit", .value = unit};
 }
+
+}  // namespace
 
 Result<model::PartSpec> partArgument(const std::string& path, const std::string& unit) {
     const auto metres = metresPerUnit(unit);

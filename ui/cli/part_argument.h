@@ -7,10 +7,8 @@
 
 namespace passung::cli {
 
-/// "m", "cm", "mm", "um" or "in" as metres.
-Result<double> metresPerUnit(const std::string& unit);
-
-/// A part named on the command line: a mesh file, or a .toml file with one [[part]].
+/// A part named on the command line: a mesh file, or a .toml file with one [[part]]. `unit`: "m", "cm", "mm", "um" or
+/// "in", for files that say none.
 Result<model::PartSpec> partArgument(const std::string& path, const std::string& unit);
 
 }  // namespace passung::cli

@@ -70,6 +70,18 @@ TEST(Explain, KnowsAStudyByItsKeysHoweverTheyAreWritten) {
     EXPECT_NE(scene.out.find("stage of the tick"), std::string::npos);
 }
 
+TEST(Explain, GivesTheDiameterOfAFit) {
+    // Truth: closed form: 20 g6 is 19.980 to 19.993 mm; the least clearance takes the thicker.
+    const TempFolder folder;
+    writeText(folder / "scene.toml",
+              "[[part]]\nname = \"peg\"\nheld = true\n"
+              "shape = { kind = \"peg\", fit = \"H7/g6\", nominal_diameter = 20, deviation = \"min\", length = 50 }\n"
+              "[contact]\ncell_mm = 2.0\nspacing_mm = 4.0\n");
+    const Ended ended = runProgram(folder.path(), {"explain", "scene.toml"});
+    ASSERT_EQ(ended.exit_code, 0) << ended.err;
+    EXPECT_NE(ended.out.find("peg, diameter 19.993, length 50, chamfer 0 mm"), std::string::npos) << ended.out;
+}
+
 TEST(Check, WarnsOnTheErrorStreamAndStillSucceeds) {
     // Truth: invariant (a warning is not a result)
     const TempFolder folder;

@@ -86,5 +86,19 @@ TEST_F(MeshReport, OfAnOpenBoxSaysWhatIsMissing) {
     EXPECT_EQ(valueOf(open, "volume"), "not defined (not watertight)");
 }
 
+TEST_F(MeshReport, GivesTheDimensionsOfAShape) {
+    // Truth: closed form: 20 g6 is 19.980 to 19.993 mm, in the middle 19.9865 mm.
+    writeText(folder_ / "peg.toml",
+              "[[part]]\nname = \"p\"\n"
+              "shape = { kind = \"peg\", fit = \"H7/g6\", nominal_diameter = 20, length = 50, chamfer = 0.5 }\n");
+    const Ended ended = runProgram(folder_.path(), {"mesh", "peg.toml"});
+    ASSERT_EQ(ended.exit_code, 0) << ended.err;
+    EXPECT_EQ(valueOf(ended.out, "format"), "peg");
+    EXPECT_EQ(valueOf(ended.out, "diameter"), "19.9865 mm");
+    EXPECT_EQ(valueOf(ended.out, "length"), "50 mm");
+    EXPECT_EQ(valueOf(ended.out, "size"), "19.9865 x 19.9865 x 50 mm");
+    EXPECT_EQ(valueOf(ended.out, "watertight"), "yes");
+}
+
 }  // namespace
 }  // namespace passung::test
