@@ -20,6 +20,20 @@ struct DistanceSource {
     std::function<bool(const Vec3&)> inside;      // never called for an open sheet
     bool open_sheet = false;                      // no inside: two-sided, thickened by one cell on each side
     bool closed = false;  // `inside` changes at the surface only, so that the signed distance is 1-Lipschitz
+    /// As `distance`, where it is known to be at most the second argument [m]; optional, faster.
+    std::function<double(const Vec3&, double)> distance_within;
+    /// Points of the surface, the tips of its smallest features among them; optional: see FieldAccuracy.
+    std::vector<Vec3> landmarks;
+};
+
+/// How a field refines its bricks.
+struct FieldAccuracy {
+    double tolerance = 0.0;           // of the trilinear value [m]; 0 = never refine
+    double largest_cell = 0.0;        // refinement begins here [m]; 0 = at `cell`; else `cell` times a power of two
+    double depth = 0.0;               // the tolerance holds up to this far from the surface [m]; deeper: a tenth of φ
+    std::size_t bytes = kFieldBytes;  // refinement ends before the bricks need more
+
+    static constexpr std::size_t kFieldBytes = std::size_t{256} << 20;
 };
 
 /// Value of the interpolated field.
@@ -29,16 +43,25 @@ struct FieldSample {
 };
 
 /// Signed distance field: exact distances at the nodes of bricks of 8³ cells near the surface (9³ samples, shared
-/// faces) and of a coarse grid, whose cell is one brick, everywhere else. (The thesis's voxelmap; its V is -φ.)
-/// Built once, then const; every query is rt-safe and thread-safe.
+/// faces) and of a coarse grid, whose cell is one brick, everywhere else. Where a brick errs too much (rims, edges,
+/// curved faces), an octant of it is replaced by a brick with cells of half the size, and so on. (The thesis's
+/// voxelmap; its V is -φ.) Bricks hold 16-bit numbers between their least and largest value: they are off by at most
+/// 1/131 000 of that span, and from brick to brick the interpolant may jump by as much, between cells of two sizes by
+/// the tolerance. Built once, then const; every query is rt-safe and thread-safe.
 class DistanceField {
 public:
     static constexpr int kBrickCells = 8;
     static constexpr int kBrickNodes = kBrickCells + 1;
+    static constexpr int kMostLevels = 12;  // of refinement: cells down to 1/4096 of the largest
 
     /// Samples `source` with cells of edge `cell` [m]. Bricks cover all points within `band` [m] of the surface; the
     /// coarse grid reaches one part size beyond it. Errors: a field of more than 2 GiB.
-    static Result<DistanceField> build(const DistanceSource& source, double cell, double band);
+    ///   With a tolerance, octants of bricks are refined where the trilinear value errs by more than it, at most
+    /// kMostLevels times. Measured are: exact distances at nine points of every cell whose second differences admit
+    /// such an error, and the landmarks, where φ = 0. Not measured: behind the offset of an open sheet, and where the
+    /// sign jumps in a hole that was left open.
+    static Result<DistanceField> build(const DistanceSource& source, double cell, double band,
+                                       const FieldAccuracy& accuracy = {});
 
     /// φ and its gradient at `p` (part frame). Outside the grid φ is the distance to the part's box (a lower bound).
     FieldSample sample(const Vec3& p, FieldMode mode) const noexcept;
@@ -61,38 +84,61 @@ public:
     /// False if the geometry has holes that were left open: see lowerBound and errorBound.
     bool boundProven() const { return bound_proven_; }
 
+    /// The cell that was asked for [m], about what the tolerance takes on smooth surface. What scales with the field's
+    /// resolution but must not creep at rims (steps of a god object) takes this one.
     double cell() const { return cell_; }
+    /// The smallest cell anywhere [m].
+    double finestCell() const { return finest_cell_; }
+    /// False if refinement ended because of FieldAccuracy::bytes: then the tolerance is exceeded somewhere.
+    bool refined() const { return refined_; }
     /// How far the zero level lies in front of an open sheet's surface, on both sides [m]; 0 for solids.
     double sheetOffset() const { return sheet_offset_; }
     const Bounds& bounds() const { return surface_bounds_; }
-    std::size_t brickCount() const { return bricks_.size() / kBrickSamples; }
+    std::size_t brickCount() const { return bricks_.size(); }
     std::size_t memoryBytes() const;
 
 private:
     static constexpr std::size_t kBrickSamples = std::size_t{kBrickNodes} * kBrickNodes * kBrickNodes;
 
-    struct Cell;  // the eight corners around a point
+    struct Builder;  // distance_field_build.cpp
+    struct Cell;     // the eight corners around a point
+
+    struct Brick {
+        double low, step;                   // φ = low + step · stored number
+        std::array<std::int32_t, 8> child;  // brick that replaces each octant (bits 1: x, 2: y, 4: z); -1: none
+    };
+
+    /// The smallest brick that holds a point.
+    struct Place {
+        std::size_t brick;
+        int level;                // 0: largest cells
+        unsigned octant;          // of the brick
+        std::array<int, 3> cell;  // counted from the corner of the largest brick, in cells of this level
+    };
+    Place descend(std::int32_t root, const Vec3& in_root) const noexcept;  // in_root in [0, 1)³
     bool locate(const Vec3& p, Cell& cell) const noexcept;
     double boxDistance(const Vec3& p) const noexcept;
     double rounding(const Cell& cell, double weights) const noexcept;
     double farthestSurface(const Cell& cell) const noexcept;
-    void sampleCoarse(const DistanceSource& source);
-    bool sampleBricks(const DistanceSource& source, double band);  // false: more than 2 GiB
     std::size_t coarseNode(int x, int y, int z) const noexcept;
     std::size_t coarseCell(int x, int y, int z) const noexcept;
 
     Bounds surface_bounds_;
     Vec3 origin_ = Vec3::Zero();         // of the coarse grid
     std::array<int, 3> coarse_cells_{};  // per axis
-    double cell_ = 0.0;                  // fine cell [m]
-    double brick_edge_ = 0.0;            // coarse cell [m]
+    double cell_ = 0.0;                  // asked for [m]
+    double largest_cell_ = 0.0;          // of unrefined bricks [m]
+    double finest_cell_ = 0.0;
+    double brick_edge_ = 0.0;  // coarse cell [m]
     double inverse_brick_edge_ = 0.0;
     double sheet_offset_ = 0.0;
     double arithmetic_ = 0.0;  // what rounding in double precision may add up to [m]
     bool bound_proven_ = true;
+    bool refined_ = true;
     std::vector<float> coarse_;                // nodes
     std::vector<std::int32_t> brick_of_cell_;  // -1: none
-    std::vector<float> bricks_;                // brickCount × 9³, x fastest
+    std::vector<Brick> bricks_;
+    std::vector<std::uint16_t> samples_;  // brickCount × 9³, x fastest
 };
 
 }  // namespace passung::model

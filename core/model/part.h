@@ -13,12 +13,17 @@
 
 namespace passung::model {
 
+/// How deep the tolerance holds: from there on a tenth of the depth is wrong at most (FieldAccuracy), where the ridge
+/// of the distances of two faces meets fine cells whose number grows with the depth.
+inline constexpr double kDepthTolerances = 40.0;
+
 /// What a scene needs of a part; what is not needed is not built.
 struct PartNeeds {
     bool field = false;
     bool shell = false;
     double tolerance = 20e-6;  // of the field [m]; see chooseCell
-    double cell = 0.0;         // of the field [m]; 0 = chosen from the tolerance
+    double cell = 0.0;         // of the field [m], the same everywhere; 0 = chosen from the tolerance
+    double depth = 0.0;        // to which the tolerance holds [m]; 0 = kDepthTolerances times the tolerance
     double spacing = 1e-3;     // of the shell [m]
 };
 
@@ -47,10 +52,10 @@ Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs);
 /// The result holds what it needs; `part` may go.
 DistanceSource exactSource(const Part& part);
 
-/// The largest cell (halving from 1/32 of the part's longest side, down to 1/1024) whose trilinear error, measured at
-/// fixed random points near the zero level, is ≤ `tolerance` for 90 % of them. Points at sharp edges err more at any
-/// cell size; DistanceField::errorBound holds everywhere.
-/// An open sheet begins at 1/256: its zero level lies one cell in front of the surface, and that is the greater error.
+/// The largest cell whose trilinear error, measured at fixed random points near the zero level, is ≤ `tolerance` for 90
+/// % of them: about what smooth surface takes; edges are left to refinement. Tried are those halvings of a length that
+/// end at kRidgeCells tolerances, from 1/32 of the part's longest side down to 1/1024. An open sheet begins at 1/256:
+/// its zero level lies one cell in front of the surface, and that is the greater error.
 double chooseCell(const DistanceSource& source, const TriangleMesh& mesh, double tolerance);
 
 }  // namespace passung::model

@@ -24,7 +24,7 @@ std::string cacheKey(const PartSpec& spec, const PartNeeds& needs) {
     }
     key += needs.field ? "field " : "";
     key += needs.shell ? "shell " : "";
-    for (const double value : {needs.tolerance, needs.cell, needs.spacing}) append(key, value);
+    for (const double value : {needs.tolerance, needs.cell, needs.depth, needs.spacing}) append(key, value);
     return key;
 }
 

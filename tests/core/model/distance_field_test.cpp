@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "core/base/random.h"
@@ -155,7 +156,7 @@ TEST(DistanceField, BoundsHoldForLargePartsWhereFloatsRoundTheMost) {
         for (const Shape& shape : {Shape(Sphere{size}), Shape(Box{size, 0.7 * size, 0.3 * size})}) {
             const double cell = size / 40.0, brick = 8.0 * cell;
             const Part part = fieldOf(shape, cell);
-            const Vec3 origin = part.field->bounds().low - Vec3::Constant(size + 4.0 * cell + brick);
+            const Vec3 origin = part.field->bounds().low;  // a node of the coarse grid
             Random random(7);
             double worst = 0.0;
             for (int i = 0; i < 20000; ++i) {
@@ -189,24 +190,151 @@ TEST(DistanceField, RefusesAGridThatWouldNotFitIntoMemory) {
     EXPECT_NE(toString(part.errors().front()).find("2 GiB"), std::string::npos);
 }
 
-TEST(DistanceField, MeetsTheAskedToleranceOnMostOfTheSurface) {
-    // Truth: closed form; chooseCell promises the tolerance for nine points in ten near the surface.
-    const Shape shape = Peg{0.02, 0.03, 0.001};
+/// A plate with a bore of 10 mm through it; sharp.
+const BorePlate kSharpPlate{0.04, 0.04, 0.02, 0.01, 0.02, 0.0};
+
+/// A point up to `reach` (per axis) from the plate's surface: by turns on its faces, the bore's wall, a rim, an edge.
+Vec3 nearPlate(int turn, double reach, Random& random) {
+    const double angle = random.uniform(0.0, 6.2831853), r = 0.5 * kSharpPlate.bore_diameter;
+    const Vec3 wall(r * std::cos(angle), r * std::sin(angle), -kSharpPlate.height * random.uniform());
+    const double x = random.uniform(-0.5, 0.5) * kSharpPlate.width, side = 0.5 * kSharpPlate.depth;
+    const double face_z = random.below(2) == 0 ? 0.0 : -kSharpPlate.height;
+    const std::array<Vec3, 6> seeds{wall,
+                                    Vec3(wall.x(), wall.y(), face_z),
+                                    Vec3(x, random.uniform(-0.5, 0.5) * kSharpPlate.depth, face_z),
+                                    Vec3(x, side, face_z),
+                                    Vec3(side, -side, wall.z()),
+                                    Vec3(side, -side, face_z)};
+    return seeds[static_cast<std::size_t>(turn) % seeds.size()] +
+           anywhere({-Vec3::Ones(), Vec3::Ones()}, 0.0, random) * reach;
+}
+
+TEST(DistanceField, MeetsTheAskedToleranceAtRimsEdgesAndCorners) {
+    // Truth: closed form. Depth: PartNeeds (40 tolerances, here 0.2 mm and more).
+    PartSpec spec;
+    spec.geometry = Shape{kSharpPlate};
+    for (const double tolerance : {20e-6, 5e-6}) {
+        const auto part = buildPart(spec, {.field = true, .tolerance = tolerance});
+        ASSERT_TRUE(part);
+        const DistanceField& field = *part->field;
+        EXPECT_TRUE(field.refined());
+        EXPECT_LT(field.memoryBytes(), 30'000'000u);
+        Random random(8);
+        double worst = 0.0;
+        for (int i = 0; i < 300'000; ++i) {
+            const Vec3 p = nearPlate(i, 0.2e-3, random);
+            const double truth = signedDistance(*part->shape, p);
+            if (std::abs(truth) > 0.2e-3) continue;
+            worst = std::max(worst, std::abs(field.sample(p, FieldMode::Trilinear).phi - truth));
+        }
+        EXPECT_LE(worst, tolerance);
+    }
+}
+
+TEST(DistanceField, HoldsAPegOffThatFitsWithFiftyMicrometres) {
+    // Truth: closed form: a peg of 9.9 mm in the middle of a bore of 10 mm touches nothing.
+    PartSpec spec;
+    spec.geometry = Shape{kSharpPlate};
+    const auto part = buildPart(spec, {.field = true, .tolerance = 5e-6});
+    ASSERT_TRUE(part);
+    for (int i = 0; i < 6000; ++i) {
+        const double angle = 2.39996323 * i;  // the golden angle
+        const Vec3 p(4.95e-3 * std::cos(angle), 4.95e-3 * std::sin(angle), -kSharpPlate.height * (i + 0.5) / 6000);
+        const FieldSample s = part->field->sample(p, FieldMode::Trilinear);
+        ASSERT_NEAR(s.phi, 50e-6, 5e-6) << p.transpose();
+        ASSERT_GT(s.gradient.dot(Vec3(-std::cos(angle), -std::sin(angle), 0.0)), 0.9);
+    }
+}
+
+TEST(DistanceField, IsOffByATenthOfTheDepthAtMostBelowItsFineCells) {
+    // Truth: closed form. Below the depth of the tolerance, as deep as bricks reach (two largest cells are less).
+    PartSpec spec;
+    spec.geometry = Shape{kSharpPlate};
+    const auto part = buildPart(spec, {.field = true, .tolerance = 10e-6});
+    ASSERT_TRUE(part);
+    Random random(9);
+    int deep = 0;
+    for (int i = 0; i < 100'000; ++i) {
+        const Vec3 p = nearPlate(i, 1e-3, random);
+        const double truth = signedDistance(*part->shape, p);
+        if (std::abs(truth) < 0.4e-3 || std::abs(truth) > 1e-3) continue;
+        ++deep;
+        ASSERT_LE(std::abs(part->field->sample(p, FieldMode::Trilinear).phi - truth), 0.1 * std::abs(truth));
+    }
+    EXPECT_GT(deep, 20'000);
+}
+
+TEST(DistanceField, BoundsHoldWhereCellsOfSeveralSizesMeet) {
+    // Truth: closed form.
+    Random random(10);
+    for (const Shape& shape : kSolids) {
+        PartSpec spec;
+        spec.geometry = shape;
+        const auto part = buildPart(spec, {.field = true, .tolerance = 10e-6});
+        ASSERT_TRUE(part);
+        const DistanceField& field = *part->field;
+        if (!std::holds_alternative<Sphere>(shape)) {
+            EXPECT_LT(field.finestCell(), field.cell()) << kindName(shape);
+        }
+        for (int i = 0; i < 60'000; ++i) {
+            const Vec3 p = anywhere(field.bounds(), i % 2 ? 0.001 : 0.1, random);
+            const double truth = signedDistance(shape, p);
+            ASSERT_LE(field.lowerBound(p), truth) << kindName(shape) << " at " << p.transpose();
+            for (const FieldMode mode : {FieldMode::Trilinear, FieldMode::Linear})
+                ASSERT_LE(std::abs(field.sample(p, mode).phi - truth), field.errorBound(p, mode))
+                    << kindName(shape) << " at " << p.transpose();
+        }
+    }
+}
+
+TEST(DistanceField, SeesASpikeThatIsThinnerThanTheLargestCells) {
+    // Truth: closed form of the spike's tip: its surface, φ = 0. A block of 60 mm carries a spike 0.4 mm high and wide
+    // in the middle of a face; the cells begin at 0.5 mm and more.
+    const Shape block = Box{0.06, 0.06, 0.06};
+    DistanceSource source;
+    const Vec3 tip(0.0013, 0.0017, 0.0304);
+    const double spike = 0.2e-3;
+    source.bounds = {Vec3::Constant(-0.03), Vec3(0.03, 0.03, tip.z())};
+    const auto phi = [=](const Vec3& p) {
+        const Vec3 q = (p - (tip - Vec3(0, 0, spike))).cwiseAbs() - Vec3::Constant(spike);
+        const double box = q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
+        return std::min(box, signedDistance(block, p));
+    };
+    source.distance = [=](const Vec3& p) { return std::abs(phi(p)); };
+    source.inside = [=](const Vec3& p) { return phi(p) < 0.0; };
+    source.closed = true;
+    source.landmarks = {tip};
+    FieldAccuracy accuracy;
+    accuracy.tolerance = 20e-6;
+    accuracy.depth = 0.2e-3;
+    const auto field = DistanceField::build(source, 2e-3, 4e-3, accuracy);
+    ASSERT_TRUE(field);
+    EXPECT_NEAR(field->sample(tip, FieldMode::Trilinear).phi, 0.0, 20e-6);
+}
+
+TEST(DistanceField, StopsRefiningAtItsLimitOfMemoryAndSaysSo) {
+    // Truth: invariant.
+    const Shape shape{kSharpPlate};
     PartSpec spec;
     spec.geometry = shape;
-    for (const double tolerance : {50e-6, 10e-6}) {
-        const auto part = buildPart(spec, {.field = true, .shell = true, .tolerance = tolerance});
-        ASSERT_TRUE(part);
-        int good = 0, all = 0;
-        Random random(4);
-        for (const SurfacePoint& point : part->shell->points()) {
-            const Vec3 p = point.position + random.uniform(-0.2e-3, 0.2e-3) * point.normal;
-            const double error = std::abs(part->field->sample(p, FieldMode::Trilinear).phi - signedDistance(shape, p));
-            good += error <= tolerance ? 1 : 0;
-            ++all;
-        }
-        EXPECT_GT(good, 0.85 * all) << tolerance;
-    }
+    const auto part = buildPart(spec, {});
+    ASSERT_TRUE(part);
+    FieldAccuracy accuracy;
+    accuracy.tolerance = 10e-6;
+    accuracy.depth = 0.4e-3;
+    accuracy.bytes = 6'000'000;
+    const auto field = DistanceField::build(exactSource(*part), 0.5e-3, 2e-3, accuracy);
+    ASSERT_TRUE(field);
+    EXPECT_FALSE(field->refined());
+    EXPECT_LE(field->memoryBytes(), accuracy.bytes);
+    EXPECT_GT(field->memoryBytes(), accuracy.bytes - 2000);
+}
+
+TEST(DistanceField, KeepsCellsOfOneSizeWhereACellIsNamed) {
+    // Truth: invariant.
+    const Part part = fieldOf(Shape{kSharpPlate}, 0.5e-3);
+    EXPECT_EQ(part.field->cell(), 0.5e-3);
+    EXPECT_EQ(part.field->finestCell(), 0.5e-3);
 }
 
 }  // namespace

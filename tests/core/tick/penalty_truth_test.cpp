@@ -102,7 +102,7 @@ TEST(PenaltyTruth, AnyBodyAtAnyPoseFeelsItsSubmergedVolumeAtItsCentroid) {
     // clipping.
     const Part plane = table();
     Random random(17);
-    for (const model::Shape shape :
+    for (const model::Shape& shape :
          {model::Shape(model::Peg{0.02, 0.03, 0.002}), model::Shape(model::Box{0.02, 0.03, 0.025}),
           model::Shape(model::BorePlate{0.03, 0.03, 0.02, 0.012, 0.015, 0.001})}) {
         const Part body = part(shape, {.shell = true, .spacing = 0.6e-3});
@@ -145,7 +145,7 @@ TEST(PenaltyTruth, SphereInSphereMatchesTheIntegral) {
 TEST(PenaltyTruth, MaxNormalisedForceIsStiffnessTimesDepthWhateverTheContactArea) {
     // Truth: closed form. F = K p_max, by definition of the variant.
     const Part plane = table();
-    for (const model::Shape shape : {model::Shape(model::Box{0.02, 0.02, 0.02}), model::Shape(model::Sphere{0.02})}) {
+    for (const model::Shape& shape : {model::Shape(model::Box{0.02, 0.02, 0.02}), model::Shape(model::Sphere{0.02})}) {
         const Part body = part(shape, {.shell = true, .spacing = 0.5e-3});
         tick::QueryWorkspace workspace(body.shell->nodes().size());
         tick::ContactManifold manifold(body.shell->points().size());
