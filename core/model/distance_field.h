@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "core/base/result.h"
@@ -36,6 +37,12 @@ struct FieldAccuracy {
     static constexpr std::size_t kFieldBytes = std::size_t{256} << 20;
 };
 
+/// Instruction sets that sampleMany is compiled for (x86-64-v3: AVX2, x86-64-v4: AVX-512); each includes those before.
+enum class Instructions { Baseline, V3, V4 };
+
+/// The last one that this machine has.
+Instructions bestInstructions() noexcept;
+
 /// Value of the interpolated field.
 struct FieldSample {
     double phi = 0.0;              // signed distance [m], positive outside
@@ -65,6 +72,12 @@ public:
 
     /// φ and its gradient at `p` (part frame). Outside the grid φ is the distance to the part's box (a lower bound).
     FieldSample sample(const Vec3& p, FieldMode mode) const noexcept;
+
+    /// φ (FieldMode::Trilinear) at many points: x, y, z in a frame S that stands at X_FS in the part frame F. In single
+    /// precision within a brick: next to sample() it is off by at most 2⁻²⁰ of the span of the brick's values. The same
+    /// bits whatever the instructions; `phi` is as long as the others.
+    void sampleMany(const Pose& X_FS, std::span<const float> x, std::span<const float> y, std::span<const float> z,
+                    std::span<float> phi, Instructions instructions = bestInstructions()) const noexcept;
 
     /// A rigorous lower bound of the true φ at `p`; cheaper than sample() by the gradient.
     ///   No holes, the larger of two, with the trilinear weights w and S = Σ w_i |c_i - p|² = edge² Σ_axis u (1 - u):
@@ -106,6 +119,8 @@ private:
     struct Brick {
         double low, step;                   // φ = low + step · stored number
         std::array<std::int32_t, 8> child;  // brick that replaces each octant (bits 1: x, 2: y, 4: z); -1: none
+        std::int32_t level;                 // 0: largest cells
+        bool refined;                       // has a child
     };
 
     /// The smallest brick that holds a point.
@@ -117,6 +132,10 @@ private:
     };
     Place descend(std::int32_t root, const Vec3& in_root) const noexcept;  // in_root in [0, 1)³
     bool locate(const Vec3& p, Cell& cell) const noexcept;
+    void fillIndex();
+    void indexBrick(std::int32_t id, const std::array<int, 3>& place);
+    void enterIndex(std::int32_t id, const std::array<int, 3>& place, int finer);
+    struct Block;  // distance_field_many.cpp
     double boxDistance(const Vec3& p) const noexcept;
     double rounding(const Cell& cell, double weights) const noexcept;
     double farthestSurface(const Cell& cell) const noexcept;
@@ -139,6 +158,15 @@ private:
     std::vector<std::int32_t> brick_of_cell_;  // -1: none
     std::vector<Brick> bricks_;
     std::vector<std::uint16_t> samples_;  // brickCount × 9³, x fastest
+
+    /// For each cube with the edge of a brick of one level, the smallest brick of that level or above around it; -1:
+    /// none. Spares most points the way down from the largest brick.
+    struct Index {
+        int level = 0;
+        std::array<int, 3> low{}, size{};  // in cubes, from the corner of the coarse grid
+        std::vector<std::int32_t> brick;   // x fastest
+    };
+    Index index_;
 };
 
 }  // namespace passung::model

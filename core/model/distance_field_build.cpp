@@ -63,7 +63,8 @@ struct DistanceField::Builder {
     const FieldAccuracy& accuracy;
     std::vector<Vec3> low{};  // corner of each brick
     std::size_t first = 0;    // brick of the level that was built last
-    double cell = 0.0;        // of that level
+    int level = 0;            // that level
+    double cell = 0.0;        // of it
 
     static std::size_t node(int x, int y, int z) {
         return static_cast<std::size_t>((z * kBrickNodes + y) * kBrickNodes + x);
@@ -122,8 +123,9 @@ Result<DistanceField> DistanceField::build(const DistanceSource& source, double 
     }
     builder.sampleLevel();
     if (accuracy.tolerance > 0.0)
-        for (int level = 0; level < kMostLevels && builder.refine(); ++level) {
+        while (builder.level < kMostLevels && builder.refine()) {
         }
+    field.fillIndex();
     return field;
 }
 
@@ -209,6 +211,8 @@ void DistanceField::Builder::sampleBrick(std::size_t brick) {
     // Never 0, which stands for floats.
     info.step = std::max((*largest - *least) / kLargestStored, std::numeric_limits<double>::min());
     info.child.fill(-1);
+    info.level = level;
+    info.refined = false;
     for (std::size_t i = 0; i < kBrickSamples; ++i)
         field.samples_[brick * kBrickSamples + i] =
             static_cast<std::uint16_t>(std::min((phi[i] - *least) / info.step + 0.5, kLargestStored));
@@ -341,12 +345,14 @@ bool DistanceField::Builder::refine() {
     }
     first = low.size();
     for (const Request& request : requests) {
-        field.bricks_[static_cast<std::size_t>(request.brick)].child[request.octant] =
-            static_cast<std::int32_t>(low.size());
+        Brick& parent = field.bricks_[static_cast<std::size_t>(request.brick)];
+        parent.child[request.octant] = static_cast<std::int32_t>(low.size());
+        parent.refined = true;
         low.push_back(low[static_cast<std::size_t>(request.brick)] +
                       0.5 * kBrickCells * cell * cornerAt(request.octant));
     }
     cell *= 0.5;
+    ++level;
     field.finest_cell_ = cell;
     sampleLevel();
     return true;

@@ -1,0 +1,285 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#include "core/model/distance_field.h"
+
+#if defined(__x86_64__)
+#define PASSUNG_V3 __attribute__((target("arch=x86-64-v3")))
+#define PASSUNG_V4 __attribute__((target("arch=x86-64-v4")))
+#else
+#define PASSUNG_V3
+#define PASSUNG_V4
+#endif
+#define PASSUNG_INLINE inline __attribute__((always_inline))
+
+namespace passung::model {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little);  // two numbers are read as one word
+
+constexpr std::size_t kBlock = 64;
+constexpr std::size_t kIndexPerBrick = 32;  // largest size of the index; a brick has 729 numbers of half the width
+constexpr std::size_t kSmallIndex = 4096;
+
+template <class Number>
+using Lane = std::array<Number, kBlock>;
+
+Instructions detectInstructions() {
+#if defined(__x86_64__)
+    __builtin_cpu_init();
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd") &&
+        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+        return Instructions::V4;
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
+        __builtin_cpu_supports("bmi2"))
+        return Instructions::V3;
+#endif
+    return Instructions::Baseline;
+}
+
+const Instructions kBest = detectInstructions();
+
+/// Transform, grid and index folded into one affine map from a point to coordinates in largest bricks.
+struct Map {
+    Pose pose;
+    std::array<double, 9> turn;  // row by row
+    std::array<double, 3> shift;
+    std::array<double, 3> low, high;  // of the index; a coordinate outside is drawn to its border
+    double cubes;                     // of the index along a largest brick
+    std::array<std::int32_t, 3> first;
+    std::int32_t row, slab;
+};
+
+}  // namespace
+
+/// Some points as arrays, so that plain loops over them become vector instructions.
+struct DistanceField::Block {
+    std::array<Lane<double>, 3> place;  // in largest bricks
+    Lane<std::int32_t> cube;            // of the index
+    Lane<std::int32_t> outside;
+    Lane<double> scale;  // cells along a largest brick
+    Lane<std::int32_t> first;
+    Lane<float> low, step;
+    std::array<Lane<float>, 3> u;
+    Lane<std::int32_t> node;
+    std::array<Lane<std::uint32_t>, 4> pair;  // two neighbours along x each
+
+    /// Where each point lies, and in which cube of the index.
+    PASSUNG_INLINE void placeAll(const Map& m, const float* x, const float* y, const float* z, std::size_t count) {
+        for (std::size_t i = 0; i < count; ++i) {
+            const double px = static_cast<double>(x[i]), py = static_cast<double>(y[i]), pz = static_cast<double>(z[i]);
+            const double gx = m.turn[0] * px + m.turn[1] * py + m.turn[2] * pz + m.shift[0];
+            const double gy = m.turn[3] * px + m.turn[4] * py + m.turn[5] * pz + m.shift[1];
+            const double gz = m.turn[6] * px + m.turn[7] * py + m.turn[8] * pz + m.shift[2];
+            // A comparison with a NaN is false: such a point is outside too.
+            const bool in_x = (gx >= m.low[0]) & (gx < m.high[0]);
+            const bool in_y = (gy >= m.low[1]) & (gy < m.high[1]);
+            const bool in_z = (gz >= m.low[2]) & (gz < m.high[2]);
+            const double sx = in_x ? gx : m.low[0], sy = in_y ? gy : m.low[1], sz = in_z ? gz : m.low[2];
+            place[0][i] = sx;
+            place[1][i] = sy;
+            place[2][i] = sz;
+            const auto cx = static_cast<std::int32_t>(sx * m.cubes) - m.first[0];
+            const auto cy = static_cast<std::int32_t>(sy * m.cubes) - m.first[1];
+            const auto cz = static_cast<std::int32_t>(sz * m.cubes) - m.first[2];
+            cube[i] = cz * m.slab + cy * m.row + cx;
+            outside[i] = (in_x & in_y & in_z) ? 0 : 1;
+        }
+    }
+
+    /// The cell of each point and the place in it.
+    PASSUNG_INLINE void cellAll(std::size_t count) {
+        for (std::size_t i = 0; i < count; ++i) {
+            const double fx = place[0][i] * scale[i], fy = place[1][i] * scale[i], fz = place[2][i] * scale[i];
+            const auto cx = static_cast<std::int32_t>(fx), cy = static_cast<std::int32_t>(fy),
+                       cz = static_cast<std::int32_t>(fz);
+            u[0][i] = static_cast<float>(fx - cx);
+            u[1][i] = static_cast<float>(fy - cy);
+            u[2][i] = static_cast<float>(fz - cz);
+            constexpr std::int32_t kIn = kBrickCells - 1, kRow = kBrickNodes;
+            node[i] = first[i] + ((cz & kIn) * kRow + (cy & kIn)) * kRow + (cx & kIn);
+        }
+    }
+
+    /// Between the eight corners of each point's cell, along x, y, z.
+    PASSUNG_INLINE void interpolateAll(float* phi, std::size_t count) const {
+        for (std::size_t i = 0; i < count; ++i) {
+            const float x = u[0][i], y = u[1][i], z = u[2][i];
+            const auto left = [&](std::size_t k) {
+                return static_cast<float>(static_cast<std::int32_t>(pair[k][i] & 0xffffu));
+            };
+            const auto right = [&](std::size_t k) {
+                return static_cast<float>(static_cast<std::int32_t>(pair[k][i] >> 16));
+            };
+            const float l0 = left(0), l1 = left(1), l2 = left(2), l3 = left(3);
+            const float x00 = l0 + x * (right(0) - l0), x10 = l1 + x * (right(1) - l1);
+            const float x01 = l2 + x * (right(2) - l2), x11 = l3 + x * (right(3) - l3);
+            const float y0 = x00 + y * (x10 - x00), y1 = x01 + y * (x11 - x01);
+            phi[i] = low[i] + step[i] * (y0 + z * (y1 - y0));
+        }
+    }
+
+    /// The smallest brick of each point; where the index knows none the point is left to sample().
+    PASSUNG_INLINE void brickAll(const DistanceField& field, std::size_t count) {
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::int32_t found = field.index_.brick[static_cast<std::size_t>(cube[i])];
+            outside[i] |= found < 0;
+            auto k = static_cast<std::size_t>(std::max(found, 0));
+            while (field.bricks_[k].refined) {
+                const double halves = static_cast<double>(2 << field.bricks_[k].level);
+                const auto bit = [&](std::size_t axis) {
+                    return static_cast<unsigned>(static_cast<std::int32_t>(place[axis][i] * halves)) & 1u;
+                };
+                const std::int32_t child = field.bricks_[k].child[bit(0) | bit(1) << 1 | bit(2) << 2];
+                if (child < 0) break;
+                k = static_cast<std::size_t>(child);
+            }
+            const Brick& brick = field.bricks_[k];
+            scale[i] = static_cast<double>(kBrickCells << brick.level);
+            first[i] = static_cast<std::int32_t>(k * kBrickSamples);
+            low[i] = static_cast<float>(brick.low);
+            step[i] = static_cast<float>(brick.step);
+        }
+    }
+
+    PASSUNG_INLINE void pairAll(const std::uint16_t* samples, std::size_t count) {
+        constexpr std::size_t kRow = kBrickNodes, kSlab = kRow * kBrickNodes;
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::uint16_t* at = samples + node[i];
+            std::memcpy(&pair[0][i], at, sizeof(std::uint32_t));
+            std::memcpy(&pair[1][i], at + kRow, sizeof(std::uint32_t));
+            std::memcpy(&pair[2][i], at + kSlab, sizeof(std::uint32_t));
+            std::memcpy(&pair[3][i], at + kSlab + kRow, sizeof(std::uint32_t));
+        }
+    }
+
+    PASSUNG_INLINE static void sampleAll(const DistanceField& field, const Map& map, const float* x, const float* y,
+                                         const float* z, float* phi, std::size_t total) {
+        Block block;
+        for (std::size_t start = 0; start < total; start += kBlock) {
+            const std::size_t count = std::min(kBlock, total - start);
+            block.placeAll(map, x + start, y + start, z + start, count);
+            block.brickAll(field, count);
+            block.cellAll(count);
+            block.pairAll(field.samples_.data(), count);
+            block.interpolateAll(phi + start, count);
+            for (std::size_t i = 0; i < count; ++i) {
+                if (block.outside[i] == 0) continue;
+                const Vec3 p_FP = map.pose * Vec3(static_cast<double>(x[start + i]), static_cast<double>(y[start + i]),
+                                                  static_cast<double>(z[start + i]));
+                phi[start + i] = static_cast<float>(field.sample(p_FP, FieldMode::Trilinear).phi);
+            }
+        }
+    }
+
+    static void baseline(const DistanceField& field, const Map& map, const float* x, const float* y, const float* z,
+                         float* phi, std::size_t count) {
+        sampleAll(field, map, x, y, z, phi, count);
+    }
+    PASSUNG_V3 static void v3(const DistanceField& field, const Map& map, const float* x, const float* y,
+                              const float* z, float* phi, std::size_t count) {
+        sampleAll(field, map, x, y, z, phi, count);
+    }
+    PASSUNG_V4 static void v4(const DistanceField& field, const Map& map, const float* x, const float* y,
+                              const float* z, float* phi, std::size_t count) {
+        sampleAll(field, map, x, y, z, phi, count);
+    }
+};
+
+Instructions bestInstructions() noexcept { return kBest; }
+
+void DistanceField::sampleMany(const Pose& X_FS, std::span<const float> x, std::span<const float> y,
+                               std::span<const float> z, std::span<float> phi,
+                               Instructions instructions) const noexcept {
+    Map map{};
+    map.pose = X_FS;
+    map.cubes = static_cast<double>(1 << index_.level);
+    const Mat3 turn = X_FS.q.toRotationMatrix() * inverse_brick_edge_;
+    const Vec3 shift = (X_FS.p - origin_) * inverse_brick_edge_;
+    for (std::size_t a = 0; a < 3; ++a) {
+        const auto axis = static_cast<Eigen::Index>(a);
+        for (std::size_t b = 0; b < 3; ++b) map.turn[3 * a + b] = turn(axis, static_cast<Eigen::Index>(b));
+        map.shift[a] = shift[axis];
+        map.first[a] = index_.low[a];
+        map.low[a] = index_.low[a] / map.cubes;
+        map.high[a] = (index_.low[a] + index_.size[a]) / map.cubes;
+    }
+    map.row = index_.size[0];
+    map.slab = index_.size[0] * index_.size[1];
+    const auto loop = instructions == Instructions::V4   ? Block::v4
+                      : instructions == Instructions::V3 ? Block::v3
+                                                         : Block::baseline;
+    loop(*this, map, x.data(), y.data(), z.data(), phi.data(), phi.size());
+}
+
+void DistanceField::fillIndex() {
+    std::array<int, 3> low = coarse_cells_, high{};  // of the largest bricks
+    for (int z = 0; z < coarse_cells_[2]; ++z)
+        for (int y = 0; y < coarse_cells_[1]; ++y)
+            for (int x = 0; x < coarse_cells_[0]; ++x) {
+                if (brick_of_cell_[coarseCell(x, y, z)] < 0) continue;
+                const std::array<int, 3> place{x, y, z};
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    low[axis] = std::min(low[axis], place[axis]);
+                    high[axis] = std::max(high[axis], place[axis] + 1);
+                }
+            }
+    int deepest = 0;
+    for (const Brick& brick : bricks_) deepest = std::max(deepest, static_cast<int>(brick.level));
+    const auto cubesAt = [&](int level) {
+        std::size_t cubes = 1;
+        for (std::size_t axis = 0; axis < 3; ++axis) cubes *= static_cast<std::size_t>(high[axis] - low[axis]) << level;
+        return cubes;
+    };
+    const std::size_t most = std::max(kSmallIndex, kIndexPerBrick * bricks_.size());
+    index_.level = 0;
+    while (index_.level < deepest && cubesAt(index_.level + 1) <= most) ++index_.level;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        index_.low[axis] = low[axis] << index_.level;
+        index_.size[axis] = (high[axis] - low[axis]) << index_.level;
+    }
+    index_.brick.assign(cubesAt(index_.level), -1);
+    for (int z = low[2]; z < high[2]; ++z)
+        for (int y = low[1]; y < high[1]; ++y)
+            for (int x = low[0]; x < high[0]; ++x)
+                if (const std::int32_t root = brick_of_cell_[coarseCell(x, y, z)]; root >= 0)
+                    indexBrick(root, {x, y, z});
+}
+
+/// Enters a brick, or those that replace it; `place` in edges of its level, from the corner of the coarse grid.
+void DistanceField::indexBrick(std::int32_t id, const std::array<int, 3>& place) {
+    const Brick& brick = bricks_[static_cast<std::size_t>(id)];
+    const int finer = index_.level - brick.level;
+    if (finer == 0 || !brick.refined) return enterIndex(id, place, finer);
+    for (std::size_t octant = 0; octant < 8; ++octant) {
+        const std::array<int, 3> half{2 * place[0] + static_cast<int>(octant & 1),
+                                      2 * place[1] + static_cast<int>(octant >> 1 & 1),
+                                      2 * place[2] + static_cast<int>(octant >> 2)};
+        if (brick.child[octant] >= 0)
+            indexBrick(brick.child[octant], half);
+        else
+            enterIndex(id, half, finer - 1);
+    }
+}
+
+/// Enters `id` in all cubes of the one at `place`, which is `finer` levels above those of the index.
+void DistanceField::enterIndex(std::int32_t id, const std::array<int, 3>& place, int finer) {
+    const int cubes = 1 << finer;
+    std::array<int, 3> start{};
+    for (std::size_t axis = 0; axis < 3; ++axis) start[axis] = place[axis] * cubes - index_.low[axis];
+    for (int z = 0; z < cubes; ++z)
+        for (int y = 0; y < cubes; ++y) {
+            const auto first = (static_cast<std::size_t>(start[2] + z) * static_cast<std::size_t>(index_.size[1]) +
+                                static_cast<std::size_t>(start[1] + y)) *
+                                   static_cast<std::size_t>(index_.size[0]) +
+                               static_cast<std::size_t>(start[0]);
+            std::fill_n(index_.brick.begin() + static_cast<std::ptrdiff_t>(first), cubes, id);
+        }
+}
+
+}  // namespace passung::model
