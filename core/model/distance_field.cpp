@@ -11,6 +11,7 @@ namespace passung::model {
 
 namespace {
 
+constexpr double kSlackUnit = 1.0 / 255.0 * (1.0 + 0x1p-40);
 constexpr double kFloatRounding = 0x1p-24 * (1.0 + 0x1p-20);  // of a value stored as a float, relative
 constexpr double kStepRounding = 0.5 * (1.0 + 0x1p-20);       // of a value stored in a brick, in steps
 
@@ -30,6 +31,7 @@ struct DistanceField::Cell {
     Vec3 u;               // local coordinates in [0, 1]³
     double edge;          // [m]
     double inverse_edge;  // [1/m]
+    double slack;         // see errorBound
     bool in_brick;        // else on the coarse grid, where floats are stored
 
     double corner(std::size_t i) const noexcept { return low + step * stored[i]; }
@@ -92,6 +94,7 @@ bool DistanceField::locate(const Vec3& p, Cell& cell) const noexcept {
         cell.inverse_edge = inverse_brick_edge_;
         cell.low = 0.0;
         cell.step = 1.0;
+        cell.slack = 1.0;
         cell.in_brick = false;
         const float* data = coarse_.data() + coarseNode(gx, gy, gz);
         const auto row = static_cast<std::size_t>(coarse_cells_[0] + 1);
@@ -106,8 +109,10 @@ bool DistanceField::locate(const Vec3& p, Cell& cell) const noexcept {
     cell.u = in_root * cells - Vec3(x, y, z);
     cell.inverse_edge = inverse_brick_edge_ * cells;
     cell.edge = kCellEdge[static_cast<std::size_t>(place.level)] * brick_edge_;
-    cell.low = bricks_[place.brick].low;
-    cell.step = bricks_[place.brick].step;
+    const Brick& brick = bricks_[place.brick];
+    cell.low = brick.low;
+    cell.step = brick.step;
+    cell.slack = kSlackUnit * brick.slack[place.octant];
     cell.in_brick = true;
     constexpr int kIn = kBrickCells - 1;
     constexpr std::size_t kRow = kBrickNodes, kSlab = kRow * kBrickNodes;
@@ -176,7 +181,7 @@ double DistanceField::farthestSurface(const Cell& cell) const noexcept {
     }
     const Vec3& u = cell.u;
     const double spread = cell.edge * cell.edge * u.cwiseProduct(Vec3::Ones() - u).sum();
-    const double near = mean - std::sqrt(spread) - off;
+    const double near = mean - cell.slack * std::sqrt(spread) - off;
     const double far = mean_square * (1.0 - 1e-12) - spread;
     return far > 0.0 ? std::max(near, std::sqrt(far) - sheet_offset_ - arithmetic_) : near;
 }
@@ -195,7 +200,7 @@ double DistanceField::errorBound(const Vec3& p, FieldMode mode) const noexcept {
         bound += std::abs(w[i]) * (cornerAt(i) - cell.u).norm();
         weights += std::abs(w[i]);
     }
-    return bound * cell.edge + rounding(cell, weights);
+    return bound * cell.edge * cell.slack + rounding(cell, weights);
 }
 
 }  // namespace passung::model

@@ -9,8 +9,10 @@
 
 #include "core/base/result.h"
 #include "core/base/types.h"
+#include "core/model/instructions.h"
 #include "core/model/mesh.h"
 #include "core/model/scene_spec.h"
+#include "core/model/surface_block.h"
 
 namespace passung::model {
 
@@ -21,6 +23,8 @@ struct DistanceSource {
     std::function<bool(const Vec3&)> inside;      // never called for an open sheet
     bool open_sheet = false;                      // no inside: two-sided, thickened by one cell on each side
     bool closed = false;  // `inside` changes at the surface only, so that the signed distance is 1-Lipschitz
+    /// All of a block of 8³ cells at once, from its first corner and the edge of a cell; optional, faster.
+    std::function<void(const Vec3&, double, SurfaceBlock&)> block;
     /// As `distance`, where it is known to be at most the second argument [m]; optional, faster.
     std::function<double(const Vec3&, double)> distance_within;
     /// Points of the surface, the tips of its smallest features among them; optional: see FieldAccuracy.
@@ -29,19 +33,13 @@ struct DistanceSource {
 
 /// How a field refines its bricks.
 struct FieldAccuracy {
-    double tolerance = 0.0;           // of the trilinear value [m]; 0 = never refine
+    double tolerance = 0.0;           // of the trilinear value [m]; 0 = cells of the size asked for in all of the band
     double largest_cell = 0.0;        // refinement begins here [m]; 0 = at `cell`; else `cell` times a power of two
     double depth = 0.0;               // the tolerance holds up to this far from the surface [m]; deeper: a tenth of φ
     std::size_t bytes = kFieldBytes;  // refinement ends before the bricks need more
 
     static constexpr std::size_t kFieldBytes = std::size_t{256} << 20;
 };
-
-/// Instruction sets that sampleMany is compiled for (x86-64-v3: AVX2, x86-64-v4: AVX-512); each includes those before.
-enum class Instructions { Baseline, V3, V4 };
-
-/// The last one that this machine has.
-Instructions bestInstructions() noexcept;
 
 /// Value of the interpolated field.
 struct FieldSample {
@@ -81,16 +79,19 @@ public:
 
     /// A rigorous lower bound of the true φ at `p`; cheaper than sample() by the gradient.
     ///   No holes, the larger of two, with the trilinear weights w and S = Σ w_i |c_i - p|² = edge² Σ_axis u (1 - u):
-    ///     near the surface: exact samples of a 1-Lipschitz function,  φ(p) ≥ Σ w_i (φ_i - |c_i - p|) ≥ Σ w_i φ_i - √S;
-    ///     far from it: d² - |p|² is the least of linear functions of p (d the distance to the solid or sheet), hence
-    ///     concave and nowhere below its interpolant,  d(p)² ≥ Σ w_i d_i² - S. (For a convex part d - bound ≤ S/d.)
+    ///     near the surface: φ is linear but for a function with Lipschitz constant k ≤ 1 (errorBound), and
+    ///     interpolation is exact for the linear part,  φ(p) ≥ Σ w_i (φ_i - k |c_i - p|) ≥ Σ w_i φ_i - k √S; far from
+    ///     it: d² - |p|² is the least of linear functions of p (d the distance to the solid or sheet), hence concave
+    ///     and nowhere below its interpolant,  d(p)² ≥ Σ w_i d_i² - S. (For a convex part d - bound ≤ S/d.)
     ///   Holes left open (boundProven() is false): where the surface goes on is unknown, so is the sign between two
     ///   nodes. All that is certain of every surface that contains the triangles is |φ(p)| ≤ their distance d(p), and
     ///   d(p) ≤ min_i (|φ_i| + |c_i - p|); the bound is the negative of that, and a query prunes next to nothing.
     double lowerBound(const Vec3& p) const noexcept;
 
     /// A rigorous bound of |sample(p).phi - true φ(p)| [m], offset of an open sheet not included.
-    ///   No holes: |interpolant - φ(p)| ≤ Σ |w_i| |c_i - p| (+ |1 - Σ w_i| = 0).
+    ///   No holes: |interpolant - φ(p)| ≤ k Σ |w_i| |c_i - p|, where φ less some linear function has the Lipschitz
+    ///   constant k in the cell: 1 always; on closed meshes what the normals of the nearest triangles span, the largest
+    ///   of the cells of an octant (SurfaceBlock::slack).
     ///   Holes left open: |interpolant| + the upper bound of d(p) above.
     double errorBound(const Vec3& p, FieldMode mode) const noexcept;
 
@@ -113,12 +114,15 @@ public:
 private:
     static constexpr std::size_t kBrickSamples = std::size_t{kBrickNodes} * kBrickNodes * kBrickNodes;
 
+    static constexpr std::size_t kIndexPerBrick = 32;  // the index is not larger than so many numbers a brick
+
     struct Builder;  // distance_field_build.cpp
     struct Cell;     // the eight corners around a point
 
     struct Brick {
         double low, step;                   // φ = low + step · stored number
         std::array<std::int32_t, 8> child;  // brick that replaces each octant (bits 1: x, 2: y, 4: z); -1: none
+        std::array<std::uint8_t, 8> slack;  // of each octant, 255ths: see errorBound
         std::int32_t level;                 // 0: largest cells
         bool refined;                       // has a child
     };

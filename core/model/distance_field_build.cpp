@@ -61,25 +61,31 @@ struct DistanceField::Builder {
     DistanceField& field;
     const Exact exact;
     const FieldAccuracy& accuracy;
+    const double band;
     std::vector<Vec3> low{};  // corner of each brick
     std::size_t first = 0;    // brick of the level that was built last
     int level = 0;            // that level
     double cell = 0.0;        // of it
+    /// For each octant of each brick of the level: |φ| where it must be refined, or infinity.
+    std::vector<std::array<double, 8>> wrong{};
 
     static std::size_t node(int x, int y, int z) {
         return static_cast<std::size_t>((z * kBrickNodes + y) * kBrickNodes + x);
     }
 
     void sampleCoarse();
-    void placeBricks(double band);
+    void placeBricks();
     void sampleLevel();
     void sampleBrick(std::size_t brick);
     double allowed(double phi) const;
-    double valueIn(std::size_t brick, int x, int y, int z) const;
-    double errorIn(const Corners& values, const Vec3& origin, const Vec3& u) const;
-    double wrongDepth(const Nodes& nodes, const Vec3& corner, int x, int y, int z) const;
-    std::array<double, 8> measure(std::size_t brick) const;
-    void measureLandmarks(std::vector<std::array<double, 8>>& wrong) const;
+    SurfaceBlock blockAt(const Vec3& corner) const;
+    Nodes store(std::size_t brick, const Nodes& phi);
+    double distanceIn(const Corners& values, const Vec3& origin, const Vec3& u) const;
+    double errorOf(const Corners& values, const Vec3& u, double distance) const;
+    double wrongDepth(const Nodes& nodes, const SurfaceBlock& block, const Vec3& corner, int x, int y, int z) const;
+    std::array<double, 8> measure(const Nodes& nodes, const SurfaceBlock& block, const Vec3& corner) const;
+    std::array<double, 8> inBand(const Vec3& corner) const;
+    void measureLandmarks();
     bool refine();
 };
 
@@ -114,17 +120,19 @@ Result<DistanceField> DistanceField::build(const DistanceSource& source, double 
     const Vec3 reach = field.origin_.cwiseAbs().cwiseMax((source.bounds.high + Vec3::Constant(margin)).cwiseAbs());
     field.arithmetic_ = kArithmetic * (reach.maxCoeff() + field.brick_edge_);
 
-    Builder builder{.field = field, .exact = {source}, .accuracy = accuracy};
+    Builder builder{.field = field, .exact = {source}, .accuracy = accuracy, .band = band};
     builder.sampleCoarse();
-    builder.placeBricks(band);
+    builder.placeBricks();
     if (field.memoryBytes() + builder.low.size() * (sizeof(Brick) + kBrickSamples * sizeof(std::uint16_t)) >
         kMaxBytes) {
         return Error{.message = "the distance field needs more than 2 GiB: choose larger cells"};
     }
     builder.sampleLevel();
-    if (accuracy.tolerance > 0.0)
-        while (builder.level < kMostLevels && builder.refine()) {
-        }
+    while (builder.level < kMostLevels && builder.refine()) {
+    }
+    if (!field.refined_ && accuracy.tolerance == 0.0) {
+        return Error{.message = "the distance field needs more than 2 GiB: choose larger cells"};
+    }
     field.fillIndex();
     return field;
 }
@@ -148,7 +156,7 @@ void DistanceField::Builder::sampleCoarse() {
     });
 }
 
-void DistanceField::Builder::placeBricks(double band) {
+void DistanceField::Builder::placeBricks() {
     const auto& cells = field.coarse_cells_;
     const double edge = field.brick_edge_, half_diagonal = 0.5 * std::sqrt(3.0) * edge;
     const double near = band + field.sheet_offset_ + half_diagonal;
@@ -183,39 +191,90 @@ void DistanceField::Builder::placeBricks(double band) {
     cell = field.largest_cell_;
 }
 
-/// Fills the bricks from `first` on.
+/// Fills the bricks from `first` on, and tells which of their octants are wrong.
 void DistanceField::Builder::sampleLevel() {
     field.bricks_.resize(low.size());
     field.samples_.resize(low.size() * kBrickSamples);
-    parallelFor(low.size() - first, [&](std::size_t i) { sampleBrick(first + i); });
+    wrong.resize(low.size() - first);
+    parallelFor(wrong.size(), [&](std::size_t i) { sampleBrick(first + i); });
 }
 
-void DistanceField::Builder::sampleBrick(std::size_t brick) {
-    Nodes phi;
+/// What the source says of a block, in one piece or point by point; then without the cells' centres, which are NaN.
+SurfaceBlock DistanceField::Builder::blockAt(const Vec3& corner) const {
+    SurfaceBlock block;
+    if (exact.source.block) {
+        exact.source.block(corner, cell, block);
+        return block;
+    }
+    block.centre.fill(std::numeric_limits<double>::quiet_NaN());
+    block.slack.fill(1.0);
     for (int z = 0; z < kBrickNodes; ++z) {
         for (int y = 0; y < kBrickNodes; ++y) {
             for (int x = 0; x < kBrickNodes; ++x) {
-                const Vec3 p = low[brick] + cell * Vec3(x, y, z);
+                const Vec3 p = corner + cell * Vec3(x, y, z);
                 if (x + y + z == 0) {
-                    phi[0] = exact.at(p);
+                    block.node[0] = exact.at(p);
                     continue;
                 }
                 const std::size_t neighbour = x > 0 ? node(x - 1, y, z) : y > 0 ? node(x, y - 1, z) : node(x, y, z - 1);
-                phi[node(x, y, z)] = exact.from(p, phi[neighbour], cell);
+                block.node[node(x, y, z)] = exact.from(p, block.node[neighbour], cell);
             }
         }
     }
+    return block;
+}
+
+void DistanceField::Builder::sampleBrick(std::size_t brick) {
+    Brick& info = field.bricks_[brick];
+    info = {};
+    info.step = 1.0;
+    info.child.fill(-1);
+    info.level = level;
+    auto& depths = wrong[brick - first];
+    if (accuracy.tolerance == 0.0) {
+        depths = inBand(low[brick]);
+        // A brick that is replaced as a whole is never looked at.
+        if (std::all_of(depths.begin(), depths.end(), [](double depth) { return std::isfinite(depth); })) return;
+    }
+    const SurfaceBlock block = blockAt(low[brick]);
+    const Nodes stored = store(brick, block.node);
+    for (std::size_t i = 0; i < SurfaceBlock::kAllCells; ++i) {
+        constexpr std::size_t kHalf = kBrickCells / 2;
+        const std::size_t x = i % kBrickCells, y = i / kBrickCells % kBrickCells, z = i / (kBrickCells * kBrickCells);
+        std::uint8_t& slack = info.slack[x / kHalf | y / kHalf << 1 | z / kHalf << 2];
+        slack = std::max(slack, static_cast<std::uint8_t>(std::ceil(255.0 * block.slack[i])));
+    }
+    if (accuracy.tolerance > 0.0) depths = measure(stored, block, low[brick]);
+}
+
+/// Puts φ into the brick as numbers; the values that they stand for.
+DistanceField::Builder::Nodes DistanceField::Builder::store(std::size_t brick, const Nodes& phi) {
     const auto [least, largest] = std::minmax_element(phi.begin(), phi.end());
     Brick& info = field.bricks_[brick];
     info.low = *least - field.sheet_offset_;
     // Never 0, which stands for floats.
     info.step = std::max((*largest - *least) / kLargestStored, std::numeric_limits<double>::min());
-    info.child.fill(-1);
-    info.level = level;
-    info.refined = false;
-    for (std::size_t i = 0; i < kBrickSamples; ++i)
-        field.samples_[brick * kBrickSamples + i] =
-            static_cast<std::uint16_t>(std::min((phi[i] - *least) / info.step + 0.5, kLargestStored));
+    Nodes stored;
+    for (std::size_t i = 0; i < kBrickSamples; ++i) {
+        const auto number = static_cast<std::uint16_t>(std::min((phi[i] - *least) / info.step + 0.5, kLargestStored));
+        field.samples_[brick * kBrickSamples + i] = number;
+        stored[i] = info.low + info.step * static_cast<int>(number);
+    }
+    return stored;
+}
+
+/// Octants whose cells are still too large, if they reach into the band.
+std::array<double, 8> DistanceField::Builder::inBand(const Vec3& corner) const {
+    std::array<double, 8> depth;
+    depth.fill(std::numeric_limits<double>::infinity());
+    if (cell < 1.5 * field.cell_) return depth;
+    const double half = 0.5 * kBrickCells * cell, near = band + field.sheet_offset_ + 0.5 * std::sqrt(3.0) * half;
+    for (std::size_t octant = 0; octant < 8; ++octant) {
+        const Vec3 centre = corner + half * (cornerAt(octant) + Vec3::Constant(0.5));
+        const double d = exact.unsignedWithin(centre, 2.0 * near);
+        if (d <= near) depth[octant] = d;
+    }
+    return depth;
 }
 
 double DistanceField::Builder::allowed(double phi) const {
@@ -223,18 +282,17 @@ double DistanceField::Builder::allowed(double phi) const {
     return depth <= accuracy.depth ? accuracy.tolerance : std::max(accuracy.tolerance, kDeepShare * depth);
 }
 
-double DistanceField::Builder::valueIn(std::size_t brick, int x, int y, int z) const {
-    const Brick& info = field.bricks_[brick];
-    return info.low + info.step * static_cast<int>(field.samples_[brick * kBrickSamples + node(x, y, z)]);
-}
-
-/// What interpolation of a cell with its first corner at `origin` errs by at `u`; 0 behind the offset of a sheet.
-double DistanceField::Builder::errorIn(const Corners& values, const Vec3& origin, const Vec3& u) const {
-    const double offset = field.sheet_offset_;
+/// Exact distance at `u` in a cell with its first corner at `origin`.
+double DistanceField::Builder::distanceIn(const Corners& values, const Vec3& origin, const Vec3& u) const {
     const unsigned near = nearestCorner(u);
     // The stored corner is rounded: a step is far below this share of a cell.
     const double way = cell * ((u - cornerAt(near)).norm() + 1e-3);
-    const double d = exact.unsignedWithin(origin + cell * u, std::abs(values[near] + offset) + way);
+    return exact.unsignedWithin(origin + cell * u, std::abs(values[near] + field.sheet_offset_) + way);
+}
+
+/// What interpolation of a cell errs by at `u`, where the exact distance is d; 0 behind the offset of a sheet.
+double DistanceField::Builder::errorOf(const Corners& values, const Vec3& u, double d) const {
+    const double offset = field.sheet_offset_;
     if (d < offset) return 0.0;
     const double phi = trilinearValue(values, u);
     // The sign would cost more than the distance, and a wrong one does not hide behind equal amounts at all points.
@@ -242,7 +300,8 @@ double DistanceField::Builder::errorIn(const Corners& values, const Vec3& origin
 }
 
 /// The least |φ| at the corners of a cell in which interpolation errs too much, or infinity.
-double DistanceField::Builder::wrongDepth(const Nodes& nodes, const Vec3& corner, int x, int y, int z) const {
+double DistanceField::Builder::wrongDepth(const Nodes& nodes, const SurfaceBlock& block, const Vec3& corner, int x,
+                                          int y, int z) const {
     constexpr double kNever = std::numeric_limits<double>::infinity();
     Corners values;
     double least = kNever, bend = 0.0;
@@ -271,7 +330,9 @@ double DistanceField::Builder::wrongDepth(const Nodes& nodes, const Vec3& corner
         if (*high_value - *low_value > kLipschitzSlack * std::sqrt(3.0) * cell) return kNever;
     }
     const double limit = kMeasuredShare * allowed(least);
-    const double centre = errorIn(values, corner + cell * Vec3(x, y, z), Vec3::Constant(0.5));
+    const Vec3 origin = corner + cell * Vec3(x, y, z), middle = Vec3::Constant(0.5);
+    const double given = block.centre[static_cast<std::size_t>((z * kBrickCells + y) * kBrickCells + x)];
+    const double centre = errorOf(values, middle, std::isnan(given) ? distanceIn(values, origin, middle) : given);
     if (centre > limit) return least;
     // The centre has the largest error of a smooth bend, a quarter of the largest of a kink that passes it by.
     if (centre <= kCentreShare * limit) return kNever;
@@ -279,33 +340,30 @@ double DistanceField::Builder::wrongDepth(const Nodes& nodes, const Vec3& corner
         const Vec3 u =
             (Vec3(i % kMeasured, i / kMeasured % kMeasured, i / (kMeasured * kMeasured)) + Vec3::Constant(0.5)) /
             kMeasured;
-        if (errorIn(values, corner + cell * Vec3(x, y, z), u) > limit) return least;
+        if (errorOf(values, u, distanceIn(values, origin, u)) > limit) return least;
     }
     return kNever;
 }
 
 /// For each octant of a brick: |φ| where it errs too much, or infinity.
-std::array<double, 8> DistanceField::Builder::measure(std::size_t brick) const {
+std::array<double, 8> DistanceField::Builder::measure(const Nodes& nodes, const SurfaceBlock& block,
+                                                      const Vec3& corner) const {
     constexpr int kHalf = kBrickCells / 2;
-    Nodes nodes;
-    for (int z = 0; z < kBrickNodes; ++z)
-        for (int y = 0; y < kBrickNodes; ++y)
-            for (int x = 0; x < kBrickNodes; ++x) nodes[node(x, y, z)] = valueIn(brick, x, y, z);
-    std::array<double, 8> wrong;
+    std::array<double, 8> depth;
     for (std::size_t octant = 0; octant < 8; ++octant) {
-        wrong[octant] = std::numeric_limits<double>::infinity();
-        for (int i = 0; i < kHalf * kHalf * kHalf && !std::isfinite(wrong[octant]); ++i) {
+        depth[octant] = std::numeric_limits<double>::infinity();
+        for (int i = 0; i < kHalf * kHalf * kHalf && !std::isfinite(depth[octant]); ++i) {
             const int x = i % kHalf, y = i / kHalf % kHalf, z = i / (kHalf * kHalf);
-            wrong[octant] = wrongDepth(nodes, low[brick], x + ((octant & 1) ? kHalf : 0),
+            depth[octant] = wrongDepth(nodes, block, corner, x + ((octant & 1) ? kHalf : 0),
                                        y + ((octant & 2) ? kHalf : 0), z + ((octant & 4) ? kHalf : 0));
         }
     }
-    return wrong;
+    return depth;
 }
 
 /// Features smaller than a cell may slip between the nodes and the points of `wrongDepth`; their tips do not.
-void DistanceField::Builder::measureLandmarks(std::vector<std::array<double, 8>>& wrong) const {
-    if (field.sheet_offset_ > 0.0) return;
+void DistanceField::Builder::measureLandmarks() {
+    if (field.sheet_offset_ > 0.0 || accuracy.tolerance == 0.0) return;
     for (const Vec3& p : exact.source.landmarks) {
         const Vec3 g = (p - field.origin_) * field.inverse_brick_edge_;
         const Vec3 whole = g.array().floor();
@@ -323,9 +381,7 @@ void DistanceField::Builder::measureLandmarks(std::vector<std::array<double, 8>>
 bool DistanceField::Builder::refine() {
     // Exact samples of a 1-Lipschitz function: no point of a cell errs by more than half its diagonal.
     if (0.5 * std::sqrt(3.0) * cell <= accuracy.tolerance) return false;
-    std::vector<std::array<double, 8>> wrong(low.size() - first);
-    parallelFor(wrong.size(), [&](std::size_t i) { wrong[i] = measure(first + i); });
-    measureLandmarks(wrong);
+    measureLandmarks();
     std::vector<Request> requests;
     for (std::size_t i = 0; i < wrong.size(); ++i)
         for (unsigned octant = 0; octant < 8; ++octant)
@@ -333,9 +389,12 @@ bool DistanceField::Builder::refine() {
                 requests.push_back({static_cast<std::int32_t>(first + i), octant, wrong[i][octant]});
     if (requests.empty()) return false;
 
-    const std::size_t used = field.memoryBytes(), bytes = std::min(accuracy.bytes, kMaxBytes);
-    const std::size_t room =
-        used < bytes ? (bytes - used) / (sizeof(Brick) + kBrickSamples * sizeof(std::uint16_t)) : 0;
+    const std::size_t used = field.memoryBytes();
+    const std::size_t bytes = accuracy.tolerance > 0.0 ? std::min(accuracy.bytes, kMaxBytes) : kMaxBytes;
+    constexpr std::size_t kIndexBytes = kIndexPerBrick * sizeof(std::int32_t);
+    constexpr std::size_t kBrickBytes = sizeof(Brick) + kBrickSamples * sizeof(std::uint16_t) + kIndexBytes;
+    const std::size_t taken = used + low.size() * kIndexBytes;
+    const std::size_t room = taken < bytes ? (bytes - taken) / kBrickBytes : 0;
     if (requests.size() > room) {  // the surface first
         field.refined_ = false;
         std::stable_sort(requests.begin(), requests.end(),

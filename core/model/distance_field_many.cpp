@@ -7,15 +7,6 @@
 
 #include "core/model/distance_field.h"
 
-#if defined(__x86_64__)
-#define PASSUNG_V3 __attribute__((target("arch=x86-64-v3")))
-#define PASSUNG_V4 __attribute__((target("arch=x86-64-v4")))
-#else
-#define PASSUNG_V3
-#define PASSUNG_V4
-#endif
-#define PASSUNG_INLINE inline __attribute__((always_inline))
-
 namespace passung::model {
 
 namespace {
@@ -23,26 +14,10 @@ namespace {
 static_assert(std::endian::native == std::endian::little);  // two numbers are read as one word
 
 constexpr std::size_t kBlock = 64;
-constexpr std::size_t kIndexPerBrick = 32;  // largest size of the index; a brick has 729 numbers of half the width
 constexpr std::size_t kSmallIndex = 4096;
 
 template <class Number>
 using Lane = std::array<Number, kBlock>;
-
-Instructions detectInstructions() {
-#if defined(__x86_64__)
-    __builtin_cpu_init();
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd") &&
-        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
-        return Instructions::V4;
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
-        __builtin_cpu_supports("bmi2"))
-        return Instructions::V3;
-#endif
-    return Instructions::Baseline;
-}
-
-const Instructions kBest = detectInstructions();
 
 /// Transform, grid and index folded into one affine map from a point to coordinates in largest bricks.
 struct Map {
@@ -190,8 +165,6 @@ struct DistanceField::Block {
         sampleAll(field, map, x, y, z, phi, count);
     }
 };
-
-Instructions bestInstructions() noexcept { return kBest; }
 
 void DistanceField::sampleMany(const Pose& X_FS, std::span<const float> x, std::span<const float> y,
                                std::span<const float> z, std::span<float> phi,

@@ -9,13 +9,15 @@
 
 #include "core/base/random.h"
 #include "core/model/interpolation.h"
+#include "core/model/mesh_block.h"
 #include "core/model/triangle_tree.h"
 
 namespace passung::model {
 
 namespace {
 
-constexpr double kBandCells = 4.0;  // bricks reach this many (largest) cells from the surface
+constexpr double kBandCells = 4.0;         // bricks reach this many (largest) cells from the surface
+constexpr double kUniformBandCells = 2.0;  // so far reach cells of one size that was asked for, then larger ones
 // Where the distances of two perpendicular faces meet, interpolation errs by at most 0.29 cells: at this many
 // tolerances refinement may end.
 constexpr double kRidgeCells = 3.2;
@@ -103,6 +105,9 @@ DistanceSource exactSource(const Part& part) {
     source.distance = [tree](const Vec3& p) { return tree->closest(p).distance; };
     source.distance_within = [tree](const Vec3& p, double limit) { return tree->closest(p, limit).distance; };
     source.inside = [tree](const Vec3& p) { return tree->inside(p); };
+    if (source.closed || source.open_sheet)
+        source.block = [sampler = MeshBlockSampler(tree, source.closed)](
+                           const Vec3& low, double cell, SurfaceBlock& block) { sampler.sample(low, cell, block); };
     return source;
 }
 
@@ -129,16 +134,24 @@ std::optional<std::string> tooManyPoints(const Vec3& size, double area, double s
 
 namespace {
 
+/// `cell` and its doublings, up to kLargestShare of the part.
+double largestCell(const DistanceSource& source, double cell) {
+    while (2.0 * cell <= kLargestShare * source.bounds.size().maxCoeff()) cell *= 2.0;
+    return cell;
+}
+
 Result<DistanceField> buildField(const Part& part, const PartNeeds& needs) {
     DistanceSource source = exactSource(part);
-    if (needs.cell > 0.0) return DistanceField::build(source, needs.cell, kBandCells * needs.cell);
+    FieldAccuracy accuracy;
+    if (needs.cell > 0.0) {
+        accuracy.largest_cell = largestCell(source, needs.cell);
+        return DistanceField::build(source, needs.cell, kUniformBandCells * needs.cell, accuracy);
+    }
     source.landmarks = part.mesh.vertices;
     double cell = chooseCell(source, part.mesh, needs.tolerance);
-    FieldAccuracy accuracy;
     accuracy.tolerance = needs.tolerance;
     accuracy.depth = needs.depth > 0.0 ? needs.depth : kDepthTolerances * needs.tolerance;
-    accuracy.largest_cell = cell;
-    while (2.0 * accuracy.largest_cell <= kLargestShare * source.bounds.size().maxCoeff()) accuracy.largest_cell *= 2.0;
+    accuracy.largest_cell = largestCell(source, cell);
     // Whole bricks along the longest side: see DistanceField::build.
     const double bricks = source.bounds.size().maxCoeff() / (DistanceField::kBrickCells * accuracy.largest_cell);
     const double shrink = bricks / std::ceil(bricks);

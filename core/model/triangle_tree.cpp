@@ -149,6 +149,10 @@ Vec3 closestOnNeedle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)
     return best;
 }
 
+Vec3 closestPoint(const TriangleTree::Corners& t, const Vec3& p) {
+    return t.needle ? closestOnNeedle(p, t.a, t.b, t.c) : closestOnTriangle(p, t.a, t.b, t.c);
+}
+
 bool isNeedle(const Vec3& a, const Vec3& b, const Vec3& c) {
     const double longest2 = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
     return !((b - a).cross(c - a).norm() > kNeedle * longest2);
@@ -283,8 +287,7 @@ ClosestPoint TriangleTree::closest(const Vec3& p, double limit) const {
             continue;
         }
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-            const auto& [a, b, c, needle] = corners_[i];
-            const Vec3 q = needle ? closestOnNeedle(p, a, b, c) : closestOnTriangle(p, a, b, c);
+            const Vec3 q = closestPoint(corners_[i], p);
             const double squared = (q - p).squaredNorm();
             if (squared < best) {
                 best = squared;
@@ -296,6 +299,22 @@ ClosestPoint TriangleTree::closest(const Vec3& p, double limit) const {
     }
     if (found) result.distance = std::sqrt(best);
     return result;
+}
+
+void TriangleTree::findNear(const Vec3& p, double radius, std::vector<std::uint32_t>& found) const {
+    std::array<std::uint32_t, kStack> stack;
+    int size = 0;
+    stack[static_cast<std::size_t>(size++)] = 0;
+    while (size > 0) {
+        const Node& node = nodes_[stack[static_cast<std::size_t>(--size)]];
+        if (squaredToBox(p, node.low, node.high) > radius * radius) continue;
+        if (node.count == 0) {
+            stack[static_cast<std::size_t>(size++)] = node.first + 1;
+            stack[static_cast<std::size_t>(size++)] = node.first;
+            continue;
+        }
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) found.push_back(i);
+    }
 }
 
 double TriangleTree::windingNumber(const Vec3& p) const {

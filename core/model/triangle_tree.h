@@ -25,6 +25,17 @@ public:
     /// Exact; searches no farther than `limit` (then distance = limit and the point is meaningless).
     ClosestPoint closest(const Vec3& p, double limit = 1e300) const;
 
+    struct Corners {
+        Vec3 a, b, c;
+        bool needle;  // very long for its height, or without area
+    };
+
+    /// Appends the triangles whose box comes within `radius` of `p`, numbered in tree order.
+    void findNear(const Vec3& p, double radius, std::vector<std::uint32_t>& found) const;
+
+    /// All triangles in tree order.
+    const std::vector<Corners>& corners() const { return corners_; }
+
     /// Generalised winding number (Jacobson 2013) with dipoles for far clusters (Barill 2018): about 1 inside, 0
     /// outside.
     double windingNumber(const Vec3& p) const;
@@ -42,11 +53,6 @@ private:
         Vec3 dipole;         // sum of area · normal [m²]
         double far_squared;  // a point farther than this (squared) from `centre` sees the dipole [m²]
     };
-    struct Corners {
-        Vec3 a, b, c;
-        bool needle;  // very long for its height, or without area
-    };
-
     Cluster summarise(std::uint32_t first, std::uint32_t count) const;
 
     std::vector<Node> nodes_;

@@ -1,0 +1,22 @@
+#pragma once
+
+namespace passung::model {
+
+/// Instruction sets that inner loops are compiled for (x86-64-v3: AVX2, x86-64-v4: AVX-512); each includes those
+/// before. The results have the same bits.
+enum class Instructions { Baseline, V3, V4 };
+
+/// The last one that this machine has.
+Instructions bestInstructions() noexcept;
+
+}  // namespace passung::model
+
+/// A function compiled for an instruction set; what it calls must be PASSUNG_INLINE to be compiled for it as well.
+#if defined(__x86_64__)
+#define PASSUNG_V3 __attribute__((target("arch=x86-64-v3")))
+#define PASSUNG_V4 __attribute__((target("arch=x86-64-v4,prefer-vector-width=512")))
+#else
+#define PASSUNG_V3
+#define PASSUNG_V4
+#endif
+#define PASSUNG_INLINE inline __attribute__((always_inline))
