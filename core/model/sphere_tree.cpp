@@ -1,159 +1,190 @@
 #include "core/model/sphere_tree.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numeric>
+#include <cstddef>
 
-#include "core/model/disk_subset.h"
+#include "core/model/enclosing_ball.h"
+#include "core/model/parallel.h"
 
 namespace passung::model {
 
 namespace {
 
-constexpr double kLevelRatio = 2.8;  // of the disk radius from level to level: about eight children a node
-constexpr std::size_t kMaxRoots = 8;
-constexpr int kEnclosingSteps = 60;
+// Two unit vectors that lie in a box with sides up to 1 are no farther apart than √3: the angle is at most 120°.
+constexpr float kMostFacing = 1.0f;
+constexpr std::size_t kBatch = 64;  // nodes that one thread summarises at a time
 
-/// One level under construction: every cluster with its members on the level below.
-struct Level {
-    std::vector<std::uint32_t> representative;        // index of a shell point
-    std::vector<std::vector<std::uint32_t>> members;  // clusters (or points, at the finest level) of the level below
+/// A point while clusters are formed.
+struct Item {
+    std::array<float, 3> position, normal;
+    std::uint32_t index;
+    bool face;  // else on an edge or a corner
 };
 
-/// Near-minimal enclosing sphere by the core-set iteration of Badoiu and Clarkson (2003): the centre steps towards the
-/// farthest point by 1/(i+1); the radius is then exact for that centre.
-void enclose(std::span<const SurfacePoint> points, std::span<const std::uint32_t> below, SphereNode& node) {
-    const auto farthest = [&](const Vec3& from) {
-        std::uint32_t best = below[0];
-        double distance = -1.0;
-        for (const std::uint32_t i : below) {
-            const double d = (points[i].position - from).squaredNorm();
-            if (d > distance) {
-                distance = d;
-                best = i;
-            }
+struct Range {
+    std::uint32_t begin, end;
+    std::uint32_t count() const { return end - begin; }
+};
+
+/// Least and largest of three coordinates.
+struct Spread {
+    std::array<float, 3> low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
+    void extend(const std::array<float, 3>& v) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            low[k] = std::min(low[k], v[k]);
+            high[k] = std::max(high[k], v[k]);
         }
-        return best;
-    };
-    Vec3 low = points[below[0]].position, high = low;
-    for (const std::uint32_t i : below) {
-        low = low.cwiseMin(points[i].position);
-        high = high.cwiseMax(points[i].position);
     }
-    node.centre = 0.5 * (low + high);
-    double best = (points[farthest(node.centre)].position - node.centre).norm();
-    Vec3 centre = node.centre;
-    for (int i = 1; i <= kEnclosingSteps; ++i) {
-        const Vec3 far = points[farthest(centre)].position;
-        const double radius = (far - centre).norm();
-        if (radius < best) {
-            best = radius;
-            node.centre = centre;
+    std::size_t longest() const {
+        std::size_t axis = 0;
+        for (std::size_t k = 1; k < 3; ++k)
+            if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
+        return axis;
+    }
+    float side(std::size_t axis) const { return high[axis] - low[axis]; }
+};
+
+/// Halves `range` where its faces turn too far; else returns its beginning.
+std::uint32_t partFacing(std::vector<Item>& items, const Range& range) {
+    const auto begin = items.begin() + range.begin, end = items.begin() + range.end;
+    Spread facing;
+    for (auto i = begin; i != end; ++i)
+        if (i->face) facing.extend(i->normal);
+    const std::size_t axis = facing.longest();
+    if (!(facing.side(axis) > kMostFacing)) return range.begin;
+    const float middle = 0.5f * (facing.low[axis] + facing.high[axis]);
+    const auto half = std::partition(begin, end, [&](const Item& item) { return item.normal[axis] < middle; });
+    return static_cast<std::uint32_t>(half - items.begin());
+}
+
+/// Halves `range` across its longest side if it is more than a leaf; else returns its beginning.
+std::uint32_t halve(std::vector<Item>& items, const Range& range) {
+    if (range.count() <= SphereTree::kLeafPoints) return range.begin;
+    const auto begin = items.begin() + range.begin, end = items.begin() + range.end;
+    Spread place;
+    for (auto i = begin; i != end; ++i) place.extend(i->position);
+    const std::size_t axis = place.longest();
+    // Whole leaves on one side, so that leaves are full.
+    const std::uint32_t leaves = (range.count() + SphereTree::kLeafPoints - 1) / SphereTree::kLeafPoints;
+    const auto half = begin + static_cast<std::ptrdiff_t>(leaves / 2 * SphereTree::kLeafPoints);
+    std::nth_element(begin, half, end, [axis](const Item& a, const Item& b) {
+        return a.position[axis] < b.position[axis] || (a.position[axis] == b.position[axis] && a.index < b.index);
+    });
+    return static_cast<std::uint32_t>(half - items.begin());
+}
+
+/// Splits ranges by `cut`, the largest first, until there are kChildren or none can be split.
+template <class Cut>
+void splitAll(std::vector<Item>& items, std::vector<Range>& ranges, const Cut& cut) {
+    std::vector<bool> whole(ranges.size(), false);
+    while (ranges.size() < SphereTree::kChildren) {
+        std::size_t largest = ranges.size();
+        for (std::size_t i = 0; i < ranges.size(); ++i)
+            if (!whole[i] && (largest == ranges.size() || ranges[i].count() > ranges[largest].count())) largest = i;
+        if (largest == ranges.size()) return;
+        const std::uint32_t middle = cut(items, ranges[largest]);
+        if (middle == ranges[largest].begin) {
+            whole[largest] = true;
+            continue;
         }
-        centre += (far - centre) / (i + 1);
-    }
-    node.radius = best * (1.0 + 1e-12);
-}
-
-/// Groups `items` (shell points, representatives of a level) into clusters of about eight.
-Level clustered(std::span<const SurfacePoint> points, const std::vector<std::uint32_t>& items, double radius) {
-    std::vector<Vec3> positions, normals;
-    for (const std::uint32_t i : items) {
-        positions.push_back(points[i].position);
-        normals.push_back(points[i].normal);
-    }
-    std::vector<std::uint32_t> order(items.size());
-    std::iota(order.begin(), order.end(), 0u);
-    const auto chosen = diskSubset(positions, normals, radius, order);
-    std::vector<std::uint32_t> nearest = assignNearest(positions, normals, radius, chosen);
-    // A point without a direction (a knife edge) faces nobody: its own choice of cluster is itself.
-    for (std::uint32_t k = 0; k < chosen.size(); ++k) nearest[chosen[k]] = k;
-    Level level;
-    level.members.resize(chosen.size());
-    for (const std::uint32_t k : chosen) level.representative.push_back(items[k]);
-    for (std::uint32_t i = 0; i < items.size(); ++i) level.members[nearest[i]].push_back(i);
-    return level;
-}
-
-/// Bottom up: level 0 groups the points, each next level groups the clusters of the one below.
-std::vector<Level> groupUpwards(std::span<const SurfacePoint> points, double total_area) {
-    Bounds bounds;
-    for (const auto& point : points) bounds.extend(point.position);
-    const double size = std::max(bounds.size().norm(), 1e-9);
-    double radius = kLevelRatio * std::sqrt(std::max(total_area, 1e-12) / static_cast<double>(points.size()));
-    std::vector<Level> levels;
-    std::vector<std::uint32_t> items(points.size());
-    std::iota(items.begin(), items.end(), 0u);
-    do {
-        levels.push_back(clustered(points, items, radius));
-        items = levels.back().representative;
-        radius *= kLevelRatio;
-    } while (items.size() > kMaxRoots && radius < kLevelRatio * size);
-    return levels;
-}
-
-/// Top down: nodes breadth first, the children of a node and the points of a leaf contiguous.
-void layOutDownwards(std::span<const SurfacePoint> points, const std::vector<Level>& levels,
-                     std::vector<SphereNode>& nodes, std::vector<SurfacePoint>& ordered) {
-    std::vector<std::uint32_t> clusters(levels.back().members.size());  // of the level, in node order
-    std::iota(clusters.begin(), clusters.end(), 0u);
-    std::size_t first_node = 0;
-    for (std::size_t l = levels.size(); l-- > 0;) {
-        std::vector<std::uint32_t> next;
-        nodes.resize(first_node + clusters.size());
-        for (std::size_t k = 0; k < clusters.size(); ++k) {
-            const auto& members = levels[l].members[clusters[k]];
-            SphereNode& node = nodes[first_node + k];
-            const SurfacePoint& representative = points[levels[l].representative[clusters[k]]];
-            node.point = representative.position;
-            node.normal = representative.normal;
-            node.leaf = l == 0;
-            node.count = static_cast<std::uint32_t>(members.size());
-            if (node.leaf) {
-                node.first = static_cast<std::uint32_t>(ordered.size());
-                for (const std::uint32_t i : members) ordered.push_back(points[i]);
-            } else {
-                node.first = static_cast<std::uint32_t>(first_node + clusters.size() + next.size());
-                next.insert(next.end(), members.begin(), members.end());
-            }
-        }
-        first_node += clusters.size();
-        clusters = std::move(next);
+        const Range right{middle, ranges[largest].end};
+        ranges[largest].end = middle;
+        const auto next = static_cast<std::ptrdiff_t>(largest + 1);
+        ranges.insert(ranges.begin() + next, right);
+        whole.insert(whole.begin() + next, false);
     }
 }
 
-/// Bottom up again: spheres and areas.
-void encloseUpwards(std::span<const SurfacePoint> ordered, std::vector<SphereNode>& nodes) {
-    std::vector<std::array<std::uint32_t, 2>> range(nodes.size());  // the points below, contiguous as children are
-    std::vector<std::uint32_t> below;
-    for (std::size_t i = nodes.size(); i-- > 0;) {
-        SphereNode& node = nodes[i];
-        range[i] = node.leaf ? std::array{node.first, node.first + node.count}
-                             : std::array{range[node.first][0], range[node.first + node.count - 1][1]};
-        below.resize(range[i][1] - range[i][0]);
-        std::iota(below.begin(), below.end(), range[i][0]);
-        enclose(ordered, below, node);
-        node.area = 0.0;
-        for (const std::uint32_t p : below) node.area += ordered[p].area;
+/// Up to kChildren parts of `range`; one part if it is a leaf. A direction's box is halved at most once along each
+/// axis, so that eight parts are enough to part what faces apart.
+std::vector<Range> part(std::vector<Item>& items, const Range& range) {
+    std::vector<Range> ranges{range};
+    splitAll(items, ranges, partFacing);
+    splitAll(items, ranges, halve);
+    return ranges;
+}
+
+/// Sphere, areas and representative of a node.
+void summarise(std::span<const SurfacePoint> below, SphereNode& node) {
+    const Ball ball = enclosingBall(below);
+    node.centre = ball.centre;
+    node.radius = ball.radius;
+    node.area = 0.0;
+    Vec3 middle = Vec3::Zero(), mean = Vec3::Zero(), area_vector = Vec3::Zero();
+    for (const SurfacePoint& point : below) {
+        node.area += point.area;
+        middle += point.area * point.position;
+        mean += point.position;
+        area_vector += point.area * point.normal;
     }
+    middle = node.area > 0.0 ? Vec3(middle / node.area) : Vec3(mean / static_cast<double>(below.size()));
+    const SurfacePoint* nearest = nullptr;
+    for (const SurfacePoint& point : below) {
+        if (node.area > 0.0 && !(point.area > 0.0)) continue;
+        if (nearest == nullptr || (point.position - middle).squaredNorm() < (nearest->position - middle).squaredNorm())
+            nearest = &point;
+    }
+    node.point = nearest->position;
+    node.facing_area = area_vector.norm();
+    node.normal = node.facing_area > 0.0 ? Vec3(area_vector / node.facing_area) : nearest->normal;
 }
 
 }  // namespace
 
-SphereTree::SphereTree(const PointShell& shell) : total_area_(shell.total_area), cover_radius_(shell.cover_radius) {
+SphereTree::SphereTree(const PointShell& shell)
+    : total_area_(shell.total_area), cover_radius_(shell.cover_radius), rounding_(shell.rounding) {
+    std::vector<Item> items;
+    items.reserve(shell.points.size());
     double sum = 0.0, largest = 0.0;
-    for (const auto& point : shell.points) {
+    for (const SurfacePoint& point : shell.points) {
         sum += point.position.squaredNorm();
         largest = std::max(largest, point.position.squaredNorm());
+        const Eigen::Vector3f p = point.position.cast<float>(), n = point.normal.cast<float>();
+        items.push_back(
+            {{p.x(), p.y(), p.z()}, {n.x(), n.y(), n.z()}, static_cast<std::uint32_t>(items.size()), point.area > 0.0});
     }
     gyration_radius_ = std::sqrt(sum / static_cast<double>(shell.points.size()));
     reach_ = std::sqrt(largest);
 
-    const std::vector<Level> levels = groupUpwards(shell.points, total_area_);
-    levels_ = static_cast<int>(levels.size());
-    root_count_ = levels.back().members.size();
-    layOutDownwards(shell.points, levels, nodes_, points_);
-    encloseUpwards(points_, nodes_);
+    std::vector<Range> ranges = part(items, {0, static_cast<std::uint32_t>(items.size())});
+    root_count_ = ranges.size();
+    levels_ = 1;
+    std::size_t level_end = root_count_;
+    nodes_.resize(root_count_);
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+        if (i == level_end) {
+            ++levels_;
+            level_end = ranges.size();
+        }
+        const Range range = ranges[i];
+        const std::vector<Range> parts = part(items, range);
+        SphereNode& node = nodes_[i];
+        node.leaf = parts.size() == 1;
+        node.first = node.leaf ? range.begin : static_cast<std::uint32_t>(ranges.size());
+        node.count = node.leaf ? range.count() : static_cast<std::uint32_t>(parts.size());
+        if (node.leaf) continue;
+        ranges.insert(ranges.end(), parts.begin(), parts.end());
+        nodes_.resize(ranges.size());
+    }
+
+    points_.reserve(items.size());
+    for (const Item& item : items) {
+        points_.push_back(shell.points[item.index]);
+        x_.push_back(item.position[0]);
+        y_.push_back(item.position[1]);
+        z_.push_back(item.position[2]);
+    }
+    parallelFor((nodes_.size() + kBatch - 1) / kBatch, [&](std::size_t batch) {
+        const std::size_t end = std::min(nodes_.size(), (batch + 1) * kBatch);
+        for (std::size_t i = batch * kBatch; i < end; ++i)
+            summarise(std::span<const SurfacePoint>(points_).subspan(ranges[i].begin, ranges[i].count()), nodes_[i]);
+    });
+}
+
+std::size_t SphereTree::memoryBytes() const {
+    return nodes_.size() * sizeof(SphereNode) + points_.size() * (sizeof(SurfacePoint) + 3 * sizeof(float));
 }
 
 }  // namespace passung::model

@@ -9,42 +9,56 @@
 
 namespace passung::model {
 
-/// A cluster of shell points: a real point that stands for it and a sphere around all points below.
+/// A cluster of shell points: a sphere around all points below, and a real point that stands for them.
 struct SphereNode {
     Vec3 centre;              // of the sphere [m]
-    double radius;            // encloses every point below [m]
-    Vec3 point;               // the representative, a point of the shell
-    Vec3 normal;              // its outward normal
-    double area;              // sum over the points below [m²]
+    double radius;            // the smallest that encloses every point below [m]
     std::uint32_t first = 0;  // first child node, or first point if this is a leaf
     std::uint32_t count = 0;
     bool leaf = false;
+    Vec3 point;          // the representative, the point of the shell nearest to the middle of those below
+    Vec3 normal;         // unit: the direction of Σ area · normal over the points below
+    double facing_area;  // its length [m²]: what the cluster weighs in a wrench; ≤ area
+    double area;         // Σ area over the points below [m²]
 };
 
 /// Point-sphere tree over a shell: clusters of clusters of points, coarsest level first, the children of a node
-/// contiguous. Every level samples the whole surface with real points of it. (Sagardia 2019, 3.2.4, reconstructed.)
+/// contiguous. Every level samples the whole surface with real points of it, together with the leaves that end above
+/// it. (Sagardia 2019, 3.2.4, reconstructed.) Built in O(n log n).
 class SphereTree {
 public:
-    /// @pre at least one point. Clusters join points whose normals are within 60°, where that leaves any choice.
+    static constexpr std::uint32_t kLeafPoints = 64;  // at most, in one leaf
+    static constexpr std::uint32_t kChildren = 8;     // at most, of one node, and roots
+
+    /// @pre at least one point. No cluster holds two faces whose normals differ by more than 120°, so that none joins
+    /// the two sides of a wall: the roots part them, and what is below is halved across its longest side.
     explicit SphereTree(const PointShell& shell);
 
     std::span<const SphereNode> nodes() const { return nodes_; }
     std::span<const SphereNode> roots() const { return std::span(nodes_).first(root_count_); }
-    /// In tree order: the points of a leaf are contiguous.
+    /// In tree order: the points below a node are contiguous.
     std::span<const SurfacePoint> points() const { return points_; }
+    /// The same positions by axis, for loops over whole leaves: coordinates are floats, exactly.
+    const float* x() const { return x_.data(); }
+    const float* y() const { return y_.data(); }
+    const float* z() const { return z_.data(); }
     double totalArea() const { return total_area_; }
     double coverRadius() const { return cover_radius_; }
+    /// How far a point may lie from the surface because it is rounded to floats [m].
+    double rounding() const { return rounding_; }
     int levels() const { return levels_; }
     /// Root mean square distance of the points from the part's origin [m]: makes rotation and translation comparable.
     double gyrationRadius() const { return gyration_radius_; }
     /// Distance of the farthest point from the part's origin [m].
     double reach() const { return reach_; }
+    std::size_t memoryBytes() const;
 
 private:
     std::vector<SphereNode> nodes_;
     std::vector<SurfacePoint> points_;
+    std::vector<float> x_, y_, z_;
     std::size_t root_count_ = 0;
-    double total_area_ = 0.0, cover_radius_ = 0.0, gyration_radius_ = 0.0, reach_ = 0.0;
+    double total_area_ = 0.0, cover_radius_ = 0.0, rounding_ = 0.0, gyration_radius_ = 0.0, reach_ = 0.0;
     int levels_ = 0;
 };
 

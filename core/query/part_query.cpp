@@ -20,7 +20,7 @@ void boundError(PartQueryResult& result) {
 /// The interval that one direction proves, from what the traversal found; see PartQuery.
 void proveInterval(const model::Part& field, const model::Part& shell, const tick::QueryAnswer& answer,
                    model::FieldMode mode, PartQueryResult& result) {
-    const double chords = shell.chord_error + field.chord_error;
+    const double chords = shell.chord_error + shell.shell->rounding() + field.chord_error;
     const double offset = field.field->sheetOffset();
     // Branches were pruned where nothing lies below answer.phi, which another mode may have read below the points' own
     // lower bounds.
@@ -59,8 +59,11 @@ PartQuery::PartQuery(const model::Part& field, const model::Part& shell, const P
       manifold_(std::max(nodesOf(field) + pointsOf(field), nodesOf(shell) + pointsOf(shell))) {}
 
 PartQueryResult PartQuery::oneWay(const model::Part& field, const model::Part& shell, const Pose& X_FS) {
-    tick::QueryRequest request{
-        .search_below = request_.proximity, .max_nodes = request_.max_nodes, .mode = request_.mode, .prove = true};
+    tick::QueryRequest request{.search_below = request_.proximity,
+                               .max_nodes = request_.max_nodes,
+                               .mode = request_.mode,
+                               .prove = true,
+                               .gradients = false};
     manifold_.clear();
     tick::QueryAnswer answer = queryContacts(*field.field, Pose{}, *shell.shell, X_FS, request, workspace_, manifold_);
     PartQueryResult result;

@@ -48,7 +48,8 @@ struct PartQueryResult {
 ///
 /// What one way proves. φ_k: read from the field at point k of the shell, which is wrong by at most e_k; l_k ≤ φ_A: the
 /// field's lower bound there (of many points at once where a branch is pruned); c: cover radius of the shell; h: sum of
-/// both parts' chord errors; s: offset of an open sheet, whose field holds φ_A - s.
+/// both parts' chord errors and of the rounding of the shell's points to floats; s: offset of an open sheet, whose
+/// field holds φ_A - s.
 ///   A point of ∂B lies within h of the mesh, thus within c + h of some point k, and φ_A is 1-Lipschitz:
 ///     m_1 ≥ min(l_k) + s - c - h.
 ///   Every point k lies within h of ∂B, thus with any k, and with the one of the smallest φ_k best:

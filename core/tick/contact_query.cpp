@@ -1,6 +1,7 @@
 #include "core/tick/contact_query.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 namespace passung::tick {
@@ -16,27 +17,37 @@ struct Traversal {
     const model::DistanceField& field;
     const model::SphereTree& shell;
     const Pose& X_WF;
+    const Pose& X_FS;
     const Mat3 R_WF;
     const Mat3 R_FS;
     const Vec3 p_FS;
     const Mat3 R_WS;
+    const Vec3 p_WS;
     const QueryRequest& request;
+    const bool ordered;  // best first
+    const double slack;  // sampleMany is off by at most this next to sample() [m]
     QueryWorkspace& workspace;
     ContactManifold& manifold;
     QueryAnswer answer;
     std::size_t waiting = 0;
     double unproven_area = 0.0;
+    std::array<float, model::SphereTree::kLeafPoints> phi;
 
-    Traversal(const model::DistanceField& f, const Pose& X_WF_, const model::SphereTree& s, const Pose& X_FS,
+    Traversal(const model::DistanceField& f, const Pose& X_WF_, const model::SphereTree& s, const Pose& X_FS_,
               const Pose& X_WS, const QueryRequest& r, QueryWorkspace& w, ContactManifold& m)
         : field(f),
           shell(s),
           X_WF(X_WF_),
+          X_FS(X_FS_),
           R_WF(X_WF_.q.toRotationMatrix()),
-          R_FS(X_FS.q.toRotationMatrix()),
-          p_FS(X_FS.p),
+          R_FS(X_FS_.q.toRotationMatrix()),
+          p_FS(X_FS_.p),
           R_WS(X_WS.q.toRotationMatrix()),
+          p_WS(X_WS.p),
           request(r),
+          ordered(r.max_nodes > 0 || r.search_below > r.collect_below),
+          // No brick spans more: its cells are those asked for, or at most 1/72 of the longest side.
+          slack(0x1p-20 * (f.bounds().size().norm() + 14.0 * f.cell())),
           workspace(w),
           manifold(m) {
         answer.phi = answer.lower_bound = request.search_below;
@@ -58,38 +69,79 @@ struct Traversal {
         ++answer.nodes_visited;
         if (bound >= pruneAbove()) return;
         workspace.heap_[waiting++] = {bound, node};
-        std::push_heap(workspace.heap_.begin(), at(waiting), later);
+        if (ordered) std::push_heap(workspace.heap_.begin(), at(waiting), later);
     }
 
     std::uint32_t pop(double& bound) noexcept {
-        std::pop_heap(workspace.heap_.begin(), at(waiting), later);
+        if (ordered) std::pop_heap(workspace.heap_.begin(), at(waiting), later);
         --waiting;
         bound = workspace.heap_[waiting].bound;
         return workspace.heap_[waiting].node;
     }
 
-    /// `above`: a lower bound of φ there that is already known.
+    /// One point; `above`: a lower bound of φ there that is already known.
     void evaluate(const Vec3& position, const Vec3& normal, double area, double above) noexcept {
-        const Vec3 p_F = R_FS * position + p_FS;
-        const model::FieldSample s = field.sample(p_F, request.mode);
         ++answer.points_tested;
-        if (request.prove) answer.lower_bound = std::min(answer.lower_bound, std::max(above, field.lowerBound(p_F)));
+        const Vec3 p_F = R_FS * position + p_FS;
+        prove(p_F, above);
+        take(p_F, position, normal, area, field.sample(p_F, request.mode));
+    }
+
+    void prove(const Vec3& p_F, double above) noexcept {
+        if (!request.prove || above >= answer.lower_bound) return;
+        answer.lower_bound = std::min(answer.lower_bound, std::max(above, field.lowerBound(p_F)));
+    }
+
+    void take(const Vec3& p_F, const Vec3& position, const Vec3& normal, double area,
+              const model::FieldSample& s) noexcept {
         if (s.phi < answer.phi) {
             answer.found = true;
             answer.phi = s.phi;
             answer.closest_F = p_F;
             answer.normal_W = s.gradient;
         }
-        if (!(s.phi < request.collect_below)) return;
+        if (s.phi < request.collect_below) collect(position, normal, area, s.phi, s.gradient);
+    }
+
+    void collect(const Vec3& position, const Vec3& normal, double area, double depth, const Vec3& gradient) noexcept {
         ContactPoint contact;
-        contact.position = X_WF * p_F;
-        contact.gradient = R_WF * s.gradient;
+        contact.position = R_WS * position + p_WS;
+        contact.gradient = R_WF * gradient;
         // A sample on an edge has no face of its own: the obstacle's face decides.
-        contact.normal =
-            area > 0.0 || contact.gradient.norm() < 1e-6 ? Vec3(R_WS * normal) : Vec3(-contact.gradient.normalized());
-        contact.phi = s.phi;
+        contact.normal = area > 0.0 || contact.gradient.squaredNorm() < 1e-12 ? Vec3(R_WS * normal)
+                                                                              : Vec3(-contact.gradient.normalized());
+        contact.phi = depth;
         contact.area = area;
         if (!manifold.tryPush(contact)) answer.manifold_full = true;
+    }
+
+    /// All points of a leaf.
+    void evaluateLeaf(const model::SphereNode& leaf, double above) noexcept {
+        if (request.mode != model::FieldMode::Trilinear) {
+            for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
+                const model::SurfacePoint& point = shell.points()[i];
+                evaluate(point.position, point.normal, point.area, above);
+            }
+            return;
+        }
+        const std::size_t first = leaf.first, count = leaf.count;
+        field.sampleMany(X_FS, {shell.x() + first, count}, {shell.y() + first, count}, {shell.z() + first, count},
+                         {phi.data(), count});
+        answer.points_tested += static_cast<int>(count);
+        if (request.prove && above < answer.lower_bound)
+            for (std::size_t i = 0; i < count; ++i) prove(R_FS * shell.points()[first + i].position + p_FS, above);
+        for (std::size_t i = 0; i < count; ++i) {
+            const double read = static_cast<double>(phi[i]);
+            const bool contact = read < request.collect_below + (request.gradients ? slack : 0.0);
+            if (!(contact || read - slack < answer.phi)) continue;
+            const model::SurfacePoint& point = shell.points()[first + i];
+            if (request.gradients || read - slack < answer.phi || !(point.area > 0.0)) {
+                const Vec3 p_F = R_FS * point.position + p_FS;
+                take(p_F, point.position, point.normal, point.area, field.sample(p_F, request.mode));
+            } else {
+                collect(point.position, point.normal, point.area, read, Vec3::Zero());
+            }
+        }
     }
 
     /// The sphere of a node that is not looked into.
@@ -108,28 +160,25 @@ struct Traversal {
     void run() noexcept {
         for (std::uint32_t root = 0; root < shell.roots().size(); ++root) push(root, -kInfinity);
         while (waiting > 0) {
-            if (exceedsBudget(shell.nodes()[workspace.heap_.front().node])) {
+            if (request.max_nodes > 0 && exceedsBudget(shell.nodes()[workspace.heap_.front().node])) {
                 answer.budget_reached = true;
                 break;
             }
             double bound = 0.0;
             const model::SphereNode& node = shell.nodes()[pop(bound)];
             if (bound >= pruneAbove()) continue;
-            const std::uint32_t end = node.first + node.count;
-            if (!node.leaf) {
-                for (std::uint32_t child = node.first; child < end; ++child) push(child, bound);
+            if (node.leaf) {
+                evaluateLeaf(node, bound);
                 continue;
             }
-            for (std::uint32_t i = node.first; i < end; ++i) {
-                const model::SurfacePoint& point = shell.points()[i];
-                evaluate(point.position, point.normal, point.area, bound);
-            }
+            const std::uint32_t end = node.first + node.count;
+            for (std::uint32_t child = node.first; child < end; ++child) push(child, bound);
         }
         while (waiting > 0) {  // the budget ended
             double bound = 0.0;
             const model::SphereNode& node = shell.nodes()[pop(bound)];
             if (bound >= pruneAbove()) continue;
-            evaluate(node.point, node.normal, node.area, bound);
+            evaluate(node.point, node.normal, node.facing_area, bound);
             if (request.spheres) standIn(node, bound);
             answer.lower_bound = std::min(answer.lower_bound, bound);
             unproven_area += node.area;

@@ -13,9 +13,9 @@ namespace passung::tick {
 struct ContactPoint {
     Vec3 position;        // p_WP [m]
     Vec3 normal;          // of the shell, unit, outward from the held part; of the field (turned) for edge samples
-    Vec3 gradient;        // of φ, as interpolated
+    Vec3 gradient;        // of φ, as interpolated; zero if the request does without
     double phi = 0.0;     // [m], < 0 inside the obstacle
-    double area = 0.0;    // [m²]
+    double area = 0.0;    // [m²]; of a node that stands for its points: the length of Σ area · normal over them
     double radius = 0.0;  // of a sphere [m]: `position` is then its centre and `phi` a lower bound of what it holds
 };
 
@@ -60,8 +60,10 @@ struct QueryRequest {
     double search_below = 0.0;   // the deepest or closest point is searched up to this φ [m]
     int max_nodes = 0;           // budget (the thesis's η_c, in nodes so that it is deterministic); 0 = none
     model::FieldMode mode = model::FieldMode::Trilinear;
-    bool prove = false;    // also find QueryAnswer::lower_bound; costs about as much again
-    bool spheres = false;  // a node left over by the budget also enters the manifold as a sphere
+    bool prove = false;     // also find QueryAnswer::lower_bound; costs about as much again
+    bool spheres = false;   // a node left over by the budget also enters the manifold as a sphere
+    bool gradients = true;  // of every contact; without them, φ of contacts is read in single precision, several times
+                            // as fast (DistanceField::sampleMany), in FieldMode::Trilinear
 };
 
 struct QueryAnswer {
@@ -82,11 +84,12 @@ struct QueryAnswer {
 ///   Source: Sagardia 2019, algorithm 3.1 (reconstructed), with φ = -V.
 ///   Best first by  b = φ_low(c) - R,  φ_low a rigorous lower bound of φ at the sphere's centre c and R its radius:
 ///   φ is 1-Lipschitz, so no point below the node has φ < b, and a node with  b ≥ max(collect, min(search, best))
-///   is pruned with proof. A leaf's points are all evaluated.
+///   is pruned with proof. Where nothing but contacts is sought the order does not matter and nodes are taken as they
+///   come. A leaf's points are all evaluated, in one loop over the whole leaf.
 ///   Limit cases: everything far → the roots are all that is visited; a budget that ends → each node still waiting is
-///   represented by its own point with the area of all points below (the wrench stays consistent), and `quality`
-///   says which share of the area was proven or evaluated. With `spheres` its sphere enters the manifold besides, with
-///   φ = b: what keeps the sphere out keeps its points out.
+///   represented by its own point with the area vector of all points below (the wrench of a constant pressure stays
+///   the same), and `quality` says which share of the area was proven or evaluated. With `spheres` its sphere enters
+///   the manifold besides, with φ = b: what keeps the sphere out keeps its points out.
 /// Appends to `manifold`. rt-safe; the number of steps is bounded by the number of nodes.
 /// @pre `workspace` has room for all nodes of `shell`; poses are finite.
 QueryAnswer queryContacts(const model::DistanceField& field, const Pose& X_WF, const model::SphereTree& shell,

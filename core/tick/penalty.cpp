@@ -45,7 +45,7 @@ void measureHandVelocity(TickState& state, const TickFrame& frame) noexcept {
 void findContactsAtHand(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
     state.X_WG = frame.X_WH;
     state.manifold.clear();
-    const QueryAnswer answer = queryObstacles(model, frame.X_WH, QueryRequest{}, state.workspace, state.manifold);
+    const QueryAnswer answer = queryObstacles(model, frame.X_WH, {.gradients = false}, state.workspace, state.manifold);
     account(answer, frame);
     frame.contacts = countInside(state.manifold);
     frame.hand_depth = frame.proxy_depth = std::max(0.0, -answer.phi);

@@ -46,7 +46,7 @@ public:
     Answer at(const Pose& X_FS) override {
         manifold_.clear();
         const tick::QueryAnswer found =
-            tick::queryContacts(field_, Pose{}, shell_, X_FS, tick::QueryRequest{}, workspace_, manifold_);
+            tick::queryContacts(field_, Pose{}, shell_, X_FS, {.gradients = false}, workspace_, manifold_);
         return {.signed_distance = found.found ? found.phi : kNotGiven,
                 .wrench = tick::penaltyWrench(contact_, manifold_, X_FS.p),
                 .contacts = static_cast<double>(manifold_.size())};
@@ -84,7 +84,7 @@ Candidate candidate(const char* name, const BuiltPart& field, const BuiltPart& s
 double BuiltPart::bytes() const {
     double sum = 0.0;
     if (part.field) sum += static_cast<double>(part.field->memoryBytes());
-    if (part.shell) sum += static_cast<double>(part.shell->nodes().size_bytes() + part.shell->points().size_bytes());
+    if (part.shell) sum += static_cast<double>(part.shell->memoryBytes());
     return sum;
 }
 

@@ -101,23 +101,41 @@ TEST(DiskSubset, AssignsTheNearestChosenPointThatFacesAlikeOrNone) {
     EXPECT_GT(none, 100);
 }
 
-TEST(PointBuckets, VisitEveryPointWithinTheEdgeAndNoneTwice) {
-    // Truth: independent search over all points; edges so small that the number of buckets per axis is limited as well.
+TEST(PointBuckets, VisitEveryPointWithinTheRadiusAndNoneTwice) {
+    // Truth: independent search over all points; a radius of up to three buckets.
     const Cloud cloud(1500, 4);
-    for (const double edge : {0.2, 0.01, 1e-4}) {
-        PointBuckets buckets(cloud.positions, edge);
-        for (std::uint32_t i = 0; i < cloud.positions.size(); ++i) buckets.insert(cloud.positions[i], i);
-        for (const Vec3& p : cloud.positions) {
-            std::multiset<std::uint32_t> visited;
-            buckets.visitAround(p, [&](std::uint32_t i) { visited.insert(i); });
-            for (std::uint32_t i = 0; i < cloud.positions.size(); ++i) {
-                ASSERT_LE(visited.count(i), 1u);
-                if ((cloud.positions[i] - p).norm() <= edge) {
-                    ASSERT_EQ(visited.count(i), 1u);
+    for (const double radius : {0.2, 0.03, 0.01}) {
+        for (const double edge : {radius, 0.4 * radius}) {
+            PointBuckets buckets(cloud.positions, edge);
+            for (std::uint32_t i = 0; i < cloud.positions.size(); ++i) buckets.insert(cloud.positions[i], i);
+            for (const Vec3& p : cloud.positions) {
+                std::multiset<std::uint32_t> visited;
+                buckets.visitWithin(p, radius, [&](std::uint32_t i, double squared) {
+                    visited.insert(i);
+                    return squared;
+                });
+                for (std::uint32_t i = 0; i < cloud.positions.size(); ++i) {
+                    ASSERT_LE(visited.count(i), 1u);
+                    if ((cloud.positions[i] - p).norm() <= radius * (1.0 - 1e-12)) {
+                        ASSERT_EQ(visited.count(i), 1u);
+                    }
                 }
             }
         }
     }
+}
+
+TEST(PointBuckets, HoldPointsAlongALongThinLine) {
+    // Truth: closed form. A line of a million bucket edges would take too many blocks: buckets grow instead.
+    const std::vector<Vec3> line{Vec3(0, 0, 0), Vec3(1, 1, 1), Vec3(0.5, 0.5, 0.5)};
+    PointBuckets buckets(line, 1e-6);
+    for (std::uint32_t i = 0; i < line.size(); ++i) buckets.insert(line[i], i);
+    int found = 0;
+    buckets.visitWithin(line[2], 1e-6, [&](std::uint32_t i, double squared) {
+        found += i == 2 ? 1 : 0;
+        return squared;
+    });
+    EXPECT_EQ(found, 1);
 }
 
 }  // namespace

@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/random.h"
+#include "core/model/enclosing_ball.h"
 #include "core/model/shape.h"
 #include "core/model/sphere_tree.h"
+#include "core/model/triangle_distance.h"
 #include "tests/support/broken_mesh.h"
 
 namespace passung::model {
@@ -76,13 +79,15 @@ TEST(PointShell, KeepsItsSpacingOnFaces) {
 }
 
 TEST(PointShell, SamplesEveryCornerAndRimOfABox) {
-    // Truth: closed form. Eight corners exactly; along each edge no gap wider than half the spacing's disk.
+    // Truth: closed form. Eight corners exactly, rounded to floats; along each edge no gap wider than half the
+    // spacing's disk.
     const PointShell shell = samplePoints(tessellate(Box{0.02, 0.01, 0.03}, 1e-6), kSpacing);
     for (int corner = 0; corner < 8; ++corner) {
-        const Vec3 c((corner & 1) ? 0.01 : -0.01, (corner & 2) ? 0.005 : -0.005, (corner & 4) ? 0.015 : -0.015);
+        const Vec3 exact((corner & 1) ? 0.01 : -0.01, (corner & 2) ? 0.005 : -0.005, (corner & 4) ? 0.015 : -0.015);
+        const Vec3 c = exact.cast<float>().cast<double>();
         double nearest = 1e300;
         for (const auto& point : shell.points) nearest = std::min(nearest, (point.position - c).norm());
-        EXPECT_LT(nearest, 1e-12);
+        EXPECT_EQ(nearest, 0.0);
     }
     for (double x = -0.01; x <= 0.01; x += 1e-4) {
         double nearest = 1e300;
@@ -129,25 +134,148 @@ TEST(SphereTree, EverySphereHoldsAllPointsBelowAndEveryLevelTheWholeSurface) {
     }
 }
 
-TEST(SphereTree, DoesNotJoinTheTwoSidesOfAThinWall) {
-    // Truth: invariant. A wall thinner than the spacing: the points of a leaf face the same way, edge samples apart.
-    const SphereTree tree(samplePoints(tessellate(Box{0.02, 0.02, 0.3e-3}, 1e-6), kSpacing));
-    for (const SphereNode& node : tree.nodes()) {
-        if (!node.leaf) continue;
-        const SurfacePoint* first = nullptr;
-        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-            const SurfacePoint& point = tree.points()[i];
-            if (point.area == 0.0) continue;
-            if (first == nullptr) first = &point;
-            ASSERT_GT(point.normal.dot(first->normal), -0.5);
+/// The points below each node, as the tree lays them out.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> pointsBelow(const SphereTree& tree) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> below(tree.nodes().size());
+    for (std::size_t i = below.size(); i-- > 0;) {
+        const SphereNode& node = tree.nodes()[i];
+        below[i] = node.leaf ? std::pair(node.first, node.first + node.count)
+                             : std::pair(below[node.first].first, below[node.first + node.count - 1].second);
+    }
+    return below;
+}
+
+TEST(SphereTree, NoClusterJoinsTheTwoSidesOfAThinWall) {
+    // Truth: invariant. A wall thinner than the spacing: all points on faces below any node face within 120° of each
+    // other.
+    for (const Shape& shape : {Shape(Box{0.02, 0.02, 0.3e-3}), Shape(Peg{0.01, 0.03, 0.001})}) {
+        const SphereTree tree(samplePoints(tessellate(shape, 1e-6), kSpacing));
+        for (const auto& [begin, end] : pointsBelow(tree)) {
+            for (std::uint32_t i = begin; i < end; ++i) {
+                for (std::uint32_t j = begin; j < i; ++j) {
+                    const SurfacePoint &a = tree.points()[i], &b = tree.points()[j];
+                    if (a.area > 0.0 && b.area > 0.0) {
+                        ASSERT_GT(a.normal.dot(b.normal), -0.5 - 1e-6) << kindName(shape);
+                    }
+                }
+            }
         }
     }
 }
 
+TEST(SphereTree, EveryNodeCarriesTheAreaVectorOfItsPointsAndOneOfThemStandsForThem) {
+    // Truth: invariant, sums over the points below.
+    const SphereTree tree(samplePoints(tessellate(Shape(Peg{0.01, 0.03, 0.001}), 1e-6), kSpacing));
+    const auto below = pointsBelow(tree);
+    for (std::size_t k = 0; k < below.size(); ++k) {
+        const SphereNode& node = tree.nodes()[k];
+        double area = 0.0;
+        Vec3 vector = Vec3::Zero();
+        bool member = false;
+        for (std::uint32_t i = below[k].first; i < below[k].second; ++i) {
+            area += tree.points()[i].area;
+            vector += tree.points()[i].area * tree.points()[i].normal;
+            member = member || tree.points()[i].position == node.point;
+        }
+        ASSERT_TRUE(member);
+        ASSERT_NEAR(node.area, area, 1e-12 * tree.totalArea());
+        ASSERT_LT((node.facing_area * node.normal - vector).norm(), 1e-12 * tree.totalArea());
+        ASSERT_LE(node.facing_area, node.area * (1.0 + 1e-12));
+    }
+}
+
+TEST(SphereTree, ChildrenFollowLevelByLevelAndLeavesAreSmall) {
+    // Truth: invariant. Breadth first: the children of the nodes, in order, are all other nodes, in order; the points
+    // of the leaves fill the shell. The arrays by axis hold the same numbers.
+    const SphereTree tree(samplePoints(tessellate(Shape(Sphere{0.04}), 1e-6), 0.5e-3));
+    std::size_t next = tree.roots().size();
+    std::size_t points = 0;
+    for (const SphereNode& node : tree.nodes()) {
+        if (node.leaf) {
+            EXPECT_LE(node.count, SphereTree::kLeafPoints);
+            points += node.count;
+            continue;
+        }
+        EXPECT_EQ(node.first, next);
+        EXPECT_LE(node.count, SphereTree::kChildren);
+        next += node.count;
+    }
+    EXPECT_EQ(next, tree.nodes().size());
+    EXPECT_EQ(points, tree.points().size());
+    for (std::size_t i = 0; i < tree.points().size(); ++i)
+        ASSERT_EQ(Vec3(tree.x()[i], tree.y()[i], tree.z()[i]), tree.points()[i].position);
+}
+
+TEST(EnclosingBall, IsTheSmallestOfRandomPointsAndOfKnownSolids) {
+    // Truth: closed form of a cube, a segment and one point; else an invariant: a ball is smallest if and only if no
+    // direction leads away from all points on its surface, tried in many directions.
+    const auto ballOf = [](const std::vector<Vec3>& places) {
+        std::vector<SurfacePoint> points;
+        for (const Vec3& p : places) points.push_back({p, Vec3::UnitZ(), 0.0});
+        return enclosingBall(points);
+    };
+    std::vector<Vec3> cube;
+    for (int i = 0; i < 8; ++i) cube.emplace_back(i & 1, (i >> 1) & 1, i >> 2);
+    EXPECT_NEAR(ballOf(cube).radius, std::sqrt(0.75), 1e-9);
+    EXPECT_NEAR(ballOf({Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(0.5, 0.1, 0)}).radius, 1.0, 1e-9);
+    EXPECT_LT(ballOf({Vec3(1, 2, 3)}).radius, 1e-9);
+    Random random(7);
+    for (int trial = 0; trial < 300; ++trial) {
+        std::vector<Vec3> places;
+        const int count = 2 + static_cast<int>(random.below(40));
+        for (int i = 0; i < count; ++i)
+            places.emplace_back(random.normal(), random.normal(), trial % 3 == 0 ? 0.0 : random.normal());
+        const Ball ball = ballOf(places);
+        std::vector<Vec3> holding;
+        for (const Vec3& p : places) {
+            ASSERT_LE((p - ball.centre).norm(), ball.radius);
+            if ((p - ball.centre).norm() > ball.radius * (1.0 - 1e-9)) holding.push_back(p - ball.centre);
+        }
+        for (int i = 0; i < 200; ++i) {
+            const Vec3 d = Vec3(random.normal(), random.normal(), random.normal()).normalized();
+            const bool better = std::all_of(holding.begin(), holding.end(),
+                                            [&](const Vec3& p) { return p.dot(d) > 1e-6 * ball.radius; });
+            ASSERT_FALSE(better) << "trial " << trial;
+        }
+    }
+}
+
+TEST(PointShell, CoordinatesAreFloatsAndLieOnTheSurfaceUpToTheirRounding) {
+    // Truth: closed form of a box, whose triangles lie exactly in its faces.
+    const Shape box = Box{0.02, 0.01, 0.03};
+    const PointShell shell = samplePoints(tessellate(box, 1e-6), kSpacing);
+    EXPECT_LT(shell.rounding, 1e-8);
+    double farthest = 0.0;
+    for (const auto& point : shell.points) {
+        EXPECT_EQ(point.position, Vec3(point.position.cast<float>().cast<double>()));
+        farthest = std::max(farthest, std::abs(signedDistance(box, point.position)));
+    }
+    EXPECT_LE(farthest, shell.rounding);
+    EXPECT_GT(farthest, 0.0);
+}
+
+TEST(PointShell, SumsOverPatchesAreExactForWhatChangesLinearly) {
+    // Truth: closed form. On a face z = h of a box: ∫ x dA = 0 and ∫ x² dA = w³d/12. A point at the middle of its patch
+    // makes the first exact up to the rounding of floats; a patch about one spacing s wide leaves of the second about
+    // its own moment, s²/12 per area (twice that is allowed).
+    const double w = 0.02, d = 0.01;
+    const PointShell shell = samplePoints(tessellate(Box{w, d, 0.03}, 1e-6), kSpacing);
+    double area = 0.0, first = 0.0, second = 0.0;
+    for (const auto& point : shell.points) {
+        if (!(point.normal.z() > 0.99)) continue;
+        area += point.area;
+        first += point.area * (point.position.x() + 0.3 * point.position.y());
+        second += point.area * point.position.x() * point.position.x();
+    }
+    EXPECT_NEAR(area, w * d, 1e-9 * area);
+    EXPECT_NEAR(first, 0.0, 1e-7 * area * w);
+    EXPECT_NEAR(second, w * w * w * d / 12.0, area * kSpacing * kSpacing / 6.0);
+}
+
 TEST(PointShell, EveryTriangleHasASampleNearThatFacesItWithin60Degrees) {
     // Truth: invariant. Wavy balls no larger than the disk of a sample, divided by direction alone: relaxed samples
-    // turn away from a part of their patch. Triangles are so small that each is one candidate, and a sample lies on the
-    // middle of one, which gives its direction.
+    // turn away from a part of their patch. Triangles are so small that each is one candidate, and a sample lies on
+    // one, up to its rounding, which gives its direction; on an edge of two, either.
     for (const double diameter : {0.4e-3, 0.8e-3, 1.2e-3, 1.6e-3, 2.0e-3}) {
         const TriangleMesh mesh = test::wavySphere(diameter, 2.5e-4 * diameter);
         const PointShell shell = samplePoints(mesh, kSpacing);
@@ -159,8 +287,12 @@ TEST(PointShell, EveryTriangleHasASampleNearThatFacesItWithin60Degrees) {
         }
         std::vector<std::size_t> samples;
         for (const auto& point : shell.points)
-            for (std::size_t i = 0; i < middles.size(); ++i)
-                if (point.area > 0.0 && (middles[i] - point.position).norm() < 1e-12) samples.push_back(i);
+            for (std::size_t i = 0; i < middles.size(); ++i) {
+                const auto& t = mesh.triangles[i];
+                const Vec3 on =
+                    closestOnTriangle(point.position, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+                if (point.area > 0.0 && (on - point.position).norm() <= shell.rounding) samples.push_back(i);
+            }
         ASSERT_GT(samples.size(), 4u);
         for (std::size_t i = 0; i < middles.size(); ++i) {
             const bool faced = std::any_of(samples.begin(), samples.end(), [&](std::size_t s) {
