@@ -18,7 +18,7 @@ namespace passung::model {
 
 namespace {
 
-constexpr double kDiskShare = 0.75;  // disk radius per spacing: then neighbours are about one spacing apart
+constexpr double kDiskShare = 0.72;  // disk radius per spacing: then neighbours are about one spacing apart
 constexpr double kCandidateShare = 0.7;
 constexpr double kEdgeShare = 0.5;    // spacing of edge samples per spacing
 constexpr double kSharpCosine = 0.9;  // an edge is sharp if its faces turn by more than 26°

@@ -106,6 +106,15 @@ std::vector<Range> part(std::vector<Item>& items, const Range& range) {
     return ranges;
 }
 
+/// Eight roots next to each other, so that the first spheres are as small as can be; of a small shell what faces apart.
+std::vector<Range> partRoots(std::vector<Item>& items) {
+    const Range all{0, static_cast<std::uint32_t>(items.size())};
+    if (all.count() <= SphereTree::kChildren * SphereTree::kLeafPoints) return part(items, all);
+    std::vector<Range> ranges{all};
+    splitAll(items, ranges, halve);
+    return ranges;
+}
+
 /// Sphere, areas and representative of a node.
 void summarise(std::span<const SurfacePoint> below, SphereNode& node) {
     const Ball ball = enclosingBall(below);
@@ -148,7 +157,7 @@ SphereTree::SphereTree(const PointShell& shell)
     gyration_radius_ = std::sqrt(sum / static_cast<double>(shell.points.size()));
     reach_ = std::sqrt(largest);
 
-    std::vector<Range> ranges = part(items, {0, static_cast<std::uint32_t>(items.size())});
+    std::vector<Range> ranges = partRoots(items);
     root_count_ = ranges.size();
     levels_ = 1;
     std::size_t level_end = root_count_;

@@ -27,11 +27,12 @@ struct SphereNode {
 /// it. (Sagardia 2019, 3.2.4, reconstructed.) Built in O(n log n).
 class SphereTree {
 public:
-    static constexpr std::uint32_t kLeafPoints = 64;  // at most, in one leaf
+    static constexpr std::uint32_t kLeafPoints = 32;  // at most, in one leaf
     static constexpr std::uint32_t kChildren = 8;     // at most, of one node, and roots
 
-    /// @pre at least one point. No cluster holds two faces whose normals differ by more than 120°, so that none joins
-    /// the two sides of a wall: the roots part them, and what is below is halved across its longest side.
+    /// @pre at least one point. Below the roots no cluster holds two faces whose normals differ by more than 120°, so
+    /// that none joins the two sides of a wall: the children of the roots part them, and what is below is halved across
+    /// its longest side.
     explicit SphereTree(const PointShell& shell);
 
     std::span<const SphereNode> nodes() const { return nodes_; }

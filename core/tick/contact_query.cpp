@@ -68,7 +68,8 @@ struct Traversal {
         const double bound = std::max(above, field.lowerBound(R_FS * n.centre + p_FS) - n.radius);
         ++answer.nodes_visited;
         if (bound >= pruneAbove()) return;
-        workspace.heap_[waiting++] = {bound, node};
+        const bool first = request.max_nodes > 0 && !request.spheres && node < shell.roots().size();
+        workspace.heap_[waiting++] = {bound, first ? -kInfinity : bound, node};
         if (ordered) std::push_heap(workspace.heap_.begin(), at(waiting), later);
     }
 
@@ -187,7 +188,7 @@ struct Traversal {
 
 private:
     static bool later(const QueryWorkspace::Entry& a, const QueryWorkspace::Entry& b) noexcept {
-        return a.bound > b.bound || (a.bound == b.bound && a.node > b.node);
+        return a.order > b.order || (a.order == b.order && a.node > b.node);
     }
     std::vector<QueryWorkspace::Entry>::iterator at(std::size_t i) noexcept {
         return workspace.heap_.begin() + static_cast<std::ptrdiff_t>(i);

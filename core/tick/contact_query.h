@@ -48,6 +48,7 @@ public:
 private:
     struct Entry {
         double bound;  // no point below the node is nearer than this [m]
+        double order;  // the least is taken first
         std::uint32_t node;
     };
     std::vector<Entry> heap_;
@@ -85,11 +86,13 @@ struct QueryAnswer {
 ///   Best first by  b = φ_low(c) - R,  φ_low a rigorous lower bound of φ at the sphere's centre c and R its radius:
 ///   φ is 1-Lipschitz, so no point below the node has φ < b, and a node with  b ≥ max(collect, min(search, best))
 ///   is pruned with proof. Where nothing but contacts is sought the order does not matter and nodes are taken as they
-///   come. A leaf's points are all evaluated, in one loop over the whole leaf.
-///   Limit cases: everything far → the roots are all that is visited; a budget that ends → each node still waiting is
-///   represented by its own point with the area vector of all points below (the wrench of a constant pressure stays
-///   the same), and `quality` says which share of the area was proven or evaluated. With `spheres` its sphere enters
-///   the manifold besides, with φ = b: what keeps the sphere out keeps its points out.
+///   come; under a budget without spheres the roots come first, because they alone join what faces apart and
+///   would spoil the wrench. A leaf's points are all
+///   evaluated, in one loop over the whole leaf. Limit cases: everything far → the roots are all that is visited; a
+///   budget that ends → each node still waiting is represented by its own point with the area vector of all points
+///   below (the wrench of a constant pressure stays the same), and `quality` says which share of the area was proven or
+///   evaluated. With `spheres` its sphere enters the manifold besides, with φ = b: what keeps the sphere out keeps its
+///   points out.
 /// Appends to `manifold`. rt-safe; the number of steps is bounded by the number of nodes.
 /// @pre `workspace` has room for all nodes of `shell`; poses are finite.
 QueryAnswer queryContacts(const model::DistanceField& field, const Pose& X_WF, const model::SphereTree& shell,
