@@ -1,6 +1,8 @@
 #include "core/model/triangle_distance.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace passung::model {
 
@@ -32,6 +34,78 @@ Vec3 closestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& 
         return b + along_bc / (along_bc + against_bc) * (c - b);
     const double total = va + vb + vc;
     return a + vb / total * ab + vc / total * ac;
+}
+
+namespace {
+
+/// The nearest points of two segments (Ericson 2005, section 5.1.9).
+void closestOfSegments(const Vec3& p1, const Vec3& q1, const Vec3& p2, const Vec3& q2, Vec3& c1, Vec3& c2) {
+    const Vec3 d1 = q1 - p1, d2 = q2 - p2, r = p1 - p2;
+    const double a = d1.squaredNorm(), e = d2.squaredNorm(), f = d2.dot(r), c = d1.dot(r), b = d1.dot(d2);
+    const double denominator = a * e - b * b;
+    double s = denominator > 0.0 ? std::clamp((b * f - c * e) / denominator, 0.0, 1.0) : 0.0;
+    double t = e > 0.0 ? (b * s + f) / e : 0.0;
+    if (!(t >= 0.0 && t <= 1.0)) {
+        t = std::clamp(t, 0.0, 1.0);
+        s = a > 0.0 ? std::clamp((b * t - c) / a, 0.0, 1.0) : 0.0;
+    }
+    c1 = p1 + s * d1;
+    c2 = p2 + t * d2;
+}
+
+/// Signed distances of the corners of a triangle from the plane of another, times the length of that one's `normal`.
+struct Sides {
+    Vec3 normal;
+    std::array<double, 3> of;
+
+    Sides(const TriangleCorners& plane, const TriangleCorners& corners)
+        : normal((plane[1] - plane[0]).cross(plane[2] - plane[0])) {
+        for (std::size_t i = 0; i < 3; ++i) of[i] = normal.dot(corners[i] - plane[0]);
+    }
+    bool fartherThan(double limit) const {
+        const double far = limit * normal.norm();
+        return (of[0] > far && of[1] > far && of[2] > far) || (of[0] < -far && of[1] < -far && of[2] < -far);
+    }
+};
+
+}  // namespace
+
+TrianglePair closestPair(const TriangleCorners& first, const TriangleCorners& second, double limit) {
+    const Sides of_first(second, first), of_second(first, second);
+    TrianglePair best{std::numeric_limits<double>::infinity(), first[0], second[0]};
+    // Rounding may name the wrong side only by far less than this.
+    const double sure = limit * (1.0 + 1e-9);
+    if (of_first.fartherThan(sure) || of_second.fartherThan(sure)) return best;
+    double squared = std::numeric_limits<double>::infinity();
+    const auto take = [&](const Vec3& a, const Vec3& b) {
+        const double d = (a - b).squaredNorm();
+        if (!(d < squared)) return;
+        squared = d;
+        best.on_first = a;
+        best.on_second = b;
+    };
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t next = (i + 1) % 3;
+        take(first[i], closestOnTriangle(first[i], second[0], second[1], second[2]));
+        take(closestOnTriangle(second[i], first[0], first[1], first[2]), second[i]);
+        for (std::size_t j = 0; j < 3; ++j) {
+            Vec3 a, b;
+            closestOfSegments(first[i], first[next], second[j], second[(j + 1) % 3], a, b);
+            take(a, b);
+        }
+        // An edge that passes through the other's plane: the place, and the other's point next to it.
+        if (of_first.of[i] * of_first.of[next] < 0.0) {
+            const Vec3 p = first[i] + of_first.of[i] / (of_first.of[i] - of_first.of[next]) * (first[next] - first[i]);
+            take(p, closestOnTriangle(p, second[0], second[1], second[2]));
+        }
+        if (of_second.of[i] * of_second.of[next] < 0.0) {
+            const Vec3 p =
+                second[i] + of_second.of[i] / (of_second.of[i] - of_second.of[next]) * (second[next] - second[i]);
+            take(closestOnTriangle(p, first[0], first[1], first[2]), p);
+        }
+    }
+    best.distance = std::sqrt(squared);
+    return best;
 }
 
 }  // namespace passung::model

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "core/base/assert.h"
-#include "core/model/triangle_distance.h"
 
 namespace passung::model {
 
@@ -241,7 +240,7 @@ ClosestPoint TriangleTree::closest(const Vec3& p, double limit) const {
     std::array<Entry, kStack> stack;
     int size = 0;
     double best = limit * limit;
-    ClosestPoint result{limit, p, 0};
+    ClosestPoint result{limit, p, 0, 0};
     bool found = false;
     stack[static_cast<std::size_t>(size++)] = {0, squaredToBox(p, nodes_[0].low, nodes_[0].high)};
     while (size > 0) {
@@ -264,6 +263,7 @@ ClosestPoint TriangleTree::closest(const Vec3& p, double limit) const {
                 best = squared;
                 result.point = q;
                 result.triangle = original_[i];
+                result.place = i;
                 found = true;
             }
         }
@@ -286,6 +286,44 @@ void TriangleTree::findNear(const Vec3& p, double radius, std::vector<std::uint3
         }
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i) found.push_back(i);
     }
+}
+
+TrianglePair TriangleTree::closestTo(const TriangleCorners& triangle, double limit) const {
+    struct Entry {
+        std::uint32_t node;
+        double squared;
+    };
+    Bounds box;
+    for (const Vec3& corner : triangle) box.extend(corner);
+    const auto apart = [&](const Node& node) {
+        return (box.low - node.high).cwiseMax(node.low - box.high).cwiseMax(0.0).squaredNorm();
+    };
+    std::array<Entry, kStack> stack;
+    int size = 0;
+    TrianglePair best{limit, triangle[0], triangle[0]};
+    double squared = limit * limit;
+    stack[static_cast<std::size_t>(size++)] = {0, apart(nodes_[0])};
+    while (size > 0) {
+        const Entry entry = stack[static_cast<std::size_t>(--size)];
+        if (entry.squared >= squared) continue;
+        const Node& node = nodes_[entry.node];
+        if (node.count == 0) {
+            Entry near{node.first, apart(nodes_[node.first])};
+            Entry far{node.first + 1, apart(nodes_[node.first + 1])};
+            if (far.squared < near.squared) std::swap(near, far);
+            if (far.squared < squared) stack[static_cast<std::size_t>(size++)] = far;
+            if (near.squared < squared) stack[static_cast<std::size_t>(size++)] = near;
+            continue;
+        }
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+            const TrianglePair pair =
+                closestPair(triangle, {corners_[i].a, corners_[i].b, corners_[i].c}, best.distance);
+            if (!(pair.distance < best.distance)) continue;
+            best = pair;
+            squared = pair.distance * pair.distance;
+        }
+    }
+    return best;
 }
 
 double TriangleTree::windingNumber(const Vec3& p) const {

@@ -6,6 +6,7 @@
 
 #include "core/base/types.h"
 #include "core/model/mesh.h"
+#include "core/model/triangle_distance.h"
 
 namespace passung::model {
 
@@ -13,7 +14,8 @@ namespace passung::model {
 struct ClosestPoint {
     double distance = 0.0;  // [m], unsigned
     Vec3 point = Vec3::Zero();
-    std::uint32_t triangle = 0;
+    std::uint32_t triangle = 0;  // in the mesh
+    std::uint32_t place = 0;     // in the tree
 };
 
 /// Bounding volume hierarchy over the triangles of a mesh: exact distance and winding number.
@@ -35,6 +37,15 @@ public:
 
     /// All triangles in tree order.
     const std::vector<Corners>& corners() const { return corners_; }
+
+    /// The nearest points of `triangle` (first) and the mesh (second), if they are nearer than `limit`; else a distance
+    /// of `limit`.
+    TrianglePair closestTo(const TriangleCorners& triangle, double limit) const;
+
+    /// The corners of a triangle that closest() names.
+    TriangleCorners cornersOf(const ClosestPoint& point) const {
+        return {corners_[point.place].a, corners_[point.place].b, corners_[point.place].c};
+    }
 
     /// Generalised winding number (Jacobson 2013) with dipoles for far clusters (Barill 2018): about 1 inside, 0
     /// outside.

@@ -1,6 +1,7 @@
 #include "core/query/part_query.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/tick/penalty.h"
 
@@ -11,16 +12,25 @@ namespace {
 std::size_t nodesOf(const model::Part& part) { return part.shell ? part.shell->nodes().size() : 0; }
 std::size_t pointsOf(const model::Part& part) { return part.shell ? part.shell->points().size() : 0; }
 
+/// How far the triangles of a part may lie from the surface that was given [m]: chords of a shape; a mesh file is read
+/// in single precision.
+double surfaceError(const model::Part& part) {
+    if (part.shape) return part.chord_error;
+    const model::Bounds bounds = model::boundsOf(part.mesh);
+    return 0x1p-24 * bounds.low.cwiseAbs().cwiseMax(bounds.high.cwiseAbs()).norm();
+}
+
 /// Sets the error bound from the interval and the distance reported.
 void boundError(PartQueryResult& result) {
     const double above = result.beyond_proximity ? 0.0 : result.upper_bound - result.signed_distance;
     result.error_bound = std::max({0.0, above, result.signed_distance - result.lower_bound});
 }
 
-/// The interval that one direction proves, from what the traversal found; see PartQuery.
+/// The interval that one direction proves, from what the traversal found; see PartQuery. `meshes`: what the meshes may
+/// be off.
 void proveInterval(const model::Part& field, const model::Part& shell, const tick::QueryAnswer& answer,
-                   model::FieldMode mode, PartQueryResult& result) {
-    const double chords = shell.chord_error + shell.shell->rounding() + field.chord_error;
+                   model::FieldMode mode, double meshes, PartQueryResult& result) {
+    const double chords = meshes + shell.shell->rounding();
     const double offset = field.field->sheetOffset();
     // Branches were pruned where nothing lies below answer.phi, which another mode may have read below the points' own
     // lower bounds.
@@ -33,6 +43,22 @@ void proveInterval(const model::Part& field, const model::Part& shell, const tic
         result.upper_bound = answer.phi + error + offset + chords;
         result.field_error_bound = std::max(result.field_error_bound, error);
     }
+    boundError(result);
+}
+
+/// Narrows the interval by the exact geometry; see PartQuery.
+void refine(const model::Part& shell, const SurfaceSearch& search, const Pose& X_FS, double tolerance, int most_steps,
+            double chords, PartQueryResult& result) {
+    // What the chords take of the tolerance is lost, but not all of it can be won back by searching on.
+    const double left = std::max(tolerance - chords, 0.1 * tolerance);
+    const SurfaceBounds found =
+        search.bounds(X_FS, X_FS.inverse() * result.closest, shell.shell->rounding(), left, most_steps);
+    result.nodes_visited += found.steps;
+    result.signed_distance = found.upper;
+    result.closest = found.point;
+    if (found.normal.squaredNorm() > 0.5) result.normal = found.normal;
+    result.lower_bound = std::max(result.lower_bound, found.lower - chords);
+    result.upper_bound = std::min(result.upper_bound, found.upper + chords);
     boundError(result);
 }
 
@@ -55,10 +81,16 @@ PartQuery::PartQuery(const model::Part& field, const model::Part& shell, const P
     : field_(field),
       shell_(shell),
       request_(request),
+      surface_error_(surfaceError(field) + surfaceError(shell)),
       workspace_(std::max(nodesOf(field), nodesOf(shell))),
-      manifold_(std::max(nodesOf(field) + pointsOf(field), nodesOf(shell) + pointsOf(shell))) {}
+      manifold_(std::max(nodesOf(field) + pointsOf(field), nodesOf(shell) + pointsOf(shell))) {
+    if (!std::isfinite(request.tolerance)) return;
+    if (field.field->boundProven()) search_.emplace(field, shell);
+    if (request.two_way && shell.field->boundProven()) search_back_.emplace(shell, field);
+}
 
-PartQueryResult PartQuery::oneWay(const model::Part& field, const model::Part& shell, const Pose& X_FS) {
+PartQueryResult PartQuery::oneWay(const model::Part& field, const model::Part& shell,
+                                  const std::optional<SurfaceSearch>& search, const Pose& X_FS) {
     tick::QueryRequest request{.search_below = request_.proximity,
                                .max_nodes = request_.max_nodes,
                                .mode = request_.mode,
@@ -85,7 +117,12 @@ PartQueryResult PartQuery::oneWay(const model::Part& field, const model::Part& s
         result.closest = answer.closest_F;
         result.normal = answer.normal_W;
     }
-    proveInterval(field, shell, answer, request_.mode, result);
+    proveInterval(field, shell, answer, request_.mode, surface_error_, result);
+    const bool free = request_.max_nodes == 0 || result.quality_overruled_budget;
+    const int steps = free ? kMostRefinements : std::min(kMostRefinements, request_.max_nodes - result.nodes_visited);
+    if (search && answer.found && steps >= SurfaceSearch::kLeastSteps && result.error_bound > request_.tolerance)
+        refine(shell, *search, X_FS, request_.tolerance, steps, surface_error_, result);
+    result.budget_reached = result.budget_reached || (!free && result.nodes_visited >= request_.max_nodes);
 
     model::ContactSpec contact;
     contact.variant = model::PenaltyVariant::AreaWeighted;
@@ -97,10 +134,10 @@ PartQueryResult PartQuery::oneWay(const model::Part& field, const model::Part& s
 }
 
 PartQueryResult PartQuery::at(const Pose& X_FS) {
-    PartQueryResult result = oneWay(field_, shell_, X_FS);
+    PartQueryResult result = oneWay(field_, shell_, search_, X_FS);
     if (!request_.two_way) return result;
     const Pose X_SF = X_FS.inverse();
-    const PartQueryResult back = oneWay(shell_, field_, X_SF);
+    const PartQueryResult back = oneWay(shell_, field_, search_back_, X_SF);
     // `back` is the wrench on FIELD about FIELD's origin in SHELL's axes: turn, move to SHELL's origin, change the
     // sign.
     const Vec3 force = -(X_FS.q * back.wrench.force);

@@ -1,30 +1,37 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 
 #include "core/model/part.h"
+#include "core/query/surface_search.h"
 #include "core/tick/contact_query.h"
 
 namespace passung::query {
+
+/// Steps of one refinement at most: some milliseconds, which only large areas at equal depth take.
+inline constexpr int kMostRefinements = 10000;
 
 struct PartQueryRequest {
     double proximity = std::numeric_limits<double>::infinity();  // distances beyond are not searched [m], ≥ 0
     double area_stiffness = 1e9;                                 // κ of the wrench [N/m³]
     int max_nodes = 0;                                           // budget; 0 = none
     double quality = 0.0;                                        // floor in [0, 1]; wins over the budget
-    bool two_way = false;                                        // each part's points against the other's field
+    double tolerance = 20e-6;  // the closest pair is refined until error_bound ≤ this [m]; infinite: not at all
+    bool two_way = false;      // each part's points against the other's field
     model::FieldMode mode = model::FieldMode::Trilinear;
 };
 
 /// Distance, depth and penalty wrench of two parts at one pose, with what is proven about them. FIELD's file frame.
 /// "The truth" is m_1, or min(m_1, m_2) if two-way; see PartQuery.
 struct PartQueryResult {
-    double signed_distance = 0.0;  // of the points that were tested [m]; negative: depth of the deepest one
+    double signed_distance = 0.0;  // of the closest or deepest point found [m]; negative: its depth
     double lower_bound = 0.0;      // the truth is in [lower_bound, upper_bound], proven [m]
     double upper_bound = 0.0;      // [m]; infinite beyond the proximity
     double error_bound = 0.0;      // proven: |signed_distance - truth| ≤ this; beyond the proximity, see there [m]
     double field_error_bound = 0.0;  // proven: |smallest φ read - smallest true φ| ≤ this over the shell's points, and
-                                     // |φ read - true φ| ≤ this at the point that decides; two-way: both ways [m]
+                                     // |φ read - true φ| ≤ this at the point of the shell where refinement begins;
+                                     // two-way: both ways [m]
     double quality = 1.0;           // share of the shell's area pruned with proof or evaluated
     bool beyond_proximity = false;  // no point is nearer than the proximity, which is then `signed_distance`: the
                                     // truth is ≥ signed_distance - error_bound, and there is no closest point
@@ -57,6 +64,12 @@ struct PartQueryResult {
 ///   (The field of a shape is sampled from its closed form; h of FIELD enters because far away the field bounds φ_A by
 ///   the box of its mesh.)
 ///
+/// Refinement. From the shell's best point on, both meshes' triangles decide (surface_search.h): that proves an
+/// interval of its own for the meshes, wider by their chord errors for the surfaces, and the two intervals'
+/// intersection holds. It ends at the tolerance, at the budget (what the traversal left of it) or after
+/// kMostRefinements steps, and is left out where the field has holes, beyond the proximity, and where the budget is
+/// spent.
+///
 /// What two ways prove. min(m_1, m_2) lies in [min(lo_1, lo_2), min(hi_1, hi_2)]; and in the smaller
 /// [max(lo_1, lo_2), min(hi_1, hi_2)] if lo_1 + lo_2 > 0, because then m_1 = m_2:
 ///   Say lo_1 > 0 is the larger. ∂B lies outside A, m_1 = distance of ∂A and ∂B ≥ lo_1. If any point of ∂A were inside
@@ -71,13 +84,16 @@ public:
     PartQueryResult at(const Pose& X_FS);
 
 private:
-    PartQueryResult oneWay(const model::Part& field, const model::Part& shell, const Pose& X_FS);
+    PartQueryResult oneWay(const model::Part& field, const model::Part& shell,
+                           const std::optional<SurfaceSearch>& search, const Pose& X_FS);
 
     const model::Part& field_;
     const model::Part& shell_;
     PartQueryRequest request_;
+    double surface_error_;  // of both meshes [m]
     tick::QueryWorkspace workspace_;
     tick::ContactManifold manifold_;
+    std::optional<SurfaceSearch> search_, search_back_;  // SHELL's surface against FIELD's, and the other way round
 };
 
 }  // namespace passung::query

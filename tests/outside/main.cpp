@@ -35,6 +35,5 @@ int main() {
     // The same as one call, with proven bounds.
     const query::PartQueryResult result = query::PartQuery(*field_part, *shell_part, {}).at(X_WF.inverse() * X_WS);
     std::printf("signed distance %.1f um, proven to %.1f um\n", 1e6 * result.signed_distance, 1e6 * result.error_bound);
-    return result.signed_distance == answer.phi && std::abs(result.signed_distance + depth) <= result.error_bound ? 0
-                                                                                                                  : 1;
+    return std::abs(result.signed_distance + depth) <= result.error_bound && result.error_bound <= 30e-6 ? 0 : 1;
 }

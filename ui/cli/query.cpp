@@ -123,6 +123,7 @@ int query(const QueryOptions& options) {
     if (options.proximity_mm) request.proximity = *options.proximity_mm * 1e-3;
     request.max_nodes = options.budget_nodes;
     request.quality = options.quality;
+    request.tolerance = options.tolerance_um * 1e-6;
     request.two_way = options.two_way;
     request.mode = options.mode == "linear" ? model::FieldMode::Linear : model::FieldMode::Trilinear;
     query::PartQuery part_query(*field, *shell, request);

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/base/types.h"
+#include "core/model/part.h"
+#include "core/model/triangle_tree.h"
+
+namespace passung::query {
+
+/// What is proven about  m = min φ_A over the triangles of B,  A and B two meshes; A's frame.
+struct SurfaceBounds {
+    double lower = 0.0, upper = 0.0;  // m lies between them [m]
+    Vec3 point = Vec3::Zero();        // of B's surface, where φ_A is `upper`
+    Vec3 normal = Vec3::Zero();       // unit, out of A there; zero on the surface itself
+    int steps = 0;                    // spheres and pieces looked at
+};
+
+/// Exact distances and depths of one mesh against another, by branch and bound over the triangles of B; with the field
+/// of A for what is far, with the triangles of A for what is near. May allocate.
+///   A sphere around triangles (centre c, radius r) holds no point with  φ_A < φ_low(c) - r - h,  φ_low the field's
+/// lower bound and h the chord error of A's mesh against the shape that the field was sampled from.
+///   A triangle T of B that does not meet A's surface lies on one side of it. Outside, the least φ_A on it is its
+/// distance from A's triangles, which is exact at once.
+///   Inside or across, depth is sought: any triangle t of A is at least as far from a point as A's surface is, and the
+/// distance from t is convex, so that no point of T is deeper than the farthest of its corners from t. T is quartered
+/// until that and the depth of a known point agree; next to a flat face they agree to second order.
+class SurfaceSearch {
+public:
+    static constexpr int kLeastSteps = 32;  // fewer lead nowhere
+
+    /// @pre `a.field` exists, bounds proven; both outlive this.
+    SurfaceSearch(const model::Part& a, const model::Part& b);
+
+    /// `p_AB`: a point of B's surface, up to `rounding` [m], at which to begin (B's frame). Ends where upper - lower ≤
+    /// `tolerance` [m] or before there could be more than `most_steps`; the bounds hold either way.
+    SurfaceBounds bounds(const Pose& X_AB, const Vec3& p_BP, double rounding, double tolerance, int most_steps) const;
+
+private:
+    struct Node {
+        Vec3 centre;  // sphere around the triangles below; B's frame
+        double radius;
+        std::uint32_t first, count;  // triangles if count > 0, else children first and first + 1
+    };
+    struct Search;
+    struct Range;
+    void buildNodes();
+
+    const model::Part& a_;
+    const model::Part& b_;
+    model::TriangleTree triangles_;     // of A
+    std::vector<Node> nodes_;           // over B
+    std::vector<std::uint32_t> order_;  // triangles of B as nodes hold them
+};
+
+}  // namespace passung::query
