@@ -131,6 +131,35 @@ TEST(PartQuery, TheBoundHoldsAndIsNoLargerThanSpacingAndCellAllow) {
     EXPECT_GT(near, 30);
 }
 
+TEST(PartQuery, TheBoundHoldsUnderEveryBudget) {
+    // Truth: closed form of two spheres, at poses where they overlap, touch and are apart. A budget leaves more to be
+    // proven, never something wrong; the mean bound falls with the budget.
+    const model::Part a = build(model::Sphere{0.03}), b = build(model::Sphere{0.02}, 0.5e-3);
+    double last_mean = 1e300;
+    for (const int budget : {8, 20, 50, 150, 500, 2000}) {
+        query::PartQueryRequest request;
+        request.max_nodes = budget;
+        query::PartQuery query(a, b, request);
+        Random random(5);
+        double mean = 0.0;
+        for (int i = 0; i < 150; ++i) {
+            Pose X_FS = somewhere(0.0, random);
+            const Vec3 way = Vec3(random.normal(), random.normal(), random.normal()).normalized();
+            X_FS.p = (0.025 + random.uniform(-3e-3, 3e-3)) * way;
+            const double truth = X_FS.p.norm() - 0.025;
+            const auto r = query.at(X_FS);
+            ASSERT_LE(r.nodes_visited, budget);
+            ASSERT_LE(r.lower_bound, truth) << budget;
+            ASSERT_GE(r.upper_bound, truth) << budget;
+            ASSERT_LE(std::abs(r.signed_distance - truth), r.error_bound) << budget;
+            mean += r.error_bound / 150.0;
+        }
+        EXPECT_LT(mean, last_mean) << budget;
+        last_mean = mean;
+    }
+    EXPECT_LT(last_mean, 100e-6);
+}
+
 TEST(PartQuery, BeyondTheProximityTheTruthIsNotBelowWhatIsSaid) {
     // Truth: closed form of two spheres. 10 mm is below all true distances; two-way, one found direction is enough.
     const model::Part a = build(model::Sphere{0.03}), b = build(model::Sphere{0.02});
