@@ -76,10 +76,14 @@ std::vector<Triangle> fanOf(const Loop& loop, std::vector<Vec3>& vertices) {
     return fan;
 }
 
-/// True if the winding number is about ½ on both sides of most of the fan's area. A fan without area closes a seam that
-/// is open by name only (a vertex on a neighbour's edge).
-bool partsInsideFromOutside(const std::vector<Triangle>& fan, const std::vector<Vec3>& vertices,
-                            const TriangleTree& tree, double facing) {
+enum class Gap {
+    Hole,   // the winding number is about ½ on both sides of most of the fan's area
+    Seam,   // the fan has no area: open by name only (a vertex on a neighbour's edge)
+    Crack,  // no place for a fan
+};
+
+Gap gapOf(const std::vector<Triangle>& fan, const std::vector<Vec3>& vertices, const TriangleTree& tree,
+          double facing) {
     double halfway_area = 0.0, total_area = 0.0;
     for (const Triangle& t : fan) {
         const Vec3 &a = vertices[t[0]], &b = vertices[t[1]], &c = vertices[t[2]];
@@ -96,7 +100,8 @@ bool partsInsideFromOutside(const std::vector<Triangle>& fan, const std::vector<
         total_area += area.norm();
         if (halfway) halfway_area += area.norm();
     }
-    return halfway_area >= 0.5 * total_area;
+    if (!(total_area > 0.0)) return Gap::Seam;
+    return halfway_area >= 0.5 * total_area ? Gap::Hole : Gap::Crack;
 }
 
 }  // namespace
@@ -121,13 +126,14 @@ HoleClosing closeHoles(TriangleMesh& mesh, const std::vector<DirectedEdge>& open
     for (const Loop& loop : simpleLoops(open_edges, mesh.vertices.size())) {
         const std::size_t vertices_before = mesh.vertices.size();
         const std::vector<Triangle> fan = fanOf(loop, mesh.vertices);
-        if (!partsInsideFromOutside(fan, mesh.vertices, tree, facing)) {
+        const Gap gap = gapOf(fan, mesh.vertices, tree, facing);
+        if (gap == Gap::Crack) {
             mesh.vertices.resize(vertices_before);
             result.edges_left += loop.size();
             continue;
         }
         mesh.triangles.insert(mesh.triangles.end(), fan.begin(), fan.end());
-        ++result.holes;
+        ++(gap == Gap::Hole ? result.holes : result.seams);
         result.triangles += fan.size();
     }
     return result;

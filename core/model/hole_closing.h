@@ -21,6 +21,7 @@ double insideBalance(const TriangleMesh& mesh, const TriangleTree& tree);
 
 struct HoleClosing {
     std::size_t holes = 0;       // closed
+    std::size_t seams = 0;       // closed loops without area: a vertex lies on a neighbour's edge
     std::size_t triangles = 0;   // added for that
     std::size_t edges_left = 0;  // open edges of loops that were left
 };

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <numeric>
 #include <string>
 #include <tuple>
@@ -9,7 +10,10 @@
 #include <vector>
 
 #include "core/model/hole_closing.h"
+#include "core/model/mesh_edges.h"
 #include "core/model/mesh_import.h"
+#include "core/model/patch_orientation.h"
+#include "core/model/self_intersection.h"
 #include "core/model/triangle_tree.h"
 
 namespace passung::model {
@@ -20,77 +24,17 @@ namespace {
 /// of three points in a line, far below anything that a part is made of.
 constexpr double kFlat = 1e-12;
 
+constexpr double kNear = 1e-6;  // of the mesh's size: vertices of open edges closer than this are one
+
+constexpr double kUnusuallyLong = 10.0, kUnusuallyShort = 1e-4;  // [m]
+
 constexpr double kInsideBalance = 0.5;  // halfway between a sheet (0) and a solid (1)
 
 constexpr std::uint32_t kNone = ~0u;
 
-/// One side of one triangle.
-struct HalfEdge {
-    std::uint32_t low, high, triangle;  // low < high: the vertices
-    bool forward;                       // the triangle runs from low to high
-    bool sameEdge(const HalfEdge& other) const { return low == other.low && high == other.high; }
-};
-
-/// Sorted, so that the uses of one edge stand together.
-std::vector<HalfEdge> halfEdges(const std::vector<Triangle>& triangles) {
-    std::vector<HalfEdge> edges;
-    edges.reserve(3 * triangles.size());
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t from = triangles[i][k], to = triangles[i][(k + 1) % 3];
-            edges.push_back({std::min(from, to), std::max(from, to), static_cast<std::uint32_t>(i), from < to});
-        }
-    }
-    std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
-        return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
-    });
-    return edges;
-}
-
-/// Calls use(first, count) for each edge with the half edges that lie on it.
-template <class Use>
-void forEachEdge(const std::vector<HalfEdge>& edges, Use use) {
-    for (std::size_t i = 0; i < edges.size();) {
-        std::size_t end = i + 1;
-        while (end < edges.size() && edges[end].sameEdge(edges[i])) ++end;
-        use(&edges[i], end - i);
-        i = end;
-    }
-}
-
-/// Union-find over 0 … n-1.
-class Groups {
-public:
-    explicit Groups(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-    std::uint32_t find(std::uint32_t i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void join(std::uint32_t a, std::uint32_t b) {
-        a = find(a);
-        b = find(b);
-        if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-private:
-    std::vector<std::uint32_t> parent_;
-};
-
-/// Joins vertices at equal positions and drops unused ones; vertices keep the order in which triangles name them.
-/// Returns how many used vertices were joined to another.
-std::size_t weld(TriangleMesh& mesh) {
-    std::vector<std::uint32_t> order(mesh.vertices.size());
-    std::iota(order.begin(), order.end(), 0u);
-    const auto key = [&](std::uint32_t i) {
-        const Vec3& v = mesh.vertices[i];
-        return std::tuple(v.x(), v.y(), v.z());
-    };
-    std::sort(order.begin(), order.end(),
-              [&](std::uint32_t a, std::uint32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
-    std::vector<std::uint32_t> first_at(mesh.vertices.size());
-    for (std::size_t k = 0; k < order.size(); ++k)
-        first_at[order[k]] = k > 0 && key(order[k]) == key(order[k - 1]) ? first_at[order[k - 1]] : order[k];
-
+/// Lets triangles name `first_at[v]` in place of v and drops unused vertices; vertices keep the order in which
+/// triangles name them. Returns how many used vertices were joined to another.
+std::size_t join(TriangleMesh& mesh, const std::vector<std::uint32_t>& first_at) {
     std::vector<std::uint32_t> renamed(mesh.vertices.size(), kNone);
     std::vector<char> used(mesh.vertices.size(), 0);
     std::vector<Vec3> kept;
@@ -111,6 +55,48 @@ std::size_t weld(TriangleMesh& mesh) {
     return joined;
 }
 
+/// Joins vertices at equal positions.
+std::size_t weld(TriangleMesh& mesh) {
+    std::vector<std::uint32_t> order(mesh.vertices.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto key = [&](std::uint32_t i) {
+        const Vec3& v = mesh.vertices[i];
+        return std::tuple(v.x(), v.y(), v.z());
+    };
+    std::sort(order.begin(), order.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
+    std::vector<std::uint32_t> first_at(mesh.vertices.size());
+    for (std::size_t k = 0; k < order.size(); ++k)
+        first_at[order[k]] = k > 0 && key(order[k]) == key(order[k - 1]) ? first_at[order[k - 1]] : order[k];
+    return join(mesh, first_at);
+}
+
+/// Joins vertices of open edges that are nearly at one place, as rounding leaves them when every triangle is written on
+/// its own: closer than kNear of the mesh's size, to the first of them along x, so that nothing creeps on.
+std::size_t weldNear(TriangleMesh& mesh) {
+    std::vector<std::uint32_t> border;
+    forEachEdge(halfEdges(mesh.triangles), [&](const HalfEdge* use, std::size_t count) {
+        if (count != 1) return;
+        border.push_back(use->low);
+        border.push_back(use->high);
+    });
+    const auto key = [&](std::uint32_t i) { return std::pair(mesh.vertices[i].x(), i); };
+    std::sort(border.begin(), border.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+    border.erase(std::unique(border.begin(), border.end()), border.end());
+    if (border.empty()) return 0;
+    const double reach = kNear * boundsOf(mesh).size().norm();
+    std::vector<std::uint32_t> first_at(mesh.vertices.size());
+    std::iota(first_at.begin(), first_at.end(), 0u);
+    for (std::size_t k = 0; k < border.size(); ++k) {
+        if (first_at[border[k]] != border[k]) continue;
+        const Vec3& here = mesh.vertices[border[k]];
+        for (std::size_t i = k + 1; i < border.size() && mesh.vertices[border[i]].x() - here.x() <= reach; ++i)
+            if (first_at[border[i]] == border[i] && (mesh.vertices[border[i]] - here).norm() <= reach)
+                first_at[border[i]] = border[k];
+    }
+    return join(mesh, first_at);
+}
+
 bool isFlat(const TriangleMesh& mesh, const Triangle& t) {
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return true;
     const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
@@ -119,7 +105,7 @@ bool isFlat(const TriangleMesh& mesh, const Triangle& t) {
 }
 
 void dropFlatTriangles(TriangleMesh& mesh, MeshReport& report) {
-    report.degenerate_triangles = std::erase_if(mesh.triangles, [&](const Triangle& t) { return isFlat(mesh, t); });
+    report.degenerate_triangles += std::erase_if(mesh.triangles, [&](const Triangle& t) { return isFlat(mesh, t); });
 }
 
 void dropDuplicates(TriangleMesh& mesh, MeshReport& report) {
@@ -135,7 +121,7 @@ void dropDuplicates(TriangleMesh& mesh, MeshReport& report) {
     std::vector<Triangle> kept;
     for (std::size_t i = 0; i < drop.size(); ++i)
         if (drop[i] == 0) kept.push_back(mesh.triangles[i]);
-    report.duplicate_triangles = mesh.triangles.size() - kept.size();
+    report.duplicate_triangles += mesh.triangles.size() - kept.size();
     mesh.triangles = std::move(kept);
 }
 
@@ -259,10 +245,24 @@ std::string counted(std::size_t n, const std::string& one, const std::string& ma
     return std::to_string(n) + " " + (n == 1 ? one : many);
 }
 
+/// Says that a part is so large or so small that its unit may not be what its author meant.
+void noteUnusualSize(MeshReport& r) {
+    const double longest = r.size.maxCoeff();
+    if (longest > kUnusuallyLong || (longest > 0.0 && longest < kUnusuallyShort)) {
+        std::array<char, 64> text{};
+        std::snprintf(text.data(), text.size(), "The part is %.3g mm long: check its unit.", 1e3 * longest);
+        r.notes.emplace_back(text.data());
+    }
+}
+
+/// Each defect and what was done about it.
 void writeNotes(MeshReport& r) {
     const auto note = [&](std::size_t n, const std::string& one, const std::string& many) {
         if (n > 0) r.notes.push_back(counted(n, one, many));
     };
+    noteUnusualSize(r);
+    note(r.joined_vertices, "vertex of an open edge lay beside another, nearer than a millionth of the size: joined.",
+         "vertices of open edges lay beside others, nearer than a millionth of the size: joined.");
     note(r.degenerate_triangles, "triangle had no area and was dropped.", "triangles had no area and were dropped.");
     note(r.duplicate_triangles, "triangle repeated the corners of another and was dropped.",
          "triangles repeated the corners of another and were dropped.");
@@ -270,15 +270,33 @@ void writeNotes(MeshReport& r) {
          "edges had neighbours of opposite orientation.");
     note(r.turned_triangles, "triangle was turned to agree with its neighbours.",
          "triangles were turned to agree with their neighbours.");
+    if (r.turned_patches > 0)
+        r.notes.push_back(counted(r.turned_patches, "piece", "pieces") +
+                          " without a common edge faced against the rest, by the winding number: " +
+                          counted(r.turned_patch_triangles, "triangle was turned.", "triangles were turned."));
     if (r.boundary_edges > 0)
         r.notes.push_back("The surface is open: " + counted(r.boundary_edges, "edge", "edges") +
                           " of one triangle only, in " + counted(r.holes, "chain", "chains") + ".");
     note(r.non_manifold_edges, "edge belongs to three or more triangles; left as it is.",
          "edges belong to three or more triangles; left as they are.");
     if (r.turned_inside_out) r.notes.push_back("The surface was inside out: all triangles were turned.");
-    if (r.closed_holes > 0)
-        r.notes.push_back(counted(r.closed_holes, "hole was", "holes were") + " closed with " +
-                          counted(r.closing_triangles, "triangle.", "triangles."));
+    if (r.closed_holes > 0) r.notes.push_back(counted(r.closed_holes, "hole was closed.", "holes were closed."));
+    note(r.closed_seams, "seam, where a vertex lies on the edge of a neighbour, was closed.",
+         "seams, where vertices lie on the edges of neighbours, were closed.");
+    note(r.closing_triangles, "triangle was added for that.", "triangles were added for that.");
+    note(r.cavities, "shell inside the solid faces inwards: a cavity.",
+         "shells inside a solid face inwards: cavities.");
+    note(r.nested_solids,
+         "shell inside the solid faces outwards too: solid within solid, no cavity; its faces stay and are felt from "
+         "neither side.",
+         "shells inside a solid face outwards too: solid within solid, no cavities; their faces stay and are felt from "
+         "neither side.");
+    note(r.crossing_triangles,
+         "triangle passes through another; left: inside is what any piece encloses, and inside of it depth counts to "
+         "the "
+         "nearest face of any piece.",
+         "triangles pass through each other; left: inside is what any piece encloses, and inside of it depth counts to "
+         "the nearest face of any piece.");
     if (r.kind == SurfaceKind::HoledSolid)
         r.notes.push_back(counted(r.open_edges_left, "open edge was", "open edges were") +
                           " left: the winding number decides what is inside, and no error bound of a distance field is "
@@ -302,6 +320,7 @@ void settleInside(TriangleMesh& mesh, std::vector<DirectedEdge> open, const Boun
         if (balance < 0.0) turnAll(mesh, open, report);
         const HoleClosing closing = closeHoles(mesh, open, tree, balance < 0.0 ? -1.0 : 1.0);
         report.closed_holes = closing.holes;
+        report.closed_seams = closing.seams;
         report.closing_triangles = closing.triangles;
         report.open_edges_left = closing.edges_left;
         report.kind = closing.edges_left == 0 ? SurfaceKind::Solid : SurfaceKind::HoledSolid;
@@ -318,6 +337,12 @@ ImportedMesh repairMesh(TriangleMesh mesh) {
     dropFlatTriangles(mesh, report);
     dropDuplicates(mesh, report);
     weld(mesh);  // vertices of dropped triangles only
+    report.joined_vertices = weldNear(mesh);
+    if (report.joined_vertices > 0) {
+        dropFlatTriangles(mesh, report);
+        dropDuplicates(mesh, report);
+        weld(mesh);
+    }
 
     std::vector<HalfEdge> edges = halfEdges(mesh.triangles);
     countEdges(mesh, edges, report);
@@ -325,6 +350,16 @@ ImportedMesh repairMesh(TriangleMesh mesh) {
         turnQuarrellingTriangles(mesh, edges, report);
         edges = halfEdges(mesh.triangles);
     }
+    if (const auto patches = patchesOf(mesh, edges); patches.size() > 1) {
+        const PatchOrientation orientation = orientPatches(mesh, patches);
+        report.turned_patches = orientation.turned_patches;
+        report.turned_patch_triangles = orientation.turned_triangles;
+        report.cavities = orientation.cavities;
+        report.nested_solids = orientation.nested_solids;
+        report.turned_inside_out = orientation.turned_all;
+        if (orientation.turned_all || orientation.turned_patches > 0) edges = halfEdges(mesh.triangles);
+    }
+    report.crossing_triangles = crossingTriangles(mesh);
     report.watertight = isWatertight(edges);
     const Bounds bounds = boundsOf(mesh);
     report.area = surfaceArea(mesh);

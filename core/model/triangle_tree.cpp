@@ -355,4 +355,29 @@ double TriangleTree::windingNumber(const Vec3& p) const {
     return (2.0 * near_sum + far_sum) / (4.0 * std::numbers::pi);
 }
 
+void TriangleTree::collectWithin(const Bounds& box, std::size_t most, std::vector<std::uint32_t>& triangles) const {
+    const auto meets = [&](const Vec3& low, const Vec3& high) {
+        return (low.array() <= box.high.array()).all() && (high.array() >= box.low.array()).all();
+    };
+    triangles.clear();
+    std::array<std::uint32_t, kStack> stack;
+    int size = 0;
+    stack[static_cast<std::size_t>(size++)] = 0;
+    while (size > 0) {
+        const Node& node = nodes_[stack[static_cast<std::size_t>(--size)]];
+        if (!meets(node.low, node.high)) continue;
+        if (node.count == 0) {
+            stack[static_cast<std::size_t>(size++)] = node.first + 1;
+            stack[static_cast<std::size_t>(size++)] = node.first;
+            continue;
+        }
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+            const Corners& t = corners_[i];
+            if (!meets(t.a.cwiseMin(t.b).cwiseMin(t.c), t.a.cwiseMax(t.b).cwiseMax(t.c))) continue;
+            if (triangles.size() == most) return;
+            triangles.push_back(original_[i]);
+        }
+    }
+}
+
 }  // namespace passung::model

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -52,6 +53,9 @@ public:
     double windingNumber(const Vec3& p) const;
 
     bool inside(const Vec3& p) const { return windingNumber(p) > 0.5; }
+
+    /// The triangles whose boxes meet `box`, in the order of the tree, the first `most` of them, into `triangles`.
+    void collectWithin(const Bounds& box, std::size_t most, std::vector<std::uint32_t>& triangles) const;
 
 private:
     struct Node {

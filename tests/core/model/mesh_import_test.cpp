@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/random.h"
 #include "core/model/shape.h"
 #include "tests/support/broken_mesh.h"
 #include "tests/support/brute_force_mesh.h"
@@ -265,9 +266,10 @@ TEST_F(MeshImport, ReportsAHole) {
     EXPECT_EQ(result->report.holes, 1u);
     EXPECT_EQ(result->report.boundary_edges, 3u);
     EXPECT_EQ(result->report.triangles, 11u);
-    ASSERT_EQ(result->report.notes.size(), 2u);
+    ASSERT_EQ(result->report.notes.size(), 3u);
     EXPECT_NE(result->report.notes[0].find("open: 3 edges"), std::string::npos) << result->report.notes[0];
-    EXPECT_EQ(result->report.notes[1], "1 hole was closed with 1 triangle.");
+    EXPECT_EQ(result->report.notes[1], "1 hole was closed.");
+    EXPECT_EQ(result->report.notes[2], "1 triangle was added for that.");
     EXPECT_EQ(result->mesh.triangles.size(), 12u);
     EXPECT_NEAR(result->report.volume, 2.4e-5, 1e-10);
 }
@@ -412,6 +414,35 @@ TEST(MeshRepair, PutsAMangledMeshTogetherAgain) {
     EXPECT_NEAR(mended.report.volume, test::volume(sound), 1e-15);
     const test::EdgeCount edges = test::countEdges(mended.mesh);
     EXPECT_EQ(edges.open + edges.crowded, 0u);
+}
+
+TEST(MeshRepair, JoinsVerticesThatOnlyRoundingParts) {
+    // Truth: closed form. Every triangle with corners of its own, rounded apart by up to 1e-7 of the size: the box
+    // comes back, its volume off by no more than that.
+    TriangleMesh mesh = test::unshared(boxMesh());
+    Random random(3);
+    const double apart = 1e-7 * kBox.height;
+    for (Vec3& v : mesh.vertices) v += apart * Vec3(random.uniform(), random.uniform(), random.uniform());
+    const ImportedMesh repaired = repairMesh(mesh);
+    EXPECT_EQ(repaired.report.joined_vertices, mesh.vertices.size() - 8);
+    EXPECT_EQ(repaired.report.kind, SurfaceKind::Solid);
+    EXPECT_TRUE(repaired.report.watertight);
+    EXPECT_NEAR(repaired.report.volume, 2.4e-5, 2.4e-5 * 1e-5);
+    // A gap of a thousandth is a gap.
+    for (Vec3& v : mesh.vertices) v += 1e-3 * kBox.height * Vec3(random.uniform(), random.uniform(), random.uniform());
+    EXPECT_EQ(repairMesh(mesh).report.joined_vertices, 0u);
+}
+
+TEST(MeshRepair, AsksForTheUnitOfPartsOfUnusualSize) {
+    // Truth: closed form. 40 mm as metres are 40 m; as micrometres they are 0.04 mm.
+    for (const auto& [scale, words] : {std::pair{1e3, "4e+04 mm long"}, {1e-3, "0.04 mm long"}}) {
+        TriangleMesh mesh = boxMesh();
+        for (Vec3& v : mesh.vertices) v *= scale;
+        const MeshReport report = repairMesh(mesh).report;
+        ASSERT_EQ(report.notes.size(), 1u);
+        EXPECT_NE(report.notes[0].find(words), std::string::npos) << report.notes[0];
+        EXPECT_EQ(report.kind, SurfaceKind::Solid);
+    }
 }
 
 TEST(MeshRepair, SurvivesASurfaceWithOneSide) {
