@@ -9,15 +9,22 @@
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <cmath>
+#include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <optional>
 #include <string_view>
 #include <utility>
 
+#include "core/model/mesh_formats.h"
+
 namespace passung::model {
 
 namespace {
+
+constexpr std::uintmax_t kMostBytes = std::uintmax_t{4} << 30;
+constexpr double kFarthest = 1e5;  // from the origin [m]
 
 Error fileError(const std::string& path, const std::string& message) {
     Error error;
@@ -100,8 +107,7 @@ Eigen::Matrix4d toMatrix(const aiMatrix4x4& m) {
 }
 
 /// Appends the triangles of a node and of those below it; false if a vertex is not finite or an index out of range.
-bool appendNode(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& parent, double scale,
-                TriangleMesh& mesh) {
+bool appendNode(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& parent, TriangleMesh& mesh) {
     const Eigen::Matrix4d X = parent * toMatrix(node.mTransformation);
     const bool mirrored = X.topLeftCorner<3, 3>().determinant() < 0.0;
     for (unsigned m = 0; m < node.mNumMeshes; ++m) {
@@ -110,7 +116,7 @@ bool appendNode(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d&
         for (unsigned i = 0; i < part.mNumVertices; ++i) {
             const aiVector3D& v = part.mVertices[i];
             const Eigen::Vector4d p = X * Eigen::Vector4d(v.x, v.y, v.z, 1.0);
-            mesh.vertices.emplace_back(scale * p.head<3>());
+            mesh.vertices.emplace_back(p.head<3>());
             if (!mesh.vertices.back().allFinite()) return false;
         }
         for (unsigned i = 0; i < part.mNumFaces; ++i) {
@@ -127,29 +133,76 @@ bool appendNode(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d&
         }
     }
     for (unsigned i = 0; i < node.mNumChildren; ++i)
-        if (!appendNode(scene, *node.mChildren[i], X, scale, mesh)) return false;
+        if (!appendNode(scene, *node.mChildren[i], X, mesh)) return false;
     return true;
 }
 
-}  // namespace
-
-Result<ImportedMesh> importMesh(const std::string& path, double metres_per_unit) {
-    std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) return fileError(path, "the mesh file does not exist");
-    if (!std::filesystem::is_regular_file(path, ignored) || !std::ifstream(path))
-        return fileError(path, "the mesh file must be a file that may be read");
-    const std::string extension = extensionOf(path);
-    const Result<double> scale = metresPerUnit(path, extension, metres_per_unit);
-    if (!scale) return scale.errors();
-
+/// By assimp: the formats that are more than triangles. They may name other files, hence the path.
+Result<TriangleMesh> readScene(const std::string& path) {
     Assimp::Importer importer;
     const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
     if (scene == nullptr || scene->mRootNode == nullptr)
         return fileError(path, std::string("must be a mesh that can be read: ") + importer.GetErrorString());
     TriangleMesh mesh;
-    if (!appendNode(*scene, *scene->mRootNode, Eigen::Matrix4d::Identity(), *scale, mesh))
+    if (!appendNode(*scene, *scene->mRootNode, Eigen::Matrix4d::Identity(), mesh))
         return fileError(path, "every vertex must be finite and every triangle must name vertices that exist");
+    return mesh;
+}
+
+/// The file, if it is one of at most kMostBytes.
+Result<std::string> readBytes(const std::string& path) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) return fileError(path, "the mesh file does not exist");
+    std::ifstream file(path, std::ios::binary);
+    if (!std::filesystem::is_regular_file(path, ignored) || !file)
+        return fileError(path, "the mesh file must be a file that may be read");
+    const std::uintmax_t size = std::filesystem::file_size(path, ignored);
+    if (size == 0) return fileError(path, "the mesh file is empty");
+    if (size > kMostBytes) return fileError(path, "the mesh file must be smaller than 4 GiB");
+    std::string bytes(static_cast<std::size_t>(size), '\0');
+    if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
+        return fileError(path, "the mesh file must be a file that may be read");
+    return bytes;
+}
+
+/// Metres from now on; no coordinate may be farther than kFarthest.
+Result<Done> toMetres(TriangleMesh& mesh, double metres_per_unit, const std::string& path) {
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        mesh.vertices[i] *= metres_per_unit;
+        const double far = mesh.vertices[i].cwiseAbs().maxCoeff();
+        if (far <= kFarthest) continue;
+        Error error = fileError(path, "coordinates must lie within 100 km of the origin: check the unit");
+        error.key = "vertex " + std::to_string(i);
+        std::array<char, 32> text{};
+        std::snprintf(text.data(), text.size(), "%.3g m", far);
+        error.value = text.data();
+        return error;
+    }
+    return Done{};
+}
+
+}  // namespace
+
+Result<TriangleMesh> readMesh(std::string_view bytes, const std::string& path, const std::string& extension) {
+    if (extension == "stl") return readStl(bytes, path);
+    if (extension == "off") return readOff(bytes, path);
+    if (extension == "obj") return readObj(bytes, path);
+    if (extension == "ply") return readPly(bytes, path);
+    if (extension == "gltf" || extension == "glb" || extension == "3mf") return readScene(path);
+    return fileError(path, "the name of a mesh file must end in .stl, .obj, .ply, .off, .gltf, .glb or .3mf");
+}
+
+Result<ImportedMesh> importMesh(const std::string& path, double metres_per_unit) {
+    const auto bytes = readBytes(path);
+    if (!bytes) return bytes.errors();
+    const std::string extension = extensionOf(path);
+    const Result<double> scale = metresPerUnit(path, extension, metres_per_unit);
+    if (!scale) return scale.errors();
+    auto read = readMesh(*bytes, path, extension);
+    if (!read) return read.errors();
+    TriangleMesh mesh = std::move(*read);
     if (mesh.triangles.empty()) return fileError(path, "the mesh must have triangles");
+    if (auto fits = toMetres(mesh, *scale, path); !fits) return fits.errors();
 
     ImportedMesh result = repairMesh(std::move(mesh));
     if (result.mesh.triangles.empty()) return fileError(path, "the mesh must have triangles with area");

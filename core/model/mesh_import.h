@@ -59,10 +59,11 @@ struct ImportedMesh {
     MeshReport report;
 };
 
-/// Reads a mesh file (STL, OBJ, PLY, OFF, glTF, 3MF … by assimp), all nodes with their transforms, as metres.
-/// `metres_per_unit` (> 0) applies to formats without a unit. glTF is in metres; a 3MF file names its unit, millimetre
-/// if it names none. Polygons are cut into triangles; points and lines are ignored.
-/// Errors: file missing or unreadable, no triangles with area, non-finite vertices.
+/// Reads a mesh file: STL, OBJ, PLY and OFF by ourselves (mesh_formats.h), glTF and 3MF by assimp, all nodes with their
+/// transforms; as metres. `metres_per_unit` (> 0) applies to formats without a unit. glTF is in metres; a 3MF file
+/// names its unit, millimetre if it names none. Polygons are cut into triangles; points and lines are ignored. Errors:
+/// file missing, unreadable, empty, cut off or of another kind; no triangles with area; vertices that are not finite or
+/// farther than 100 km from the origin; faces that name no vertex.
 Result<ImportedMesh> importMesh(const std::string& path, double metres_per_unit);
 
 /// The same checks and repairs for triangles that are already in memory. @pre finite vertices, indices in range.

@@ -104,9 +104,23 @@ TruePose pressedAt(const Truth& truth, const Pose& pose) {
 
 }  // namespace
 
+namespace {
+
+/// Whole part and fraction rounded one after the other, then their sum: the coordinates that the stored poses and their
+/// truth were made for.
+double inSinglePrecision(double value) {
+    const double whole = std::floor(std::abs(value));
+    const float rounded = static_cast<float>(whole) + static_cast<float>(std::abs(value) - whole);
+    return std::copysign(static_cast<double>(rounded), value);
+}
+
+}  // namespace
+
 Result<model::TriangleMesh> loadBunny(const std::string& file) {
     auto imported = model::importMesh(file, 1.0);
     if (!imported) return imported.errors();
+    for (Vec3& v : imported->mesh.vertices)
+        for (double& coordinate : v) coordinate = inSinglePrecision(coordinate);
     model::TriangleMesh mesh = subdivideLoop(subdivideLoop(imported->mesh));
     const model::Bounds bounds = model::boundsOf(mesh);
     const double scale = kBunnySize / bounds.size().maxCoeff();

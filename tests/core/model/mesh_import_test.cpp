@@ -258,6 +258,49 @@ TEST_F(MeshImport, CutsPolygonsIntoTriangles) {
     EXPECT_NEAR(result->report.volume, 1.0, 1e-12);
 }
 
+TEST_F(MeshImport, CutsAConcavePolygonWithinItsBorder) {
+    // Truth: closed form. An L of five unit squares, listed from each of its corners: a fan from most of them would
+    // cover what is outside, and the areas would add up to more.
+    const std::vector<std::string> corners{"0 0", "3 0", "3 1", "1 1", "1 3", "0 3"};
+    for (std::size_t first = 0; first < corners.size(); ++first) {
+        std::string text, face = "f";
+        for (std::size_t k = 0; k < corners.size(); ++k) {
+            text += "v " + corners[(first + k) % corners.size()] + " 0\n";
+            face += " " + std::to_string(k + 1);
+        }
+        const auto result = importMesh(write("l.obj", text + face + "\n"), 1.0);
+        ASSERT_TRUE(result);
+        EXPECT_EQ(result->report.triangles, 4u);
+        EXPECT_NEAR(result->report.area, 5.0, 1e-12) << first;
+    }
+}
+
+TEST_F(MeshImport, ReadsBinaryPlyOfBothByteOrders) {
+    // Truth: closed form. A tetrahedron, written here bit by bit: doubles, colours, faces of 16-bit numbers.
+    for (const bool big : {false, true}) {
+        std::string bytes = std::string("ply\nformat binary_") + (big ? "big" : "little") +
+                            "_endian 1.0\ncomment x\nelement vertex 4\nproperty double x\nproperty double y\n"
+                            "property double z\nproperty uchar red\nelement face 4\n"
+                            "property list uchar ushort vertex_index\nend_header\n";
+        const auto put = [&](std::uint64_t value, int count) {
+            for (int i = 0; i < count; ++i)
+                bytes.push_back(static_cast<char>(value >> (8 * (big ? count - 1 - i : i))));
+        };
+        for (int v = 0; v < 4; ++v) {
+            for (int axis = 1; axis <= 3; ++axis) put(std::bit_cast<std::uint64_t>(v == axis ? 1.0 : 0.0), 8);
+            put(200, 1);
+        }
+        for (const Triangle& t : {Triangle{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}) {
+            put(3, 1);
+            for (const std::uint32_t v : t) put(v, 2);
+        }
+        const auto result = importMesh(write("t.ply", bytes), 1.0);
+        ASSERT_TRUE(result) << toString(result.errors()[0]);
+        EXPECT_TRUE(result->report.watertight);
+        EXPECT_NEAR(result->report.volume, 1.0 / 6.0, 1e-15);
+    }
+}
+
 TEST_F(MeshImport, ReportsAHole) {
     // Truth: closed form. One triangle missing leaves one chain of three edges.
     const auto result = importMesh(write("hole.off", off(test::withHole(boxMesh(), {3}))), 1e-3);
@@ -354,11 +397,11 @@ TEST_F(MeshImport, NamesFileAndReasonWhenItFails) {
     const std::vector<std::pair<std::string, std::string>> cases{
         {folder() + "/absent.stl", "does not exist"},
         {folder() + "/folder.stl", "may be read"},
-        {write("empty.stl", ""), "can be read"},
+        {write("empty.stl", ""), "is empty"},
         {write("noise.obj", "this is no mesh"), ""},
         {write("noise.3mf", "this is no package"), "3MF package"},
         {write("hollow.3mf", test::storedZip({{"readme.txt", "no model"}})), "3MF package"},
-        {write("unknown.xyzzy", "1 2 3"), "can be read"},
+        {write("unknown.xyzzy", "1 2 3"), "must end in .stl"},
         {write("points.ply",
                "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
                "property float z\nend_header\n0 0 0\n"),

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "core/base/result.h"
+
+namespace passung::model {
+
+/// Takes a text apart into lines and the words of a line.
+class TextScanner {
+public:
+    TextScanner(std::string_view text, const std::string& file) : rest_(text), file_(file) {}
+
+    /// Goes to the next line that holds words, `comment` and what follows it cut off (0: there are no comments); false
+    /// at the end of the text.
+    bool nextLine(char comment) {
+        while (!rest_.empty()) {
+            const std::size_t end = rest_.find('\n');
+            words_ = rest_.substr(0, end);
+            rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+            ++line_;
+            if (comment != 0) words_ = words_.substr(0, words_.find(comment));
+            skipSpace();
+            if (!words_.empty()) return true;
+        }
+        words_ = {};
+        return false;
+    }
+
+    /// The next word of the line, empty at its end.
+    std::string_view word() {
+        skipSpace();
+        const std::size_t end = words_.find_first_of(kSpace);
+        const std::string_view word = words_.substr(0, end);
+        words_.remove_prefix(word.size());
+        return word;
+    }
+
+    /// What follows the current line.
+    std::string_view rest() const { return rest_; }
+    bool atLineEnd() {
+        skipSpace();
+        return words_.empty();
+    }
+
+    Error error(const std::string& message, std::string_view value = {}) const {
+        constexpr std::size_t kLongest = 40;  // of what is quoted
+        std::string quoted(value.substr(0, kLongest));
+        for (char& c : quoted)
+            if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) > 0x7e) c = '?';
+        Error error{.message = message, .file = file_, .value = quoted};
+        error.line = line_;
+        error.column = line_ > 0 ? 1 : 0;
+        return error;
+    }
+
+private:
+    static constexpr std::string_view kSpace = " \t\r\v\f";
+    void skipSpace() { words_.remove_prefix(std::min(words_.find_first_not_of(kSpace), words_.size())); }
+
+    std::string_view rest_, words_;
+    std::string file_;
+    int line_ = 0;
+};
+
+/// The whole word as a number of type T; nothing if it is none or out of range.
+template <class T>
+std::optional<T> numberIn(std::string_view word) {
+    if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
+    T value{};
+    const auto [end, failure] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (failure != std::errc() || end != word.data() + word.size()) return std::nullopt;
+    return value;
+}
+
+/// A coordinate: finite, too. A number too small for a double is 0.
+inline std::optional<double> coordinateIn(std::string_view word) {
+    if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
+    double value = 0.0;
+    const auto [end, failure] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (end != word.data() + word.size() || end == word.data()) return std::nullopt;
+    if (failure == std::errc::result_out_of_range) {
+        // Too large or too small: only the latter has a negative exponent or leading zeros.
+        const std::size_t exponent = word.find_first_of("eE");
+        const bool tiny = exponent != std::string_view::npos ? word.substr(exponent + 1, 1) == "-"
+                                                             : word.find_first_not_of("-0.") > word.find('.');
+        return tiny ? std::optional(0.0) : std::nullopt;
+    }
+    if (failure != std::errc() || !std::isfinite(value)) return std::nullopt;
+    return value;
+}
+
+}  // namespace passung::model
