@@ -7,6 +7,29 @@
 
 namespace passung::cli {
 
+namespace {
+
+std::string volume(const model::MeshReport& r) {
+    if (r.kind == model::SurfaceKind::OpenSheet) return "none (an open sheet)";
+    if (r.kind == model::SurfaceKind::HoledSolid) return "not defined (gaps are left)";
+    return fmt::format("{:.6g} mm³{}", r.volume * 1e9, r.watertight ? "" : " (as repaired)");
+}
+
+/// How contact takes the surface.
+std::string inside(const model::MeshReport& r) {
+    switch (r.kind) {
+        case model::SurfaceKind::OpenSheet:
+            return "none: an open sheet, felt on both sides";
+        case model::SurfaceKind::HoledSolid:
+            return "by the winding number: a solid with gaps, without error bounds";
+        case model::SurfaceKind::Solid:
+            break;
+    }
+    return r.watertight ? "a closed solid" : "a closed solid, as repaired";
+}
+
+}  // namespace
+
 int mesh(const MeshOptions& options) {
     const auto spec = partArgument(options.file, options.unit);
     if (!spec) return fail(spec.errors());
@@ -28,17 +51,19 @@ int mesh(const MeshOptions& options) {
     line("vertices", std::to_string(r.vertices));
     line("size", fmt::format("{:.6g} x {:.6g} x {:.6g} mm", r.size.x() * 1e3, r.size.y() * 1e3, r.size.z() * 1e3));
     line("area", fmt::format("{:.6g} mm²", r.area * 1e6));
-    line("volume",
-         r.watertight ? fmt::format("{:.6g} mm³", r.volume * 1e9) : std::string("not defined (not watertight)"));
+    line("volume", volume(r));
+    line("inside", inside(r));
     line("watertight", r.watertight ? "yes" : "no");
     line("shells", std::to_string(r.shells));
     line("holes", std::to_string(r.holes));
     line("boundary edges", std::to_string(r.boundary_edges));
     line("non-manifold edges", std::to_string(r.non_manifold_edges));
     line("inconsistent edges", std::to_string(r.inconsistent_edges));
+    line("crossing triangles", std::to_string(r.crossing_triangles));
     line("degenerate triangles", std::to_string(r.degenerate_triangles));
     line("duplicate triangles", std::to_string(r.duplicate_triangles));
-    for (const std::string& note : r.notes) fmt::print("  - {}\n", note);
+    fmt::print("  {}\n", r.notes.empty() ? "nothing to repair" : "found, and what was done:");
+    for (const std::string& note : r.notes) fmt::print("    - {}\n", note);
     return 0;
 }
 

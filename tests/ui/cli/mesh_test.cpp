@@ -70,6 +70,8 @@ TEST_F(MeshReport, OfAClosedCuboidSaysItsSizeAndThatItIsWatertight) {
     EXPECT_EQ(valueOf(mm, "volume"), "6 mm³");
     EXPECT_EQ(valueOf(mm, "watertight"), "yes");
     EXPECT_EQ(valueOf(mm, "holes"), "0");
+    EXPECT_EQ(valueOf(mm, "inside"), "a closed solid");
+    EXPECT_NE(mm.find("nothing to repair"), std::string::npos) << mm;
     const std::string cm = report(cuboid(12), {"--unit", "cm"});
     EXPECT_EQ(valueOf(cm, "size"), "10 x 20 x 30 mm");
     EXPECT_EQ(valueOf(cm, "volume"), "6000 mm³");
@@ -83,7 +85,11 @@ TEST_F(MeshReport, OfAnOpenBoxSaysWhatIsMissing) {
     EXPECT_EQ(valueOf(open, "holes"), "1");
     EXPECT_EQ(valueOf(open, "boundary edges"), "4");
     EXPECT_EQ(valueOf(open, "area"), "20 mm²");
-    EXPECT_EQ(valueOf(open, "volume"), "not defined (not watertight)");
+    EXPECT_EQ(valueOf(open, "volume"), "6 mm³ (as repaired)");
+    EXPECT_EQ(valueOf(open, "inside"), "a closed solid, as repaired");
+    EXPECT_NE(open.find("  found, and what was done:\n    - The surface is open: 4 edges"), std::string::npos) << open;
+    EXPECT_NE(open.find("    - 1 hole was closed.\n    - 4 triangles were added for that.\n"), std::string::npos)
+        << open;
 }
 
 TEST_F(MeshReport, GivesTheDimensionsOfAShape) {
