@@ -4,7 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/result.h"
@@ -111,6 +114,10 @@ public:
     std::size_t brickCount() const { return bricks_.size(); }
     std::size_t memoryBytes() const;
 
+    /// The field as bytes, the same on every machine, and back, the same bits; nothing if the bytes hold no field.
+    std::string toBytes() const;
+    static std::optional<DistanceField> fromBytes(std::string_view bytes);
+
 private:
     static constexpr std::size_t kBrickSamples = std::size_t{kBrickNodes} * kBrickNodes * kBrickNodes;
 
@@ -136,6 +143,8 @@ private:
     };
     Place descend(std::int32_t root, const Vec3& in_root) const noexcept;  // in_root in [0, 1)³
     bool locate(const Vec3& p, Cell& cell) const noexcept;
+    bool soundGrid() const;
+    bool soundBricks() const;
     void fillIndex();
     void indexBrick(std::int32_t id, const std::array<int, 3>& place);
     void enterIndex(std::int32_t id, const std::array<int, 3>& place, int finer);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 
@@ -161,9 +162,53 @@ Result<DistanceField> buildField(const Part& part, const PartNeeds& needs) {
     return DistanceField::build(source, cell, band, accuracy);
 }
 
+/// What decides the bits of a field or shell: the program's text, the geometry, what was asked for.
+std::string storeKey(const char* what, const Part& part, std::initializer_list<double> values) {
+    std::string key = std::string(what) + " " PASSUNG_MODEL_DIGEST " ";
+    const auto append = [&](double value) { key += number("%a ", value); };
+    if (part.shape) {
+        key += std::string(kindName(*part.shape)) + " ";
+        for (const double value : dimensions(*part.shape)) append(value);
+    }
+    char hash[24];
+    std::snprintf(hash, sizeof hash, "%016llx ", static_cast<unsigned long long>(contentHash(part.mesh)));
+    key += hash + std::to_string(part.mesh.vertices.size()) + " " + std::to_string(part.mesh.triangles.size()) + " " +
+           std::to_string(static_cast<int>(part.report.kind)) + " ";
+    for (const double value : values) append(value);
+    return key;
+}
+
+/// What the store holds under `key`, read by `from`; if it cannot be, a note says so and nothing is returned.
+template <class Read>
+auto loaded(BuildStore* store, const std::string& key, Part& part, const Read& from) -> decltype(from({})) {
+    if (store == nullptr) return std::nullopt;
+    const auto bytes = store->load(storeName(key));
+    if (!bytes) return std::nullopt;
+    if (const auto content = unsealed(key, *bytes))
+        if (auto value = from(*content)) return value;
+    part.report.notes.push_back("What an earlier run had kept of this part was damaged or foreign: built anew.");
+    return std::nullopt;
+}
+
+Result<DistanceField> fieldOf(Part& part, const PartNeeds& needs, BuildStore* store) {
+    const std::string key = storeKey("field", part, {needs.tolerance, needs.cell, needs.depth});
+    if (auto field = loaded(store, key, part, &DistanceField::fromBytes)) return std::move(*field);
+    auto field = buildField(part, needs);
+    if (field && store != nullptr) store->keep(storeName(key), sealed(key, field->toBytes()));
+    return field;
+}
+
+PointShell shellOf(Part& part, const PartNeeds& needs, BuildStore* store) {
+    const std::string key = storeKey("shell", part, {needs.spacing});
+    if (auto shell = loaded(store, key, part, &shellFrom)) return std::move(*shell);
+    PointShell shell = samplePoints(part.mesh, needs.spacing);
+    if (store != nullptr) store->keep(storeName(key), sealed(key, toBytes(shell)));
+    return shell;
+}
+
 }  // namespace
 
-Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs) {
+Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs, BuildStore* store) {
     Part part;
     part.name = spec.name;
     if (const auto* shape = std::get_if<Shape>(&spec.geometry)) {
@@ -187,7 +232,7 @@ Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs) {
             return keyedByPart(spec, {Error{.message = *excess}});
     }
     if (needs.field) {
-        auto field = buildField(part, needs);
+        auto field = fieldOf(part, needs, store);
         if (!field) return keyedByPart(spec, field.errors());
         part.field = std::move(*field);
         if (!part.field->refined())
@@ -197,7 +242,7 @@ Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs) {
             part.report.notes.push_back("The sheet is felt " + inMillimetres(part.field->sheetOffset()) +
                                         " in front of its surface, on both sides.");
     }
-    if (needs.shell) part.shell.emplace(samplePoints(part.mesh, needs.spacing));
+    if (needs.shell) part.shell.emplace(shellOf(part, needs, store));
     return part;
 }
 

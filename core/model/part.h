@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/base/result.h"
+#include "core/model/build_store.h"
 #include "core/model/distance_field.h"
 #include "core/model/mesh.h"
 #include "core/model/mesh_import.h"
@@ -45,8 +46,10 @@ inline constexpr double kMaxShellPoints = 2e6;
 /// because the unit is not what its author meant, and what to change; nothing if they are not. SI units.
 std::optional<std::string> tooManyPoints(const Vec3& size, double area, double spacing);
 
+/// With a store, field and shell are taken from it if they are there for this geometry, these needs and this version of
+/// the program, else kept there; they are the same bits. One that is damaged is built anew, which a note tells.
 /// Errors: unreadable mesh, invalid shape, a field too large, a shell of too many points.
-Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs);
+Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs, BuildStore* store = nullptr);
 
 /// Exact distances to the geometry of `part`: the closed form of a shape, the triangles of a mesh.
 /// The result holds what it needs; `part` may go.

@@ -33,7 +33,7 @@ std::string cacheKey(const PartSpec& spec, const PartNeeds& needs) {
 Result<std::shared_ptr<const Part>> PartCache::get(const PartSpec& spec, const PartNeeds& needs) {
     auto& entry = parts_[cacheKey(spec, needs)];
     if (!entry) {
-        auto part = buildPart(spec, needs);
+        auto part = buildPart(spec, needs, store_);
         if (!part) return part.errors();
         entry = std::make_shared<const Part>(std::move(*part));
     }

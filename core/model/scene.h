@@ -14,10 +14,14 @@ namespace passung::model {
 /// Parts that several scenes of a study have in common are built once.
 class PartCache {
 public:
+    /// `store`, which must outlive the cache, keeps fields and shells from run to run: see buildPart.
+    explicit PartCache(BuildStore* store = nullptr) : store_(store) {}
+
     /// Errors as buildPart. shared_ptr: scenes that come and go share a part, and the cache may go first.
     Result<std::shared_ptr<const Part>> get(const PartSpec& spec, const PartNeeds& needs);
 
 private:
+    BuildStore* store_;
     std::map<std::string, std::shared_ptr<const Part>> parts_;
 };
 

@@ -7,6 +7,7 @@
 #include "devices/simulated/presets.h"
 #include "devices/simulated/simulated_device.h"
 #include "study/session/apparatus.h"
+#include "ui/app/disk_store.h"
 
 namespace passung::app {
 
@@ -42,7 +43,8 @@ private:
     DeviceDescription description_;
     simulated::HandParams hand_;
     Clock clock_;
-    model::PartCache parts_;
+    std::unique_ptr<DiskStore> store_ = openDiskStore();
+    model::PartCache parts_{store_.get()};
     std::unique_ptr<Run> run_;
 };
 

@@ -7,6 +7,7 @@
 #include "study/protocol/protocol_reader.h"
 #include "study/protocol/scene_reader.h"
 #include "study/session/plan_text.h"
+#include "ui/app/disk_store.h"
 #include "ui/app/run_study.h"
 #include "ui/app/stage_cost.h"
 #include "ui/cli/commands.h"
@@ -87,7 +88,8 @@ Result<Done> explainEffects(const protocol::StudyPlan& plan, model::PartCache& c
 }  // namespace
 
 int explain(const ExplainOptions& options) {
-    model::PartCache cache;
+    const auto store = app::openDiskStore();
+    model::PartCache cache(store.get());
     const auto is_study = isStudy(options.file);
     if (!is_study) return fail(is_study.errors());
     if (!*is_study) {

@@ -7,6 +7,7 @@
 
 #include "core/base/number_table.h"
 #include "core/query/part_query.h"
+#include "ui/app/disk_store.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 #include "ui/cli/part_argument.h"
@@ -25,7 +26,8 @@ constexpr const char* kResultColumns =
 Result<model::Part> build(const std::string& path, const std::string& unit, const model::PartNeeds& needs) {
     auto spec = partArgument(path, unit);
     if (!spec) return spec.errors();
-    auto part = model::buildPart(*spec, needs);
+    const auto store = app::openDiskStore();
+    auto part = model::buildPart(*spec, needs, store.get());
     if (!part) {
         Errors errors = part.errors();
         for (Error& error : errors) {

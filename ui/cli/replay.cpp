@@ -10,6 +10,7 @@
 #include "study/store/digest.h"
 #include "study/store/hex_text.h"
 #include "study/store/store_reader.h"
+#include "ui/app/disk_store.h"
 #include "ui/app/run_study.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
@@ -144,7 +145,8 @@ private:
 
     const store::StoreReader& reader_;
     std::vector<std::filesystem::path> folders_;
-    model::PartCache parts_;
+    std::unique_ptr<app::DiskStore> store_ = app::openDiskStore();
+    model::PartCache parts_{store_.get()};
     std::map<std::string, protocol::StudyPlan> plans_;
 };
 

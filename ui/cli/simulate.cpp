@@ -7,6 +7,7 @@
 #include "core/tick/step.h"
 #include "devices/scripted/trajectory.h"
 #include "study/protocol/scene_reader.h"
+#include "ui/app/disk_store.h"
 #include "ui/app/run_study.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
@@ -47,7 +48,8 @@ int simulate(const SimulateOptions& options) {
     // begins with its first row, wherever that is.
     spec->registration = model::Registration{};
     spec->start_gate = model::StartGate{};
-    model::PartCache cache;
+    const auto store = app::openDiskStore();
+    model::PartCache cache(store.get());
     ProgressLine progress;
     progress.show("building the scene");
     auto scene = model::buildScene(*spec, cache);
