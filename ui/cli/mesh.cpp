@@ -12,7 +12,9 @@ namespace {
 std::string volume(const model::MeshReport& r) {
     if (r.kind == model::SurfaceKind::OpenSheet) return "none (an open sheet)";
     if (r.kind == model::SurfaceKind::HoledSolid) return "not defined (gaps are left)";
-    return fmt::format("{:.6g} mm³{}", r.volume * 1e9, r.watertight ? "" : " (as repaired)");
+    const bool overlaps = r.crossing_triangles + r.nested_solids > 0;
+    return fmt::format("{:.6g} mm³{}{}", r.volume * 1e9, r.watertight ? "" : " (as repaired)",
+                       overlaps ? " (overlaps counted twice)" : "");
 }
 
 /// How contact takes the surface.

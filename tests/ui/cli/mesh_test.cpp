@@ -92,6 +92,19 @@ TEST_F(MeshReport, OfAnOpenBoxSaysWhatIsMissing) {
         << open;
 }
 
+TEST_F(MeshReport, SaysThatTwoSolidsOverlap) {
+    // Truth: closed form (two tetrahedra of 1000/6 mm³, one moved so that edges pass through faces)
+    writeText(folder_ / "two.off",
+              "OFF\n8 8 0\n0 0 0\n10 0 0\n0 10 0\n0 0 10\n1 2 3\n11 2 3\n1 12 3\n1 2 13\n"
+              "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 4 6 5\n3 4 5 7\n3 4 7 6\n3 5 6 7\n");
+    const Ended ended = runProgram(folder_.path(), {"mesh", "two.off"});
+    ASSERT_EQ(ended.exit_code, 0) << ended.err;
+    EXPECT_EQ(valueOf(ended.out, "volume"), "333.333 mm³ (overlaps counted twice)");
+    EXPECT_EQ(valueOf(ended.out, "shells"), "2");
+    EXPECT_NE(valueOf(ended.out, "crossing triangles"), "0");
+    EXPECT_NE(ended.out.find("triangles pass through each other; left"), std::string::npos) << ended.out;
+}
+
 TEST_F(MeshReport, GivesTheDimensionsOfAShape) {
     // Truth: closed form: 20 g6 is 19.980 to 19.993 mm, in the middle 19.9865 mm.
     writeText(folder_ / "peg.toml",
