@@ -91,6 +91,7 @@ std::string toBytes(const PointShell& shell) {
     ByteWriter writer;
     writer.put(shell.total_area);
     writer.put(shell.cover_radius);
+    writer.put(shell.rounding);
     writer.put(shell.points.size(), 8);
     for (const SurfacePoint& point : shell.points) {
         writer.put(point.position);
@@ -105,8 +106,11 @@ std::optional<PointShell> shellFrom(std::string_view bytes) {
     PointShell shell;
     shell.total_area = reader.takeDouble();
     shell.cover_radius = reader.takeDouble();
+    shell.rounding = reader.takeDouble();
     shell.points.resize(reader.takeCount(56));
-    bool sound = std::isfinite(shell.total_area) && shell.cover_radius >= 0.0 && std::isfinite(shell.cover_radius);
+    bool sound = std::isfinite(shell.total_area);
+    for (const double length : {shell.cover_radius, shell.rounding})
+        sound = sound && length >= 0.0 && std::isfinite(length);
     for (SurfacePoint& point : shell.points) {
         point.position = reader.takeVec3();
         point.normal = reader.takeVec3();

@@ -29,6 +29,7 @@ std::string DistanceField::toBytes() const {
         writer.put(brick.low);
         writer.put(brick.step);
         for (const std::int32_t child : brick.child) writer.put(static_cast<std::uint32_t>(child), 4);
+        for (const std::uint8_t slack : brick.slack) writer.put(slack, 1);
         writer.put(static_cast<std::uint32_t>(brick.level), 4);
     }
     for (const std::uint16_t sample : samples_) writer.put(sample, 2);
@@ -100,11 +101,12 @@ std::optional<DistanceField> DistanceField::fromBytes(std::string_view bytes) {
     }
     field.brick_of_cell_.resize(cells);
     for (std::int32_t& brick : field.brick_of_cell_) brick = static_cast<std::int32_t>(reader.take(4));
-    field.bricks_.resize(reader.takeCount(52 + 2 * kBrickSamples));
+    field.bricks_.resize(reader.takeCount(60 + 2 * kBrickSamples));
     for (Brick& brick : field.bricks_) {
         brick.low = reader.takeDouble();
         brick.step = reader.takeDouble();
         for (std::int32_t& child : brick.child) child = static_cast<std::int32_t>(reader.take(4));
+        for (std::uint8_t& slack : brick.slack) slack = static_cast<std::uint8_t>(reader.take(1));
         brick.level = static_cast<std::int32_t>(reader.take(4));
         brick.refined = std::any_of(brick.child.begin(), brick.child.end(), [](std::int32_t c) { return c >= 0; });
     }
