@@ -44,6 +44,7 @@ set(libraries
   "Bullet   | ^(btBullet|Bullet)               | tests                                  | cpp"
   "OpenVDB  | ^openvdb/                        | tests                                  | cpp"
   "Qt       | ^Q[A-Zt]                         | ui                                     | any"
+  "gbench   | ^benchmark/                      | tests                                  | cpp"
   "gtest    | ^g(test|mock)/                   | tests                                  | any"
   "POSIX    | ^(sys|linux|arpa|netinet)/|^(unistd|pthread|sched|fcntl|poll|semaphore|signal|time|dlfcn|termios|malloc)[.]h$ | core/loop devices study/store ui tests | cpp")
 

@@ -4,11 +4,11 @@
 #include <numbers>
 
 #include "analysis/truth/mesh_oracle.h"
+#include "analysis/truth/surface_tree.h"
 #include "core/base/random.h"
 #include "core/model/mesh_import.h"
 #include "core/model/parallel.h"
 #include "tests/bench/loop_subdivision.h"
-#include "tests/bench/surface_tree.h"
 
 namespace passung::bench {
 
@@ -28,7 +28,7 @@ constexpr int kBisections = 40;
 
 struct Truth {
     truth::MeshOracle oracle;  // A: bunny, B: tool
-    SurfaceTree bunny_surface, tool_surface;
+    truth::SurfaceTree bunny_surface, tool_surface;
     explicit Truth(const ContactScene& scene)
         : oracle(scene.bunny, scene.tool), bunny_surface(oracle.a()), tool_surface(oracle.b()) {}
 };
@@ -50,7 +50,7 @@ double separation(const Truth& truth, const Pose& pose) { return *truth.oracle.s
 
 /// Positive while the tool is less deep than wanted [m].
 double depthLeft(const Truth& truth, const Pose& pose) {
-    return kTarget + truth.tool_surface.smallestDistance(truth.oracle.a(), pose, kSearch).value;
+    return kTarget + truth.tool_surface.smallestDistance({truth.oracle.a()}, pose, kSearch).value;
 }
 
 /// Where `left` changes its sign between `outer` (≥ 0) and `inner` (< 0).
@@ -85,17 +85,17 @@ TruePose apartAt(const Truth& truth, const Pose& pose) {
 TruePose pressedAt(const Truth& truth, const Pose& pose) {
     const truth::ExactMesh &bunny = truth.oracle.a(), &tool = truth.oracle.b();
     const Pose back = pose.inverse();
-    const SmallestDistance deep = truth.tool_surface.smallestDistance(bunny, pose, kResolution);
-    const SmallestDistance other = truth.bunny_surface.smallestDistance(tool, back, kResolution);
+    const truth::SmallestDistance deep = truth.tool_surface.smallestDistance({bunny}, pose, kResolution);
+    const truth::SmallestDistance other = truth.bunny_surface.smallestDistance({tool}, back, kResolution);
     TruePose result{.X_FS = pose,
                     .shell_in_field = deep.value,
                     .field_in_shell = other.value,
                     .uncertainty = std::max(deep.uncertainty, other.uncertainty),
-                    .one_way = truth.tool_surface.penaltyWrench(bunny, pose, kAreaStiffness, kDenseEdge),
+                    .one_way = truth.tool_surface.penaltyWrench({bunny}, pose, kAreaStiffness, kDenseEdge),
                     .two_way = {}};
     // On the bunny about its origin, which lies at back.p in the tool's frame; there moved to the tool's origin, then
     // turned and reversed.
-    const Wrench on_bunny = truth.bunny_surface.penaltyWrench(tool, back, kAreaStiffness, kDenseEdge);
+    const Wrench on_bunny = truth.bunny_surface.penaltyWrench({tool}, back, kAreaStiffness, kDenseEdge);
     const Vec3 force = -(pose.q * on_bunny.force);
     const Vec3 torque = -(pose.q * (on_bunny.torque + back.p.cross(on_bunny.force)));
     result.two_way = {0.5 * (result.one_way.force + force), 0.5 * (result.one_way.torque + torque)};

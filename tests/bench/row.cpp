@@ -38,8 +38,9 @@ std::string csvHeader() {
            "distance_error_mean_um,distance_error_p99_um,distance_error_max_um,error_bound_max_um,bounds_broken,"
            "force_error_mean_percent,force_error_p99_percent,force_error_max_percent,force_turn_mean_deg,force_turn_"
            "p99_deg,force_turn_max_deg,"
-           "torque_error_mean_percent,torque_error_p99_percent,torque_error_max_percent,wrong_signs_percent,contacts_"
-           "mean,memory_MB,build_s\n";
+           "torque_error_mean_percent,torque_error_p99_percent,torque_error_max_percent,wrong_signs_percent,other_bits,"
+           "order,"
+           "contacts_mean,memory_MB,build_s\n";
 }
 
 std::string csvLine(const Row& row) {
@@ -64,6 +65,8 @@ std::string csvLine(const Row& row) {
                                row.torque_error_percent.p99,
                                row.torque_error_percent.max,
                                row.wrong_signs_percent,
+                               row.other_bits,
+                               row.order,
                                row.contacts_mean,
                                row.memory_MB,
                                row.build_s})
@@ -91,7 +94,7 @@ std::string table(const std::vector<Row>& rows) {
         };
         add("time mean/median/p99/max", {row.time_us.mean, row.time_us.median, row.time_us.p99, row.time_us.max},
             " us");
-        add("a point", {row.ns_per_point}, " ns");
+        add("each", {row.ns_per_point}, " ns");
         add("| distance error mean/p99/max",
             {row.distance_error_um.mean, row.distance_error_um.p99, row.distance_error_um.max}, " um");
         add("bound", {row.bound_max_um}, " um");
@@ -102,6 +105,8 @@ std::string table(const std::vector<Row>& rows) {
         add("torque", {row.torque_error_percent.mean, row.torque_error_percent.p99, row.torque_error_percent.max},
             " %");
         add("| wrong signs", {row.wrong_signs_percent}, " %");
+        add("| other bits", {row.other_bits}, "");
+        add("| order", {row.order}, "");
         add("| contacts", {row.contacts_mean}, "");
         add("| memory", {row.memory_MB}, " MB");
         add("build", {row.build_s}, " s");

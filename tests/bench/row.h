@@ -29,6 +29,8 @@ struct Row {
     Times torque_error_percent =
         {};  // |T - T_truth| / (|F_truth| · lever), lever = the tool's farthest point from its origin
     double wrong_signs_percent = kNotGiven;
+    double other_bits = kNotGiven;  // values that differ in any bit from those of our first variant
+    double order = kNotGiven;       // log2 of the ratio of errors when the resolution is halved
     double contacts_mean = kNotGiven;
     double memory_MB = kNotGiven;
     double build_s = kNotGiven;

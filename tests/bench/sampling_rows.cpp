@@ -163,6 +163,7 @@ Result<std::vector<Row>> samplingRows(const model::TriangleMesh& bunny, const Ex
                 sampling.phi[i] = field.sample(turn * sampling.points[i] + shift, model::FieldMode::Trilinear).phi;
         }));
         rows.back().memory_MB = 1e-6 * static_cast<double>(field.memoryBytes());
+        rows.back().other_bits = 0.0;  // the first variant
         std::vector<float> x, y, z, phi(kPoints);
         for (const Vec3& p : sampling.points) {
             x.push_back(static_cast<float>(p.x()));

@@ -1,43 +1,51 @@
-#include "tests/bench/surface_tree.h"
+#include "analysis/truth/surface_tree.h"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <queue>
 
-namespace passung::bench {
+namespace passung::truth {
 
 namespace {
 
 constexpr std::uint32_t kLeafTriangles = 4;
 
-Vec3 middleOf(const truth::Corners& t) { return (t[0] + t[1] + t[2]) / 3.0; }
+Vec3 middleOf(const Corners& t) { return (t[0] + t[1] + t[2]) / 3.0; }
 
-double radiusOf(const truth::Corners& t, const Vec3& middle) {
+double radiusOf(const Corners& t, const Vec3& middle) {
     return std::max({(t[0] - middle).norm(), (t[1] - middle).norm(), (t[2] - middle).norm()});
 }
 
-/// Into four of the same shape.
-std::array<truth::Corners, 4> cut(const truth::Corners& t) {
-    const Vec3 a = 0.5 * (t[0] + t[1]), b = 0.5 * (t[1] + t[2]), c = 0.5 * (t[2] + t[0]);
-    return {truth::Corners{t[0], a, c}, {a, t[1], b}, {c, b, t[2]}, {a, b, c}};
+double edge2(const Corners& t, std::size_t i) { return (t[(i + 1) % 3] - t[i]).squaredNorm(); }
+
+std::size_t longestEdge(const Corners& t) {
+    const std::size_t first = edge2(t, 1) > edge2(t, 0) ? 1 : 0;
+    return edge2(t, 2) > edge2(t, first) ? 2 : first;
+}
+
+/// In half across the longest edge: long, thin triangles of a mantle become compact pieces.
+std::array<Corners, 2> cut(const Corners& t) {
+    const std::size_t i = longestEdge(t);
+    const Vec3 &a = t[i], &b = t[(i + 1) % 3], &apex = t[(i + 2) % 3];
+    const Vec3 middle = 0.5 * (a + b);
+    return {Corners{a, middle, apex}, {middle, b, apex}};
 }
 
 /// The integral over one triangle, cut as far as needed.
 struct Integral {
-    const truth::ExactMesh& solid;
+    const Solid& solid;
     const Vec3& origin;
     double stiffness, longest_edge;
     Wrench wrench;
 
-    void add(const truth::Corners& t) {
+    void add(const Corners& t) {
         const Vec3 middle = middleOf(t);
         const double radius = radiusOf(t, middle);
         const double phi = solid.signedDistance(middle);
         if (phi >= radius) return;
-        const double longest = std::max({(t[1] - t[0]).norm(), (t[2] - t[1]).norm(), (t[0] - t[2]).norm()});
-        if (longest > longest_edge) {
-            for (const truth::Corners& piece : cut(t)) add(piece);
+        if (edge2(t, longestEdge(t)) > longest_edge * longest_edge) {
+            for (const Corners& piece : cut(t)) add(piece);
             return;
         }
         if (phi >= 0.0) return;
@@ -50,7 +58,11 @@ struct Integral {
 
 }  // namespace
 
-SurfaceTree::SurfaceTree(const truth::ExactMesh& surface) : triangles_(surface.triangles()) {
+double Solid::signedDistance(const Vec3& p) const {
+    return shape != nullptr ? model::signedDistance(*shape, p) : mesh.signedDistance(p);
+}
+
+SurfaceTree::SurfaceTree(const ExactMesh& surface) : triangles_(surface.triangles()) {
     grow(0, static_cast<std::uint32_t>(triangles_.size()));
 }
 
@@ -76,12 +88,11 @@ std::uint32_t SurfaceTree::grow(std::uint32_t first, std::uint32_t end) {
     return index;
 }
 
-SmallestDistance SurfaceTree::smallestDistance(const truth::ExactMesh& solid, const Pose& X_FS,
-                                               double resolution) const {
+SmallestDistance SurfaceTree::smallestDistance(const Solid& solid, const Pose& X_FS, double resolution) const {
     struct Piece {
         double bound;  // no point of the piece has a smaller φ
         std::uint32_t node;
-        truth::Corners triangle;  // if it is no node: in the solid's frame
+        Corners triangle;  // if it is no node: in the solid's frame
     };
     constexpr std::uint32_t kNoNode = std::numeric_limits<std::uint32_t>::max();
     const auto later = [](const Piece& a, const Piece& b) { return a.bound > b.bound; };
@@ -92,24 +103,28 @@ SmallestDistance SurfaceTree::smallestDistance(const truth::ExactMesh& solid, co
         const double bound = solid.signedDistance(X_FS * node.centre) - node.radius;
         if (bound < best) waiting.push({bound, index, {}});
     };
-    const auto addTriangle = [&](const truth::Corners& t) {
+    const auto addTriangle = [&](const Corners& t) {
         const Vec3 middle = middleOf(t);
-        const truth::ExactMesh::Nearest nearest = solid.nearest(middle);
-        const double phi = solid.contains(middle) ? -nearest.distance : nearest.distance;
+        const double phi = solid.signedDistance(middle);
         best = std::min(best, phi);
-        // The distance from one triangle is convex: no point of the piece is farther from it, or deeper, than a corner.
-        double deepest = 0.0;
-        for (const Vec3& corner : t)
-            deepest = std::max(deepest, truth::distanceToTriangle(corner, solid.triangles()[nearest.triangle]));
-        const double bound = std::max(phi - radiusOf(t, middle), -deepest);
+        double bound = phi - radiusOf(t, middle);
+        if (bound >= best) return;
+        if (phi < 0.0) {
+            // The distance from one triangle is convex: no point of the piece is farther from it, or deeper, than a
+            // corner.
+            const Corners& nearest = solid.mesh.triangles()[solid.mesh.nearest(middle).triangle];
+            double deepest = 0.0;
+            for (const Vec3& corner : t) deepest = std::max(deepest, distanceToTriangle(corner, nearest));
+            bound = std::max(bound, -deepest - solid.chord_error);
+        }
         if (bound < best) waiting.push({bound, kNoNode, t});
     };
     addNode(0);
-    while (!waiting.empty() && waiting.top().bound < best - resolution) {
+    while (!waiting.empty() && waiting.top().bound < best - resolution - solid.chord_error) {
         const Piece piece = waiting.top();
         waiting.pop();
         if (piece.node == kNoNode) {
-            for (const truth::Corners& part : cut(piece.triangle)) addTriangle(part);
+            for (const Corners& part : cut(piece.triangle)) addTriangle(part);
         } else if (const Node& node = nodes_[piece.node]; node.right != 0) {
             addNode(piece.node + 1);
             addNode(node.right);
@@ -121,7 +136,7 @@ SmallestDistance SurfaceTree::smallestDistance(const truth::ExactMesh& solid, co
     return {best, waiting.empty() ? 0.0 : std::max(0.0, best - waiting.top().bound)};
 }
 
-Wrench SurfaceTree::penaltyWrench(const truth::ExactMesh& solid, const Pose& X_FS, double area_stiffness,
+Wrench SurfaceTree::penaltyWrench(const Solid& solid, const Pose& X_FS, double area_stiffness,
                                   double longest_edge) const {
     Integral integral{solid, X_FS.p, area_stiffness, longest_edge, {}};
     std::vector<std::uint32_t> waiting{0};
@@ -141,4 +156,4 @@ Wrench SurfaceTree::penaltyWrench(const truth::ExactMesh& solid, const Pose& X_F
     return integral.wrench;
 }
 
-}  // namespace passung::bench
+}  // namespace passung::truth

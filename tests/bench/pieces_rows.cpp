@@ -1,0 +1,127 @@
+#include "tests/bench/pieces_rows.h"
+
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <functional>
+#include <limits>
+
+#include "core/model/point_shell.h"
+#include "core/tick/contact_query.h"
+#include "tests/bench/ours.h"
+
+namespace passung::bench {
+
+namespace {
+
+constexpr double kTolerance = 20e-6, kSpacing = 1e-3;
+constexpr double kSeconds = 0.5, kQuickSeconds = 0.01;  // that each piece runs at least
+
+/// One thing to time. `run` does it once and says how many items that were: points, nodes, builds.
+struct Piece {
+    std::string name, settings;
+    std::function<std::size_t()> run;
+    bool build = false;  // seconds a build, not nanoseconds an item
+};
+
+/// Turns what Google Benchmark measured into rows instead of printing it.
+class RowReporter : public benchmark::BenchmarkReporter {
+public:
+    RowReporter(const std::vector<Piece>& pieces, std::vector<Row>& rows) : pieces_(pieces), rows_(rows) {}
+    bool ReportContext(const Context&) override { return true; }
+    void ReportRuns(const std::vector<Run>& runs) override {
+        for (const Run& run : runs) {
+            const Piece& piece = pieces_[rows_.size()];
+            Row row{.group = kPiecesGroup, .method = piece.name, .settings = piece.settings, .ours = true};
+            row.samples = static_cast<std::size_t>(run.iterations);
+            const double seconds = run.cpu_accumulated_time / static_cast<double>(run.iterations);
+            if (piece.build)
+                row.build_s = run.real_accumulated_time / static_cast<double>(run.iterations);
+            else
+                row.ns_per_point = 1e9 * seconds / static_cast<double>(run.counters.at("items").value);
+            rows_.push_back(row);
+        }
+    }
+
+private:
+    const std::vector<Piece>& pieces_;
+    std::vector<Row>& rows_;
+};
+
+void timePiece(benchmark::State& state, const Piece& piece) {
+    std::size_t items = 0;
+    for (auto _ : state) items += piece.run();
+    state.counters["items"] = static_cast<double>(items) / static_cast<double>(state.iterations());
+}
+
+/// All points of the tool at all poses, in the bunny's frame: as a query meets them, a shell after the other.
+std::vector<Vec3> pointsMet(const ContactScene& scene, const model::SphereTree& shell) {
+    std::vector<Vec3> points;
+    for (const TruePose& pose : scene.pressed)
+        for (const model::SurfacePoint& point : shell.points()) points.push_back(pose.X_FS * point.position);
+    return points;
+}
+
+}  // namespace
+
+Result<std::vector<Row>> piecesRows(const ContactScene& scene, const Extent& extent) {
+    std::vector<Row> rows;
+    if (!extent.wanted(kPiecesGroup, "")) return rows;
+    PartStore bunny(scene.bunny), tool(scene.tool);
+    const auto field_part = bunny.get(kTolerance, 0.0);
+    if (!field_part) return field_part.errors();
+    const auto shell_part = tool.get(0.0, kSpacing);
+    if (!shell_part) return shell_part.errors();
+    const model::DistanceField& field = *(*field_part)->part.field;
+    const model::SphereTree& shell = *(*shell_part)->part.shell;
+    const std::vector<Vec3> points = pointsMet(scene, shell);
+    tick::QueryWorkspace workspace(shell.nodes().size());
+    tick::ContactManifold manifold(shell.nodes().size() + shell.points().size());
+
+    const auto sampling = [&](model::FieldMode mode) {
+        return [&field, &points, mode] {
+            for (const Vec3& p : points) benchmark::DoNotOptimize(field.sample(p, mode).phi);
+            return points.size();
+        };
+    };
+    const auto visits = [&](bool prove) {
+        return [&, prove] {
+            std::size_t nodes = 0;
+            for (const TruePose& pose : scene.pressed) {
+                manifold.clear();
+                const tick::QueryRequest request{.search_below = std::numeric_limits<double>::infinity(),
+                                                 .prove = prove};
+                nodes += static_cast<std::size_t>(
+                    tick::queryContacts(field, Pose{}, shell, pose.X_FS, request, workspace, manifold).nodes_visited);
+            }
+            return nodes;
+        };
+    };
+    const std::string at = fmt::format("bunny's field, tolerance {:g} um, tool's {} points, {} pressed poses",
+                                       1e6 * kTolerance, shell.points().size(), scene.pressed.size());
+    const std::string tool_at = fmt::format("torus tool, spacing {:g} mm", 1e3 * kSpacing);
+    model::PointShell sampled = model::samplePoints(scene.tool, kSpacing);
+    const std::vector<Piece> pieces{
+        {"value and gradient, trilinear", at + "; a point", sampling(model::FieldMode::Trilinear)},
+        {"value and gradient, linear", at + "; a point", sampling(model::FieldMode::Linear)},
+        {"proven lower bound", at + "; a point",
+         [&] {
+             for (const Vec3& p : points) benchmark::DoNotOptimize(field.lowerBound(p));
+             return points.size();
+         }},
+        {"tree visit", at + "; a node with its points", visits(false)},
+        {"tree visit with proof", at + "; a node with its points", visits(true)},
+        {"build: points", tool_at, [&] { return model::samplePoints(scene.tool, kSpacing).points.size(); }, true},
+        {"build: sphere tree", fmt::format("{} points", sampled.points.size()),
+         [&] { return model::SphereTree(sampled).nodes().size(); }, true}};
+    benchmark::ClearRegisteredBenchmarks();
+    for (const Piece& piece : pieces)
+        benchmark::RegisterBenchmark(piece.name.c_str(), [&piece](benchmark::State& state) {
+            timePiece(state, piece);
+        })->MinTime(extent.few_settings ? kQuickSeconds : kSeconds);
+    RowReporter reporter(pieces, rows);
+    benchmark::RunSpecifiedBenchmarks(&reporter, ".");
+    return rows;
+}
+
+}  // namespace passung::bench
