@@ -20,7 +20,7 @@ set(rooms
   "study/person        | core/base study/questionnaire"
   "study/session       | core/base core/model ${study_rooms}"
   "study/store         | core/base ${study_rooms} study/session"
-  "analysis/truth      | core/base core/model core/tick"
+  "analysis/truth      | core/base core/model core/tick core/query"
   "analysis/export     | core/base study/protocol study/measures study/store"
   "ui/cli              | *"
   "ui/app              | *"

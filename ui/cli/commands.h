@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace passung::cli {
 
@@ -67,6 +68,28 @@ struct SimulateOptions {
     std::string scene, trajectory, out;
 };
 int simulate(const SimulateOptions& options);
+
+struct AccuracyOptions {
+    std::string field, shell, out;
+    std::string poses;  // empty: along generated contact paths
+    int paths = 12;
+    std::uint64_t seed = 1;
+    std::vector<double> tolerances_um{100.0, 50.0, 20.0, 10.0};
+    std::vector<double> spacings_mm;  // empty: from the size of SHELL
+    std::vector<int> budgets{0, 1000, 300, 100};
+    std::vector<std::string> modes{"trilinear", "linear"};
+    int repetitions = 5;
+    int fcl_poses = 1000;
+    std::string unit = "mm", field_unit, shell_unit;  // empty: unit
+};
+int accuracy(const AccuracyOptions& options);
+
+struct BenchOptions {
+    std::string out, filter;
+    bool check = false;  // compare with the marks
+};
+/// Becomes the program passung-bench; returns only if there is none.
+int bench(const BenchOptions& options);
 
 struct DoctorOptions {
     double seconds = 10.0;

@@ -174,9 +174,49 @@ private:
                         "world, about the held part's origin, after all limits")
             ->required();
 
+        addAccuracyCommand(units);
+
+        sub = command("bench", "our queries beside other engines, time and error on the same poses", bench_, bench);
+        sub->add_option("--out", bench_.out, "CSV of all rows")->required();
+        sub->add_option("--filter", bench_.filter, "only rows whose group and method contain this text");
+        sub->add_flag("--check", bench_.check, "compare with the marks; exit 1 if one is missed or not measured");
+
         sub = command("doctor", "devices, permissions and a check of the loop", doctor_, doctor);
         sub->add_option("--seconds", doctor_.seconds, "of the loop check")
             ->check(between(0.1, 3600.0, "a number from 0.1 to 3600"));
+    }
+
+    void addAccuracyCommand(const CLI::Validator& units) {
+        auto* sub = command("accuracy", "error against truth over time, for every way to ask", accuracy_, accuracy);
+        sub->add_option("FIELD", accuracy_.field, "watertight mesh or part.toml")->required();
+        sub->add_option("SHELL", accuracy_.shell, "mesh or part.toml")->required();
+        sub->add_option("--out", accuracy_.out, "folder for accuracy.csv, accuracy.svg, poses.csv, codebook.csv")
+            ->required();
+        auto* poses = sub->add_option("--poses", accuracy_.poses,
+                                      "CSV of poses of SHELL in FIELD, as for query; default: along contact paths");
+        sub->add_option("--paths", accuracy_.paths, "contact paths of 11 poses each; default 12")
+            ->check(wholeFrom<int>(1))
+            ->excludes(poses);
+        sub->add_option("--seed", accuracy_.seed, "of the paths; default 1")->check(wholeFrom<std::uint64_t>(0));
+        const auto list = [](CLI::Option* option) { option->delimiter(',')->expected(1, -1); };
+        list(sub->add_option("--tolerances-um", accuracy_.tolerances_um, "of the field; default 100,50,20,10")
+                 ->check(above0()));
+        list(sub->add_option("--spacings-mm", accuracy_.spacings_mm,
+                             "of SHELL's points; default: four around a fiftieth of its longest side")
+                 ->check(above0()));
+        list(sub->add_option("--budgets", accuracy_.budgets,
+                             "most nodes of a query, 0: no limit; default 0,1000,300,100")
+                 ->check(wholeFrom<int>(0)));
+        list(sub->add_option("--modes", accuracy_.modes, "of interpolation; default trilinear,linear")
+                 ->check(CLI::IsMember({"trilinear", "linear"})));
+        sub->add_option("--repetitions", accuracy_.repetitions, "a pose's time is its fastest of so many; default 5")
+            ->check(wholeFrom<int>(1));
+        sub->add_option("--fcl-poses", accuracy_.fcl_poses,
+                        "further poses whose separation and intersection are compared with FCL; default 1000")
+            ->check(wholeFrom<int>(0));
+        sub->add_option("--unit", accuracy_.unit, "of files that have none; default mm")->check(units);
+        sub->add_option("--field-unit", accuracy_.field_unit, "of FIELD, instead of --unit")->check(units);
+        sub->add_option("--shell-unit", accuracy_.shell_unit, "of SHELL, instead of --unit")->check(units);
     }
 
     CLI::App app_;
@@ -189,6 +229,8 @@ private:
     MeshOptions mesh_;
     QueryOptions query_;
     SimulateOptions simulate_;
+    AccuracyOptions accuracy_;
+    BenchOptions bench_;
     DoctorOptions doctor_;
 };
 

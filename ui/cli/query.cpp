@@ -11,12 +11,13 @@
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 #include "ui/cli/part_argument.h"
+#include "ui/cli/pose_table.h"
 
 namespace passung::cli {
 
 namespace {
 
-const std::vector<std::string> kPoseColumns = {"x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"};
+constexpr std::size_t kPoseColumns = 7;
 
 constexpr const char* kResultColumns =
     ",signed_distance_m,field_error_bound_m,error_bound_m,quality,status,closest_x_m,closest_y_m,closest_z_m,normal_x,"
@@ -38,14 +39,11 @@ Result<model::Part> build(const std::string& path, const std::string& unit, cons
     return part;
 }
 
-/// Poses, all finite, quaternions of length 1 (± 1e-3), normalised.
-Result<std::vector<Pose>> readPoses(const std::string& path, NumberTable& table) {
-    auto numbers = readNumbers(path, kPoseColumns);
-    if (!numbers) return numbers.errors();
-    std::vector<Pose> poses;
+/// Columns of the poses' file that have the name of a result.
+Errors refuseResultNames(const std::string& path, const NumberTable& table) {
     Errors errors;
-    for (std::size_t i = kPoseColumns.size(); i < numbers->columns.size(); ++i) {
-        const std::string& name = numbers->columns[i];
+    for (std::size_t i = kPoseColumns; i < table.columns.size(); ++i) {
+        const std::string& name = table.columns[i];
         if (std::string(kResultColumns).append(",").find("," + name + ",") == std::string::npos) continue;
         errors.push_back({.message = "is the name of a result; give this column another",
                           .file = path,
@@ -53,21 +51,7 @@ Result<std::vector<Pose>> readPoses(const std::string& path, NumberTable& table)
                           .column = 1,
                           .value = name});
     }
-    for (std::size_t i = 0; i < numbers->rows.size(); ++i) {
-        const auto& v = numbers->rows[i];
-        Pose pose{Quat(v[3], v[4], v[5], v[6]), Vec3(v[0], v[1], v[2])};
-        if (!isRigid(pose)) {
-            errors.push_back({.message = "a pose must be finite with a quaternion of length 1 ± 0.001",
-                              .file = path,
-                              .line = numbers->lines[i],
-                              .column = 1});
-        }
-        pose.q.normalize();
-        poses.push_back(pose);
-    }
-    if (!errors.empty()) return errors;
-    table = std::move(*numbers);
-    return poses;
+    return errors;
 }
 
 std::string statusOf(const query::PartQueryResult& r) {
@@ -106,6 +90,7 @@ int query(const QueryOptions& options) {
     NumberTable table;
     const auto poses = readPoses(options.poses, table);
     if (!poses) return fail(poses.errors());
+    if (const Errors errors = refuseResultNames(options.poses, table); !errors.empty()) return fail(errors);
     const model::PartNeeds common{
         .tolerance = options.tolerance_um * 1e-6, .cell = options.cell_mm * 1e-3, .spacing = options.spacing_mm * 1e-3};
     model::PartNeeds field_needs = common, shell_needs = common;

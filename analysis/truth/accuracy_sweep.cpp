@@ -1,0 +1,258 @@
+#include "analysis/truth/accuracy_sweep.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include "core/query/part_query.h"
+#include "core/tick/penalty.h"
+
+namespace passung::truth {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
+double secondsSince(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+/// Time of the calling thread on its core [s]: what other programs do on the machine does not count.
+double threadSeconds() {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+struct Built {
+    model::Part part;
+    double seconds = 0.0;
+};
+
+Result<Built> build(const model::PartSpec& spec, const model::PartNeeds& needs) {
+    const auto begin = Clock::now();
+    auto part = model::buildPart(spec, needs);
+    if (!part) return part.errors();
+    return Built{std::move(*part), secondsSince(begin)};
+}
+
+/// What the tick's query says at one pose.
+struct Answer {
+    double signed_distance = 0.0;
+    Wrench wrench;
+};
+
+/// The query of a tick: everything inside, the closest point, the area-weighted penalty; memory sized once.
+class TickQuery {
+public:
+    TickQuery(const model::DistanceField& field, const model::SphereTree& shell, const AccuracySetting& setting)
+        : field_(field),
+          shell_(shell),
+          workspace_(shell.nodes().size()),
+          manifold_(shell.nodes().size() + shell.points().size()) {
+        request_.search_below = kUnlimited;
+        request_.max_nodes = setting.budget_nodes;
+        request_.mode = setting.mode;
+        contact_.variant = model::PenaltyVariant::AreaWeighted;
+        contact_.area_stiffness = kAreaStiffness;
+    }
+
+    Answer at(const Pose& X_FS) {
+        manifold_.clear();
+        const auto found = tick::queryContacts(field_, Pose{}, shell_, X_FS, request_, workspace_, manifold_);
+        return {found.phi, tick::penaltyWrench(contact_, manifold_, X_FS.p)};
+    }
+
+private:
+    const model::DistanceField& field_;
+    const model::SphereTree& shell_;
+    tick::QueryRequest request_;
+    tick::QueryWorkspace workspace_;
+    tick::ContactManifold manifold_;
+    model::ContactSpec contact_;
+};
+
+/// Errors of all poses so far.
+struct ErrorLists {
+    std::vector<double> distance, depth, both, force, direction, torque;
+
+    void add(const Answer& answer, const PoseTruth& truth, double lever, double least_force) {
+        const double error = std::abs(answer.signed_distance - truth.distance);
+        both.push_back(error);
+        (truth.inContact() ? depth : distance).push_back(error);
+        const double size = truth.wrench.force.norm();
+        if (!(size > 0.0 && size >= least_force)) return;
+        force.push_back(std::abs(answer.wrench.force.norm() - size) / size);
+        torque.push_back((answer.wrench.torque - truth.wrench.torque).norm() / (size * lever));
+        if (answer.wrench.force.norm() > 0.0)
+            direction.push_back(std::atan2(answer.wrench.force.cross(truth.wrench.force).norm(),
+                                           answer.wrench.force.dot(truth.wrench.force)));
+    }
+
+    void summarise(AccuracyRow& row) const {
+        row.distance = spreadOf(distance);
+        row.depth = spreadOf(depth);
+        row.signed_distance = spreadOf(both);
+        row.force = spreadOf(force);
+        row.direction = spreadOf(direction);
+        row.torque = spreadOf(torque);
+    }
+};
+
+void measure(const AccuracySetting& setting, const model::DistanceField& field, const model::SphereTree& shell,
+             const std::vector<JudgedPose>& poses, int repetitions, double lever, AccuracyRow& row) {
+    TickQuery query(field, shell, setting);
+    std::vector<double> times(poses.size(), kUnlimited);
+    ErrorLists errors;
+    double largest_force = 0.0;
+    for (const JudgedPose& pose : poses) largest_force = std::max(largest_force, pose.truth.wrench.force.norm());
+    // The first round warms up and is not timed.
+    for (int round = 0; round <= repetitions; ++round) {
+        for (std::size_t i = 0; i < poses.size(); ++i) {
+            const double begin = threadSeconds();
+            const Answer answer = query.at(poses[i].X_FS);
+            if (round > 0)
+                times[i] = std::min(times[i], threadSeconds() - begin);
+            else
+                errors.add(answer, poses[i].truth, lever, kLeastForce * largest_force);
+        }
+    }
+    row.time = spreadOf(std::move(times));
+    errors.summarise(row);
+}
+
+/// Why `r` cannot be, given the truth; nothing if it can.
+std::optional<std::string> contradiction(const query::PartQueryResult& r, const PoseTruth& truth) {
+    const auto said = [&](const char* what) {
+        return fmt::format(
+            "{}: distance {:.6g} mm, stated bound {:.4g} mm, interval [{:.6g}, {:.6g}] mm; FCL: {}, "
+            "separation {:.6g} mm; true distance {:.6g} mm, uncertain by {:.2g} mm",
+            what, 1e3 * r.signed_distance, 1e3 * r.error_bound, 1e3 * r.lower_bound, 1e3 * r.upper_bound,
+            toString(truth.relation), 1e3 * truth.separation, 1e3 * truth.distance, 1e3 * truth.uncertainty);
+    };
+    if (truth.relation == Relation::SurfacesIntersect && r.lower_bound > truth.uncertainty)
+        return said("said to be apart, but the surfaces intersect");
+    // Wholly inside: no point of SHELL's surface is outside FIELD.
+    if (truth.relation == Relation::BInsideA && r.lower_bound > truth.uncertainty)
+        return said("said to be apart, but SHELL is inside FIELD");
+    if (std::isnan(truth.distance)) return std::nullopt;
+    if (!(std::abs(r.signed_distance - truth.distance) <= r.error_bound + truth.uncertainty))
+        return said("the error is larger than the bound stated for it");
+    if (!(r.lower_bound <= truth.distance + truth.uncertainty && r.upper_bound >= truth.distance - truth.uncertainty))
+        return said("the truth is outside the interval");
+    return std::nullopt;
+}
+
+void compare(const AccuracySetting& setting, query::PartQuery& query, const std::vector<JudgedPose>& poses,
+             AccuracyResult& result, double& bound_max) {
+    for (const JudgedPose& pose : poses) {
+        const query::PartQueryResult answer = query.at(pose.X_FS);
+        bound_max = std::max(bound_max, answer.error_bound);
+        ++result.compared;
+        if (answer.lower_bound <= 0.0 && answer.upper_bound >= 0.0) ++result.undecided;
+        if (const auto what = contradiction(answer, pose.truth))
+            result.disagreements.push_back({setting, pose.X_FS, *what});
+    }
+}
+
+/// Marks who is faster than all that are as good, by an error `of` a row.
+template <class ErrorOf, class Flag>
+void markFront(std::vector<AccuracyRow>& rows, const ErrorOf& of, Flag flag) {
+    std::vector<AccuracyRow*> order;
+    for (AccuracyRow& row : rows)
+        if (std::isfinite(of(row))) order.push_back(&row);
+    std::stable_sort(order.begin(), order.end(), [&](const AccuracyRow* a, const AccuracyRow* b) {
+        return std::pair(a->time.p99, of(*a)) < std::pair(b->time.p99, of(*b));
+    });
+    double best = kUnlimited;
+    for (AccuracyRow* row : order) {
+        row->*flag = of(*row) < best;
+        best = std::min(best, of(*row));
+    }
+}
+
+}  // namespace
+
+const char* modeName(model::FieldMode mode) { return mode == model::FieldMode::Linear ? "linear" : "trilinear"; }
+
+const std::vector<model::FieldMode>& allModes() {
+    static const std::vector<model::FieldMode> all{model::FieldMode::Trilinear, model::FieldMode::Linear};
+    return all;
+}
+
+std::vector<double> defaultSpacings(double length) {
+    const double wanted = length / 50.0;
+    const double decade = std::pow(10.0, std::floor(std::log10(wanted)));
+    double rounded = decade;
+    for (const double step : {1.0, 2.0, 5.0, 10.0})
+        if (std::abs(std::log(step * decade / wanted)) < std::abs(std::log(rounded / wanted))) rounded = step * decade;
+    return {4.0 * rounded, 2.0 * rounded, rounded, 0.5 * rounded};
+}
+
+Spread spreadOf(std::vector<double> values) {
+    if (values.empty()) return {};
+    std::sort(values.begin(), values.end());
+    const std::size_t n = values.size();
+    const auto rank = static_cast<std::size_t>(std::ceil(0.99 * static_cast<double>(n)));
+    return {.mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(n),
+            .median = 0.5 * (values[(n - 1) / 2] + values[n / 2]),
+            .p99 = values[rank - 1],
+            .max = values.back()};
+}
+
+void markFronts(std::vector<AccuracyRow>& rows) {
+    markFront(
+        rows, [](const AccuracyRow& row) { return row.signed_distance.p99; }, &AccuracyRow::on_distance_front);
+    markFront(
+        rows, [](const AccuracyRow& row) { return row.force.p99; }, &AccuracyRow::on_force_front);
+}
+
+Result<AccuracyResult> sweepAccuracy(const model::PartSpec& field, const model::PartSpec& shell,
+                                     const AccuracySpace& space, const std::vector<JudgedPose>& poses,
+                                     const std::vector<JudgedPose>& shaken, double lever, const StepReport& report) {
+    AccuracyResult result;
+    const double steps = static_cast<double>(space.tolerances.size() * (1 + space.spacings.size()));
+    double done = 0.0;
+    for (const double tolerance : space.tolerances) {
+        report(fmt::format("field to {:g} um", 1e6 * tolerance), done / steps);
+        auto field_part = build(field, {.field = true, .tolerance = tolerance});
+        if (!field_part) return field_part.errors();
+        done += 1.0;
+        for (const double spacing : space.spacings) {
+            report(fmt::format("field to {:g} um, points {:g} mm apart", 1e6 * tolerance, 1e3 * spacing), done / steps);
+            auto shell_part = build(shell, {.shell = true, .tolerance = tolerance, .spacing = spacing});
+            if (!shell_part) return shell_part.errors();
+            const model::SphereTree& points = *shell_part->part.shell;
+            for (const model::FieldMode mode : space.modes) {
+                for (const int budget : space.budgets) {
+                    AccuracyRow row{.setting = {mode, tolerance, spacing, budget}};
+                    row.points = points.points().size();
+                    row.field_bytes = static_cast<double>(field_part->part.field->memoryBytes());
+                    row.shell_bytes = static_cast<double>(points.nodes().size_bytes() + points.points().size_bytes());
+                    row.field_build = field_part->seconds;
+                    row.shell_build = shell_part->seconds;
+                    measure(row.setting, *field_part->part.field, points, poses, space.repetitions, lever, row);
+                    query::PartQuery query(field_part->part, shell_part->part,
+                                           {.area_stiffness = kAreaStiffness, .max_nodes = budget, .mode = mode});
+                    compare(row.setting, query, poses, result, row.bound_max);
+                    result.rows.push_back(row);
+                }
+            }
+            // FCL alone, at many more poses: the bounds hold whatever the mode or the budget.
+            double ignored = 0.0;
+            query::PartQuery query(field_part->part, shell_part->part, {.area_stiffness = kAreaStiffness});
+            compare({.tolerance = tolerance, .spacing = spacing}, query, shaken, result, ignored);
+            done += 1.0;
+        }
+    }
+    report("", 1.0);
+    markFronts(result.rows);
+    return result;
+}
+
+}  // namespace passung::truth

@@ -1,0 +1,185 @@
+#include "analysis/truth/accuracy_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+namespace passung::truth {
+
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+std::string cell(double value) { return std::isnan(value) ? "NA" : fmt::format("{:.6g}", value); }
+
+template <class Item>
+struct Column {
+    std::string name, unit, meaning;
+    std::function<std::string(const Item&)> text;
+};
+
+template <class Item>
+std::string csv(const std::vector<Column<Item>>& columns, const std::vector<Item>& items) {
+    std::string text;
+    for (const auto& column : columns) text += (text.empty() ? "" : ",") + column.name;
+    for (const Item& item : items) {
+        text += '\n';
+        for (std::size_t i = 0; i < columns.size(); ++i) text += (i > 0 ? "," : "") + columns[i].text(item);
+    }
+    return text + '\n';
+}
+
+using RowColumns = std::vector<Column<AccuracyRow>>;
+
+/// mean, p99 and max of one error, times `factor`.
+void addSpread(RowColumns& columns, const std::string& name, const std::string& unit, const std::string& meaning,
+               double factor, Spread AccuracyRow::*spread) {
+    const auto add = [&](const char* what, const char* words, double Spread::*value) {
+        columns.push_back({name + "_" + what + "_" + unit, unit, std::string(words) + meaning,
+                           [=](const AccuracyRow& row) { return cell(factor * row.*spread.*value); }});
+    };
+    add("mean", "mean over poses of ", &Spread::mean);
+    add("p99", "99th percentile (nearest rank) over poses of ", &Spread::p99);
+    add("max", "largest over poses of ", &Spread::max);
+}
+
+RowColumns rowColumns() {
+    using Row = AccuracyRow;
+    RowColumns columns{
+        {"mode", "", "interpolation of the field", [](const Row& r) { return std::string(modeName(r.setting.mode)); }},
+        {"tolerance_um", "um", "asked accuracy of FIELD's distance field",
+         [](const Row& r) { return cell(1e6 * r.setting.tolerance); }},
+        {"spacing_mm", "mm", "asked spacing of SHELL's points",
+         [](const Row& r) { return cell(1e3 * r.setting.spacing); }},
+        {"budget_nodes", "", "most tree nodes that a query visits; 0: no limit",
+         [](const Row& r) { return std::to_string(r.setting.budget_nodes); }},
+        {"points", "", "of SHELL", [](const Row& r) { return std::to_string(r.points); }},
+        {"time_median_us", "us",
+         "median over poses of the time of one query with its penalty wrench, the fastest of "
+         "several repetitions; one thread, its processor time",
+         [](const Row& r) { return cell(1e6 * r.time.median); }},
+        {"time_p99_us", "us", "99th percentile (nearest rank) of the same",
+         [](const Row& r) { return cell(1e6 * r.time.p99); }},
+        {"time_max_us", "us", "largest of the same", [](const Row& r) { return cell(1e6 * r.time.max); }}};
+    addSpread(columns, "distance_error", "um", "|signed distance - truth| without contact", 1e6, &Row::distance);
+    addSpread(columns, "depth_error", "um", "|signed distance - truth| in contact", 1e6, &Row::depth);
+    addSpread(columns, "signed_distance_error", "um", "|signed distance - truth|, all poses", 1e6,
+              &Row::signed_distance);
+    addSpread(columns, "force_error", "percent",
+              "| |F| - |F_true| | / |F_true|, where |F_true| is at least 1 % of the largest one", 100.0, &Row::force);
+    addSpread(columns, "direction_error", "deg",
+              "angle between F and F_true at the same poses, where the answer has a force", kDegrees, &Row::direction);
+    addSpread(
+        columns, "torque_error", "percent",
+        "|T - T_true| / (|F_true| lever) about SHELL's origin at the same poses; lever: SHELL's farthest point from it",
+        100.0, &Row::torque);
+    const RowColumns more{
+        {"stated_bound_max_um", "um", "largest error bound that the proven query states for the signed distance",
+         [](const Row& r) { return cell(1e6 * r.bound_max); }},
+        {"field_MB", "MB", "memory of FIELD's distance field", [](const Row& r) { return cell(1e-6 * r.field_bytes); }},
+        {"shell_MB", "MB", "memory of SHELL's points and tree",
+         [](const Row& r) { return cell(1e-6 * r.shell_bytes); }},
+        {"field_build_s", "s", "building FIELD, all cores", [](const Row& r) { return cell(r.field_build); }},
+        {"shell_build_s", "s", "building SHELL, all cores", [](const Row& r) { return cell(r.shell_build); }},
+        {"on_distance_front", "",
+         "1: no other row has both a smaller time_p99_us and a smaller "
+         "signed_distance_error_p99_um",
+         [](const Row& r) { return std::string(r.on_distance_front ? "1" : "0"); }},
+        {"on_force_front", "", "1: the same with force_error_p99_percent",
+         [](const Row& r) { return std::string(r.on_force_front ? "1" : "0"); }}};
+    columns.insert(columns.end(), more.begin(), more.end());
+    return columns;
+}
+
+std::vector<Column<JudgedPose>> poseColumns() {
+    std::vector<Column<JudgedPose>> columns;
+    const auto add = [&](const std::string& name, const char* unit, const char* meaning, auto value) {
+        columns.push_back({name, unit, meaning, [value](const JudgedPose& pose) {
+                               const double v = value(pose);
+                               return std::isnan(v) ? std::string("NA") : fmt::format("{}", v);
+                           }});
+    };
+    for (int axis = 0; axis < 3; ++axis)
+        add(std::string(1, "xyz"[axis]) + "_m", "m", "position of SHELL's frame in FIELD's",
+            [axis](const JudgedPose& p) { return p.X_FS.p[axis]; });
+    add("qw", "", "unit quaternion, SHELL to FIELD", [](const JudgedPose& p) { return p.X_FS.q.w(); });
+    add("qx", "", "unit quaternion, SHELL to FIELD", [](const JudgedPose& p) { return p.X_FS.q.x(); });
+    add("qy", "", "unit quaternion, SHELL to FIELD", [](const JudgedPose& p) { return p.X_FS.q.y(); });
+    add("qz", "", "unit quaternion, SHELL to FIELD", [](const JudgedPose& p) { return p.X_FS.q.z(); });
+    columns.push_back({"phase", "", "part of the path, or given by the user",
+                       [](const JudgedPose& p) { return std::string(p.phase); }});
+    columns.push_back({"true_relation", "", "by FCL and ray parity; A: FIELD, B: SHELL",
+                       [](const JudgedPose& p) { return std::string(toString(p.truth.relation)); }});
+    add("true_separation_m", "m", "of the surfaces, by FCL", [](const JudgedPose& p) { return p.truth.separation; });
+    add("true_signed_distance_m", "m", "smallest signed distance of SHELL's surface from FIELD; negative: depth",
+        [](const JudgedPose& p) { return p.truth.distance; });
+    add("true_distance_uncertainty_m", "m", "of the two before",
+        [](const JudgedPose& p) { return p.truth.uncertainty; });
+    for (int axis = 0; axis < 3; ++axis)
+        add(std::string("true_force_") + "xyz"[axis] + "_N", "N",
+            "penalty on SHELL, 1e9 N/m3 times depth integrated over its surface; FIELD's axes",
+            [axis](const JudgedPose& p) { return p.truth.wrench.force[axis]; });
+    for (int axis = 0; axis < 3; ++axis)
+        add(std::string("true_torque_") + "xyz"[axis] + "_Nm", "N m", "the same about SHELL's origin",
+            [axis](const JudgedPose& p) { return p.truth.wrench.torque[axis]; });
+    add("true_wrench_uncertainty_percent", "%", "of the dense sum, share of the force",
+        [](const JudgedPose& p) { return 100.0 * p.truth.wrench_uncertainty; });
+    return columns;
+}
+
+/// The rows of one front from fast to accurate.
+std::vector<const AccuracyRow*> front(const std::vector<AccuracyRow>& rows, bool AccuracyRow::*flag) {
+    std::vector<const AccuracyRow*> on;
+    for (const AccuracyRow& row : rows)
+        if (row.*flag) on.push_back(&row);
+    std::sort(on.begin(), on.end(),
+              [](const AccuracyRow* a, const AccuracyRow* b) { return a->time.p99 < b->time.p99; });
+    return on;
+}
+
+}  // namespace
+
+std::string accuracyCsv(const std::vector<AccuracyRow>& rows) { return csv(rowColumns(), rows); }
+
+std::string posesCsv(const std::vector<JudgedPose>& poses) { return csv(poseColumns(), poses); }
+
+std::string accuracyCodebook() {
+    std::string text = "file,column,unit,meaning\n";
+    const auto add = [&](const char* file, const auto& columns) {
+        for (const auto& column : columns)
+            text += fmt::format("{},{},{},\"{}\"\n", file, column.name, column.unit, column.meaning);
+    };
+    add("accuracy.csv", rowColumns());
+    add("poses.csv", poseColumns());
+    return text;
+}
+
+std::string settingText(const AccuracySetting& setting) {
+    const std::string budget =
+        setting.budget_nodes > 0 ? fmt::format(", {} nodes", setting.budget_nodes) : std::string();
+    return fmt::format("{:g} µm, {:g} mm, {}{}", 1e6 * setting.tolerance, 1e3 * setting.spacing, modeName(setting.mode),
+                       budget);
+}
+
+std::string frontText(const std::vector<AccuracyRow>& rows) {
+    std::string text;
+    const auto add = [&](const char* title, bool AccuracyRow::*flag, auto error, const char* unit) {
+        text += fmt::format("{}\n  {:>10} {:>10}  {:>10}      {}\n", title, "median", "p99", "p99 error",
+                            "field tolerance, point spacing, mode, node budget");
+        for (const AccuracyRow* row : front(rows, flag))
+            text += fmt::format("  {:>7.1f} µs {:>7.1f} µs  {:>10.3g} {:<4} {}\n", 1e6 * row->time.median,
+                                1e6 * row->time.p99, error(*row), unit, settingText(row->setting));
+    };
+    add(
+        "Distance and depth: settings that no other beats in both time and error", &AccuracyRow::on_distance_front,
+        [](const AccuracyRow& row) { return 1e6 * row.signed_distance.p99; }, "µm");
+    add(
+        "Force: settings that no other beats in both time and error", &AccuracyRow::on_force_front,
+        [](const AccuracyRow& row) { return 100.0 * row.force.p99; }, "%");
+    return text;
+}
+
+}  // namespace passung::truth

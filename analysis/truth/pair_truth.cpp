@@ -1,0 +1,85 @@
+#include "analysis/truth/pair_truth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace passung::truth {
+
+namespace {
+
+constexpr double kTolerance = 5e-6;        // of the tessellations [m]: their chord error is a twentieth of that
+constexpr double kResolution = 1e-6;       // of the depth [m]
+constexpr double kDenseShare = 1.0 / 250;  // of SHELL's longest side: pieces of the dense sum
+constexpr double kCoarser = 2.0;           // a second sum, for the uncertainty of the first
+
+Result<model::Part> surfaceOf(const model::PartSpec& spec) {
+    auto part = model::buildPart(spec, {.tolerance = kTolerance});
+    if (part && part->mesh.triangles.empty()) return Error{.message = "has no triangles", .file = spec.name};
+    return part;
+}
+
+}  // namespace
+
+Result<PairTruth> PairTruth::build(const model::PartSpec& field, const model::PartSpec& shell) {
+    auto a = surfaceOf(field);
+    if (!a) return a.errors();
+    auto b = surfaceOf(shell);
+    if (!b) return b.errors();
+    if (!a->report.watertight)
+        return Error{.message = "must be watertight to be FIELD: without an inside there is no true depth or force",
+                     .file = field.name};
+    return PairTruth(std::move(*a), std::move(*b));
+}
+
+PairTruth::PairTruth(model::Part field, model::Part shell)
+    : field_(std::move(field)),
+      shell_(std::move(shell)),
+      oracle_(std::make_unique<MeshOracle>(field_.mesh, shell_.mesh)),
+      surface_(std::make_unique<SurfaceTree>(oracle_->b())) {
+    for (const Vec3& v : shell_.mesh.vertices) lever_ = std::max(lever_, v.norm());
+}
+
+PoseTruth PairTruth::relationAt(const Pose& X_FS) const {
+    PoseTruth truth;
+    truth.separation = *oracle_->separation(X_FS);
+    truth.distance = std::numeric_limits<double>::quiet_NaN();
+    truth.uncertainty = field_.chord_error + shell_.chord_error;
+    if (*oracle_->surfacesIntersect(X_FS)) {
+        truth.relation = Relation::SurfacesIntersect;
+    } else if (oracle_->a().contains(X_FS * oracle_->b().triangles().front()[0])) {
+        truth.relation = Relation::BInsideA;
+    } else {
+        const bool around =
+            shell_.report.watertight && oracle_->b().contains(X_FS.inverse() * oracle_->a().triangles().front()[0]);
+        truth.relation = around ? Relation::AInsideB : Relation::Apart;
+        truth.distance = truth.separation;
+    }
+    return truth;
+}
+
+PoseTruth PairTruth::distanceAt(const Pose& X_FS, double resolution) const {
+    PoseTruth truth = relationAt(X_FS);
+    if (!std::isnan(truth.distance)) return truth;
+    const SmallestDistance found = surface_->smallestDistance(solid(), X_FS, resolution);
+    truth.distance = found.value;
+    truth.uncertainty += found.uncertainty;
+    return truth;
+}
+
+PoseTruth PairTruth::at(const Pose& X_FS) const {
+    PoseTruth truth = distanceAt(X_FS, kResolution);
+    if (!truth.inContact()) return truth;
+    const double edge = kDenseShare * length();
+    truth.wrench = surface_->penaltyWrench(solid(), X_FS, kAreaStiffness, edge);
+    const Wrench coarse = surface_->penaltyWrench(solid(), X_FS, kAreaStiffness, kCoarser * edge);
+    const double size = truth.wrench.force.norm();
+    if (!(size > 0.0)) return truth;
+    // The midpoint rule errs as edge²: the finer sum by a third of the difference. The chords take depth away besides.
+    const double change =
+        std::max((truth.wrench.force - coarse.force).norm(), (truth.wrench.torque - coarse.torque).norm() / lever_);
+    truth.wrench_uncertainty = change / size / (kCoarser * kCoarser - 1.0);
+    return truth;
+}
+
+}  // namespace passung::truth

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <memory>
+
+#include "analysis/truth/mesh_oracle.h"
+#include "analysis/truth/surface_tree.h"
+#include "core/base/result.h"
+#include "core/model/part.h"
+
+namespace passung::truth {
+
+/// κ of all wrenches of the penalty that are compared [N/m³].
+inline constexpr double kAreaStiffness = 1e9;
+
+/// What is true at one pose of SHELL in FIELD.
+struct PoseTruth {
+    Relation relation = Relation::Apart;  // by FCL; A: FIELD, B: SHELL
+    double separation = 0.0;              // of the surfaces, by FCL [m]; 0 if they intersect
+    double distance = 0.0;                // smallest signed distance of SHELL's surface from FIELD [m]; < 0: depth;
+                                          // NaN where it was not asked for
+    double uncertainty = 0.0;             // of both [m]
+    Wrench wrench;                        // on SHELL about its origin, in FIELD's axes; zero without contact
+    double wrench_uncertainty = 0.0;      // share of |force|, and of |force| · lever for the torque, estimated
+    bool inContact() const { return distance < 0.0; }
+};
+
+/// Truth about two parts, by nothing that the contact core uses: FCL on finely tessellated surfaces for intersection
+/// and separation; depth by branch and bound over SHELL's whole surface; the penalty wrench by a dense sum over it. The
+/// distances from FIELD in both are a shape's closed form, or the exact distances to a mesh's triangles.
+/// Built once, then const and thread-safe.
+class PairTruth {
+public:
+    /// Errors: a part cannot be built; FIELD is not watertight, for there is no depth without an inside.
+    static Result<PairTruth> build(const model::PartSpec& field, const model::PartSpec& shell);
+
+    /// @pre `X_FS` finite.
+    PoseTruth at(const Pose& X_FS) const;
+
+    /// What FCL and ray parity say; the distance only where it is the separation.
+    PoseTruth relationAt(const Pose& X_FS) const;
+
+    /// PoseTruth without the wrench, its depth to `resolution` [m].
+    PoseTruth distanceAt(const Pose& X_FS, double resolution) const;
+
+    const model::Bounds& fieldBounds() const { return oracle_->a().bounds(); }
+    const model::Bounds& shellBounds() const { return oracle_->b().bounds(); }
+    /// Longest side of SHELL [m].
+    double length() const { return shellBounds().size().maxCoeff(); }
+    /// Distance of SHELL's farthest point from its origin [m]: the lever of its torques.
+    double lever() const { return lever_; }
+
+private:
+    PairTruth(model::Part field, model::Part shell);
+    Solid solid() const { return {oracle_->a(), field_.shape ? &*field_.shape : nullptr, field_.chord_error}; }
+
+    model::Part field_, shell_;
+    std::unique_ptr<MeshOracle> oracle_;
+    std::unique_ptr<SurfaceTree> surface_;
+    double lever_ = 0.0;
+};
+
+}  // namespace passung::truth

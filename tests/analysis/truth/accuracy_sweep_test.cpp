@@ -1,0 +1,130 @@
+#include "analysis/truth/accuracy_sweep.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/truth/accuracy_picture.h"
+#include "analysis/truth/accuracy_tables.h"
+
+namespace passung::truth {
+namespace {
+
+model::PartSpec spec(const char* name, const model::Shape& shape) {
+    model::PartSpec part;
+    part.name = name;
+    part.geometry = shape;
+    return part;
+}
+
+AccuracyRow rowAt(double time, double distance, double force) {
+    AccuracyRow row;
+    row.time = {time, time, time, time};
+    row.signed_distance = {distance, distance, distance, distance};
+    row.force = {force, force, force, force};
+    return row;
+}
+
+TEST(AccuracyFront, HoldsExactlyTheRowsThatNoOtherBeatsInBoth) {
+    // Truth: closed form. By hand: distance: (1, 9), (2, 5), (4, 1) are on the front; (3, 6) is beaten by (2, 5), (4,
+    // 2) by (4, 1). Force has its own front; a row without a force is on none.
+    std::vector<AccuracyRow> rows{rowAt(3, 6, 1), rowAt(1, 9, 8), rowAt(4, 2, 0.5), rowAt(2, 5, Spread::kNone),
+                                  rowAt(4, 1, 0.7)};
+    markFronts(rows);
+    const std::vector<bool> distance{false, true, false, true, true}, force{true, true, true, false, false};
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        EXPECT_EQ(rows[i].on_distance_front, distance[i]) << i;
+        EXPECT_EQ(rows[i].on_force_front, force[i]) << i;
+    }
+}
+
+/// A ball that is pressed into a cube by three depths, and once apart.
+class BallOnCube : public ::testing::Test {
+protected:
+    const model::PartSpec cube_ = spec("cube", model::Box{0.04, 0.04, 0.04}), ball_ = spec("ball", model::Sphere{0.02});
+    const AccuracySpace space_{.tolerances = {50e-6}, .spacings = {1e-3, 0.5e-3}, .budgets = {0, 30}, .repetitions = 1};
+
+    std::vector<JudgedPose> poses() const {
+        std::vector<Pose> poses;
+        for (const double distance : {-1e-3, -0.5e-3, -0.2e-3, 1e-3})
+            poses.push_back({rotationFromVector({0.3, 0.5, -0.2}), Vec3(0.001, 0.002, 0.03 + distance)});
+        return judgePoses(*PairTruth::build(cube_, ball_), poses, [](double) {});
+    }
+    Result<AccuracyResult> sweep(const std::vector<JudgedPose>& poses) const {
+        return sweepAccuracy(cube_, ball_, space_, poses, {}, 0.01, [](const std::string&, double) {});
+    }
+};
+
+TEST_F(BallOnCube, ErrsByNoMoreThanTheSpacingAdmitsAndLessWithFinerPoints) {
+    // Truth: closed form. A point is at most the cover radius c, about a spacing, from the deepest one, which costs
+    // c² / 2r = 50 µm at 1 mm; the field adds its tolerance of 50 µm at most.
+    const auto result = sweep(poses());
+    ASSERT_TRUE(result);
+    ASSERT_EQ(result->rows.size(), 8u);  // 2 modes x 2 spacings x 2 budgets
+    EXPECT_TRUE(result->disagreements.empty()) << result->disagreements.front().what;
+    EXPECT_EQ(result->compared, 8u * 4u);
+    for (const AccuracyRow& row : result->rows) {
+        if (row.setting.budget_nodes > 0) continue;
+        EXPECT_LE(row.signed_distance.max, row.setting.spacing * row.setting.spacing / 0.02 + 50e-6);
+        EXPECT_GT(row.time.p99, 0.0);
+        EXPECT_GT(row.field_bytes, 0.0);
+    }
+    const auto find = [&](double spacing) {
+        return std::find_if(result->rows.begin(), result->rows.end(), [&](const AccuracyRow& row) {
+            return row.setting.spacing == spacing && row.setting.budget_nodes == 0;
+        });
+    };
+    EXPECT_LT(find(0.5e-3)->force.mean, find(1e-3)->force.mean);
+    EXPECT_LT(find(1e-3)->force.max, 0.15);
+}
+
+TEST_F(BallOnCube, NamesThePoseWhereAnAnswerContradictsTheTruth) {
+    // Truth: invariant. The truth of one pose is moved by 5 mm, more than any bound of contact states.
+    std::vector<JudgedPose> wrong = poses();
+    wrong[1].truth.distance -= 5e-3;
+    const auto result = sweep(wrong);
+    ASSERT_TRUE(result);
+    ASSERT_EQ(result->disagreements.size(), 8u);
+    EXPECT_EQ(result->disagreements.front().X_FS.p, wrong[1].X_FS.p);
+    // And said to intersect although they are 1 mm apart.
+    wrong = poses();
+    wrong[3].truth.relation = Relation::SurfacesIntersect;
+    wrong[3].truth.distance = Spread::kNone;
+    EXPECT_FALSE(sweep(wrong)->disagreements.empty());
+}
+
+TEST_F(BallOnCube, TablesHaveACellForEveryColumnAndThePictureEveryFrontSetting) {
+    // Truth: invariant
+    const auto judged = poses();
+    const auto result = sweep(judged);
+    ASSERT_TRUE(result);
+    for (const std::string& text : {accuracyCsv(result->rows), posesCsv(judged)}) {
+        std::size_t begin = 0;
+        const auto commas = [&](std::size_t end) {
+            return std::count(text.begin() + static_cast<std::ptrdiff_t>(begin),
+                              text.begin() + static_cast<std::ptrdiff_t>(end), ',');
+        };
+        const auto expected = commas(text.find('\n'));
+        for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1)
+            EXPECT_EQ(commas(end), expected);
+        EXPECT_EQ(text.find(",,"), std::string::npos);
+    }
+    const std::string picture = accuracyPicture(result->rows, {"cube <1>", "ball", judged.size(), 3});
+    for (const AccuracyRow& row : result->rows) {
+        const bool shown = picture.find(settingText(row.setting) + "<") != std::string::npos;
+        EXPECT_EQ(shown, row.on_distance_front || row.on_force_front) << settingText(row.setting);
+    }
+    EXPECT_EQ(picture.find("<1>"), std::string::npos) << "a name must not become markup";
+    EXPECT_EQ(picture.find("nan"), std::string::npos);
+}
+
+TEST(AccuracyDefaults, SpacingsAreRoundAndAboutAFiftiethOfTheLength) {
+    // Truth: closed form. 50 mm / 50 = 1 mm; 0.15 m / 50 = 3 mm, nearer to 2 than to 5 by ratio.
+    EXPECT_NEAR(defaultSpacings(0.05)[2], 1e-3, 1e-12);
+    EXPECT_NEAR(defaultSpacings(0.15)[2], 2e-3, 1e-12);
+    EXPECT_NEAR(defaultSpacings(0.05)[3], 0.5e-3, 1e-12);
+}
+
+}  // namespace
+}  // namespace passung::truth

@@ -1,0 +1,122 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+
+#include "analysis/truth/accuracy_picture.h"
+#include "analysis/truth/accuracy_sweep.h"
+#include "analysis/truth/accuracy_tables.h"
+#include "ui/cli/commands.h"
+#include "ui/cli/console.h"
+#include "ui/cli/part_argument.h"
+#include "ui/cli/pose_table.h"
+
+namespace passung::cli {
+
+namespace {
+
+constexpr std::size_t kMostPrinted = 20;  // disagreements
+
+/// "####......  42 %  what"
+std::string bar(const std::string& what, double share) {
+    constexpr int kWidth = 30;
+    const int done = std::clamp(static_cast<int>(share * kWidth), 0, kWidth);
+    return fmt::format("{}{} {:3.0f} %  {}", std::string(static_cast<std::size_t>(done), '#'),
+                       std::string(static_cast<std::size_t>(kWidth - done), '.'), 100.0 * share, what);
+}
+
+truth::AccuracySpace spaceOf(const AccuracyOptions& options, double length) {
+    truth::AccuracySpace space;
+    space.modes.clear();
+    for (const model::FieldMode mode : truth::allModes())
+        if (std::find(options.modes.begin(), options.modes.end(), truth::modeName(mode)) != options.modes.end())
+            space.modes.push_back(mode);
+    space.tolerances.clear();
+    for (const double tolerance : options.tolerances_um) space.tolerances.push_back(1e-6 * tolerance);
+    for (const double spacing : options.spacings_mm) space.spacings.push_back(1e-3 * spacing);
+    if (space.spacings.empty()) space.spacings = truth::defaultSpacings(length);
+    space.budgets = options.budgets;
+    space.repetitions = options.repetitions;
+    return space;
+}
+
+Result<Done> writeFile(const std::filesystem::path& path, const std::string& text) {
+    OutputFile file(path.string());
+    file.write(text);
+    return file.commit();
+}
+
+std::string nameOf(const std::string& path) { return std::filesystem::path(path).stem().string(); }
+
+Result<Done> writeAll(const AccuracyOptions& options, const truth::AccuracyResult& result,
+                      const std::vector<truth::JudgedPose>& poses) {
+    const std::filesystem::path folder(options.out);
+    truth::PictureText text{nameOf(options.field), nameOf(options.shell), poses.size(), 0};
+    for (const auto& pose : poses) text.contacts += pose.truth.inContact() ? 1 : 0;
+    for (const auto& [name, content] : {std::pair{"accuracy.csv", truth::accuracyCsv(result.rows)},
+                                        {"poses.csv", truth::posesCsv(poses)},
+                                        {"codebook.csv", truth::accuracyCodebook()},
+                                        {"accuracy.svg", truth::accuracyPicture(result.rows, text)}})
+        if (auto done = writeFile(folder / name, content); !done) return done;
+    return Done{};
+}
+
+/// Prints what contradicts the truth; the exit code.
+int printDisagreements(const truth::AccuracyResult& result) {
+    fmt::print(
+        "{} answers compared with FCL and the true depth: {} outside their stated bound; for {} the bound leaves "
+        "open whether the surfaces meet.\n",
+        result.compared, result.disagreements.size(), result.undecided);
+    for (std::size_t i = 0; i < std::min(kMostPrinted, result.disagreements.size()); ++i) {
+        const truth::Disagreement& d = result.disagreements[i];
+        const Vec3& p = d.X_FS.p;
+        const Quat& q = d.X_FS.q;
+        fmt::print(stderr, "error: {}\n  setting: {}\n  pose x_m,y_m,z_m,qw,qx,qy,qz: {},{},{},{},{},{},{}\n", d.what,
+                   truth::settingText(d.setting), p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
+    }
+    return result.disagreements.empty() ? 0 : 1;
+}
+
+}  // namespace
+
+int accuracy(const AccuracyOptions& options) {
+    const auto field = partArgument(options.field, options.field_unit.empty() ? options.unit : options.field_unit);
+    if (!field) return fail(field.errors());
+    const auto shell = partArgument(options.shell, options.shell_unit.empty() ? options.unit : options.shell_unit);
+    if (!shell) return fail(shell.errors());
+    std::vector<Pose> given;
+    if (!options.poses.empty()) {
+        NumberTable table;
+        auto poses = readPoses(options.poses, table);
+        if (!poses) return fail(poses.errors());
+        if (poses->empty()) return fail({{.message = "has no pose", .file = options.poses}});
+        given = std::move(*poses);
+    }
+    std::error_code problem;
+    std::filesystem::create_directories(options.out, problem);
+    if (problem) return fail({{.message = "cannot be made: " + problem.message(), .file = options.out}});
+
+    ProgressLine progress;
+    progress.show("reading the parts");
+    const auto truth = truth::PairTruth::build(*field, *shell);
+    if (!truth) return fail(truth.errors());
+    const auto poses_report = [&](double share) { progress.show(bar("finding poses and what is true there", share)); };
+    const auto poses = given.empty() ? truth::contactPath(*truth, options.paths, options.seed, poses_report)
+                                     : truth::judgePoses(*truth, given, poses_report);
+    if (poses.empty()) return fail({{.message = "no path of SHELL meets it", .file = options.field}});
+    const auto shaken = truth::shakenPoses(*truth, poses, options.fcl_poses, options.seed, [&](double share) {
+        progress.show(bar("asking FCL about further poses", share));
+    });
+    const auto result = truth::sweepAccuracy(
+        *field, *shell, spaceOf(options, truth->length()), poses, shaken, truth->lever(),
+        [&](const std::string& what, double share) { progress.show(what.empty() ? what : bar(what, share)); });
+    if (!result) return fail(result.errors());
+    if (const auto done = writeAll(options, *result, poses); !done) return fail(done.errors());
+    fmt::print("{}", truth::frontText(result->rows));
+    const int code = printDisagreements(*result);
+    fmt::print("{}: accuracy.csv, accuracy.svg, poses.csv, codebook.csv\n", options.out);
+    return code;
+}
+
+}  // namespace passung::cli
