@@ -47,14 +47,18 @@ TEST(TruePoses, StoredDepthsAreThoseOfASearchOverAllTriangles) {
 }
 
 TEST(TruePoses, AreWhatTheSearchFindsToday) {
-    // Truth: regression (the file was made by this search; it guards the file against a change of either).
+    // Truth: regression (the file was made by this search, which then cut triangles in four; it guards the file against
+    // a change of either). Both depths are the true one to their uncertainty; the sums differ by their quadrature, by
+    // at most 0.011 % of the force each (see kDenseEdge), on a lever of the tool's 26 mm.
     const ContactScene scene = storedScene(2);
+    const double most = 2 * 1.1e-4, lever = 0.026;
     for (const TruePose& stored : scene.pressed) {
         const TruePose now = truthAt(scene, stored.X_FS);
-        EXPECT_NEAR(now.shell_in_field, stored.shell_in_field, 1e-11);
-        EXPECT_NEAR(now.field_in_shell, stored.field_in_shell, 1e-11);
-        EXPECT_LT((now.one_way.force - stored.one_way.force).norm(), 1e-7 * stored.one_way.force.norm());
-        EXPECT_LT((now.two_way.torque - stored.two_way.torque).norm(), 1e-7 * stored.two_way.force.norm());
+        EXPECT_NEAR(now.shell_in_field, stored.shell_in_field, now.uncertainty + stored.uncertainty);
+        EXPECT_NEAR(now.field_in_shell, stored.field_in_shell, now.uncertainty + stored.uncertainty);
+        const double force = stored.one_way.force.norm();
+        EXPECT_LT((now.one_way.force - stored.one_way.force).norm(), most * force);
+        EXPECT_LT((now.two_way.torque - stored.two_way.torque).norm(), most * force * lever);
     }
 }
 

@@ -115,7 +115,7 @@ TEST_F(BallOnCube, TablesHaveACellForEveryColumnAndThePictureEveryFrontSetting) 
         const bool shown = picture.find(settingText(row.setting) + "<") != std::string::npos;
         EXPECT_EQ(shown, row.on_distance_front || row.on_force_front) << settingText(row.setting);
     }
-    EXPECT_EQ(picture.find("<1>"), std::string::npos) << "a name must not become markup";
+    EXPECT_EQ(picture.find("<1"), std::string::npos) << "a name must not become markup";
     EXPECT_EQ(picture.find("nan"), std::string::npos);
 }
 
