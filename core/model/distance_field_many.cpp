@@ -19,6 +19,11 @@ constexpr std::size_t kSmallIndex = 4096;
 template <class Number>
 using Lane = std::array<Number, kBlock>;
 
+/// 1 or 0 without a jump, which would keep a loop from becoming vector instructions.
+PASSUNG_INLINE int isWithin(double value, double low, double high) {
+    return static_cast<int>(value >= low) & static_cast<int>(value < high);
+}
+
 /// Transform, grid and index folded into one affine map from a point to coordinates in largest bricks.
 struct Map {
     Pose pose;
@@ -52,10 +57,10 @@ struct DistanceField::Block {
             const double gy = m.turn[3] * px + m.turn[4] * py + m.turn[5] * pz + m.shift[1];
             const double gz = m.turn[6] * px + m.turn[7] * py + m.turn[8] * pz + m.shift[2];
             // A comparison with a NaN is false: such a point is outside too.
-            const bool in_x = gx >= m.low[0] && gx < m.high[0];
-            const bool in_y = gy >= m.low[1] && gy < m.high[1];
-            const bool in_z = gz >= m.low[2] && gz < m.high[2];
-            const double sx = in_x ? gx : m.low[0], sy = in_y ? gy : m.low[1], sz = in_z ? gz : m.low[2];
+            const int in_x = isWithin(gx, m.low[0], m.high[0]);
+            const int in_y = isWithin(gy, m.low[1], m.high[1]);
+            const int in_z = isWithin(gz, m.low[2], m.high[2]);
+            const double sx = in_x != 0 ? gx : m.low[0], sy = in_y != 0 ? gy : m.low[1], sz = in_z != 0 ? gz : m.low[2];
             place[0][i] = sx;
             place[1][i] = sy;
             place[2][i] = sz;
@@ -63,7 +68,7 @@ struct DistanceField::Block {
             const auto cy = static_cast<std::int32_t>(sy * m.cubes) - m.first[1];
             const auto cz = static_cast<std::int32_t>(sz * m.cubes) - m.first[2];
             cube[i] = cz * m.slab + cy * m.row + cx;
-            outside[i] = in_x && in_y && in_z ? 0 : 1;
+            outside[i] = 1 - (in_x & in_y & in_z);
         }
     }
 

@@ -147,10 +147,11 @@ TEST(TwoWayQuery, TheFinerShellSharpensTheBoundOnceThePartsAreProvenApart) {
     };
     const model::Part fine = ball(0.02, 0.3e-3), coarse = ball(0.02, 0.8e-3);
     query::PartQueryRequest request;
-    request.two_way = true;
+    request.tolerance = std::numeric_limits<double>::infinity();  // the points alone
     const Pose X_FS{Quat::Identity(), 0.0207 * Vec3(3, 4, 12) / 13.0};
-    const auto fine_points = query::PartQuery(coarse, fine, {}).at(X_FS.inverse());
-    const auto coarse_points = query::PartQuery(fine, coarse, {}).at(X_FS);
+    const auto fine_points = query::PartQuery(coarse, fine, request).at(X_FS.inverse());
+    const auto coarse_points = query::PartQuery(fine, coarse, request).at(X_FS);
+    request.two_way = true;
     const auto both = query::PartQuery(fine, coarse, request).at(X_FS);
     EXPECT_GT(fine_points.lower_bound, 0.0);
     EXPECT_LT(coarse_points.lower_bound, 0.0);
