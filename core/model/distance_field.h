@@ -74,11 +74,27 @@ public:
     /// φ and its gradient at `p` (part frame). Outside the grid φ is the distance to the part's box (a lower bound).
     FieldSample sample(const Vec3& p, FieldMode mode) const noexcept;
 
-    /// φ (FieldMode::Trilinear) at many points: x, y, z in a frame S that stands at X_FS in the part frame F. In single
-    /// precision within a brick: next to sample() it is off by at most 2⁻²⁰ of the span of the brick's values. The same
-    /// bits whatever the instructions; `phi` is as long as the others.
-    void sampleMany(const Pose& X_FS, std::span<const float> x, std::span<const float> y, std::span<const float> z,
+    /// A frame S that stands at X_FS in the part frame F, folded into what sampleMany and lowerBounds compute with.
+    struct Placement {
+        Pose X_FS;
+        std::array<double, 9> turn;  // to coordinates in largest bricks, row by row
+        std::array<double, 3> shift;
+        std::array<double, 3> low, high;  // of the index; a coordinate outside is drawn to its border
+        double cubes;                     // of the index along a largest brick
+        std::array<std::int32_t, 3> first;
+        std::int32_t row, slab;
+    };
+    Placement place(const Pose& X_FS) const noexcept;
+
+    /// φ (FieldMode::Trilinear) at many points x, y, z of the frame S. In single precision within a brick: next to
+    /// sample() it is off by at most 2⁻²⁰ of the span of the brick's values and 2⁻²³ of φ. The same bits whatever the
+    /// instructions; `phi` is as long as the others.
+    void sampleMany(const Placement& S, std::span<const float> x, std::span<const float> y, std::span<const float> z,
                     std::span<float> phi, Instructions instructions = bestInstructions()) const noexcept;
+
+    /// lowerBound() at many points of the frame S, less what single precision may add: never above the true φ.
+    void lowerBounds(const Placement& S, std::span<const float> x, std::span<const float> y, std::span<const float> z,
+                     std::span<float> bound, Instructions instructions = bestInstructions()) const noexcept;
 
     /// A rigorous lower bound of the true φ at `p`; cheaper than sample() by the gradient.
     ///   No holes, the larger of two, with the trilinear weights w and S = Σ w_i |c_i - p|² = edge² Σ_axis u (1 - u):

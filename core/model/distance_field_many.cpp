@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 
 #include "core/model/distance_field.h"
 
@@ -24,16 +26,11 @@ PASSUNG_INLINE int isWithin(double value, double low, double high) {
     return static_cast<int>(value >= low) & static_cast<int>(value < high);
 }
 
-/// Transform, grid and index folded into one affine map from a point to coordinates in largest bricks.
-struct Map {
-    Pose pose;
-    std::array<double, 9> turn;  // row by row
-    std::array<double, 3> shift;
-    std::array<double, 3> low, high;  // of the index; a coordinate outside is drawn to its border
-    double cubes;                     // of the index along a largest brick
-    std::array<std::int32_t, 3> first;
-    std::int32_t row, slab;
-};
+constexpr float kSlackUnit = 1.0f / 255.0f * (1.0f + 0x1p-20f);
+/// More than single precision adds to a value of a brick, in steps, with the half step of storing it.
+constexpr float kStepMargin = 0.6f;
+/// What some roundings in single precision change a number by, relatively.
+constexpr float kMore = 1.0f + 0x1p-19f, kLess = 1.0f - 0x1p-19f;
 
 }  // namespace
 
@@ -45,12 +42,14 @@ struct DistanceField::Block {
     Lane<double> scale;  // cells along a largest brick
     Lane<std::int32_t> first;
     Lane<float> low, step;
+    Lane<float> slack, edge;  // for bounds
     std::array<Lane<float>, 3> u;
     Lane<std::int32_t> node;
     std::array<Lane<std::uint32_t>, 4> pair;  // two neighbours along x each
 
     /// Where each point lies, and in which cube of the index.
-    PASSUNG_INLINE void placeAll(const Map& m, const float* x, const float* y, const float* z, std::size_t count) {
+    PASSUNG_INLINE void placeAll(const Placement& m, const float* x, const float* y, const float* z,
+                                 std::size_t count) {
         for (std::size_t i = 0; i < count; ++i) {
             const double px = static_cast<double>(x[i]), py = static_cast<double>(y[i]), pz = static_cast<double>(z[i]);
             const double gx = m.turn[0] * px + m.turn[1] * py + m.turn[2] * pz + m.shift[0];
@@ -86,25 +85,64 @@ struct DistanceField::Block {
         }
     }
 
-    /// Between the eight corners of each point's cell, along x, y, z.
+    /// The number stored at a corner of a point's cell, on the left or on the right of a pair.
+    PASSUNG_INLINE float left(std::size_t k, std::size_t i) const {
+        return static_cast<float>(static_cast<std::int32_t>(pair[k][i] & 0xffffu));
+    }
+    PASSUNG_INLINE float right(std::size_t k, std::size_t i) const {
+        return static_cast<float>(static_cast<std::int32_t>(pair[k][i] >> 16));
+    }
+
+    /// Between eight corners, along x, y, z.
+    PASSUNG_INLINE static float between(const std::array<float, 8>& c, float x, float y, float z) {
+        const float x00 = c[0] + x * (c[1] - c[0]), x10 = c[2] + x * (c[3] - c[2]);
+        const float x01 = c[4] + x * (c[5] - c[4]), x11 = c[6] + x * (c[7] - c[6]);
+        const float y0 = x00 + y * (x10 - x00), y1 = x01 + y * (x11 - x01);
+        return y0 + z * (y1 - y0);
+    }
+
+    PASSUNG_INLINE std::array<float, 8> corners(std::size_t i) const {
+        return {left(0, i), right(0, i), left(1, i), right(1, i), left(2, i), right(2, i), left(3, i), right(3, i)};
+    }
+
     PASSUNG_INLINE void interpolateAll(float* phi, std::size_t count) const {
+        for (std::size_t i = 0; i < count; ++i)
+            phi[i] = low[i] + step[i] * between(corners(i), u[0][i], u[1][i], u[2][i]);
+    }
+
+    /// As lowerBound(): near the surface and far from it.
+    PASSUNG_INLINE void boundAll(float offset, float arithmetic, float* bound, std::size_t count) const {
         for (std::size_t i = 0; i < count; ++i) {
             const float x = u[0][i], y = u[1][i], z = u[2][i];
-            const auto left = [&](std::size_t k) {
-                return static_cast<float>(static_cast<std::int32_t>(pair[k][i] & 0xffffu));
-            };
-            const auto right = [&](std::size_t k) {
-                return static_cast<float>(static_cast<std::int32_t>(pair[k][i] >> 16));
-            };
-            const float l0 = left(0), l1 = left(1), l2 = left(2), l3 = left(3);
-            const float x00 = l0 + x * (right(0) - l0), x10 = l1 + x * (right(1) - l1);
-            const float x01 = l2 + x * (right(2) - l2), x11 = l3 + x * (right(3) - l3);
-            const float y0 = x00 + y * (x10 - x00), y1 = x01 + y * (x11 - x01);
-            phi[i] = low[i] + step[i] * (y0 + z * (y1 - y0));
+            const std::array<float, 8> c = corners(i);
+            const float spread = edge[i] * edge[i] * (x * (1.0f - x) + y * (1.0f - y) + z * (1.0f - z)) * kMore;
+            const float margin = kStepMargin * step[i] + arithmetic;
+            const float value = low[i] + step[i] * between(c, x, y, z);
+            const float size = value < 0.0f ? -value : value;
+            const float near = value - slack[i] * std::sqrt(spread) * kMore - margin - size * (1.0f - kLess);
+            const float zero = low[i] + offset - margin;
+            std::array<float, 8> square;
+            for (std::size_t k = 0; k < 8; ++k) {
+                const float d = zero + step[i] * c[k];
+                const float outside_only = d > 0.0f ? d : 0.0f;
+                square[k] = outside_only * outside_only;
+            }
+            const float rest = between(square, x, y, z) * kLess - spread;
+            const float far = std::sqrt(rest > 0.0f ? rest : 0.0f) * kLess - offset - margin;
+            bound[i] = rest > 0.0f && far > near ? far : near;
         }
     }
 
+    /// The octant of the brick around a point, with so many half bricks along a largest one.
+    PASSUNG_INLINE std::size_t octant(std::size_t i, double halves) const {
+        const auto bit = [&](std::size_t axis) {
+            return static_cast<unsigned>(static_cast<std::int32_t>(place[axis][i] * halves)) & 1u;
+        };
+        return bit(0) | bit(1) << 1 | bit(2) << 2;
+    }
+
     /// The smallest brick of each point; where the index knows none the point is left to sample().
+    template <bool kBounds>
     PASSUNG_INLINE void brickAll(const DistanceField& field, std::size_t count) {
         for (std::size_t i = 0; i < count; ++i) {
             const std::int32_t found = field.index_.brick[static_cast<std::size_t>(cube[i])];
@@ -112,14 +150,16 @@ struct DistanceField::Block {
             auto k = static_cast<std::size_t>(std::max(found, 0));
             while (field.bricks_[k].refined) {
                 const double halves = static_cast<double>(2 << field.bricks_[k].level);
-                const auto bit = [&](std::size_t axis) {
-                    return static_cast<unsigned>(static_cast<std::int32_t>(place[axis][i] * halves)) & 1u;
-                };
-                const std::int32_t child = field.bricks_[k].child[bit(0) | bit(1) << 1 | bit(2) << 2];
+                const std::int32_t child = field.bricks_[k].child[octant(i, halves)];
                 if (child < 0) break;
                 k = static_cast<std::size_t>(child);
             }
             const Brick& brick = field.bricks_[k];
+            if constexpr (kBounds) {
+                slack[i] =
+                    static_cast<float>(brick.slack[octant(i, static_cast<double>(2 << brick.level))]) * kSlackUnit;
+                edge[i] = static_cast<float>(field.largest_cell_ / static_cast<double>(1 << brick.level));
+            }
             scale[i] = static_cast<double>(kBrickCells << brick.level);
             first[i] = static_cast<std::int32_t>(k * kBrickSamples);
             low[i] = static_cast<float>(brick.low);
@@ -138,61 +178,99 @@ struct DistanceField::Block {
         }
     }
 
-    PASSUNG_INLINE static void sampleAll(const DistanceField& field, const Map& map, const float* x, const float* y,
-                                         const float* z, float* phi, std::size_t total) {
+    template <bool kBounds>
+    PASSUNG_INLINE static void runAll(const DistanceField& field, const Placement& S, const float* x, const float* y,
+                                      const float* z, float* result, std::size_t total) {
+        const auto offset = static_cast<float>(field.sheet_offset_) * kMore;
+        const auto arithmetic = static_cast<float>(2.0 * field.arithmetic_);
         Block block;
         for (std::size_t start = 0; start < total; start += kBlock) {
             const std::size_t count = std::min(kBlock, total - start);
-            block.placeAll(map, x + start, y + start, z + start, count);
-            block.brickAll(field, count);
+            block.placeAll(S, x + start, y + start, z + start, count);
+            block.brickAll<kBounds>(field, count);
             block.cellAll(count);
             block.pairAll(field.samples_.data(), count);
-            block.interpolateAll(phi + start, count);
+            if constexpr (kBounds)
+                block.boundAll(offset, arithmetic, result + start, count);
+            else
+                block.interpolateAll(result + start, count);
             for (std::size_t i = 0; i < count; ++i) {
                 if (block.outside[i] == 0) continue;
-                const Vec3 p_FP = map.pose * Vec3(static_cast<double>(x[start + i]), static_cast<double>(y[start + i]),
-                                                  static_cast<double>(z[start + i]));
-                phi[start + i] = static_cast<float>(field.sample(p_FP, FieldMode::Trilinear).phi);
+                const Vec3 p_F = S.X_FS * Vec3(static_cast<double>(x[start + i]), static_cast<double>(y[start + i]),
+                                               static_cast<double>(z[start + i]));
+                result[start + i] = kBounds ? below(field.lowerBound(p_F))
+                                            : static_cast<float>(field.sample(p_F, FieldMode::Trilinear).phi);
             }
         }
     }
 
-    static void baseline(const DistanceField& field, const Map& map, const float* x, const float* y, const float* z,
-                         float* phi, std::size_t count) {
-        sampleAll(field, map, x, y, z, phi, count);
+    /// The largest float that is not above a number.
+    static float below(double value) {
+        const auto rounded = static_cast<float>(value);
+        return static_cast<double>(rounded) > value ? std::nextafter(rounded, -std::numeric_limits<float>::infinity())
+                                                    : rounded;
     }
-    PASSUNG_V3 static void v3(const DistanceField& field, const Map& map, const float* x, const float* y,
-                              const float* z, float* phi, std::size_t count) {
-        sampleAll(field, map, x, y, z, phi, count);
+
+    using Run = void (*)(const DistanceField&, const Placement&, const float*, const float*, const float*, float*,
+                         std::size_t);
+    template <bool kBounds>
+    static void baseline(const DistanceField& f, const Placement& S, const float* x, const float* y, const float* z,
+                         float* result, std::size_t count) {
+        runAll<kBounds>(f, S, x, y, z, result, count);
     }
-    PASSUNG_V4 static void v4(const DistanceField& field, const Map& map, const float* x, const float* y,
-                              const float* z, float* phi, std::size_t count) {
-        sampleAll(field, map, x, y, z, phi, count);
+    template <bool kBounds>
+    PASSUNG_V3 static void v3(const DistanceField& f, const Placement& S, const float* x, const float* y,
+                              const float* z, float* result, std::size_t count) {
+        runAll<kBounds>(f, S, x, y, z, result, count);
+    }
+    template <bool kBounds>
+    PASSUNG_V4 static void v4(const DistanceField& f, const Placement& S, const float* x, const float* y,
+                              const float* z, float* result, std::size_t count) {
+        runAll<kBounds>(f, S, x, y, z, result, count);
+    }
+    template <bool kBounds>
+    static Run runWith(Instructions instructions) {
+        return instructions == Instructions::V4   ? v4<kBounds>
+               : instructions == Instructions::V3 ? v3<kBounds>
+                                                  : baseline<kBounds>;
     }
 };
 
-void DistanceField::sampleMany(const Pose& X_FS, std::span<const float> x, std::span<const float> y,
-                               std::span<const float> z, std::span<float> phi,
-                               Instructions instructions) const noexcept {
-    Map map{};
-    map.pose = X_FS;
-    map.cubes = static_cast<double>(1 << index_.level);
+DistanceField::Placement DistanceField::place(const Pose& X_FS) const noexcept {
+    Placement S{};
+    S.X_FS = X_FS;
+    S.cubes = static_cast<double>(1 << index_.level);
     const Mat3 turn = X_FS.q.toRotationMatrix() * inverse_brick_edge_;
     const Vec3 shift = (X_FS.p - origin_) * inverse_brick_edge_;
     for (std::size_t a = 0; a < 3; ++a) {
         const auto axis = static_cast<Eigen::Index>(a);
-        for (std::size_t b = 0; b < 3; ++b) map.turn[3 * a + b] = turn(axis, static_cast<Eigen::Index>(b));
-        map.shift[a] = shift[axis];
-        map.first[a] = index_.low[a];
-        map.low[a] = index_.low[a] / map.cubes;
-        map.high[a] = (index_.low[a] + index_.size[a]) / map.cubes;
+        for (std::size_t b = 0; b < 3; ++b) S.turn[3 * a + b] = turn(axis, static_cast<Eigen::Index>(b));
+        S.shift[a] = shift[axis];
+        S.first[a] = index_.low[a];
+        S.low[a] = index_.low[a] / S.cubes;
+        S.high[a] = (index_.low[a] + index_.size[a]) / S.cubes;
     }
-    map.row = index_.size[0];
-    map.slab = index_.size[0] * index_.size[1];
-    const auto loop = instructions == Instructions::V4   ? Block::v4
-                      : instructions == Instructions::V3 ? Block::v3
-                                                         : Block::baseline;
-    loop(*this, map, x.data(), y.data(), z.data(), phi.data(), phi.size());
+    S.row = index_.size[0];
+    S.slab = index_.size[0] * index_.size[1];
+    return S;
+}
+
+void DistanceField::sampleMany(const Placement& S, std::span<const float> x, std::span<const float> y,
+                               std::span<const float> z, std::span<float> phi,
+                               Instructions instructions) const noexcept {
+    Block::runWith<false>(instructions)(*this, S, x.data(), y.data(), z.data(), phi.data(), phi.size());
+}
+
+void DistanceField::lowerBounds(const Placement& S, std::span<const float> x, std::span<const float> y,
+                                std::span<const float> z, std::span<float> bound,
+                                Instructions instructions) const noexcept {
+    if (bound_proven_) {
+        Block::runWith<true>(instructions)(*this, S, x.data(), y.data(), z.data(), bound.data(), bound.size());
+        return;
+    }
+    for (std::size_t i = 0; i < bound.size(); ++i)
+        bound[i] = Block::below(
+            lowerBound(S.X_FS * Vec3(static_cast<double>(x[i]), static_cast<double>(y[i]), static_cast<double>(z[i]))));
 }
 
 void DistanceField::fillIndex() {

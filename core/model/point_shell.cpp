@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/base/random.h"
+#include "core/base/single_precision.h"
 #include "core/model/disk_subset.h"
 #include "core/model/parallel.h"
 #include "core/model/triangle_distance.h"
@@ -64,8 +65,6 @@ void cutTriangle(const Vec3& a, const Vec3& b, const Vec3& c, float share, doubl
     }
     visit(a, b, c, share);
 }
-
-Vec3 roundedToFloat(const Vec3& p) { return p.cast<float>().cast<double>(); }
 
 Vec3 areaVector(const TriangleMesh& mesh, const Triangle& t) {
     const Vec3& a = mesh.vertices[t[0]];

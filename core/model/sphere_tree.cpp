@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/base/single_precision.h"
 #include "core/model/enclosing_ball.h"
 #include "core/model/parallel.h"
 
@@ -118,8 +119,8 @@ std::vector<Range> partRoots(std::vector<Item>& items) {
 /// Sphere, areas and representative of a node.
 void summarise(std::span<const SurfacePoint> below, SphereNode& node) {
     const Ball ball = enclosingBall(below);
-    node.centre = ball.centre;
-    node.radius = ball.radius;
+    node.centre = roundedToFloat(ball.centre);
+    node.radius = ball.radius + (1.0 + 1e-12) * (node.centre - ball.centre).norm();
     node.area = 0.0;
     Vec3 middle = Vec3::Zero(), mean = Vec3::Zero(), area_vector = Vec3::Zero();
     for (const SurfacePoint& point : below) {
@@ -181,19 +182,22 @@ SphereTree::SphereTree(const PointShell& shell)
     points_.reserve(items.size());
     for (const Item& item : items) {
         points_.push_back(shell.points[item.index]);
-        x_.push_back(item.position[0]);
-        y_.push_back(item.position[1]);
-        z_.push_back(item.position[2]);
+        positions_.add(item.position[0], item.position[1], item.position[2]);
     }
     parallelFor((nodes_.size() + kBatch - 1) / kBatch, [&](std::size_t batch) {
         const std::size_t end = std::min(nodes_.size(), (batch + 1) * kBatch);
         for (std::size_t i = batch * kBatch; i < end; ++i)
             summarise(std::span<const SurfacePoint>(points_).subspan(ranges[i].begin, ranges[i].count()), nodes_[i]);
     });
+    for (const SphereNode& node : nodes_) {
+        const Eigen::Vector3f centre = node.centre.cast<float>();
+        centres_.add(centre.x(), centre.y(), centre.z());
+    }
 }
 
 std::size_t SphereTree::memoryBytes() const {
-    return nodes_.size() * sizeof(SphereNode) + points_.size() * (sizeof(SurfacePoint) + 3 * sizeof(float));
+    constexpr std::size_t kFloats = 3 * sizeof(float);
+    return nodes_.size() * (sizeof(SphereNode) + kFloats) + points_.size() * (sizeof(SurfacePoint) + kFloats);
 }
 
 }  // namespace passung::model

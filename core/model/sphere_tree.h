@@ -11,8 +11,8 @@ namespace passung::model {
 
 /// A cluster of shell points: a sphere around all points below, and a real point that stands for them.
 struct SphereNode {
-    Vec3 centre;              // of the sphere [m]
-    double radius;            // the smallest that encloses every point below [m]
+    Vec3 centre;              // of the sphere [m]; each coordinate is exactly a float
+    double radius;            // about the smallest that encloses every point below [m]
     std::uint32_t first = 0;  // first child node, or first point if this is a leaf
     std::uint32_t count = 0;
     bool leaf = false;
@@ -20,6 +20,22 @@ struct SphereNode {
     Vec3 normal;         // unit: the direction of Σ area · normal over the points below
     double facing_area;  // its length [m²]: what the cluster weighs in a wrench; ≤ area
     double area;         // Σ area over the points below [m²]
+};
+
+/// Positions by axis, for loops over many; coordinates are floats, exactly.
+class FloatPositions {
+public:
+    void add(float x, float y, float z) {
+        x_.push_back(x);
+        y_.push_back(y);
+        z_.push_back(z);
+    }
+    std::span<const float> x(std::size_t first, std::size_t count) const { return std::span(x_).subspan(first, count); }
+    std::span<const float> y(std::size_t first, std::size_t count) const { return std::span(y_).subspan(first, count); }
+    std::span<const float> z(std::size_t first, std::size_t count) const { return std::span(z_).subspan(first, count); }
+
+private:
+    std::vector<float> x_, y_, z_;
 };
 
 /// Point-sphere tree over a shell: clusters of clusters of points, coarsest level first, the children of a node
@@ -39,10 +55,9 @@ public:
     std::span<const SphereNode> roots() const { return std::span(nodes_).first(root_count_); }
     /// In tree order: the points below a node are contiguous.
     std::span<const SurfacePoint> points() const { return points_; }
-    /// The same positions by axis, for loops over whole leaves: coordinates are floats, exactly.
-    const float* x() const { return x_.data(); }
-    const float* y() const { return y_.data(); }
-    const float* z() const { return z_.data(); }
+    /// Of points() and of the centres of nodes().
+    const FloatPositions& positions() const { return positions_; }
+    const FloatPositions& centres() const { return centres_; }
     double totalArea() const { return total_area_; }
     double coverRadius() const { return cover_radius_; }
     /// How far a point may lie from the surface because it is rounded to floats [m].
@@ -57,7 +72,7 @@ public:
 private:
     std::vector<SphereNode> nodes_;
     std::vector<SurfacePoint> points_;
-    std::vector<float> x_, y_, z_;
+    FloatPositions positions_, centres_;
     std::size_t root_count_ = 0;
     double total_area_ = 0.0, cover_radius_ = 0.0, rounding_ = 0.0, gyration_radius_ = 0.0, reach_ = 0.0;
     int levels_ = 0;

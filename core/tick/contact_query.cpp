@@ -17,7 +17,7 @@ struct Traversal {
     const model::DistanceField& field;
     const model::SphereTree& shell;
     const Pose& X_WF;
-    const Pose& X_FS;
+    const model::DistanceField::Placement S;  // the shell in the field
     const Mat3 R_WF;
     const Mat3 R_FS;
     const Vec3 p_FS;
@@ -32,13 +32,14 @@ struct Traversal {
     std::size_t waiting = 0;
     double unproven_area = 0.0;
     std::array<float, model::SphereTree::kLeafPoints> phi;
+    std::array<float, model::SphereTree::kChildren> at_centre;
 
     Traversal(const model::DistanceField& f, const Pose& X_WF_, const model::SphereTree& s, const Pose& X_FS_,
               const Pose& X_WS, const QueryRequest& r, QueryWorkspace& w, ContactManifold& m)
         : field(f),
           shell(s),
           X_WF(X_WF_),
-          X_FS(X_FS_),
+          S(f.place(X_FS_)),
           R_WF(X_WF_.q.toRotationMatrix()),
           R_FS(X_FS_.q.toRotationMatrix()),
           p_FS(X_FS_.p),
@@ -62,15 +63,20 @@ struct Traversal {
         return request.max_nodes > 0 && answer.nodes_visited + children > request.max_nodes;
     }
 
-    /// `above`: the bound of the node's parent holds for its points too.
-    void push(std::uint32_t node, double above) noexcept {
-        const model::SphereNode& n = shell.nodes()[node];
-        const double bound = std::max(above, field.lowerBound(R_FS * n.centre + p_FS) - n.radius);
-        ++answer.nodes_visited;
-        if (bound >= pruneAbove()) return;
-        const bool first = request.max_nodes > 0 && !request.spheres && node < shell.roots().size();
-        workspace.heap_[waiting++] = {bound, first ? -kInfinity : bound, node};
-        if (ordered) std::push_heap(workspace.heap_.begin(), at(waiting), later);
+    /// Some nodes that follow each other; `above`: the bound of their parent holds for their points too.
+    void push(std::uint32_t begin, std::uint32_t count, double above) noexcept {
+        const auto& centres = shell.centres();
+        field.lowerBounds(S, centres.x(begin, count), centres.y(begin, count), centres.z(begin, count),
+                          {at_centre.data(), count});
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const std::uint32_t node = begin + i;
+            const double bound = std::max(above, static_cast<double>(at_centre[i]) - shell.nodes()[node].radius);
+            ++answer.nodes_visited;
+            if (bound >= pruneAbove()) continue;
+            const bool first = request.max_nodes > 0 && !request.spheres && node < shell.roots().size();
+            workspace.heap_[waiting++] = {bound, first ? -kInfinity : bound, node};
+            if (ordered) std::push_heap(workspace.heap_.begin(), at(waiting), later);
+        }
     }
 
     std::uint32_t pop(double& bound) noexcept {
@@ -126,7 +132,8 @@ struct Traversal {
             return;
         }
         const std::size_t first = leaf.first, count = leaf.count;
-        field.sampleMany(X_FS, {shell.x() + first, count}, {shell.y() + first, count}, {shell.z() + first, count},
+        const auto& positions = shell.positions();
+        field.sampleMany(S, positions.x(first, count), positions.y(first, count), positions.z(first, count),
                          {phi.data(), count});
         answer.points_tested += static_cast<int>(count);
         if (request.prove && above < answer.lower_bound)
@@ -159,7 +166,7 @@ struct Traversal {
     }
 
     void run() noexcept {
-        for (std::uint32_t root = 0; root < shell.roots().size(); ++root) push(root, -kInfinity);
+        push(0, static_cast<std::uint32_t>(shell.roots().size()), -kInfinity);
         while (waiting > 0) {
             if (request.max_nodes > 0 && exceedsBudget(shell.nodes()[workspace.heap_.front().node])) {
                 answer.budget_reached = true;
@@ -172,8 +179,7 @@ struct Traversal {
                 evaluateLeaf(node, bound);
                 continue;
             }
-            const std::uint32_t end = node.first + node.count;
-            for (std::uint32_t child = node.first; child < end; ++child) push(child, bound);
+            push(node.first, node.count, bound);
         }
         while (waiting > 0) {  // the budget ended
             double bound = 0.0;

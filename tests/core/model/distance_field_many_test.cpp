@@ -63,7 +63,7 @@ TEST(SampleMany, IsTheSampleOfEachPointWithinSinglePrecision) {
     for (const DistanceField& field : someFields()) {
         const Points points = someAround(field);
         std::vector<float> phi(points.x.size());
-        field.sampleMany(kPose, points.x, points.y, points.z, phi);
+        field.sampleMany(field.place(kPose), points.x, points.y, points.z, phi);
         const double span = 2.0 * std::sqrt(3.0) * DistanceField::kBrickCells * 0.06 / 32.0;  // of the largest brick
         for (std::size_t i = 0; i < phi.size(); ++i) {
             const double one = field.sample(kPose * points.at(i), FieldMode::Trilinear).phi;
@@ -86,18 +86,46 @@ TEST(SampleMany, GivesTheSameBitsWithAllInstructionsAndInAnyGrouping) {
         const Points points = someAround(field);
         const std::size_t count = points.x.size();
         std::vector<float> baseline(count);
-        field.sampleMany(kPose, points.x, points.y, points.z, baseline, Instructions::Baseline);
+        field.sampleMany(field.place(kPose), points.x, points.y, points.z, baseline, Instructions::Baseline);
         for (const Instructions instructions : {Instructions::V3, Instructions::V4}) {
             if (instructions > bestInstructions()) continue;
             std::vector<float> phi(count);
-            field.sampleMany(kPose, points.x, points.y, points.z, phi, instructions);
+            field.sampleMany(field.place(kPose), points.x, points.y, points.z, phi, instructions);
             EXPECT_EQ(std::memcmp(phi.data(), baseline.data(), count * sizeof(float)), 0)
                 << static_cast<int>(instructions);
         }
         for (std::size_t i = 0; i < count; i += 97) {
             float phi = 0.0f;
-            field.sampleMany(kPose, {&points.x[i], 1}, {&points.y[i], 1}, {&points.z[i], 1}, {&phi, 1});
+            field.sampleMany(field.place(kPose), {&points.x[i], 1}, {&points.y[i], 1}, {&points.z[i], 1}, {&phi, 1});
             EXPECT_EQ(std::memcmp(&phi, &baseline[i], sizeof(float)), 0) << i;
+        }
+    }
+}
+
+TEST(LowerBounds, AreNeverAboveTheDistanceAndHardlyBelowTheOneOfEachPoint) {
+    // Truth: closed form; lowerBound() of each point.
+    std::vector<Shape> shapes{Sphere{0.03}, BorePlate{0.06, 0.06, 0.03, 0.0202, 0.025, 0.001}, Sheet{0.05, 0.03}};
+    std::size_t k = 0;
+    for (const DistanceField& field : someFields()) {
+        const Shape& shape = shapes[k++];
+        const Points points = someAround(field);
+        const std::size_t count = points.x.size();
+        std::vector<float> bound(count), other(count);
+        field.lowerBounds(field.place(kPose), points.x, points.y, points.z, bound, Instructions::Baseline);
+        double loosest = 0.0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const Vec3 p = kPose * points.at(i);
+            if (!p.allFinite()) continue;
+            const double value = static_cast<double>(bound[i]);
+            ASSERT_LE(value, signedDistance(shape, p) + 1e-12) << kindName(shape) << " " << i;
+            ASSERT_LE(value, field.lowerBound(p) + 1e-12) << i;
+            loosest = std::max(loosest, field.lowerBound(p) - value);
+        }
+        EXPECT_LT(loosest, 2e-6) << kindName(shape);  // 2⁻¹⁸ of the largest distance, half a metre
+        for (const Instructions instructions : {Instructions::V3, Instructions::V4}) {
+            if (instructions > bestInstructions()) continue;
+            field.lowerBounds(field.place(kPose), points.x, points.y, points.z, other, instructions);
+            EXPECT_EQ(std::memcmp(other.data(), bound.data(), count * sizeof(float)), 0);
         }
     }
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/random.h"
+#include "core/base/single_precision.h"
 #include "core/model/enclosing_ball.h"
 #include "core/model/shape.h"
 #include "core/model/sphere_tree.h"
@@ -84,7 +85,7 @@ TEST(PointShell, SamplesEveryCornerAndRimOfABox) {
     const PointShell shell = samplePoints(tessellate(Box{0.02, 0.01, 0.03}, 1e-6), kSpacing);
     for (int corner = 0; corner < 8; ++corner) {
         const Vec3 exact((corner & 1) ? 0.01 : -0.01, (corner & 2) ? 0.005 : -0.005, (corner & 4) ? 0.015 : -0.015);
-        const Vec3 c = exact.cast<float>().cast<double>();
+        const Vec3 c = roundedToFloat(exact);
         double nearest = 1e300;
         for (const auto& point : shell.points) nearest = std::min(nearest, (point.position - c).norm());
         EXPECT_EQ(nearest, 0.0);
@@ -189,6 +190,9 @@ TEST(SphereTree, EveryNodeCarriesTheAreaVectorOfItsPointsAndOneOfThemStandsForTh
 TEST(SphereTree, ChildrenFollowLevelByLevelAndLeavesAreSmall) {
     // Truth: invariant. Breadth first: the children of the nodes, in order, are all other nodes, in order; the points
     // of the leaves fill the shell. The arrays by axis hold the same numbers.
+    const auto at = [](const FloatPositions& positions, std::size_t i) {
+        return Eigen::Vector3f(positions.x(i, 1)[0], positions.y(i, 1)[0], positions.z(i, 1)[0]).cast<double>().eval();
+    };
     const SphereTree tree(samplePoints(tessellate(Shape(Sphere{0.04}), 1e-6), 0.5e-3));
     std::size_t next = tree.roots().size();
     std::size_t points = 0;
@@ -205,7 +209,8 @@ TEST(SphereTree, ChildrenFollowLevelByLevelAndLeavesAreSmall) {
     EXPECT_EQ(next, tree.nodes().size());
     EXPECT_EQ(points, tree.points().size());
     for (std::size_t i = 0; i < tree.points().size(); ++i)
-        ASSERT_EQ(Vec3(tree.x()[i], tree.y()[i], tree.z()[i]), tree.points()[i].position);
+        ASSERT_EQ(at(tree.positions(), i), tree.points()[i].position);
+    for (std::size_t i = 0; i < tree.nodes().size(); ++i) ASSERT_EQ(at(tree.centres(), i), tree.nodes()[i].centre);
 }
 
 TEST(EnclosingBall, IsTheSmallestOfRandomPointsAndOfKnownSolids) {
@@ -249,7 +254,7 @@ TEST(PointShell, CoordinatesAreFloatsAndLieOnTheSurfaceUpToTheirRounding) {
     EXPECT_LT(shell.rounding, 1e-8);
     double farthest = 0.0;
     for (const auto& point : shell.points) {
-        EXPECT_EQ(point.position, Vec3(point.position.cast<float>().cast<double>()));
+        EXPECT_EQ(point.position, roundedToFloat(point.position));
         farthest = std::max(farthest, std::abs(signedDistance(box, point.position)));
     }
     EXPECT_LE(farthest, shell.rounding);

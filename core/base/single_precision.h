@@ -1,0 +1,18 @@
+#pragma once
+
+#include "core/base/types.h"
+
+namespace passung {
+
+/// The number nearest to `value` that a float holds. A conversion there and back is not enough: g++ 12 leaves it out
+/// where it makes vector instructions of two or more of them.
+inline double roundedToFloat(double value) {
+    const volatile float rounded = static_cast<float>(value);
+    return static_cast<double>(rounded);
+}
+
+inline Vec3 roundedToFloat(const Vec3& v) {
+    return {roundedToFloat(v.x()), roundedToFloat(v.y()), roundedToFloat(v.z())};
+}
+
+}  // namespace passung
