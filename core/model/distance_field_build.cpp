@@ -252,7 +252,7 @@ DistanceField::Builder::Nodes DistanceField::Builder::store(std::size_t brick, c
     const auto [least, largest] = std::minmax_element(phi.begin(), phi.end());
     Brick& info = field.bricks_[brick];
     info.low = *least - field.sheet_offset_;
-    // Never 0, which stands for floats.
+    // Never 0: the numbers are divided by it.
     info.step = std::max((*largest - *least) / kLargestStored, std::numeric_limits<double>::min());
     Nodes stored;
     for (std::size_t i = 0; i < kBrickSamples; ++i) {

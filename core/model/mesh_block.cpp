@@ -1,6 +1,7 @@
 #include "core/model/mesh_block.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -10,6 +11,7 @@
 
 #include "core/model/instructions.h"
 #include "core/model/interpolation.h"
+#include "core/model/parallel.h"
 
 namespace passung::model {
 
@@ -19,11 +21,13 @@ using Flat = MeshBlockSampler::Flat;
 
 constexpr int kCells = SurfaceBlock::kCells;
 constexpr int kNodes = SurfaceBlock::kNodes;
-constexpr std::size_t kLane = 8;         // points are measured in groups of so many
-constexpr std::size_t kMostLanes = 32;   // 27 nodes of a part, in whole groups
-constexpr double kSlackRounding = 1e-7;  // of the sine of a small angle from its cosine
-constexpr double kFlattest = 1e-10;      // height over longest edge of a triangle that has a normal
+constexpr std::size_t kLane = 8;                 // points are measured in groups of so many
+constexpr std::size_t kMostLanes = 32;           // 27 nodes of a part, in whole groups
+constexpr double kSlackRounding = 1e-7;          // of the sine of a small angle from its cosine
+constexpr double kFlattest = 1e-10;              // height over longest edge of a triangle that has a normal
+constexpr double kCoordinateRounding = 0x1p-50;  // of the corners of a cube, by coordinates
 constexpr double kRelativeRounding = 1e-12;
+constexpr double kInFront = 1e-6;  // of an edge: where a triangle is asked what it parts
 constexpr std::array<int, 3> kStride{1, kNodes, kNodes* kNodes};
 /// Lines are counted along this far beside the nodes, in cells, in a direction of no meaning: edges of parts often lie
 /// on nodes, and what crosses at an edge would have to be told by rounding.
@@ -271,12 +275,13 @@ public:
         std::array<Group, 8> above;
         for (std::size_t i = 0; i < kLane; ++i) {
             kKernels.corners(*triangles_[nearest_.triangle[i]], points_[i], half, i, above);
-            rounding_[i] = kRelativeRounding * (least(i) + half);
+            rounding_[i] =
+                kRelativeRounding * (least(i) + half) + kCoordinateRounding * points_[i].cwiseAbs().maxCoeff();
         }
         kKernels.excess(seen_, triangles_.size(), half, above, excess_);
     }
     bool mayBeNearest(std::size_t triangle, std::size_t lane) const {
-        return excess_[triangle * kLane + lane] <= rounding_[lane];
+        return triangle == nearest_.triangle[lane] || excess_[triangle * kLane + lane] <= rounding_[lane];
     }
 
 private:
@@ -339,10 +344,7 @@ void Sampling::run(bool closed) {
         const double limit = (nearest + 0.5 * diagonal) * (1.0 + kRelativeRounding);
         sampleOctant(first, near(centre, tree_.closest(centre, limit).distance + diagonal));
     }
-    if (closed)
-        giveSigns(near(low_ + Vec3::Constant(half * cell_), std::sqrt(3.0) * (half + kShift) * cell_));
-    else
-        block_.slack.fill(1.0);
+    if (closed) giveSigns(near(low_ + Vec3::Constant(half * cell_), std::sqrt(3.0) * (half + kShift) * cell_));
 }
 
 /// The triangles whose box comes within `reach` of a point.
@@ -397,11 +399,13 @@ void Sampling::samplePart(const Vec3& first, const Choice& triangles) {
 }
 
 /// How little ∇φ turns in a cell.
-///   Where φ has a gradient, the nearest point x(p) lies on a triangle that may be nearest, and ∇φ(p), of unit length,
-///   lies in the
-/// cone of their outward normals n (one normal above a face, those of the faces that meet above an edge or corner). Let
-/// m be the normalised sum of the normals and n·m ≥ cos α > 0 for all: the same holds for all unit vectors of the cone,
-/// so |∇φ - m cos α|² ≤ 1 - 2 cos² α + cos² α = sin² α, and φ - (m cos α)·p has the Lipschitz constant sin α.
+///   Where φ has a gradient, the nearest point x(p) lies on a triangle that may be nearest. As every triangle parts
+///   outside
+/// from inside (where solids overlap or contain each other there are faces from which φ falls on both sides), ∇φ(p), of
+/// unit length, lies in the cone of their outward normals n: one normal above a face, those of the faces that meet
+/// above an edge or corner. Let m be the normalised sum of the normals and n·m ≥ cos α > 0 for all: the same holds for
+/// all unit vectors of the cone, so |∇φ - m cos α|² ≤ 1 - 2 cos² α + cos² α = sin² α, and φ - (m cos α)·p has the
+/// Lipschitz constant sin α.
 double Sampling::slackOf(const Choice& triangles, const View& judged, std::size_t lane) const {
     Vec3 sum = Vec3::Zero();
     for (std::size_t k = 0; k < triangles.size(); ++k)
@@ -465,13 +469,8 @@ void Sampling::giveSigns(const Choice& triangles) {
         winding_[i] = tree_.inside(at(n % kNodes, n / kNodes % kNodes, n / (kNodes * kNodes))) ? 1 : 0;
     }
     if (!counted) block_.slack.fill(1.0);
-    bool simple = true;
-    for (std::size_t i = 0; i < SurfaceBlock::kAllNodes; ++i) {
+    for (std::size_t i = 0; i < SurfaceBlock::kAllNodes; ++i)
         if (winding_[i] > 0) block_.node[i] = -block_.node[i];
-        simple = simple && (winding_[i] == 0 || winding_[i] == 1);
-    }
-    // Where solids overlap there are faces inside, from which φ falls on both sides: the cone of normals says nothing.
-    if (!simple) block_.slack.fill(1.0);
 }
 
 /// Neighbours on different sides of the surface are no farther from it, together, than from each other.
@@ -488,16 +487,26 @@ bool Sampling::consistent() const {
 
 }  // namespace
 
-MeshBlockSampler::MeshBlockSampler(std::shared_ptr<const TriangleTree> tree, bool closed)
-    : tree_(std::move(tree)), closed_(closed) {
+MeshBlockSampler::MeshBlockSampler(std::shared_ptr<const TriangleTree> tree, bool closed, bool uncrossed)
+    : tree_(std::move(tree)), closed_(closed), simple_(closed && uncrossed) {
     auto flats = std::make_shared<std::vector<Flat>>();
     flats->reserve(tree_->corners().size());
     for (const auto& corners : tree_->corners()) flats->emplace_back(corners);
     flats_ = std::move(flats);
+    if (!simple_) return;
+    std::atomic<bool> all_walls = true;
+    parallelFor(flats_->size(), [&](std::size_t i) {
+        const Flat& t = (*flats_)[i];
+        const Vec3 middle = (t.corner[0] + t.corner[1] + t.corner[2]) / 3.0;
+        const Vec3 front = middle + kInFront * t.edge[0].norm() * t.normal;
+        if (all_walls && std::lround(tree_->windingNumber(front)) != 0) all_walls = false;
+    });
+    simple_ = all_walls;
 }
 
 void MeshBlockSampler::sample(const Vec3& low, double cell, SurfaceBlock& block) const {
     Sampling(*tree_, *flats_, low, cell, block).run(closed_);
+    if (!simple_) block.slack.fill(1.0);
 }
 
 }  // namespace passung::model

@@ -14,8 +14,9 @@ namespace passung::model {
 class MeshBlockSampler {
 public:
     /// `closed`: the triangles bound solids; the sign comes from counting crossings along the grid lines, from one
-    /// winding number in each block.
-    MeshBlockSampler(std::shared_ptr<const TriangleTree> tree, bool closed);
+    /// winding number in each block. `uncrossed`: no triangle passes through another, as MeshReport::crossing_triangles
+    /// tells; if all of them part outside (in front) from inside as well, each cell gets a slack, else it is 1.
+    MeshBlockSampler(std::shared_ptr<const TriangleTree> tree, bool closed, bool uncrossed);
 
     /// Exact but for rounding. `low`: the block's first corner; `cell`: the edge of a cell [m].
     void sample(const Vec3& low, double cell, SurfaceBlock& block) const;
@@ -26,7 +27,7 @@ private:
     // Shared by the functions of a DistanceSource and their copies.
     std::shared_ptr<const TriangleTree> tree_;
     std::shared_ptr<const std::vector<Flat>> flats_;  // in tree order
-    bool closed_;
+    bool closed_, simple_;
 };
 
 }  // namespace passung::model

@@ -21,6 +21,7 @@ Result<Done> readFace(TextScanner& text, std::size_t vertices, TriangleMesh& mes
         const std::string_view word = text.word();
         if (word.empty()) return text.error("the face must name " + std::to_string(*count) + " vertices");
         const auto v = numberIn<std::uint32_t>(word);
+        if (vertices == 0) return text.error("a face names a vertex, and there are none", word);
         if (!v || *v >= vertices)
             return text.error("must be the number of a vertex, 0 to " + std::to_string(vertices - 1), word);
         corners.push_back(*v);

@@ -107,7 +107,7 @@ DistanceSource exactSource(const Part& part) {
     source.distance_within = [tree](const Vec3& p, double limit) { return tree->closest(p, limit).distance; };
     source.inside = [tree](const Vec3& p) { return tree->inside(p); };
     if (source.closed || source.open_sheet)
-        source.block = [sampler = MeshBlockSampler(tree, source.closed)](
+        source.block = [sampler = MeshBlockSampler(tree, source.closed, part.report.crossing_triangles == 0)](
                            const Vec3& low, double cell, SurfaceBlock& block) { sampler.sample(low, cell, block); };
     return source;
 }

@@ -46,7 +46,7 @@ Result<TriangleMesh> readText(std::string_view bytes, const std::string& file) {
     TriangleMesh mesh;
     TextScanner text(bytes, file);
     std::size_t corners = 0;  // of the facet so far
-    bool in_loop = false;
+    bool in_loop = false, in_facet = false, in_solid = false;
     while (text.nextLine(0)) {
         const std::string_view word = text.word();
         if (word == "outer") {
@@ -68,11 +68,16 @@ Result<TriangleMesh> readText(std::string_view bytes, const std::string& file) {
             in_loop = false;
             const auto end = static_cast<std::uint32_t>(mesh.vertices.size());
             mesh.triangles.push_back({end - 3, end - 2, end - 1});
-        } else if (word != "solid" && word != "facet" && word != "endfacet" && word != "endsolid") {
+        } else if (word == "solid" || word == "endsolid") {
+            in_solid = word == "solid";
+        } else if (word == "facet" || word == "endfacet") {
+            in_facet = word == "facet";
+        } else {
             return text.error("must be one of solid, facet, outer loop, vertex, endloop, endfacet, endsolid", word);
         }
     }
-    if (in_loop) return text.error("the file ends within a facet");
+    if (in_loop || in_facet) return text.error("the file ends within a facet");
+    if (in_solid) return text.error("the file ends within a solid: it is cut off, or endsolid is missing");
     return mesh;
 }
 

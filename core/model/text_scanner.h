@@ -86,10 +86,21 @@ inline std::optional<double> coordinateIn(std::string_view word) {
     const auto [end, failure] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (end != word.data() + word.size() || end == word.data()) return std::nullopt;
     if (failure == std::errc::result_out_of_range) {
-        // Too large or too small: only the latter has a negative exponent or leading zeros.
-        const std::size_t exponent = word.find_first_of("eE");
-        const bool tiny = exponent != std::string_view::npos ? word.substr(exponent + 1, 1) == "-"
-                                                             : word.find_first_not_of("-0.") > word.find('.');
+        // Too large or too small: its first digit says, that is not 0, with the exponent.
+        const std::size_t exponent_at = std::min(word.find_first_of("eE"), word.size());
+        const std::string_view digits = word.substr(0, exponent_at);
+        const std::size_t point = std::min(digits.find('.'), digits.size()), first = digits.find_first_not_of("-0.");
+        if (first == std::string_view::npos) return 0.0;
+        int exponent = 0;
+        if (exponent_at < word.size()) {
+            std::string_view power = word.substr(exponent_at + 1);
+            const bool negative = power.starts_with('-');
+            if (negative || power.starts_with('+')) power.remove_prefix(1);
+            const auto read = std::from_chars(power.data(), power.data() + power.size(), exponent);
+            if (read.ec == std::errc::result_out_of_range) return negative ? std::optional(0.0) : std::nullopt;
+            if (negative) exponent = -exponent;
+        }
+        const bool tiny = static_cast<double>(point) - static_cast<double>(first) + exponent < 0.0;
         return tiny ? std::optional(0.0) : std::nullopt;
     }
     if (failure != std::errc() || !std::isfinite(value)) return std::nullopt;

@@ -8,6 +8,7 @@
 
 #include "core/base/random.h"
 #include "core/model/interpolation.h"
+#include "core/model/self_intersection.h"
 #include "core/model/shape.h"
 
 namespace passung::model {
@@ -50,7 +51,7 @@ TEST(MeshBlock, DistancesAndSignsAreThoseOfTheTreeAtEveryNodeAndCentre) {
         const TriangleMesh mesh = tessellate(c.shape, 5e-6);
         const auto tree = std::make_shared<const TriangleTree>(mesh);
         const double rounding = 1e-13;  // some hundred roundings of a coordinate of 0.1 m
-        atSomeBlocks(mesh, MeshBlockSampler(tree, true), c.cell, [&](const Vec3& low, const SurfaceBlock& block) {
+        atSomeBlocks(mesh, MeshBlockSampler(tree, true, true), c.cell, [&](const Vec3& low, const SurfaceBlock& block) {
             for (std::size_t i = 0; i < SurfaceBlock::kAllNodes; ++i) {
                 const Vec3 p = low + c.cell * placeOf(i, SurfaceBlock::kNodes);
                 const double d = tree->closest(p).distance;
@@ -74,7 +75,7 @@ TEST(MeshBlock, DistanceTurnsInNoCellByMoreThanItsSlack) {
     for (const Case& c : kCases) {
         const TriangleMesh mesh = tessellate(c.shape, 5e-6);
         const auto tree = std::make_shared<const TriangleTree>(mesh);
-        atSomeBlocks(mesh, MeshBlockSampler(tree, true), c.cell, [&](const Vec3& low, const SurfaceBlock& block) {
+        atSomeBlocks(mesh, MeshBlockSampler(tree, true, true), c.cell, [&](const Vec3& low, const SurfaceBlock& block) {
             for (std::size_t i = 0; i < SurfaceBlock::kAllCells; ++i) {
                 const Vec3 place = placeOf(i, SurfaceBlock::kCells);
                 const Vec3 u(random.uniform(), random.uniform(), random.uniform());
@@ -95,19 +96,68 @@ TEST(MeshBlock, DistanceTurnsInNoCellByMoreThanItsSlack) {
     EXPECT_LT(tightest, 1e-6);  // flat faces: linear
 }
 
-TEST(MeshBlock, ClaimsNothingAboutTheTurnOfTheDistanceWhereSolidsOverlap) {
-    // Truth: invariant (faces inside a union have φ falling on both sides).
+/// Two boxes: a second one that overlaps the first, or lies inside it.
+TriangleMesh twoBoxes(double second, const Vec3& shift) {
     TriangleMesh mesh = tessellate(Box{0.02, 0.02, 0.02}, 1e-6);
-    const TriangleMesh other = tessellate(Box{0.02, 0.02, 0.02}, 1e-6);
-    const auto shift = static_cast<std::uint32_t>(mesh.vertices.size());
-    for (const Vec3& v : other.vertices) mesh.vertices.push_back(v + Vec3(0.011, 0.003, 0.002));
-    for (const Triangle& t : other.triangles) mesh.triangles.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
-    const auto tree = std::make_shared<const TriangleTree>(mesh);
-    const auto block = std::make_unique<SurfaceBlock>();
-    // Around x = 0.001, the second box's face inside the first.
-    MeshBlockSampler(tree, true).sample(Vec3(-0.003, -0.004, -0.004), 1e-3, *block);
-    for (const double slack : block->slack) EXPECT_EQ(slack, 1.0);
-    for (const double phi : block->node) EXPECT_LE(phi, 0.0);
+    const TriangleMesh other = tessellate(Box{second, second, second}, 1e-6);
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const Vec3& v : other.vertices) mesh.vertices.push_back(v + shift);
+    for (const Triangle& t : other.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    return mesh;
+}
+
+TEST(MeshBlock, SlackHoldsWhereSolidsOverlapOrContainEachOther) {
+    // Truth: TriangleTree; between the faces inside a union φ falls on both sides. Blocks end everywhere between them.
+    Random random(5);
+    for (const TriangleMesh& mesh : {twoBoxes(0.02, Vec3(0.0085, 0.003, 0.002)), twoBoxes(0.0138, Vec3::Zero()),
+                                     twoBoxes(0.0138, Vec3(0.03, 0.0, 0.0))}) {
+        const bool apart = mesh.vertices.back().x() > 0.03;
+        const auto tree = std::make_shared<const TriangleTree>(mesh);
+        const MeshBlockSampler sampler(tree, true, crossingTriangles(mesh) == 0);
+        const auto block = std::make_unique<SurfaceBlock>();
+        int linear = 0;
+        for (int i = 0; i < 60; ++i) {
+            const double cell = i % 2 == 0 ? 1e-3 : 0.3e-3;
+            Vec3 low;
+            for (int axis = 0; axis < 3; ++axis) low[axis] = random.uniform(-0.012, 0.022) - 4.0 * cell;
+            sampler.sample(low, cell, *block);
+            for (std::size_t k = 0; k < SurfaceBlock::kAllCells; ++k) {
+                const Vec3 place = placeOf(k, SurfaceBlock::kCells);
+                const Vec3 u(random.uniform(), random.uniform(), random.uniform());
+                const Corners w = trilinearWeights(u);
+                double value = 0.0, way = 0.0;
+                for (std::size_t c = 0; c < 8; ++c) {
+                    const Vec3 node = place + cornerAt(c);
+                    value += w[c] * block->node[static_cast<std::size_t>(node.z() * 81.0 + node.y() * 9.0 + node.x())];
+                    way += w[c] * cell * (cornerAt(c) - u).norm();
+                }
+                const Vec3 p = low + cell * (place + u);
+                const double d = tree->closest(p).distance, phi = tree->inside(p) ? -d : d;
+                ASSERT_LE(std::abs(value - phi), block->slack[k] * way + 1e-12) << p.transpose();
+                linear += block->slack[k] < 1e-6 ? 1 : 0;
+            }
+        }
+        EXPECT_EQ(linear > 1000, apart) << linear;  // what holds everywhere is claimed of the boxes apart only
+    }
+}
+
+TEST(MeshBlock, WorksFarFromTheOriginWhereCoordinatesAreCoarse) {
+    // Truth: TriangleTree. At 64 m the spacing of numbers doubles: corners of a cube round to different sides.
+    TriangleMesh mesh = tessellate(Box{0.0426, 0.03, 0.02}, 1e-6);
+    Random random(9);
+    for (int i = 0; i < 60; ++i) {
+        TriangleMesh moved = mesh;
+        const Vec3 shift(64.0 - 0.0213 * random.uniform(), 64.0 * random.uniform(), 0.01);
+        for (Vec3& v : moved.vertices) v += shift;
+        const auto tree = std::make_shared<const TriangleTree>(moved);
+        const MeshBlockSampler sampler(tree, true, true);
+        const auto block = std::make_unique<SurfaceBlock>();
+        const Vec3 low = boundsOf(moved).low - 1e-4 * Vec3(random.uniform(), random.uniform(), random.uniform());
+        sampler.sample(low, 0.376e-3, *block);
+        for (std::size_t k = 0; k < SurfaceBlock::kAllNodes; k += 7)
+            ASSERT_NEAR(std::abs(block->node[k]),
+                        tree->closest(low + 0.376e-3 * placeOf(k, SurfaceBlock::kNodes)).distance, 1e-12);
+    }
 }
 
 }  // namespace
