@@ -12,7 +12,10 @@ Instructions bestInstructions() noexcept;
 }  // namespace passung::model
 
 /// A function compiled for an instruction set; what it calls must be PASSUNG_INLINE to be compiled for it as well.
-#if defined(__x86_64__)
+#if defined(__x86_64__) && defined(__clang__)
+#define PASSUNG_V3 __attribute__((target("arch=x86-64-v3")))
+#define PASSUNG_V4 __attribute__((target("arch=x86-64-v4")))
+#elif defined(__x86_64__)
 #define PASSUNG_V3 __attribute__((target("arch=x86-64-v3")))
 #define PASSUNG_V4 __attribute__((target("arch=x86-64-v4,prefer-vector-width=512")))
 #else
