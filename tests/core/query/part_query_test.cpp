@@ -115,7 +115,7 @@ TEST(PartQuery, TheBoundHoldsAndIsNoLargerThanSpacingAndCellAllow) {
                 ASSERT_LE(r.error_bound, most);
                 ++near;
             }
-            if (i % 8 != 0) continue;
+            if (i % 32 != 0) continue;  // some take a tenth of a second
             const auto exact = refined.at(X_FS);
             ASSERT_LE(std::abs(exact.signed_distance - truth), exact.error_bound);
             ASSERT_LE(exact.lower_bound, truth);
