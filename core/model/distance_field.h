@@ -22,6 +22,7 @@ namespace passung::model {
 /// Exact geometry that a field is sampled from; part frame, metres. Called from several threads.
 struct DistanceSource {
     Bounds bounds;                                // of the surface
+    double area = 0.0;                            // of it [m²]; 0: unknown
     std::function<double(const Vec3&)> distance;  // unsigned, exact
     std::function<bool(const Vec3&)> inside;      // never called for an open sheet
     bool open_sheet = false;                      // no inside: two-sided, thickened by one cell on each side
@@ -149,6 +150,8 @@ private:
         std::int32_t level;                 // 0: largest cells
         bool refined;                       // has a child
     };
+    static constexpr std::size_t kBrickBytes =
+        sizeof(Brick) + kBrickSamples * sizeof(std::uint16_t) + kIndexPerBrick * sizeof(std::int32_t);
 
     /// The smallest brick that holds a point.
     struct Place {

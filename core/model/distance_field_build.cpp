@@ -91,6 +91,11 @@ struct DistanceField::Builder {
 
 Result<DistanceField> DistanceField::build(const DistanceSource& source, double cell, double band,
                                            const FieldAccuracy& accuracy) {
+    constexpr const char* kTooLarge = "the distance field would need more than 2 GiB: choose larger cells";
+    // A brick seldom holds four times its face of the surface: refuse at once what would be refused after minutes.
+    const double edge = kBrickCells * cell;
+    if (accuracy.tolerance == 0.0 && source.area / (4.0 * edge * edge) * kBrickBytes > kMaxBytes)
+        return Error{.message = kTooLarge};
     DistanceField field;
     field.surface_bounds_ = source.bounds;
     field.cell_ = cell;
@@ -113,7 +118,7 @@ Result<DistanceField> DistanceField::build(const DistanceSource& source, double 
             std::ceil((source.bounds.size()[static_cast<int>(axis)] + 2.0 * margin) * field.inverse_brick_edge_);
         nodes *= cells + 1.0;
         if (nodes * 8.0 > static_cast<double>(kMaxBytes)) {
-            return Error{.message = "the distance field would need more than 2 GiB: choose larger cells"};
+            return Error{.message = kTooLarge};
         }
         field.coarse_cells_[axis] = static_cast<int>(cells);
     }
@@ -123,15 +128,12 @@ Result<DistanceField> DistanceField::build(const DistanceSource& source, double 
     Builder builder{.field = field, .exact = {source}, .accuracy = accuracy, .band = band};
     builder.sampleCoarse();
     builder.placeBricks();
-    if (field.memoryBytes() + builder.low.size() * (sizeof(Brick) + kBrickSamples * sizeof(std::uint16_t)) >
-        kMaxBytes) {
-        return Error{.message = "the distance field needs more than 2 GiB: choose larger cells"};
-    }
+    if (field.memoryBytes() + builder.low.size() * kBrickBytes > kMaxBytes) return Error{.message = kTooLarge};
     builder.sampleLevel();
     while (builder.level < kMostLevels && builder.refine()) {
     }
     if (!field.refined_ && accuracy.tolerance == 0.0) {
-        return Error{.message = "the distance field needs more than 2 GiB: choose larger cells"};
+        return Error{.message = kTooLarge};
     }
     field.fillIndex();
     return field;
@@ -392,7 +394,6 @@ bool DistanceField::Builder::refine() {
     const std::size_t used = field.memoryBytes();
     const std::size_t bytes = accuracy.tolerance > 0.0 ? std::min(accuracy.bytes, kMaxBytes) : kMaxBytes;
     constexpr std::size_t kIndexBytes = kIndexPerBrick * sizeof(std::int32_t);
-    constexpr std::size_t kBrickBytes = sizeof(Brick) + kBrickSamples * sizeof(std::uint16_t) + kIndexBytes;
     const std::size_t taken = used + low.size() * kIndexBytes;
     const std::size_t room = taken < bytes ? (bytes - taken) / kBrickBytes : 0;
     if (requests.size() > room) {  // the surface first

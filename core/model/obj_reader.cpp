@@ -32,15 +32,10 @@ Result<TriangleMesh> readObj(std::string_view bytes, const std::string& file) {
     while (text.nextLine('#')) {
         const std::string_view keyword = text.word();
         if (keyword == "v") {
-            Vec3 v;
-            for (double& coordinate : v) {
-                const std::string_view word = text.word();
-                const auto value = coordinateIn(word);
-                if (!value) return text.error("a vertex needs three finite numbers", word);
-                coordinate = *value;
-            }
+            const auto v = takeVertex(text);
+            if (!v) return v.errors();
             if (mesh.vertices.size() >= 0xfffffffeu) return text.error("more vertices than can be numbered");
-            mesh.vertices.push_back(v);
+            mesh.vertices.push_back(*v);
         } else if (keyword == "f") {
             if (auto face = readFace(text, mesh); !face) return face.errors();
         }

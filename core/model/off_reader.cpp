@@ -53,14 +53,9 @@ Result<TriangleMesh> readOff(std::string_view bytes, const std::string& file) {
         if (!text.nextLine('#'))
             return text.error("the file ends after " + std::to_string(i) + " of " + std::to_string(counts[0]) +
                               " vertices");
-        Vec3 v;
-        for (double& coordinate : v) {
-            const std::string_view word = text.word();
-            const auto value = coordinateIn(word);
-            if (!value) return text.error("a vertex needs three finite numbers", word);
-            coordinate = *value;
-        }
-        mesh.vertices.push_back(v);
+        const auto v = takeVertex(text);
+        if (!v) return v.errors();
+        mesh.vertices.push_back(*v);
     }
     for (std::uint64_t i = 0; i < counts[1]; ++i) {
         if (!text.nextLine('#'))

@@ -17,9 +17,7 @@ namespace passung::model {
 
 namespace {
 
-constexpr double kBandCells = 4.0;            // bricks reach this many (largest) cells from the surface
-constexpr double kSmallestBrick = 2.0 * 729;  // bytes of a brick's numbers
-constexpr double kMostFieldBytes = 0x1p31;
+constexpr double kBandCells = 4.0;         // bricks reach this many (largest) cells from the surface
 constexpr double kUniformBandCells = 2.0;  // so far reach cells of one size that was asked for, then larger ones
 // Where the distances of two perpendicular faces meet, interpolation errs by at most 0.29 cells: at this many
 // tolerances refinement may end.
@@ -93,6 +91,7 @@ double probedError(const DistanceSource& source, const TriangleMesh& mesh, doubl
 DistanceSource exactSource(const Part& part) {
     DistanceSource source;
     source.bounds = boundsOf(part.mesh);
+    source.area = part.report.area;
     if (part.shape) {
         const Shape shape = *part.shape;
         source.open_sheet = std::holds_alternative<Sheet>(shape);
@@ -147,11 +146,6 @@ Result<DistanceField> buildField(const Part& part, const PartNeeds& needs) {
     DistanceSource source = exactSource(part);
     FieldAccuracy accuracy;
     if (needs.cell > 0.0) {
-        // A brick seldom holds four times its face of the surface: refuse at once what would be refused after minutes.
-        const double edge = DistanceField::kBrickCells * needs.cell;
-        const double bytes = part.report.area / (4.0 * edge * edge) * kSmallestBrick;
-        if (bytes > kMostFieldBytes)
-            return Error{.message = "the distance field would need more than 2 GiB: choose larger cells"};
         accuracy.largest_cell = largestCell(source, needs.cell);
         return DistanceField::build(source, needs.cell, kUniformBandCells * needs.cell, accuracy);
     }

@@ -6,12 +6,12 @@
 #include <limits>
 #include <map>
 #include <numeric>
-#include <tuple>
 #include <utility>
 
 #include "core/base/random.h"
 #include "core/base/single_precision.h"
 #include "core/model/disk_subset.h"
+#include "core/model/mesh_edges.h"
 #include "core/model/parallel.h"
 #include "core/model/triangle_distance.h"
 
@@ -252,34 +252,26 @@ private:
     std::vector<std::uint32_t> patch_;  // sample of each candidate
 };
 
-/// An edge of the mesh at one of its triangles.
-struct HalfEdge {
-    std::array<std::uint32_t, 2> vertices;  // the smaller index first
-    std::uint32_t triangle;
-    bool operator<(const HalfEdge& o) const { return std::tie(vertices, triangle) < std::tie(o.vertices, o.triangle); }
-};
-
 /// Samples on sharp edges and boundaries, corners first so that they are kept.
 class EdgeSampler {
 public:
     explicit EdgeSampler(const TriangleMesh& mesh) : mesh_(mesh) {
-        std::vector<HalfEdge> edges;
-        for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-            const auto& t = mesh.triangles[i];
+        std::vector<bool> flat;
+        for (const Triangle& t : mesh.triangles) {
             normals_.push_back(areaVector(mesh, t).stableNormalized());
-            if (!(areaVector(mesh, t).norm() > 0.0)) continue;
-            for (std::size_t k = 0; k < 3; ++k)
-                edges.push_back({{std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])}, i});
+            flat.push_back(!(areaVector(mesh, t).norm() > 0.0));
         }
-        std::sort(edges.begin(), edges.end());
-        for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
+        forEachEdge(halfEdges(mesh.triangles), [&](const HalfEdge* use, std::size_t count) {
             Vec3 sum = Vec3::Zero();
-            for (end = i; end < edges.size() && edges[end].vertices == edges[i].vertices; ++end)
-                sum += normals_[edges[end].triangle];
-            const bool smooth =
-                end - i == 2 && normals_[edges[i].triangle].dot(normals_[edges[i + 1].triangle]) > kSharpCosine;
-            if (!smooth) addSharp(edges[i].vertices, sum);
-        }
+            std::vector<Vec3> faces;
+            for (std::size_t i = 0; i < count; ++i) {
+                if (flat[use[i].triangle]) continue;
+                faces.push_back(normals_[use[i].triangle]);
+                sum += faces.back();
+            }
+            const bool smooth = faces.size() == 2 && faces[0].dot(faces[1]) > kSharpCosine;
+            if (!faces.empty() && !smooth) addSharp({use->low, use->high}, sum);
+        });
     }
 
     void append(double spacing, PointShell& shell) {

@@ -54,14 +54,9 @@ Result<TriangleMesh> readText(std::string_view bytes, const std::string& file) {
             corners = 0;
         } else if (word == "vertex") {
             if (!in_loop || corners == 3) return text.error("a facet must have one loop of three vertices");
-            Vec3 v;
-            for (double& coordinate : v) {
-                const std::string_view number = text.word();
-                const auto value = coordinateIn(number);
-                if (!value) return text.error("a vertex needs three finite numbers", number);
-                coordinate = *value;
-            }
-            mesh.vertices.push_back(v);
+            const auto v = takeVertex(text);
+            if (!v) return v.errors();
+            mesh.vertices.push_back(*v);
             ++corners;
         } else if (word == "endloop") {
             if (!in_loop || corners != 3) return text.error("a facet must have one loop of three vertices");

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "core/base/result.h"
+#include "core/base/types.h"
 
 namespace passung::model {
 
@@ -105,6 +106,18 @@ inline std::optional<double> coordinateIn(std::string_view word) {
     }
     if (failure != std::errc() || !std::isfinite(value)) return std::nullopt;
     return value;
+}
+
+/// The next three words as a vertex.
+inline Result<Vec3> takeVertex(TextScanner& text) {
+    Vec3 v;
+    for (double& coordinate : v) {
+        const std::string_view word = text.word();
+        const auto value = coordinateIn(word);
+        if (!value) return text.error("a vertex needs three finite numbers", word);
+        coordinate = *value;
+    }
+    return v;
 }
 
 }  // namespace passung::model

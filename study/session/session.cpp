@@ -57,12 +57,7 @@ void Session::interrupt(const std::string& reason) {
     }
     if (state_ != SessionState::BetweenTrials) return;
     if (complete) return finish(SessionState::Complete);
-    Event event;
-    event.t_ns = session_ns_;
-    event.source = "session";
-    event.event = "session_interrupted";
-    event.payload_json = protocol::JsonObject().text("reason", reason).str();
-    sink_.appendEvent(event);
+    note("session_interrupted", "reason", reason);
     finish(SessionState::Interrupted);
 }
 
@@ -220,14 +215,18 @@ void Session::finish(SessionState state) {
     errors_.insert(errors_.end(), finished.errors().begin(), finished.errors().end());
 }
 
-void Session::fail(const char* stage, const Errors& errors) {
-    errors_ = errors;
+void Session::note(const char* name, const char* key, const std::string& text) {
     Event event;
     event.t_ns = session_ns_;
     event.source = "session";
-    event.event = "session_failed";
-    event.payload_json = protocol::JsonObject().text("stage", stage).str();
+    event.event = name;
+    event.payload_json = protocol::JsonObject().text(key, text).str();
     sink_.appendEvent(event);
+}
+
+void Session::fail(const char* stage, const Errors& errors) {
+    errors_ = errors;
+    note("session_failed", "stage", stage);
     finish(SessionState::Failed);
 }
 

@@ -100,6 +100,7 @@ private:
     AttemptEnd describeEnd(LoopHealth health) const;
     void appendEvents(const std::vector<TrialEvent>& events);
     void finish(SessionState state);
+    void note(const char* name, const char* key, const std::string& text);  // an event with one text
     void fail(const char* stage, const Errors& errors);
 
     SessionSetup setup_;
