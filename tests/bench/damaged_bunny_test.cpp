@@ -30,14 +30,6 @@ TriangleMesh bunny(int subdivisions) {
     return mesh;
 }
 
-std::vector<std::size_t> someOf(const TriangleMesh& mesh, double share, std::uint64_t seed) {
-    Random random(seed);
-    std::vector<std::size_t> some;
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-        if (random.uniform() < share) some.push_back(i);
-    return some;
-}
-
 struct Probe {
     Vec3 p;
     bool inside;
@@ -69,13 +61,13 @@ TEST(DamagedBunny, KeepsItsSigns) {
         return [=](const TriangleMesh& m) { return test::withHole(m, test::patchAround(m, nearest(m, back), radius)); };
     };
     const auto missing = [](double share) -> Damage {
-        return [=](const TriangleMesh& m) { return test::withHole(m, someOf(m, share, 11)); };
+        return [=](const TriangleMesh& m) { return test::withHole(m, test::someOf(m, share, 11)); };
     };
     const auto flippedPatch = [&](const TriangleMesh& m) {
         return test::withFlipped(m, test::patchAround(m, nearest(m, -back), 0.010));
     };
-    const auto flipped = [](const TriangleMesh& m) { return test::withFlipped(m, someOf(m, 0.05, 12)); };
-    const auto twice = [](const TriangleMesh& m) { return test::withDuplicates(m, someOf(m, 0.05, 13)); };
+    const auto flipped = [](const TriangleMesh& m) { return test::withFlipped(m, test::someOf(m, 0.05, 12)); };
+    const auto twice = [](const TriangleMesh& m) { return test::withDuplicates(m, test::someOf(m, 0.05, 13)); };
     const auto all = [=](const TriangleMesh& m) { return twice(flipped(flippedPatch(missing(0.02)(hole(0.005)(m))))); };
     const std::vector<std::pair<std::string, Damage>> damages{
         {"hole, radius 2 mm", hole(0.002)},

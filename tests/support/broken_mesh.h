@@ -2,9 +2,11 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
+#include "core/base/random.h"
 #include "core/model/mesh.h"
 #include "core/model/shape.h"
 
@@ -30,6 +32,15 @@ inline std::vector<std::size_t> patchAround(const model::TriangleMesh& mesh, con
         if ((middle - centre).norm() <= radius) patch.push_back(i);
     }
     return patch;
+}
+
+/// `share` of the triangles, at random, in order.
+inline std::vector<std::size_t> someOf(const model::TriangleMesh& mesh, double share, std::uint64_t seed) {
+    Random random(seed);
+    std::vector<std::size_t> some;
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+        if (random.uniform() < share) some.push_back(i);
+    return some;
 }
 
 inline model::TriangleMesh withHole(model::TriangleMesh mesh, const std::vector<std::size_t>& patch) {

@@ -45,15 +45,6 @@ Vec3 inBall(double radius, Random& random) {
     return p;
 }
 
-/// `share` of the triangles, at random, in order.
-std::vector<std::size_t> someOf(const TriangleMesh& mesh, double share, std::uint64_t seed) {
-    Random random(seed);
-    std::vector<std::size_t> some;
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-        if (random.uniform() < share) some.push_back(i);
-    return some;
-}
-
 /// Every triangle apart, its corners moved by up to `jitter`: no two of them meet exactly.
 TriangleMesh cracked(const TriangleMesh& mesh, double jitter) {
     TriangleMesh result = test::unshared(mesh);
@@ -309,11 +300,11 @@ TEST(HoleClosing, DamagedMeshesKeepTheirSigns) {
         {"hole, radius 2 mm", hole(0.002)},
         {"hole, radius 5 mm", hole(0.005)},
         {"hole, radius 10 mm", hole(0.010)},
-        {"2 % missing", [](const Sound& s) { return test::withHole(s.mesh, someOf(s.mesh, 0.02, 11)); }},
+        {"2 % missing", [](const Sound& s) { return test::withHole(s.mesh, test::someOf(s.mesh, 0.02, 11)); }},
         {"flipped patch",
          [](const Sound& s) { return test::withFlipped(s.mesh, test::patchAround(s.mesh, s.place, 0.010)); }},
-        {"5 % flipped", [](const Sound& s) { return test::withFlipped(s.mesh, someOf(s.mesh, 0.05, 12)); }},
-        {"5 % duplicated", [](const Sound& s) { return test::withDuplicates(s.mesh, someOf(s.mesh, 0.05, 13)); }},
+        {"5 % flipped", [](const Sound& s) { return test::withFlipped(s.mesh, test::someOf(s.mesh, 0.05, 12)); }},
+        {"5 % duplicated", [](const Sound& s) { return test::withDuplicates(s.mesh, test::someOf(s.mesh, 0.05, 13)); }},
     };
     for (const Sound& sound : soundMeshes()) {
         for (const auto& [name, damage] : damages) {
