@@ -53,7 +53,7 @@ public:
         add(R"(<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" stroke="{}" stroke-width="{}"/>)", x1, y1, x2, y2,
             colour, width);
     }
-    /// Trilinear: a disc; the others: a diamond.
+    /// Trilinear: a disc; the others: polygons.
     void mark(double x, double y, double r, model::FieldMode mode, const std::string& fill, double opacity,
               const char* stroke) {
         const std::string style =
@@ -61,12 +61,23 @@ public:
         if (mode == model::FieldMode::Trilinear)
             add(R"(<circle cx="{:.1f}" cy="{:.1f}" r="{:.1f}" {}/>)", x, y, r, style);
         else
-            add(R"(<path d="M{:.1f} {:.1f}l{} {}l{} {}l{} {}z" {}/>)", x, y - 1.25 * r, 1.25 * r, 1.25 * r, -1.25 * r,
-                1.25 * r, -1.25 * r, -1.25 * r, style);
+            add(R"(<polygon points="{}" {}/>)", outline(x, y, r, mode), style);
     }
     std::string take() { return std::move(text_); }
 
 private:
+    static std::string outline(double x, double y, double r, model::FieldMode mode) {
+        using Corners = std::vector<std::array<double, 2>>;
+        const Corners corners = mode == model::FieldMode::Layered        ? Corners{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}
+                                : mode == model::FieldMode::SurfacePoint ? Corners{{0, -1.3}, {1.2, 0.9}, {-1.2, 0.9}}
+                                : mode == model::FieldMode::Linear
+                                    ? Corners{{0, -1.25}, {1.25, 0}, {0, 1.25}, {-1.25, 0}}
+                                    : Corners{{-1.2, -0.9}, {1.2, -0.9}, {0, 1.3}};
+        std::string points;
+        for (const auto& [right, down] : corners) points += fmt::format("{:.1f},{:.1f} ", x + r * right, y + r * down);
+        return points;
+    }
+
     std::string text_;
 };
 
@@ -217,13 +228,14 @@ void drawLegend(Svg& svg, const std::vector<AccuracyRow>& rows, const std::vecto
     }
     x += 22;
     word("interpolation of the field:", 182);
-    for (const model::FieldMode mode : allModes()) {
+    for (const model::FieldMode mode : model::kFieldModes) {
         const bool used =
             std::any_of(rows.begin(), rows.end(), [&](const AccuracyRow& row) { return row.setting.mode == mode; });
         if (!used) continue;
         svg.mark(x, y, 6, mode, "#FFFFFF", 1.0, kInk);
         x += 13;
-        word(modeName(mode), 82);
+        const std::string name = model::modeName(mode);
+        word(name, 24 + 6.5 * static_cast<double>(name.size()));
     }
     x += 22;
     svg.mark(x, y, 4, model::FieldMode::Trilinear, kInk, 0.12, kInk);

@@ -178,13 +178,6 @@ void markFront(std::vector<AccuracyRow>& rows, const ErrorOf& of, Flag flag) {
 
 }  // namespace
 
-const char* modeName(model::FieldMode mode) { return mode == model::FieldMode::Linear ? "linear" : "trilinear"; }
-
-const std::vector<model::FieldMode>& allModes() {
-    static const std::vector<model::FieldMode> all{model::FieldMode::Trilinear, model::FieldMode::Linear};
-    return all;
-}
-
 std::vector<double> defaultSpacings(double length) {
     const double wanted = length / 50.0;
     const double decade = std::pow(10.0, std::floor(std::log10(wanted)));

@@ -19,13 +19,9 @@ struct AccuracySetting {
     int budget_nodes = 0;      // 0 = none
 };
 
-/// Name of a mode in files and pictures: "trilinear".
-const char* modeName(model::FieldMode mode);
-const std::vector<model::FieldMode>& allModes();
-
 /// Every combination of the four lists is measured.
 struct AccuracySpace {
-    std::vector<model::FieldMode> modes = allModes();
+    std::vector<model::FieldMode> modes{model::kFieldModes.begin(), model::kFieldModes.end()};
     std::vector<double> tolerances{100e-6, 50e-6, 20e-6, 10e-6};  // [m]
     std::vector<double> spacings;                                 // [m]; empty: see defaultSpacings
     std::vector<int> budgets{0, 1000, 300, 100};

@@ -49,7 +49,8 @@ void addSpread(RowColumns& columns, const std::string& name, const std::string& 
 RowColumns rowColumns() {
     using Row = AccuracyRow;
     RowColumns columns{
-        {"mode", "", "interpolation of the field", [](const Row& r) { return std::string(modeName(r.setting.mode)); }},
+        {"mode", "", "interpolation of the field",
+         [](const Row& r) { return std::string(model::modeName(r.setting.mode)); }},
         {"tolerance_um", "um", "asked accuracy of FIELD's distance field",
          [](const Row& r) { return cell(1e6 * r.setting.tolerance); }},
         {"spacing_mm", "mm", "asked spacing of SHELL's points",
@@ -160,8 +161,8 @@ std::string accuracyCodebook() {
 std::string settingText(const AccuracySetting& setting) {
     const std::string budget =
         setting.budget_nodes > 0 ? fmt::format(", {} nodes", setting.budget_nodes) : std::string();
-    return fmt::format("{:g} µm, {:g} mm, {}{}", 1e6 * setting.tolerance, 1e3 * setting.spacing, modeName(setting.mode),
-                       budget);
+    return fmt::format("{:g} µm, {:g} mm, {}{}", 1e6 * setting.tolerance, 1e3 * setting.spacing,
+                       model::modeName(setting.mode), budget);
 }
 
 std::string frontText(const std::vector<AccuracyRow>& rows) {

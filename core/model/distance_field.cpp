@@ -11,6 +11,7 @@ namespace passung::model {
 
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSlackUnit = 1.0 / 255.0 * (1.0 + 0x1p-40);
 constexpr double kFloatRounding = 0x1p-24 * (1.0 + 0x1p-20);  // of a value stored as a float, relative
 constexpr double kStepRounding = 0.5 * (1.0 + 0x1p-20);       // of a value stored in a brick, in steps
@@ -25,14 +26,8 @@ constexpr auto kCellEdge = [] {
 
 }  // namespace
 
-struct DistanceField::Cell {
-    Corners stored;       // φ = low + step · stored
-    double low, step;     // [m]
-    Vec3 u;               // local coordinates in [0, 1]³
-    double edge;          // [m]
-    double inverse_edge;  // [1/m]
-    double slack;         // see errorBound
-    bool in_brick;        // else on the coarse grid, where floats are stored
+struct DistanceField::Cell : Spot {
+    Corners stored;  // φ = low + step · stored
 
     double corner(std::size_t i) const noexcept { return low + step * stored[i]; }
 };
@@ -79,7 +74,7 @@ DistanceField::Place DistanceField::descend(std::int32_t root, const Vec3& in_ro
     return place;
 }
 
-bool DistanceField::locate(const Vec3& p, Cell& cell) const noexcept {
+bool DistanceField::find(const Vec3& p, Spot& spot) const noexcept {
     const Vec3 g = (p - origin_) * inverse_brick_edge_;
     // A NaN is outside too.
     if (!(g.x() >= 0.0 && g.x() < coarse_cells_[0] && g.y() >= 0.0 && g.y() < coarse_cells_[1] && g.z() >= 0.0 &&
@@ -89,82 +84,89 @@ bool DistanceField::locate(const Vec3& p, Cell& cell) const noexcept {
     const Vec3 in_root = g - Vec3(gx, gy, gz);
     const std::int32_t root = brick_of_cell_[coarseCell(gx, gy, gz)];
     if (root < 0) {
-        cell.u = in_root;
-        cell.edge = brick_edge_;
-        cell.inverse_edge = inverse_brick_edge_;
-        cell.low = 0.0;
-        cell.step = 1.0;
-        cell.slack = 1.0;
-        cell.in_brick = false;
-        const float* data = coarse_.data() + coarseNode(gx, gy, gz);
+        spot.u = in_root;
+        spot.edge = brick_edge_;
+        spot.inverse_edge = inverse_brick_edge_;
+        spot.low = 0.0;
+        spot.step = 1.0;
+        spot.slack = 1.0;
+        spot.most = kInfinity;
+        spot.in_brick = false;
+        spot.at = {gx, gy, gz};
+        spot.cells = coarse_cells_;
+        spot.first = 0;
+        return true;
+    }
+    const Place place = descend(root, in_root);
+    const double cells = static_cast<double>(kBrickCells << place.level);  // along the root's edge
+    const auto [x, y, z] = place.cell;
+    spot.u = in_root * cells - Vec3(x, y, z);
+    spot.inverse_edge = inverse_brick_edge_ * cells;
+    spot.edge = kCellEdge[static_cast<std::size_t>(place.level)] * brick_edge_;
+    const Brick& brick = bricks_[place.brick];
+    spot.low = brick.low;
+    spot.step = brick.step;
+    const double slack = kSlackUnit * brick.slack[place.octant];
+    spot.slack = error_bounded_ ? 1.0 : slack;
+    spot.most = error_bounded_ ? slack * slack * spot.edge : kInfinity;
+    spot.in_brick = true;
+    constexpr int kIn = kBrickCells - 1;
+    spot.at = {x & kIn, y & kIn, z & kIn};
+    spot.cells = {kBrickCells, kBrickCells, kBrickCells};
+    spot.first = place.brick;
+    return true;
+}
+
+bool DistanceField::locate(const Vec3& p, Cell& cell) const noexcept {
+    if (!find(p, cell)) return false;
+    const auto [x, y, z] = cell.at;
+    if (!cell.in_brick) {
+        const float* data = coarse_.data() + coarseNode(x, y, z);
         const auto row = static_cast<std::size_t>(coarse_cells_[0] + 1);
         const std::size_t slab = row * static_cast<std::size_t>(coarse_cells_[1] + 1);
         for (std::size_t i = 0; i < 8; ++i)
             cell.stored[i] = static_cast<double>(data[(i & 1) + ((i >> 1) & 1) * row + (i >> 2) * slab]);
         return true;
     }
-    const Place place = descend(root, in_root);
-    const double cells = static_cast<double>(kBrickCells << place.level);  // along the root's edge
-    const auto [x, y, z] = place.cell;
-    cell.u = in_root * cells - Vec3(x, y, z);
-    cell.inverse_edge = inverse_brick_edge_ * cells;
-    cell.edge = kCellEdge[static_cast<std::size_t>(place.level)] * brick_edge_;
-    const Brick& brick = bricks_[place.brick];
-    cell.low = brick.low;
-    cell.step = brick.step;
-    cell.slack = kSlackUnit * brick.slack[place.octant];
-    cell.in_brick = true;
-    constexpr int kIn = kBrickCells - 1;
     constexpr std::size_t kRow = kBrickNodes, kSlab = kRow * kBrickNodes;
-    const std::uint16_t* data =
-        samples_.data() + place.brick * kBrickSamples +
-        static_cast<std::size_t>(((z & kIn) * kBrickNodes + (y & kIn)) * kBrickNodes + (x & kIn));
+    const std::uint16_t* data = samples_.data() + cell.first * kBrickSamples +
+                                static_cast<std::size_t>((z * kBrickNodes + y) * kBrickNodes + x);
     for (std::size_t i = 0; i < 8; ++i)
         cell.stored[i] = static_cast<int>(data[(i & 1) + ((i >> 1) & 1) * kRow + (i >> 2) * kSlab]);
     return true;
 }
 
-[[gnu::flatten]] FieldSample DistanceField::sample(const Vec3& p, FieldMode mode) const noexcept {
-    Cell cell;
-    if (!locate(p, cell)) {
-        const Vec3 nearest = p.cwiseMax(surface_bounds_.low).cwiseMin(surface_bounds_.high);
-        const double d = boxDistance(p);
-        return {d - sheet_offset_, d > 0.0 ? Vec3((p - nearest) / d) : Vec3(Vec3::Zero())};
-    }
-    const auto& c = cell.stored;
-    const Vec3& u = cell.u;
-    const double slope_unit = cell.step * cell.inverse_edge;
-    if (mode == FieldMode::Linear) {
-        const unsigned n = nearestCorner(u);
-        double value = c[n];
-        Vec3 gradient;
-        for (int axis = 0; axis < 3; ++axis) {
-            const unsigned bit = 1u << axis;
-            const double sign = (n & bit) ? -1.0 : 1.0;
-            const double slope = sign * (c[n ^ bit] - c[n]);  // per cell
-            value += slope * (u[axis] - ((n & bit) ? 1.0 : 0.0));
-            gradient[axis] = slope * slope_unit;
-        }
-        return {cell.low + cell.step * value, gradient};
-    }
-    return {cell.low + cell.step * trilinearValue(c, u), trilinearSlope(c, u) * slope_unit};
+FieldSample DistanceField::sampleOutside(const Vec3& p) const noexcept {
+    const Vec3 nearest = p.cwiseMax(surface_bounds_.low).cwiseMin(surface_bounds_.high);
+    const double d = boxDistance(p);
+    return {d - sheet_offset_, d > 0.0 ? Vec3((p - nearest) / d) : Vec3(Vec3::Zero())};
 }
 
-/// The number that holds a corner is off by half a unit in its last place, the weighted sum by the weighted sum of
-/// that.
-double DistanceField::rounding(const Cell& cell, double weights) const noexcept {
-    if (cell.in_brick) return kStepRounding * weights * cell.step + arithmetic_;
+[[gnu::flatten]] FieldSample DistanceField::sample(const Vec3& p, FieldMode mode, const Vec3& inward) const noexcept {
+    if (mode != FieldMode::Trilinear) {
+        Spot spot;
+        return find(p, spot) ? sampleAt(spot, mode, inward) : sampleOutside(p);
+    }
+    Cell cell;
+    if (!locate(p, cell)) return sampleOutside(p);
+    return {cell.low + cell.step * trilinearValue(cell.stored, cell.u),
+            trilinearSlope(cell.stored, cell.u) * (cell.step * cell.inverse_edge)};
+}
+
+/// The number that holds a corner is off by half a unit in its last place, a weighted mean by no more.
+double DistanceField::rounding(const Cell& cell) const noexcept {
+    if (cell.in_brick) return kStepRounding * cell.step + arithmetic_;
     double largest = 0.0;
     for (const double c : cell.stored) largest = std::max(largest, std::abs(c));
-    return kFloatRounding * weights * largest + arithmetic_;
+    return kFloatRounding * largest + arithmetic_;
 }
 
 /// An upper bound of the unsigned distance from the cell's point to the surface: that of each corner and the way there.
 double DistanceField::farthestSurface(const Cell& cell) const noexcept {
-    double nearest = std::numeric_limits<double>::infinity();
+    double nearest = kInfinity;
     for (std::size_t i = 0; i < 8; ++i)
         nearest = std::min(nearest, std::abs(cell.corner(i)) + cell.edge * (cornerAt(i) - cell.u).norm());
-    return nearest + rounding(cell, 1.0);
+    return nearest + rounding(cell);
 }
 
 [[gnu::flatten]] double DistanceField::lowerBound(const Vec3& p) const noexcept {
@@ -172,7 +174,7 @@ double DistanceField::farthestSurface(const Cell& cell) const noexcept {
     if (!locate(p, cell)) return boxDistance(p) - sheet_offset_ - arithmetic_;
     if (!bound_proven_) return -farthestSurface(cell);
     const Corners w = trilinearWeights(cell.u);
-    const double off = rounding(cell, 1.0);
+    const double off = rounding(cell);
     double mean = 0.0, mean_square = 0.0;
     for (std::size_t i = 0; i < 8; ++i) {
         const double d = std::max(0.0, cell.corner(i) + sheet_offset_ - off);
@@ -181,7 +183,7 @@ double DistanceField::farthestSurface(const Cell& cell) const noexcept {
     }
     const Vec3& u = cell.u;
     const double spread = cell.edge * cell.edge * u.cwiseProduct(Vec3::Ones() - u).sum();
-    const double near = mean - cell.slack * std::sqrt(spread) - off;
+    const double near = mean - std::min(cell.slack * std::sqrt(spread), cell.most) - off;
     const double far = mean_square * (1.0 - 1e-12) - spread;
     return far > 0.0 ? std::max(near, std::sqrt(far) - sheet_offset_ - arithmetic_) : near;
 }
@@ -193,14 +195,18 @@ double DistanceField::errorBound(const Vec3& p, FieldMode mode) const noexcept {
         const Vec3 far = (p - surface_bounds_.low).cwiseAbs().cwiseMax((p - surface_bounds_.high).cwiseAbs());
         return far.norm() - boxDistance(p) + arithmetic_;
     }
-    if (!bound_proven_) return std::abs(sample(p, mode).phi) + farthestSurface(cell);
-    const Corners w = mode == FieldMode::Linear ? oneSidedWeights(cell.u) : trilinearWeights(cell.u);
-    double bound = 0.0, weights = 0.0;
-    for (std::size_t i = 0; i < 8; ++i) {
-        bound += std::abs(w[i]) * (cornerAt(i) - cell.u).norm();
-        weights += std::abs(w[i]);
-    }
-    return bound * cell.edge * cell.slack + rounding(cell, weights);
+    // Of the projection of layered values, on a normal that is not known here.
+    const double aside =
+        mode == FieldMode::Layered ? cell.edge * (cornerAt(nearestCorner(cell.u)) - cell.u).norm() : 0.0;
+    if (!bound_proven_) return std::abs(sample(p, mode).phi) + aside + farthestSurface(cell);
+    if (mode == FieldMode::Layered) return 0.5 * cell.edge + 2.0 * aside + rounding(cell);
+    const Corners w = trilinearWeights(cell.u);
+    double ways = 0.0;
+    for (std::size_t i = 0; i < 8; ++i) ways += w[i] * (cornerAt(i) - cell.u).norm();
+    const double bound = std::min(cell.slack * cell.edge * ways, cell.most) + rounding(cell);
+    if (mode == FieldMode::Trilinear) return bound;
+    const double trilinear = cell.low + cell.step * trilinearValue(cell.stored, cell.u);
+    return bound + std::abs(sample(p, mode).phi - trilinear) + arithmetic_;
 }
 
 }  // namespace passung::model

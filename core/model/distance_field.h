@@ -29,6 +29,9 @@ struct DistanceSource {
     bool closed = false;  // `inside` changes at the surface only, so that the signed distance is 1-Lipschitz
     /// All of a block of 8³ cells at once, from its first corner and the edge of a cell; optional, faster.
     std::function<void(const Vec3&, double, SurfaceBlock&)> block;
+    /// Bounds what trilinear interpolation errs by in the cells of an octant of a block, whose nodes hold exact values
+    /// [m]: from the block, its first corner, the edge of a cell, the octant (bits 1: x, 2: y, 4: z); optional.
+    std::function<double(const SurfaceBlock&, const Vec3&, double, std::size_t)> error_bound;
     /// As `distance`, where it is known to be at most the second argument [m]; optional, faster.
     std::function<double(const Vec3&, double)> distance_within;
     /// Points of the surface, the tips of its smallest features among them; optional: see FieldAccuracy.
@@ -73,7 +76,8 @@ public:
                                        const FieldAccuracy& accuracy = {});
 
     /// φ and its gradient at `p` (part frame). Outside the grid φ is the distance to the part's box (a lower bound).
-    FieldSample sample(const Vec3& p, FieldMode mode) const noexcept;
+    /// `inward`: unit normal, into its part, of the surface that asks; FieldMode::Layered projects on it.
+    FieldSample sample(const Vec3& p, FieldMode mode, const Vec3& inward = Vec3::Zero()) const noexcept;
 
     /// A frame S that stands at X_FS in the part frame F, folded into what sampleMany and lowerBounds compute with.
     struct Placement {
@@ -100,18 +104,21 @@ public:
     /// A rigorous lower bound of the true φ at `p`; cheaper than sample() by the gradient.
     ///   No holes, the larger of two, with the trilinear weights w and S = Σ w_i |c_i - p|² = edge² Σ_axis u (1 - u):
     ///     near the surface: φ is linear but for a function with Lipschitz constant k ≤ 1 (errorBound), and
-    ///     interpolation is exact for the linear part,  φ(p) ≥ Σ w_i (φ_i - k |c_i - p|) ≥ Σ w_i φ_i - k √S; far from
-    ///     it: d² - |p|² is the least of linear functions of p (d the distance to the solid or sheet), hence concave
-    ///     and nowhere below its interpolant,  d(p)² ≥ Σ w_i d_i² - S. (For a convex part d - bound ≤ S/d.)
+    ///     interpolation is exact for the linear part,  φ(p) ≥ Σ w_i (φ_i - k |c_i - p|) ≥ Σ w_i φ_i - k √S, and of
+    ///     shapes ≥ Σ w_i φ_i - e; far from it: d² - |p|² is the least of linear functions of p (d the distance to the
+    ///     solid or sheet), hence concave and nowhere below its interpolant,  d(p)² ≥ Σ w_i d_i² - S. (For a convex
+    ///     part d - bound ≤ S/d.)
     ///   Holes left open (boundProven() is false): where the surface goes on is unknown, so is the sign between two
     ///   nodes. All that is certain of every surface that contains the triangles is |φ(p)| ≤ their distance d(p), and
     ///   d(p) ≤ min_i (|φ_i| + |c_i - p|); the bound is the negative of that, and a query prunes next to nothing.
     double lowerBound(const Vec3& p) const noexcept;
 
     /// A rigorous bound of |sample(p).phi - true φ(p)| [m], offset of an open sheet not included.
-    ///   No holes: |interpolant - φ(p)| ≤ k Σ |w_i| |c_i - p|, where φ less some linear function has the Lipschitz
-    ///   constant k in the cell: 1 always; on closed meshes what the normals of the nearest triangles span, the largest
-    ///   of the cells of an octant (SurfaceBlock::slack).
+    ///   No holes, trilinear: |interpolant - φ(p)| ≤ k Σ w_i |c_i - p|, where φ less some linear function has the
+    ///   Lipschitz constant k in the cell: 1 always; on closed meshes what the normals of the nearest triangles span.
+    ///   And ≤ e, which is known for shapes (boundInterpolation). Both are the largest of the cells of an octant.
+    ///   Layered, whatever the normal: s/2 from rounding, |C - p| for φ and as much for the projection. The others: the
+    ///   bound of trilinear and what the two values differ by.
     ///   Holes left open: |interpolant| + the upper bound of d(p) above.
     double errorBound(const Vec3& p, FieldMode mode) const noexcept;
 
@@ -141,12 +148,14 @@ private:
     static constexpr std::size_t kIndexPerBrick = 32;  // the index is not larger than so many numbers a brick
 
     struct Builder;  // distance_field_build.cpp
-    struct Cell;     // the eight corners around a point
+    struct Cell;     // a spot and the eight corners
+    template <class Number>
+    struct Lattice;  // distance_field_modes.cpp
 
     struct Brick {
         double low, step;                   // φ = low + step · stored number
         std::array<std::int32_t, 8> child;  // brick that replaces each octant (bits 1: x, 2: y, 4: z); -1: none
-        std::array<std::uint8_t, 8> slack;  // of each octant, 255ths: see errorBound
+        std::array<std::uint8_t, 8> slack;  // of each octant: k in 255ths, of shapes √(e / cell); see errorBound
         std::int32_t level;                 // 0: largest cells
         bool refined;                       // has a child
     };
@@ -160,8 +169,23 @@ private:
         unsigned octant;          // of the brick
         std::array<int, 3> cell;  // counted from the corner of the largest brick, in cells of this level
     };
+    /// The cell around a point, in the brick or coarse grid that holds it.
+    struct Spot {
+        std::array<int, 3> at;     // the cell
+        std::array<int, 3> cells;  // of the brick or grid, per axis
+        std::size_t first;         // number of the brick
+        Vec3 u;                    // local coordinates in [0, 1]³
+        double edge;               // [m]
+        double inverse_edge;       // [1/m]
+        double low, step;          // φ = low + step · stored number [m]
+        double slack, most;        // k and e [m]: see errorBound
+        bool in_brick;             // else on the coarse grid, where floats are stored
+    };
     Place descend(std::int32_t root, const Vec3& in_root) const noexcept;  // in_root in [0, 1)³
+    bool find(const Vec3& p, Spot& spot) const noexcept;
     bool locate(const Vec3& p, Cell& cell) const noexcept;
+    FieldSample sampleOutside(const Vec3& p) const noexcept;
+    FieldSample sampleAt(const Spot& spot, FieldMode mode, const Vec3& inward) const noexcept;
     bool soundGrid() const;
     bool soundBricks() const;
     void fillIndex();
@@ -169,7 +193,7 @@ private:
     void enterIndex(std::int32_t id, const std::array<int, 3>& place, int finer);
     struct Block;  // distance_field_many.cpp
     double boxDistance(const Vec3& p) const noexcept;
-    double rounding(const Cell& cell, double weights) const noexcept;
+    double rounding(const Cell& cell) const noexcept;
     double farthestSurface(const Cell& cell) const noexcept;
     std::size_t coarseNode(int x, int y, int z) const noexcept;
     std::size_t coarseCell(int x, int y, int z) const noexcept;
@@ -185,6 +209,7 @@ private:
     double sheet_offset_ = 0.0;
     double arithmetic_ = 0.0;  // what rounding in double precision may add up to [m]
     bool bound_proven_ = true;
+    bool error_bounded_ = false;  // Brick::slack holds e, not k
     bool refined_ = true;
     std::vector<float> coarse_;                // nodes
     std::vector<std::int32_t> brick_of_cell_;  // -1: none

@@ -106,6 +106,7 @@ Result<DistanceField> DistanceField::build(const DistanceSource& source, double 
     // one cell in front of it.
     field.sheet_offset_ = source.open_sheet ? cell : 0.0;
     field.bound_proven_ = source.closed || source.open_sheet;
+    field.error_bounded_ = static_cast<bool>(source.error_bound);
 
     // Whole bricks, so that the faces of a part whose sides measure whole bricks coincide with those of cells: then the
     // ridges of the distance, at 45° to the faces, are diagonals of cells and meet the fewest.
@@ -240,13 +241,22 @@ void DistanceField::Builder::sampleBrick(std::size_t brick) {
     }
     const SurfaceBlock block = blockAt(low[brick]);
     const Nodes stored = store(brick, block.node);
+    if (accuracy.tolerance > 0.0) depths = measure(stored, block, low[brick]);
+    if (field.error_bounded_) {
+        for (std::size_t octant = 0; octant < 8; ++octant) {
+            // Where finer cells follow nobody asks, or memory ends: then the Lipschitz constant alone bounds.
+            const double most =
+                std::isfinite(depths[octant]) ? cell : exact.source.error_bound(block, low[brick], cell, octant);
+            info.slack[octant] = static_cast<std::uint8_t>(std::ceil(255.0 * std::sqrt(std::min(most / cell, 1.0))));
+        }
+        return;
+    }
     for (std::size_t i = 0; i < SurfaceBlock::kAllCells; ++i) {
         constexpr std::size_t kHalf = kBrickCells / 2;
         const std::size_t x = i % kBrickCells, y = i / kBrickCells % kBrickCells, z = i / (kBrickCells * kBrickCells);
         std::uint8_t& slack = info.slack[x / kHalf | y / kHalf << 1 | z / kHalf << 2];
         slack = std::max(slack, static_cast<std::uint8_t>(std::ceil(255.0 * block.slack[i])));
     }
-    if (accuracy.tolerance > 0.0) depths = measure(stored, block, low[brick]);
 }
 
 /// Puts φ into the brick as numbers; the values that they stand for.

@@ -9,6 +9,7 @@ namespace passung::model {
 
 namespace {
 
+constexpr int kFewestCoarseCells = 3;      // per axis, that every mode of interpolation can do with
 constexpr int kMostCoarseCells = 1 << 12;  // per axis; build() makes a few hundred
 
 }  // namespace
@@ -20,7 +21,7 @@ std::string DistanceField::toBytes() const {
     for (const double value :
          {cell_, largest_cell_, finest_cell_, brick_edge_, inverse_brick_edge_, sheet_offset_, arithmetic_})
         writer.put(value);
-    writer.put((bound_proven_ ? 1u : 0u) + (refined_ ? 2u : 0u), 1);
+    writer.put((bound_proven_ ? 1u : 0u) + (refined_ ? 2u : 0u) + (error_bounded_ ? 4u : 0u), 1);
     writer.put(coarse_.size(), 8);
     for (const float value : coarse_) writer.put(std::bit_cast<std::uint32_t>(value), 4);
     for (const std::int32_t brick : brick_of_cell_) writer.put(static_cast<std::uint32_t>(brick), 4);
@@ -72,7 +73,7 @@ bool DistanceField::soundGrid() const {
         if (!v.allFinite()) return false;
     if (brick_edge_ != kBrickCells * largest_cell_ || inverse_brick_edge_ != 1.0 / brick_edge_) return false;
     return std::all_of(coarse_cells_.begin(), coarse_cells_.end(),
-                       [](int cells) { return cells >= 1 && cells <= kMostCoarseCells; });
+                       [](int cells) { return cells >= kFewestCoarseCells && cells <= kMostCoarseCells; });
 }
 
 std::optional<DistanceField> DistanceField::fromBytes(std::string_view bytes) {
@@ -86,7 +87,8 @@ std::optional<DistanceField> DistanceField::fromBytes(std::string_view bytes) {
     const std::uint64_t flags = reader.take(1);
     field.bound_proven_ = (flags & 1u) != 0;
     field.refined_ = (flags & 2u) != 0;
-    if (reader.failed() || flags > 3 || !field.soundGrid()) return std::nullopt;
+    field.error_bounded_ = (flags & 4u) != 0;
+    if (reader.failed() || flags > 7 || !field.soundGrid()) return std::nullopt;
     std::size_t nodes = 1, cells = 1;
     for (const int n : field.coarse_cells_) {
         nodes *= static_cast<std::size_t>(n) + 1;

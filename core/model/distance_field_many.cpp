@@ -42,7 +42,7 @@ struct DistanceField::Block {
     Lane<double> scale;  // cells along a largest brick
     Lane<std::int32_t> first;
     Lane<float> low, step;
-    Lane<float> slack, edge;  // for bounds
+    Lane<float> slack, most, edge;  // for bounds
     std::array<Lane<float>, 3> u;
     Lane<std::int32_t> node;
     std::array<Lane<std::uint32_t>, 4> pair;  // two neighbours along x each
@@ -119,7 +119,9 @@ struct DistanceField::Block {
             const float margin = kStepMargin * step[i] + arithmetic;
             const float value = low[i] + step[i] * between(c, x, y, z);
             const float size = value < 0.0f ? -value : value;
-            const float near = value - slack[i] * std::sqrt(spread) * kMore - margin - size * (1.0f - kLess);
+            const float by_slack = slack[i] * std::sqrt(spread);
+            const float near =
+                value - (by_slack < most[i] ? by_slack : most[i]) * kMore - margin - size * (1.0f - kLess);
             const float zero = low[i] + offset - margin;
             std::array<float, 8> square;
             for (std::size_t k = 0; k < 8; ++k) {
@@ -156,9 +158,11 @@ struct DistanceField::Block {
             }
             const Brick& brick = field.bricks_[k];
             if constexpr (kBounds) {
-                slack[i] =
+                const float held =
                     static_cast<float>(brick.slack[octant(i, static_cast<double>(2 << brick.level))]) * kSlackUnit;
                 edge[i] = static_cast<float>(field.largest_cell_ / static_cast<double>(1 << brick.level));
+                slack[i] = field.error_bounded_ ? 1.0f : held;
+                most[i] = field.error_bounded_ ? held * held * edge[i] : std::numeric_limits<float>::infinity();
             }
             scale[i] = static_cast<double>(kBrickCells << brick.level);
             first[i] = static_cast<std::int32_t>(k * kBrickSamples);

@@ -50,19 +50,4 @@ inline unsigned nearestCorner(const Vec3& u) noexcept {
     return (u.x() > 0.5 ? 1u : 0u) | (u.y() > 0.5 ? 2u : 0u) | (u.z() > 0.5 ? 4u : 0u);
 }
 
-/// The thesis's V_I as weights of four corners: value at the nearest one and one-sided differences to its three
-/// neighbours on the point's side. (Sagardia 2019, eqs. 3.28-3.29, with V = -φ.)
-inline Corners oneSidedWeights(const Vec3& u) noexcept {
-    Corners w{};
-    const unsigned c = nearestCorner(u);
-    w[c] = 1.0;
-    for (int axis = 0; axis < 3; ++axis) {
-        const unsigned bit = 1u << axis;
-        const double away = (c & bit) ? 1.0 - u[axis] : u[axis];  // in cells, towards the neighbour
-        w[c ^ bit] += away;
-        w[c] -= away;
-    }
-    return w;
-}
-
 }  // namespace passung::model

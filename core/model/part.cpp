@@ -11,6 +11,7 @@
 #include "core/base/random.h"
 #include "core/model/interpolation.h"
 #include "core/model/mesh_block.h"
+#include "core/model/shape_bound.h"
 #include "core/model/triangle_tree.h"
 
 namespace passung::model {
@@ -96,6 +97,9 @@ DistanceSource exactSource(const Part& part) {
         const Shape shape = *part.shape;
         source.open_sheet = std::holds_alternative<Sheet>(shape);
         source.closed = !source.open_sheet;
+        source.error_bound = [shape](const SurfaceBlock& block, const Vec3& low, double cell, std::size_t octant) {
+            return boundInterpolation(shape, block, low, cell, octant);
+        };
         source.distance = [shape](const Vec3& p) { return std::abs(signedDistance(shape, p)); };
         source.inside = [shape](const Vec3& p) { return signedDistance(shape, p) < 0.0; };
         return source;

@@ -8,6 +8,7 @@
 
 #include "core/base/result.h"
 #include "core/base/types.h"
+#include "core/model/field_mode.h"
 #include "core/model/shape.h"
 
 namespace passung::model {
@@ -29,7 +30,6 @@ struct PartSpec {
 
 enum class ContactMethod { Penalty, GodObjectHeuristic };
 enum class PenaltyVariant { MaxNormalised, AreaWeighted, Raw };
-enum class FieldMode { Trilinear, Linear };  // Linear: the thesis's one-sided four-sample V_I
 
 struct ContactSpec {
     ContactMethod method = ContactMethod::GodObjectHeuristic;

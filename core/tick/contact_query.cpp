@@ -91,7 +91,7 @@ struct Traversal {
         ++answer.points_tested;
         const Vec3 p_F = R_FS * position + p_FS;
         prove(p_F, above);
-        take(p_F, position, normal, area, field.sample(p_F, request.mode));
+        take(p_F, position, normal, area, field.sample(p_F, request.mode, -(R_FS * normal)));
     }
 
     void prove(const Vec3& p_F, double above) noexcept {
@@ -145,7 +145,7 @@ struct Traversal {
             const model::SurfacePoint& point = shell.points()[first + i];
             if (request.gradients || read - slack < answer.phi || !(point.area > 0.0)) {
                 const Vec3 p_F = R_FS * point.position + p_FS;
-                take(p_F, point.position, point.normal, point.area, field.sample(p_F, request.mode));
+                take(p_F, point.position, point.normal, point.area, field.sample(p_F, model::FieldMode::Trilinear));
             } else {
                 collect(point.position, point.normal, point.area, read, Vec3::Zero());
             }
@@ -158,7 +158,7 @@ struct Traversal {
         const Vec3 centre_F = R_FS * node.centre + p_FS;
         ContactPoint contact;
         contact.position = X_WF * centre_F;
-        contact.gradient = R_WF * field.sample(centre_F, request.mode).gradient;
+        contact.gradient = R_WF * field.sample(centre_F, request.mode, -(R_FS * node.normal)).gradient;
         contact.normal = -contact.gradient;
         contact.phi = bound;
         contact.radius = node.radius;

@@ -127,7 +127,8 @@ constexpr std::array kKeys{
     Key{"contact", "tolerance_um", Number, from(0.01, 10000), "", "20", "Asked accuracy of the distance fields near surfaces."},
     Key{"contact", "cell_mm", Number, from(0.01, 100), "", "(from the tolerance)", "Edge of a distance field's cell."},
     Key{"contact", "spacing_mm", Number, from(0.01, 100), "", "1", "Distance between the points of the point shells; the held part may have about two million."},
-    Key{"contact", "mode", Choice, kAny, "trilinear|linear", "trilinear", "Interpolation in the distance field."},
+    Key{"contact", "mode", Choice, kAny, "layered|surface_point|linear|trilinear|cubic", "trilinear",
+        "Interpolation in the distance field, from coarse to smooth."},
     Key{"contact", "budget_nodes", Integer, from(0, 1000000), "", "0", "Most tree nodes that a query visits; 0 = no budget."},
     Key{"contact", "proxy_filter_hz", Number, from(0, 500), "", "0", "Corner of the proxy's low-pass while in contact; 0 = no filter."},
 

@@ -60,7 +60,7 @@ std::string contactJson(const model::ContactSpec& contact) {
         .number("tolerance_m", contact.tolerance)
         .number("cell_m", contact.cell)
         .number("spacing_m", contact.spacing)
-        .text("mode", contact.mode == model::FieldMode::Linear ? "linear" : "trilinear")
+        .text("mode", model::modeName(contact.mode))
         .integer("budget_nodes", contact.budget_nodes)
         .number("proxy_filter_hz", contact.proxy_filter)
         .str();

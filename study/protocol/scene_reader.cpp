@@ -197,7 +197,7 @@ model::ContactSpec readContact(const TableReader& read, const DeviceDescription*
     contact.tolerance = read.number("tolerance_um");
     contact.cell = read.numberOr("cell_mm", 0.0);
     contact.spacing = read.number("spacing_mm");
-    contact.mode = read.text("mode") == "linear" ? model::FieldMode::Linear : model::FieldMode::Trilinear;
+    contact.mode = model::modeNamed(read.text("mode")).value_or(contact.mode);
     contact.budget_nodes = static_cast<int>(read.integer("budget_nodes"));
     contact.proxy_filter = read.number("proxy_filter_hz");
     return contact;

@@ -67,9 +67,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const Vec3 low = field->bounds().low, high = field->bounds().high;
     for (int i = -2; i <= 6; ++i) {
         const Vec3 p = low + 0.25 * i * (high - low);
-        (void)field->sample(p, FieldMode::Trilinear);
         (void)field->lowerBound(p);
-        (void)field->errorBound(p, FieldMode::Linear);
+        for (const FieldMode mode : kFieldModes) {
+            (void)field->sample(p, mode, Vec3::UnitX());
+            (void)field->errorBound(p, mode);
+        }
     }
     return 0;
 }

@@ -29,8 +29,9 @@ std::string bar(const std::string& what, double share) {
 truth::AccuracySpace spaceOf(const AccuracyOptions& options, double length) {
     truth::AccuracySpace space;
     space.modes.clear();
-    for (const model::FieldMode mode : truth::allModes())
-        if (std::find(options.modes.begin(), options.modes.end(), truth::modeName(mode)) != options.modes.end())
+    for (const model::FieldMode mode : model::kFieldModes)
+        if (options.modes.empty() ||
+            std::find(options.modes.begin(), options.modes.end(), model::modeName(mode)) != options.modes.end())
             space.modes.push_back(mode);
     space.tolerances.clear();
     for (const double tolerance : options.tolerances_um) space.tolerances.push_back(1e-6 * tolerance);

@@ -77,7 +77,7 @@ struct AccuracyOptions {
     std::vector<double> tolerances_um{100.0, 50.0, 20.0, 10.0};
     std::vector<double> spacings_mm;  // empty: from the size of SHELL
     std::vector<int> budgets{0, 1000, 300, 100};
-    std::vector<std::string> modes{"trilinear", "linear"};
+    std::vector<std::string> modes;  // empty: all
     int repetitions = 5;
     int fcl_poses = 1000;
     std::string unit = "mm", field_unit, shell_unit;  // empty: unit

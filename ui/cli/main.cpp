@@ -7,6 +7,7 @@
 #include <exception>
 #include <functional>
 
+#include "core/model/field_mode.h"
 #include "study/protocol/key_table.h"
 #include "ui/cli/commands.h"
 
@@ -17,6 +18,12 @@ namespace {
 using namespace passung::cli;
 
 constexpr int kWrongUsage = 2;
+
+CLI::IsMember aMode() {
+    std::vector<std::string> names;
+    for (const auto mode : passung::model::kFieldModes) names.emplace_back(passung::model::modeName(mode));
+    return CLI::IsMember(names);
+}
 
 /// Checks the word of an option: CLI11's own checks print the limits of the type, digit by digit.
 template <class Number, class Accept>
@@ -150,8 +157,7 @@ private:
         sub->add_option("--tolerance-um", query_.tolerance_um, "of the field")->check(above0());
         sub->add_option("--cell-mm", query_.cell_mm, "of the field, instead of a tolerance")->check(above0());
         sub->add_option("--spacing-mm", query_.spacing_mm, "of the shell")->check(above0());
-        sub->add_option("--mode", query_.mode, "of interpolation: trilinear, linear")
-            ->check(CLI::IsMember({"trilinear", "linear"}));
+        sub->add_option("--mode", query_.mode, "of interpolation; default trilinear")->check(aMode());
         sub->add_option("--proximity-mm", query_.proximity_mm, "search no farther; default unlimited")
             ->check(atLeast0());
         sub->add_option("--budget-nodes", query_.budget_nodes, "most tree nodes a query visits")
@@ -207,8 +213,7 @@ private:
         list(sub->add_option("--budgets", accuracy_.budgets,
                              "most nodes of a query, 0: no limit; default 0,1000,300,100")
                  ->check(wholeFrom<int>(0)));
-        list(sub->add_option("--modes", accuracy_.modes, "of interpolation; default trilinear,linear")
-                 ->check(CLI::IsMember({"trilinear", "linear"})));
+        list(sub->add_option("--modes", accuracy_.modes, "of interpolation; default: all")->check(aMode()));
         sub->add_option("--repetitions", accuracy_.repetitions, "a pose's time is its fastest of so many; default 5")
             ->check(wholeFrom<int>(1));
         sub->add_option("--fcl-poses", accuracy_.fcl_poses,

@@ -112,7 +112,7 @@ int query(const QueryOptions& options) {
     request.quality = options.quality;
     request.tolerance = options.tolerance_um * 1e-6;
     request.two_way = options.two_way;
-    request.mode = options.mode == "linear" ? model::FieldMode::Linear : model::FieldMode::Trilinear;
+    request.mode = model::modeNamed(options.mode).value_or(request.mode);
     query::PartQuery part_query(*field, *shell, request);
     OutputFile out(options.out);
     out.write(table.headerLine() + kResultColumns + '\n');

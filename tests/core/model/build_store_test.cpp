@@ -56,7 +56,7 @@ void expectSameBits(const Part& a, const Part& b) {
     for (int i = 0; i < 3000; ++i) {
         Vec3 p;
         for (int k = 0; k < 3; ++k) p[k] = random.uniform(bounds.low[k] - 0.003, bounds.high[k] + 0.003);
-        for (const FieldMode mode : {FieldMode::Trilinear, FieldMode::Linear}) {
+        for (const FieldMode mode : kFieldModes) {
             ASSERT_TRUE(sameBits(a.field->sample(p, mode).phi, b.field->sample(p, mode).phi));
             ASSERT_TRUE(sameBits(a.field->errorBound(p, mode), b.field->errorBound(p, mode)));
         }

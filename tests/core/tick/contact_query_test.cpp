@@ -121,6 +121,65 @@ TEST(ContactQuery, ManifoldHoldsEveryPointThatIsTrulyNearOnceAndNoneThatIsFar) {
     EXPECT_GT(excluded, 10000);
 }
 
+TEST(ContactQuery, InEveryModeMissesNothingThatIsDeeperThanTheModesError) {
+    // Truth: closed form. Pruning asks for true distances, whatever the mode reads; contacts are off by the mode's
+    // bound at most, layered ones too, which take the peg's own normals.
+    const model::Part plate = build(kPlate), peg = build(kPeg);
+    tick::QueryWorkspace workspace(peg.shell->nodes().size());
+    tick::ContactManifold manifold(peg.shell->points().size());
+    const model::DistanceField& field = *plate.field;
+    Random random(6);
+    for (const model::FieldMode mode : model::kFieldModes) {
+        std::size_t deep = 0;
+        for (int i = 0; i < 60; ++i) {
+            const Pose X_FS = pegInPlate(i, random);
+            manifold.clear();
+            const tick::QueryRequest request{.search_below = 1.0, .mode = mode, .prove = true};
+            const auto answer = tick::queryContacts(field, Pose{}, *peg.shell, X_FS, request, workspace, manifold);
+            double least = 1e300;
+            std::size_t must = 0;
+            for (const auto& point : peg.shell->points()) {
+                const Vec3 p = X_FS * point.position;
+                const double truth = signedDistance(kPlate, p);
+                least = std::min(least, truth);
+                if (truth < -field.errorBound(p, mode)) ++must;
+            }
+            deep += must;
+            ASSERT_TRUE(answer.found);
+            ASSERT_LE(std::min(answer.lower_bound, answer.phi), least) << modeName(mode);
+            ASSERT_LE(least, answer.phi + field.errorBound(answer.closest_F, mode)) << modeName(mode);
+            ASSERT_GE(manifold.size(), must) << modeName(mode);
+            for (const tick::ContactPoint& contact : manifold)
+                ASSERT_NEAR(contact.phi, signedDistance(kPlate, contact.position),
+                            field.errorBound(contact.position, mode) + 1e-12)
+                    << modeName(mode);
+        }
+        EXPECT_GT(deep, 1000u);
+    }
+}
+
+TEST(ContactQuery, LayeredContactsTakeTheNormalOfThePointThatAsks) {
+    // Truth: closed form: a flat tip in a flat face reads every depth within half a cell; with any other normal the
+    // way from the voxel's centre would be lost, another half of it.
+    const model::Part block = build(model::Box{0.05, 0.05, 0.02}), peg = build(model::Peg{0.02, 0.04, 0.0});
+    tick::QueryWorkspace workspace(peg.shell->nodes().size());
+    tick::ContactManifold manifold(peg.shell->points().size());
+    for (const double depth : {0.1e-3, 0.5e-3, 0.9e-3}) {
+        manifold.clear();
+        const Pose X_FS{Quat::Identity(), Vec3(0.0, 0.0, 0.01 - depth)};
+        const tick::QueryRequest request{.mode = model::FieldMode::Layered};
+        tick::queryContacts(*block.field, Pose{}, *peg.shell, X_FS, request, workspace, manifold);
+        std::size_t of_the_tip = 0;
+        for (const tick::ContactPoint& contact : manifold) {
+            if (contact.normal.z() > -0.99) continue;
+            ++of_the_tip;
+            ASSERT_NEAR(contact.phi, -depth, 0.5 * block.field->cell() + 1e-7);
+            ASSERT_NEAR(contact.gradient.z(), 1.0, 1e-9);
+        }
+        EXPECT_GT(of_the_tip, 100u);
+    }
+}
+
 TEST(ContactQuery, ABudgetKeepsTheWeightOfAPlatePressedFlatAndSaysWhatItDidNotProve) {
     // Truth: closed form. A plate of 20 mm lies 1 mm deep on a table: F = κ A h, and its sides cancel. The lower face
     // is flat and equally deep, so a node that stands in with its point and the area below gives what its points would

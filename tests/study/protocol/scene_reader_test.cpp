@@ -260,6 +260,18 @@ TEST(SceneReader, BoundsLengths) {
               "s.toml:13:14: error: contact.spacing_mm: 1000: must be from 0.01 to 100");
 }
 
+TEST(SceneReader, KnowsEveryModeByItsName) {
+    // Truth: closed form.
+    for (const model::FieldMode mode : model::kFieldModes) {
+        const auto scene = read(kParts + "[contact]\nmode = \"" + modeName(mode) + "\"\n");
+        ASSERT_TRUE(scene);
+        EXPECT_EQ(scene->contact.mode, mode);
+    }
+    EXPECT_EQ(errorsOf(kParts + "[contact]\nmode = \"cubik\"\n"),
+              "s.toml:12:8: error: contact.mode: \"cubik\": must be \"layered\", \"surface_point\", \"linear\", "
+              "\"trilinear\" or \"cubic\"");
+}
+
 TEST(SceneReader, CollectsEveryProblem) {
     // Truth: closed form: three mistakes on three lines.
     EXPECT_EQ(errorsOf("unit = 3\n[contact]\nspacing_mm = -1\nmod = \"linear\"\n"),

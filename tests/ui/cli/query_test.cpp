@@ -138,7 +138,7 @@ TEST_F(Query, DistanceOfBallAndBoxIsTheClosedFormWithinTheStatedBound) {
     // Truth: closed form (distance of a box from the ball's centre, less its radius)
     const Quat turned(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()));
     writePoses(kPlaces, turned);
-    for (const std::string mode : {"trilinear", "linear"}) {
+    for (const std::string mode : {"layered", "surface_point", "linear", "trilinear", "cubic"}) {
         const fake::CsvFile r = query("box.toml", "ball.toml", {"--mode", mode});
         ASSERT_EQ(r.rows.size(), kPlaces.size());
         for (std::size_t i = 0; i < kPlaces.size(); ++i) {
