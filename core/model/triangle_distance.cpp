@@ -70,12 +70,34 @@ struct Sides {
 
 }  // namespace
 
+namespace {
+
+constexpr int kProjections = 8;
+
+}  // namespace
+
+bool findWay(const TriangleCorners& first, const TriangleCorners& second, double limit, Vec3& way) {
+    Vec3 p = (first[0] + first[1] + first[2]) / 3.0;
+    for (int i = 0; i < kProjections; ++i) {
+        const Vec3 q = closestOnTriangle(p, second[0], second[1], second[2]);
+        p = closestOnTriangle(q, first[0], first[1], first[2]);
+        const double length = (p - q).norm();
+        if (!(length > limit)) return false;
+        way = (p - q) / length;
+        const double from = std::min({way.dot(first[0]), way.dot(first[1]), way.dot(first[2])});
+        const double to = std::max({way.dot(second[0]), way.dot(second[1]), way.dot(second[2])});
+        if (from - to > limit) return true;
+    }
+    return false;
+}
+
 TrianglePair closestPair(const TriangleCorners& first, const TriangleCorners& second, double limit) {
     const Sides of_first(second, first), of_second(first, second);
     TrianglePair best{std::numeric_limits<double>::infinity(), first[0], second[0]};
     // Rounding may name the wrong side only by far less than this.
     const double sure = limit * (1.0 + 1e-9);
     if (of_first.fartherThan(sure) || of_second.fartherThan(sure)) return best;
+    if (Vec3 way; findWay(first, second, sure, way)) return best;
     double squared = std::numeric_limits<double>::infinity();
     const auto take = [&](const Vec3& a, const Vec3& b) {
         const double d = (a - b).squaredNorm();
@@ -106,6 +128,37 @@ TrianglePair closestPair(const TriangleCorners& first, const TriangleCorners& se
     }
     best.distance = std::sqrt(squared);
     return best;
+}
+
+namespace {
+
+constexpr double kFlat = 1e-6;  // a triangle of less than this share of the area that its sides could span
+constexpr double kRootRounding = 1e-10;
+
+}  // namespace
+
+double leastDistance(const TriangleCorners& t, const std::array<double, 3>& l, double enough) {
+    const std::array<double, 3> L{l[0] * l[0], l[1] * l[1], l[2] * l[2]};
+    const Vec3 e1 = t[1] - t[0], e2 = t[2] - t[0];
+    const double E1 = e1.squaredNorm(), E2 = e2.squaredNorm(), E3 = (e2 - e1).squaredNorm();
+    const double longest = std::max({E1, E2, E3});
+    double least = std::min({L[0], L[1], L[2]}) - longest / 3.0;
+    if (least > enough && least > 0.0) return std::sqrt(least) * (1.0 - kRootRounding);
+    const double g = e1.dot(e2), area2 = E1 * E2 - g * g;
+    if (area2 > kFlat * E1 * E2) {
+        const auto onEdge = [](double from, double to, double E) {
+            const double rise = to - from;
+            if (!(std::abs(rise) < E)) return std::min(from, to);
+            const double s = 0.5 - 0.5 * rise / E;
+            return from + s * rise - s * (1.0 - s) * E;
+        };
+        least = std::min({onEdge(L[0], L[1], E1), onEdge(L[0], L[2], E2), onEdge(L[1], L[2], E3)});
+        const double b1 = 0.5 * (E1 - (L[1] - L[0])), b2 = 0.5 * (E2 - (L[2] - L[0]));
+        const double s = (b1 * E2 - b2 * g) / area2, r = (b2 * E1 - b1 * g) / area2;
+        if (s > 0.0 && r > 0.0 && s + r < 1.0) least = std::min(least, L[0] - s * b1 - r * b2);
+    }
+    least -= kRootRounding * (longest + std::max({L[0], L[1], L[2]}));
+    return least > 0.0 ? std::sqrt(least) : -std::numeric_limits<double>::infinity();
 }
 
 }  // namespace passung::model

@@ -20,10 +20,21 @@ struct TrianglePair {
     Vec3 on_first = Vec3::Zero(), on_second = Vec3::Zero();
 };
 
+/// A direction in which `first` lies farther than `limit` behind all of `second`: across two points that are nearest to
+/// each other, but for what more projections would still change; false if none is found.
+bool findWay(const TriangleCorners& first, const TriangleCorners& second, double limit, Vec3& way);
+
 /// The nearest points of two triangles if they are nearer than `limit`, else some pair that is not; distance 0, up to
 /// rounding, if they meet.
 ///   The distance of two triangles that do not meet is that of a corner and the other triangle or of two edges; if they
 /// meet, an edge of one passes through the other.
 TrianglePair closestPair(const TriangleCorners& first, const TriangleCorners& second, double limit);
+
+/// A lower bound of the distance of some closed set from a triangle whose corners are at least `l` from it, if there is
+/// one above zero; else -∞. One whose square is `enough` will do.
+///   d the distance, q the points of the set: d² - |p|² = min_q (|q|² - 2 p·q) is concave. With p = Σ λ_i v_i on the
+/// triangle therefore  d(p)² ≥ Σ λ_i l_i² - Σ λ_i |v_i - p|²,  convex in p: its least value lies in the triangle where
+/// its slope is zero, or on an edge. No more than a third of the longest edge's square is taken away.
+double leastDistance(const TriangleCorners& t, const std::array<double, 3>& l, double enough);
 
 }  // namespace passung::model

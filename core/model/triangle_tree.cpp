@@ -288,6 +288,32 @@ void TriangleTree::findNear(const Vec3& p, double radius, std::vector<std::uint3
     }
 }
 
+void TriangleTree::findAbove(const Bounds& box, const Vec3& way, double least,
+                             std::vector<std::uint32_t>& found) const {
+    const Vec3 half_way = 0.5 * way, half_reach = half_way.cwiseAbs();
+    const auto meets = [&](const Vec3& low, const Vec3& high) {
+        return (low.array() <= box.high.array()).all() && (high.array() >= box.low.array()).all();
+    };
+    std::array<std::uint32_t, kStack> stack;
+    int size = 0;
+    stack[static_cast<std::size_t>(size++)] = 0;
+    while (size > 0) {
+        const Node& node = nodes_[stack[static_cast<std::size_t>(--size)]];
+        if (!meets(node.low, node.high)) continue;
+        if (half_way.dot(node.low + node.high) + half_reach.dot(node.high - node.low) < least) continue;
+        if (node.count == 0) {
+            stack[static_cast<std::size_t>(size++)] = node.first + 1;
+            stack[static_cast<std::size_t>(size++)] = node.first;
+            continue;
+        }
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+            const Corners& t = corners_[i];
+            if (std::max({way.dot(t.a), way.dot(t.b), way.dot(t.c)}) < least) continue;
+            if (meets(t.a.cwiseMin(t.b).cwiseMin(t.c), t.a.cwiseMax(t.b).cwiseMax(t.c))) found.push_back(i);
+        }
+    }
+}
+
 TrianglePair TriangleTree::closestTo(const TriangleCorners& triangle, double limit) const {
     struct Entry {
         std::uint32_t node;

@@ -36,6 +36,10 @@ public:
     /// Appends the triangles whose box comes within `radius` of `p`, numbered in tree order.
     void findNear(const Vec3& p, double radius, std::vector<std::uint32_t>& found) const;
 
+    /// Appends the triangles that reach as far as `least` along `way` and whose box meets `box`, numbered in tree
+    /// order.
+    void findAbove(const Bounds& box, const Vec3& way, double least, std::vector<std::uint32_t>& found) const;
+
     /// All triangles in tree order.
     const std::vector<Corners>& corners() const { return corners_; }
 

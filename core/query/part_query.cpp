@@ -26,6 +26,14 @@ void boundError(PartQueryResult& result) {
     result.error_bound = std::max({0.0, above, result.signed_distance - result.lower_bound});
 }
 
+/// Sets the bound of the field at the shell's points: `least` is no more than the smallest true φ there.
+void boundField(const model::Part& field, const tick::QueryAnswer& answer, model::FieldMode mode, double least,
+                PartQueryResult& result) {
+    result.field_error_bound = answer.phi - least;
+    if (answer.found)
+        result.field_error_bound = std::max(result.field_error_bound, field.field->errorBound(answer.closest_F, mode));
+}
+
 /// The interval that one direction proves, from what the traversal found; see PartQuery. `meshes`: what the meshes may
 /// be off.
 void proveInterval(const model::Part& field, const model::Part& shell, const tick::QueryAnswer& answer,
@@ -37,17 +45,16 @@ void proveInterval(const model::Part& field, const model::Part& shell, const tic
     const double least = std::min(answer.lower_bound, answer.phi);
     result.lower_bound = least + offset - shell.shell->coverRadius() - chords;
     result.upper_bound = std::numeric_limits<double>::infinity();
-    result.field_error_bound = answer.phi - least;
     if (answer.found) {
         const double error = field.field->errorBound(answer.closest_F, mode);
         result.upper_bound = answer.phi + error + offset + chords;
-        result.field_error_bound = std::max(result.field_error_bound, error);
     }
+    boundField(field, answer, mode, least, result);
     boundError(result);
 }
 
 /// Narrows the interval by the exact geometry; see PartQuery.
-void refine(const model::Part& shell, const SurfaceSearch& search, const Pose& X_FS, double tolerance, int most_steps,
+void refine(const model::Part& shell, SurfaceSearch& search, const Pose& X_FS, double tolerance, int most_steps,
             double chords, PartQueryResult& result) {
     // What the chords take of the tolerance is lost, but not all of it can be won back by searching on.
     const double left = std::max(tolerance - chords, 0.1 * tolerance);
@@ -90,11 +97,14 @@ PartQuery::PartQuery(const model::Part& field, const model::Part& shell, const P
 }
 
 PartQueryResult PartQuery::oneWay(const model::Part& field, const model::Part& shell,
-                                  const std::optional<SurfaceSearch>& search, const Pose& X_FS) {
+                                  std::optional<SurfaceSearch>& search, const Pose& X_FS) {
+    const double chords = surface_error_ + shell.shell->rounding();
+    // What the triangles prove is more than the points could, so that those need not prove anything before.
+    const bool decided = search && request_.max_nodes == 0 && std::isinf(request_.proximity);
     tick::QueryRequest request{.search_below = request_.proximity,
                                .max_nodes = request_.max_nodes,
                                .mode = request_.mode,
-                               .prove = true,
+                               .prove = !decided,
                                .gradients = false};
     manifold_.clear();
     tick::QueryAnswer answer = queryContacts(*field.field, Pose{}, *shell.shell, X_FS, request, workspace_, manifold_);
@@ -117,11 +127,29 @@ PartQueryResult PartQuery::oneWay(const model::Part& field, const model::Part& s
         result.closest = answer.closest_F;
         result.normal = answer.normal_W;
     }
+    if (decided) {
+        answer.lower_bound = -std::numeric_limits<double>::infinity();
+    }
     proveInterval(field, shell, answer, request_.mode, surface_error_, result);
     const bool free = request_.max_nodes == 0 || result.quality_overruled_budget;
     const int steps = free ? kMostRefinements : std::min(kMostRefinements, request_.max_nodes - result.nodes_visited);
     if (search && answer.found && steps >= SurfaceSearch::kLeastSteps && result.error_bound > request_.tolerance)
         refine(shell, *search, X_FS, request_.tolerance, steps, surface_error_, result);
+    if (decided) {
+        // No point lies farther than the chords from the surface.
+        double least = result.lower_bound - field.field->sheetOffset() - chords;
+        if (result.error_bound > request_.tolerance) {  // the steps ended
+            request.prove = true;
+            request.collect_below = -std::numeric_limits<double>::infinity();
+            const tick::QueryAnswer proof =
+                queryContacts(*field.field, Pose{}, *shell.shell, X_FS, request, workspace_, manifold_);
+            least = std::max(least, std::min(proof.lower_bound, proof.phi));
+            result.lower_bound =
+                std::max(result.lower_bound, least + field.field->sheetOffset() - shell.shell->coverRadius() - chords);
+            boundError(result);
+        }
+        boundField(field, answer, request_.mode, least, result);
+    }
     result.budget_reached = result.budget_reached || (!free && result.nodes_visited >= request_.max_nodes);
 
     model::ContactSpec contact;

@@ -66,7 +66,8 @@ struct PartQueryResult {
 ///
 /// Refinement. From the shell's best point on, both meshes' triangles decide (surface_search.h): that proves an
 /// interval of its own for the meshes, wider by their chord errors for the surfaces, and the two intervals'
-/// intersection holds. It ends at the tolerance, at the budget (what the traversal left of it) or after
+/// intersection holds. (Without a budget and a proximity it alone proves: the traversal does so only if the steps end.)
+/// It ends at the tolerance, at the budget (what the traversal left of it) or after
 /// kMostRefinements steps, and is left out where the field has holes, beyond the proximity, and where the budget is
 /// spent.
 ///
@@ -84,8 +85,8 @@ public:
     PartQueryResult at(const Pose& X_FS);
 
 private:
-    PartQueryResult oneWay(const model::Part& field, const model::Part& shell,
-                           const std::optional<SurfaceSearch>& search, const Pose& X_FS);
+    PartQueryResult oneWay(const model::Part& field, const model::Part& shell, std::optional<SurfaceSearch>& search,
+                           const Pose& X_FS);
 
     const model::Part& field_;
     const model::Part& shell_;

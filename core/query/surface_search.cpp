@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <queue>
+#include <span>
 
 namespace passung::query {
 
@@ -12,18 +13,27 @@ namespace {
 
 using model::TriangleCorners;
 
-constexpr int kQuarterings = 2;    // of a triangle that the field may show to be far
-constexpr int kMostPerRound = 25;  // steps: the most for a triangle, 1 + 4 + 16 by the field, 4 exact ones
+constexpr std::size_t kBlock = 64;             // points that the field is asked for at once
+constexpr std::size_t kFewTriangles = 4;       // for which neighbours need not be collected
+constexpr std::size_t kMostNeighbours = 1000;  // beyond, a tree finds them faster
+constexpr std::size_t kMostPerTriangle = 3;    // steps
+constexpr std::size_t kMostPerPiece = 8;
 constexpr double kLooseShare =
     0.5;  // of a sphere's radius: what the field may leave open before exact distances are asked
+/// The middles of the sixteen parts of a triangle that is quartered twice, along two of its sides.
+constexpr auto kSixteenths = [] {
+    std::array<std::array<double, 2>, 16> middles{};
+    std::size_t n = 0;
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; i + j < 4; ++j) {
+            middles[n++] = {(i + 1.0 / 3.0) / 4.0, (j + 1.0 / 3.0) / 4.0};
+            if (i + j < 3) middles[n++] = {(i + 2.0 / 3.0) / 4.0, (j + 2.0 / 3.0) / 4.0};
+        }
+    return middles;
+}();
 constexpr double kArithmetic = 1e-12;  // rounding of what is computed here, per metre of the numbers it comes from
 
 Vec3 middleOf(const TriangleCorners& t) { return (t[0] + t[1] + t[2]) / 3.0; }
-
-/// The farthest corner from `p` [m].
-double reachFrom(const Vec3& p, const TriangleCorners& t) {
-    return std::sqrt(std::max({(t[0] - p).squaredNorm(), (t[1] - p).squaredNorm(), (t[2] - p).squaredNorm()}));
-}
 
 /// The farthest corner of `piece` from the triangle `t`: no point of the piece is farther.
 double farthestFrom(const TriangleCorners& t, const TriangleCorners& piece) {
@@ -35,93 +45,123 @@ double farthestFrom(const TriangleCorners& t, const TriangleCorners& piece) {
 
 }  // namespace
 
-SurfaceSearch::SurfaceSearch(const model::Part& a, const model::Part& b) : a_(a), b_(b), triangles_(a.mesh) {
-    buildNodes();
-}
-
-struct SurfaceSearch::Range {
-    std::uint32_t node, begin, end;
+/// A node of B's tree, or a triangle of B.
+struct SurfaceSearch::Waiting {
+    double lower;  // of φ_A on it [m]
+    std::uint32_t index;
 };
 
-void SurfaceSearch::buildNodes() {
-    const auto& mesh = b_.mesh;
-    std::vector<Vec3> middles;
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-        const auto& t = mesh.triangles[i];
-        middles.push_back((mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3.0);
-        order_.push_back(i);
-    }
-    nodes_.resize(1);
-    std::vector<Range> tasks{{0, 0, static_cast<std::uint32_t>(order_.size())}};
-    while (!tasks.empty()) {
-        const Range range = tasks.back();
-        tasks.pop_back();
-        model::Bounds corners, centres;
-        for (std::uint32_t i = range.begin; i < range.end; ++i) {
-            centres.extend(middles[order_[i]]);
-            for (const std::uint32_t v : mesh.triangles[order_[i]]) corners.extend(mesh.vertices[v]);
-        }
-        Node node{0.5 * (corners.low + corners.high), 0.0, range.begin, range.end - range.begin};
-        for (std::uint32_t i = range.begin; i < range.end; ++i)
-            for (const std::uint32_t v : mesh.triangles[order_[i]])
-                node.radius = std::max(node.radius, (mesh.vertices[v] - node.centre).norm());
-        if (node.count > 1) {
-            int axis = 0;
-            centres.size().maxCoeff(&axis);
-            const std::uint32_t middle = range.begin + node.count / 2;
-            std::nth_element(order_.begin() + range.begin, order_.begin() + middle, order_.begin() + range.end,
-                             [&](std::uint32_t i, std::uint32_t j) {
-                                 return std::pair(middles[i][axis], i) < std::pair(middles[j][axis], j);
-                             });
-            node.first = static_cast<std::uint32_t>(nodes_.size());
-            node.count = 0;
-            nodes_.resize(nodes_.size() + 2);
-            tasks.push_back({node.first, range.begin, middle});
-            tasks.push_back({node.first + 1, middle, range.end});
-        }
-        nodes_[range.node] = node;
-    }
-}
+/// A triangle of A.
+struct SurfaceSearch::Neighbour {
+    double end;  // how far it reaches along Search::way [m]
+    Vec3 middle;
+    double reach;  // of the corners from the middle [m]
+    TriangleCorners corners;
+};
 
-/// One search; A's frame.
+/// Memory that searches use one after the other.
+struct SurfaceSearch::Scratch {
+    std::vector<Waiting> wave, next, triangles;
+    std::vector<std::uint32_t> corners, near;
+    std::vector<Neighbour> neighbours;
+};
+
+SurfaceSearch::SurfaceSearch(const model::Part& a, const model::Part& b)
+    : a_(a), triangles_(a.mesh), spheres_(b.mesh), scratch_(std::make_unique<Scratch>()) {}
+
+SurfaceSearch::~SurfaceSearch() = default;
+
+/// One search; A's frame, but for what says B.
 struct SurfaceSearch::Search {
-    /// A node of B's tree, or a piece of a triangle.
-    struct Item {
+    /// A piece of a triangle that may be inside.
+    struct Piece {
         double lower;  // of φ_A on it [m]
-        std::uint32_t node;
-        bool piece;
         TriangleCorners corners;
+        bool operator<(const Piece& other) const { return lower > other.lower; }
     };
-    struct Later {
-        bool operator()(const Item& a, const Item& b) const { return a.lower > b.lower; }
+    /// Points of B at which the field is asked at once; B's frame.
+    struct Points {
+        std::array<float, kBlock> x, y, z, bound;
+        std::size_t count = 0;
+        void add(const Vec3& p) {
+            x[count] = static_cast<float>(p.x());
+            y[count] = static_cast<float>(p.y());
+            z[count] = static_cast<float>(p.z());
+            ++count;
+        }
     };
 
-    const SurfaceSearch& of;
+    SurfaceSearch& of;
+    const model::DistanceField& field;
+    const model::DistanceField::Placement B;  // in the field
     const Mat3 R_AB;
     const Vec3 p_AB;
     const double rounding;  // of what is computed here [m]
     const double slack;     // of the field's bounds [m]
     const double offset;
+    const double tolerance;
+    const int most_steps;
     SurfaceBounds found;
-    std::priority_queue<Item, std::vector<Item>, Later> waiting;
+    double left = std::numeric_limits<double>::infinity();  // no less than this is left out or not looked at [m]
+    bool far = false;  // the field says little around the point where the search begins
+    std::vector<Waiting>& triangles;
+    std::vector<std::uint32_t>& corners;  // of them
+    std::priority_queue<Piece> pieces;
+    bool collected = false;              // are neighbours
+    std::vector<Neighbour>& neighbours;  // all of A that may be nearer to `triangles` than found.upper
+    Vec3 way = Vec3::Zero();             // in which they are measured
+    double highest = -std::numeric_limits<double>::infinity();  // how far any of them reaches [m]
+    Points points;
 
-    Search(const SurfaceSearch& search, const Pose& X_AB)
+    Search(SurfaceSearch& search, const Pose& X_AB, double tolerance_, int most)
         : of(search),
+          field(*search.a_.field),
+          B(field.place(X_AB)),
           R_AB(X_AB.q.toRotationMatrix()),
           p_AB(X_AB.p),
           rounding(kArithmetic * (1.0 + X_AB.p.norm())),
           slack(search.a_.chord_error + rounding),
-          offset(search.a_.field->sheetOffset()) {
+          offset(field.sheetOffset()),
+          tolerance(std::max(0.0, tolerance_ - 4.0 * rounding)),
+          most_steps(most),
+          triangles(search.scratch_->triangles),
+          corners(search.scratch_->corners),
+          neighbours(search.scratch_->neighbours) {
+        triangles.clear();
+        neighbours.clear();
         found.upper = std::numeric_limits<double>::infinity();
     }
 
+    const TriangleSpheres::Vertex& vertex(const Waiting& triangle, std::size_t i) const {
+        return of.spheres_.vertices[of.spheres_.faces[triangle.index][i]];
+    }
+
     bool canBeInside() const { return offset == 0.0; }
-    double fieldBound(const Vec3& p) const { return of.a_.field->lowerBound(p) + offset - slack; }
+    bool maySpend(std::size_t steps) const { return found.steps + static_cast<int>(steps) <= most_steps; }
+
+    /// Distances from here on are enough, squared.
+    double enough() const { return (found.upper - tolerance) * std::abs(found.upper - tolerance); }
+
+    /// True if what is nowhere below `lower` need not be looked at.
+    bool leave(double lower) {
+        if (lower < found.upper - tolerance) return false;
+        left = std::min(left, lower);
+        return true;
+    }
+
+    void askBounds() {
+        const std::size_t n = points.count;
+        field.lowerBounds(B, {points.x.data(), n}, {points.y.data(), n}, {points.z.data(), n},
+                          {points.bound.data(), n});
+        found.steps += static_cast<int>(n);
+    }
+    /// Of φ_A at a point that was asked for.
+    double boundAt(std::size_t i) const { return static_cast<double>(points.bound[i]) + offset - slack; }
 
     bool isInside(const Vec3& p) const {
         if (!canBeInside()) return false;
-        const double phi = of.a_.field->sample(p, model::FieldMode::Trilinear).phi;
-        const double error = of.a_.field->errorBound(p, model::FieldMode::Trilinear) + slack;
+        const double phi = field.sample(p, model::FieldMode::Trilinear).phi;
+        const double error = field.errorBound(p, model::FieldMode::Trilinear) + slack;
         return phi + error < 0.0 || (phi - error <= 0.0 && of.triangles_.inside(p));
     }
 
@@ -132,11 +172,6 @@ struct SurfaceSearch::Search {
         const Vec3 out = phi < 0.0 ? on_a - p : p - on_a;
         const double length = out.norm();
         found.normal = length > 0.0 ? Vec3(out / length) : Vec3(Vec3::Zero());
-    }
-
-    /// A point of B that is known to be as near to A's surface as this.
-    void offerPair(const model::TrianglePair& pair, bool whole) {
-        if (!whole || !isInside(pair.on_first)) offer(pair.distance, pair.on_first, pair.on_second);
     }
 
     /// φ_A at `p`, exactly; the triangle of A next to it.
@@ -151,21 +186,100 @@ struct SurfaceSearch::Search {
         return of.triangles_.cornersOf(near);
     }
 
-    void push(std::uint32_t node) {
-        const Node& n = of.nodes_[node];
-        const Vec3 c = R_AB * n.centre + p_AB;
-        const double bound = fieldBound(c);
-        double lower = bound - n.radius;
-        ++found.steps;
-        if (lower >= found.upper) return;
-        // Far away and deep inside the field says little.
-        const double read = of.a_.field->sample(c, model::FieldMode::Trilinear).phi + offset;
-        if (read - bound > kLooseShare * n.radius) {
-            const double d = of.triangles_.closest(c).distance;
-            ++found.steps;
-            lower = std::max(lower, (isInside(c) ? -d : d) - n.radius - rounding);
+    void begin(const Vec3& p, double off) {
+        look(p);
+        found.upper += off;
+        far = saysLittle(p, field.lowerBound(p) + offset, of.spheres_.leaf_radius);
+    }
+
+    bool saysLittle(const Vec3& p, double bound, double radius) const {
+        return field.sample(p, model::FieldMode::Trilinear).phi + offset - bound > kLooseShare * radius;
+    }
+
+    /// The spheres of some nodes; the children of those that cannot be left out are `next`.
+    void lookAtNodes(std::span<const Waiting> nodes, std::vector<Waiting>& next) {
+        points.count = 0;
+        for (const Waiting& node : nodes) points.add(of.spheres_.nodes[node.index].centre);
+        askBounds();
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            const TriangleSpheres::Node& node = of.spheres_.nodes[nodes[i].index];
+            const double bound = boundAt(i);
+            double lower = std::max(nodes[i].lower, bound - node.radius);
+            if (leave(lower)) continue;
+            // Far away and deep inside the field says little.
+            const Vec3 c = R_AB * node.centre + p_AB;
+            if ((far || found.upper < 0.0) && saysLittle(c, bound, node.radius)) {
+                const double d = of.triangles_.closest(c).distance;
+                ++found.steps;
+                lower = std::max(lower, (isInside(c) ? -d : d) - node.radius - rounding);
+                if (leave(lower)) continue;
+            }
+            for (std::uint32_t k = 0; k < node.count; ++k) triangles.push_back({lower, node.first + k});
+            if (node.count == 0) {
+                next.push_back({lower, node.first});
+                next.push_back({lower, node.first + 1});
+            }
         }
-        if (lower < found.upper) waiting.push({lower, node, false, {}});
+    }
+
+    /// Finds the triangles that matter, level by level; false if the steps end.
+    bool findTriangles() {
+        std::vector<Waiting>&wave = of.scratch_->wave, &next = of.scratch_->next;
+        wave.clear();
+        triangles.clear();
+        for (const std::uint32_t node : of.spheres_.first)
+            wave.push_back({-std::numeric_limits<double>::infinity(), node});
+        while (!wave.empty()) {
+            next.clear();
+            for (std::size_t begin = 0; begin < wave.size(); begin += kBlock) {
+                const std::size_t count = std::min(kBlock, wave.size() - begin);
+                if (!maySpend(2 * count)) {
+                    for (const auto& rest : {std::span<const Waiting>(wave).subspan(begin),
+                                             std::span<const Waiting>(next), std::span<const Waiting>(triangles)})
+                        for (const Waiting& w : rest) left = std::min(left, w.lower);
+                    return false;
+                }
+                lookAtNodes(std::span<const Waiting>(wave).subspan(begin, count), next);
+            }
+            std::swap(wave, next);
+        }
+        return true;
+    }
+
+    double distanceAt(std::size_t i) const { return std::max(0.0, boundAt(i) - of.spheres_.float_rounding); }
+
+    /// What is left of `triangles`, all outside or nearly so, by the distances of their corners.
+    void narrowOutside() {
+        corners.clear();  // each once
+        ++of.round_;
+        for (const Waiting& triangle : triangles)
+            for (const std::uint32_t v : of.spheres_.faces[triangle.index]) {
+                if (of.spheres_.vertices[v].round == of.round_) continue;
+                of.spheres_.vertices[v].round = of.round_;
+                corners.push_back(v);
+            }
+        for (std::size_t begin = 0; begin < corners.size(); begin += kBlock) {
+            const std::size_t count = std::min(kBlock, corners.size() - begin);
+            points.count = 0;
+            for (std::size_t i = 0; i < count; ++i) points.add(of.spheres_.vertices[corners[begin + i]].p);
+            askBounds();
+            for (std::size_t i = 0; i < count; ++i) of.spheres_.vertices[corners[begin + i]].distance = distanceAt(i);
+        }
+        std::size_t kept = 0, nearest = 0;
+        for (const Waiting& triangle : triangles) {
+            const TriangleSpheres::Vertex &a = vertex(triangle, 0), &b = vertex(triangle, 1), &c = vertex(triangle, 2);
+            const double lower = model::leastDistance({a.p, b.p, c.p}, {a.distance, b.distance, c.distance}, enough());
+            if (leave(std::max(triangle.lower, lower))) continue;
+            triangles[kept] = {std::max(triangle.lower, lower), triangle.index};
+            if (triangles[kept].lower < triangles[nearest].lower) nearest = kept;
+            ++kept;
+        }
+        triangles.resize(kept);
+        if (kept == 0) return;
+        lookAtTriangle(triangles[nearest], found.upper);
+        triangles.erase(triangles.begin() + static_cast<std::ptrdiff_t>(nearest));
+        std::erase_if(triangles, [&](const Waiting& triangle) { return leave(triangle.lower); });
+        if (found.upper > 0.0) findNeighbours();
     }
 
     /// A piece of a triangle that is not known to be outside.
@@ -185,20 +299,7 @@ struct SurfaceSearch::Search {
             depth = std::min(depth, farthestFrom(look(piece[deepest]), piece));
         }
         const double lower = std::max(above, -depth - rounding);
-        if (lower < found.upper) waiting.push({lower, 0, true, piece});
-    }
-
-    /// True if the field proves that no point of a piece is nearer than what is known.
-    bool isFar(const TriangleCorners& piece, int quarterings) {
-        const Vec3 c = middleOf(piece);
-        ++found.steps;
-        const double bound = fieldBound(c);
-        if (bound - reachFrom(c, piece) >= found.upper) return true;
-        // The piece in the middle keeps the centre, however often it is quartered.
-        if (quarterings == 0 || bound - std::ldexp(reachFrom(c, piece), -quarterings) < found.upper) return false;
-        for (const TriangleCorners& part : quarters(piece))
-            if (!isFar(part, quarterings - 1)) return false;
-        return true;
+        if (!leave(lower)) pieces.push({lower, piece});
     }
 
     static std::array<TriangleCorners, 4> quarters(const TriangleCorners& t) {
@@ -206,52 +307,131 @@ struct SurfaceSearch::Search {
         return {{{t[0], ab, ca}, {ab, t[1], bc}, {ca, bc, t[2]}, {ab, bc, ca}}};
     }
 
-    void lookAtTriangle(std::uint32_t index, double above) {
-        const auto& v = of.b_.mesh.triangles[index];
-        const auto& vertices = of.b_.mesh.vertices;
-        const TriangleCorners t{Vec3(R_AB * vertices[v[0]] + p_AB), Vec3(R_AB * vertices[v[1]] + p_AB),
-                                Vec3(R_AB * vertices[v[2]] + p_AB)};
-        if (found.upper > 0.0 && isFar(t, kQuarterings)) return;
-        // Where something is inside, what is outside matters no more: only whether this triangle is.
-        const double limit = found.upper > 0.0 ? found.upper : 2.0 * rounding;
-        const model::TrianglePair pair = of.triangles_.closestTo(t, limit);
-        ++found.steps;
-        const bool whole = pair.distance > rounding;  // on one side
-        if (pair.distance < limit) offerPair(pair, whole);
-        if (!canBeInside() || (whole && !isInside(middleOf(t)))) return;
-        pushPiece(t, above);
+    static double reachFrom(const Vec3& p, const TriangleCorners& t) {
+        return std::sqrt(std::max({(t[0] - p).squaredNorm(), (t[1] - p).squaredNorm(), (t[2] - p).squaredNorm()}));
     }
 
-    void run(double tolerance, int most_steps) {
-        push(0);
-        while (!waiting.empty() && found.steps + kMostPerRound <= most_steps) {
-            const Item item = waiting.top();
-            if (item.lower >= found.upper - tolerance) break;
-            waiting.pop();
-            if (item.piece) {
-                for (const TriangleCorners& part : quarters(item.corners)) pushPiece(part, item.lower);
-                continue;
+    TriangleCorners cornersInA(const Waiting& triangle) const {
+        return {Vec3(R_AB * vertex(triangle, 0).p + p_AB), Vec3(R_AB * vertex(triangle, 1).p + p_AB),
+                Vec3(R_AB * vertex(triangle, 2).p + p_AB)};
+    }
+
+    void findNeighbours() {
+        if (triangles.size() < kFewTriangles) return;
+        way = found.normal;
+        model::Bounds box;
+        double begin = std::numeric_limits<double>::infinity();
+        for (const Waiting& triangle : triangles)
+            for (const Vec3& corner : cornersInA(triangle)) {
+                box.extend(corner);
+                begin = std::min(begin, way.dot(corner));
             }
-            const Node& node = of.nodes_[item.node];
-            if (node.count > 0) {
-                lookAtTriangle(of.order_[node.first], item.lower);
-            } else {
-                push(node.first);
-                push(node.first + 1);
-            }
+        const double limit = found.upper + rounding;
+        of.scratch_->near.clear();
+        of.triangles_.findAbove({box.low - Vec3::Constant(limit), box.high + Vec3::Constant(limit)}, way, begin - limit,
+                                of.scratch_->near);
+        if (of.scratch_->near.size() > kMostNeighbours) return;
+        collected = true;
+        for (const std::uint32_t place : of.scratch_->near) {
+            const auto& [a, b, c, needle] = of.triangles_.corners()[place];
+            const TriangleCorners t{a, b, c};
+            const Vec3 middle = middleOf(t);
+            const double end = std::max({way.dot(a), way.dot(b), way.dot(c)});
+            highest = std::max(highest, end);
+            neighbours.push_back({end, middle, reachFrom(middle, t), t});
         }
-        found.lower = found.upper;
-        if (!waiting.empty()) found.lower = std::min(found.lower, waiting.top().lower);
-        found.lower -= rounding;
+    }
+
+    /// As TriangleTree::closestTo.
+    model::TrianglePair nearestTo(const TriangleCorners& t, double limit) const {
+        if (!collected) return of.triangles_.closestTo(t, limit);
+        model::TrianglePair best{limit, t[0], t[0]};
+        const double begin = std::min({way.dot(t[0]), way.dot(t[1]), way.dot(t[2])});
+        if (begin - highest > limit + rounding) return best;
+        const Vec3 middle = middleOf(t);
+        const double reach = reachFrom(middle, t) + rounding;
+        for (const Neighbour& other : neighbours) {
+            if (begin - other.end > best.distance + rounding) continue;
+            const double span = best.distance + reach + other.reach;
+            if ((middle - other.middle).squaredNorm() > span * span) continue;
+            const model::TrianglePair pair = model::closestPair(t, other.corners, best.distance);
+            if (pair.distance < best.distance) best = pair;
+        }
+        return best;
+    }
+
+    /// The distance of a triangle of B that is nearer than `limit`, exactly.
+    void lookAtTriangle(const Waiting& triangle, double limit) {
+        const TriangleCorners t = cornersInA(triangle);
+        const model::TrianglePair pair = nearestTo(t, limit);
+        ++found.steps;
+        const bool whole = pair.distance > rounding;  // on one side
+        // A point of B that is known to be as near to A's surface as this.
+        if (pair.distance < limit && (!whole || !isInside(pair.on_first)))
+            offer(pair.distance, pair.on_first, pair.on_second);
+        left = std::min(left, std::max(triangle.lower, pair.distance - rounding));
+        if (!canBeInside() || (whole && !isInside(middleOf(t)))) return;
+        pushPiece(t, triangle.lower);
+    }
+
+    /// What is left of `triangles` by spheres around their sixteenths.
+    void narrowInside() {
+        std::vector<Waiting> rest;
+        for (Waiting& triangle : triangles) {
+            const Vec3 &a = vertex(triangle, 0).p, &b = vertex(triangle, 1).p, &c = vertex(triangle, 2).p;
+            const Vec3 ab = b - a, ac = c - a, middle = a + (ab + ac) / 3.0;
+            const double reach = reachFrom(middle, {a, b, c});
+            points.count = 0;
+            for (const auto& [s, t] : kSixteenths) points.add(a + s * ab + t * ac);
+            askBounds();
+            double least = std::numeric_limits<double>::infinity();
+            for (std::size_t i = 0; i < points.count; ++i) least = std::min(least, boundAt(i));
+            triangle.lower = std::max(triangle.lower, least - reach / 4.0 - of.spheres_.float_rounding);
+            if (!leave(triangle.lower)) rest.push_back(triangle);
+        }
+        std::swap(triangles, rest);
+    }
+
+    void lookAtTriangles() {
+        if (found.upper > 0.0 && maySpend(3 * triangles.size())) narrowOutside();
+        if (found.upper <= 0.0 && maySpend(16 * triangles.size())) narrowInside();
+        std::sort(triangles.begin(), triangles.end(), [](const Waiting& a, const Waiting& b) {
+            return std::pair(a.lower, a.index) < std::pair(b.lower, b.index);
+        });
+        for (const Waiting& triangle : triangles) {
+            if (leave(triangle.lower)) continue;
+            if (!maySpend(kMostPerTriangle)) {
+                left = std::min(left, triangle.lower);
+                break;
+            }
+            // Where something is inside, what is outside matters no more: only whether this triangle is.
+            lookAtTriangle(triangle, std::max(found.upper - tolerance, 2.0 * rounding));
+        }
+    }
+
+    void lookAtPieces() {
+        while (!pieces.empty() && !leave(pieces.top().lower) && maySpend(kMostPerPiece)) {
+            const Piece piece = pieces.top();
+            pieces.pop();
+            for (const TriangleCorners& part : quarters(piece.corners)) pushPiece(part, piece.lower);
+        }
+        if (!pieces.empty()) left = std::min(left, pieces.top().lower);
+    }
+
+    void run() {
+        if (findTriangles()) {
+            lookAtTriangles();
+            lookAtPieces();
+        }
+        found.lower = std::min(found.upper, left) - rounding;
     }
 };
 
 SurfaceBounds SurfaceSearch::bounds(const Pose& X_AB, const Vec3& p_BP, double rounding, double tolerance,
-                                    int most_steps) const {
-    Search search(*this, X_AB);
-    search.look(X_AB * p_BP);
-    search.found.upper += rounding;
-    search.run(tolerance, most_steps);
+                                    int most_steps) {
+    Search search(*this, X_AB, tolerance, most_steps);
+    search.begin(X_AB * p_BP, rounding);
+    search.run();
     return search.found;
 }
 

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
+#include <memory>
 
 #include "core/base/types.h"
 #include "core/model/part.h"
 #include "core/model/triangle_tree.h"
+#include "core/query/triangle_spheres.h"
 
 namespace passung::query {
 
@@ -21,8 +22,10 @@ struct SurfaceBounds {
 /// of A for what is far, with the triangles of A for what is near. May allocate.
 ///   A sphere around triangles (centre c, radius r) holds no point with  φ_A < φ_low(c) - r - h,  φ_low the field's
 /// lower bound and h the chord error of A's mesh against the shape that the field was sampled from.
-///   A triangle T of B that does not meet A's surface lies on one side of it. Outside, the least φ_A on it is its
-/// distance from A's triangles, which is exact at once.
+///   Outside, the field's bounds at its corners tell more of a triangle (leastDistance). What remains has its distance
+/// from A's triangles found exactly: first the triangle that seems nearest, which brings the upper bound down, then all
+/// others that may be nearer than that less the tolerance. A triangle of B that does not meet A's surface lies on one
+/// side of it.
 ///   Inside or across, depth is sought: any triangle t of A is at least as far from a point as A's surface is, and the
 /// distance from t is convex, so that no point of T is deeper than the farthest of its corners from t. T is quartered
 /// until that and the depth of a known point agree; next to a flat face they agree to second order.
@@ -32,26 +35,23 @@ public:
 
     /// @pre `a.field` exists, bounds proven; both outlive this.
     SurfaceSearch(const model::Part& a, const model::Part& b);
+    ~SurfaceSearch();
 
     /// `p_AB`: a point of B's surface, up to `rounding` [m], at which to begin (B's frame). Ends where upper - lower ≤
     /// `tolerance` [m] or before there could be more than `most_steps`; the bounds hold either way.
-    SurfaceBounds bounds(const Pose& X_AB, const Vec3& p_BP, double rounding, double tolerance, int most_steps) const;
+    SurfaceBounds bounds(const Pose& X_AB, const Vec3& p_BP, double rounding, double tolerance, int most_steps);
 
 private:
-    struct Node {
-        Vec3 centre;  // sphere around the triangles below; B's frame
-        double radius;
-        std::uint32_t first, count;  // triangles if count > 0, else children first and first + 1
-    };
     struct Search;
-    struct Range;
-    void buildNodes();
+    struct Waiting;
+    struct Neighbour;
+    struct Scratch;
 
     const model::Part& a_;
-    const model::Part& b_;
-    model::TriangleTree triangles_;     // of A
-    std::vector<Node> nodes_;           // over B
-    std::vector<std::uint32_t> order_;  // triangles of B as nodes hold them
+    model::TriangleTree triangles_;  // of A
+    TriangleSpheres spheres_;        // of B
+    std::uint64_t round_ = 0;
+    std::unique_ptr<Scratch> scratch_;
 };
 
 }  // namespace passung::query

@@ -31,7 +31,7 @@ struct Traversal {
     QueryAnswer answer;
     std::size_t waiting = 0;
     double unproven_area = 0.0;
-    std::array<float, model::SphereTree::kLeafPoints> phi;
+    std::array<float, model::SphereTree::kLeafPoints> phi, low;
     std::array<float, model::SphereTree::kChildren> at_centre;
 
     Traversal(const model::DistanceField& f, const Pose& X_WF_, const model::SphereTree& s, const Pose& X_FS_,
@@ -136,8 +136,12 @@ struct Traversal {
         field.sampleMany(S, positions.x(first, count), positions.y(first, count), positions.z(first, count),
                          {phi.data(), count});
         answer.points_tested += static_cast<int>(count);
-        if (request.prove && above < answer.lower_bound)
-            for (std::size_t i = 0; i < count; ++i) prove(R_FS * shell.points()[first + i].position + p_FS, above);
+        if (request.prove && above < answer.lower_bound) {
+            field.lowerBounds(S, positions.x(first, count), positions.y(first, count), positions.z(first, count),
+                              {low.data(), count});
+            const double least = static_cast<double>(*std::min_element(low.begin(), low.begin() + leaf.count));
+            answer.lower_bound = std::min(answer.lower_bound, std::max(above, least));
+        }
         for (std::size_t i = 0; i < count; ++i) {
             const double read = static_cast<double>(phi[i]);
             const bool contact = read < request.collect_below + (request.gradients ? slack : 0.0);

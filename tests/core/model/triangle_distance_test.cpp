@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "core/base/random.h"
 #include "core/model/triangle_tree.h"
@@ -62,6 +64,56 @@ TEST(ClosestPair, NamesNothingNearerThanALimitItDoesNotReach) {
     EXPECT_NEAR(closestPair(roof, across, 1.0).distance, 0.25, 1e-12);
 }
 
+TEST(FindWay, NamesADirectionThatKeepsTheTrianglesApart) {
+    // Truth: definition, and the exact distance: none is found where they are nearer, one where they are farther by
+    // far.
+    Random random(5);
+    int found = 0;
+    for (int trial = 0; trial < 2000; ++trial) {
+        const TriangleCorners a = somewhere(random, 0.0), b = somewhere(random, 3.0);
+        const double distance = closestPair(a, b, 1e3).distance;
+        for (const double share : {0.5, 0.999, 1.001}) {
+            Vec3 way = Vec3::Zero();
+            if (!findWay(a, b, share * distance, way)) continue;
+            ASSERT_LT(share, 1.0);
+            ++found;
+            ASSERT_NEAR(way.norm(), 1.0, 1e-12);
+            for (const Vec3& p : a)
+                for (const Vec3& q : b) ASSERT_GT(way.dot(p - q), share * distance - 1e-12);
+        }
+    }
+    EXPECT_GT(found, 1500);
+}
+
+TEST(LeastDistance, IsNoMoreThanTheDistanceAnywhereOnTheTriangleAndExactForASinglePoint) {
+    // Truth: closed form: the set is one point, whose distance is that from the triangle; with several points, the
+    // exact distance of each corner, and a lattice of points on the triangle.
+    Random random(6);
+    const auto point = [&] { return Vec3(random.normal(), random.normal(), random.normal()); };
+    for (int trial = 0; trial < 2000; ++trial) {
+        TriangleCorners t = somewhere(random, 3.0);
+        if (trial % 10 == 0) t[2] = t[0] + 0.3 * (t[1] - t[0]);  // without area
+        const std::vector<Vec3> set{point(), point(), point()};
+        for (const std::size_t count : {std::size_t{1}, set.size()}) {
+            const auto distance = [&](const Vec3& p) {
+                double nearest = 1e300;
+                for (std::size_t i = 0; i < count; ++i) nearest = std::min(nearest, (set[i] - p).norm());
+                return nearest;
+            };
+            const std::array<double, 3> l{distance(t[0]), distance(t[1]), distance(t[2])};
+            double truth = 1e300;
+            for (std::size_t i = 0; i < count; ++i)
+                truth = std::min(truth, (closestOnTriangle(set[i], t[0], t[1], t[2]) - set[i]).norm());
+            const double least = leastDistance(t, l, 1e300);
+            ASSERT_LE(least, truth);
+            if (count == 1 && trial % 10 != 0 && truth > 1e-3) {
+                ASSERT_NEAR(least, truth, 1e-6);
+            }
+            ASSERT_LE(leastDistance(t, l, 0.0), truth);
+        }
+    }
+}
+
 TEST(TriangleTree, FindsTheNearestPairOfATriangleAndAMesh) {
     // Truth: independent search over all triangles.
     const TriangleMesh mesh = test::wavySphere(0.02, 2e-5);
@@ -76,6 +128,34 @@ TEST(TriangleTree, FindsTheNearestPairOfATriangleAndAMesh) {
                 nearest, closestPair(t, {mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]]}, 1e3).distance);
         EXPECT_NEAR(tree.closestTo(t, 1.0).distance, nearest, 1e-12);
         EXPECT_EQ(tree.closestTo(t, 0.5 * nearest).distance, 0.5 * nearest);
+    }
+}
+
+TEST(TriangleTree, FindsWhatReachesAboveAPlaneInABox) {
+    // Truth: independent search over all triangles.
+    const TriangleMesh mesh = test::wavySphere(0.02, 2e-5);
+    const TriangleTree tree(mesh);
+    Random random(8);
+    for (int trial = 0; trial < 100; ++trial) {
+        const Vec3 way = Vec3(random.normal(), random.normal(), random.normal()).normalized();
+        const double least = random.uniform(-0.02, 0.02);
+        Bounds box;
+        for (int i = 0; i < 2; ++i) box.extend(0.02 * Vec3(random.normal(), random.normal(), random.normal()));
+        std::vector<std::uint32_t> found;
+        tree.findAbove(box, way, least, found);
+        std::size_t expected = 0;
+        const auto isIn = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+            const Vec3 low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
+            return (low.array() <= box.high.array()).all() && (high.array() >= box.low.array()).all() &&
+                   std::max({way.dot(a), way.dot(b), way.dot(c)}) >= least;
+        };
+        for (const auto& v : mesh.triangles)
+            expected += isIn(mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]]) ? 1u : 0u;
+        EXPECT_EQ(found.size(), expected);
+        for (const std::uint32_t place : found) {
+            const auto& t = tree.corners()[place];
+            EXPECT_TRUE(isIn(t.a, t.b, t.c));
+        }
     }
 }
 
