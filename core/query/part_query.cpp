@@ -90,7 +90,8 @@ PartQuery::PartQuery(const model::Part& field, const model::Part& shell, const P
       request_(request),
       surface_error_(surfaceError(field) + surfaceError(shell)),
       workspace_(std::max(nodesOf(field), nodesOf(shell))),
-      manifold_(std::max(nodesOf(field) + pointsOf(field), nodesOf(shell) + pointsOf(shell))) {
+      manifold_(std::max(nodesOf(field) + pointsOf(field), nodesOf(shell) + pointsOf(shell))),
+      clusters_(request.patches ? pointsOf(shell) + nodesOf(shell) : 0) {
     if (!std::isfinite(request.tolerance)) return;
     if (field.field->boundProven()) search_.emplace(field, shell);
     if (request.two_way && shell.field->boundProven()) search_back_.emplace(shell, field);
@@ -163,6 +164,11 @@ PartQueryResult PartQuery::oneWay(const model::Part& field, const model::Part& s
 
 PartQueryResult PartQuery::at(const Pose& X_FS) {
     PartQueryResult result = oneWay(field_, shell_, search_, X_FS);
+    if (request_.patches) {
+        const auto patches = clusters_.find(manifold_, 2.0 * shell_.shell->coverRadius());
+        result.patches.assign(patches.begin(), patches.end());
+        result.patches_found = clusters_.found();
+    }
     if (!request_.two_way) return result;
     const Pose X_SF = X_FS.inverse();
     const PartQueryResult back = oneWay(shell_, field_, search_back_, X_SF);

@@ -2,9 +2,11 @@
 
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "core/model/part.h"
 #include "core/query/surface_search.h"
+#include "core/tick/contact_clusters.h"
 #include "core/tick/contact_query.h"
 
 namespace passung::query {
@@ -19,6 +21,7 @@ struct PartQueryRequest {
     double quality = 0.0;                                        // floor in [0, 1]; wins over the budget
     double tolerance = 20e-6;  // the closest pair is refined until error_bound ≤ this [m]; infinite: not at all
     bool two_way = false;      // each part's points against the other's field
+    bool patches = false;      // also list the patches of contact
     model::FieldMode mode = model::FieldMode::Trilinear;
 };
 
@@ -43,6 +46,9 @@ struct PartQueryResult {
     int contacts = 0;             // points with φ < 0
     int nodes_visited = 0;
     int points_tested = 0;
+    // If asked for: of SHELL's points inside FIELD (also if two-way), the deepest first; see tick::ClusterFinder.
+    std::vector<tick::ContactCluster> patches;
+    std::size_t patches_found = 0;  // more than are listed if more than tick::ClusterFinder::kMostClusters
 };
 
 /// Queries `shell` against `field` again and again; memory is sized once. For libraries and the command line, not for
@@ -94,6 +100,7 @@ private:
     double surface_error_;  // of both meshes [m]
     tick::QueryWorkspace workspace_;
     tick::ContactManifold manifold_;
+    tick::ClusterFinder clusters_;
     std::optional<SurfaceSearch> search_, search_back_;  // SHELL's surface against FIELD's, and the other way round
 };
 

@@ -61,6 +61,7 @@ struct QueryOptions {
     int budget_nodes = 0;
     double quality = 0.0;
     bool two_way = false;
+    std::string patches;  // file; empty: none
 };
 int query(const QueryOptions& options);
 

@@ -165,6 +165,9 @@ private:
         sub->add_option("--quality", query_.quality, "least share of proven area; wins over the budget")
             ->check(between(0.0, 1.0, "a number from 0 to 1"));
         sub->add_flag("--two-way", query_.two_way, "each part's points against the other's field");
+        sub->add_option("--patches", query_.patches,
+                        "JSON of the patches of contact at every pose, the deepest first: deepest point, area, mean "
+                        "normal and force of each");
         sub->add_option("--unit", query_.unit, "of files that have none; default mm")->check(units);
         sub->add_option("--field-unit", query_.field_unit, "of FIELD, instead of --unit")->check(units);
         sub->add_option("--shell-unit", query_.shell_unit, "of SHELL, instead of --unit")->check(units);

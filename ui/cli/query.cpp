@@ -3,10 +3,13 @@
 #include <chrono>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <string_view>
+#include <vector>
 
 #include "core/base/number_table.h"
 #include "core/query/part_query.h"
+#include "study/protocol/json.h"
 #include "ui/app/disk_store.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
@@ -82,11 +85,41 @@ void writeRow(fmt::memory_buffer& text, std::string_view input, const query::Par
     fmt::format_to(out, ",{},{},{},{:.3f}\n", r.contacts, r.nodes_visited, r.points_tested, us);
 }
 
+std::string patchJson(const tick::ContactCluster& patch, double area_stiffness) {
+    using protocol::jsonVector;
+    return protocol::JsonObject()
+        .json("deepest_m", jsonVector(patch.deepest))
+        .number("depth_m", -patch.phi)
+        .json("normal", jsonVector(patch.normal))
+        .number("area_m2", patch.area)
+        .number("volume_m3", patch.volume)
+        .json("pressure_point_m", jsonVector(patch.pressure_point))
+        .json("force_N", jsonVector(area_stiffness * patch.push))
+        .integer("points", patch.points)
+        .str();
+}
+
+/// One pose's patches, in the FIELD's frame; `row` counts the poses from 1.
+std::string patchesJson(std::size_t row, const query::PartQueryResult& result, double area_stiffness) {
+    std::vector<std::string> patches;
+    for (const tick::ContactCluster& patch : result.patches) patches.push_back(patchJson(patch, area_stiffness));
+    return protocol::JsonObject()
+        .integer("row", static_cast<std::int64_t>(row))
+        .integer("patches_found", static_cast<std::int64_t>(result.patches_found))
+        .json("patches", protocol::jsonList(patches))
+        .str();
+}
+
 }  // namespace
 
 int query(const QueryOptions& options) {
-    if (const auto free = refuseOverwriting(options.out, {options.field, options.shell, options.poses}); !free)
-        return fail(free.errors());
+    for (const std::string& out : {options.out, options.patches}) {
+        if (out.empty()) continue;
+        if (const auto free = refuseOverwriting(out, {options.field, options.shell, options.poses}); !free)
+            return fail(free.errors());
+    }
+    if (options.patches == options.out)
+        return fail({{.message = "is the file of the results too; give the patches another", .file = options.patches}});
     NumberTable table;
     const auto poses = readPoses(options.poses, table);
     if (!poses) return fail(poses.errors());
@@ -112,10 +145,13 @@ int query(const QueryOptions& options) {
     request.quality = options.quality;
     request.tolerance = options.tolerance_um * 1e-6;
     request.two_way = options.two_way;
+    request.patches = !options.patches.empty();
     request.mode = model::modeNamed(options.mode).value_or(request.mode);
     query::PartQuery part_query(*field, *shell, request);
     OutputFile out(options.out);
     out.write(table.headerLine() + kResultColumns + '\n');
+    std::optional<OutputFile> patches;
+    if (request.patches) patches.emplace(options.patches).write("{\"poses\": [");
     fmt::memory_buffer text;
     for (std::size_t i = 0; i < poses->size(); ++i) {
         const auto begin = std::chrono::steady_clock::now();
@@ -124,7 +160,12 @@ int query(const QueryOptions& options) {
         text.clear();
         writeRow(text, table.rowLine(i), result, took.count());
         out.write({text.data(), text.size()});
+        if (patches) patches->write((i > 0 ? ",\n" : "\n") + patchesJson(i + 1, result, request.area_stiffness));
         if (i % 1000 == 0) progress.show(fmt::format("{} of {} poses", i, poses->size()));
+    }
+    if (patches) {
+        patches->write("\n]}\n");
+        if (const auto done = patches->commit(); !done) return fail(done.errors());
     }
     const auto done = out.commit();
     return done ? 0 : fail(done.errors());

@@ -102,6 +102,31 @@ protected:
     TempFolder folder_;
 };
 
+TEST_F(Query, ListsThePatchesOfContactOfEveryPose) {
+    // Truth: closed form. The ball apart from the box; 1 mm deep in its top: one patch, whose area 2πRh is off by no
+    // more than its border, 2π √(2Rh - h²), times what lies between points 0.5 mm apart.
+    writePoses({Vec3(0, 0, 0.03), Vec3(0.003, 0.002, kHalf.z() + kBall - 1e-3)});
+    query("box.toml", "ball.toml", {"--spacing-mm", "0.5", "--patches", "p.json"});
+    const std::string json = readText(folder_ / "p.json");
+    const auto first = json.find("\"row\":1"), second = json.find("\"row\":2");
+    ASSERT_NE(first, std::string::npos) << json;
+    ASSERT_NE(second, std::string::npos) << json;
+    EXPECT_NE(json.find("\"patches_found\":0", first), std::string::npos);
+    EXPECT_NE(json.find("\"patches_found\":1", second), std::string::npos);
+    const auto value = [&](const std::string& name) {
+        const std::string key = "\"" + name + "\":";
+        const auto at = json.find(key, second);
+        return at == std::string::npos ? -1.0 : std::stod(json.substr(at + key.size()));
+    };
+    constexpr double h = 1e-3;
+    EXPECT_NEAR(value("depth_m"), h, 20e-6);
+    EXPECT_NEAR(value("area_m2"), 2 * std::numbers::pi * kBall * h,
+                2 * std::numbers::pi * std::sqrt(2 * kBall * h - h * h) * 0.36e-3);
+    const Ended same = runProgram(folder_.path(), {"query", "box.toml", "ball.toml", "--poses", "poses.csv", "--out",
+                                                   "r.csv", "--patches", "r.csv"});
+    EXPECT_EQ(same.exit_code, 1);
+}
+
 TEST_F(Query, KeepsFurtherColumnsAndNamesTheLineOfABadPose) {
     // Truth: closed form (the text itself): "the input columns, then" the results.
     writeText(folder_ / "poses.csv",
