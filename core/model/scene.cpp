@@ -47,8 +47,8 @@ Result<Scene> buildScene(const SceneSpec& spec, PartCache& cache) {
     for (std::size_t i = 0; i < spec.parts.size(); ++i) {
         const PartSpec& part = spec.parts[i];
         if (part.held) scene.held = i;
-        auto built = cache.get(part, {.field = !part.held,
-                                      .shell = part.held,
+        auto built = cache.get(part, {.field = !part.held || spec.contact.two_way,
+                                      .shell = part.held || spec.contact.two_way,
                                       .tolerance = spec.contact.tolerance,
                                       .cell = spec.contact.cell,
                                       .spacing = spec.contact.spacing});

@@ -32,7 +32,8 @@ struct Scene {
     std::size_t held = 0;                            // index of the hand's part
 };
 
-/// Builds the shell of the held part and the fields of all others. Errors: SceneSpec::validate and buildPart.
+/// Builds the shell of the held part and the fields of all others, with contact.two_way all of both. Errors:
+/// SceneSpec::validate and buildPart.
 Result<Scene> buildScene(const SceneSpec& spec, PartCache& cache);
 
 }  // namespace passung::model

@@ -44,6 +44,7 @@ struct ContactSpec {
     double spacing = 1.0e-3;            // of the point shell [m], > 0
     FieldMode mode = FieldMode::Trilinear;
     int budget_nodes = 0;       // per query; 0 = no budget
+    bool two_way = false;       // the obstacles' points are held against the held part's field too
     double proxy_filter = 0.0;  // corner of the proxy's low-pass while in contact [Hz]; 0 = none
 };
 

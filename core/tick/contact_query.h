@@ -30,6 +30,13 @@ public:
         points_[count_++] = point;
         return true;
     }
+    /// Tells the points from number `first` on as seen from the other part: normals and gradients turn round.
+    void reverseFrom(std::size_t first) noexcept {
+        for (std::size_t i = first; i < count_; ++i) {
+            points_[i].normal = -points_[i].normal;
+            points_[i].gradient = -points_[i].gradient;
+        }
+    }
     const ContactPoint* begin() const noexcept { return points_.data(); }
     const ContactPoint* end() const noexcept { return points_.data() + count_; }
     std::size_t size() const noexcept { return count_; }

@@ -4,6 +4,39 @@
 
 namespace passung::tick {
 
+namespace {
+
+/// The obstacle's points against the held part's field. If the held part moves by u, φ at a fixed point changes by
+/// -g · u, g the gradient of its field: told with normal and gradient reversed such a point is a contact like any
+/// other.
+QueryAnswer queryBack(const TickModel& model, const Obstacle& obstacle, const Pose& X_WS, const QueryRequest& request,
+                      QueryWorkspace& workspace, ContactManifold& manifold) noexcept {
+    const std::size_t first = manifold.size();
+    QueryAnswer answer =
+        queryContacts(*model.held_field, X_WS, *obstacle.shell, obstacle.X_WF, request, workspace, manifold);
+    manifold.reverseFrom(first);
+    answer.normal_W = -answer.normal_W;
+    return answer;
+}
+
+void merge(const QueryAnswer& answer, QueryAnswer& all) noexcept {
+    if (answer.found) {
+        all.found = true;
+        all.phi = answer.phi;
+        all.closest_W = answer.closest_W;
+        all.normal_W = answer.normal_W;
+        all.closest_F = answer.closest_F;
+    }
+    all.lower_bound = std::min(all.lower_bound, answer.lower_bound);
+    all.quality = std::min(all.quality, answer.quality);
+    all.nodes_visited += answer.nodes_visited;
+    all.points_tested += answer.points_tested;
+    all.budget_reached = all.budget_reached || answer.budget_reached;
+    all.manifold_full = all.manifold_full || answer.manifold_full;
+}
+
+}  // namespace
+
 QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, QueryRequest request, QueryWorkspace& workspace,
                            ContactManifold& manifold) noexcept {
     request.mode = model.contact.mode;
@@ -11,21 +44,11 @@ QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, QueryReques
     QueryAnswer all;
     all.phi = all.lower_bound = request.search_below;
     for (const Obstacle& obstacle : model.obstacles) {
-        const QueryAnswer answer =
-            queryContacts(*obstacle.field, obstacle.X_WF, *model.shell, X_WS, request, workspace, manifold);
-        if (answer.found) {
-            all.found = true;
-            all.phi = request.search_below = answer.phi;
-            all.closest_W = answer.closest_W;
-            all.normal_W = answer.normal_W;
-            all.closest_F = answer.closest_F;
-        }
-        all.lower_bound = std::min(all.lower_bound, answer.lower_bound);
-        all.quality = std::min(all.quality, answer.quality);
-        all.nodes_visited += answer.nodes_visited;
-        all.points_tested += answer.points_tested;
-        all.budget_reached = all.budget_reached || answer.budget_reached;
-        all.manifold_full = all.manifold_full || answer.manifold_full;
+        merge(queryContacts(*obstacle.field, obstacle.X_WF, *model.shell, X_WS, request, workspace, manifold), all);
+        request.search_below = all.phi;
+        if (obstacle.shell == nullptr) continue;
+        merge(queryBack(model, obstacle, X_WS, request, workspace, manifold), all);
+        request.search_below = all.phi;
     }
     return all;
 }

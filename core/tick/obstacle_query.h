@@ -4,9 +4,11 @@
 
 namespace passung::tick {
 
-/// queryContacts for the held part at `X_WS` against every obstacle of the scene; the model's mode and budget (per
-/// obstacle) replace those of `request`. Appends to `manifold`; returns the deepest or closest answer, with nodes added
-/// up and the least quality. rt-safe.
+/// queryContacts for the held part at `X_WS` against every obstacle of the scene, in two-way contact also for the
+/// obstacles' points against the held part's field: what pokes between the held part's points is found by its own. All
+/// contacts are told as the held part's: gradients away from the obstacle, normals out of the held part. The model's
+/// mode and budget (per obstacle and way) replace those of `request`. Appends to `manifold`; returns the deepest or
+/// closest answer, with nodes added up and the least quality. rt-safe.
 QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, QueryRequest request, QueryWorkspace& workspace,
                            ContactManifold& manifold) noexcept;
 

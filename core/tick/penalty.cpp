@@ -65,6 +65,7 @@ Wrench penaltyWrench(const model::ContactSpec& contact, const ContactManifold& m
         deepest = std::max(deepest, depth);
     }
     double scale = weighted ? contact.area_stiffness : contact.stiffness;
+    if (contact.two_way) scale *= 0.5;
     if (contact.variant == model::PenaltyVariant::MaxNormalised) {
         const double coherent = std::max(sum.force.norm(), kLeastCoherence * depth_sum);
         scale = coherent > 0.0 ? contact.stiffness * deepest / coherent : 0.0;

@@ -17,6 +17,8 @@ void findContactsAtHand(const TickModel& model, TickState& state, TickFrame& fra
 /// Derivation of the first: on a half-space p is linear in space, so by the divergence theorem
 ///   F = κ ∫ p n dA = κ V n_plane, V the submerged volume, acting through its centroid, for any closed body;
 /// the wet part of the plane itself adds nothing because p = 0 there.
+/// Two-way contact: of the first two the mean of both ways, half the sum over all points; the third is taken over all
+/// points of both ways as they are, so that ‖F‖ = K p_max holds whichever part has the deepest one.
 /// Limit cases: no depth → zero wrench. Opposite contacts (a peg squeezed in a bore): Σ p_i n_i → 0 while p_max stays,
 /// and the scale of max_normalised would grow without bound; it is therefore held at Σ p_i n_i ≥ kLeastCoherence · Σ
 /// p_i (our addition), which lets the force fade to zero there.

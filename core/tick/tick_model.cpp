@@ -18,8 +18,11 @@ void followHand(const TickModel&, TickState& state, TickFrame& frame) noexcept {
 
 void addPenalty(TickModel& model) {
     model.stages.push_back({"contacts at the hand",
-                            "contact.method is penalty: forces come from the overlap at the "
-                            "device's own pose",
+                            model.contact.two_way
+                                ? "contact.method is penalty: forces come from the overlap at the device's own pose; "
+                                  "contact.two_way: of the held part's points and of the obstacles' points"
+                                : "contact.method is penalty: forces come from the overlap at the "
+                                  "device's own pose",
                             false, findContactsAtHand});
     model.stages.push_back(
         {"penalty wrench", "turns the overlap into force and torque by contact.variant", false, renderPenalty});
@@ -27,8 +30,12 @@ void addPenalty(TickModel& model) {
 
 void addGodObject(TickModel& model, bool record_hand_depth) {
     model.stages.push_back({"proxy correction",
-                            "contact.method is god_object_heuristic: steps #1 and #2, contacts at "
-                            "the last proxy and relief of its overlap",
+                            model.contact.two_way
+                                ? "contact.method is god_object_heuristic: steps #1 and #2, contacts at the last proxy "
+                                  "and relief of its overlap; contact.two_way: here and below of the held part's "
+                                  "points and of the obstacles' points"
+                                : "contact.method is god_object_heuristic: steps #1 and #2, contacts at "
+                                  "the last proxy and relief of its overlap",
                             false, correctProxy});
     model.stages.push_back({"proxy motion", "steps #3 and #4: the proxy follows the hand as far as the contacts let it",
                             false, moveProxy});
@@ -55,10 +62,15 @@ TickModel makeModel(const model::Scene& scene) {
     model.start_gate = spec.start_gate;
     model.X_WG_start = spec.parts[scene.held].X_WP;
     model.shell = &*scene.parts[scene.held]->shell;
+    const bool two_way = spec.contact.two_way;
+    if (two_way) model.held_field = &*scene.parts[scene.held]->field;
     for (std::size_t i = 0; i < scene.parts.size(); ++i) {
-        if (i == scene.held) continue;
-        model.obstacles.push_back({&*scene.parts[i]->field, spec.parts[i].X_WP});
-        const double cell = model.obstacles.back().field->cell();
+        const bool held = i == scene.held;
+        if (!held)
+            model.obstacles.push_back(
+                {&*scene.parts[i]->field, spec.parts[i].X_WP, two_way ? &*scene.parts[i]->shell : nullptr});
+        if (held && !two_way) continue;
+        const double cell = scene.parts[i]->field->cell();
         model.finest_cell = model.finest_cell > 0.0 ? std::min(model.finest_cell, cell) : cell;
     }
     const double ratio = spec.contact.rotational_stiffness / spec.contact.stiffness;
@@ -89,11 +101,17 @@ TickState makeState(const TickModel& model) {
     state.engaged = model.start_gate.hold_ticks <= 0;
     state.X_WG = model.X_WG_start;
     // When a budget ends a node stands in by a point and a sphere, and every obstacle may touch every point.
-    const std::size_t points = model.shell->points().size() + 2 * model.shell->nodes().size();
-    const std::size_t capacity = points * model.obstacles.size();
+    const auto most = [](const model::SphereTree& shell) { return shell.points().size() + 2 * shell.nodes().size(); };
+    std::size_t capacity = most(*model.shell) * model.obstacles.size();
+    std::size_t nodes = model.shell->nodes().size();
+    for (const Obstacle& obstacle : model.obstacles) {
+        if (obstacle.shell == nullptr) continue;
+        capacity += most(*obstacle.shell);
+        nodes = std::max(nodes, obstacle.shell->nodes().size());
+    }
     state.manifold = ContactManifold(capacity);
     state.scratch = ContactManifold(capacity);
-    state.workspace = QueryWorkspace(model.shell->nodes().size());
+    state.workspace = QueryWorkspace(nodes);
     return state;
 }
 

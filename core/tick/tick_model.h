@@ -46,11 +46,13 @@ struct Stage {
 struct Obstacle {
     const model::DistanceField* field;
     Pose X_WF;
+    const model::SphereTree* shell = nullptr;  // two-way contact only
 };
 
 /// Everything that does not change while a trial runs. Borrows the scene's parts.
 struct TickModel {
     const model::SphereTree* shell = nullptr;
+    const model::DistanceField* held_field = nullptr;  // two-way contact only
     std::vector<Obstacle> obstacles;
     Pose X_WG_start;
     model::ContactSpec contact;
@@ -58,7 +60,7 @@ struct TickModel {
     model::Registration registration;
     model::StartGate start_gate;
     std::vector<Stage> stages;
-    double finest_cell = 0.0;    // of all obstacles [m]
+    double finest_cell = 0.0;    // of all fields [m]
     double metric_radius = 0.0;  // [m]: makes a rotation comparable with a translation (god_object_heuristic.h)
 };
 

@@ -130,6 +130,7 @@ constexpr std::array kKeys{
     Key{"contact", "mode", Choice, kAny, "layered|surface_point|linear|trilinear|cubic", "trilinear",
         "Interpolation in the distance field, from coarse to smooth."},
     Key{"contact", "budget_nodes", Integer, from(0, 1000000), "", "0", "Most tree nodes that a query visits; 0 = no budget."},
+    Key{"contact", "two_way", Boolean, kAny, "", "false", "Points of the obstacles are held against the held part as well: finds edges that poke between its points, and takes about twice as long."},
     Key{"contact", "proxy_filter_hz", Number, from(0, 500), "", "0", "Corner of the proxy's low-pass while in contact; 0 = no filter."},
 
     Key{"device", "preset", Text, kAny, "", "(none)", "Name of a known device."},

@@ -62,6 +62,7 @@ std::string contactJson(const model::ContactSpec& contact) {
         .number("spacing_m", contact.spacing)
         .text("mode", model::modeName(contact.mode))
         .integer("budget_nodes", contact.budget_nodes)
+        .boolean("two_way", contact.two_way)
         .number("proxy_filter_hz", contact.proxy_filter)
         .str();
 }

@@ -173,11 +173,11 @@ struct ExtentOf {
     }
 };
 
-/// Refuses a spacing that gives the held part too many points. A mesh is judged when it is loaded.
+/// Refuses a spacing that gives a part with a point shell too many points. A mesh is judged when it is loaded.
 void checkSpacing(const TableReader& contact_table, const model::SceneSpec& scene) {
     for (const auto& part : scene.parts) {
         const auto* shape = std::get_if<model::Shape>(&part.geometry);
-        if (!part.held || shape == nullptr) continue;
+        if (!(part.held || scene.contact.two_way) || shape == nullptr) continue;
         const auto [size, area] = std::visit(ExtentOf{}, *shape);
         if (const auto excess = model::tooManyPoints(size, area, scene.contact.spacing))
             contact_table.fail("spacing_mm", fmt::format("part {}: {}", part.name, *excess));
@@ -199,6 +199,7 @@ model::ContactSpec readContact(const TableReader& read, const DeviceDescription*
     contact.spacing = read.number("spacing_mm");
     contact.mode = model::modeNamed(read.text("mode")).value_or(contact.mode);
     contact.budget_nodes = static_cast<int>(read.integer("budget_nodes"));
+    contact.two_way = read.boolean("two_way");
     contact.proxy_filter = read.number("proxy_filter_hz");
     return contact;
 }

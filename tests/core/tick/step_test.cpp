@@ -48,6 +48,10 @@ std::vector<std::pair<const char*, model::SceneSpec>> everyKindOfScene() {
     scenes.back().second.contact.budget_nodes = 200;
     scenes.back().second.limits.delay_ticks = 2;
     scenes.back().second.start_gate = {0.02, 0.1, 50};
+    scenes.emplace_back("penalty, two-way", pegAndPlate(model::ContactMethod::Penalty));
+    scenes.back().second.contact.two_way = true;
+    scenes.emplace_back("god object, two-way", pegAndPlate(model::ContactMethod::GodObjectHeuristic));
+    scenes.back().second.contact.two_way = true;
     scenes.emplace_back("free", pegAndPlate(model::ContactMethod::GodObjectHeuristic));
     scenes.back().second.parts.pop_back();
     return scenes;
