@@ -32,8 +32,13 @@ struct DistanceSource {
     /// Bounds what trilinear interpolation errs by in the cells of an octant of a block, whose nodes hold exact values
     /// [m]: from the block, its first corner, the edge of a cell, the octant (bits 1: x, 2: y, 4: z); optional.
     std::function<double(const SurfaceBlock&, const Vec3&, double, std::size_t)> error_bound;
-    /// As `distance`, where it is known to be at most the second argument [m]; optional, faster.
-    std::function<double(const Vec3&, double)> distance_within;
+    struct Nearest {
+        double distance;  // unsigned
+        Vec3 point;
+    };
+    /// The nearest point of the surface, searched no farther than the second argument [m] (then that is the distance,
+    /// and the point is meaningless); optional, faster.
+    std::function<Nearest(const Vec3&, double)> nearest_within;
     /// Points of the surface, the tips of its smallest features among them; optional: see FieldAccuracy.
     std::vector<Vec3> landmarks;
 };
@@ -43,6 +48,7 @@ struct FieldAccuracy {
     double tolerance = 0.0;           // of the trilinear value [m]; 0 = cells of the size asked for in all of the band
     double largest_cell = 0.0;        // refinement begins here [m]; 0 = at `cell`; else `cell` times a power of two
     double depth = 0.0;               // the tolerance holds up to this far from the surface [m]; deeper: a tenth of φ
+    double reach = 0.0;               // of the coarse grid beyond the band [m]; 0 = one part size
     std::size_t bytes = kFieldBytes;  // refinement ends before the bricks need more
 
     static constexpr std::size_t kFieldBytes = std::size_t{256} << 20;
@@ -67,7 +73,7 @@ public:
     static constexpr int kMostLevels = 12;  // of refinement: cells down to 1/4096 of the largest
 
     /// Samples `source` with cells of edge `cell` [m]. Bricks cover all points within `band` [m] of the surface; the
-    /// coarse grid reaches one part size beyond it. Errors: a field of more than 2 GiB.
+    /// coarse grid reaches one part size beyond it if nothing else is said. Errors: a field of more than 2 GiB.
     ///   With a tolerance, octants of bricks are refined where the trilinear value errs by more than it, at most
     /// kMostLevels times. Measured are: exact distances at nine points of every cell whose second differences admit
     /// such an error, and the landmarks, where φ = 0. Not measured: behind the offset of an open sheet, and where the

@@ -26,13 +26,26 @@ constexpr double kLipschitzSlack = 1.01;
 struct Exact {
     const DistanceSource& source;
 
+    /// The unsigned distance, or at least `limit` if it is more.
     double unsignedWithin(const Vec3& p, double limit) const {
-        return source.distance_within ? source.distance_within(p, limit * kLimitSlack) : source.distance(p);
+        return source.nearest_within ? source.nearest_within(p, limit * kLimitSlack).distance : source.distance(p);
     }
 
     /// φ at `p`, `way` from a place where it is `known`.
     double from(const Vec3& p, double known, double way) const {
-        const double d = unsignedWithin(p, std::abs(known) + way);
+        return signedAt(p, unsignedWithin(p, std::abs(known) + way), known, way);
+    }
+
+    /// As `from`; `nearest` is the surface's nearest point there, then here: seldom much farther away than need be.
+    double along(const Vec3& p, double known, double way, Vec3& nearest) const {
+        if (!source.nearest_within) return from(p, known, way);
+        const double limit = std::min(std::abs(known) + way, (p - nearest).norm());
+        const DistanceSource::Nearest found = source.nearest_within(p, limit * kLimitSlack);
+        if (found.distance < limit * kLimitSlack) nearest = found.point;
+        return signedAt(p, found.distance, known, way);
+    }
+
+    double signedAt(const Vec3& p, double d, double known, double way) const {
         if (source.open_sheet) return d;
         // On closed geometry a point farther from the surface than from its neighbour lies on the neighbour's side.
         const bool inside = source.closed && std::abs(known) > way ? known < 0.0 : source.inside(p);
@@ -110,8 +123,8 @@ Result<DistanceField> DistanceField::build(const DistanceSource& source, double 
 
     // Whole bricks, so that the faces of a part whose sides measure whole bricks coincide with those of cells: then the
     // ridges of the distance, at 45° to the faces, are diagonals of cells and meet the fewest.
-    const double margin =
-        std::ceil((source.bounds.size().maxCoeff() + band) * field.inverse_brick_edge_ + 1.0) * field.brick_edge_;
+    const double beyond = accuracy.reach > 0.0 ? accuracy.reach : source.bounds.size().maxCoeff();
+    const double margin = std::ceil((beyond + band) * field.inverse_brick_edge_ + 1.0) * field.brick_edge_;
     field.origin_ = source.bounds.low - Vec3::Constant(margin);
     double nodes = 1.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -150,10 +163,11 @@ void DistanceField::Builder::sampleCoarse() {
         const int z = static_cast<int>(row / static_cast<std::size_t>(ny));
         const Vec3 start = field.origin_ + edge * Vec3(0.0, y, z);
         float* nodes = &field.coarse_[field.coarseNode(0, y, z)];
-        double phi = 0.0;
+        double phi = exact.at(start);
+        Vec3 nearest = start;
+        if (exact.source.nearest_within) nearest = exact.source.nearest_within(start, 2.0 * std::abs(phi) + edge).point;
         for (int x = 0; x < nx; ++x) {
-            const Vec3 p = start + edge * Vec3(x, 0.0, 0.0);
-            phi = x == 0 ? exact.at(p) : exact.from(p, phi, edge);
+            if (x > 0) phi = exact.along(start + edge * Vec3(x, 0.0, 0.0), phi, edge, nearest);
             nodes[x] = static_cast<float>(phi - field.sheet_offset_);
         }
     });
@@ -176,7 +190,7 @@ void DistanceField::Builder::placeBricks() {
             const double stored = static_cast<double>(field.coarse_[field.coarseNode(x, y, z)]);
             const double corner = std::abs(stored + field.sheet_offset_);
             if (corner * (1.0 - kFloatRounding) > near + half_diagonal) continue;
-            const double limit = corner * (1.0 + kFloatRounding) + half_diagonal;
+            const double limit = std::min(corner * (1.0 + kFloatRounding) + half_diagonal, near);
             const double d = exact.unsignedWithin(lowOf(x, y, z) + Vec3::Constant(0.5 * edge), limit);
             if (d <= near) field.brick_of_cell_[field.coarseCell(x, y, z)] = 0;
         }
@@ -236,8 +250,10 @@ void DistanceField::Builder::sampleBrick(std::size_t brick) {
     auto& depths = wrong[brick - first];
     if (accuracy.tolerance == 0.0) {
         depths = inBand(low[brick]);
-        // A brick that is replaced as a whole is never looked at.
-        if (std::all_of(depths.begin(), depths.end(), [](double depth) { return std::isfinite(depth); })) return;
+        // A brick that is replaced as a whole is never looked at; those of the last level stay.
+        if (level < kMostLevels &&
+            std::all_of(depths.begin(), depths.end(), [](double depth) { return std::isfinite(depth); }))
+            return;
     }
     const SurfaceBlock block = blockAt(low[brick]);
     const Nodes stored = store(brick, block.node);
@@ -283,7 +299,7 @@ std::array<double, 8> DistanceField::Builder::inBand(const Vec3& corner) const {
     const double half = 0.5 * kBrickCells * cell, near = band + field.sheet_offset_ + 0.5 * std::sqrt(3.0) * half;
     for (std::size_t octant = 0; octant < 8; ++octant) {
         const Vec3 centre = corner + half * (cornerAt(octant) + Vec3::Constant(0.5));
-        const double d = exact.unsignedWithin(centre, 2.0 * near);
+        const double d = exact.unsignedWithin(centre, near);
         if (d <= near) depth[octant] = d;
     }
     return depth;

@@ -109,7 +109,10 @@ DistanceSource exactSource(const Part& part) {
     source.open_sheet = part.report.kind == SurfaceKind::OpenSheet;
     source.closed = part.report.kind == SurfaceKind::Solid;
     source.distance = [tree](const Vec3& p) { return tree->closest(p).distance; };
-    source.distance_within = [tree](const Vec3& p, double limit) { return tree->closest(p, limit).distance; };
+    source.nearest_within = [tree](const Vec3& p, double limit) {
+        const ClosestPoint found = tree->closest(p, limit);
+        return DistanceSource::Nearest{found.distance, found.point};
+    };
     source.inside = [tree](const Vec3& p) { return tree->inside(p); };
     if (source.closed || source.open_sheet)
         source.block = [sampler = MeshBlockSampler(tree, source.closed, part.report.crossing_triangles == 0)](

@@ -16,10 +16,11 @@ namespace {
 
 constexpr std::uint32_t kLeafTriangles = 4;
 constexpr int kBins = 16;
-constexpr int kSahDepth = 32;      // below: halves, so that the depth stays under kStack
-constexpr int kStack = 72;         // 32 + log2(2^32) + slack
-constexpr double kFarRadii = 2.0;  // a cluster is far at this many of its radii (Barill's β)
-constexpr double kNeedle = 1e-4;   // height over longest edge, below which a triangle is treated with care
+constexpr int kSahDepth = 32;            // below: halves, so that the depth stays under kStack
+constexpr int kStack = 72;               // 32 + log2(2^32) + slack
+constexpr double kFarRadii = 2.0;        // a cluster is far at this many of its radii (Barill's β)
+constexpr double kCubeRounding = 1e-12;  // of lengths and coordinates around a cube
+constexpr double kNeedle = 1e-4;         // height over longest edge, below which a triangle is treated with care
 
 /// A triangle while the tree is built.
 struct Item {
@@ -240,6 +241,7 @@ ClosestPoint TriangleTree::closest(const Vec3& p, double limit) const {
     std::array<Entry, kStack> stack;
     int size = 0;
     double best = limit * limit;
+    Vec3 way = Vec3::Zero();
     ClosestPoint result{limit, p, 0, 0};
     bool found = false;
     stack[static_cast<std::size_t>(size++)] = {0, squaredToBox(p, nodes_[0].low, nodes_[0].high)};
@@ -257,10 +259,14 @@ ClosestPoint TriangleTree::closest(const Vec3& p, double limit) const {
             continue;
         }
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-            const Vec3 q = closestPoint(corners_[i], p);
+            // A triangle beyond the plane through the best point, across the way to it, is no nearer.
+            const Corners& t = corners_[i];
+            if (std::min({t.a.dot(way), t.b.dot(way), t.c.dot(way)}) - p.dot(way) >= best) continue;
+            const Vec3 q = closestPoint(t, p);
             const double squared = (q - p).squaredNorm();
             if (squared < best) {
                 best = squared;
+                way = q - p;
                 result.point = q;
                 result.triangle = original_[i];
                 result.place = i;
@@ -311,6 +317,40 @@ void TriangleTree::findAbove(const Bounds& box, const Vec3& way, double least,
             if (std::max({way.dot(t.a), way.dot(t.b), way.dot(t.c)}) < least) continue;
             if (meets(t.a.cwiseMin(t.b).cwiseMin(t.c), t.a.cwiseMax(t.b).cwiseMax(t.c))) found.push_back(i);
         }
+    }
+}
+
+/// Above is the distance u from the triangle nearest to the centre c, convex, hence nowhere above its values at the
+/// corners interpolated; below is the support s of the distance from a box at c, linear. Where s > u at all corners the
+/// triangles of the box are nowhere nearest.
+void TriangleTree::findNearest(const Vec3& centre, double half, std::vector<std::uint32_t>& found) const {
+    const ClosestPoint closest_point = closest(centre);
+    const double rounding = kCubeRounding * (closest_point.distance + half + centre.cwiseAbs().maxCoeff());
+    std::array<double, 8> above;
+    for (std::size_t i = 0; i < 8; ++i) {
+        const Vec3 corner = centre + half * Vec3(i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0);
+        above[i] = (closestPoint(corners_[closest_point.place], corner) - corner).norm() + rounding;
+    }
+    std::array<std::uint32_t, kStack> stack;
+    int size = 0;
+    stack[static_cast<std::size_t>(size++)] = 0;
+    while (size > 0) {
+        const Node& node = nodes_[stack[static_cast<std::size_t>(--size)]];
+        const Vec3 way = centre - centre.cwiseMax(node.low).cwiseMin(node.high);
+        const double d = way.norm();
+        const Vec3 turn = d > 0.0 ? Vec3((half / d) * way) : Vec3(Vec3::Zero());
+        bool near = false;
+        for (std::size_t i = 0; i < 8; ++i)
+            near |= d + ((i & 1 ? turn.x() : -turn.x()) + (i & 2 ? turn.y() : -turn.y()) +
+                         (i & 4 ? turn.z() : -turn.z())) <=
+                    above[i];
+        if (!near) continue;
+        if (node.count == 0) {
+            stack[static_cast<std::size_t>(size++)] = node.first + 1;
+            stack[static_cast<std::size_t>(size++)] = node.first;
+            continue;
+        }
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) found.push_back(i);
     }
 }
 

@@ -40,6 +40,10 @@ public:
     /// order.
     void findAbove(const Bounds& box, const Vec3& way, double least, std::vector<std::uint32_t>& found) const;
 
+    /// Appends the triangles that may be nearest to some point of the cube with half edge `half` around `centre`, all
+    /// those that meet it among them, numbered in tree order.
+    void findNearest(const Vec3& centre, double half, std::vector<std::uint32_t>& found) const;
+
     /// All triangles in tree order.
     const std::vector<Corners>& corners() const { return corners_; }
 

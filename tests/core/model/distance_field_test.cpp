@@ -314,6 +314,27 @@ TEST(DistanceField, SeesASpikeThatIsThinnerThanTheLargestCells) {
     EXPECT_NEAR(field->sample(tip, FieldMode::Trilinear).phi, 0.0, 20e-6);
 }
 
+TEST(DistanceField, IsSampledAtTheLastLevelWhereTheCellAskedForLiesBelow) {
+    // Truth: closed form, a sphere. Twice the last level's cell: the trilinear value errs by 3/8 · cell²/R at most
+    // where φ > -R/2, less than a hundredth of the radius.
+    const double cell = 1e-3, radius = 80.0 * cell, last = 2.0 * cell;
+    DistanceSource source;
+    source.bounds = {Vec3::Constant(-radius), Vec3::Constant(radius)};
+    source.closed = true;
+    source.distance = [&](const Vec3& p) { return std::abs(p.norm() - radius); };
+    source.inside = [&](const Vec3& p) { return p.norm() < radius; };
+    FieldAccuracy accuracy;
+    accuracy.largest_cell = std::ldexp(cell, DistanceField::kMostLevels + 1);
+    const auto field = DistanceField::build(source, cell, 2.0 * cell, accuracy);
+    ASSERT_TRUE(field);
+    EXPECT_DOUBLE_EQ(field->finestCell(), last);
+    Random random(4);
+    for (int i = 0; i < 2000; ++i) {
+        const Vec3 p = radius * Vec3(random.normal(), random.normal(), random.normal()).normalized();
+        EXPECT_NEAR(field->sample(p, FieldMode::Trilinear).phi, 0.0, 0.01 * radius);
+    }
+}
+
 TEST(DistanceField, StopsRefiningAtItsLimitOfMemoryAndSaysSo) {
     // Truth: invariant.
     const Shape shape{kSharpPlate};

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "core/base/random.h"
@@ -75,6 +77,40 @@ TEST(TriangleTree, FindsTheClosestPointThatASearchOverAllTrianglesFinds) {
             // The point lies on the triangle that is named.
             ASSERT_LE(test::distanceToTriangle(mesh, found.triangle, found.point), 1e-9 * size);
         }
+    }
+}
+
+TEST(TriangleTree, HoldsTheNearestTriangleOfEveryPointOfACube) {
+    // Truth: invariant, TriangleTree::closest at random points of the cube and at its corners.
+    Random random(8);
+    for (const TriangleMesh& mesh : {tessellate(Torus{0.04, 0.012}, 1e-5), soup(random), needles(random)}) {
+        const TriangleTree tree(mesh);
+        const Bounds bounds = boundsOf(mesh);
+        std::size_t fewest = mesh.triangles.size();
+        for (int i = 0; i < 200; ++i) {
+            const double half = 0.1 * random.uniform() * bounds.size().maxCoeff();
+            const auto in = [&](double reach) {
+                return Vec3(random.uniform(-reach, reach), random.uniform(-reach, reach),
+                            random.uniform(-reach, reach));
+            };
+            const Vec3 centre = 0.5 * (bounds.low + bounds.high) + in(0.8 * bounds.size().maxCoeff());
+            std::vector<std::uint32_t> found;
+            tree.findNearest(centre, half, found);
+            fewest = std::min(fewest, found.size());
+            for (int k = 0; k < 20; ++k) {
+                const Vec3 p =
+                    centre + (k < 8 ? Vec3(half * Vec3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1)) : in(half));
+                const ClosestPoint nearest = tree.closest(p);
+                if (std::find(found.begin(), found.end(), nearest.place) != found.end()) continue;
+                double least = std::numeric_limits<double>::infinity();  // of others as near
+                for (const std::uint32_t t : found) {
+                    const auto& [a, b, c, needle] = tree.corners()[t];
+                    least = std::min(least, TriangleTree(TriangleMesh{{a, b, c}, {{0, 1, 2}}}).closest(p).distance);
+                }
+                ASSERT_NEAR(least, nearest.distance, 1e-12);
+            }
+        }
+        EXPECT_LT(fewest, mesh.triangles.size() / 4);  // most are left out of a small cube
     }
 }
 
