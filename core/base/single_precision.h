@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cmath>
+#include <limits>
+
 #include "core/base/types.h"
 
 namespace passung {
@@ -13,6 +16,13 @@ inline double roundedToFloat(double value) {
 
 inline Vec3 roundedToFloat(const Vec3& v) {
     return {roundedToFloat(v.x()), roundedToFloat(v.y()), roundedToFloat(v.z())};
+}
+
+/// The smallest float that is not below `value`.
+inline float roundedUpToFloat(double value) {
+    const auto rounded = static_cast<float>(roundedToFloat(value));
+    return static_cast<double>(rounded) < value ? std::nextafter(rounded, std::numeric_limits<float>::infinity())
+                                                : rounded;
 }
 
 }  // namespace passung

@@ -97,6 +97,7 @@ std::string toBytes(const PointShell& shell) {
         writer.put(point.position);
         writer.put(point.normal);
         writer.put(point.area);
+        writer.put(point.triangle, 4);
     }
     return writer.take();
 }
@@ -107,7 +108,7 @@ std::optional<PointShell> shellFrom(std::string_view bytes) {
     shell.total_area = reader.takeDouble();
     shell.cover_radius = reader.takeDouble();
     shell.rounding = reader.takeDouble();
-    shell.points.resize(reader.takeCount(56));
+    shell.points.resize(reader.takeCount(60));
     bool sound = std::isfinite(shell.total_area);
     for (const double length : {shell.cover_radius, shell.rounding})
         sound = sound && length >= 0.0 && std::isfinite(length);
@@ -115,6 +116,7 @@ std::optional<PointShell> shellFrom(std::string_view bytes) {
         point.position = reader.takeVec3();
         point.normal = reader.takeVec3();
         point.area = reader.takeDouble();
+        point.triangle = static_cast<std::uint32_t>(reader.take(4));
         sound = sound && point.position.allFinite() && std::abs(point.normal.norm() - 1.0) < 1e-6 &&
                 point.area >= 0.0 && std::isfinite(point.area);
     }

@@ -221,7 +221,8 @@ private:
     void append(PointShell& shell) const {
         std::vector<Vec3> area_vector(samples_.size(), Vec3::Zero());
         std::vector<SurfacePoint> points;
-        for (const Sample& s : samples_) points.push_back({roundedToFloat(s.position), normals_[s.triangle], 0.0});
+        for (const Sample& s : samples_)
+            points.push_back({roundedToFloat(s.position), normals_[s.triangle], 0.0, s.triangle});
         std::size_t i = 0;
         double cover = 0.0;  // squared
         visitPieces([&](std::uint32_t t, const Vec3& a, const Vec3& b, const Vec3& c, float share) {
@@ -263,14 +264,16 @@ public:
         }
         forEachEdge(halfEdges(mesh.triangles), [&](const HalfEdge* use, std::size_t count) {
             Vec3 sum = Vec3::Zero();
+            const HalfEdge* at = nullptr;
             std::vector<Vec3> faces;
             for (std::size_t i = 0; i < count; ++i) {
                 if (flat[use[i].triangle]) continue;
+                if (at == nullptr) at = &use[i];
                 faces.push_back(normals_[use[i].triangle]);
                 sum += faces.back();
             }
             const bool smooth = faces.size() == 2 && faces[0].dot(faces[1]) > kSharpCosine;
-            if (!faces.empty() && !smooth) addSharp({use->low, use->high}, sum);
+            if (at != nullptr && !smooth) addSharp(*at, sum);
         });
     }
 
@@ -278,42 +281,48 @@ public:
         for (const auto& [v, corner] : corners_) {
             const auto& d = corner.directions;
             const bool passes_straight = d.size() == 2 && d[0].dot(d[1]) < -kSharpCosine;
-            if (!passes_straight) add(mesh_.vertices[v], corner.normal);
+            if (!passes_straight) add(mesh_.vertices[v], corner.normal, corner.triangle);
         }
         for (const auto& [edge, normal] : sharp_) {
-            const Vec3 a = mesh_.vertices[edge[0]], b = mesh_.vertices[edge[1]];
+            const Vec3 a = mesh_.vertices[edge.low], b = mesh_.vertices[edge.high];
             const int pieces = std::max(1, static_cast<int>(std::ceil((b - a).norm() / (kEdgeShare * spacing))));
-            for (int i = 0; i < pieces; ++i) add(a + (b - a) * ((i + 0.5) / pieces), normal);
+            for (int i = 0; i < pieces; ++i) add(a + (b - a) * ((i + 0.5) / pieces), normal, edge.triangle);
         }
         std::vector<std::uint32_t> order(points_.size());
         std::iota(order.begin(), order.end(), 0u);
         for (const std::uint32_t i : diskSubset(points_, facing_, kDiskShare * kEdgeShare * spacing, order))
-            shell.points.push_back({roundedToFloat(points_[i]), facing_[i], 0.0});
+            shell.points.push_back({roundedToFloat(points_[i]), facing_[i], 0.0, triangles_[i]});
     }
 
 private:
     struct Corner {
         std::vector<Vec3> directions;  // of its sharp edges
         Vec3 normal = Vec3::Zero();
+        std::uint32_t triangle = 0;
     };
 
-    void addSharp(const std::array<std::uint32_t, 2>& edge, const Vec3& normal) {
+    void addSharp(const HalfEdge& edge, const Vec3& normal) {
         sharp_.push_back({edge, normal});
-        const Vec3 direction = (mesh_.vertices[edge[1]] - mesh_.vertices[edge[0]]).normalized();
-        corners_[edge[0]].directions.push_back(direction);
-        corners_[edge[1]].directions.push_back(-direction);
-        for (const std::uint32_t v : edge) corners_[v].normal += normal;
+        const Vec3 direction = (mesh_.vertices[edge.high] - mesh_.vertices[edge.low]).normalized();
+        corners_[edge.low].directions.push_back(direction);
+        corners_[edge.high].directions.push_back(-direction);
+        for (const std::uint32_t v : {edge.low, edge.high}) {
+            corners_[v].normal += normal;
+            corners_[v].triangle = edge.triangle;
+        }
     }
-    void add(const Vec3& p, const Vec3& n) {
+    void add(const Vec3& p, const Vec3& n, std::uint32_t triangle) {
         points_.push_back(p);
+        triangles_.push_back(triangle);
         facing_.push_back(n.norm() > 1e-9 ? n.normalized() : n);
     }
 
     const TriangleMesh& mesh_;
     std::vector<Vec3> normals_;  // of the triangles
-    std::vector<std::pair<std::array<std::uint32_t, 2>, Vec3>> sharp_;
+    std::vector<std::pair<HalfEdge, Vec3>> sharp_;
     std::map<std::uint32_t, Corner> corners_;
     std::vector<Vec3> points_, facing_;
+    std::vector<std::uint32_t> triangles_;  // of points_
 };
 
 }  // namespace

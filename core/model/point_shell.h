@@ -10,9 +10,10 @@ namespace passung::model {
 
 /// One sample of a surface; part frame, metres.
 struct SurfacePoint {
-    Vec3 position;      // each coordinate is exactly a float
-    Vec3 normal;        // unit, outward: the mean of the patch that the point stands for
-    double area = 0.0;  // of that patch [m²]; 0 for samples on edges and corners, which represent no area
+    Vec3 position;               // each coordinate is exactly a float
+    Vec3 normal;                 // unit, outward: the mean of the patch that the point stands for
+    double area = 0.0;           // of that patch [m²]; 0 for samples on edges and corners, which represent no area
+    std::uint32_t triangle = 0;  // of the mesh, that the position lies on
 };
 
 /// Blue-noise samples of a surface with the area that each stands for, plus samples along sharp edges and at corners

@@ -60,20 +60,32 @@ std::uint32_t partFacing(std::vector<Item>& items, const Range& range) {
     return static_cast<std::uint32_t>(half - items.begin());
 }
 
-/// Halves `range` across its longest side if it is more than a leaf; else returns its beginning.
-std::uint32_t halve(std::vector<Item>& items, const Range& range) {
-    if (range.count() <= SphereTree::kLeafPoints) return range.begin;
+/// Halves `range` across its longest side if it is more than `whole`; else returns its beginning.
+std::uint32_t halve(std::vector<Item>& items, const Range& range, std::uint32_t whole) {
+    if (range.count() <= whole) return range.begin;
     const auto begin = items.begin() + range.begin, end = items.begin() + range.end;
     Spread place;
     for (auto i = begin; i != end; ++i) place.extend(i->position);
     const std::size_t axis = place.longest();
     // Whole leaves on one side, so that leaves are full.
-    const std::uint32_t leaves = (range.count() + SphereTree::kLeafPoints - 1) / SphereTree::kLeafPoints;
-    const auto half = begin + static_cast<std::ptrdiff_t>(leaves / 2 * SphereTree::kLeafPoints);
+    const std::uint32_t leaves = (range.count() + whole - 1) / whole;
+    const auto half = begin + static_cast<std::ptrdiff_t>(leaves / 2 * whole);
     std::nth_element(begin, half, end, [axis](const Item& a, const Item& b) {
         return a.position[axis] < b.position[axis] || (a.position[axis] == b.position[axis] && a.index < b.index);
     });
     return static_cast<std::uint32_t>(half - items.begin());
+}
+
+std::uint32_t halveToLeaves(std::vector<Item>& items, const Range& range) {
+    return halve(items, range, SphereTree::kLeafPoints);
+}
+
+/// Neighbours of a leaf next to each other, down to its groups.
+void arrangeGroups(std::vector<Item>& items, const Range& range) {
+    const std::uint32_t middle = halve(items, range, SphereTree::kGroupPoints);
+    if (middle == range.begin) return;
+    arrangeGroups(items, {range.begin, middle});
+    arrangeGroups(items, {middle, range.end});
 }
 
 /// Splits ranges by `cut`, the largest first, until there are kChildren or none can be split.
@@ -103,7 +115,7 @@ void splitAll(std::vector<Item>& items, std::vector<Range>& ranges, const Cut& c
 std::vector<Range> part(std::vector<Item>& items, const Range& range) {
     std::vector<Range> ranges{range};
     splitAll(items, ranges, partFacing);
-    splitAll(items, ranges, halve);
+    splitAll(items, ranges, halveToLeaves);
     return ranges;
 }
 
@@ -112,9 +124,11 @@ std::vector<Range> partRoots(std::vector<Item>& items) {
     const Range all{0, static_cast<std::uint32_t>(items.size())};
     if (all.count() <= SphereTree::kChildren * SphereTree::kLeafPoints) return part(items, all);
     std::vector<Range> ranges{all};
-    splitAll(items, ranges, halve);
+    splitAll(items, ranges, halveToLeaves);
     return ranges;
 }
+
+Facing facingOf(const Vec3& normal, double area) { return {normal.cast<float>(), static_cast<float>(area)}; }
 
 /// Sphere, areas and representative of a node.
 void summarise(std::span<const SurfacePoint> below, SphereNode& node) {
@@ -143,8 +157,8 @@ void summarise(std::span<const SurfacePoint> below, SphereNode& node) {
 
 }  // namespace
 
-SphereTree::SphereTree(const PointShell& shell)
-    : total_area_(shell.total_area), cover_radius_(shell.cover_radius), rounding_(shell.rounding) {
+SphereTree::SphereTree(const PointShell& shell, const TriangleMesh& mesh)
+    : surface_(mesh), total_area_(shell.total_area), cover_radius_(shell.cover_radius), rounding_(shell.rounding) {
     std::vector<Item> items;
     items.reserve(shell.points.size());
     double sum = 0.0, largest = 0.0;
@@ -174,7 +188,10 @@ SphereTree::SphereTree(const PointShell& shell)
         node.leaf = parts.size() == 1;
         node.first = node.leaf ? range.begin : static_cast<std::uint32_t>(ranges.size());
         node.count = node.leaf ? range.count() : static_cast<std::uint32_t>(parts.size());
-        if (node.leaf) continue;
+        if (node.leaf) {
+            arrangeGroups(items, range);
+            continue;
+        }
         ranges.insert(ranges.end(), parts.begin(), parts.end());
         nodes_.resize(ranges.size());
     }
@@ -183,6 +200,7 @@ SphereTree::SphereTree(const PointShell& shell)
     for (const Item& item : items) {
         points_.push_back(shell.points[item.index]);
         positions_.add(item.position[0], item.position[1], item.position[2]);
+        facings_.push_back(facingOf(points_.back().normal, points_.back().area));
     }
     parallelFor((nodes_.size() + kBatch - 1) / kBatch, [&](std::size_t batch) {
         const std::size_t end = std::min(nodes_.size(), (batch + 1) * kBatch);
@@ -192,12 +210,50 @@ SphereTree::SphereTree(const PointShell& shell)
     for (const SphereNode& node : nodes_) {
         const Eigen::Vector3f centre = node.centre.cast<float>();
         centres_.add(centre.x(), centre.y(), centre.z());
+        radii_.push_back(roundedUpToFloat(node.radius));
     }
+    formGroups();
+}
+
+void SphereTree::formGroups() {
+    std::vector<SphereNode*> leaves;
+    for (SphereNode& node : nodes_)
+        if (node.leaf) leaves.push_back(&node);
+    std::sort(leaves.begin(), leaves.end(),
+              [](const SphereNode* a, const SphereNode* b) { return a->first < b->first; });
+    for (SphereNode* leaf : leaves) {
+        SphereNode& node = *leaf;
+        node.first_group = static_cast<std::uint32_t>(group_points_.size());
+        for (std::uint32_t begin = node.first; begin < node.first + node.count; begin += kGroupPoints) {
+            const std::uint32_t count = std::min(kGroupPoints, node.first + node.count - begin);
+            const auto points = std::span<const SurfacePoint>(points_).subspan(begin, count);
+            double area = 0.0;
+            Vec3 mean = Vec3::Zero(), weighted = Vec3::Zero(), area_vector = Vec3::Zero();
+            for (const SurfacePoint& point : points) {
+                area += point.area;
+                mean += point.position / static_cast<double>(count);
+                weighted += point.area * point.position;
+                area_vector += point.area * point.normal;
+            }
+            const Vec3 middle = roundedToFloat(area > 0.0 ? Vec3(weighted / area) : mean);
+            const double weight = area_vector.norm();
+            double radius = 0.0;
+            for (const SurfacePoint& point : points) radius = std::max(radius, (point.position - middle).norm());
+            const Eigen::Vector3f p = middle.cast<float>();
+            group_facings_.push_back(facingOf(weight > 0.0 ? Vec3(area_vector / weight) : points[0].normal, weight));
+            group_positions_.add(p.x(), p.y(), p.z());
+            group_radii_.push_back(roundedUpToFloat(radius));
+            group_points_.push_back(begin);
+        }
+    }
+    group_points_.push_back(static_cast<std::uint32_t>(points_.size()));
 }
 
 std::size_t SphereTree::memoryBytes() const {
-    constexpr std::size_t kFloats = 3 * sizeof(float);
-    return nodes_.size() * (sizeof(SphereNode) + kFloats) + points_.size() * (sizeof(SurfacePoint) + kFloats);
+    constexpr std::size_t kNode = sizeof(SphereNode) + 4 * sizeof(float);
+    constexpr std::size_t kPoint = sizeof(SurfacePoint) + sizeof(Facing) + 3 * sizeof(float);
+    constexpr std::size_t kGroup = sizeof(Facing) + 4 * sizeof(float) + sizeof(std::uint32_t);
+    return nodes_.size() * kNode + points_.size() * kPoint + group_radii_.size() * kGroup + surface_.memoryBytes();
 }
 
 }  // namespace passung::model

@@ -50,7 +50,7 @@ private:
 /// Memory of a traversal, sized once for a tree.
 class QueryWorkspace {
 public:
-    explicit QueryWorkspace(std::size_t nodes = 0) : heap_(nodes) {}
+    explicit QueryWorkspace(std::size_t nodes = 0) : heap_(nodes), near_(nodes * model::SphereTree::kLeafGroups) {}
 
 private:
     struct Entry {
@@ -58,7 +58,12 @@ private:
         double order;  // the least is taken first
         std::uint32_t node;
     };
+    struct Near {
+        float phi;  // at the group's mean position
+        std::uint32_t group;
+    };
     std::vector<Entry> heap_;
+    std::vector<Near> near_;
     friend struct Traversal;
 };
 
@@ -72,6 +77,9 @@ struct QueryRequest {
     bool spheres = false;   // a node left over by the budget also enters the manifold as a sphere
     bool gradients = true;  // of every contact; without them, φ of contacts is read in single precision, several times
                             // as fast (DistanceField::sampleMany), in FieldMode::Trilinear
+    bool groups = false;    // where many points are in contact, neighbours may enter the manifold as one: for sums over
+                            // area · depth · normal only; without budget, search or gradients
+    bool refine = false;    // the deepest point is searched on the surface between the samples too
 };
 
 struct QueryAnswer {
@@ -84,6 +92,7 @@ struct QueryAnswer {
     double quality = 1.0;           // share of the shell's area pruned with proof or evaluated point by point
     int nodes_visited = 0;
     int points_tested = 0;
+    int contacts = 0;  // points with φ < collect_below, those of groups included
     bool budget_reached = false;
     bool manifold_full = false;
 };

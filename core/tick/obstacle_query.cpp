@@ -31,6 +31,7 @@ void merge(const QueryAnswer& answer, QueryAnswer& all) noexcept {
     all.quality = std::min(all.quality, answer.quality);
     all.nodes_visited += answer.nodes_visited;
     all.points_tested += answer.points_tested;
+    all.contacts += answer.contacts;
     all.budget_reached = all.budget_reached || answer.budget_reached;
     all.manifold_full = all.manifold_full || answer.manifold_full;
 }

@@ -8,12 +8,6 @@ namespace passung::tick {
 
 namespace {
 
-std::uint32_t countInside(const ContactManifold& manifold) noexcept {
-    std::uint32_t count = 0;
-    for (const ContactPoint& contact : manifold) count += contact.phi < 0.0 ? 1u : 0u;
-    return count;
-}
-
 /// -b (v · û) û, no larger than what it opposes.
 Vec3 dampingAlong(const Vec3& load, const Vec3& velocity, double damping) noexcept {
     const double size = load.norm();
@@ -45,9 +39,11 @@ void measureHandVelocity(TickState& state, const TickFrame& frame) noexcept {
 void findContactsAtHand(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
     state.X_WG = frame.X_WH;
     state.manifold.clear();
-    const QueryAnswer answer = queryObstacles(model, frame.X_WH, {.gradients = false}, state.workspace, state.manifold);
+    const bool weighted = model.contact.variant == model::PenaltyVariant::AreaWeighted;
+    const QueryRequest request{.gradients = false, .groups = weighted, .refine = true};
+    const QueryAnswer answer = queryObstacles(model, frame.X_WH, request, state.workspace, state.manifold);
     account(answer, frame);
-    frame.contacts = countInside(state.manifold);
+    frame.contacts = static_cast<std::uint32_t>(answer.contacts);
     frame.hand_depth = frame.proxy_depth = std::max(0.0, -answer.phi);
 }
 

@@ -5,7 +5,8 @@
 namespace passung::tick {
 
 /// Stage: contact at the device's pose.
-///   Reads X_WH; fills the manifold with all points inside obstacles; writes depth, contacts, quality.
+///   Reads X_WH; fills the manifold with all points inside obstacles, for area-weighted sums in groups where there are
+///   many (QueryRequest::groups); writes depth, contacts (points), quality.
 ///   The proxy follows the device: X_WG = X_WH.
 void findContactsAtHand(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
 

@@ -26,6 +26,8 @@ std::vector<Setting> oneWaySettings(bool few) {
     std::vector<Setting> all;
     for (const double tolerance : {100e-6, 50e-6, 20e-6, 10e-6})
         for (const double spacing : {2e-3, 1e-3, 0.5e-3, 0.25e-3}) all.push_back({tolerance, spacing});
+    all.push_back({16e-6, 0.6e-3});
+    all.push_back({16e-6, 0.5e-3});
     return all;
 }
 

@@ -15,6 +15,8 @@ namespace passung::bench {
 
 namespace {
 
+constexpr double kDepth = 1.2e-3;  // [m]: the poses are 1 mm deep
+
 class WholeQuery : public Method {
 public:
     WholeQuery(const model::Part& field, const model::Part& shell, const query::PartQueryRequest& request)
@@ -45,11 +47,11 @@ public:
 
     Answer at(const Pose& X_FS) override {
         manifold_.clear();
-        const tick::QueryAnswer found =
-            tick::queryContacts(field_, Pose{}, shell_, X_FS, {.gradients = false}, workspace_, manifold_);
+        const tick::QueryAnswer found = tick::queryContacts(
+            field_, Pose{}, shell_, X_FS, {.gradients = false, .groups = true, .refine = true}, workspace_, manifold_);
         return {.signed_distance = found.found ? found.phi : kNotGiven,
                 .wrench = tick::penaltyWrench(contact_, manifold_, X_FS.p),
-                .contacts = static_cast<double>(manifold_.size())};
+                .contacts = static_cast<double>(found.contacts)};
     }
 
 private:
@@ -117,6 +119,7 @@ Result<const BuiltPart*> PartStore::get(double tolerance, double spacing) {
     BuiltPart built;
     model::PartNeeds needs{.field = tolerance > 0.0, .shell = false};
     if (needs.field) needs.tolerance = tolerance;
+    needs.depth = kDepth;
     auto part = build(needs, built.field_s);
     if (!part) return part.errors();
     built.field_s = needs.field ? std::max(0.0, built.field_s - import_s_) : 0.0;

@@ -318,5 +318,47 @@ TEST(PointShell, IsTheSameEveryTime) {
     for (std::size_t i = 0; i < a.points.size(); ++i) EXPECT_EQ(a.points[i].position, b.points[i].position);
 }
 
+TEST(SphereTree, EveryPointLiesOnItsTriangleAndInOneGroupThatWeighsTheSame) {
+    // Truth: invariant.
+    for (const Shape& shape : {Shape(Peg{0.01, 0.03, 0.001}), Shape(BorePlate{0.03, 0.03, 0.01, 0.01, 0.01, 0.001})}) {
+        const TriangleMesh mesh = tessellate(shape, 1e-6);
+        const PointShell shell = samplePoints(mesh, 0.7e-3);
+        const SphereTree tree(shell, mesh);
+        for (const SurfacePoint& p : tree.points()) {
+            ASSERT_LT(p.triangle, mesh.triangles.size());
+            const auto& t = mesh.triangles[p.triangle];
+            const Vec3 on =
+                closestOnTriangle(p.position, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+            ASSERT_LT((on - p.position).norm(), tree.rounding() * (1.0 + 1e-9));
+        }
+        const auto first = tree.groupPoints();
+        std::size_t next = 0;
+        for (std::size_t g = 0; g + 1 < first.size(); ++g) {
+            ASSERT_EQ(first[g], next);
+            next = first[g + 1];
+            ASSERT_GT(next, first[g]);
+            ASSERT_LE(next, first[g] + SphereTree::kGroupPoints);
+            Vec3 vector = Vec3::Zero();
+            for (std::size_t i = first[g]; i < next; ++i) {
+                const SurfacePoint& point = tree.points()[i];
+                vector += point.area * point.normal;
+                ASSERT_LE((point.position - tree.groupPositions().at(g)).norm(),
+                          static_cast<double>(tree.groupRadii()[g]));
+                // Floats: half a unit in the last place of a number up to 1.
+                ASSERT_LT((tree.facings()[i].normal.cast<double>() - point.normal).norm(), 1e-7);
+                ASSERT_NEAR(static_cast<double>(tree.facings()[i].area), point.area, 1e-7 * point.area);
+            }
+            const Facing& facing = tree.groupFacings()[g];
+            const Vec3 weighs = static_cast<double>(facing.area) * facing.normal.cast<double>();
+            ASSERT_LT((weighs - vector).norm(), 3e-7 * vector.norm() + 1e-20);
+        }
+        ASSERT_EQ(next, tree.points().size());
+        for (const SphereNode& node : tree.nodes())
+            if (node.leaf) {
+                ASSERT_EQ(first[node.first_group], node.first);
+            }
+    }
+}
+
 }  // namespace
 }  // namespace passung::model

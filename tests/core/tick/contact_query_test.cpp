@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "core/base/random.h"
 #include "core/model/part.h"
@@ -215,6 +216,108 @@ TEST(ContactQuery, ABudgetKeepsTheWeightOfAPlatePressedFlatAndSaysWhatItDidNotPr
         }
     }
     EXPECT_LT(last_quality, 1.0);
+}
+
+/// The least φ of `obstacle` over a ball, by its closed form on a net of directions that is made finer around the best.
+double deepestOfBall(const model::Shape& obstacle, const Vec3& centre, double radius) {
+    double least = 1e300;
+    Vec3 best = Vec3::UnitZ();
+    const auto look = [&](const Vec3& direction) {
+        const double phi = model::signedDistance(obstacle, centre + radius * direction.normalized());
+        if (!(phi < least)) return;
+        least = phi;
+        best = direction.normalized();
+    };
+    Random random(5);
+    const auto turned = [&](double width) {
+        return Vec3(width * random.normal(), width * random.normal(), width * random.normal());
+    };
+    for (int i = 0; i < 20'000; ++i) look(turned(1.0));
+    for (double width = 0.02; width > 1e-6; width *= 0.8)
+        for (int i = 0; i < 200; ++i) look(best + turned(width));
+    return least;
+}
+
+TEST(ContactQuery, RefiningFindsTheDeepestPointBetweenSamplesOnRidgesToo) {
+    // Truth: closed forms of both. A ball in the edge of a box is deepest where two faces are equally near, on a ridge.
+    // The field keeps its tolerance there, the ball's triangles lie up to the chord error inside; 5 µm more is a
+    // hundredth of how far samples lie apart. Without refining some pose is off by more than 50 µm.
+    const model::Shape box = model::Box{0.03, 0.03, 0.03};
+    model::PartSpec spec;
+    spec.geometry = box;
+    const double tolerance = 10e-6, deepest = 1.5e-3;
+    const auto obstacle = model::buildPart(spec, {.field = true, .tolerance = tolerance, .depth = deepest});
+    ASSERT_TRUE(obstacle);
+    const model::DistanceField& field = *obstacle->field;
+    const model::Part ball = build(model::Sphere{0.016}, 0.5e-3);
+    tick::QueryWorkspace workspace(ball.shell->nodes().size());
+    tick::ContactManifold manifold(ball.shell->points().size());
+    Random random(6);
+    double worst_without = 0.0;
+    int pressed = 0;
+    for (int i = 0; i < 80; ++i) {
+        Pose X = somewhere(0.0, random);
+        X.p = Vec3(0.015 + random.uniform(0.003, 0.0065), 0.015 + random.uniform(0.0, 0.004),
+                   random.uniform(-0.005, 0.005));
+        const double truth = deepestOfBall(box, X.p, 0.008);
+        if (!(truth < -0.1e-3 && truth > -deepest)) continue;
+        manifold.clear();
+        const auto plain =
+            tick::queryContacts(field, Pose{}, *ball.shell, X, {.gradients = false}, workspace, manifold);
+        manifold.clear();
+        const auto refined = tick::queryContacts(field, Pose{}, *ball.shell, X, {.gradients = false, .refine = true},
+                                                 workspace, manifold);
+        worst_without = std::max(worst_without, plain.phi - truth);
+        EXPECT_LE(refined.phi, plain.phi);
+        EXPECT_NEAR(refined.phi, truth, tolerance + ball.chord_error + 5e-6) << i;
+        EXPECT_EQ(refined.phi, field.sample(refined.closest_F, model::FieldMode::Trilinear).phi);
+        EXPECT_NEAR((X.inverse() * refined.closest_W).norm(), 0.008, ball.chord_error + 1e-7) << "on the ball";
+        ++pressed;
+    }
+    EXPECT_GT(pressed, 20);
+    EXPECT_GT(worst_without, 50e-6);
+}
+
+TEST(ContactQuery, GroupsWeighWhatTheirPointsWeighWhetherTheContactIsSmallOrLarge) {
+    // Truth: closed form of the cap that a ball of radius R leaves in a plane, V = π h² (3 R - h) / 3, F = κ V; as near
+    // as the sum over all points comes, which is 1 % here. Points in contact are counted as without groups.
+    const model::Part table = build(model::Box{0.08, 0.08, 0.02});
+    const double R = 0.015, kappa = 1e9;
+    const model::Part ball = build(model::Sphere{2.0 * R}, 0.4e-3);
+    model::ContactSpec contact;
+    contact.variant = model::PenaltyVariant::AreaWeighted;
+    contact.area_stiffness = kappa;
+    tick::QueryWorkspace workspace(ball.shell->nodes().size());
+    tick::ContactManifold manifold(ball.shell->points().size());
+    Random random(7);
+    std::size_t fewer = 0;
+    for (const double h : {0.3e-3, 1e-3, 2e-3, 4e-3}) {
+        for (int i = 0; i < 10; ++i) {
+            Pose X = somewhere(0.0, random);
+            X.p = Vec3(random.uniform(-0.01, 0.01), random.uniform(-0.01, 0.01), 0.01 + R - h);
+            manifold.clear();
+            const auto points =
+                tick::queryContacts(*table.field, Pose{}, *ball.shell, X, {.gradients = false}, workspace, manifold);
+            const std::size_t many = manifold.size();
+            ASSERT_EQ(points.contacts, static_cast<int>(many));
+            manifold.clear();
+            const auto groups = tick::queryContacts(*table.field, Pose{}, *ball.shell, X,
+                                                    {.gradients = false, .groups = true}, workspace, manifold);
+            const Wrench wrench = tick::penaltyWrench(contact, manifold, X.p);
+            const double truth = kappa * std::numbers::pi * h * h * (3.0 * R - h) / 3.0;
+            EXPECT_NEAR(wrench.force.z(), truth, 0.01 * truth) << h;
+            EXPECT_LT(wrench.force.head<2>().norm(), 0.01 * truth) << h;
+            EXPECT_LT(wrench.torque.norm(), 0.01 * truth * R) << h;
+            // A group that is taken whole counts all its points, of which some may just be outside.
+            EXPECT_NEAR(groups.contacts, points.contacts, 0.05 * points.contacts + 4.0) << h;
+            EXPECT_NEAR(groups.phi, points.phi, 0.1e-3) << h;
+            fewer += many - manifold.size();
+            if (h < 0.5e-3) {
+                EXPECT_EQ(manifold.size(), many) << "a small contact is looked at point by point";
+            }
+        }
+    }
+    EXPECT_GT(fewer, 10'000u);
 }
 
 }  // namespace

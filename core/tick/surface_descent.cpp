@@ -1,0 +1,59 @@
+#include "core/tick/surface_descent.h"
+
+#include <algorithm>
+#include <array>
+
+namespace passung::tick {
+
+namespace {
+
+constexpr std::size_t kDirections = 6;
+constexpr float kFirstStep = 0.5f, kLastStep = 0.02f;  // per cover radius
+constexpr float kShorter = 0.5f;
+/// Cosine and sine of 0°, 60°, ..., 300°, and of the angles that turn them further from round to round.
+constexpr float kSine60 = 0.866025404f, kSine30 = 0.5f, kSine15 = 0.258819045f, kSine45 = 0.707106781f,
+                kSine75 = 0.965925826f;
+constexpr std::array<std::array<float, 2>, kDirections> kDirection{
+    {{1.0f, 0.0f}, {kSine30, kSine60}, {-kSine30, kSine60}, {-1.0f, 0.0f}, {-kSine30, -kSine60}, {kSine30, -kSine60}}};
+constexpr std::array<std::array<float, 2>, 4> kTurn{
+    {{1.0f, 0.0f}, {kSine60, kSine30}, {kSine75, kSine15}, {kSine45, kSine45}}};
+
+}  // namespace
+
+Descent descend(const model::DistanceField& field, const model::DistanceField::Placement& S,
+                const model::SphereTree& shell, std::uint32_t start, double phi) noexcept {
+    const model::SurfaceWalk& surface = shell.surface();
+    const model::SurfacePoint& from = shell.points()[start];
+    if (from.triangle >= surface.size()) return {from.position, 0};
+    std::array<model::SurfaceWalk::Place, kDirections> tried;
+    std::array<float, kDirections> x, y, z, read;
+    model::SurfaceWalk::Place best{from.triangle, from.position.cast<float>()};
+    auto least = static_cast<float>(phi);
+    const auto cover = static_cast<float>(shell.coverRadius());
+    float length = kFirstStep * cover;
+    int round = 0, failed = 0;
+    for (; round < kDescentRounds && length > kLastStep * cover; ++round) {
+        const auto [u, v] = surface.axes(best.triangle);
+        const auto [c, s] = kTurn[static_cast<std::size_t>(round) % kTurn.size()];
+        const Eigen::Vector3f along = length * (c * u + s * v), across = length * (c * v - s * u);
+        for (std::size_t i = 0; i < kDirections; ++i) {
+            tried[i] = surface.moved(best, kDirection[i][0] * along + kDirection[i][1] * across);
+            x[i] = tried[i].position.x();
+            y[i] = tried[i].position.y();
+            z[i] = tried[i].position.z();
+        }
+        field.sampleMany(S, x, y, z, read);
+        const auto lowest = static_cast<std::size_t>(std::min_element(read.begin(), read.end()) - read.begin());
+        if (read[lowest] < least) {
+            least = read[lowest];
+            best = tried[lowest];
+            failed = 0;
+        } else if (++failed == 2) {
+            failed = 0;
+            length *= kShorter;
+        }
+    }
+    return {best.position.cast<double>(), static_cast<int>(kDirections) * round};
+}
+
+}  // namespace passung::tick
