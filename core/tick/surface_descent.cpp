@@ -7,16 +7,15 @@ namespace passung::tick {
 
 namespace {
 
-constexpr std::size_t kDirections = 6;
+constexpr std::size_t kDirections = 12;
 constexpr float kFirstStep = 0.5f, kLastStep = 0.02f;  // per cover radius
 constexpr float kShorter = 0.5f;
-/// Cosine and sine of 0°, 60°, ..., 300°, and of the angles that turn them further from round to round.
-constexpr float kSine60 = 0.866025404f, kSine30 = 0.5f, kSine15 = 0.258819045f, kSine45 = 0.707106781f,
-                kSine75 = 0.965925826f;
-constexpr std::array<std::array<float, 2>, kDirections> kDirection{
-    {{1.0f, 0.0f}, {kSine30, kSine60}, {-kSine30, kSine60}, {-1.0f, 0.0f}, {-kSine30, -kSine60}, {kSine30, -kSine60}}};
-constexpr std::array<std::array<float, 2>, 4> kTurn{
-    {{1.0f, 0.0f}, {kSine60, kSine30}, {kSine75, kSine15}, {kSine45, kSine45}}};
+/// Cosine and sine of 0°, 30°, ..., 330°; every other time they are turned by 15° more.
+constexpr float kSine60 = 0.866025404f, kSine15 = 0.258819045f, kSine75 = 0.965925826f;
+constexpr std::array<float, kDirections> kCosine{1.0f,  kSine60,  0.5f,  0.0f, -0.5f, -kSine60,
+                                                 -1.0f, -kSine60, -0.5f, 0.0f, 0.5f,  kSine60};
+constexpr std::array<float, kDirections> kSine{0.0f, 0.5f,  kSine60,  1.0f,  kSine60,  0.5f,
+                                               0.0f, -0.5f, -kSine60, -1.0f, -kSine60, -0.5f};
 
 }  // namespace
 
@@ -31,13 +30,14 @@ Descent descend(const model::DistanceField& field, const model::DistanceField::P
     auto least = static_cast<float>(phi);
     const auto cover = static_cast<float>(shell.coverRadius());
     float length = kFirstStep * cover;
-    int round = 0, failed = 0;
+    int round = 0;
     for (; round < kDescentRounds && length > kLastStep * cover; ++round) {
         const auto [u, v] = surface.axes(best.triangle);
-        const auto [c, s] = kTurn[static_cast<std::size_t>(round) % kTurn.size()];
-        const Eigen::Vector3f along = length * (c * u + s * v), across = length * (c * v - s * u);
+        const bool turned = round % 2 != 0;
+        const float c = length * (turned ? kSine75 : 1.0f), s = length * (turned ? kSine15 : 0.0f);
+        const Eigen::Vector3f along = c * u + s * v, across = c * v - s * u;
         for (std::size_t i = 0; i < kDirections; ++i) {
-            tried[i] = surface.moved(best, kDirection[i][0] * along + kDirection[i][1] * across);
+            tried[i] = surface.moved(best, kCosine[i] * along + kSine[i] * across);
             x[i] = tried[i].position.x();
             y[i] = tried[i].position.y();
             z[i] = tried[i].position.z();
@@ -47,9 +47,7 @@ Descent descend(const model::DistanceField& field, const model::DistanceField::P
         if (read[lowest] < least) {
             least = read[lowest];
             best = tried[lowest];
-            failed = 0;
-        } else if (++failed == 2) {
-            failed = 0;
+        } else {
             length *= kShorter;
         }
     }

@@ -17,9 +17,9 @@ struct Descent {
 /// steps find it: the deepest point seldom is a sample. Six steps at a time along the triangles, in directions that
 /// turn from one time to the next; shorter ones after two times without success. φ along a surface has ridges where the
 /// obstacle's nearest face changes; there slopes do not lead down, and these steps still do.
-/// rt-safe, at most kDescentRounds times six points. Where the surface is not known: the start.
+/// rt-safe, at most kDescentRounds times twelve points. Where the surface is not known: the start.
 Descent descend(const model::DistanceField& field, const model::DistanceField::Placement& S,
                 const model::SphereTree& shell, std::uint32_t start, double phi) noexcept;
-inline constexpr int kDescentRounds = 24;
+inline constexpr int kDescentRounds = 16;
 
 }  // namespace passung::tick
