@@ -13,7 +13,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kBatch = 64;  // nodes or points that are looked at together
 constexpr std::uint32_t kNoPoint = ~0u;
-constexpr double kSettled = 64.0;  // groups in contact: from here on their errors level out, and some are taken whole
+constexpr double kSettled = 128.0;  // groups in contact: from here on their errors level out, and some are taken whole
 
 /// Places in the shell's frame, one after the other, though they are parted in memory.
 struct Batch {
