@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/model/distance_field_modes.h"
 #include "core/model/interpolation.h"
 #include "core/model/parallel.h"
 
@@ -107,8 +108,8 @@ bool DistanceField::find(const Vec3& p, Spot& spot) const noexcept {
     spot.low = brick.low;
     spot.step = brick.step;
     const double slack = kSlackUnit * brick.slack[place.octant];
-    spot.slack = error_bounded_ ? 1.0 : slack;
-    spot.most = error_bounded_ ? slack * slack * spot.edge : kInfinity;
+    spot.slack = bounded_within_ >= 0.0 ? 1.0 : slack;
+    spot.most = bounded_within_ >= 0.0 ? slack * slack * spot.edge : kInfinity;
     spot.in_brick = true;
     constexpr int kIn = kBrickCells - 1;
     spot.at = {x & kIn, y & kIn, z & kIn};
@@ -142,6 +143,12 @@ FieldSample DistanceField::sampleOutside(const Vec3& p) const noexcept {
     return {d - sheet_offset_, d > 0.0 ? Vec3((p - nearest) / d) : Vec3(Vec3::Zero())};
 }
 
+FieldSample DistanceField::sampleAt(const Spot& spot, FieldMode mode, const Vec3& inward) const noexcept {
+    if (spot.in_brick)
+        return Lattice<std::uint16_t>(samples_.data() + spot.first * kBrickSamples, spot).sample(mode, inward);
+    return Lattice<float>(coarse_.data(), spot).sample(mode, inward);
+}
+
 [[gnu::flatten]] FieldSample DistanceField::sample(const Vec3& p, FieldMode mode, const Vec3& inward) const noexcept {
     if (mode != FieldMode::Trilinear) {
         Spot spot;
@@ -169,6 +176,12 @@ double DistanceField::farthestSurface(const Cell& cell) const noexcept {
     return nearest + rounding(cell);
 }
 
+/// Of the interpolant `phi`, but for rounding, where the corners are `way` away on average; see errorBound.
+double DistanceField::bound(const Cell& cell, double way, double phi) const noexcept {
+    const double by_slack = cell.slack * way;
+    return std::abs(phi) <= bounded_within_ ? std::min(by_slack, cell.most) : by_slack;
+}
+
 [[gnu::flatten]] double DistanceField::lowerBound(const Vec3& p) const noexcept {
     Cell cell;
     if (!locate(p, cell)) return boxDistance(p) - sheet_offset_ - arithmetic_;
@@ -183,7 +196,7 @@ double DistanceField::farthestSurface(const Cell& cell) const noexcept {
     }
     const Vec3& u = cell.u;
     const double spread = cell.edge * cell.edge * u.cwiseProduct(Vec3::Ones() - u).sum();
-    const double near = mean - std::min(cell.slack * std::sqrt(spread), cell.most) - off;
+    const double near = mean - bound(cell, std::sqrt(spread), mean) - off;
     const double far = mean_square * (1.0 - 1e-12) - spread;
     return far > 0.0 ? std::max(near, std::sqrt(far) - sheet_offset_ - arithmetic_) : near;
 }
@@ -203,10 +216,10 @@ double DistanceField::errorBound(const Vec3& p, FieldMode mode) const noexcept {
     const Corners w = trilinearWeights(cell.u);
     double ways = 0.0;
     for (std::size_t i = 0; i < 8; ++i) ways += w[i] * (cornerAt(i) - cell.u).norm();
-    const double bound = std::min(cell.slack * cell.edge * ways, cell.most) + rounding(cell);
-    if (mode == FieldMode::Trilinear) return bound;
     const double trilinear = cell.low + cell.step * trilinearValue(cell.stored, cell.u);
-    return bound + std::abs(sample(p, mode).phi - trilinear) + arithmetic_;
+    const double of_trilinear = bound(cell, cell.edge * ways, trilinear) + rounding(cell);
+    if (mode == FieldMode::Trilinear) return of_trilinear;
+    return of_trilinear + std::abs(sample(p, mode).phi - trilinear) + arithmetic_;
 }
 
 }  // namespace passung::model

@@ -31,7 +31,8 @@ struct DistanceSource {
     std::function<void(const Vec3&, double, SurfaceBlock&)> block;
     /// Bounds what trilinear interpolation errs by in the cells of an octant of a block, whose nodes hold exact values
     /// [m]: from the block, its first corner, the edge of a cell, the octant (bits 1: x, 2: y, 4: z); optional.
-    std::function<double(const SurfaceBlock&, const Vec3&, double, std::size_t)> error_bound;
+    /// Only cells with a |node value| up to the last argument need count.
+    std::function<double(const SurfaceBlock&, const Vec3&, double, std::size_t, double)> error_bound;
     struct Nearest {
         double distance;  // unsigned
         Vec3 point;
@@ -122,10 +123,10 @@ public:
     /// A rigorous bound of |sample(p).phi - true φ(p)| [m], offset of an open sheet not included.
     ///   No holes, trilinear: |interpolant - φ(p)| ≤ k Σ w_i |c_i - p|, where φ less some linear function has the
     ///   Lipschitz constant k in the cell: 1 always; on closed meshes what the normals of the nearest triangles span.
-    ///   And ≤ e, which is known for shapes (boundInterpolation). Both are the largest of the cells of an octant.
-    ///   Layered, whatever the normal: s/2 from rounding, |C - p| for φ and as much for the projection. The others: the
-    ///   bound of trilinear and what the two values differ by.
-    ///   Holes left open: |interpolant| + the upper bound of d(p) above.
+    ///   And ≤ e, which is known for shapes (boundInterpolation), up to the depth of FieldAccuracy from the surface.
+    ///   Both are the largest of the cells of an octant. Layered, whatever the normal: s/2 from rounding, |C - p| for φ
+    ///   and as much for the projection. The others: the bound of trilinear and what the two values differ by. Holes
+    ///   left open: |interpolant| + the upper bound of d(p) above.
     double errorBound(const Vec3& p, FieldMode mode) const noexcept;
 
     /// False if the geometry has holes that were left open: see lowerBound and errorBound.
@@ -184,7 +185,7 @@ private:
         double edge;               // [m]
         double inverse_edge;       // [1/m]
         double low, step;          // φ = low + step · stored number [m]
-        double slack, most;        // k and e [m]: see errorBound
+        double slack, most;        // k, and e if |φ| ≤ bounded_within_ [m]: see errorBound
         bool in_brick;             // else on the coarse grid, where floats are stored
     };
     Place descend(std::int32_t root, const Vec3& in_root) const noexcept;  // in_root in [0, 1)³
@@ -200,6 +201,7 @@ private:
     struct Block;  // distance_field_many.cpp
     double boxDistance(const Vec3& p) const noexcept;
     double rounding(const Cell& cell) const noexcept;
+    double bound(const Cell& cell, double way, double phi) const noexcept;
     double farthestSurface(const Cell& cell) const noexcept;
     std::size_t coarseNode(int x, int y, int z) const noexcept;
     std::size_t coarseCell(int x, int y, int z) const noexcept;
@@ -215,7 +217,7 @@ private:
     double sheet_offset_ = 0.0;
     double arithmetic_ = 0.0;  // what rounding in double precision may add up to [m]
     bool bound_proven_ = true;
-    bool error_bounded_ = false;  // Brick::slack holds e, not k
+    double bounded_within_ = -1.0;  // [m]; ≥ 0: Brick::slack holds e, not k, of points with |φ| up to this
     bool refined_ = true;
     std::vector<float> coarse_;                // nodes
     std::vector<std::int32_t> brick_of_cell_;  // -1: none

@@ -12,6 +12,8 @@ namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{2} << 30;
 constexpr double kFloatRounding = 0x1p-24 * (1.0 + 0x1p-20);  // of a value stored as a float, relative
+constexpr double kEverywhere = 1e30;                          // [m]
+constexpr double kSinglePrecision = 1.001;                    // more than what sampleMany errs by
 constexpr double kArithmetic = 0x1p-45;     // 128 roundings of a coordinate: far more than a query makes
 constexpr double kLimitSlack = 1.0 + 1e-9;  // for the rounding of a limit d(q) + |p - q|
 constexpr double kLargestStored = 65535.0;
@@ -119,7 +121,8 @@ Result<DistanceField> DistanceField::build(const DistanceSource& source, double 
     // one cell in front of it.
     field.sheet_offset_ = source.open_sheet ? cell : 0.0;
     field.bound_proven_ = source.closed || source.open_sheet;
-    field.error_bounded_ = static_cast<bool>(source.error_bound);
+    if (source.error_bound)
+        field.bounded_within_ = source.open_sheet || accuracy.tolerance == 0.0 ? kEverywhere : accuracy.depth;
 
     // Whole bricks, so that the faces of a part whose sides measure whole bricks coincide with those of cells: then the
     // ridges of the distance, at 45° to the faces, are diagonals of cells and meet the fewest.
@@ -258,11 +261,13 @@ void DistanceField::Builder::sampleBrick(std::size_t brick) {
     const SurfaceBlock block = blockAt(low[brick]);
     const Nodes stored = store(brick, block.node);
     if (accuracy.tolerance > 0.0) depths = measure(stored, block, low[brick]);
-    if (field.error_bounded_) {
+    if (field.bounded_within_ >= 0.0) {
+        // Cells in which the interpolant may be within; it may where the surface passes, however large the cell.
+        const double reach = std::max(field.bounded_within_, cell) * kSinglePrecision;
         for (std::size_t octant = 0; octant < 8; ++octant) {
             // Where finer cells follow nobody asks, or memory ends: then the Lipschitz constant alone bounds.
             const double most =
-                std::isfinite(depths[octant]) ? cell : exact.source.error_bound(block, low[brick], cell, octant);
+                std::isfinite(depths[octant]) ? cell : exact.source.error_bound(block, low[brick], cell, octant, reach);
             info.slack[octant] = static_cast<std::uint8_t>(std::ceil(255.0 * std::sqrt(std::min(most / cell, 1.0))));
         }
         return;

@@ -18,10 +18,10 @@ std::string DistanceField::toBytes() const {
     ByteWriter writer;
     for (const Vec3& v : {surface_bounds_.low, surface_bounds_.high, origin_}) writer.put(v);
     for (const int cells : coarse_cells_) writer.put(static_cast<std::uint64_t>(cells), 4);
-    for (const double value :
-         {cell_, largest_cell_, finest_cell_, brick_edge_, inverse_brick_edge_, sheet_offset_, arithmetic_})
+    for (const double value : {cell_, largest_cell_, finest_cell_, brick_edge_, inverse_brick_edge_, sheet_offset_,
+                               arithmetic_, bounded_within_})
         writer.put(value);
-    writer.put((bound_proven_ ? 1u : 0u) + (refined_ ? 2u : 0u) + (error_bounded_ ? 4u : 0u), 1);
+    writer.put((bound_proven_ ? 1u : 0u) + (refined_ ? 2u : 0u), 1);
     writer.put(coarse_.size(), 8);
     for (const float value : coarse_) writer.put(std::bit_cast<std::uint32_t>(value), 4);
     for (const std::int32_t brick : brick_of_cell_) writer.put(static_cast<std::uint32_t>(brick), 4);
@@ -69,6 +69,7 @@ bool DistanceField::soundGrid() const {
         if (!positive(value)) return false;
     for (const double value : {sheet_offset_, arithmetic_})
         if (!(value >= 0.0) || !std::isfinite(value)) return false;
+    if (!std::isfinite(bounded_within_)) return false;
     for (const Vec3& v : {surface_bounds_.low, surface_bounds_.high, origin_})
         if (!v.allFinite()) return false;
     if (brick_edge_ != kBrickCells * largest_cell_ || inverse_brick_edge_ != 1.0 / brick_edge_) return false;
@@ -82,13 +83,12 @@ std::optional<DistanceField> DistanceField::fromBytes(std::string_view bytes) {
     for (Vec3* v : {&field.surface_bounds_.low, &field.surface_bounds_.high, &field.origin_}) *v = reader.takeVec3();
     for (int& cells : field.coarse_cells_) cells = static_cast<int>(static_cast<std::uint32_t>(reader.take(4)));
     for (double* value : {&field.cell_, &field.largest_cell_, &field.finest_cell_, &field.brick_edge_,
-                          &field.inverse_brick_edge_, &field.sheet_offset_, &field.arithmetic_})
+                          &field.inverse_brick_edge_, &field.sheet_offset_, &field.arithmetic_, &field.bounded_within_})
         *value = reader.takeDouble();
     const std::uint64_t flags = reader.take(1);
     field.bound_proven_ = (flags & 1u) != 0;
     field.refined_ = (flags & 2u) != 0;
-    field.error_bounded_ = (flags & 4u) != 0;
-    if (reader.failed() || flags > 7 || !field.soundGrid()) return std::nullopt;
+    if (reader.failed() || flags > 3 || !field.soundGrid()) return std::nullopt;
     std::size_t nodes = 1, cells = 1;
     for (const int n : field.coarse_cells_) {
         nodes *= static_cast<std::size_t>(n) + 1;

@@ -111,7 +111,7 @@ struct DistanceField::Block {
     }
 
     /// As lowerBound(): near the surface and far from it.
-    PASSUNG_INLINE void boundAll(float offset, float arithmetic, float* bound, std::size_t count) const {
+    PASSUNG_INLINE void boundAll(float offset, float arithmetic, float within, float* bound, std::size_t count) const {
         for (std::size_t i = 0; i < count; ++i) {
             const float x = u[0][i], y = u[1][i], z = u[2][i];
             const std::array<float, 8> c = corners(i);
@@ -120,8 +120,9 @@ struct DistanceField::Block {
             const float value = low[i] + step[i] * between(c, x, y, z);
             const float size = value < 0.0f ? -value : value;
             const float by_slack = slack[i] * std::sqrt(spread);
+            const float most_here = size <= within ? most[i] : by_slack;
             const float near =
-                value - (by_slack < most[i] ? by_slack : most[i]) * kMore - margin - size * (1.0f - kLess);
+                value - (by_slack < most_here ? by_slack : most_here) * kMore - margin - size * (1.0f - kLess);
             const float zero = low[i] + offset - margin;
             std::array<float, 8> square;
             for (std::size_t k = 0; k < 8; ++k) {
@@ -161,8 +162,8 @@ struct DistanceField::Block {
                 const float held =
                     static_cast<float>(brick.slack[octant(i, static_cast<double>(2 << brick.level))]) * kSlackUnit;
                 edge[i] = static_cast<float>(field.largest_cell_ / static_cast<double>(1 << brick.level));
-                slack[i] = field.error_bounded_ ? 1.0f : held;
-                most[i] = field.error_bounded_ ? held * held * edge[i] : std::numeric_limits<float>::infinity();
+                slack[i] = field.bounded_within_ >= 0.0 ? 1.0f : held;
+                most[i] = field.bounded_within_ >= 0.0 ? held * held * edge[i] : std::numeric_limits<float>::infinity();
             }
             scale[i] = static_cast<double>(kBrickCells << brick.level);
             first[i] = static_cast<std::int32_t>(k * kBrickSamples);
@@ -187,6 +188,7 @@ struct DistanceField::Block {
                                       const float* z, float* result, std::size_t total) {
         const auto offset = static_cast<float>(field.sheet_offset_) * kMore;
         const auto arithmetic = static_cast<float>(2.0 * field.arithmetic_);
+        const auto within = static_cast<float>(field.bounded_within_);
         Block block;
         for (std::size_t start = 0; start < total; start += kBlock) {
             const std::size_t count = std::min(kBlock, total - start);
@@ -195,7 +197,7 @@ struct DistanceField::Block {
             block.cellAll(count);
             block.pairAll(field.samples_.data(), count);
             if constexpr (kBounds)
-                block.boundAll(offset, arithmetic, result + start, count);
+                block.boundAll(offset, arithmetic, within, result + start, count);
             else
                 block.interpolateAll(result + start, count);
             for (std::size_t i = 0; i < count; ++i) {

@@ -97,8 +97,9 @@ DistanceSource exactSource(const Part& part) {
         const Shape shape = *part.shape;
         source.open_sheet = std::holds_alternative<Sheet>(shape);
         source.closed = !source.open_sheet;
-        source.error_bound = [shape](const SurfaceBlock& block, const Vec3& low, double cell, std::size_t octant) {
-            return boundInterpolation(shape, block, low, cell, octant);
+        source.error_bound = [shape](const SurfaceBlock& block, const Vec3& low, double cell, std::size_t octant,
+                                     double reach) {
+            return boundInterpolation(shape, block, low, cell, octant, reach);
         };
         source.distance = [shape](const Vec3& p) { return std::abs(signedDistance(shape, p)); };
         source.inside = [shape](const Vec3& p) { return signedDistance(shape, p) < 0.0; };

@@ -15,9 +15,8 @@ constexpr int kCells = kHalf * kHalf * kHalf;
 constexpr double kLeastSlope = 0.25;  // below, as halfway between two walls, cones are no help
 constexpr double kFirstRadius = 2.0;  // tried, in cells; then twice as much each time
 constexpr int kRadii = 9;
-constexpr double kHalfSquare = 0.5 * 0.75;  // ½ t², in cells
-constexpr double kDisappoints = 2.0;        // times what the octant's radius promises: a shorter one is tried too
-constexpr double kShorter = 0.25;
+constexpr double kHalfSquare = 0.5 * 0.75;    // ½ t², in cells
+constexpr double kDisappoints = 2.0;          // times what the octant's radius promises: then the cell's own is tried
 constexpr double kRounding = 1e-10;           // of the way to a cone's tip, in cells
 constexpr std::array kOutside{64.0, 4096.0};  // radii outside a convex solid; the larger wants a better direction
 
@@ -100,6 +99,11 @@ struct Cube {
         for (std::size_t i = 0; i < 8; ++i)
             phi[i] = block.node[first + (i & 1) + (i >> 1 & 1) * kRow + (i >> 2) * kSlab];
     }
+    double least() const {
+        double least = std::abs(phi[0]);
+        for (const double value : phi) least = std::min(least, std::abs(value));
+        return least;
+    }
     Vec3 middle() const { return low + Vec3::Constant(0.5 * cell); }
     Vec3 slope() const { return trilinearSlope(phi, Vec3::Constant(0.5)) / cell; }
 
@@ -162,8 +166,8 @@ private:
             return cube.gap(signedDistance(shape_, o), o, side, 1.0);
         };
         const double found = gap(radius_[s]);
-        return found > kDisappoints * kHalfSquare / radius_[s] * cell_ ? std::min(found, gap(kShorter * radius_[s]))
-                                                                       : found;
+        if (found <= kDisappoints * kHalfSquare / radius_[s] * cell_) return found;
+        return std::min(found, gap(bestRadius(shape_, cube.middle(), up, side, cell_)));
     }
 
     const Shape& shape_;
@@ -174,16 +178,22 @@ private:
 }  // namespace
 
 double boundInterpolation(const Shape& shape, const SurfaceBlock& block, const Vec3& low, double cell,
-                          std::size_t octant) {
+                          std::size_t octant, double reach) {
     std::array<int, 3> first{};
     for (unsigned axis = 0; axis < 3; ++axis) first[axis] = (octant >> axis & 1u) != 0 ? kHalf : 0;
+    const auto cubeAt = [&](int k) {
+        return Cube(block, low, cell,
+                    {first[0] + k % kHalf, first[1] + k / kHalf % kHalf, first[2] + k / (kHalf * kHalf)});
+    };
+    // Begin at the surface, where there is most room for cones.
+    int nearest = 0;
+    for (int k = 1; k < kCells; ++k)
+        if (cubeAt(k).least() < cubeAt(nearest).least()) nearest = k;
     OctantBound bound(shape, cell);
     double most = 0.0;
     for (int i = 0; i < kCells && most < cell; ++i) {
-        const int k = (i + kCells / 2) % kCells;  // begins in the middle
-        const Cube cube(block, low, cell,
-                        {first[0] + k % kHalf, first[1] + k / kHalf % kHalf, first[2] + k / (kHalf * kHalf)});
-        most = std::max(most, bound.of(cube));
+        const Cube cube = cubeAt((nearest + i) % kCells);
+        if (cube.least() <= reach) most = std::max(most, bound.of(cube));
     }
     return most + kRounding * cell;
 }

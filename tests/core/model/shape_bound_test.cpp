@@ -65,7 +65,7 @@ TEST(ShapeBound, IsNeverBelowTheErrorAtRimsEdgesCornersAndElsewhere) {
             low += cell * Vec3(random.uniform(-8, 0), random.uniform(-8, 0), random.uniform(-8, 0));
             const SurfaceBlock block = blockAt(shape, low, cell);
             for (std::size_t octant = 0; octant < 8; ++octant) {
-                const double bound = boundInterpolation(shape, block, low, cell, octant);
+                const double bound = boundInterpolation(shape, block, low, cell, octant, 1.0);
                 double worst = 0.0;
                 for (int i = 0; i < 100; ++i) {
                     const Vec3 u(random.uniform(0, 4), random.uniform(0, 4), random.uniform(0, 4));
@@ -85,7 +85,7 @@ TEST(ShapeBound, IsNeverBelowTheErrorAtRimsEdgesCornersAndElsewhere) {
 /// The bound around a point, cells of half a millimetre.
 double boundAround(const Shape& shape, const Vec3& p, double cell) {
     const Vec3 low = p - Vec3::Constant(2.0 * cell);  // the middle of the first octant
-    return boundInterpolation(shape, blockAt(shape, low, cell), low, cell, 0);
+    return boundInterpolation(shape, blockAt(shape, low, cell), low, cell, 0, 1.0);
 }
 
 TEST(ShapeBound, OfFlatFacesIsNextToNothingAndOfWallsWhatTheirCurvatureMakes) {

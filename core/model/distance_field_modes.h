@@ -1,13 +1,19 @@
-#include <cmath>
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
 
 #include "core/model/distance_field.h"
 #include "core/model/interpolation.h"
 
+/// The modes of reading a field (field_mode.h); rt-safe. Part of distance_field.cpp, which inlines it.
 namespace passung::model {
 
-namespace {
+namespace field_modes {
 
-constexpr double kLeastSlope = 1e-6;  // of φ: below, as in the middle of a part, no direction is nearest
+inline constexpr double kWhole = 0x1.8p52;   // added and taken away again, leaves a whole number
+inline constexpr double kLeastSlope = 1e-6;  // of φ: below, as in the middle of a part, no direction is nearest
 
 using Four = std::array<double, 4>;
 
@@ -19,7 +25,7 @@ struct Cubic {
 
 /// Keys (1981), a = -1/2 (Catmull-Rom), for a point at `u` in cell `at` of `cells`. In the first and last cell the node
 /// beyond is extrapolated from three, so that quadratics stay exact.
-Cubic cubicAlong(int at, int cells, double u) noexcept {
+inline Cubic cubicAlong(int at, int cells, double u) noexcept {
     const Four w{u * (-0.5 + u * (1.0 - 0.5 * u)), 1.0 + u * u * (-2.5 + 1.5 * u), u * (0.5 + u * (2.0 - 1.5 * u)),
                  u * u * (-0.5 + 0.5 * u)};
     const Four s{-0.5 + u * (2.0 - 1.5 * u), u * (-5.0 + 4.5 * u), 0.5 + u * (4.0 - 4.5 * u), u * (-1.0 + 1.5 * u)};
@@ -30,7 +36,7 @@ Cubic cubicAlong(int at, int cells, double u) noexcept {
     return {at - 1, w, s};
 }
 
-}  // namespace
+}  // namespace field_modes
 
 /// The stored numbers of a brick or of the coarse grid. @pre three cells or more along each axis.
 template <class Number>
@@ -53,10 +59,13 @@ struct DistanceField::Lattice {
         std::array<int, 3> at;
         Vec3 way;  // P - C, in cells
     };
-    Voxel voxel() const noexcept {
-        const unsigned corner = nearestCorner(spot.u);
-        Voxel found{spot.at, spot.u - cornerAt(corner)};
-        for (unsigned axis = 0; axis < 3; ++axis) found.at[axis] += static_cast<int>(corner >> axis & 1u);
+    Voxel voxel() const noexcept {  // without branches: no processor could foresee them
+        Voxel found;
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            const int high = spot.u[static_cast<int>(axis)] > 0.5 ? 1 : 0;
+            found.at[axis] = spot.at[axis] + high;
+            found.way[static_cast<int>(axis)] = spot.u[static_cast<int>(axis)] - high;
+        }
         return found;
     }
 
@@ -64,7 +73,7 @@ struct DistanceField::Lattice {
     FieldSample layered(const Vec3& inward) const noexcept {
         const Voxel C = voxel();
         const double w = spot.low + spot.step * read(node(C.at));
-        const double layer = std::floor(w * spot.inverse_edge + 0.5);
+        const double layer = (w * spot.inverse_edge + field_modes::kWhole) - field_modes::kWhole;
         return {spot.edge * (layer + inward.dot(C.way)), inward};
     }
 
@@ -83,7 +92,7 @@ struct DistanceField::Lattice {
         }
         const double w = spot.low + spot.step * read(centre);
         const double length = slope.norm();
-        if (!(length * spot.step * spot.inverse_edge > kLeastSlope)) return {w, Vec3::Zero()};
+        if (!(length * spot.step * spot.inverse_edge > field_modes::kLeastSlope)) return {w, Vec3::Zero()};
         const Vec3 m = slope / length;
         return {w + spot.edge * m.dot(C.way), m};
     }
@@ -96,8 +105,8 @@ struct DistanceField::Lattice {
         double value = c;
         Vec3 gradient;
         for (unsigned axis = 0; axis < 3; ++axis) {
-            const bool high = C.at[axis] != spot.at[axis];
-            const double slope = high ? c - read(centre - stride[axis]) : read(centre + stride[axis]) - c;
+            const int towards = 1 - 2 * (C.at[axis] - spot.at[axis]);  // where the cell lies
+            const double slope = towards * (read(centre + towards * stride[axis]) - c);
             value += slope * C.way[static_cast<int>(axis)];
             gradient[static_cast<int>(axis)] = slope * (spot.step * spot.inverse_edge);
         }
@@ -105,9 +114,9 @@ struct DistanceField::Lattice {
     }
 
     FieldSample cubic() const noexcept {
-        const Cubic x = cubicAlong(spot.at[0], spot.cells[0], spot.u.x());
-        const Cubic y = cubicAlong(spot.at[1], spot.cells[1], spot.u.y());
-        const Cubic z = cubicAlong(spot.at[2], spot.cells[2], spot.u.z());
+        const auto x = field_modes::cubicAlong(spot.at[0], spot.cells[0], spot.u.x());
+        const auto y = field_modes::cubicAlong(spot.at[1], spot.cells[1], spot.u.y());
+        const auto z = field_modes::cubicAlong(spot.at[2], spot.cells[2], spot.u.z());
         double value = 0.0;
         Vec3 slope = Vec3::Zero();
         const Number* slab = node({x.first, y.first, z.first});
@@ -115,7 +124,7 @@ struct DistanceField::Lattice {
             double v = 0.0, along_x = 0.0, along_y = 0.0;
             const Number* row = slab;
             for (std::size_t j = 0; j < 4; ++j, row += stride[1]) {
-                const Four f{read(row), read(row + 1), read(row + 2), read(row + 3)};
+                const field_modes::Four f{read(row), read(row + 1), read(row + 2), read(row + 3)};
                 const double at = f[0] * x.weight[0] + f[1] * x.weight[1] + f[2] * x.weight[2] + f[3] * x.weight[3];
                 const double by_x = f[0] * x.slope[0] + f[1] * x.slope[1] + f[2] * x.slope[2] + f[3] * x.slope[3];
                 v += y.weight[j] * at;
@@ -143,11 +152,5 @@ struct DistanceField::Lattice {
         return cubic();
     }
 };
-
-FieldSample DistanceField::sampleAt(const Spot& spot, FieldMode mode, const Vec3& inward) const noexcept {
-    if (spot.in_brick)
-        return Lattice<std::uint16_t>(samples_.data() + spot.first * kBrickSamples, spot).sample(mode, inward);
-    return Lattice<float>(coarse_.data(), spot).sample(mode, inward);
-}
 
 }  // namespace passung::model
