@@ -3,9 +3,11 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include <cmath>
 #include <functional>
 #include <limits>
 
+#include "analysis/truth/exact_mesh.h"
 #include "core/model/point_shell.h"
 #include "core/tick/contact_query.h"
 #include "tests/bench/ours.h"
@@ -16,12 +18,16 @@ namespace {
 
 constexpr double kTolerance = 20e-6, kSpacing = 1e-3;
 constexpr double kSeconds = 0.5, kQuickSeconds = 0.01;  // that each piece runs at least
+constexpr double kNear = 1e-3;                          // of the surface, where errors are told [m]
+constexpr std::size_t kMostJudged = 3000;
+constexpr double kUm = 1e6;
 
 /// One thing to time. `run` does it once and says how many items that were: points, nodes, builds.
 struct Piece {
     std::string name, settings;
     std::function<std::size_t()> run;
     bool build = false;  // seconds a build, not nanoseconds an item
+    Times error_um = {};
 };
 
 /// Turns what Google Benchmark measured into rows instead of printing it.
@@ -34,6 +40,7 @@ public:
             const Piece& piece = pieces_[rows_.size()];
             Row row{.group = kPiecesGroup, .method = piece.name, .settings = piece.settings, .ours = true};
             row.samples = static_cast<std::size_t>(run.iterations);
+            row.distance_error_um = piece.error_um;
             const double seconds = run.cpu_accumulated_time / static_cast<double>(run.iterations);
             if (piece.build)
                 row.build_s = run.real_accumulated_time / static_cast<double>(run.iterations);
@@ -54,13 +61,41 @@ void timePiece(benchmark::State& state, const Piece& piece) {
     state.counters["items"] = static_cast<double>(items) / static_cast<double>(state.iterations());
 }
 
-/// All points of the tool at all poses, in the bunny's frame: as a query meets them, a shell after the other.
-std::vector<Vec3> pointsMet(const ContactScene& scene, const model::SphereTree& shell) {
-    std::vector<Vec3> points;
+/// A point of the tool with the normal into the tool, in the bunny's frame.
+struct Asked {
+    Vec3 p, inward;
+};
+
+/// All points of the tool at all poses: as a query meets them, a shell after the other.
+std::vector<Asked> pointsMet(const ContactScene& scene, const model::SphereTree& shell) {
+    std::vector<Asked> points;
     for (const TruePose& pose : scene.pressed)
-        for (const model::SurfacePoint& point : shell.points()) points.push_back(pose.X_FS * point.position);
+        for (const model::SurfacePoint& point : shell.points())
+            points.push_back({pose.X_FS * point.position, -(pose.X_FS.q * point.normal)});
     return points;
 }
+
+/// Points met near the bunny's surface, with their true distances.
+struct Judged {
+    std::vector<Asked> points;
+    std::vector<double> truth;
+
+    Judged(const ContactScene& scene, const model::DistanceField& field, const std::vector<Asked>& all) {
+        const truth::ExactMesh exact(scene.bunny);
+        for (const Asked& met : all) {
+            if (std::abs(field.sample(met.p, model::FieldMode::Trilinear).phi) > kNear) continue;
+            points.push_back(met);
+            truth.push_back(exact.signedDistance(met.p));
+            if (points.size() == kMostJudged) break;
+        }
+    }
+    Times errors(const model::DistanceField& field, model::FieldMode mode) const {
+        std::vector<double> errors;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            errors.push_back(kUm * std::abs(field.sample(points[i].p, mode, points[i].inward).phi - truth[i]));
+        return errors.empty() ? Times{} : summarise(std::move(errors));
+    }
+};
 
 }  // namespace
 
@@ -74,13 +109,14 @@ Result<std::vector<Row>> piecesRows(const ContactScene& scene, const Extent& ext
     if (!shell_part) return shell_part.errors();
     const model::DistanceField& field = *(*field_part)->part.field;
     const model::SphereTree& shell = *(*shell_part)->part.shell;
-    const std::vector<Vec3> points = pointsMet(scene, shell);
+    const std::vector<Asked> points = pointsMet(scene, shell);
+    const Judged judged(scene, field, points);
     tick::QueryWorkspace workspace(shell.nodes().size());
     tick::ContactManifold manifold(shell.nodes().size() + shell.points().size());
 
     const auto sampling = [&](model::FieldMode mode) {
         return [&field, &points, mode] {
-            for (const Vec3& p : points) benchmark::DoNotOptimize(field.sample(p, mode).phi);
+            for (const Asked& met : points) benchmark::DoNotOptimize(field.sample(met.p, mode, met.inward).phi);
             return points.size();
         };
     };
@@ -101,12 +137,16 @@ Result<std::vector<Row>> piecesRows(const ContactScene& scene, const Extent& ext
                                        1e6 * kTolerance, shell.points().size(), scene.pressed.size());
     const std::string tool_at = fmt::format("torus tool, spacing {:g} mm", 1e3 * kSpacing);
     model::PointShell sampled = model::samplePoints(scene.tool, kSpacing);
-    const std::vector<Piece> pieces{
-        {"value and gradient, trilinear", at + "; a point", sampling(model::FieldMode::Trilinear)},
-        {"value and gradient, linear", at + "; a point", sampling(model::FieldMode::Linear)},
+    std::vector<Piece> pieces;
+    for (const model::FieldMode mode : model::kFieldModes)
+        pieces.push_back({.name = fmt::format("value and gradient, {}", modeName(mode)),
+                          .settings = at + "; a point",
+                          .run = sampling(mode),
+                          .error_um = judged.errors(field, mode)});
+    const std::vector<Piece> others{
         {"proven lower bound", at + "; a point",
          [&] {
-             for (const Vec3& p : points) benchmark::DoNotOptimize(field.lowerBound(p));
+             for (const Asked& met : points) benchmark::DoNotOptimize(field.lowerBound(met.p));
              return points.size();
          }},
         {"tree visit", at + "; a node with its points", visits(false)},
@@ -114,6 +154,7 @@ Result<std::vector<Row>> piecesRows(const ContactScene& scene, const Extent& ext
         {"build: points", tool_at, [&] { return model::samplePoints(scene.tool, kSpacing).points.size(); }, true},
         {"build: sphere tree", fmt::format("{} points", sampled.points.size()),
          [&] { return model::SphereTree(sampled).nodes().size(); }, true}};
+    pieces.insert(pieces.end(), others.begin(), others.end());
     benchmark::ClearRegisteredBenchmarks();
     for (const Piece& piece : pieces)
         benchmark::RegisterBenchmark(piece.name.c_str(), [&piece](benchmark::State& state) {
