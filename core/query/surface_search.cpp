@@ -227,8 +227,7 @@ struct SurfaceSearch::Search {
         std::vector<Waiting>&wave = of.scratch_->wave, &next = of.scratch_->next;
         wave.clear();
         triangles.clear();
-        for (const std::uint32_t node : of.spheres_.first)
-            wave.push_back({-std::numeric_limits<double>::infinity(), node});
+        wave.push_back({-std::numeric_limits<double>::infinity(), 0});
         while (!wave.empty()) {
             next.clear();
             for (std::size_t begin = 0; begin < wave.size(); begin += kBlock) {

@@ -2,44 +2,18 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <span>
 #include <utility>
 
 namespace passung::query {
 
 namespace {
 
-constexpr std::uint32_t kLeafTriangles = 4;  // of a node that is not halved
-constexpr std::size_t kSmallNode = 64;       // triangles: the spheres of larger ones may be larger
-constexpr int kSphereSteps = 24;
-constexpr std::size_t kFirstNodes = 32;  // a search would open those above anyway
+constexpr std::uint32_t kLeafTriangles = 8;  // of a node that is not halved
 
 /// Of the farthest point from the origin [m].
 double reachOf(const model::TriangleMesh& mesh) {
     const model::Bounds bounds = model::boundsOf(mesh);
     return bounds.low.cwiseAbs().cwiseMax(bounds.high.cwiseAbs()).norm();
-}
-
-/// Moves the centre towards the farthest corner again and again, by shorter and shorter ways (M. Badoiu, K. Clarkson
-/// 2003), which ends near the smallest sphere; then sets the radius.
-void shrinkSphere(const model::TriangleMesh& mesh, std::span<const std::uint32_t> triangles,
-                  TriangleSpheres::Node& node) {
-    const auto farthest = [&] {
-        Vec3 corner = node.centre;
-        double squared = 0.0;
-        for (const std::uint32_t i : triangles)
-            for (const std::uint32_t v : mesh.triangles[i]) {
-                const double d = (mesh.vertices[v] - node.centre).squaredNorm();
-                if (!(d > squared)) continue;
-                squared = d;
-                corner = mesh.vertices[v];
-            }
-        return corner;
-    };
-    const int steps = triangles.size() <= kSmallNode ? kSphereSteps : 0;
-    for (int i = 2; i < 2 + steps; ++i) node.centre += (farthest() - node.centre) / static_cast<double>(i + 2);
-    node.centre = node.centre.cast<float>().cast<double>();
-    node.radius = (farthest() - node.centre).norm();
 }
 
 }  // namespace
@@ -49,7 +23,6 @@ TriangleSpheres::TriangleSpheres(const model::TriangleMesh& mesh)
     std::vector<std::uint32_t> order;  // of the triangles, as the leaves hold them
     buildNodes(mesh, order);
     copyTriangles(mesh, order);
-    findFirst();
 }
 
 struct TriangleSpheres::Range {
@@ -74,8 +47,11 @@ void TriangleSpheres::buildNodes(const model::TriangleMesh& mesh, std::vector<st
             centres.extend(middles[order[i]]);
             for (const std::uint32_t v : mesh.triangles[order[i]]) corners.extend(mesh.vertices[v]);
         }
-        Node node{0.5 * (corners.low + corners.high), 0.0, range.begin, range.end - range.begin};
-        shrinkSphere(mesh, std::span<const std::uint32_t>(order).subspan(range.begin, range.end - range.begin), node);
+        const Vec3 centre = (0.5 * (corners.low + corners.high)).cast<float>().cast<double>();
+        Node node{centre, 0.0, range.begin, range.end - range.begin};
+        for (std::uint32_t i = range.begin; i < range.end; ++i)
+            for (const std::uint32_t v : mesh.triangles[order[i]])
+                node.radius = std::max(node.radius, (mesh.vertices[v] - centre).norm());
         if (node.count > kLeafTriangles) {
             int axis = 0;
             centres.size().maxCoeff(&axis);
@@ -97,20 +73,6 @@ void TriangleSpheres::buildNodes(const model::TriangleMesh& mesh, std::vector<st
         nodes[range.node] = node;
     }
     leaf_radius /= leaves;
-}
-
-void TriangleSpheres::findFirst() {
-    first.assign(1, 0);
-    for (std::size_t i = 0; i < first.size() && first.size() < kFirstNodes;) {
-        const Node& node = nodes[first[i]];
-        if (node.count > 0) {
-            ++i;
-            continue;
-        }
-        first.erase(first.begin() + static_cast<std::ptrdiff_t>(i));
-        first.push_back(node.first);
-        first.push_back(node.first + 1);
-    }
 }
 
 /// Keeps what lies side by side close together in memory.

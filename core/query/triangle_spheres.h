@@ -25,8 +25,7 @@ struct TriangleSpheres {
     /// @pre at least one triangle.
     explicit TriangleSpheres(const model::TriangleMesh& mesh);
 
-    std::vector<Node> nodes;           // the root first
-    std::vector<std::uint32_t> first;  // some nodes that hold all others but a few at the top
+    std::vector<Node> nodes;  // the root first
     std::vector<model::Triangle> faces;
     std::vector<Vertex> vertices;
     double leaf_radius = 0.0;     // mean [m]
@@ -36,7 +35,6 @@ private:
     struct Range;
     void buildNodes(const model::TriangleMesh& mesh, std::vector<std::uint32_t>& order);
     void copyTriangles(const model::TriangleMesh& mesh, const std::vector<std::uint32_t>& order);
-    void findFirst();
 };
 
 }  // namespace passung::query
