@@ -84,8 +84,8 @@ TEST(TwoWay, GivesTheMeanOfBothWaysOfASphereInAPlane) {
     // from the centre) dA over the disc that the face cuts out. Sums over a disc of 9 mm radius sampled every 0.7 mm:
     // 1 %.
     constexpr double R = 0.02, h = 0.002, off = R - h;
-    auto spec = test::scene(model::Sphere{2 * R}, {Quat::Identity(), Vec3(0, 0, 0.1)}, model::Box{0.08, 0.08, 0.04},
-                            {Quat::Identity(), Vec3(0, 0, -0.02)}, ContactMethod::Penalty);
+    auto spec = test::scene(model::Sphere{2 * R}, {Quat::Identity(), Vec3(0, 0, 0.1)}, model::Box{0.03, 0.03, 0.02},
+                            {Quat::Identity(), Vec3(0, 0, -0.01)}, ContactMethod::Penalty);
     spec.contact.cell = 0.7e-3;
     spec.contact.spacing = 0.7e-3;
     spec.contact.variant = model::PenaltyVariant::AreaWeighted;

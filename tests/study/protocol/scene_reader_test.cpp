@@ -244,6 +244,16 @@ TEST(SceneReader, RefusesAnOffsetPictureOfTheHeldPart) {
               "would move the hand's aim");
 }
 
+TEST(SceneReader, TwoWayContactNeedsPointsOnEveryPart) {
+    // Truth: closed form: the plate has about 13 000 mm2, at 0.05 mm more than 5e6 points; the peg has few enough.
+    const std::string fine = kParts + "[contact]\nspacing_mm = 0.05\n";
+    EXPECT_FALSE(read(fine)->contact.two_way);
+    EXPECT_TRUE(read(kParts + "[contact]\ntwo_way = true\n")->contact.two_way);
+    EXPECT_EQ(errorsOf(fine + "two_way = false\n"), "");
+    EXPECT_NE(errorsOf(fine + "two_way = true\n").find("contact.spacing_mm: 0.05: part plate: points"),
+              std::string::npos);
+}
+
 TEST(SceneReader, BoundsLengths) {
     // Truth: closed form: 10 m are 10000 mm; the peg has 2 pi 10 (10 + 50) mm2 = 3770 mm2, at 0.03 mm 4.2e6 points.
     EXPECT_EQ(errorsOf(kParts + "[registration]\nposition = [0, -10001, 0]\n"),
