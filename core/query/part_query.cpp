@@ -128,9 +128,7 @@ PartQueryResult PartQuery::oneWay(const model::Part& field, const model::Part& s
         result.closest = answer.closest_F;
         result.normal = answer.normal_W;
     }
-    if (decided) {
-        answer.lower_bound = -std::numeric_limits<double>::infinity();
-    }
+    if (decided) answer.lower_bound = -std::numeric_limits<double>::infinity();
     proveInterval(field, shell, answer, request_.mode, surface_error_, result);
     const bool free = request_.max_nodes == 0 || result.quality_overruled_budget;
     const int steps = free ? kMostRefinements : std::min(kMostRefinements, request_.max_nodes - result.nodes_visited);

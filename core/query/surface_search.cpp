@@ -364,12 +364,13 @@ struct SurfaceSearch::Search {
         const TriangleCorners t = cornersInA(triangle);
         const model::TrianglePair pair = nearestTo(t, limit);
         ++found.steps;
-        const bool whole = pair.distance > rounding;  // on one side
+        const bool outside = triangle.lower > 0.0;
+        const bool whole = outside || pair.distance > rounding;  // on one side
         // A point of B that is known to be as near to A's surface as this.
-        if (pair.distance < limit && (!whole || !isInside(pair.on_first)))
+        if (pair.distance < limit && (outside || !whole || !isInside(pair.on_first)))
             offer(pair.distance, pair.on_first, pair.on_second);
         left = std::min(left, std::max(triangle.lower, pair.distance - rounding));
-        if (!canBeInside() || (whole && !isInside(middleOf(t)))) return;
+        if (outside || !canBeInside() || (whole && !isInside(middleOf(t)))) return;
         pushPiece(t, triangle.lower);
     }
 
