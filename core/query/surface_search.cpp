@@ -374,10 +374,36 @@ struct SurfaceSearch::Search {
         pushPiece(t, triangle.lower);
     }
 
+    /// What is left of `triangles` by spheres around each.
+    void narrowBySpheres() {
+        std::size_t kept = 0;
+        for (std::size_t begin = 0; begin < triangles.size(); begin += kBlock) {
+            const std::size_t end = std::min(begin + kBlock, triangles.size());
+            std::array<double, kBlock> reach;
+            points.count = 0;
+            for (std::size_t i = begin; i < end; ++i) {
+                const TriangleCorners t{vertex(triangles[i], 0).p, vertex(triangles[i], 1).p,
+                                        vertex(triangles[i], 2).p};
+                const Vec3 middle = middleOf(t);
+                reach[i - begin] = reachFrom(middle, t) + of.spheres_.float_rounding;
+                points.add(middle);
+            }
+            askBounds();
+            for (std::size_t i = begin; i < end; ++i) {
+                Waiting triangle = triangles[i];
+                triangle.lower = std::max(triangle.lower, boundAt(i - begin) - reach[i - begin]);
+                if (!leave(triangle.lower)) triangles[kept++] = triangle;
+            }
+        }
+        triangles.resize(kept);
+    }
+
     /// What is left of `triangles` by spheres around their sixteenths.
     void narrowInside() {
-        std::vector<Waiting> rest;
-        for (Waiting& triangle : triangles) {
+        if (maySpend(triangles.size())) narrowBySpheres();
+        if (!maySpend(kSixteenths.size() * triangles.size())) return;
+        std::size_t kept = 0;
+        for (Waiting triangle : triangles) {
             const Vec3 &a = vertex(triangle, 0).p, &b = vertex(triangle, 1).p, &c = vertex(triangle, 2).p;
             const Vec3 ab = b - a, ac = c - a, middle = a + (ab + ac) / 3.0;
             const double reach = reachFrom(middle, {a, b, c});
@@ -387,14 +413,14 @@ struct SurfaceSearch::Search {
             double least = std::numeric_limits<double>::infinity();
             for (std::size_t i = 0; i < points.count; ++i) least = std::min(least, boundAt(i));
             triangle.lower = std::max(triangle.lower, least - reach / 4.0 - of.spheres_.float_rounding);
-            if (!leave(triangle.lower)) rest.push_back(triangle);
+            if (!leave(triangle.lower)) triangles[kept++] = triangle;
         }
-        std::swap(triangles, rest);
+        triangles.resize(kept);
     }
 
     void lookAtTriangles() {
         if (found.upper > 0.0 && maySpend(3 * triangles.size())) narrowOutside();
-        if (found.upper <= 0.0 && maySpend(16 * triangles.size())) narrowInside();
+        if (found.upper <= 0.0) narrowInside();
         std::sort(triangles.begin(), triangles.end(), [](const Waiting& a, const Waiting& b) {
             return std::pair(a.lower, a.index) < std::pair(b.lower, b.index);
         });
