@@ -139,12 +139,17 @@ struct SurfaceSearch::Search {
     bool canBeInside() const { return offset == 0.0; }
     bool maySpend(std::size_t steps) const { return found.steps + static_cast<int>(steps) <= most_steps; }
 
+    /// What is nowhere below this need not be looked at [m]: next to contact, half of what is known, which tells a gap
+    /// from an overlap.
+    double goal() const {
+        return found.upper > 0.0 ? std::max(found.upper - tolerance, 0.5 * found.upper) : found.upper - tolerance;
+    }
     /// Distances from here on are enough, squared.
-    double enough() const { return (found.upper - tolerance) * std::abs(found.upper - tolerance); }
+    double enough() const { return goal() * std::abs(goal()); }
 
     /// True if what is nowhere below `lower` need not be looked at.
     bool leave(double lower) {
-        if (lower < found.upper - tolerance) return false;
+        if (lower < goal()) return false;
         left = std::min(left, lower);
         return true;
     }
@@ -431,7 +436,7 @@ struct SurfaceSearch::Search {
                 break;
             }
             // Where something is inside, what is outside matters no more: only whether this triangle is.
-            lookAtTriangle(triangle, std::max(found.upper - tolerance, 2.0 * rounding));
+            lookAtTriangle(triangle, std::max(goal(), 2.0 * rounding));
         }
     }
 
