@@ -40,6 +40,8 @@ struct DistanceSource {
     /// The nearest point of the surface, searched no farther than the second argument [m] (then that is the distance,
     /// and the point is meaningless); optional, faster.
     std::function<Nearest(const Vec3&, double)> nearest_within;
+    /// Unsigned and exact in a cell of a block, from the triangles that it names there; with `block`, or none.
+    std::function<double(const Vec3&, std::span<const std::uint32_t>)> distance_to;
     /// Points of the surface, the tips of its smallest features among them; optional: see FieldAccuracy.
     std::vector<Vec3> landmarks;
 };
@@ -166,8 +168,15 @@ private:
         std::int32_t level;                 // 0: largest cells
         bool refined;                       // has a child
     };
+    /// What sampleMany needs of a brick, close together.
+    struct Head {
+        float low, step;
+        std::int32_t first;  // of its samples
+        float cells;         // along a largest brick; negative: has a child
+    };
+
     static constexpr std::size_t kBrickBytes =
-        sizeof(Brick) + kBrickSamples * sizeof(std::uint16_t) + kIndexPerBrick * sizeof(std::int32_t);
+        sizeof(Brick) + sizeof(Head) + kBrickSamples * sizeof(std::uint16_t) + kIndexPerBrick * sizeof(std::int32_t);
 
     /// The smallest brick that holds a point.
     struct Place {
@@ -232,6 +241,8 @@ private:
         std::vector<std::int32_t> brick;   // x fastest
     };
     Index index_;
+
+    std::vector<Head> heads_;
 };
 
 }  // namespace passung::model

@@ -95,9 +95,12 @@ struct DistanceField::Builder {
     double allowed(double phi) const;
     SurfaceBlock blockAt(const Vec3& corner) const;
     Nodes store(std::size_t brick, const Nodes& phi);
-    double distanceIn(const Corners& values, const Vec3& origin, const Vec3& u) const;
+    double distanceIn(const Corners& values, std::span<const std::uint32_t> triangles, const Vec3& origin,
+                      const Vec3& u) const;
+    static Nodes bends(const Nodes& nodes);
     double errorOf(const Corners& values, const Vec3& u, double distance) const;
-    double wrongDepth(const Nodes& nodes, const SurfaceBlock& block, const Vec3& corner, int x, int y, int z) const;
+    double wrongDepth(const Nodes& nodes, const Nodes& bends, const SurfaceBlock& block, const Vec3& corner, int x,
+                      int y, int z) const;
     std::array<double, 8> measure(const Nodes& nodes, const SurfaceBlock& block, const Vec3& corner) const;
     std::array<double, 8> inBand(const Vec3& corner) const;
     void measureLandmarks();
@@ -316,11 +319,28 @@ double DistanceField::Builder::allowed(double phi) const {
 }
 
 /// Exact distance at `u` in a cell with its first corner at `origin`.
-double DistanceField::Builder::distanceIn(const Corners& values, const Vec3& origin, const Vec3& u) const {
+double DistanceField::Builder::distanceIn(const Corners& values, std::span<const std::uint32_t> triangles,
+                                          const Vec3& origin, const Vec3& u) const {
+    if (!triangles.empty()) return exact.source.distance_to(origin + cell * u, triangles);
     const unsigned near = nearestCorner(u);
     // The stored corner is rounded: a step is far below this share of a cell.
     const double way = cell * ((u - cornerAt(near)).norm() + 1e-3);
     return exact.unsignedWithin(origin + cell * u, std::abs(values[near] + field.sheet_offset_) + way);
+}
+
+/// How much the values bend at each node: the sum of the sizes of the second differences, at the border of the brick
+/// those of the next node inside.
+DistanceField::Builder::Nodes DistanceField::Builder::bends(const Nodes& nodes) {
+    Nodes bend{};
+    constexpr std::array<std::ptrdiff_t, 3> kStride{1, kBrickNodes, std::ptrdiff_t{kBrickNodes} * kBrickNodes};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        for (std::size_t i = 0; i < kBrickSamples; ++i) {
+            const auto at = static_cast<std::ptrdiff_t>(i) / kStride[axis] % kBrickNodes;
+            const double* middle =
+                &nodes[i] + (std::clamp<std::ptrdiff_t>(at, 1, kBrickCells - 1) - at) * kStride[axis];
+            bend[i] += std::abs(*(middle - kStride[axis]) + *(middle + kStride[axis]) - 2.0 * *middle);
+        }
+    return bend;
 }
 
 /// What interpolation of a cell errs by at `u`, where the exact distance is d; 0 behind the offset of a sheet.
@@ -333,28 +353,17 @@ double DistanceField::Builder::errorOf(const Corners& values, const Vec3& u, dou
 }
 
 /// The least |φ| at the corners of a cell in which interpolation errs too much, or infinity.
-double DistanceField::Builder::wrongDepth(const Nodes& nodes, const SurfaceBlock& block, const Vec3& corner, int x,
-                                          int y, int z) const {
+double DistanceField::Builder::wrongDepth(const Nodes& nodes, const Nodes& bends, const SurfaceBlock& block,
+                                          const Vec3& corner, int x, int y, int z) const {
     constexpr double kNever = std::numeric_limits<double>::infinity();
     Corners values;
     double least = kNever, bend = 0.0;
     for (std::size_t i = 0; i < 8; ++i) {
-        const std::array<int, 3> at{x + static_cast<int>(i & 1), y + static_cast<int>(i >> 1 & 1),
-                                    z + static_cast<int>(i >> 2)};
-        values[i] = nodes[node(at[0], at[1], at[2])];
+        const std::size_t at =
+            node(x + static_cast<int>(i & 1), y + static_cast<int>(i >> 1 & 1), z + static_cast<int>(i >> 2));
+        values[i] = nodes[at];
         least = std::min(least, std::abs(values[i]));
-        // Second differences, at the border of the brick those of the next node inside.
-        double sum = 0.0;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            auto middle = at;
-            middle[axis] = std::clamp(at[axis], 1, kBrickCells - 1);
-            auto before = middle, after = middle;
-            --before[axis];
-            ++after[axis];
-            sum += std::abs(nodes[node(before[0], before[1], before[2])] + nodes[node(after[0], after[1], after[2])] -
-                            2.0 * nodes[node(middle[0], middle[1], middle[2])]);
-        }
-        bend = std::max(bend, sum);
+        bend = std::max(bend, bends[at]);
     }
     // A kink between two nodes, the worst case, errs by a quarter of its jump in slope, of which either node sees half.
     if (0.5 * bend <= kDoubtShare * allowed(least)) return kNever;
@@ -364,8 +373,11 @@ double DistanceField::Builder::wrongDepth(const Nodes& nodes, const SurfaceBlock
     }
     const double limit = kMeasuredShare * allowed(least);
     const Vec3 origin = corner + cell * Vec3(x, y, z), middle = Vec3::Constant(0.5);
-    const double given = block.centre[static_cast<std::size_t>((z * kBrickCells + y) * kBrickCells + x)];
-    const double centre = errorOf(values, middle, std::isnan(given) ? distanceIn(values, origin, middle) : given);
+    const auto number = static_cast<std::size_t>((z * kBrickCells + y) * kBrickCells + x);
+    const std::span<const std::uint32_t> triangles = block.trianglesOf(number);
+    const double given = block.centre[number];
+    const double centre =
+        errorOf(values, middle, std::isnan(given) ? distanceIn(values, triangles, origin, middle) : given);
     if (centre > limit) return least;
     // The centre has the largest error of a smooth bend, a quarter of the largest of a kink that passes it by.
     if (centre <= kCentreShare * limit) return kNever;
@@ -373,7 +385,7 @@ double DistanceField::Builder::wrongDepth(const Nodes& nodes, const SurfaceBlock
         const Vec3 u =
             (Vec3(i % kMeasured, i / kMeasured % kMeasured, i / (kMeasured * kMeasured)) + Vec3::Constant(0.5)) /
             kMeasured;
-        if (errorOf(values, u, distanceIn(values, origin, u)) > limit) return least;
+        if (errorOf(values, u, distanceIn(values, triangles, origin, u)) > limit) return least;
     }
     return kNever;
 }
@@ -382,12 +394,13 @@ double DistanceField::Builder::wrongDepth(const Nodes& nodes, const SurfaceBlock
 std::array<double, 8> DistanceField::Builder::measure(const Nodes& nodes, const SurfaceBlock& block,
                                                       const Vec3& corner) const {
     constexpr int kHalf = kBrickCells / 2;
+    const Nodes bend = bends(nodes);
     std::array<double, 8> depth;
     for (std::size_t octant = 0; octant < 8; ++octant) {
         depth[octant] = std::numeric_limits<double>::infinity();
         for (int i = 0; i < kHalf * kHalf * kHalf && !std::isfinite(depth[octant]); ++i) {
             const int x = i % kHalf, y = i / kHalf % kHalf, z = i / (kHalf * kHalf);
-            depth[octant] = wrongDepth(nodes, block, corner, x + ((octant & 1) ? kHalf : 0),
+            depth[octant] = wrongDepth(nodes, bend, block, corner, x + ((octant & 1) ? kHalf : 0),
                                        y + ((octant & 2) ? kHalf : 0), z + ((octant & 4) ? kHalf : 0));
         }
     }

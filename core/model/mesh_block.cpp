@@ -22,6 +22,7 @@ namespace {
 constexpr int kCells = SurfaceBlock::kCells;
 constexpr int kNodes = SurfaceBlock::kNodes;
 constexpr std::size_t kParts = 64;
+constexpr std::size_t kExpected = 16;    // triangles that may be nearest in a cell
 constexpr double kSlackRounding = 1e-7;  // of the sine of a small angle from its cosine
 constexpr double kInFront = 1e-6;        // of an edge: where a triangle is asked what it parts
 
@@ -104,10 +105,14 @@ private:
     SurfaceBlock& block_;
     std::vector<float> scratch_;
     Chosen cubes_, points_;
-    std::vector<Vec3> normals_;  // of the triangles of a part
+    // Of a part:
+    std::vector<Vec3> normals_;
+    Choice kept_;
 };
 
 void Sampling::run(bool closed) {
+    block_.triangles.clear();
+    block_.triangles.reserve(kExpected * SurfaceBlock::kAllCells);
     constexpr double half = 0.5 * kCells;
     const Vec3 centre = low_ + Vec3::Constant(half * cell_);
     std::vector<std::uint32_t> found;
@@ -134,6 +139,7 @@ void Sampling::run(bool closed) {
 std::array<Choice, kLanes> Sampling::choose(const Choice& triangles, const PointGroup& centres, double half) {
     blockKernels().judge(triangles, centres, static_cast<float>(half), scratch_, cubes_, points_);
     std::array<Choice, kLanes> kept;
+    for (Choice& one : kept) one.reserve(triangles.size());
     for (std::size_t i = 0; i < kLanes; ++i) cubes_.forEach(i, [&](std::size_t k) { kept[i].push_back(triangles[k]); });
     return kept;
 }
@@ -148,16 +154,21 @@ void Sampling::samplePart(const PartPoints& part, const Choice& triangles) {
         const Vec3 place(cell % kCells + 0.5, cell / kCells % kCells + 0.5, cell / (kCells * kCells) + 0.5);
         block_.centre[part.cell[i]] = least(triangles, i, low_ + cell_ * place);
         block_.slack[part.cell[i]] = slackOf(i);
+        block_.first[part.cell[i]] = static_cast<std::uint32_t>(block_.triangles.size());
+        cubes_.forEach(i, [&](std::size_t k) {
+            block_.triangles.push_back(static_cast<std::uint32_t>(triangles[k]->flat - flats_.data()));
+        });
+        block_.last[part.cell[i]] = static_cast<std::uint32_t>(block_.triangles.size());
     }
     // Each node is the corner of a cell.
-    Choice kept;
+    kept_.clear();
     for (std::size_t k = 0; k < triangles.size(); ++k)
-        if (cubes_.anyLane(k)) kept.push_back(triangles[k]);
-    blockKernels().nearest(kept, part.nodes.data(), part.groups, scratch_, points_);
+        if (cubes_.anyLane(k)) kept_.push_back(triangles[k]);
+    blockKernels().nearest(kept_, part.nodes.data(), part.groups, scratch_, points_);
     for (std::size_t i = 0; i < part.count; ++i) {
         const int node = static_cast<int>(part.node[i]);
         const Vec3 place(node % kNodes, node / kNodes % kNodes, node / (kNodes * kNodes));
-        block_.node[part.node[i]] = least(kept, i, low_ + cell_ * place);
+        block_.node[part.node[i]] = least(kept_, i, low_ + cell_ * place);
     }
 }
 
@@ -204,6 +215,12 @@ MeshBlockSampler::MeshBlockSampler(std::shared_ptr<const TriangleTree> tree, boo
         if (all_walls && std::lround(tree_->windingNumber(front)) != 0) all_walls = false;
     });
     simple_ = all_walls;
+}
+
+double MeshBlockSampler::distance(const Vec3& p, std::span<const std::uint32_t> triangles) const {
+    double square = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t k : triangles) square = std::min(square, (*flats_)[k].squaredDistance(p));
+    return std::sqrt(square);
 }
 
 void MeshBlockSampler::sample(const Vec3& low, double cell, SurfaceBlock& block) const {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/base/types.h"
@@ -22,6 +24,9 @@ public:
 
     /// Exact but for rounding. `low`: the block's first corner; `cell`: the edge of a cell [m].
     void sample(const Vec3& low, double cell, SurfaceBlock& block) const;
+
+    /// Exact, from those triangles of a block.
+    double distance(const Vec3& p, std::span<const std::uint32_t> triangles) const;
 
 private:
     // Shared by the functions of a DistanceSource and their copies.

@@ -115,9 +115,15 @@ DistanceSource exactSource(const Part& part) {
         return DistanceSource::Nearest{found.distance, found.point};
     };
     source.inside = [tree](const Vec3& p) { return tree->inside(p); };
-    if (source.closed || source.open_sheet)
-        source.block = [sampler = MeshBlockSampler(tree, source.closed, part.report.crossing_triangles == 0)](
-                           const Vec3& low, double cell, SurfaceBlock& block) { sampler.sample(low, cell, block); };
+    if (source.closed || source.open_sheet) {
+        const MeshBlockSampler sampler(tree, source.closed, part.report.crossing_triangles == 0);
+        source.block = [sampler](const Vec3& low, double cell, SurfaceBlock& block) {
+            sampler.sample(low, cell, block);
+        };
+        source.distance_to = [sampler](const Vec3& p, std::span<const std::uint32_t> triangles) {
+            return sampler.distance(p, triangles);
+        };
+    }
     return source;
 }
 

@@ -2,6 +2,9 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 namespace passung::model {
 
@@ -16,6 +19,14 @@ struct SurfaceBlock {
     std::array<double, kAllCells> centre;  // distance from each cell's centre [m], without a sign
     /// In each cell φ differs from a linear function by one with this Lipschitz constant; 1: nothing better is known.
     std::array<double, kAllCells> slack;
+    /// The numbers of the triangles that may be nearest to some point of a cell: those of all cells, and where each
+    /// cell's begin and end; empty where the source has none.
+    std::vector<std::uint32_t> triangles;
+    std::array<std::uint32_t, kAllCells> first{}, last{};
+
+    std::span<const std::uint32_t> trianglesOf(std::size_t cell) const {
+        return std::span(triangles).subspan(first[cell], last[cell] - first[cell]);
+    }
 };
 
 }  // namespace passung::model

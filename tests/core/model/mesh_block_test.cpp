@@ -45,13 +45,16 @@ void atSomeBlocks(const TriangleMesh& mesh, const MeshBlockSampler& sampler, dou
     }
 }
 
-TEST(MeshBlock, DistancesAndSignsAreThoseOfTheTreeAtEveryNodeAndCentre) {
-    // Truth: TriangleTree (distance and winding number, tested on their own) at each point.
+TEST(MeshBlock, DistancesAndSignsAreThoseOfTheTreeAtEveryNodeAndInEveryCell) {
+    // Truth: TriangleTree (distance and winding number, tested on their own) at each point, and at one of each cell
+    // from the triangles that it names.
+    Random random(7);
     for (const Case& c : kCases) {
         const TriangleMesh mesh = tessellate(c.shape, 5e-6);
         const auto tree = std::make_shared<const TriangleTree>(mesh);
         const double rounding = 1e-13;  // some hundred roundings of a coordinate of 0.1 m
-        atSomeBlocks(mesh, MeshBlockSampler(tree, true, true), c.cell, [&](const Vec3& low, const SurfaceBlock& block) {
+        const MeshBlockSampler sampler(tree, true, true);
+        atSomeBlocks(mesh, sampler, c.cell, [&](const Vec3& low, const SurfaceBlock& block) {
             for (std::size_t i = 0; i < SurfaceBlock::kAllNodes; ++i) {
                 const Vec3 p = low + c.cell * placeOf(i, SurfaceBlock::kNodes);
                 const double d = tree->closest(p).distance;
@@ -63,6 +66,10 @@ TEST(MeshBlock, DistancesAndSignsAreThoseOfTheTreeAtEveryNodeAndCentre) {
             for (std::size_t i = 0; i < SurfaceBlock::kAllCells; ++i) {
                 const Vec3 p = low + c.cell * (placeOf(i, SurfaceBlock::kCells) + Vec3::Constant(0.5));
                 ASSERT_NEAR(block.centre[i], tree->closest(p).distance, rounding) << kindName(c.shape);
+                const Vec3 in =
+                    p + 0.5 * c.cell * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+                ASSERT_NEAR(sampler.distance(in, block.trianglesOf(i)), tree->closest(in).distance, rounding)
+                    << kindName(c.shape);
             }
         });
     }
