@@ -47,7 +47,7 @@ std::size_t DistanceField::coarseCell(int x, int y, int z) const noexcept {
 
 std::size_t DistanceField::memoryBytes() const {
     return coarse_.size() * sizeof(float) + brick_of_cell_.size() * sizeof(std::int32_t) +
-           bricks_.size() * sizeof(Brick) + samples_.size() * sizeof(std::uint16_t) +
+           bricks_.size() * (sizeof(Brick) + sizeof(Head)) + samples_.size() * sizeof(std::uint16_t) +
            index_.brick.size() * sizeof(std::int32_t);
 }
 

@@ -39,8 +39,7 @@ struct DistanceField::Block {
     std::array<Lane<double>, 3> place;  // in largest bricks
     Lane<std::int32_t> cube;            // of the index
     Lane<std::int32_t> outside;
-    Lane<double> scale;  // cells along a largest brick
-    Lane<std::int32_t> first;
+    Lane<Head> head;
     Lane<float> low, step;
     Lane<float> slack, most, edge;  // for bounds
     std::array<Lane<float>, 3> u;
@@ -74,14 +73,17 @@ struct DistanceField::Block {
     /// The cell of each point and the place in it.
     PASSUNG_INLINE void cellAll(std::size_t count) {
         for (std::size_t i = 0; i < count; ++i) {
-            const double fx = place[0][i] * scale[i], fy = place[1][i] * scale[i], fz = place[2][i] * scale[i];
+            const double cells = static_cast<double>(std::abs(head[i].cells));
+            const double fx = place[0][i] * cells, fy = place[1][i] * cells, fz = place[2][i] * cells;
             const auto cx = static_cast<std::int32_t>(fx), cy = static_cast<std::int32_t>(fy),
                        cz = static_cast<std::int32_t>(fz);
+            low[i] = head[i].low;
+            step[i] = head[i].step;
             u[0][i] = static_cast<float>(fx - cx);
             u[1][i] = static_cast<float>(fy - cy);
             u[2][i] = static_cast<float>(fz - cz);
             constexpr std::int32_t kIn = kBrickCells - 1, kRow = kBrickNodes;
-            node[i] = first[i] + ((cz & kIn) * kRow + (cy & kIn)) * kRow + (cx & kIn);
+            node[i] = head[i].first + ((cz & kIn) * kRow + (cy & kIn)) * kRow + (cx & kIn);
         }
     }
 
@@ -151,24 +153,24 @@ struct DistanceField::Block {
             const std::int32_t found = field.index_.brick[static_cast<std::size_t>(cube[i])];
             outside[i] |= found < 0;
             auto k = static_cast<std::size_t>(std::max(found, 0));
-            while (field.bricks_[k].refined) {
-                const double halves = static_cast<double>(2 << field.bricks_[k].level);
-                const std::int32_t child = field.bricks_[k].child[octant(i, halves)];
-                if (child < 0) break;
-                k = static_cast<std::size_t>(child);
+            head[i] = field.heads_[k];
+            if (head[i].cells < 0.0f) {
+                while (field.bricks_[k].refined) {
+                    const double halves = static_cast<double>(2 << field.bricks_[k].level);
+                    const std::int32_t child = field.bricks_[k].child[octant(i, halves)];
+                    if (child < 0) break;
+                    k = static_cast<std::size_t>(child);
+                }
+                head[i] = field.heads_[k];
             }
-            const Brick& brick = field.bricks_[k];
             if constexpr (kBounds) {
+                const Brick& brick = field.bricks_[k];
                 const float held =
                     static_cast<float>(brick.slack[octant(i, static_cast<double>(2 << brick.level))]) * kSlackUnit;
                 edge[i] = static_cast<float>(field.largest_cell_ / static_cast<double>(1 << brick.level));
                 slack[i] = field.bounded_within_ >= 0.0 ? 1.0f : held;
                 most[i] = field.bounded_within_ >= 0.0 ? held * held * edge[i] : std::numeric_limits<float>::infinity();
             }
-            scale[i] = static_cast<double>(kBrickCells << brick.level);
-            first[i] = static_cast<std::int32_t>(k * kBrickSamples);
-            low[i] = static_cast<float>(brick.low);
-            step[i] = static_cast<float>(brick.step);
         }
     }
 
@@ -181,6 +183,12 @@ struct DistanceField::Block {
             std::memcpy(&pair[2][i], at + kSlab, sizeof(std::uint32_t));
             std::memcpy(&pair[3][i], at + kSlab + kRow, sizeof(std::uint32_t));
         }
+    }
+
+    PASSUNG_INLINE bool anyOutside(std::size_t count) const {
+        std::int32_t any = 0;
+        for (std::size_t i = 0; i < count; ++i) any |= outside[i];
+        return any != 0;
     }
 
     template <bool kBounds>
@@ -200,6 +208,7 @@ struct DistanceField::Block {
                 block.boundAll(offset, arithmetic, within, result + start, count);
             else
                 block.interpolateAll(result + start, count);
+            if (!block.anyOutside(count)) continue;
             for (std::size_t i = 0; i < count; ++i) {
                 if (block.outside[i] == 0) continue;
                 const Vec3 p_F = S.X_FS * Vec3(static_cast<double>(x[start + i]), static_cast<double>(y[start + i]),
@@ -280,6 +289,14 @@ void DistanceField::lowerBounds(const Placement& S, std::span<const float> x, st
 }
 
 void DistanceField::fillIndex() {
+    heads_.clear();
+    heads_.reserve(bricks_.size());
+    for (std::size_t k = 0; k < bricks_.size(); ++k) {
+        const Brick& brick = bricks_[k];
+        const auto cells = static_cast<float>(kBrickCells << brick.level);
+        heads_.push_back({static_cast<float>(brick.low), static_cast<float>(brick.step),
+                          static_cast<std::int32_t>(k * kBrickSamples), brick.refined ? -cells : cells});
+    }
     std::array<int, 3> low = coarse_cells_, high{};  // of the largest bricks
     for (int z = 0; z < coarse_cells_[2]; ++z)
         for (int y = 0; y < coarse_cells_[1]; ++y)
