@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "analysis/truth/exact_mesh.h"
 #include "core/base/random.h"
@@ -22,7 +25,10 @@ constexpr std::size_t kErrorPoints = 20'000;
 constexpr double kCellsAlongLongest = 256.0;
 constexpr double kBandCells = 4.0;
 constexpr int kMarginCells = 6;
-constexpr int kMoreBuilds = 2;
+constexpr int kBuilds = 3;
+constexpr double kFinerTolerance = 80e-6;
+/// Fields are compared so far from the surface. Interpolation there takes nodes a cell's diagonal farther: kBandCells.
+constexpr double kTestedCells = 2.0;
 constexpr double kUm = 1e6;
 
 /// Bits of a coordinate, two zeros between each.
@@ -92,6 +98,20 @@ struct Sampling {
     }
 };
 
+/// Of the field at points of the surface.
+Times errorsOf(const std::vector<float>& phi) {
+    std::vector<double> errors;
+    for (const float value : phi) errors.push_back(kUm * std::abs(static_cast<double>(value)));
+    return summarise(errors);
+}
+
+std::size_t countOtherBits(const std::vector<float>& values, const std::vector<float>& others) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < values.size(); ++i)
+        count += std::bit_cast<std::uint32_t>(values[i]) != std::bit_cast<std::uint32_t>(others[i]) ? 1 : 0;
+    return count;
+}
+
 /// `field` at the nodes of one array around the part; a float holds metres, a short 1/32767 of the margin.
 template <class Value>
 FlatArray<Value> flatArray(const model::DistanceField& field, double cell) {
@@ -129,24 +149,11 @@ Result<std::vector<Row>> samplingRows(const model::TriangleMesh& bunny, const Ex
     const auto wanted = [&](const char* group) { return extent.wanted(group, ""); };
     if (!wanted(kSamplingGroup) && !wanted(kBuildGroup)) return rows;
     const double cell = model::boundsOf(bunny).size().maxCoeff() / kCellsAlongLongest;
-    const std::string same_cell = fmt::format("cell {:.3g} mm", 1e3 * cell);
     PartStore store(bunny);
     auto built = store.withCell(cell);
     if (!built) return built.errors();
-    const WallClock watch;
-    const auto level_set = buildLevelSet(bunny, cell, kBandCells);
-    double level_set_s = watch.seconds(), field_s = built->field_s;
-    // By turns, so that a busy machine hits both; the fastest of each counts.
-    const int more = wanted(kBuildGroup) && !extent.few_settings ? kMoreBuilds : 0;
-    for (int i = 0; i < more; ++i) {
-        const auto again = store.withCell(cell);
-        if (!again) return again.errors();
-        field_s = std::min(field_s, again->field_s);
-        const WallClock lap;
-        buildLevelSet(bunny, cell, kBandCells);
-        level_set_s = std::min(level_set_s, lap.seconds());
-    }
     const model::DistanceField& field = *built->part.field;
+    const auto level_set = buildLevelSet(bunny, cell, kBandCells);
 
     Random random(20260301);
     if (wanted(kSamplingGroup)) {
@@ -163,19 +170,29 @@ Result<std::vector<Row>> samplingRows(const model::TriangleMesh& bunny, const Ex
                 sampling.phi[i] = field.sample(turn * sampling.points[i] + shift, model::FieldMode::Trilinear).phi;
         }));
         rows.back().memory_MB = 1e-6 * static_cast<double>(field.memoryBytes());
-        rows.back().other_bits = 0.0;  // the first variant
         std::vector<float> x, y, z, phi(kPoints);
         for (const Vec3& p : sampling.points) {
             x.push_back(static_cast<float>(p.x()));
             y.push_back(static_cast<float>(p.y()));
             z.push_back(static_cast<float>(p.z()));
         }
+        std::vector<float> first_bits;
+        for (const auto& [instructions, name] :
+             {std::pair(model::Instructions::Baseline, "baseline"), std::pair(model::Instructions::V3, "AVX2"),
+              std::pair(model::Instructions::V4, "AVX-512")}) {
+            if (instructions > model::bestInstructions()) continue;
+            rows.push_back(sampling.measure(
+                "passung sampleMany", fmt::format("value, {} instructions", name), true,
+                [&, variant = instructions] { field.sampleMany(field.place(sampling.X), x, y, z, phi, variant); }));
+            if (first_bits.empty()) first_bits = phi;
+            rows.back().other_bits = static_cast<double>(countOtherBits(phi, first_bits));
+            rows.back().distance_error_um = errorsOf(phi);
+            rows.back().memory_MB = 1e-6 * static_cast<double>(field.memoryBytes());
+        }
         const auto addFlat = [&](const auto& flat, const char* settings) {
             rows.push_back(
                 sampling.measure(kFlatArray, settings, false, [&] { flat.sample(sampling.X, x, y, z, phi); }));
-            std::vector<double> errors;
-            for (const float value : phi) errors.push_back(kUm * std::abs(static_cast<double>(value)));
-            rows.back().distance_error_um = summarise(errors);
+            rows.back().distance_error_um = errorsOf(phi);
             rows.back().memory_MB = 1e-6 * static_cast<double>(flat.values.size() * sizeof(flat.values[0]));
         };
         addFlat(flatArray<std::int16_t>(field, cell), "16 bit, single precision, one loop");
@@ -188,19 +205,57 @@ Result<std::vector<Row>> samplingRows(const model::TriangleMesh& bunny, const Ex
         const truth::ExactMesh exact(bunny);
         std::vector<Vec3> points = surfacePoints(bunny, kErrorPoints, random);
         for (Vec3& p : points)
-            p +=
-                2.0 * cell * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)) / std::sqrt(3.0);
-        const auto row = [&](const char* method, bool ours, double seconds, double bytes, const Times& errors) {
-            Row r{.group = kBuildGroup, .method = method, .settings = same_cell + ", all cores", .ours = ours};
-            r.samples = points.size();
-            r.distance_error_um = errors;
-            r.memory_MB = 1e-6 * bytes;
-            r.build_s = seconds;
-            rows.push_back(r);
+            p += kTestedCells * cell * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)) /
+                 std::sqrt(3.0);
+        const auto add = [&](const std::string& method, const std::string& what, bool ours, double seconds,
+                             double bytes, const Times& errors) {
+            Row row{.group = kBuildGroup,
+                    .method = method,
+                    .settings = fmt::format("cell {:.3g} mm{}; processor time of all threads", 1e3 * cell, what),
+                    .ours = ours};
+            row.samples = points.size();
+            row.distance_error_um = errors;
+            row.memory_MB = 1e-6 * bytes;
+            row.build_s = seconds;
+            rows.push_back(row);
         };
-        row("passung field", true, field_s, built->bytes(),
-            bandErrors(exact, points, [&](const Vec3& p) { return field.sample(p, model::FieldMode::Trilinear).phi; }));
-        row(kVdbBuild, false, level_set_s, level_set->memoryBytes(), bandErrors(exact, points, [&](const Vec3& p) {
+        // Time and error count for the marks in one row only, which has both.
+        const auto addField = [&](const std::string& what, bool counts, double seconds,
+                                  const model::DistanceField& of) {
+            add("passung field", what, counts, seconds, static_cast<double>(of.memoryBytes()),
+                bandErrors(exact, points,
+                           [&](const Vec3& p) { return of.sample(p, model::FieldMode::Trilinear).phi; }));
+        };
+        // By turns, so that a busy machine hits all; the fastest of each counts.
+        std::vector<double> seconds(4, std::numeric_limits<double>::infinity());
+        std::optional<model::DistanceField> even, finer, wide;
+        const model::FieldAccuracy near{.reach = cell};
+        const model::FieldAccuracy near_finer{
+            .tolerance = kFinerTolerance, .depth = kTestedCells * cell, .reach = cell};
+        for (int i = 0; i < (extent.few_settings ? 1 : kBuilds); ++i) {
+            const auto timed = [&](std::size_t k, const auto& run) {
+                const ProcessorTime watch;
+                run();
+                seconds[k] = std::min(seconds[k], watch.seconds());
+            };
+            const auto build = [&](const model::FieldAccuracy& accuracy) {
+                auto of =
+                    model::DistanceField::build(model::exactSource(built->part), cell, kTestedCells * cell, accuracy);
+                return of ? std::optional(std::move(*of)) : std::nullopt;
+            };
+            timed(0, [&] { buildLevelSet(bunny, cell, kBandCells); });
+            timed(1, [&] { even = build(near); });
+            timed(2, [&] { finer = build(near_finer); });
+            timed(3, [&] { wide = build({.largest_cell = 2.0 * cell}); });
+        }
+        if (!even || !finer || !wide) return Error{.message = "a field of the bunny was refused"};
+        addField(", 2 cells around the surface", false, seconds[1], *even);
+        addField(fmt::format(", 2 cells around the surface, finer where it errs by more than {:g} um",
+                             kUm * kFinerTolerance),
+                 true, seconds[2], *finer);
+        addField(", and larger ones as far as the part is long", false, seconds[3], *wide);
+        add(kVdbBuild, ", 4 cells around the surface", false, seconds[0], level_set->memoryBytes(),
+            bandErrors(exact, points, [&](const Vec3& p) {
                 double phi = 0.0;
                 level_set->sample(Pose{}, {&p, 1}, {&phi, 1});
                 return phi;

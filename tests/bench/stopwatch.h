@@ -21,6 +21,20 @@ private:
     double start_ = now();
 };
 
+/// Time of all threads of the program on their cores.
+class ProcessorTime {
+public:
+    double seconds() const { return now() - start_; }
+
+private:
+    static double now() {
+        timespec t{};
+        clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+        return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+    }
+    double start_ = now();
+};
+
 /// Wall time, for builds that use several threads.
 class WallClock {
 public:
