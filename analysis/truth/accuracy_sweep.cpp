@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <ctime>
 #include <limits>
 #include <numeric>
 #include <optional>
 
+#include "core/model/timed_store.h"
 #include "core/query/part_query.h"
 #include "core/tick/penalty.h"
 
@@ -17,10 +17,7 @@ namespace passung::truth {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
-
-double secondsSince(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
 /// Time of the calling thread on its core [s]: what other programs do on the machine does not count.
 double threadSeconds() {
@@ -31,14 +28,14 @@ double threadSeconds() {
 
 struct Built {
     model::Part part;
-    double seconds = 0.0;
+    double seconds = 0.0;  // that building the field or the points took
 };
 
-Result<Built> build(const model::PartSpec& spec, const model::PartNeeds& needs) {
-    const auto begin = Clock::now();
-    auto part = model::buildPart(spec, needs);
+Result<Built> build(const model::PartSpec& spec, const model::PartNeeds& needs, model::BuildStore* store) {
+    model::TimedStore timed(store);
+    auto part = model::buildPart(spec, needs, &timed);
     if (!part) return part.errors();
-    return Built{std::move(*part), secondsSince(begin)};
+    return Built{std::move(*part), timed.seconds()};
 }
 
 /// What the tick's query says at one pose.
@@ -103,28 +100,6 @@ struct ErrorLists {
         row.torque = spreadOf(torque);
     }
 };
-
-void measure(const AccuracySetting& setting, const model::DistanceField& field, const model::SphereTree& shell,
-             const std::vector<JudgedPose>& poses, int repetitions, double lever, AccuracyRow& row) {
-    TickQuery query(field, shell, setting);
-    std::vector<double> times(poses.size(), kUnlimited);
-    ErrorLists errors;
-    double largest_force = 0.0;
-    for (const JudgedPose& pose : poses) largest_force = std::max(largest_force, pose.truth.wrench.force.norm());
-    // The first round warms up and is not timed.
-    for (int round = 0; round <= repetitions; ++round) {
-        for (std::size_t i = 0; i < poses.size(); ++i) {
-            const double begin = threadSeconds();
-            const Answer answer = query.at(poses[i].X_FS);
-            if (round > 0)
-                times[i] = std::min(times[i], threadSeconds() - begin);
-            else
-                errors.add(answer, poses[i].truth, lever, kLeastForce * largest_force);
-        }
-    }
-    row.time = spreadOf(std::move(times));
-    errors.summarise(row);
-}
 
 /// Why `r` cannot be, given the truth; nothing if it can.
 std::optional<std::string> contradiction(const query::PartQueryResult& r, const PoseTruth& truth) {
@@ -205,31 +180,57 @@ void markFronts(std::vector<AccuracyRow>& rows) {
         rows, [](const AccuracyRow& row) { return row.force.p99; }, &AccuracyRow::on_force_front);
 }
 
+AccuracyRow measureSetting(const AccuracySetting& setting, const model::Part& field, const model::Part& shell,
+                           const std::vector<JudgedPose>& poses, const std::vector<Pose>& timed, int repetitions,
+                           double lever) {
+    const model::SphereTree& points = *shell.shell;
+    AccuracyRow row{.setting = setting};
+    row.points = points.points().size();
+    row.field_bytes = static_cast<double>(field.field->memoryBytes());
+    row.shell_bytes = static_cast<double>(points.nodes().size_bytes() + points.points().size_bytes());
+    TickQuery query(*field.field, points, setting);
+    double largest_force = 0.0;
+    for (const JudgedPose& pose : poses) largest_force = std::max(largest_force, pose.truth.wrench.force.norm());
+    ErrorLists errors;
+    for (const JudgedPose& pose : poses)
+        errors.add(query.at(pose.X_FS), pose.truth, lever, kLeastForce * largest_force);
+    errors.summarise(row);
+    std::vector<double> times(timed.size(), kUnlimited);
+    for (int round = 0; round <= repetitions; ++round) {
+        for (std::size_t i = 0; i < timed.size(); ++i) {
+            const double begin = threadSeconds();
+            query.at(timed[i]);
+            if (round > 0) times[i] = std::min(times[i], threadSeconds() - begin);
+        }
+    }
+    row.time = spreadOf(std::move(times));
+    return row;
+}
+
 Result<AccuracyResult> sweepAccuracy(const model::PartSpec& field, const model::PartSpec& shell,
                                      const AccuracySpace& space, const std::vector<JudgedPose>& poses,
-                                     const std::vector<JudgedPose>& shaken, double lever, const StepReport& report) {
+                                     const std::vector<JudgedPose>& shaken, double lever, const StepReport& report,
+                                     model::BuildStore* store) {
     AccuracyResult result;
+    std::vector<Pose> timed;
+    for (const JudgedPose& pose : poses) timed.push_back(pose.X_FS);
     const double steps = static_cast<double>(space.tolerances.size() * (1 + space.spacings.size()));
     double done = 0.0;
     for (const double tolerance : space.tolerances) {
         report(fmt::format("field to {:g} um", 1e6 * tolerance), done / steps);
-        auto field_part = build(field, {.field = true, .tolerance = tolerance});
+        auto field_part = build(field, {.field = true, .tolerance = tolerance}, store);
         if (!field_part) return field_part.errors();
         done += 1.0;
         for (const double spacing : space.spacings) {
             report(fmt::format("field to {:g} um, points {:g} mm apart", 1e6 * tolerance, 1e3 * spacing), done / steps);
-            auto shell_part = build(shell, {.shell = true, .tolerance = tolerance, .spacing = spacing});
+            auto shell_part = build(shell, {.shell = true, .tolerance = tolerance, .spacing = spacing}, store);
             if (!shell_part) return shell_part.errors();
-            const model::SphereTree& points = *shell_part->part.shell;
             for (const model::FieldMode mode : space.modes) {
                 for (const int budget : space.budgets) {
-                    AccuracyRow row{.setting = {mode, tolerance, spacing, budget}};
-                    row.points = points.points().size();
-                    row.field_bytes = static_cast<double>(field_part->part.field->memoryBytes());
-                    row.shell_bytes = static_cast<double>(points.nodes().size_bytes() + points.points().size_bytes());
+                    AccuracyRow row = measureSetting({mode, tolerance, spacing, budget}, field_part->part,
+                                                     shell_part->part, poses, timed, space.repetitions, lever);
                     row.field_build = field_part->seconds;
                     row.shell_build = shell_part->seconds;
-                    measure(row.setting, *field_part->part.field, points, poses, space.repetitions, lever, row);
                     query::PartQuery query(field_part->part, shell_part->part,
                                            {.area_stiffness = kAreaStiffness, .max_nodes = budget, .mode = mode});
                     compare(row.setting, query, poses, result, row.bound_max);

@@ -7,6 +7,7 @@
 
 #include "analysis/truth/contact_path.h"
 #include "core/base/result.h"
+#include "core/model/part.h"
 #include "core/model/scene_spec.h"
 
 namespace passung::truth {
@@ -54,9 +55,17 @@ struct AccuracyRow {
     Spread torque = {};      // |T - T_true| / (|F_true| · lever)
     double bound_max = 0.0;  // largest error bound that the proven query states [m]
     double field_bytes = 0.0, shell_bytes = 0.0;
-    double field_build = 0.0, shell_build = 0.0;             // wall time on all cores [s]
+    double field_build = 0.0, shell_build = 0.0;             // wall time on all cores, when it was built [s]
     bool on_distance_front = false, on_force_front = false;  // no other row is both faster (p99) and nearer the truth
 };
+
+/// Asks the query that a tick performs at all `poses` and compares it with what is known of their
+/// truth; times it at `timed`, `repetitions` times each (the fastest counts) after one round that does not count. Fills
+/// time, errors, points and memory of a row.
+/// @pre `field` holds a field, `shell` a shell.
+AccuracyRow measureSetting(const AccuracySetting& setting, const model::Part& field, const model::Part& shell,
+                           const std::vector<JudgedPose>& poses, const std::vector<Pose>& timed, int repetitions,
+                           double lever);
 
 /// An answer that contradicts the truth by more than it vouches for.
 struct Disagreement {
@@ -76,10 +85,12 @@ using StepReport = std::function<void(const std::string& what, double share)>;
 
 /// Builds FIELD and SHELL at every resolution of `space`, times the query that a tick performs at all `poses`, compares
 /// it with their truth, and holds the proven query's intervals against the truth there and at `shaken`.
+/// `store`, if not null, keeps fields and points from run to run, with the time that building them took.
 /// Errors: a part cannot be built.
 Result<AccuracyResult> sweepAccuracy(const model::PartSpec& field, const model::PartSpec& shell,
                                      const AccuracySpace& space, const std::vector<JudgedPose>& poses,
-                                     const std::vector<JudgedPose>& shaken, double lever, const StepReport& report);
+                                     const std::vector<JudgedPose>& shaken, double lever, const StepReport& report,
+                                     model::BuildStore* store = nullptr);
 
 /// Marks the rows that no other beats in both time (p99) and error (p99): of the signed distance, and of the force.
 void markFronts(std::vector<AccuracyRow>& rows);

@@ -21,6 +21,7 @@ constexpr double kSlideDepth = 0.004, kSlideStep = 0.005;
 constexpr double kTouch = 2e-5;   // so near is touching
 constexpr double kMet = 0.02;     // of a depth: so near to it is near enough, what is reached is what counts
 constexpr double kSearch = 1e-4;  // resolution of the depth while searching
+constexpr std::size_t kSearchPieces = 5'000;
 constexpr int kSlides = 3, kCorrections = 4;
 constexpr int kMarch = 400, kPress = 60, kTries = 40, kHomes = 33;
 constexpr double kTilt = 5.0 * std::numbers::pi / 180.0;
@@ -55,7 +56,7 @@ std::vector<Pose> freeHomes(const PairTruth& truth) {
             // Boxes that share at least a tenth of SHELL's shortest side along every axis.
             const Vec3 shared = high.cwiseMin(box.high) - low.cwiseMax(box.low);
             if (shared.minCoeff() < 0.1 * truth.shellBounds().size().minCoeff()) continue;
-            if (truth.relationAt(home).relation == Relation::Apart) homes.push_back(home);
+            if (truth.rough().relationAt(home).relation == Relation::Apart) homes.push_back(home);
         }
     }
     return homes;
@@ -83,14 +84,17 @@ Start startOf(const PairTruth& truth, const std::vector<Pose>& homes, int path, 
 /// One path; nothing if it passes FIELD.
 class Path {
 public:
-    Path(const PairTruth& truth, const Start& start) : truth_(truth), start_(start), unit_(truth.length()) {}
+    Path(const PairTruth& truth, const Start& start, Truth asked)
+        : truth_(truth), rough_(truth.rough()), start_(start), asked_(asked), unit_(truth.length()) {}
 
     std::optional<std::vector<JudgedPose>> walk(Random& random) {
         const auto touch = approach();
         if (!touch) return std::nullopt;
         std::vector<JudgedPose> poses;
-        const auto add = [&](const Pose& X_FS, const char* phase) { poses.push_back({X_FS, truth_.at(X_FS), phase}); };
-        for (const double gap : kGaps) add(at(std::max(0.0, *touch - gap * unit_)), "approach");
+        const auto add = [&](const Pose& X_FS, const char* phase) {
+            poses.push_back({X_FS, asked_ == Truth::Whole ? truth_.at(X_FS) : truth_.quicklyAt(X_FS), phase});
+        };
+        for (const double gap : kGaps) add(at(std::max(0.0, *touch - gap * unit_)), kApproach);
         double s = *touch, slide_from = *touch;
         for (const double depth : kDepths) {
             s = press(s, depth * unit_);
@@ -110,14 +114,14 @@ public:
 
 private:
     Pose at(double s) const { return {start_.X_FS.q, start_.X_FS.p + s * start_.direction}; }
-    double distance(const Pose& X_FS) const { return truth_.distanceAt(X_FS, kSearch * unit_).distance; }
+    double distance(const Pose& X_FS) const { return rough_.distanceAt(X_FS, kSearch * unit_, kSearchPieces).distance; }
 
     /// How far to first contact: by sure steps, as long as the distance left.
     std::optional<double> approach() const {
         const double end = 2.0 * (truth_.fieldBounds().size().norm() + truth_.shellBounds().size().norm());
         double s = 0.0;
         for (int i = 0; i < kMarch && s < end; ++i) {
-            const PoseTruth truth = truth_.relationAt(at(s));
+            const PoseTruth truth = rough_.relationAt(at(s));
             if (truth.relation != Relation::Apart || truth.separation < kTouch * unit_) return s;
             s += truth.separation;
         }
@@ -134,8 +138,9 @@ private:
         return s;
     }
 
-    const PairTruth& truth_;
+    const PairTruth &truth_, &rough_;  // what is said of a pose, and what it is searched by
     Start start_;
+    Truth asked_;
     double unit_;
 };
 
@@ -153,14 +158,14 @@ void forEach(std::size_t count, const ProgressReport& report, const Body& body) 
 
 }  // namespace
 
-std::vector<JudgedPose> contactPath(const PairTruth& truth, int paths, std::uint64_t seed,
-                                    const ProgressReport& report) {
+std::vector<JudgedPose> contactPath(const PairTruth& truth, int paths, std::uint64_t seed, const ProgressReport& report,
+                                    Truth asked) {
     const std::vector<Pose> homes = freeHomes(truth);
     std::vector<std::vector<JudgedPose>> found(static_cast<std::size_t>(paths));
     forEach(found.size(), report, [&](std::size_t i) {
         Random random(seed * 1'000'003 + i);
         for (int attempt = 0; attempt < kTries && found[i].empty(); ++attempt) {
-            Path path(truth, startOf(truth, homes, static_cast<int>(i), random));
+            Path path(truth, startOf(truth, homes, static_cast<int>(i), random), asked);
             if (auto poses = path.walk(random)) found[i] = std::move(*poses);
         }
     });

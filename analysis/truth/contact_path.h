@@ -8,12 +8,16 @@
 
 namespace passung::truth {
 
+inline constexpr const char* kApproach = "approach";  // first phase of a path
+
 /// A pose and what is true there.
 struct JudgedPose {
     Pose X_FS;
     PoseTruth truth;
-    const char* phase = "given";  // of a path: "approach", "pressed", "slide"
+    const char* phase = "given";  // of a path: kApproach, "pressed", "slide"
 };
+
+enum class Truth { Whole, Quick };  // PairTruth::at, PairTruth::quicklyAt
 
 /// Told how much is done, 0 … 1. Called from several threads, never two at a time.
 using ProgressReport = std::function<void(double)>;
@@ -24,8 +28,8 @@ using ProgressReport = std::function<void(double)>;
 /// such a place. Of each path: three poses before contact, five from shallow to deep, three slid sideways at one depth;
 /// all distances are shares of SHELL's longest side, so that parts of every size are treated alike. The same seed gives
 /// the same poses. Paths that meet nothing are tried anew, at most kTries times.
-std::vector<JudgedPose> contactPath(const PairTruth& truth, int paths, std::uint64_t seed,
-                                    const ProgressReport& report);
+std::vector<JudgedPose> contactPath(const PairTruth& truth, int paths, std::uint64_t seed, const ProgressReport& report,
+                                    Truth asked = Truth::Whole);
 
 /// What is true at given poses.
 std::vector<JudgedPose> judgePoses(const PairTruth& truth, const std::vector<Pose>& poses,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <queue>
 #include <utility>
 
@@ -12,7 +13,8 @@ namespace passung::truth {
 namespace {
 
 constexpr int kRayDirections = 5;
-constexpr int kMaxCellsPerAxis = 96;
+constexpr std::uint32_t kLeafTriangles = 4;
+constexpr std::size_t kDeepest = 64;  // the tree halves its triangles: no branch is longer
 
 double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
     const Vec3 ab = b - a;
@@ -46,6 +48,12 @@ bool crosses(const Corners& t, const Vec3& p) {
 
 int binOf(double value, double low, double inverse_size, int count) {
     return std::clamp(static_cast<int>(std::floor((value - low) * inverse_size)), 0, count - 1);
+}
+
+/// Distance of `p` from the box, less what rounding may add: a triangle in it is never nearer.
+double distanceToBox(const Vec3& p, const model::Bounds& box) {
+    constexpr double kLess = 1.0 - 1e-12;
+    return kLess * (box.low - p).cwiseMax(p - box.high).cwiseMax(0.0).norm();
 }
 
 /// Lists of triangles per cell, all in one array: `visit(i, mark)` calls mark(cell) for every cell of triangle i.
@@ -83,7 +91,10 @@ ExactMesh::ExactMesh(const model::TriangleMesh& mesh) {
         triangles_.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
         for (const Vec3& corner : triangles_.back()) bounds_.extend(corner);
     }
-    buildGrid();
+    order_.resize(triangles_.size());
+    std::iota(order_.begin(), order_.end(), 0u);
+    grow(0, static_cast<std::uint32_t>(triangles_.size()));
+    for (const std::uint32_t i : order_) sorted_.push_back(triangles_[i]);
     Random random(20260);
     for (int i = 0; i < kRayDirections; ++i) {
         const Quat turn(random.normal(), random.normal(), random.normal(), random.normal());
@@ -93,100 +104,71 @@ ExactMesh::ExactMesh(const model::TriangleMesh& mesh) {
 
 // ---- closest triangle ----
 
-void ExactMesh::buildGrid() {
-    const Vec3 size = bounds_.size().cwiseMax(1e-9);
-    const double wanted = std::cbrt(size.prod() / (2.0 * static_cast<double>(triangles_.size())));
-    std::size_t count = 1;
-    for (int k = 0; k < 3; ++k) {
-        const auto axis = static_cast<std::size_t>(k);
-        cells_[axis] = std::clamp(static_cast<int>(size[k] / wanted), 1, kMaxCellsPerAxis);
-        cell_size_[k] = size[k] / cells_[axis];
-        count *= static_cast<std::size_t>(cells_[axis]);
+std::uint32_t ExactMesh::grow(std::uint32_t first, std::uint32_t end) {
+    const auto index = static_cast<std::uint32_t>(nodes_.size());
+    model::Bounds box, middles;
+    const auto middleOf = [&](std::uint32_t i) { return Vec3(triangles_[i][0] + triangles_[i][1] + triangles_[i][2]); };
+    for (std::uint32_t k = first; k < end; ++k) {
+        for (const Vec3& corner : triangles_[order_[k]]) box.extend(corner);
+        middles.extend(middleOf(order_[k]));
     }
-    const auto visit = [&](std::size_t i, const auto& mark) {
-        model::Bounds box;
-        for (const Vec3& corner : triangles_[i]) box.extend(corner);
-        // A margin, so that rounding cannot leave a triangle out of a cell that it touches.
-        const Vec3 margin = 1e-9 * cell_size_;
-        visitCells(cellOf(box.low - margin), cellOf(box.high + margin), mark);
-    };
-    fillCells(count, triangles_.size(), visit, cell_start_, cell_triangles_);
-}
-
-ExactMesh::Cell ExactMesh::cellOf(const Vec3& p) const {
-    Cell cell{};
-    for (int k = 0; k < 3; ++k) {
-        const auto axis = static_cast<std::size_t>(k);
-        cell[axis] = binOf(p[k], bounds_.low[k], 1.0 / cell_size_[k], cells_[axis]);
-    }
-    return cell;
-}
-
-std::size_t ExactMesh::indexOf(const Cell& cell) const {
-    const auto x = static_cast<std::size_t>(cell[0]), y = static_cast<std::size_t>(cell[1]);
-    const auto z = static_cast<std::size_t>(cell[2]);
-    return (z * static_cast<std::size_t>(cells_[1]) + y) * static_cast<std::size_t>(cells_[0]) + x;
-}
-
-template <class Visit>
-void ExactMesh::visitCells(const Cell& low, const Cell& high, const Visit& visit) const {
-    for (int z = low[2]; z <= high[2]; ++z) {
-        for (int y = low[1]; y <= high[1]; ++y) {
-            for (int x = low[0]; x <= high[0]; ++x) {
-                visit(indexOf({x, y, z}));
-            }
-        }
-    }
+    nodes_.push_back({box, first, end});
+    if (end - first <= kLeafTriangles) return index;
+    Eigen::Index axis = 0;
+    middles.size().maxCoeff(&axis);
+    const std::uint32_t middle = first + (end - first) / 2;
+    std::nth_element(order_.begin() + first, order_.begin() + middle, order_.begin() + end,
+                     [&](std::uint32_t a, std::uint32_t b) { return middleOf(a)[axis] < middleOf(b)[axis]; });
+    grow(first, middle);
+    const std::uint32_t right = grow(middle, end);
+    nodes_[index].right = right;
+    return index;
 }
 
 ExactMesh::Nearest ExactMesh::nearest(const Vec3& p) const {
     Nearest best{std::numeric_limits<double>::infinity(), 0};
-    const Cell home = cellOf(p);
-    Cell low = home, high = home;
-    Cell done_low = home, done_high = {home[0] - 1, home[1] - 1, home[2] - 1};  // nothing yet
-    const auto look = [&](int x, int y, int z) {
-        const std::size_t cell = indexOf({x, y, z});
-        for (std::uint32_t i = cell_start_[cell]; i < cell_start_[cell + 1]; ++i) {
-            const double distance = distanceToTriangle(p, triangles_[cell_triangles_[i]]);
-            if (distance < best.distance) best = {distance, cell_triangles_[i]};
-        }
+    struct Waiting {
+        double distance;  // of the box, a little less
+        std::uint32_t node;
     };
-    while (true) {
-        for (int z = low[2]; z <= high[2]; ++z) {
-            for (int y = low[1]; y <= high[1]; ++y) {
-                const bool seen = z >= done_low[2] && z <= done_high[2] && y >= done_low[1] && y <= done_high[1];
-                for (int x = low[0]; x <= high[0]; ++x) {
-                    if (seen && x == done_low[0]) x = done_high[0] + 1;
-                    if (x <= high[0]) look(x, y, z);
-                }
-            }
+    const auto waitingAt = [&](std::uint32_t node) { return Waiting{distanceToBox(p, nodes_[node].box), node}; };
+    std::array<Waiting, kDeepest> waiting;
+    std::size_t count = 0;
+    waiting[count++] = waitingAt(0);
+    while (count > 0) {
+        const Waiting next = waiting[--count];
+        if (next.distance >= best.distance) continue;
+        const Node& node = nodes_[next.node];
+        if (node.right != 0) {
+            Waiting near = waitingAt(next.node + 1), far = waitingAt(node.right);
+            if (far.distance < near.distance) std::swap(near, far);
+            waiting[count++] = far;
+            waiting[count++] = near;
+            continue;
         }
-        done_low = low;
-        done_high = high;
-        // Whatever was not seen yet lies beyond one of the faces of the cells seen.
-        double unseen = std::numeric_limits<double>::infinity();
-        for (int k = 0; k < 3; ++k) {
-            const auto axis = static_cast<std::size_t>(k);
-            if (low[axis] > 0) {
-                unseen = std::min(unseen, p[k] - (bounds_.low[k] + low[axis] * cell_size_[k]));
-                --low[axis];
-            }
-            if (high[axis] < cells_[axis] - 1) {
-                unseen = std::min(unseen, bounds_.low[k] + (high[axis] + 1) * cell_size_[k] - p[k]);
-                ++high[axis];
-            }
+        for (std::uint32_t k = node.first; k < node.end; ++k) {
+            const double distance = distanceToTriangle(p, sorted_[k]);
+            if (distance < best.distance) best = {distance, order_[k]};
         }
-        if (best.distance <= unseen) return best;
     }
+    return best;
 }
 
 void ExactMesh::collectAround(const Vec3& p, double radius, std::vector<std::uint32_t>& triangles) const {
-    const Vec3 reach = Vec3::Constant(radius);
-    if (((p + reach).array() < bounds_.low.array()).any() || ((p - reach).array() > bounds_.high.array()).any()) return;
-    visitCells(cellOf(p - reach), cellOf(p + reach), [&](std::size_t cell) {
-        triangles.insert(triangles.end(), cell_triangles_.begin() + cell_start_[cell],
-                         cell_triangles_.begin() + cell_start_[cell + 1]);
-    });
+    std::array<std::uint32_t, kDeepest> waiting;
+    std::size_t count = 0;
+    waiting[count++] = 0;
+    while (count > 0) {
+        const std::uint32_t index = waiting[--count];
+        const Node& node = nodes_[index];
+        if (distanceToBox(p, node.box) > radius) continue;
+        if (node.right != 0) {
+            waiting[count++] = index + 1;
+            waiting[count++] = node.right;
+        } else {
+            triangles.insert(triangles.end(), order_.begin() + node.first, order_.begin() + node.end);
+        }
+    }
 }
 
 // ---- inside ----

@@ -12,7 +12,7 @@ namespace passung::truth {
 
 using Corners = std::array<Vec3, 3>;
 
-/// Exact questions to one mesh, answered by other means than the contact core's: a uniform grid for the closest
+/// Exact questions to one mesh, answered by other means than the contact core's: a tree of boxes for the closest
 /// triangle, ray parity for the inside. Built once, then const; every query is thread-safe. Mesh frame, metres.
 class ExactMesh {
 public:
@@ -34,7 +34,7 @@ public:
     /// Positive outside [m].
     double signedDistance(const Vec3& p) const;
 
-    /// Indices of all triangles that come within `radius` of `p`, and perhaps some more; may repeat.
+    /// Indices of all triangles that come within `radius` of `p`, and perhaps some more.
     void collectAround(const Vec3& p, double radius, std::vector<std::uint32_t>& triangles) const;
 
     const std::vector<Corners>& triangles() const { return triangles_; }
@@ -51,19 +51,20 @@ private:
         bool odd(const Vec3& p) const;
     };
 
-    using Cell = std::array<int, 3>;
-    void buildGrid();
+    /// A box around the triangles `first` to `end` of the tree's order.
+    struct Node {
+        model::Bounds box;
+        std::uint32_t first, end;
+        std::uint32_t right = 0;  // 0: leaf; the left child follows its parent
+    };
+    std::uint32_t grow(std::uint32_t first, std::uint32_t end);
     RayView buildView(const Mat3& turn) const;
-    Cell cellOf(const Vec3& p) const;
-    std::size_t indexOf(const Cell& cell) const;
-    template <class Visit>
-    void visitCells(const Cell& low, const Cell& high, const Visit& visit) const;
 
     std::vector<Corners> triangles_;
     model::Bounds bounds_;
-    Vec3 cell_size_ = Vec3::Ones();
-    Cell cells_{};
-    std::vector<std::uint32_t> cell_start_, cell_triangles_;
+    std::vector<Node> nodes_;
+    std::vector<std::uint32_t> order_;  // of the triangles in the tree
+    std::vector<Corners> sorted_;       // the triangles in that order
     std::vector<RayView> views_;
 };
 

@@ -8,13 +8,15 @@ namespace passung::truth {
 
 namespace {
 
-constexpr double kTolerance = 5e-6;        // of the tessellations [m]: their chord error is a twentieth of that
-constexpr double kResolution = 1e-6;       // of the depth [m]
+constexpr double kTolerance = 5e-6;  // of the tessellations [m]: their chord error is a twentieth of that
+constexpr double kRoughTolerance = 20.0 * kTolerance;
+constexpr double kResolution = 1e-6;  // of the depth [m]
+constexpr std::size_t kQuickPieces = 20'000;
 constexpr double kDenseShare = 1.0 / 250;  // of SHELL's longest side: pieces of the dense sum
 constexpr double kCoarser = 2.0;           // a second sum, for the uncertainty of the first
 
-Result<model::Part> surfaceOf(const model::PartSpec& spec) {
-    auto part = model::buildPart(spec, {.tolerance = kTolerance});
+Result<model::Part> surfaceOf(const model::PartSpec& spec, double tolerance) {
+    auto part = model::buildPart(spec, {.tolerance = tolerance});
     if (part && part->mesh.triangles.empty()) return Error{.message = "has no triangles", .file = spec.name};
     return part;
 }
@@ -22,9 +24,18 @@ Result<model::Part> surfaceOf(const model::PartSpec& spec) {
 }  // namespace
 
 Result<PairTruth> PairTruth::build(const model::PartSpec& field, const model::PartSpec& shell) {
-    auto a = surfaceOf(field);
+    auto truth = build(field, shell, kTolerance);
+    if (!truth || !(truth->field_.shape || truth->shell_.shape)) return truth;
+    auto rough = build(field, shell, kRoughTolerance);
+    if (!rough) return rough.errors();
+    truth->rough_ = std::make_unique<PairTruth>(std::move(*rough));
+    return truth;
+}
+
+Result<PairTruth> PairTruth::build(const model::PartSpec& field, const model::PartSpec& shell, double tolerance) {
+    auto a = surfaceOf(field, tolerance);
     if (!a) return a.errors();
-    auto b = surfaceOf(shell);
+    auto b = surfaceOf(shell, tolerance);
     if (!b) return b.errors();
     if (!a->report.watertight)
         return Error{.message = "must be watertight to be FIELD: without an inside there is no true depth or force",
@@ -58,14 +69,16 @@ PoseTruth PairTruth::relationAt(const Pose& X_FS) const {
     return truth;
 }
 
-PoseTruth PairTruth::distanceAt(const Pose& X_FS, double resolution) const {
+PoseTruth PairTruth::distanceAt(const Pose& X_FS, double resolution, std::size_t max_pieces) const {
     PoseTruth truth = relationAt(X_FS);
     if (!std::isnan(truth.distance)) return truth;
-    const SmallestDistance found = surface_->smallestDistance(solid(), X_FS, resolution);
+    const SmallestDistance found = surface_->smallestDistance(solid(), X_FS, resolution, max_pieces);
     truth.distance = found.value;
     truth.uncertainty += found.uncertainty;
     return truth;
 }
+
+PoseTruth PairTruth::quicklyAt(const Pose& X_FS) const { return distanceAt(X_FS, kResolution, kQuickPieces); }
 
 PoseTruth PairTruth::at(const Pose& X_FS) const {
     PoseTruth truth = distanceAt(X_FS, kResolution);

@@ -88,49 +88,58 @@ std::uint32_t SurfaceTree::grow(std::uint32_t first, std::uint32_t end) {
     return index;
 }
 
-SmallestDistance SurfaceTree::smallestDistance(const Solid& solid, const Pose& X_FS, double resolution) const {
+SmallestDistance SurfaceTree::smallestDistance(const Solid& solid, const Pose& X_FS, double resolution,
+                                               std::size_t max_pieces) const {
     struct Piece {
         double bound;  // no point of the piece has a smaller φ
         std::uint32_t node;
-        Corners triangle;  // if it is no node: in the solid's frame
+        std::uint32_t near;  // if it is no node: a triangle of the solid that is near it
+        Corners triangle;    // in the solid's frame
     };
-    constexpr std::uint32_t kNoNode = std::numeric_limits<std::uint32_t>::max();
+    constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
     const auto later = [](const Piece& a, const Piece& b) { return a.bound > b.bound; };
     std::priority_queue<Piece, std::vector<Piece>, decltype(later)> waiting(later);
     double best = std::numeric_limits<double>::infinity();
+    const double slack = resolution + solid.chord_error;
     const auto addNode = [&](std::uint32_t index) {
         const Node& node = nodes_[index];
         const double bound = solid.signedDistance(X_FS * node.centre) - node.radius;
-        if (bound < best) waiting.push({bound, index, {}});
+        if (bound < best) waiting.push({bound, index, kNone, {}});
     };
-    const auto addTriangle = [&](const Corners& t) {
+    const auto addTriangle = [&](const Corners& t, std::uint32_t near) {
         const Vec3 middle = middleOf(t);
         const double phi = solid.signedDistance(middle);
         best = std::min(best, phi);
         double bound = phi - radiusOf(t, middle);
         if (bound >= best) return;
-        if (phi < 0.0) {
-            // The distance from one triangle is convex: no point of the piece is farther from it, or deeper, than a
-            // corner.
-            const Corners& nearest = solid.mesh.triangles()[solid.mesh.nearest(middle).triangle];
+        // The distance from one triangle is convex: no point of the piece is farther from it, or deeper, than a corner.
+        const auto improve = [&] {
+            const Corners& triangle = solid.mesh.triangles()[near];
             double deepest = 0.0;
-            for (const Vec3& corner : t) deepest = std::max(deepest, distanceToTriangle(corner, nearest));
+            for (const Vec3& corner : t) deepest = std::max(deepest, distanceToTriangle(corner, triangle));
             bound = std::max(bound, -deepest - solid.chord_error);
+        };
+        // Any triangle will do, the nearest one does best: it is searched only if that of the larger piece does not do.
+        if (phi < 0.0 && near != kNone) improve();
+        if (phi < 0.0 && bound < best - slack) {
+            near = solid.mesh.nearest(middle).triangle;
+            improve();
         }
-        if (bound < best) waiting.push({bound, kNoNode, t});
+        if (bound < best) waiting.push({bound, kNone, near, t});
     };
     addNode(0);
-    while (!waiting.empty() && waiting.top().bound < best - resolution - solid.chord_error) {
+    for (std::size_t pieces = 0; pieces < max_pieces && !waiting.empty() && waiting.top().bound < best - slack;
+         ++pieces) {
         const Piece piece = waiting.top();
         waiting.pop();
-        if (piece.node == kNoNode) {
-            for (const Corners& part : cut(piece.triangle)) addTriangle(part);
+        if (piece.node == kNone) {
+            for (const Corners& part : cut(piece.triangle)) addTriangle(part, piece.near);
         } else if (const Node& node = nodes_[piece.node]; node.right != 0) {
             addNode(piece.node + 1);
             addNode(node.right);
         } else {
             for (std::uint32_t i = node.first; i < node.end; ++i)
-                addTriangle({X_FS * triangles_[i][0], X_FS * triangles_[i][1], X_FS * triangles_[i][2]});
+                addTriangle({X_FS * triangles_[i][0], X_FS * triangles_[i][1], X_FS * triangles_[i][2]}, kNone);
         }
     }
     return {best, waiting.empty() ? 0.0 : std::max(0.0, best - waiting.top().bound)};

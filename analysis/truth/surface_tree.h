@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "analysis/truth/exact_mesh.h"
@@ -23,6 +25,8 @@ struct SmallestDistance {
     double uncertainty = 0.0;
 };
 
+inline constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
+
 /// The triangles of a surface in a tree of spheres: truth about how it lies to a solid, from exact distances to the
 /// solid; nothing of the contact core. A branch is left out only where its sphere proves that it changes
 /// nothing. @pre of all functions: `solid` is watertight, `X_FS` (surface to solid) finite.
@@ -30,9 +34,10 @@ class SurfaceTree {
 public:
     explicit SurfaceTree(const ExactMesh& surface);
 
-    /// By branch and bound over the whole surface, best first, until `uncertainty` ≤ `resolution` + chord error [m].
-    /// For surfaces that reach into the solid or nearly do: two flat faces that lie apart and parallel take very long.
-    SmallestDistance smallestDistance(const Solid& solid, const Pose& X_FS, double resolution) const;
+    /// By branch and bound over the whole surface, best first, until `uncertainty` ≤ `resolution` + chord error [m], or
+    /// until `max_pieces` of the surface were looked at: faces that lie along each other take very long to tell apart.
+    SmallestDistance smallestDistance(const Solid& solid, const Pose& X_FS, double resolution,
+                                      std::size_t max_pieces = kNoLimit) const;
 
     /// Area-weighted penalty, the integral itself:
     ///   F = -κ ∫ p n dA,  T = ∫ (x - o) × dF,   p = max(0, -φ), o the origin of the surface's frame; axes of the

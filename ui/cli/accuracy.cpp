@@ -18,14 +18,6 @@ namespace {
 
 constexpr std::size_t kMostPrinted = 20;  // disagreements
 
-/// "####......  42 %  what"
-std::string bar(const std::string& what, double share) {
-    constexpr int kWidth = 30;
-    const int done = std::clamp(static_cast<int>(share * kWidth), 0, kWidth);
-    return fmt::format("{}{} {:3.0f} %  {}", std::string(static_cast<std::size_t>(done), '#'),
-                       std::string(static_cast<std::size_t>(kWidth - done), '.'), 100.0 * share, what);
-}
-
 truth::AccuracySpace spaceOf(const AccuracyOptions& options, double length) {
     truth::AccuracySpace space;
     space.modes.clear();
@@ -102,16 +94,18 @@ int accuracy(const AccuracyOptions& options) {
     progress.show("reading the parts");
     const auto truth = truth::PairTruth::build(*field, *shell);
     if (!truth) return fail(truth.errors());
-    const auto poses_report = [&](double share) { progress.show(bar("finding poses and what is true there", share)); };
+    const auto poses_report = [&](double share) {
+        progress.show(progressBar("finding poses and what is true there", share));
+    };
     const auto poses = given.empty() ? truth::contactPath(*truth, options.paths, options.seed, poses_report)
                                      : truth::judgePoses(*truth, given, poses_report);
     if (poses.empty()) return fail({{.message = "no path of SHELL meets it", .file = options.field}});
     const auto shaken = truth::shakenPoses(*truth, poses, options.fcl_poses, options.seed, [&](double share) {
-        progress.show(bar("asking FCL about further poses", share));
+        progress.show(progressBar("asking FCL about further poses", share));
     });
-    const auto result = truth::sweepAccuracy(
-        *field, *shell, spaceOf(options, truth->length()), poses, shaken, truth->lever(),
-        [&](const std::string& what, double share) { progress.show(what.empty() ? what : bar(what, share)); });
+    const auto result =
+        truth::sweepAccuracy(*field, *shell, spaceOf(options, truth->length()), poses, shaken, truth->lever(),
+                             [&](const std::string& what, double share) { progress.show(progressBar(what, share)); });
     if (!result) return fail(result.errors());
     if (const auto done = writeAll(options, *result, poses); !done) return fail(done.errors());
     fmt::print("{}", truth::frontText(result->rows));

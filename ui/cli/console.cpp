@@ -1,7 +1,9 @@
 #include "ui/cli/console.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -67,6 +69,14 @@ Result<Done> OutputFile::commit() {
     const std::string reason = std::strerror(error_);
     if (opened) std::remove(temporary_.c_str());
     return Error{.message = "cannot be written: " + reason, .file = path_};
+}
+
+std::string progressBar(const std::string& what, double share) {
+    if (what.empty()) return "";
+    constexpr int kWidth = 30;
+    const int done = std::clamp(static_cast<int>(share * kWidth), 0, kWidth);
+    return fmt::format("{}{} {:3.0f} %  {}", std::string(static_cast<std::size_t>(done), '#'),
+                       std::string(static_cast<std::size_t>(kWidth - done), '.'), 100.0 * share, what);
 }
 
 ProgressLine::ProgressLine() : terminal_(isatty(STDERR_FILENO) != 0) {}

@@ -35,6 +35,9 @@ private:
     int error_ = 0;  // errno of the first failure
 };
 
+/// "####......  42 %  what"; nothing for nothing.
+std::string progressBar(const std::string& what, double share);
+
 /// A line on standard error that replaces itself on a terminal and is left out elsewhere.
 class ProgressLine {
 public:
