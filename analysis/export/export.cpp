@@ -25,6 +25,7 @@ std::vector<Table> makeTables(const StudyData& study) {
     tables.push_back(makeSessions(study));
     tables.push_back(makeParticipants(study));
     tables.push_back(makeTiming(study));
+    if (!study.accuracy.empty()) tables.push_back(makeAccuracy(study));
     return tables;
 }
 

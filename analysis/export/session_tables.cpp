@@ -160,4 +160,55 @@ Table makeTiming(const StudyData& study) {
     return table;
 }
 
+Table makeAccuracy(const StudyData& study) {
+    Table table{
+        "accuracy.csv",
+        "One row per setting of the contact that was measured for accuracy = \"auto\" when the protocol first ran: "
+        "what "
+        "it costs and errs, and which was picked. Measured on one machine: another database of the same protocol may "
+        "hold other times and picks.",
+        {{"protocol_sha256", "SHA-256 of the protocol's text, see protocol/", "", "text", "", 1, {}},
+         {"candidate", "Number of the setting in the order of measuring, from 0", "", "integer", "", 1, {}},
+         {"picked_for_us",
+          "Budgets (accuracy_budget_us) that it was picked for, parted by ;",
+          "µs",
+          "text",
+          "least error_p99_um among those with time_p99_us within the budget",
+          1,
+          {}},
+         {"mode", "Interpolation of the distance fields", "", "text", "", 1, {}},
+         {"tolerance_um", "Asked accuracy of the distance fields", "µm", "number", "", 1, {}},
+         {"spacing_mm", "Asked distance between the held part's points", "mm", "number", "", 1, {}},
+         {"budget_nodes", "Most tree nodes that a query visits; 0: no limit", "", "integer", "", 1, {}},
+         {"points", "Points of the held part", "", "integer", "", 1, {}},
+         {"time_median_us",
+          "Time of a query against all other parts, median over poses along contact paths",
+          "µs",
+          "number",
+          "of each pose the faster of two; processor time of one thread; the slowest scene counts",
+          1,
+          {}},
+         {"time_p99_us", "The same, 99th percentile", "µs", "number", "nearest rank", 1, {}},
+         {"time_max_us", "The same, largest", "µs", "number", "", 1, {}},
+         {"error_mean_um",
+          "Error of the signed distance, mean over poses along contact paths",
+          "µm",
+          "number",
+          "|answer - truth|, truth by FCL and exact distances; the worst scene counts",
+          1,
+          {}},
+         {"error_p99_um", "The same, 99th percentile", "µm", "number", "nearest rank", 1, {}},
+         {"error_max_um", "The same, largest", "µm", "number", "", 1, {}}},
+        {}};
+    for (const store::AccuracyRow& row : study.accuracy) {
+        std::string budgets;
+        for (const double budget : row.picked_for_us) budgets += (budgets.empty() ? "" : ";") + cell(budget);
+        table.rows.push_back({row.protocol_sha256, cell(row.candidate), budgets.empty() ? kMissing : budgets, row.mode,
+                              cell(row.tolerance_um), cell(row.spacing_mm), cell(row.budget_nodes), cell(row.points),
+                              cell(row.time_median_us), cell(row.time_p99_us), cell(row.time_max_us),
+                              cell(row.error_mean_um), cell(row.error_p99_um), cell(row.error_max_um)});
+    }
+    return table;
+}
+
 }  // namespace passung::exporter

@@ -10,4 +10,7 @@ Table makeSessions(const StudyData& study);
 Table makeParticipants(const StudyData& study);
 Table makeTiming(const StudyData& study);
 
+/// One row per setting that was measured for contact.accuracy = "auto".
+Table makeAccuracy(const StudyData& study);
+
 }  // namespace passung::exporter

@@ -124,6 +124,8 @@ constexpr std::array kKeys{
     Key{"contact", "damping_Ns_per_m", Number, atLeast(0), "", "(1 times the device's recommended damping; without a device preset 0)", "Damping of the coupling between hand and scene; with a device preset only what it recommends."},
     Key{"contact", "rotational_damping_Nms_per_rad", Number, atLeast(0), "", "(1 times the device's recommended damping; without a device preset 0)", "As the damping, for rotations."},
     Key{"contact", "area_stiffness_N_per_m3", Number, above(0), "", "1e9", "Pressure per depth of the area-weighted penalty."},
+    Key{"contact", "accuracy", Choice, kAny, "chosen|auto", "chosen", "chosen: tolerance_um, cell_mm, spacing_mm, mode and budget_nodes say it. auto (studies only): in their place the program measures, when the study first runs, what tolerances, spacings and node budgets cost and how much they err, and takes the most accurate whose query fits accuracy_budget_us; kept in the database for the whole study."},
+    Key{"contact", "accuracy_budget_us", Number, above(0), "", "(only with accuracy = \"auto\", and needed there)", "Most time that a query of the held part against all others may take, 99th percentile over poses along contact paths."},
     Key{"contact", "tolerance_um", Number, from(0.01, 10000), "", "20", "Asked accuracy of the distance fields near surfaces."},
     Key{"contact", "cell_mm", Number, from(0.01, 100), "", "(from the tolerance)", "Edge of a distance field's cell."},
     Key{"contact", "spacing_mm", Number, from(0.01, 100), "", "1", "Distance between the points of the point shells; the held part may have about two million."},
@@ -308,7 +310,7 @@ const Key* findKey(std::span<const std::string_view> tables, std::string_view na
 }
 
 double unitsPerSi(std::string_view name) {
-    if (name.ends_with("_um")) return 1e6;
+    if (name.ends_with("_um") || name.ends_with("_us")) return 1e6;
     if (name.ends_with("_mm") || name.ends_with("_mm_per_s") || name.ends_with("_ms")) return 1e3;
     if (name.ends_with("_deg")) return 180.0 / 3.14159265358979323846;
     return 1.0;

@@ -48,23 +48,25 @@ const char* variantName(model::PenaltyVariant variant) {
     return "";
 }
 
-std::string contactJson(const model::ContactSpec& contact) {
-    return JsonObject()
-        .text("method", methodName(contact.method))
+std::string contactJson(const Condition& condition) {
+    const model::ContactSpec& contact = condition.scene.contact;
+    const bool automatic = condition.accuracy_budget > 0.0;
+    JsonObject json;
+    json.text("method", methodName(contact.method))
         .text("variant", variantName(contact.variant))
         .number("stiffness_N_per_m", contact.stiffness)
         .number("rotational_stiffness_Nm_per_rad", contact.rotational_stiffness)
         .number("damping_Ns_per_m", contact.damping)
         .number("rotational_damping_Nms_per_rad", contact.rotational_damping)
-        .number("area_stiffness_N_per_m3", contact.area_stiffness)
-        .number("tolerance_m", contact.tolerance)
-        .number("cell_m", contact.cell)
-        .number("spacing_m", contact.spacing)
-        .text("mode", model::modeName(contact.mode))
-        .integer("budget_nodes", contact.budget_nodes)
-        .boolean("two_way", contact.two_way)
-        .number("proxy_filter_hz", contact.proxy_filter)
-        .str();
+        .number("area_stiffness_N_per_m3", contact.area_stiffness);
+    if (automatic) json.text("accuracy", "auto").number("accuracy_budget_s", condition.accuracy_budget);
+    if (!automatic || condition.accuracy_picked)
+        json.number("tolerance_m", contact.tolerance)
+            .number("cell_m", contact.cell)
+            .number("spacing_m", contact.spacing)
+            .text("mode", model::modeName(contact.mode))
+            .integer("budget_nodes", contact.budget_nodes);
+    return json.boolean("two_way", contact.two_way).number("proxy_filter_hz", contact.proxy_filter).str();
 }
 
 std::string limitsJson(const model::OutputLimits& limits) {
@@ -144,7 +146,7 @@ std::string paramsJson(const Condition& condition) {
         .text("device", condition.device)
         .text("shown_pose", condition.shown == ShownPose::Proxy ? "proxy" : "device")
         .json("parts", listOf(scene.parts, partJson))
-        .json("contact", contactJson(scene.contact))
+        .json("contact", contactJson(condition))
         .json("limits", limitsJson(scene.limits))
         .json("registration", JsonObject()
                                   .json("device_base", poseJson(scene.registration.X_WB))

@@ -123,6 +123,7 @@ private:
                                       "required in a study"));
         }
         condition.scene = std::move(content.scene);
+        condition.accuracy_budget = content.accuracy_budget;
         condition.device = std::move(content.device);
         if (errors_.size() == before && root_.has("task")) condition.task = readTask(tables, condition.scene, errors_);
         condition.shown = readFeedback(tables.feedback);

@@ -14,7 +14,8 @@ namespace passung::protocol {
 /// A scene as read from a tree of values; only for readers in this room.
 struct SceneContent {
     model::SceneSpec scene;
-    std::string device;  // preset, empty if none is named
+    std::string device;            // preset, empty if none is named
+    double accuracy_budget = 0.0;  // [s] > 0: contact.accuracy is "auto"
 };
 
 /// Reads a scene's table. `ids`: its tables in the key table; `path`: its name in messages ("scene" or "").

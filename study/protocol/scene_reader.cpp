@@ -204,6 +204,19 @@ model::ContactSpec readContact(const TableReader& read, const DeviceDescription*
     return contact;
 }
 
+/// The budget of accuracy = "auto" [s], else 0.
+double readAccuracyBudget(const TableReader& read) {
+    const bool automatic = read.text("accuracy") == "auto";
+    if (!automatic) {
+        if (read.has("accuracy_budget_us")) read.fail("accuracy_budget_us", "needs accuracy = \"auto\"");
+        return 0.0;
+    }
+    for (const char* key : {"tolerance_um", "cell_mm", "spacing_mm", "mode", "budget_nodes"})
+        if (read.has(key)) read.fail(key, "is picked by accuracy = \"auto\"");
+    if (!read.has("accuracy_budget_us")) read.fail("accuracy_budget_us", "required by accuracy = \"auto\"");
+    return read.numberOr("accuracy_budget_us", 0.0);
+}
+
 model::Registration readRegistration(const TableReader& read, double units) {
     model::Registration registration;
     registration.X_WB = readPose(read, "position", "rotation_deg", units);
@@ -241,6 +254,7 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     content.scene.limits = readLimits(device_table, device);
     const auto contact_table = open("contact");
     content.scene.contact = readContact(contact_table, device, device_table.has("preset"));
+    content.accuracy_budget = readAccuracyBudget(contact_table);
     const auto registration_table = open("registration");
     content.scene.registration = readRegistration(registration_table, units);
     if (errors.size() == before) {
@@ -269,6 +283,9 @@ Result<model::SceneSpec> readSceneText(const std::string& text, const std::strin
     if (const auto other = otherKind(*document, FileKind::Scene)) return errorAt(document->place, "", "", *other);
     Errors errors;
     auto content = readSceneNode(*document, {"scene"}, "", devices, errors);
+    if (content.accuracy_budget > 0.0)
+        errors.push_back(errorAt(document->place, "contact.accuracy", "\"auto\"",
+                                 "only in a study, whose database keeps what was picked"));
     tidy(errors);
     if (!errors.empty()) return errors;
     return std::move(content.scene);

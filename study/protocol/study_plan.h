@@ -46,6 +46,9 @@ struct Condition {
     std::vector<std::size_t> levels;  // index per factor
     std::string levels_json;          // {"factor": "label", ...}
     model::SceneSpec scene;           // complete: stiffness resolved to numbers
+    double accuracy_budget = 0.0;     // of a query [s]; > 0: accuracy = "auto" picks what the scene's contact has of
+                                      // tolerance, cell, spacing, mode and nodes
+    bool accuracy_picked = false;     // it has
     PegInHoleTask task;
     ShownPose shown = ShownPose::Proxy;
     std::string device;       // preset

@@ -253,8 +253,35 @@ CREATE INDEX stream_of_segment ON stream(segment_id);
 CREATE INDEX segment_of_session ON segment(session_id);
 )sql";
 
+constexpr const char* kRevision2 = R"sql(
+-- what was measured for contact.accuracy = "auto" when the protocol first ran, and what was picked
+CREATE TABLE accuracy_candidate(
+    protocol_sha256 TEXT NOT NULL REFERENCES protocol_version,
+    candidate INTEGER NOT NULL CHECK(candidate >= 0),
+    mode TEXT NOT NULL,
+    tolerance_um REAL NOT NULL CHECK(tolerance_um > 0),
+    spacing_mm REAL NOT NULL CHECK(spacing_mm > 0),
+    budget_nodes INTEGER NOT NULL CHECK(budget_nodes >= 0),
+    points INTEGER NOT NULL,
+    time_median_us REAL NOT NULL,
+    time_p99_us REAL NOT NULL,
+    time_max_us REAL NOT NULL,
+    error_mean_um REAL NOT NULL,
+    error_p99_um REAL NOT NULL,
+    error_max_um REAL NOT NULL,
+    PRIMARY KEY(protocol_sha256, candidate)) STRICT, WITHOUT ROWID;
+CREATE TABLE accuracy_pick(
+    protocol_sha256 TEXT NOT NULL,
+    budget_us REAL NOT NULL CHECK(budget_us > 0),
+    candidate INTEGER NOT NULL,
+    PRIMARY KEY(protocol_sha256, budget_us),
+    FOREIGN KEY(protocol_sha256, candidate) REFERENCES accuracy_candidate) STRICT, WITHOUT ROWID;
+)sql";
+
 constexpr std::array kRevisions = {
     Revision{1, "Protocols, participants, sessions, trials, samples, timing and questionnaires", kRevision1, 1},
+    // A reader that does not know what was picked would replay another scene.
+    Revision{2, "What accuracy = \"auto\" picked, with its calibration", kRevision2, 2},
 };
 
 bool isEmpty(const Database& database) { return database.integer("SELECT count(*) FROM sqlite_master") == 0; }

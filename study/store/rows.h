@@ -29,6 +29,25 @@ struct MeshRow {
     std::int64_t bytes = 0;
 };
 
+/// A setting that was measured for contact.accuracy = "auto" when the protocol first ran in this database. What was
+/// picked then holds for all its sessions.
+struct AccuracyRow {
+    std::string protocol_sha256;
+    std::int64_t candidate = 0;  // in the order of measuring, from 0
+    std::string mode;
+    double tolerance_um = 0.0;
+    double spacing_mm = 0.0;
+    std::int64_t budget_nodes = 0;  // 0: none
+    std::int64_t points = 0;        // of the held part
+    double time_median_us = 0.0;    // of a query
+    double time_p99_us = 0.0;
+    double time_max_us = 0.0;
+    double error_mean_um = 0.0;  // of the signed distance, against independent truth
+    double error_p99_um = 0.0;
+    double error_max_um = 0.0;
+    std::vector<double> picked_for_us = {};  // budgets of a query that it was picked for, ascending
+};
+
 struct FactorRow {
     std::string protocol_sha256;
     std::string factor;

@@ -6,6 +6,7 @@
 #include "study/measures/measures.h"
 #include "study/protocol/document.h"
 #include "study/protocol/json.h"
+#include "study/store/accuracy_rows.h"
 #include "study/store/digest.h"
 #include "study/store/open_database.h"
 #include "study/store/process_lock.h"
@@ -355,6 +356,21 @@ Result<std::string> Store::importProtocol(const protocol::StudyPlan& plan) {
     const auto meshes = readMeshes(plan);
     if (!meshes) return meshes.errors();
     return thread_->call([&](const Database& database) { return importPlan(database, plan, *meshes, options_); });
+}
+
+Result<std::vector<AccuracyRow>> Store::accuracy(const std::string& protocol_sha256) {
+    return thread_->call([&](const Database& database) {
+        std::vector<AccuracyRow> rows = readAccuracy(database);
+        std::erase_if(rows, [&](const AccuracyRow& row) { return row.protocol_sha256 != protocol_sha256; });
+        return rows;
+    });
+}
+
+Result<Done> Store::keepAccuracy(const std::vector<AccuracyRow>& rows) {
+    return thread_->call([&](const Database& database) {
+        insertAccuracy(database, rows);
+        return Done{};
+    });
 }
 
 Result<bool> Store::enrol(const std::string& code, protocol::ParticipantKind kind, const std::string& created_utc) {

@@ -13,6 +13,7 @@
 #include "study/protocol/participant.h"
 #include "study/protocol/study_plan.h"
 #include "study/store/identity.h"
+#include "study/store/rows.h"
 #include "study/store/session_writer.h"
 #include "study/store/utc_clock.h"
 
@@ -79,6 +80,11 @@ public:
     /// changes nothing; another seed than that of the sessions of this protocol is refused, and so is a mesh file with
     /// another content.
     Result<std::string> importProtocol(const protocol::StudyPlan& plan);
+
+    /// What was measured and picked for the protocol's accuracy = "auto", by candidate; none if it never ran so.
+    Result<std::vector<AccuracyRow>> accuracy(const std::string& protocol_sha256);
+    /// Keeps that for good. A protocol that has it already is an error.
+    Result<Done> keepAccuracy(const std::vector<AccuracyRow>& rows);
 
     /// True if the participant is new, false if already enrolled with this kind; another kind is an error, and so is a
     /// code that does not begin with the kind's letter.

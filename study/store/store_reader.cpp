@@ -1,5 +1,6 @@
 #include "study/store/store_reader.h"
 
+#include "study/store/accuracy_rows.h"
 #include "study/store/open_database.h"
 #include "study/store/sample_codec.h"
 #include "study/store/sqlite.h"
@@ -194,6 +195,10 @@ Result<std::vector<MeshRow>> StoreReader::meshes() const {
                 return MeshRow{row.text(0), row.text(1), row.text(2), row.integer(3)};
             });
     });
+}
+
+Result<std::vector<AccuracyRow>> StoreReader::accuracy() const {
+    return guarded(path_, [&] { return readAccuracy(*database_); });
 }
 
 Result<std::vector<FactorRow>> StoreReader::factors() const {

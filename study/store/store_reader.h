@@ -25,6 +25,7 @@ public:
 
     Result<std::vector<ProtocolRow>> protocols() const;    // by name, version, hash
     Result<std::vector<MeshRow>> meshes() const;           // protocols as above, meshes by name
+    Result<std::vector<AccuracyRow>> accuracy() const;     // by protocol hash, then candidate
     Result<std::vector<FactorRow>> factors() const;        // protocols as above, factors as the protocol lists them
     Result<std::vector<ConditionRow>> conditions() const;  // likewise
     Result<std::vector<MeasureRow>> measures() const;

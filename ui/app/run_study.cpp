@@ -8,6 +8,7 @@
 #include "study/measures/measures.h"
 #include "study/session/participant_order.h"
 #include "study/store/identity.h"
+#include "ui/app/auto_accuracy.h"
 #include "ui/app/simulated_hand.h"
 
 namespace passung::app {
@@ -116,7 +117,9 @@ Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& optio
     if (listener.recovered && !opened.recovery.empty()) listener.recovered(opened.recovery);
     auto sha256 = opened.store->importProtocol(plan);
     if (!sha256) return sha256.errors();
-    StudyRun run(plan, options, listener, *opened.store, *sha256);
+    auto picked = withKeptAccuracy(plan, *sha256, *opened.store, listener.calibrating);
+    if (!picked) return picked.errors();
+    StudyRun run(*picked, options, listener, *opened.store, *sha256);
     for (int i = 0; i < options.simulated; ++i) {
         if (auto end = run.participant(i + 1); !end || *end == RunEnd::Interrupted) return end;
     }

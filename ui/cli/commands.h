@@ -18,6 +18,7 @@ int check(const CheckOptions& options);
 struct ExplainOptions {
     std::string file;      // protocol or scene
     int participants = 0;  // 0: as many as the protocol plans
+    std::string database;  // of the study: what accuracy = "auto" picked there; empty: measured anew
 };
 int explain(const ExplainOptions& options);
 

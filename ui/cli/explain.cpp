@@ -7,6 +7,9 @@
 #include "study/protocol/protocol_reader.h"
 #include "study/protocol/scene_reader.h"
 #include "study/session/plan_text.h"
+#include "study/store/digest.h"
+#include "study/store/store_reader.h"
+#include "ui/app/auto_accuracy.h"
 #include "ui/app/disk_store.h"
 #include "ui/app/run_study.h"
 #include "ui/app/stage_cost.h"
@@ -66,6 +69,35 @@ std::string costKey(protocol::Condition condition) {
     return protocol::paramsJson(condition) + meshes;
 }
 
+/// What accuracy = "auto" picks here, or what the study's database keeps; printed with what was measured.
+Result<Done> explainAccuracy(const std::string& database, protocol::StudyPlan& plan, model::BuildStore* builds) {
+    if (!app::asksForAccuracy(plan)) return Done{};
+    const std::string sha256 = store::sha256Hex(plan.source_text);
+    std::vector<store::AccuracyRow> rows;
+    if (!database.empty()) {
+        const auto reader = store::StoreReader::open(database);
+        if (!reader) return reader.errors();
+        auto kept = reader->accuracy();
+        if (!kept) return kept.errors();
+        rows = std::move(*kept);
+        std::erase_if(rows, [&](const store::AccuracyRow& row) { return row.protocol_sha256 != sha256; });
+    } else {
+        ProgressLine progress;
+        auto measured = app::measureAccuracy(
+            plan, sha256, [&](const std::string& what, double share) { progress.show(progressBar(what, share)); },
+            builds);
+        if (!measured) return measured.errors();
+        rows = std::move(*measured);
+    }
+    if (const auto applied = app::applyAccuracy(sha256, rows, plan); !applied) return applied;
+    fmt::print("\nAccuracy, {}\n{}",
+               database.empty() ? "measured now on this machine: a study keeps what its first run picks, which --db "
+                                  "shows; the keys picked, written into the protocol, hold everywhere"
+                                : "as " + database + " keeps it",
+               app::describeAccuracy(rows));
+    return Done{};
+}
+
 Result<Done> explainEffects(const protocol::StudyPlan& plan, model::PartCache& cache) {
     fmt::print("\nEffects, their cost measured on this machine in sliding contact\n");
     std::vector<std::vector<const protocol::Condition*>> groups;  // as the protocol lists their first
@@ -98,10 +130,12 @@ int explain(const ExplainOptions& options) {
         const auto done = printStages(*spec, cache);
         return done ? 0 : fail(done.errors());
     }
-    const auto plan = protocol::readProtocol(options.file, app::knownDevices(), app::knownMeasures());
+    auto plan = protocol::readProtocol(options.file, app::knownDevices(), app::knownMeasures());
     if (!plan) return fail(plan.errors());
     fmt::print("{}",
                session::describePlan(*plan, options.participants > 0 ? options.participants : plan->participants));
+    if (const auto picked = explainAccuracy(options.database, *plan, store.get()); !picked)
+        return fail(picked.errors());
     const auto done = explainEffects(*plan, cache);
     return done ? 0 : fail(done.errors());
 }

@@ -111,6 +111,8 @@ private:
         sub = command("explain", "design, orders and balance, or the stages of a scene's tick", explain_, explain);
         sub->add_option("FILE", explain_.file, "protocol or scene")->required();
         sub->add_option("--participants", explain_.participants, "how many orders to print")->check(wholeFrom<int>(1));
+        sub->add_option("--db", explain_.database,
+                        "the study's database: shows what accuracy = \"auto\" picked there instead of measuring anew");
 
         sub = command("run", "perform a study with simulated participants", run_, passung::cli::run);
         sub->add_option("PROTOCOL", run_.protocol, "study file (.toml)")->required();

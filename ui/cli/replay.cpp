@@ -10,6 +10,7 @@
 #include "study/store/digest.h"
 #include "study/store/hex_text.h"
 #include "study/store/store_reader.h"
+#include "ui/app/auto_accuracy.h"
 #include "ui/app/disk_store.h"
 #include "ui/app/run_study.h"
 #include "ui/cli/commands.h"
@@ -109,6 +110,10 @@ private:
                 continue;
             }
             if (const auto same = compareMeshes(row.sha256, *plan); !same) return same.errors();
+            const auto accuracy = reader_.accuracy();
+            if (!accuracy) return accuracy.errors();
+            if (const auto applied = app::applyAccuracy(row.sha256, *accuracy, *plan); !applied)
+                return applied.errors();
             return plan;
         }
         errors.push_back({.message =

@@ -348,5 +348,20 @@ TEST(SceneReader, ReadsAFileWithOnePart) {
     EXPECT_FALSE(readPart(path.string()));
 }
 
+TEST(SceneReader, AutomaticAccuracyNeedsABudgetAStudyAndNothingElseChosen) {
+    // Truth: invariant
+    const auto contact = [](const std::string& keys) { return errorsOf(kParts + "[contact]\n" + keys); };
+    EXPECT_NE(contact("accuracy_budget_us = 50\n").find("accuracy_budget_us: 50: needs accuracy = \"auto\""),
+              std::string::npos);
+    EXPECT_NE(contact("accuracy = \"auto\"\n").find("accuracy_budget_us: required"), std::string::npos);
+    for (const char* key :
+         {"tolerance_um = 20", "cell_mm = 1", "spacing_mm = 1", "mode = \"linear\"", "budget_nodes = 100"}) {
+        const std::string found = contact("accuracy = \"auto\"\naccuracy_budget_us = 50\n" + std::string(key) + "\n");
+        EXPECT_NE(found.find("is picked by accuracy = \"auto\""), std::string::npos) << key << ": " << found;
+    }
+    EXPECT_NE(contact("accuracy = \"auto\"\naccuracy_budget_us = 50\n").find("only in a study"), std::string::npos);
+    EXPECT_EQ(contact("accuracy = \"chosen\"\ntolerance_um = 30\n"), "");
+}
+
 }  // namespace
 }  // namespace passung::protocol

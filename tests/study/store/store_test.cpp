@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <thread>
+#include <tuple>
 
 #include "study/design/williams.h"
 #include "study/store/revisions.h"
@@ -290,6 +291,54 @@ TEST(Store, AMissingFileIsNotCreatedUnlessAsked) {
     EXPECT_FALSE(StoreReader::open(folder / "none.db"));
     EXPECT_FALSE(std::filesystem::exists(folder / "none.db"));
     EXPECT_EQ(Store::open(folder / "no/such/folder.db", fake::options()).outcome, OpenOutcome::Failed);
+}
+
+std::vector<AccuracyRow> twoCandidates(const std::string& protocol_sha256) {
+    AccuracyRow coarse{protocol_sha256, 0, "trilinear", 50.0, 2.0, 0, 900, 10.5, 21.25, 30.0, 40.0, 81.0, 90.0};
+    AccuracyRow fine{protocol_sha256, 1, "linear", 20.0, 0.5, 300, 5000, 30.5, 47.25, 60.0, 5.0, 9.0, 11.0};
+    coarse.picked_for_us = {25.0, 40.0};
+    return {coarse, fine};
+}
+
+TEST(Store, KeepsWhatAutomaticAccuracyMeasuredAndPickedOnceAndForGood) {
+    // Truth: invariant
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    const auto store = fake::openStore(path);
+    const std::string sha256 = require(store->importProtocol(fake::makePlan()));
+    EXPECT_TRUE(require(store->accuracy(sha256)).empty());
+    require(store->keepAccuracy(twoCandidates(sha256)));
+    const auto kept = require(store->accuracy(sha256));
+    ASSERT_EQ(kept.size(), 2u);
+    const std::vector<AccuracyRow> expected = twoCandidates(sha256);
+    for (std::size_t i = 0; i < 2; ++i) {
+        const auto all = [](const AccuracyRow& r) {
+            return std::tie(r.protocol_sha256, r.candidate, r.mode, r.tolerance_um, r.spacing_mm, r.budget_nodes,
+                            r.points, r.time_median_us, r.time_p99_us, r.time_max_us, r.error_mean_um, r.error_p99_um,
+                            r.error_max_um, r.picked_for_us);
+        };
+        EXPECT_EQ(all(kept[i]), all(expected[i])) << i;
+    }
+    EXPECT_FALSE(store->keepAccuracy(twoCandidates(sha256))) << "a second time";
+    EXPECT_FALSE(store->keepAccuracy(twoCandidates("no such protocol")));
+    EXPECT_TRUE(require(store->accuracy("no such protocol")).empty());
+}
+
+TEST(Store, AFileOfTheFirstRevisionIsUpgradedAndKeepsPicksThen) {
+    // Truth: invariant. The first revision's own statement makes the file.
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    {
+        const Database old(path, OpenMode::Create);
+        old.execute("PRAGMA application_id=" + std::to_string(kApplicationId));
+        old.execute(revisions().front().sql);
+        old.prepare("INSERT INTO schema_revision VALUES(1, 'first', 1, '')").run();
+    }
+    auto opened = Store::open(path, fake::options());
+    ASSERT_EQ(opened.outcome, OpenOutcome::Upgraded);
+    const std::string sha256 = require(opened.store->importProtocol(fake::makePlan()));
+    require(opened.store->keepAccuracy(twoCandidates(sha256)));
+    EXPECT_EQ(require(opened.store->accuracy(sha256)).size(), 2u);
 }
 
 TEST(Store, NewerFilesFollowTheRuleOfTheOldestReader) {

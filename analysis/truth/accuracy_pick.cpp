@@ -1,0 +1,189 @@
+#include "analysis/truth/accuracy_pick.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "core/model/scene.h"
+
+namespace passung::truth {
+
+namespace {
+
+constexpr int kPaths = 4;
+constexpr int kBetween = 6;         // timed poses from one pose of a path to its next
+constexpr std::uint64_t kSeed = 1;  // the same poses for the same parts
+constexpr int kRepetitions = 2;
+constexpr std::array kTolerances{100e-6, 50e-6, 20e-6, 10e-6};  // [m]
+constexpr std::array kNodes{300, 100};
+constexpr double kPathShare = 0.4;  // of the work, as the progress shows it
+
+/// One obstacle and the held part, with poses and their truth.
+struct Pair {
+    model::PartSpec obstacle, held;
+    double length = 0.0, lever = 0.0;  // of the held part, see PairTruth
+    std::vector<JudgedPose> poses;
+    std::vector<Pose> timed;
+};
+
+/// What stands between the poses of each path too: a tick's query is asked along a motion.
+std::vector<Pose> along(const std::vector<JudgedPose>& poses) {
+    std::vector<Pose> timed;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        const Pose& from = poses[i].X_FS;
+        timed.push_back(from);
+        const auto nears = [&](std::size_t k) { return std::string_view(poses[k].phase) == kApproach; };
+        if (i + 1 == poses.size() || (nears(i + 1) && !nears(i))) continue;  // the end of a path
+        const Pose& to = poses[i + 1].X_FS;
+        for (int k = 1; k < kBetween; ++k) {
+            const double share = static_cast<double>(k) / kBetween;
+            timed.push_back({from.q.slerp(share, to.q), from.p + share * (to.p - from.p)});
+        }
+    }
+    return timed;
+}
+
+Result<Pair> makePair(const model::PartSpec& obstacle, const model::PartSpec& held, const ProgressReport& report) {
+    const auto truth = PairTruth::build(obstacle, held);
+    if (!truth) return truth.errors();
+    Pair pair{obstacle, held, truth->length(), truth->lever(), contactPath(*truth, kPaths, kSeed, report, Truth::Quick),
+              {}};
+    if (pair.poses.empty())
+        return Error{.message = "the held part never meets it, so that no accuracy can be picked",
+                     .key = "part " + obstacle.name};
+    pair.timed = along(pair.poses);
+    return pair;
+}
+
+template <class Join>
+void join(Spread& into, const Spread& other, const Join& joined) {
+    into.mean = joined(into.mean, other.mean);
+    into.median = joined(into.median, other.median);
+    into.p99 = joined(into.p99, other.p99);
+    into.max = joined(into.max, other.max);
+}
+
+/// Of the same setting elsewhere: the larger errors, and `joined` times.
+template <class Join>
+void merge(AccuracyRow& row, const AccuracyRow& other, const Join& joined) {
+    join(row.time, other.time, joined);
+    for (Spread AccuracyRow::*error : {&AccuracyRow::distance, &AccuracyRow::depth, &AccuracyRow::signed_distance,
+                                       &AccuracyRow::force, &AccuracyRow::direction, &AccuracyRow::torque})
+        join(row.*error, other.*error, [](double a, double b) { return std::fmax(a, b); });
+    row.points = std::max(row.points, other.points);
+    row.field_bytes += other.field_bytes;
+    row.shell_bytes = std::max(row.shell_bytes, other.shell_bytes);
+}
+
+/// All scenes, asked one setting after the other.
+class Candidates {
+public:
+    explicit Candidates(model::BuildStore* store) : parts_(store) {}
+
+    Result<Done> addScene(const model::SceneSpec& scene, const ProgressReport& report) {
+        const auto held =
+            std::find_if(scene.parts.begin(), scene.parts.end(), [](const auto& part) { return part.held; });
+        scenes_.emplace_back();
+        for (const model::PartSpec& part : scene.parts) {
+            if (part.held) continue;
+            auto pair = makePair(part, *held, report);
+            if (!pair) return pair.errors();
+            scenes_.back().push_back(std::move(*pair));
+        }
+        return Done{};
+    }
+
+    /// Longest side of a held part [m].
+    double length() const {
+        double length = 0.0;
+        for (const auto& scene : scenes_)
+            for (const Pair& pair : scene) length = std::max(length, pair.length);
+        return length;
+    }
+
+    Result<AccuracyRow> measure(const AccuracySetting& setting) {
+        std::optional<AccuracyRow> all;
+        for (const std::vector<Pair>& scene : scenes_) {
+            std::optional<AccuracyRow> sum;
+            for (const Pair& pair : scene) {
+                const auto field = parts_.get(pair.obstacle, {.field = true, .tolerance = setting.tolerance});
+                if (!field) return field.errors();
+                const auto shell =
+                    parts_.get(pair.held, {.shell = true, .tolerance = setting.tolerance, .spacing = setting.spacing});
+                if (!shell) return shell.errors();
+                const AccuracyRow row =
+                    measureSetting(setting, **field, **shell, pair.poses, pair.timed, kRepetitions, pair.lever);
+                if (sum)
+                    merge(*sum, row, [](double a, double b) { return a + b; });
+                else
+                    sum = row;
+            }
+            if (all)
+                merge(*all, *sum, [](double a, double b) { return std::fmax(a, b); });
+            else
+                all = sum;
+        }
+        return *all;
+    }
+
+private:
+    model::PartCache parts_;
+    std::vector<std::vector<Pair>> scenes_;
+};
+
+}  // namespace
+
+Result<std::vector<AccuracyRow>> measureCandidates(const std::vector<const model::SceneSpec*>& scenes,
+                                                   std::span<const double> budgets, const StepReport& report,
+                                                   model::BuildStore* store) {
+    Candidates candidates(store);
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        const auto added = candidates.addScene(*scenes[i], [&](double share) {
+            report("what is true along contact paths",
+                   kPathShare * (static_cast<double>(i) + share) / static_cast<double>(scenes.size()));
+        });
+        if (!added) return added.errors();
+    }
+    std::vector<AccuracyRow> rows;
+    const std::vector<double> spacings = defaultSpacings(candidates.length());
+    const auto [least, most] = std::minmax_element(budgets.begin(), budgets.end());
+    for (std::size_t i = 0; i < spacings.size(); ++i) {
+        bool fits = false;
+        for (std::size_t k = 0; k < kTolerances.size(); ++k) {
+            const double steps = static_cast<double>(i * kTolerances.size() + k);
+            report(fmt::format("field to {:g} µm, points {:g} mm apart", 1e6 * kTolerances[k], 1e3 * spacings[i]),
+                   kPathShare + (1.0 - kPathShare) * steps / static_cast<double>(spacings.size() * kTolerances.size()));
+            for (const model::FieldMode mode : allModes()) {
+                auto row = candidates.measure({mode, kTolerances[k], spacings[i], 0});
+                if (!row) return row.errors();
+                rows.push_back(*row);
+                fits = fits || row->time.p99 <= *most;
+                for (const int nodes : kNodes) {
+                    if (rows.back().time.p99 <= *least) break;
+                    row = candidates.measure({mode, kTolerances[k], spacings[i], nodes});
+                    if (!row) return row.errors();
+                    rows.push_back(*row);
+                }
+            }
+        }
+        if (!fits) break;
+    }
+    report("", 1.0);
+    return rows;
+}
+
+std::optional<std::size_t> pickFinest(std::span<const AccuracyRow> rows, double budget) {
+    std::optional<std::size_t> best;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (!(rows[i].time.p99 <= budget) || std::isnan(rows[i].signed_distance.p99)) continue;
+        const auto rank = [&](std::size_t k) { return std::pair(rows[k].signed_distance.p99, rows[k].time.p99); };
+        if (!best || rank(i) < rank(*best)) best = i;
+    }
+    return best;
+}
+
+}  // namespace passung::truth

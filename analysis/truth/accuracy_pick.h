@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "analysis/truth/accuracy_sweep.h"
+
+namespace passung::truth {
+
+/// Measures on this machine what contact.accuracy = "auto" may pick for `scenes` and `budgets` [s] of a query:
+/// tolerances and spacings from coarse to fine, every mode, and node budgets where a query without one takes longer
+/// than the least budget; it ends with the first spacing at which every query takes longer than the largest. A scene's
+/// time is the sum over its obstacles; of each setting count the slowest time and the largest error of any scene.
+/// Poses: see contactPath; times also at poses in between. `store`, if not null, keeps fields and points from run to
+/// run. Errors: a part cannot be built, an obstacle without an inside, a held part that never meets an obstacle.
+/// @pre at least one scene and one budget.
+Result<std::vector<AccuracyRow>> measureCandidates(const std::vector<const model::SceneSpec*>& scenes,
+                                                   std::span<const double> budgets, const StepReport& report,
+                                                   model::BuildStore* store);
+
+/// The row with the smallest error (p99 of the signed distance) among those whose time (p99) fits `budget` [s]; the
+/// faster of two that err alike.
+std::optional<std::size_t> pickFinest(std::span<const AccuracyRow> rows, double budget);
+
+}  // namespace passung::truth

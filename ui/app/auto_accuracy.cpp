@@ -1,0 +1,169 @@
+#include "ui/app/auto_accuracy.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "analysis/truth/accuracy_pick.h"
+#include "study/protocol/plan_json.h"
+#include "ui/app/disk_store.h"
+
+namespace passung::app {
+
+namespace {
+
+constexpr double kUm = 1e6, kMm = 1e3, kUs = 1e6;
+
+/// Of a query [s], each once, ascending.
+std::vector<double> budgetsOf(const protocol::StudyPlan& plan) {
+    std::set<double> budgets;
+    for (const protocol::Condition& condition : plan.conditions)
+        if (condition.accuracy_budget > 0.0) budgets.insert(condition.accuracy_budget);
+    return {budgets.begin(), budgets.end()};
+}
+
+/// As it is stored [µs], free of what rounding adds on the way from the protocol.
+double inMicroseconds(double budget) { return std::round(1e12 * budget) / 1e6; }
+
+std::string geometryOf(const model::PartSpec& part) {
+    std::string text = part.held ? "held " : "";
+    if (const auto* mesh = std::get_if<model::MeshFile>(&part.geometry))
+        return text + fmt::format("{} {}", mesh->path, mesh->metres_per_unit);
+    const auto& shape = std::get<model::Shape>(part.geometry);
+    text += model::kindName(shape);
+    for (const double value : model::dimensions(shape)) text += fmt::format(" {}", value);
+    return text;
+}
+
+/// One scene for every geometry among those that ask for a pick.
+std::vector<const model::SceneSpec*> distinctScenes(const protocol::StudyPlan& plan) {
+    std::set<std::string> seen;
+    std::vector<const model::SceneSpec*> scenes;
+    for (const protocol::Condition& condition : plan.conditions) {
+        if (!(condition.accuracy_budget > 0.0)) continue;
+        std::string key;
+        for (const model::PartSpec& part : condition.scene.parts) key += geometryOf(part) + '\n';
+        if (seen.insert(key).second) scenes.push_back(&condition.scene);
+    }
+    return scenes;
+}
+
+store::AccuracyRow asStored(const std::string& protocol_sha256, std::int64_t number, const truth::AccuracyRow& row) {
+    return {.protocol_sha256 = protocol_sha256,
+            .candidate = number,
+            .mode = truth::modeName(row.setting.mode),
+            .tolerance_um = kUm * row.setting.tolerance,
+            .spacing_mm = kMm * row.setting.spacing,
+            .budget_nodes = row.setting.budget_nodes,
+            .points = static_cast<std::int64_t>(row.points),
+            .time_median_us = kUs * row.time.median,
+            .time_p99_us = kUs * row.time.p99,
+            .time_max_us = kUs * row.time.max,
+            .error_mean_um = kUm * row.signed_distance.mean,
+            .error_p99_um = kUm * row.signed_distance.p99,
+            .error_max_um = kUm * row.signed_distance.max};
+}
+
+std::string keysOf(const store::AccuracyRow& row) {
+    return fmt::format("tolerance_um = {:g}, spacing_mm = {:g}, mode = \"{}\", budget_nodes = {}", row.tolerance_um,
+                       row.spacing_mm, row.mode, row.budget_nodes);
+}
+
+}  // namespace
+
+bool asksForAccuracy(const protocol::StudyPlan& plan) { return !budgetsOf(plan).empty(); }
+
+Result<std::vector<store::AccuracyRow>> measureAccuracy(const protocol::StudyPlan& plan,
+                                                        const std::string& protocol_sha256,
+                                                        const truth::StepReport& report, model::BuildStore* builds) {
+    const std::vector<double> budgets = budgetsOf(plan);
+    const auto measured = truth::measureCandidates(
+        distinctScenes(plan), budgets, report ? report : [](const std::string&, double) {}, builds);
+    if (!measured) return measured.errors();
+    std::vector<store::AccuracyRow> rows;
+    double fastest = measured->front().time.p99;
+    for (const truth::AccuracyRow& row : *measured) {
+        rows.push_back(asStored(protocol_sha256, static_cast<std::int64_t>(rows.size()), row));
+        fastest = std::min(fastest, row.time.p99);
+    }
+    Errors errors;
+    for (const double budget : budgets) {
+        if (const auto best = truth::pickFinest(*measured, budget))
+            rows[*best].picked_for_us.push_back(inMicroseconds(budget));
+        else
+            errors.push_back(
+                {.message = fmt::format("no setting fits on this machine; the fastest takes {:.3g} µs", kUs * fastest),
+                 .key = "contact.accuracy_budget_us",
+                 .value = fmt::format("{:g}", inMicroseconds(budget))});
+    }
+    if (!errors.empty()) return errors;
+    return rows;
+}
+
+Result<Done> applyAccuracy(const std::string& protocol_sha256, std::span<const store::AccuracyRow> rows,
+                           protocol::StudyPlan& plan) {
+    for (protocol::Condition& condition : plan.conditions) {
+        if (!(condition.accuracy_budget > 0.0)) continue;
+        const double budget = inMicroseconds(condition.accuracy_budget);
+        const auto pick = std::find_if(rows.begin(), rows.end(), [&](const store::AccuracyRow& row) {
+            const auto& budgets = row.picked_for_us;
+            return row.protocol_sha256 == protocol_sha256 &&
+                   std::find(budgets.begin(), budgets.end(), budget) != budgets.end();
+        });
+        if (pick == rows.end())
+            return Error{.message = "nothing was picked for this budget in the database: the protocol never ran there",
+                         .key = "contact.accuracy_budget_us",
+                         .value = fmt::format("{:g}", budget)};
+        const auto& modes = truth::allModes();
+        const auto mode = std::find_if(modes.begin(), modes.end(),
+                                       [&](model::FieldMode known) { return pick->mode == truth::modeName(known); });
+        if (mode == modes.end())
+            return Error{.message = "this version of the program does not know the mode that was picked",
+                         .key = "contact.mode",
+                         .value = pick->mode};
+        model::ContactSpec& contact = condition.scene.contact;
+        contact.tolerance = pick->tolerance_um / kUm;
+        contact.spacing = pick->spacing_mm / kMm;
+        contact.cell = 0.0;
+        contact.budget_nodes = static_cast<int>(pick->budget_nodes);
+        contact.mode = *mode;
+        condition.accuracy_picked = true;
+        condition.params_json = protocol::paramsJson(condition);
+    }
+    return Done{};
+}
+
+Result<protocol::StudyPlan> withKeptAccuracy(const protocol::StudyPlan& plan, const std::string& protocol_sha256,
+                                             store::Store& store, const truth::StepReport& report) {
+    protocol::StudyPlan complete = plan;
+    if (!asksForAccuracy(plan)) return complete;
+    auto rows = store.accuracy(protocol_sha256);
+    if (!rows) return rows.errors();
+    if (rows->empty()) {
+        const auto builds = openDiskStore();
+        rows = measureAccuracy(plan, protocol_sha256, report, builds.get());
+        if (!rows) return rows.errors();
+        if (const auto kept = store.keepAccuracy(*rows); !kept) return kept.errors();
+    }
+    if (const auto applied = applyAccuracy(protocol_sha256, *rows, complete); !applied) return applied.errors();
+    return complete;
+}
+
+std::string describeAccuracy(std::span<const store::AccuracyRow> rows) {
+    std::string text = fmt::format("  {:>12} {:>12} {:>12}  {}\n", "budget [µs]", "p99 [µs]", "error [µm]", "picked");
+    for (const store::AccuracyRow& row : rows)
+        for (const double budget : row.picked_for_us)
+            text += fmt::format("  {:>11g} {:>11.3g} {:>11.3g}  {}\n", budget, row.time_p99_us, row.error_p99_um,
+                                keysOf(row));
+    text += fmt::format(
+        "  {} settings measured; times and errors are 99th percentiles over poses along contact paths\n", rows.size());
+    text += fmt::format("  {:>12} {:>12} {:>12}  {}\n", "median [µs]", "p99 [µs]", "error [µm]", "candidate");
+    for (const store::AccuracyRow& row : rows)
+        text += fmt::format("  {:>11.3g} {:>11.3g} {:>11.3g}  {}{}\n", row.time_median_us, row.time_p99_us,
+                            row.error_p99_um, keysOf(row), row.picked_for_us.empty() ? "" : "  <- picked");
+    return text;
+}
+
+}  // namespace passung::app
