@@ -157,7 +157,7 @@ Result<std::vector<AccuracyRow>> measureCandidates(const std::vector<const model
             const double steps = static_cast<double>(i * kTolerances.size() + k);
             report(fmt::format("field to {:g} µm, points {:g} mm apart", 1e6 * kTolerances[k], 1e3 * spacings[i]),
                    kPathShare + (1.0 - kPathShare) * steps / static_cast<double>(spacings.size() * kTolerances.size()));
-            for (const model::FieldMode mode : allModes()) {
+            for (const model::FieldMode mode : kModes) {
                 auto row = candidates.measure({mode, kTolerances[k], spacings[i], 0});
                 if (!row) return row.errors();
                 rows.push_back(*row);

@@ -7,9 +7,11 @@
 #include <filesystem>
 #include <fstream>
 
+#include "core/model/timed_store.h"
 #include "core/tick/penalty.h"
 #include "tests/bench/contact_scene.h"
 #include "tests/bench/stopwatch.h"
+#include "ui/app/disk_store.h"
 
 namespace passung::bench {
 
@@ -90,12 +92,11 @@ double BuiltPart::bytes() const {
     return sum;
 }
 
-PartStore::PartStore(model::TriangleMesh mesh) {
+PartStore::PartStore(model::TriangleMesh mesh) : kept_(app::openDiskStore()) {
     static int count = 0;
     const auto name = fmt::format("passung_bench_{}_{}.off", getpid(), count++);
     file_ = (std::filesystem::temp_directory_path() / name).string();
     writeOff(mesh, file_);
-    const auto import = build({}, import_s_);
 }
 
 PartStore::~PartStore() {
@@ -103,14 +104,11 @@ PartStore::~PartStore() {
     std::filesystem::remove(file_, ignored);
 }
 
-Result<model::Part> PartStore::build(const model::PartNeeds& needs, double& seconds) const {
+Result<model::Part> PartStore::build(const model::PartNeeds& needs, model::BuildStore* store) const {
     model::PartSpec spec;
     spec.name = "bench";
     spec.geometry = model::MeshFile{file_, 1.0};
-    const WallClock watch;
-    auto part = model::buildPart(spec, needs);
-    seconds = watch.seconds();
-    return part;
+    return model::buildPart(spec, needs, store);
 }
 
 Result<const BuiltPart*> PartStore::get(double tolerance, double spacing) {
@@ -120,26 +118,29 @@ Result<const BuiltPart*> PartStore::get(double tolerance, double spacing) {
     model::PartNeeds needs{.field = tolerance > 0.0, .shell = false};
     if (needs.field) needs.tolerance = tolerance;
     needs.depth = kDepth;
-    auto part = build(needs, built.field_s);
+    model::TimedStore field_time(kept_.get());
+    auto part = build(needs, &field_time);
     if (!part) return part.errors();
-    built.field_s = needs.field ? std::max(0.0, built.field_s - import_s_) : 0.0;
+    built.field_s = field_time.seconds();
     built.part = std::move(*part);
     if (spacing > 0.0) {
-        auto shell = build({.field = false, .shell = true, .spacing = spacing}, built.shell_s);
+        model::TimedStore shell_time(kept_.get());
+        auto shell = build({.field = false, .shell = true, .spacing = spacing}, &shell_time);
         if (!shell) return shell.errors();
-        built.shell_s = std::max(0.0, built.shell_s - import_s_);
+        built.shell_s = shell_time.seconds();
         built.part.shell = std::move(shell->shell);
     }
     return &parts_.insert_or_assign({tolerance, spacing}, std::move(built)).first->second;
 }
 
 Result<BuiltPart> PartStore::withCell(double cell) const {
-    BuiltPart built;
-    auto part = build({.field = true, .cell = cell}, built.field_s);
+    const WallClock import;
+    if (auto mesh = build({}, nullptr); !mesh) return mesh.errors();
+    const double import_s = import.seconds();
+    const WallClock whole;
+    auto part = build({.field = true, .cell = cell}, nullptr);
     if (!part) return part.errors();
-    built.field_s = std::max(0.0, built.field_s - import_s_);
-    built.part = std::move(*part);
-    return built;
+    return BuiltPart{.part = std::move(*part), .field_s = std::max(0.0, whole.seconds() - import_s)};
 }
 
 Candidate ourQuery(const BuiltPart& field, const BuiltPart& shell, double tolerance, double spacing,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 
 #include "core/base/result.h"
@@ -10,14 +11,14 @@
 
 namespace passung::bench {
 
-/// A part built as a scene builds it, with what that took.
+/// A part built as a scene builds it, with what that took; when it was built, if an earlier run kept it.
 struct BuiltPart {
     model::Part part;
     double field_s = 0.0, shell_s = 0.0;  // wall time, all cores; import not included
     double bytes() const;
 };
 
-/// Builds parts from triangles once per setting; 0: no field, no shell.
+/// Builds parts from triangles once per setting and keeps them from run to run; 0: no field, no shell.
 class PartStore {
 public:
     explicit PartStore(model::TriangleMesh mesh);
@@ -28,14 +29,14 @@ public:
     /// The field by tolerance [m], the shell by spacing [m].
     Result<const BuiltPart*> get(double tolerance, double spacing);
 
-    /// The field by its cell [m].
+    /// The field by its cell [m], built here and now.
     Result<BuiltPart> withCell(double cell) const;
 
 private:
-    Result<model::Part> build(const model::PartNeeds& needs, double& seconds) const;
+    Result<model::Part> build(const model::PartNeeds& needs, model::BuildStore* store) const;
 
     std::string file_;  // parts come from files
-    double import_s_ = 0.0;
+    std::unique_ptr<model::BuildStore> kept_;
     std::map<std::pair<double, double>, BuiltPart> parts_;
 };
 

@@ -9,9 +9,10 @@
 
 #include "analysis/truth/exact_mesh.h"
 #include "core/base/random.h"
+#include "core/model/timed_store.h"
 #include "tests/bench/ours.h"
-#include "tests/bench/stopwatch.h"
 #include "tests/support/broken_mesh.h"
+#include "ui/app/disk_store.h"
 
 namespace passung::bench {
 
@@ -61,10 +62,10 @@ Result<Row> boreRow(double tolerance) {
     model::PartSpec spec;
     spec.name = "bore";
     spec.geometry = model::Shape{model::BorePlate{kPlate, kPlate, kHeight, kBore, kHeight, 0.0}};
-    const WallClock watch;
-    const auto part = model::buildPart(spec, {.field = true, .tolerance = tolerance});
+    const auto kept = app::openDiskStore();
+    model::TimedStore timed(kept.get());
+    const auto part = model::buildPart(spec, {.field = true, .tolerance = tolerance}, &timed);
     if (!part) return part.errors();
-    const double seconds = watch.seconds();
     Random random(kSeed);
     const std::vector<Vec3> points = pointsNearBore(*part->shape, part->mesh, random);
     std::vector<double> errors;
@@ -79,7 +80,7 @@ Result<Row> boreRow(double tolerance) {
     row.distance_error_um = summarise(errors);
     row.contacts_mean = falseContacts(*part->field);
     row.memory_MB = 1e-6 * static_cast<double>(part->field->memoryBytes());
-    row.build_s = seconds;
+    row.build_s = timed.seconds();
     return row;
 }
 

@@ -53,7 +53,7 @@ std::vector<const model::SceneSpec*> distinctScenes(const protocol::StudyPlan& p
 store::AccuracyRow asStored(const std::string& protocol_sha256, std::int64_t number, const truth::AccuracyRow& row) {
     return {.protocol_sha256 = protocol_sha256,
             .candidate = number,
-            .mode = truth::modeName(row.setting.mode),
+            .mode = model::modeName(row.setting.mode),
             .tolerance_um = kUm * row.setting.tolerance,
             .spacing_mm = kMm * row.setting.spacing,
             .budget_nodes = row.setting.budget_nodes,
@@ -116,10 +116,8 @@ Result<Done> applyAccuracy(const std::string& protocol_sha256, std::span<const s
             return Error{.message = "nothing was picked for this budget in the database: the protocol never ran there",
                          .key = "contact.accuracy_budget_us",
                          .value = fmt::format("{:g}", budget)};
-        const auto& modes = truth::allModes();
-        const auto mode = std::find_if(modes.begin(), modes.end(),
-                                       [&](model::FieldMode known) { return pick->mode == truth::modeName(known); });
-        if (mode == modes.end())
+        const auto mode = model::modeNamed(pick->mode);
+        if (!mode)
             return Error{.message = "this version of the program does not know the mode that was picked",
                          .key = "contact.mode",
                          .value = pick->mode};
