@@ -19,6 +19,8 @@ constexpr int kBetween = 6;         // timed poses from one pose of a path to it
 constexpr std::uint64_t kSeed = 1;  // the same poses for the same parts
 constexpr int kRepetitions = 2;
 constexpr std::array kTolerances{100e-6, 50e-6, 20e-6, 10e-6};  // [m]
+// The coarser modes cost as much or more where a query reads point by point.
+constexpr std::array kModes{model::FieldMode::Linear, model::FieldMode::Trilinear, model::FieldMode::Cubic};
 constexpr std::array kNodes{300, 100};
 constexpr double kPathShare = 0.4;  // of the work, as the progress shows it
 
@@ -174,6 +176,16 @@ Result<std::vector<AccuracyRow>> measureCandidates(const std::vector<const model
     }
     report("", 1.0);
     return rows;
+}
+
+Result<double> timeOfSetting(const std::vector<const model::SceneSpec*>& scenes, const AccuracySetting& setting,
+                             model::BuildStore* store) {
+    Candidates candidates(store);
+    for (const model::SceneSpec* scene : scenes)
+        if (const auto added = candidates.addScene(*scene, [](double) {}); !added) return added.errors();
+    const auto row = candidates.measure(setting);
+    if (!row) return row.errors();
+    return row->time.p99;
 }
 
 std::optional<std::size_t> pickFinest(std::span<const AccuracyRow> rows, double budget) {

@@ -19,6 +19,10 @@ Result<std::vector<AccuracyRow>> measureCandidates(const std::vector<const model
                                                    std::span<const double> budgets, const StepReport& report,
                                                    model::BuildStore* store);
 
+/// The time (p99) [s] of one of these settings on this machine, in the same scenes at the same poses. Errors: as above.
+Result<double> timeOfSetting(const std::vector<const model::SceneSpec*>& scenes, const AccuracySetting& setting,
+                             model::BuildStore* store);
+
 /// The row with the smallest error (p99 of the signed distance) among those whose time (p99) fits `budget` [s]; the
 /// faster of two that err alike.
 std::optional<std::size_t> pickFinest(std::span<const AccuracyRow> rows, double budget);

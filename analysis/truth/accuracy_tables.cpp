@@ -83,8 +83,10 @@ RowColumns rowColumns() {
         {"field_MB", "MB", "memory of FIELD's distance field", [](const Row& r) { return cell(1e-6 * r.field_bytes); }},
         {"shell_MB", "MB", "memory of SHELL's points and tree",
          [](const Row& r) { return cell(1e-6 * r.shell_bytes); }},
-        {"field_build_s", "s", "building FIELD, all cores", [](const Row& r) { return cell(r.field_build); }},
-        {"shell_build_s", "s", "building SHELL, all cores", [](const Row& r) { return cell(r.shell_build); }},
+        {"field_build_s", "s",
+         "building FIELD's distance field, all cores, wall time; of one that an earlier run kept: what it took then",
+         [](const Row& r) { return cell(r.field_build); }},
+        {"shell_build_s", "s", "the same of sampling SHELL's points", [](const Row& r) { return cell(r.shell_build); }},
         {"on_distance_front", "",
          "1: no other row has both a smaller time_p99_us and a smaller "
          "signed_distance_error_p99_um",

@@ -71,6 +71,13 @@ std::string keysOf(const store::AccuracyRow& row) {
                        row.spacing_mm, row.mode, row.budget_nodes);
 }
 
+Result<model::FieldMode> modeOf(const store::AccuracyRow& row) {
+    if (const auto mode = model::modeNamed(row.mode)) return *mode;
+    return Error{.message = "this version of the program does not know the mode that was picked",
+                 .key = "contact.mode",
+                 .value = row.mode};
+}
+
 }  // namespace
 
 bool asksForAccuracy(const protocol::StudyPlan& plan) { return !budgetsOf(plan).empty(); }
@@ -116,11 +123,8 @@ Result<Done> applyAccuracy(const std::string& protocol_sha256, std::span<const s
             return Error{.message = "nothing was picked for this budget in the database: the protocol never ran there",
                          .key = "contact.accuracy_budget_us",
                          .value = fmt::format("{:g}", budget)};
-        const auto mode = model::modeNamed(pick->mode);
-        if (!mode)
-            return Error{.message = "this version of the program does not know the mode that was picked",
-                         .key = "contact.mode",
-                         .value = pick->mode};
+        const auto mode = modeOf(*pick);
+        if (!mode) return mode.errors();
         model::ContactSpec& contact = condition.scene.contact;
         contact.tolerance = pick->tolerance_um / kUm;
         contact.spacing = pick->spacing_mm / kMm;
@@ -131,6 +135,27 @@ Result<Done> applyAccuracy(const std::string& protocol_sha256, std::span<const s
         condition.params_json = protocol::paramsJson(condition);
     }
     return Done{};
+}
+
+Result<std::vector<std::string>> tooSlowHere(const protocol::StudyPlan& plan, std::span<const store::AccuracyRow> rows,
+                                             model::BuildStore* builds) {
+    std::vector<std::string> slow;
+    for (const store::AccuracyRow& row : rows) {
+        if (row.picked_for_us.empty()) continue;
+        const auto mode = modeOf(row);
+        if (!mode) return mode.errors();
+        const auto time = truth::timeOfSetting(
+            distinctScenes(plan),
+            {*mode, row.tolerance_um / kUm, row.spacing_mm / kMm, static_cast<int>(row.budget_nodes)}, builds);
+        if (!time) return time.errors();
+        for (const double budget : row.picked_for_us)
+            if (kUs * *time > budget)
+                slow.push_back(
+                    fmt::format("accuracy_budget_us = {:g} is not kept on this machine: what the study picked "
+                                "({}) takes {:.3g} µs here (99th percentile)",
+                                budget, keysOf(row), kUs * *time));
+    }
+    return slow;
 }
 
 Result<protocol::StudyPlan> withKeptAccuracy(const protocol::StudyPlan& plan, const std::string& protocol_sha256,

@@ -28,6 +28,10 @@ Result<std::vector<store::AccuracyRow>> measureAccuracy(const protocol::StudyPla
 Result<Done> applyAccuracy(const std::string& protocol_sha256, std::span<const store::AccuracyRow> rows,
                            protocol::StudyPlan& plan);
 
+/// What picked settings take longer than their budget on this machine, in words, a sentence each.
+Result<std::vector<std::string>> tooSlowHere(const protocol::StudyPlan& plan, std::span<const store::AccuracyRow> rows,
+                                             model::BuildStore* builds);
+
 /// The plan with what `store` keeps; if that is nothing yet it is measured and kept, for good.
 Result<protocol::StudyPlan> withKeptAccuracy(const protocol::StudyPlan& plan, const std::string& protocol_sha256,
                                              store::Store& store, const truth::StepReport& report);

@@ -9,6 +9,7 @@
 #include "study/session/participant_order.h"
 #include "study/store/identity.h"
 #include "ui/app/auto_accuracy.h"
+#include "ui/app/disk_store.h"
 #include "ui/app/simulated_hand.h"
 
 namespace passung::app {
@@ -117,6 +118,14 @@ Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& optio
     if (listener.recovered && !opened.recovery.empty()) listener.recovered(opened.recovery);
     auto sha256 = opened.store->importProtocol(plan);
     if (!sha256) return sha256.errors();
+    const auto kept = opened.store->accuracy(*sha256);
+    if (!kept) return kept.errors();
+    if (options.clock == Clock::RealTime && listener.warned && !kept->empty()) {
+        const auto builds = openDiskStore();
+        const auto slow = tooSlowHere(plan, *kept, builds.get());
+        if (!slow) return slow.errors();
+        for (const std::string& what : *slow) listener.warned(what);
+    }
     auto picked = withKeptAccuracy(plan, *sha256, *opened.store, listener.calibrating);
     if (!picked) return picked.errors();
     StudyRun run(*picked, options, listener, *opened.store, *sha256);

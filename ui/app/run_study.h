@@ -26,6 +26,7 @@ enum class RunEnd { Complete, Interrupted };
 struct RunListener {
     std::function<void(const store::RecoveryReport&)> recovered;
     std::function<void(const std::string& what, double share)> calibrating;  // for contact.accuracy = "auto"
+    std::function<void(const std::string&)> warned;
     std::function<void(const std::string& participant, int number, int of)> session;
     std::function<void(const session::TrialProgress&)> trial;
     std::function<void(session::AttemptId, measures::Outcome)> acknowledge;
@@ -34,7 +35,8 @@ struct RunListener {
 /// Performs the study with simulated participants on the simulated device, each a session of all planned trials, into
 /// the database. Whatever was finished before an error stays in it. An interruption stores the running trial as aborted
 /// and closes the session as aborted, both with the reason "interrupted". What contact.accuracy = "auto" asks for is
-/// picked when the protocol first runs in this database, and kept there.
+/// picked when the protocol first runs in this database, and kept there; before later runs in real time a machine that
+/// is too slow for it is warned of.
 Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& options, const RunListener& listener);
 
 /// Every device that a protocol may name.

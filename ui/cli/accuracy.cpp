@@ -7,6 +7,7 @@
 #include "analysis/truth/accuracy_picture.h"
 #include "analysis/truth/accuracy_sweep.h"
 #include "analysis/truth/accuracy_tables.h"
+#include "ui/app/disk_store.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 #include "ui/cli/part_argument.h"
@@ -103,9 +104,10 @@ int accuracy(const AccuracyOptions& options) {
     const auto shaken = truth::shakenPoses(*truth, poses, options.fcl_poses, options.seed, [&](double share) {
         progress.show(progressBar("asking FCL about further poses", share));
     });
-    const auto result =
-        truth::sweepAccuracy(*field, *shell, spaceOf(options, truth->length()), poses, shaken, truth->lever(),
-                             [&](const std::string& what, double share) { progress.show(progressBar(what, share)); });
+    const auto builds = app::openDiskStore();
+    const auto result = truth::sweepAccuracy(
+        *field, *shell, spaceOf(options, truth->length()), poses, shaken, truth->lever(),
+        [&](const std::string& what, double share) { progress.show(progressBar(what, share)); }, builds.get());
     if (!result) return fail(result.errors());
     if (const auto done = writeAll(options, *result, poses); !done) return fail(done.errors());
     fmt::print("{}", truth::frontText(result->rows));

@@ -34,5 +34,29 @@ TEST(AutoAccuracy, WritesTheKeptPickIntoTheScenesThatAskForIt) {
     EXPECT_EQ(plan.conditions[1].params_json, "");
 }
 
+TEST(AutoAccuracy, NamesThePicksThatThisMachineIsTooSlowFor) {
+    // Truth: invariant. A query takes more than a picosecond and less than a minute.
+    protocol::StudyPlan plan;
+    plan.conditions.resize(1);
+    plan.conditions[0].accuracy_budget = 1e-6;
+    auto& parts = plan.conditions[0].scene.parts;
+    parts.resize(2);
+    parts[0].name = "cube";
+    parts[0].geometry = model::Box{0.004, 0.004, 0.004};
+    parts[1].name = "ball";
+    parts[1].geometry = model::Sphere{0.002};
+    parts[1].held = true;
+    const store::AccuracyRow pick{.protocol_sha256 = "a",
+                                  .candidate = 0,
+                                  .mode = "trilinear",
+                                  .tolerance_um = 100.0,
+                                  .spacing_mm = 0.2,
+                                  .picked_for_us = {1e-6, 60e6}};
+    const auto slow = tooSlowHere(plan, std::vector{pick}, nullptr);
+    ASSERT_TRUE(slow);
+    ASSERT_EQ(slow->size(), 1u);
+    EXPECT_EQ(slow->front().rfind("accuracy_budget_us = 1e-06 is not kept on this machine", 0), 0u) << slow->front();
+}
+
 }  // namespace
 }  // namespace passung::app
