@@ -68,7 +68,7 @@ int run(const RunOptions& options) {
     app::RunListener listener;
     listener.recovered = [&](const store::RecoveryReport& report) { tellRecovery(what.database, report); };
     listener.calibrating = [&](const std::string& step, double share) { progress.show(progressBar(step, share)); };
-    listener.warned = [&](const std::string& what) { warn(options.protocol, {what}); };
+    listener.warned = [&](const std::string& warning) { warn(options.protocol, {warning}); };
     listener.session = [&](const std::string& who, int number, int of) {
         code = who;
         participant = fmt::format("{} ({} of {})", code, number, of);

@@ -145,7 +145,7 @@ TEST(TwoWayQuery, TheFinerShellSharpensTheBoundOnceThePartsAreProvenApart) {
         spec.geometry = model::Shape{model::Sphere{diameter}};
         return std::move(*model::buildPart(spec, {.field = true, .shell = true, .cell = 0.3e-3, .spacing = spacing}));
     };
-    const model::Part fine = ball(0.02, 0.3e-3), coarse = ball(0.02, 0.8e-3);
+    const model::Part fine = ball(0.02, 0.3e-3), coarse = ball(0.02, 0.85e-3);
     query::PartQueryRequest request;
     request.tolerance = std::numeric_limits<double>::infinity();  // the points alone
     const Pose X_FS{Quat::Identity(), 0.0207 * Vec3(3, 4, 12) / 13.0};
