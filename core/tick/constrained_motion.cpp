@@ -31,6 +31,8 @@ struct Row {
     Motion a = Motion::Zero();  // unit
     double b = 0.0;
     double lambda = 0.0;
+    double push_per_lambda = 0.0;  // what of the row is translation
+    std::uint32_t contact = 0;
 };
 
 /// The most violated contact as a row; false if there is none.
@@ -54,6 +56,8 @@ bool mostViolated(const Problem& problem, const Motion& u, Row& row) noexcept {
     row.a /= length;
     row.b = problem.least(*worst) / length;
     row.lambda = 0.0;
+    row.push_per_lambda = worst->gradient.norm() / length;
+    row.contact = static_cast<std::uint32_t>(worst - problem.manifold.begin());
     return true;
 }
 
@@ -62,6 +66,11 @@ class ActiveSet {
 public:
     int size() const noexcept { return count_; }
     Row& operator[](int i) noexcept { return rows_[static_cast<std::size_t>(i)]; }
+    /// 1 - N N⁺.
+    Eigen::Matrix<double, 6, 6> free() const noexcept {
+        const auto Q = Q_.leftCols(count_);
+        return Eigen::Matrix<double, 6, 6>::Identity() - Q * Q.transpose();
+    }
 
     /// r = N⁺ a and z = a - N r, the latter by Gram-Schmidt twice.
     void split(const Motion& a, Motion& z, Motion& r) const noexcept {
@@ -161,6 +170,9 @@ bool solve(const Problem& problem, ConstrainedMotion& result) noexcept {
         }
     }
     result.active = active.size();
+    result.free = active.free();
+    for (int i = 0; i < active.size(); ++i)
+        result.held[static_cast<std::size_t>(i)] = {active[i].contact, active[i].lambda * active[i].push_per_lambda};
     return true;
 }
 

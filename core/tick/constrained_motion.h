@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
+
 #include "core/tick/contact_query.h"
 
 namespace passung::tick {
@@ -7,8 +10,16 @@ namespace passung::tick {
 /// A motion of a rigid body in one vector with the unit metre: (Δx, ρ Δφ).
 using Motion = Eigen::Matrix<double, 6, 1>;
 
+/// A contact that holds a motion.
+struct HeldContact {
+    std::uint32_t contact = 0;  // its place in the manifold
+    double push = 0.0;          // of it along its normal, as a motion [m]: times the coupling's stiffness, its force
+};
+
 struct ConstrainedMotion {
     Motion u = Motion::Zero();
+    std::array<HeldContact, 6> held{};                                           // the first `active`
+    Eigen::Matrix<double, 6, 6> free = Eigen::Matrix<double, 6, 6>::Identity();  // onto what they leave: 1 - N N⁺
     int active = 0;         // contacts that hold the motion, at most six
     int iterations = 0;     // contacts taken up or let go
     bool relaxed = false;   // the overlap could not be removed within this motion: it is only kept from growing

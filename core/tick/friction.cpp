@@ -1,0 +1,191 @@
+#include "core/tick/friction.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace passung::tick {
+
+namespace {
+
+constexpr double kSameWay = 0.985;      // cosine of 10 degrees: contacts that face so much alike rub as one
+constexpr double kRubTolerance = 1e-8;  // of what a sweep changes, relative to the wanted motion
+constexpr double kAtRest = 1e-6;        // slip relative to the wanted motion
+
+using Rows = Eigen::Matrix<double, 3, 6>;
+
+struct Problem {
+    const Motion& wanted;
+    const ContactManifold& manifold;
+    const Vec3& p_WO;
+    double metric_radius;
+    double keep_out;
+    const Friction& friction;
+};
+
+Rows rowsOf(const Problem& problem, const FrictionPatch& patch) noexcept {
+    const Vec3& n = patch.normal;
+    Vec3 t1 = n.cross(std::abs(n.x()) < 0.6 ? Vec3::UnitX() : Vec3::UnitY()).normalized();
+    const Vec3 t2 = n.cross(t1), r = patch.centre - problem.p_WO;
+    Rows B;
+    B << t1.transpose(), r.cross(t1).transpose() / problem.metric_radius,  //
+        t2.transpose(), r.cross(t2).transpose() / problem.metric_radius,   //
+        Vec3::Zero().transpose(), patch.radius / problem.metric_radius * n.transpose();
+    return B;
+}
+
+/// Mean distance from the centre of pressure of the points that the patch touches after the motion.
+double effectiveRadius(const Problem& problem, const FrictionPatch& patch, const Motion& u) noexcept {
+    const Vec3 dx = u.head<3>(), dphi = u.tail<3>() / problem.metric_radius;
+    const Vec3& n = patch.normal;
+    const Vec3 t1 = n.cross(std::abs(n.x()) < 0.6 ? Vec3::UnitX() : Vec3::UnitY()).normalized(), t2 = n.cross(t1);
+    const auto touching = [&](const ContactPoint& c) {
+        const double phi = c.phi + c.gradient.dot(dx + dphi.cross(c.position - problem.p_WO));
+        return phi < problem.keep_out + std::abs(problem.keep_out) && c.gradient.dot(n) > kSameWay * c.gradient.norm();
+    };
+    const auto inPlane = [&](const ContactPoint& c) {
+        const Vec3 r = c.position - patch.centre;
+        return Eigen::Vector2d(r.dot(t1), r.dot(t2));
+    };
+    double area = 0.0;
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    for (const ContactPoint& c : problem.manifold) {
+        if (!touching(c)) continue;
+        area += c.area;
+        mean += c.area * inPlane(c);
+    }
+    if (!(area > 0.0)) return 0.0;
+    mean /= area;
+    Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
+    for (const ContactPoint& c : problem.manifold) {
+        if (!touching(c)) continue;
+        const Eigen::Vector2d x = inPlane(c) - mean;
+        second += c.area / area * x * x.transpose();
+    }
+    // Pressure 1 + k · (x - mean) has its centre at 0 if second · k = -mean; a line of points has no k across.
+    const double across = 1e-9 * second.trace() + std::numeric_limits<double>::min();
+    const Eigen::Vector2d k = (second + across * Eigen::Matrix2d::Identity()).inverse() * -mean;
+    double weight = 0.0, sum = 0.0;
+    for (const ContactPoint& c : problem.manifold) {
+        if (!touching(c)) continue;
+        const Eigen::Vector2d x = inPlane(c);
+        const double w = std::max(0.0, c.area * (1.0 + k.dot(x - mean)));
+        weight += w;
+        sum += w * x.norm();
+    }
+    return weight > 0.0 ? sum / weight : 0.0;
+}
+
+bool alike(const FrictionPatch& a, const FrictionPatch& b) noexcept { return a.normal.dot(b.normal) > kSameWay; }
+
+/// The patches of the contacts that hold `motion`. `known`: of the sweep before, whose tangents and friction stay, or
+/// (`first`) of the tick before, which only tells what was sliding.
+FrictionPatches patchesOf(const Problem& problem, const ConstrainedMotion& motion, const FrictionPatches& known,
+                          bool first) noexcept {
+    FrictionPatches result;
+    for (int i = 0; i < motion.active; ++i) {
+        const HeldContact& held = motion.held[static_cast<std::size_t>(i)];
+        const ContactPoint& contact = problem.manifold[held.contact];
+        FrictionPatch one;
+        one.normal = contact.gradient.normalized();
+        int to = 0;
+        while (to < result.count && !alike(result.patch[static_cast<std::size_t>(to)], one)) ++to;
+        FrictionPatch& patch = result.patch[static_cast<std::size_t>(to)];
+        if (to == result.count) {
+            patch = one;
+            ++result.count;
+        }
+        const double pressure = held.push;
+        patch.pressure += pressure;
+        patch.centre += pressure * contact.position;
+        if (patch.pressure == 0.0) patch.centre = contact.position;
+    }
+    for (int i = 0; i < result.count; ++i) {
+        FrictionPatch& patch = result.patch[static_cast<std::size_t>(i)];
+        if (patch.pressure > 0.0) patch.centre /= patch.pressure;
+        for (int k = 0; k < known.count; ++k) {
+            const FrictionPatch& old = known.patch[static_cast<std::size_t>(k)];
+            if (!alike(old, patch)) continue;
+            patch.slides = old.slides;
+            if (first) break;
+            patch.normal = old.normal;
+            patch.rub = old.rub;
+            patch.radius = old.radius;
+            break;
+        }
+    }
+    return result;
+}
+
+/// x with |x| ≤ most that leaves no slip, or slip against it on the bound: (H + ν) x = target.
+Vec3 rubFor(const Eigen::Matrix3d& H, const Vec3& target, double most) noexcept {
+    if (!(most > 0.0)) return Vec3::Zero();
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
+    eigen.computeDirect(H);
+    const double floor = 1e-12 * std::max(H.trace(), std::numeric_limits<double>::min());
+    const Vec3 along = eigen.eigenvectors().transpose() * target;
+    const auto at = [&](double nu) {
+        Vec3 x;
+        for (int i = 0; i < 3; ++i) x[i] = along[i] / (std::max(eigen.eigenvalues()[i], floor) + nu);
+        return x;
+    };
+    double low = 0.0, high = target.norm() / most;
+    if (at(0.0).norm() > most) {
+        for (int i = 0; i < 60 && high - low > 1e-14 * high; ++i) {  // |x| falls with ν; |x(high)| ≤ most
+            const double nu = 0.5 * (low + high);
+            (at(nu).norm() > most ? low : high) = nu;
+        }
+        low = high;
+    }
+    return eigen.eigenvectors() * at(low);
+}
+
+}  // namespace
+
+RubbedMotion constrainWithFriction(const Motion& wanted, const ContactManifold& manifold, const Vec3& p_WO,
+                                   double metric_radius, double keep_out, const Friction& friction,
+                                   const FrictionPatches& before) noexcept {
+    const Problem problem{wanted, manifold, p_WO, metric_radius, keep_out, friction};
+    RubbedMotion result;
+    const double small = kRubTolerance * wanted.norm();
+    Motion drawn = wanted;  // with the friction found so far
+    FrictionPatches known = before;
+    for (int sweep = 0; sweep < kRubSweeps; ++sweep) {
+        result.motion = constrainMotion(drawn, manifold, p_WO, metric_radius, keep_out);
+        result.patches = patchesOf(problem, result.motion, known, sweep == 0);
+        Motion u = result.motion.u;
+        double change = known.count != result.patches.count && sweep > 0 ? wanted.norm() : 0.0;
+        drawn = wanted;
+        for (int i = 0; i < result.patches.count; ++i) {
+            FrictionPatch& patch = result.patches.patch[static_cast<std::size_t>(i)];
+            if (!(patch.radius > 0.0))  // met for the first time
+                patch.radius = std::max(friction.least_radius, effectiveRadius(problem, patch, result.motion.u));
+            const Rows B = rowsOf(problem, patch);
+            const Eigen::Matrix<double, 6, 3> F = result.motion.free * B.transpose();
+            const Eigen::Matrix3d H = B * F;
+            const Vec3 slip = B * u;
+            const double most = (patch.slides ? friction.sliding : friction.at_rest) * patch.pressure;
+            Vec3 rub = rubFor(H, H * patch.rub - slip, most);
+            const Vec3 left = slip + H * (rub - patch.rub);
+            const bool slides = left.norm() > kAtRest * wanted.norm();
+            if (slides && !patch.slides) rub = rubFor(H, H * patch.rub - slip, friction.sliding * patch.pressure);
+            if (slides) patch.slides = true;
+            change = std::max(change, (rub - patch.rub).norm());
+            u += F * (rub - patch.rub);
+            patch.rub = rub;
+            drawn += B.transpose() * rub;
+        }
+        known = result.patches;
+        result.sweeps = sweep + 1;
+        result.converged = change <= small;
+        if (result.converged) break;
+    }
+    for (int i = 0; i < result.patches.count; ++i) {
+        FrictionPatch& patch = result.patches.patch[static_cast<std::size_t>(i)];
+        patch.slides = (rowsOf(problem, patch) * result.motion.u).norm() > kAtRest * wanted.norm();
+    }
+    return result;
+}
+
+}  // namespace passung::tick

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+
+#include "core/tick/constrained_motion.h"
+
+namespace passung::tick {
+
+/// Coulomb's coefficients of dry friction; both 0: none.
+struct Friction {
+    double at_rest = 0.0;  // μ_s ≥ μ_d
+    double sliding = 0.0;  // μ_d ≥ 0
+    double least_radius =
+        0.0;  // of a patch's torsion [m], ≥ 0: what a soft finger has even where bodies touch in a point
+};
+
+/// Contacts that face one way and rub as one.
+struct FrictionPatch {
+    Vec3 normal = Vec3::Zero();  // unit, out of the obstacle
+    Vec3 centre = Vec3::Zero();  // of pressure; world
+    double radius = 0.0;         // r_e, the effective one of its torsion [m]
+    double pressure = 0.0;       // what the contacts push with, as a motion [m]: times the coupling's stiffness [N]
+    Vec3 rub = Vec3::Zero();     // x below [m]
+    bool slides = false;
+};
+
+/// Patches of one motion. At most six, since no more contacts hold it.
+struct FrictionPatches {
+    std::array<FrictionPatch, 6> patch;
+    int count = 0;
+};
+
+struct RubbedMotion {
+    ConstrainedMotion motion;
+    FrictionPatches patches;
+    int sweeps = 0;
+    bool converged = true;  // false: kRubSweeps were not enough, the cone is kept but slip may remain at rest
+};
+
+inline constexpr int kRubSweeps = 60;
+
+/// The motion that the contacts leave to a body that is drawn along `wanted` by a spring, with friction.
+///
+/// constrainMotion() finds u = w + Σ λ_i a_i: the spring K(w - u) is held by contact forces K λ_i. With friction
+///   u = w + Σ λ_i a_i + Σ_p B_pᵀ x_p,
+///   B_p = (t₁, (r × t₁)/ρ),  (t₂, (r × t₂)/ρ),  (0, r_e n/ρ)      two tangents and the torsion of patch p at r
+///   |x_p| ≤ μ Λ_p,  Λ_p = Σ λ_i over the patch;   x_p = -μ Λ_p s/|s|  where the slip s = B_p u is not zero.
+/// The bound on (x₁, x₂, x₃) is the ellipsoidal limit surface of a patch (Howe and Cutkosky 1996): full friction either
+/// along or as torsion, T ≤ μ r_e F, never both at once. μ is `at_rest` for a patch that did not slide before and
+/// `sliding` for one that does.
+///
+/// r_e is the mean distance from the centre of pressure over the patch, under the pressure that varies linearly over it
+/// and has that centre: 2/3 R for a disc pressed evenly, half the distance for two equal feet.
+///
+/// Solution: for fixed x the motion is a problem without friction, solved exactly; for fixed active contacts and Λ the
+/// slip is s + H Δx, H = B (1 - N N⁺) Bᵀ, so that each x_p follows exactly, (H + ν) x = H x_p - s with ν ≥ 0 and ν > 0
+/// only on the cone. Both in turn until nothing changes, at most kRubSweeps times.
+/// Limit cases: μ = 0 → constrainMotion. All patches at rest → u is zero along them, exactly: nothing creeps. One plane
+/// → |x| = μ λ in slip, along -s.
+/// `before`: patches of the motion before, which tell what was sliding. rt-safe, bounded.
+RubbedMotion constrainWithFriction(const Motion& wanted, const ContactManifold& manifold, const Vec3& p_WO,
+                                   double metric_radius, double keep_out, const Friction& friction,
+                                   const FrictionPatches& before) noexcept;
+
+}  // namespace passung::tick

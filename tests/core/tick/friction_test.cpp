@@ -1,0 +1,199 @@
+#include "core/tick/friction.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <vector>
+
+#include "core/base/random.h"
+
+namespace passung {
+namespace {
+
+using tick::ContactManifold;
+using tick::ContactPoint;
+using tick::Friction;
+using tick::FrictionPatches;
+using tick::Motion;
+using tick::RubbedMotion;
+
+constexpr double kRho = 0.02;       // [m]
+constexpr double kKeepOut = -1e-6;  // [m]
+const Friction kDry{.at_rest = 0.5, .sliding = 0.3};
+
+ContactPoint contactAt(const Vec3& position, const Vec3& normal, double area = 1e-6) {
+    ContactPoint c;
+    c.position = position;
+    c.normal = -normal;
+    c.gradient = normal;
+    c.phi = kKeepOut;
+    c.area = area;
+    return c;
+}
+
+ContactManifold manifoldOf(const std::vector<ContactPoint>& contacts) {
+    ContactManifold manifold(contacts.size());
+    for (const auto& c : contacts) EXPECT_TRUE(manifold.tryPush(c));
+    return manifold;
+}
+
+Motion motion(const Vec3& dx, const Vec3& turn = Vec3::Zero()) {
+    Motion u;
+    u << dx, kRho * turn;
+    return u;
+}
+
+RubbedMotion rub(const Motion& wanted, const ContactManifold& manifold, const Friction& friction = kDry,
+                 const FrictionPatches& before = {}) {
+    return constrainWithFriction(wanted, manifold, Vec3::Zero(), kRho, kKeepOut, friction, before);
+}
+
+/// A disc of radius `radius` in the plane z = 0, contacts `spacing` apart.
+std::vector<ContactPoint> disc(double radius, double spacing) {
+    std::vector<ContactPoint> contacts;
+    const int n = static_cast<int>(radius / spacing) + 1;
+    for (int i = -n; i <= n; ++i)
+        for (int k = -n; k <= n; ++k) {
+            const Vec3 p((i + 0.5) * spacing, (k + 0.5) * spacing, 0.0);
+            if (p.norm() <= radius) contacts.push_back(contactAt(p, Vec3::UnitZ(), spacing * spacing));
+        }
+    return contacts;
+}
+
+TEST(Friction, SticksUpToItsCoefficientAtRestAndSlidesAgainstTheOtherBeyond) {
+    // Truth: closed form. A point in the body's origin, pressed by d and drawn aside by e: it stays for e < μ_s d and
+    // else follows to e - μ_d d.
+    const auto manifold = manifoldOf({contactAt(Vec3::Zero(), Vec3::UnitZ())});
+    constexpr double d = 1e-4;
+    for (const double share : {0.0, 0.2, 0.49, 0.51, 1.0, 10.0}) {
+        for (int k = 0; k < 7; ++k) {
+            const Vec3 aside(std::cos(k), std::sin(k), 0.0);
+            const RubbedMotion found = rub(motion(share * d * aside - d * Vec3::UnitZ()), manifold);
+            const double slip = share <= kDry.at_rest ? 0.0 : share * d - kDry.sliding * d;
+            EXPECT_TRUE(found.converged);
+            EXPECT_NEAR((found.motion.u.head<3>() - slip * aside).norm(), 0.0, 1e-9 * d) << share;
+            ASSERT_EQ(found.patches.count, 1);
+            EXPECT_NEAR(found.patches.patch[0].pressure, d, 1e-9 * d);
+            EXPECT_NEAR(found.patches.patch[0].rub.norm(), (slip > 0.0 ? kDry.sliding : share) * d, 1e-8 * d);
+            EXPECT_EQ(found.patches.patch[0].slides, slip > 0.0);
+        }
+    }
+}
+
+TEST(Friction, KeepsSlidingBetweenItsTwoCoefficients) {
+    // Truth: closed form. Drawn by 0.4 d, between μ_d and μ_s: at rest it stays, sliding it follows.
+    const auto manifold = manifoldOf({contactAt(Vec3::Zero(), Vec3::UnitZ())});
+    const Motion wanted = motion({0.4e-4, 0.0, -1e-4});
+    const RubbedMotion started = rub(motion({2e-4, 0.0, -1e-4}), manifold);
+    EXPECT_NEAR(rub(wanted, manifold).motion.u.x(), 0.0, 1e-14);
+    EXPECT_NEAR(rub(wanted, manifold, kDry, started.patches).motion.u.x(), 0.1e-4, 1e-13);
+}
+
+TEST(Friction, HoldsAPressedDiscAgainstTwoThirdsOfItsRadius) {
+    // Truth: closed form, ∫ μ p r dA = 2/3 μ F R for even pressure. Turned about its axis by far more, the disc follows
+    // until the spring's torque is that: K ρ² (turn left) = 2/3 μ_d K d R.
+    constexpr double d = 1e-4, R = 0.01;
+    const auto manifold = manifoldOf(disc(R, 0.25e-3));
+    for (const double turn : {0.1, -0.1}) {
+        const RubbedMotion found = rub(motion(-d * Vec3::UnitZ(), turn * Vec3::UnitZ()), manifold);
+        EXPECT_TRUE(found.converged);
+        ASSERT_EQ(found.patches.count, 1);
+        EXPECT_NEAR(found.patches.patch[0].radius, 2.0 / 3.0 * R, 0.01 * R);
+        const double left = turn - found.motion.u[5] / kRho;
+        EXPECT_NEAR(std::abs(left) * kRho * kRho, 2.0 / 3.0 * kDry.sliding * d * R, 0.01 * kDry.sliding * d * R);
+        EXPECT_EQ(left > 0.0, turn > 0.0);
+    }
+}
+
+TEST(Friction, TwoFeetHoldAsTheirForcesDo) {
+    // Truth: closed form. Feet at distances a and b from the centre of pressure carry b/(a+b) and a/(a+b) of the load:
+    // torque 2 μ F a b/(a+b).
+    constexpr double a = 0.004, b = 0.012;
+    const auto manifold = manifoldOf({contactAt({a, 0, 0}, Vec3::UnitZ()), contactAt({-b, 0, 0}, Vec3::UnitZ())});
+    const RubbedMotion found = rub(motion(-1e-4 * Vec3::UnitZ(), 0.2 * Vec3::UnitZ()), manifold);
+    ASSERT_EQ(found.patches.count, 1);
+    EXPECT_NEAR(found.patches.patch[0].centre.norm(), 0.0, 1e-9);
+    EXPECT_NEAR(found.patches.patch[0].radius, 2.0 * a * b / (a + b), 1e-8);
+}
+
+TEST(Friction, ObeysCoulombsLawOnRandomContacts) {
+    // Truth: invariant (the law itself). Every patch: |x| ≤ μ Λ; at rest no slip; sliding |x| = μ_d Λ against the slip;
+    // the normals are obeyed. Up to four contacts of which the first two face apart.
+    Random random(3);
+    int resting = 0, sliding = 0, unsolved = 0, sweeps = 0;
+    constexpr int kTrials = 2000;
+    for (int trial = 0; trial < kTrials; ++trial) {
+        const auto any = [&](double size) {
+            return Vec3(random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size));
+        };
+        std::vector<ContactPoint> contacts;
+        const int count = 1 + static_cast<int>(random.below(4));
+        for (int i = 0; i < count; ++i) contacts.push_back(contactAt(any(0.02), any(1.0).normalized()));
+        const Motion wanted = motion(any(2e-4), any(1e-2));
+        const auto manifold = manifoldOf(contacts);
+        const RubbedMotion found = rub(wanted, manifold);
+        const double size = wanted.norm();
+        sweeps += found.sweeps;
+        for (const auto& c : contacts) {
+            const Vec3 dx = found.motion.u.head<3>() + (found.motion.u.tail<3>() / kRho).cross(c.position);
+            EXPECT_GT(c.gradient.dot(dx), -1e-8);
+        }
+        if (!found.converged) {
+            ++unsolved;
+            continue;
+        }
+        for (int i = 0; i < found.patches.count; ++i) {
+            const auto& patch = found.patches.patch[static_cast<std::size_t>(i)];
+            const Vec3 dx = found.motion.u.head<3>() + (found.motion.u.tail<3>() / kRho).cross(patch.centre);
+            const Vec3 slip = dx - patch.normal * patch.normal.dot(dx);
+            const double x = patch.rub.norm();
+            EXPECT_LE(x, kDry.at_rest * patch.pressure * (1 + 1e-6) + 1e-8 * size);
+            if (patch.slides) {
+                EXPECT_NEAR(x, kDry.sliding * patch.pressure, 1e-5 * patch.pressure + 1e-7 * size) << trial;
+                ++sliding;
+            } else {
+                EXPECT_LT(slip.norm(), 1e-6 * size);
+                if (x > 1e-9 * size) ++resting;
+            }
+        }
+    }
+    EXPECT_GT(resting, kTrials / 10);
+    EXPECT_GT(sliding, kTrials / 10);
+    EXPECT_LT(unsolved, kTrials / 50);
+    std::printf("resting %d, sliding %d, unsolved %d of %d; %.1f sweeps on average\n", resting, sliding, unsolved,
+                kTrials, static_cast<double>(sweeps) / kTrials);
+}
+
+TEST(Friction, DoesNotCreepAtRest) {
+    // Truth: invariant. A disc drawn aside within its cone, 10 000 times from where it came to: no drift.
+    const auto contacts = disc(0.005, 0.5e-3);
+    const auto manifold = manifoldOf(contacts);
+    Vec3 p = Vec3::Zero();
+    FrictionPatches before;
+    for (int i = 0; i < 10000; ++i) {
+        const RubbedMotion found = rub(motion(Vec3(0.4e-4, 0, -1e-4) - p, {0, 0, 1e-4}), manifold, kDry, before);
+        before = found.patches;
+        p += found.motion.u.head<3>();
+    }
+    EXPECT_LT(p.norm(), 1e-12);
+}
+
+TEST(Friction, WithoutFrictionIsTheConstrainedMotion) {
+    // Truth: regression against constrainMotion, which has truths of its own.
+    Random random(9);
+    for (int trial = 0; trial < 100; ++trial) {
+        std::vector<ContactPoint> contacts;
+        for (int i = 0; i < 4; ++i)
+            contacts.push_back(contactAt(0.02 * Vec3(random.normal(), random.normal(), random.normal()),
+                                         Vec3(random.normal(), random.normal(), random.normal()).normalized()));
+        const Motion wanted = motion(1e-4 * Vec3(random.normal(), random.normal(), random.normal()));
+        const auto manifold = manifoldOf(contacts);
+        const auto plain = constrainMotion(wanted, manifold, Vec3::Zero(), kRho, kKeepOut);
+        EXPECT_EQ(rub(wanted, manifold, Friction{}).motion.u, plain.u);
+    }
+}
+
+}  // namespace
+}  // namespace passung
