@@ -1,0 +1,176 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string>
+
+#include "core/base/tick_record.h"
+#include "core/loop/stability.h"
+#include "devices/simulated/device_dynamics.h"
+#include "tests/support/scenes.h"
+
+namespace passung {
+namespace {
+
+using loop::SampledWall;
+using simulated::DeviceDynamics;
+using simulated::DeviceParams;
+
+enum class Axis { Translation, Rotation };
+
+SampledWall wallOf(const DeviceParams& p, Axis axis) {
+    if (axis == Axis::Translation) return {p.mass.value, p.damping.value, 0, p.recommended_damping.value, kTickSeconds};
+    return {p.inertia.value, p.rotational_damping.value, 0, p.recommended_rotational_damping.value, kTickSeconds};
+}
+
+/// The mechanism of `p` with nothing but mass, damping and delay.
+DeviceParams linearPart(DeviceParams p, int delay_ticks) {
+    for (auto* s : {&p.coulomb_force, &p.coulomb_torque, &p.quantum, &p.rotational_quantum}) s->value = 0.0;
+    p.max_force.value = p.max_torque.value = 1e12;
+    p.sensed_degrees = p.actuated_degrees = 6;
+    p.delay_ticks = delay_ticks;
+    return p;
+}
+
+/// A handle on a bilateral spring and damper, sampled and held as the haptic loop does.
+class Swing {
+public:
+    Swing(const DeviceParams& params, Axis axis, double stiffness, double damping)
+        : axis_(axis), stiffness_(stiffness), damping_(damping), dynamics_(params, Pose{}) {
+        const Vec3 start(1e-3, 0, 0);
+        dynamics_.place({rotationFromVector(axis == Axis::Rotation ? start : Vec3(Vec3::Zero())),
+                         axis == Axis::Rotation ? Vec3(Vec3::Zero()) : start},
+                        {});
+        last_ = 1e-3;
+    }
+
+    double tick() {
+        const Pose X = dynamics_.readPose();
+        const double x = axis_ == Axis::Rotation ? rotationVector(X.q).x() : X.p.x();
+        const double load = -stiffness_ * x - damping_ * (x - last_) / kTickSeconds;
+        last_ = x;
+        const Vec3 along(load, 0, 0);
+        dynamics_.command(axis_ == Axis::Rotation ? Wrench{Vec3::Zero(), along} : Wrench{along, Vec3::Zero()});
+        dynamics_.advance({});
+        return x;
+    }
+
+private:
+    Axis axis_;
+    double stiffness_, damping_, last_;
+    DeviceDynamics dynamics_;
+};
+
+/// Does the swing die out? Near the border it does so slowly: the largest swing of a late stretch against an early one.
+bool diesOut(const DeviceParams& params, Axis axis, double stiffness, double damping) {
+    Swing swing(params, axis, stiffness, damping);
+    constexpr int kStretch = 4000;
+    constexpr double kAway = 0.5;  // five hundred times the start: it does not come back
+    const auto largest = [&] {
+        double most = 0.0;
+        for (int i = 0; i < kStretch && most < kAway; ++i) most = std::max(most, std::abs(swing.tick()));
+        return most;
+    };
+    for (int i = 0; i < 200; ++i) swing.tick();
+    const double early = largest();
+    return early < kAway && largest() < early;
+}
+
+TEST(StabilityBorder, OfEveryPresetIsWhereItsSimulatedSwingStopsDyingOut) {
+    // Truth: independent program. The mechanism in the time domain, bisection on what it does, against the roots of the
+    // characteristic polynomial; recommended damping, delays of 0 to 3 ticks. Mark: 1 %.
+    double worst = 0.0;
+    int borders = 0;
+    for (const DeviceParams& preset : simulated::presets()) {
+        for (const Axis axis : {Axis::Translation, Axis::Rotation}) {
+            for (int delay = 0; delay <= 3; ++delay) {
+                SampledWall wall = wallOf(preset, axis);
+                wall.delay_ticks = delay;
+                const double exact = stableStiffnessBorder(wall);
+                if (!(exact > 0.0)) continue;
+                const DeviceParams linear = linearPart(preset, delay);
+                double stable = 0.5 * exact, unstable = 2.0 * exact;
+                ASSERT_TRUE(diesOut(linear, axis, stable, wall.virtual_damping)) << preset.name << delay;
+                ASSERT_FALSE(diesOut(linear, axis, unstable, wall.virtual_damping)) << preset.name << delay;
+                while (unstable - stable > 1e-3 * exact) {
+                    const double middle = 0.5 * (stable + unstable);
+                    (diesOut(linear, axis, middle, wall.virtual_damping) ? stable : unstable) = middle;
+                }
+                const double error = 0.5 * (stable + unstable) / exact - 1.0;
+                worst = std::max(worst, std::abs(error));
+                ++borders;
+                EXPECT_LT(std::abs(error), 0.01)
+                    << preset.name << (axis == Axis::Rotation ? " rotation " : " ") << delay;
+            }
+        }
+    }
+    std::printf("%d borders, worst deviation %.3f %%\n", borders, 100.0 * worst);
+    EXPECT_GE(borders, 24);
+}
+
+/// What a handle does that a constant force presses onto a plane through a ball, after it met it at 0.1 m/s.
+struct Press {
+    double early = 0.0, late = 0.0;  // swing of the handle in the second and in the last second [m]
+    bool touches = false;
+};
+
+Press press(const DeviceParams& preset, model::ContactMethod method, double stiffness) {
+    model::SceneSpec spec = test::scene(model::Sphere{0.02}, Pose{Quat::Identity(), {0, 0, 0.0101}},
+                                        model::Box{0.05, 0.05, 0.02}, Pose{Quat::Identity(), {0, 0, -0.01}}, method);
+    spec.contact.stiffness = stiffness;
+    spec.contact.damping = preset.recommended_damping.value;
+    spec.contact.rotational_stiffness = 0.0;
+    spec.limits.max_force = preset.max_force.value;
+    spec.limits.max_torque = preset.max_torque.value;
+    spec.limits.max_force_rate = preset.max_force_rate.value;
+    spec.limits.actuates_torque = preset.actuated_degrees == 6;
+    test::Bench bench(spec);
+    DeviceDynamics dynamics(preset, spec.parts[0].X_WP);
+    dynamics.place(spec.parts[0].X_WP, {{0, 0, -0.1}, Vec3::Zero()});
+    simulated::HandCoupling hand;
+    hand.attached = true;
+    hand.F_D_B.force = Vec3(0, 0, -0.3 * preset.max_force.value);
+    Press result;
+    const auto swing = [&](int ticks) {
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (int i = 0; i < ticks; ++i) {
+            const auto output = bench.step(dynamics.readPose());
+            dynamics.command(output.F_D_B);
+            dynamics.advance(hand);
+            low = std::min(low, dynamics.truePose().p.z());
+            high = std::max(high, dynamics.truePose().p.z());
+            result.touches = output.F_D_B.force.z() > 0.0;
+        }
+        return high - low;
+    };
+    swing(1000);
+    result.early = swing(1000);
+    swing(2000);
+    result.late = swing(1000);
+    return result;
+}
+
+TEST(StabilityBorder, AtNineteenTwentiethsOfItAPressedHandleComesToRest) {
+    // Truth: closed form (the border) of the linear model; here the whole preset, with dry friction, encoder steps,
+    // limits and a wall that only pushes: what swings must not grow. Encoder steps may keep it swinging by some of
+    // them: the force steps by K q and B q / T, half a period long.
+    for (const DeviceParams& preset : simulated::presets()) {
+        SampledWall wall = wallOf(preset, Axis::Translation);
+        wall.delay_ticks = preset.delay_ticks;
+        const double stiffness = 0.95 * stableStiffnessBorder(wall);
+        for (const auto method : {model::ContactMethod::Penalty, model::ContactMethod::GodObjectHeuristic}) {
+            const Press found = press(preset, method, stiffness);
+            std::printf("%-11s %-10s K %7.0f N/m: swing %8.2f um, later %8.2f um\n", std::string(preset.name).c_str(),
+                        method == model::ContactMethod::Penalty ? "penalty" : "god object", stiffness,
+                        1e6 * found.early, 1e6 * found.late);
+            EXPECT_TRUE(found.touches) << preset.name;
+            EXPECT_LE(found.late, found.early + 3.0 * preset.quantum.value) << preset.name;
+            EXPECT_LT(found.late, 1e-3) << preset.name;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace passung
