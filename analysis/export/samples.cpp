@@ -97,6 +97,7 @@ std::string samplesCsv(std::span<const TickRecord> records) {
         row.add(r.torque_Nm);
         row.add(r.hand_depth_m);
         row.add(r.proxy_depth_m);
+        row.add(r.energy_J);
         row.add(r.quality);
         row.add(r.status);
         row.add(r.contacts);

@@ -35,6 +35,8 @@ const char* statusBitMeaning(TickStatus bit) {
             return "device input farther away than the device can have moved";
         case kInputRelocated:
             return "the device is believed to be elsewhere after jumps that agreed";
+        case kPassivityActed:
+            return "the passivity controller added a damper";
         case kEngaged:
             return "engaged: the hand has reached the start pose and contact is rendered (nothing to worry about)";
     }

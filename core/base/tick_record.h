@@ -25,6 +25,7 @@ enum TickStatus : std::uint32_t {
     kInputNotAPose = 1u << 11,    // fresh, but not finite, no rotation or out of any device's reach
     kInputJump = 1u << 12,        // fresh, but farther from the last good sample than the device can move
     kInputRelocated = 1u << 13,   // jumps that agreed were believed: the device is elsewhere than it can have come from
+    kPassivityActed = 1u << 14,   // the passivity controller added a damper
     kEngaged = 1u << 16,          // the hand has reached the start pose: contact is rendered
 };
 
@@ -57,6 +58,7 @@ struct TickRecord {
     // obstacle_edge_test.cpp).
     float hand_depth_m = 0.0f;     // at X_WH
     float proxy_depth_m = 0.0f;    // at X_WG
+    float energy_J = 0.0f;         // that the controller took in through the handle since the trial began
     float quality = 1.0f;          // area fraction of the shell proven or evaluated
     std::uint32_t status = 0;      // TickStatus bits
     std::uint32_t contacts = 0;    // points inside an obstacle at the proxy

@@ -62,6 +62,7 @@ std::vector<Error> SceneSpec::validate() const {
     check.positive("limits: max spin", limits.max_spin);
     check.require(limits.delay_ticks >= 0 && limits.delay_ticks <= kMaxDelayTicks, "limits: delay_ticks",
                   limits.delay_ticks, "must be 0 … 100");
+    check.notNegative("effects: passivity damping", effects.passivity_damping);
     check.notNegative("contact: proxy filter", contact.proxy_filter);
     check.finite("registration: device base", registration.X_WB);
     check.finite("registration: handle", registration.X_DH);

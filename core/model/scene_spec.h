@@ -75,12 +75,18 @@ struct StartGate {
     int hold_ticks = 0;
 };
 
+/// Effects beyond contact; what is 0 is not built.
+struct Effects {
+    double passivity_damping = 0.0;  // most of the passivity controller's damper [N·s/m], ≥ 0; 0: no controller
+};
+
 struct SceneSpec {
     std::vector<PartSpec> parts;
     ContactSpec contact;
     OutputLimits limits;
     Registration registration;
     StartGate start_gate;
+    Effects effects;
     bool record_hand_depth = true;  // an extra query at the device pose for god objects
 
     /// Everything wrong with the values, cross-field rules included. Finite first.

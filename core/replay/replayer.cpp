@@ -50,6 +50,7 @@ std::optional<Difference> compare(const TickRecord& recorded, const TickRecord& 
     comparison.field("torque_Nm", recorded.torque_Nm, replayed.torque_Nm);
     comparison.field("hand_depth_m", recorded.hand_depth_m, replayed.hand_depth_m);
     comparison.field("proxy_depth_m", recorded.proxy_depth_m, replayed.proxy_depth_m);
+    comparison.field("energy_J", recorded.energy_J, replayed.energy_J);
     comparison.field("quality", recorded.quality, replayed.quality);
     comparison.field("status", recorded.status, replayed.status);
     comparison.field("contacts", recorded.contacts, replayed.contacts);

@@ -23,18 +23,25 @@ double factorRising(const Vec3& v, const Vec3& last, const Vec3& at_sample, doub
     return factorWithin(v, std::max({0.0, last.dot(direction), at_sample.dot(direction)}) + rise);
 }
 
-/// From the held part's origin and world axes to the handle's origin and device base axes, or back.
-Wrench toDevice(const Wrench& F_H_W, const Pose& X_WB, const Vec3& p_DH_W) noexcept {
-    const Quat R_BW = X_WB.q.conjugate();
+/// From the handle's origin to the held part's, world axes.
+Vec3 lever(const TickModel& model, const TickFrame& frame) noexcept {
+    return frame.X_WH.q * (model.registration.X_DH.q.conjugate() * model.registration.X_DH.p);
+}
+
+/// From the held part's origin and world axes to the handle's origin and device base axes.
+Wrench wrenchOnDevice(const TickModel& model, const TickFrame& frame, const Wrench& F_H_W) noexcept {
+    const Quat R_BW = model.registration.X_WB.q.conjugate();
+    const Vec3 p_DH_W = lever(model, frame);
     return {R_BW * F_H_W.force, R_BW * (F_H_W.torque + p_DH_W.cross(F_H_W.force))};
 }
 
-Wrench toHeldPart(const Wrench& F_D_B, const Pose& X_WB, const Vec3& p_DH_W) noexcept {
-    const Vec3 force = X_WB.q * F_D_B.force;
-    return {force, X_WB.q * F_D_B.torque - p_DH_W.cross(force)};
-}
-
 }  // namespace
+
+Wrench wrenchOnHeldPart(const TickModel& model, const TickFrame& frame, const Wrench& F_D_B) noexcept {
+    const Quat& R_WB = model.registration.X_WB.q;
+    const Vec3 force = R_WB * F_D_B.force;
+    return {force, R_WB * F_D_B.torque - lever(model, frame).cross(force)};
+}
 
 void delayOutput(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
     const auto length = static_cast<std::int64_t>(model.limits.delay_ticks) + 1;
@@ -44,8 +51,7 @@ void delayOutput(const TickModel& model, TickState& state, TickFrame& frame) noe
 
 void limitOutput(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
     const model::OutputLimits& limits = model.limits;
-    const Vec3 p_DH_W = frame.X_WH.q * (model.registration.X_DH.q.conjugate() * model.registration.X_DH.p);
-    Wrench wrench = toDevice(frame.F_H_W, model.registration.X_WB, p_DH_W);
+    Wrench wrench = wrenchOnDevice(model, frame, frame.F_H_W);
     if (!isFinite(wrench)) state.latched = true;
     if (state.latched) frame.status |= kNonFiniteLatched;
     if (!frame.input_usable || state.latched) {
@@ -69,7 +75,7 @@ void limitOutput(const TickModel& model, TickState& state, TickFrame& frame) noe
     wrench = {force_rising * wrench.force, torque_rising * wrench.torque};
 
     frame.F_D_B = wrench;
-    frame.F_H_W = toHeldPart(wrench, model.registration.X_WB, p_DH_W);
+    frame.F_H_W = wrenchOnHeldPart(model, frame, wrench);
     state.last_sent = wrench;
     if (frame.sample_periods > 0) state.sent_at_sample = wrench;
 }

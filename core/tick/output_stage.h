@@ -4,6 +4,10 @@
 
 namespace passung::tick {
 
+/// What a wrench about the handle's origin in the device's base axes is on the held part: about its origin, world axes.
+/// Reads X_WH. rt-safe.
+Wrench wrenchOnHeldPart(const TickModel& model, const TickFrame& frame, const Wrench& F_D_B) noexcept;
+
 /// Stage, only if the scene names a delay: the wrench takes effect `delay_ticks` later. What was computed without
 /// usable input takes effect as zero.
 void delayOutput(const TickModel& model, TickState& state, TickFrame& frame) noexcept;

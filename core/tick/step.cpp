@@ -30,6 +30,7 @@ void mixOutputs(std::uint64_t& hash, const TickFrame& frame, const Pose& X_WG) n
     mix(hash, frame.F_D_B.force);
     mix(hash, frame.F_D_B.torque);
     mix(hash, Vec3(frame.proxy_depth, frame.hand_depth, frame.quality));
+    mix(hash, std::bit_cast<std::uint64_t>(frame.energy));
     mix(hash, std::uint64_t{frame.status} << 32 | frame.contacts);
     mix(hash, std::uint64_t{frame.iterations} << 32 | frame.nodes_visited);
 }
@@ -79,6 +80,7 @@ TickRecord makeRecord(std::int64_t tick, const DeviceReading& reading, const Tic
     store(record.torque_Nm, frame.F_H_W.torque);
     record.hand_depth_m = static_cast<float>(frame.hand_depth);
     record.proxy_depth_m = static_cast<float>(frame.proxy_depth);
+    record.energy_J = static_cast<float>(frame.energy);
     record.quality = static_cast<float>(frame.quality);
     record.status = frame.status;
     record.contacts = frame.contacts;

@@ -6,6 +6,7 @@
 #include "core/tick/god_object_heuristic.h"
 #include "core/tick/input_guard.h"
 #include "core/tick/output_stage.h"
+#include "core/tick/passivity.h"
 #include "core/tick/penalty.h"
 #include "core/tick/virtual_coupling.h"
 
@@ -60,6 +61,7 @@ TickModel makeModel(const model::Scene& scene) {
     model.limits = spec.limits;
     model.registration = spec.registration;
     model.start_gate = spec.start_gate;
+    model.passivity_damping = spec.effects.passivity_damping;
     model.X_WG_start = spec.parts[scene.held].X_WP;
     model.shell = &*scene.parts[scene.held]->shell;
     const bool two_way = spec.contact.two_way;
@@ -77,6 +79,9 @@ TickModel makeModel(const model::Scene& scene) {
     model.metric_radius = ratio > 0.0 ? std::sqrt(ratio) : std::max(model.shell->gyrationRadius(), 1e-6);
 
     model.stages.push_back({"input guard", "always: a device may lie, stall or vanish", true, guardInput});
+    model.stages.push_back({"energy account",
+                            "always: what the controller takes in and gives out at the handle is recorded", true,
+                            observeEnergy});
     if (spec.start_gate.hold_ticks > 0) {
         model.stages.push_back({"start gate", "start_gate is set: contact begins when the hand holds the start pose",
                                 true, waitForStartPose});
@@ -90,6 +95,11 @@ TickModel makeModel(const model::Scene& scene) {
     }
     if (spec.limits.delay_ticks > 0) {
         model.stages.push_back({"output delay", "device.delay_ticks is set", true, delayOutput});
+    }
+    if (spec.effects.passivity_damping > 0.0) {
+        model.stages.push_back({"passivity controller",
+                                "effects.passivity_controller is set: a damper takes back energy that was given out",
+                                false, dampActivity});
     }
     model.stages.push_back(
         {"output limits", "always, last: finite, within the device's limits, rising slowly enough", true, limitOutput});

@@ -27,6 +27,7 @@ struct TickFrame {
     Wrench F_D_B;              // what is sent: on the hand, about the handle's origin, device base axes
     double proxy_depth = 0.0;  // [m], ≥ 0
     double hand_depth = 0.0;   // [m], ≥ 0
+    double energy = 0.0;       // EnergyAccount::taken_in [J]
     double quality = 1.0;
     std::uint32_t status = 0;  // TickStatus bits
     std::uint32_t contacts = 0;
@@ -60,8 +61,19 @@ struct TickModel {
     model::Registration registration;
     model::StartGate start_gate;
     std::vector<Stage> stages;
-    double finest_cell = 0.0;    // of all fields [m]
-    double metric_radius = 0.0;  // [m]: makes a rotation comparable with a translation (god_object_heuristic.h)
+    double finest_cell = 0.0;        // of all fields [m]
+    double metric_radius = 0.0;      // [m]: makes a rotation comparable with a translation (god_object_heuristic.h)
+    double passivity_damping = 0.0;  // α_max of passivity.h [N·s/m]
+};
+
+/// What went through the handle: passivity.h.
+struct EnergyAccount {
+    double taken_in = 0.0;  // by the controller [J]
+    bool has_sample = false;
+    Pose X_BD;    // at the good sample before
+    Twist V_BD;   // from the one before that
+    Wrench sent;  // sum of what was sent since
+    int ticks = 0;
 };
 
 /// Everything that a tick carries to the next. Sized by makeState; a tick never allocates.
@@ -75,6 +87,7 @@ struct TickState {
     Pose X_BD_other;        // the last sample that does not follow from X_BD_good
     int other_samples = 0;  // that led to it, each following from the one before
     std::int64_t periods_since_other = 0;
+    EnergyAccount energy;
     // start gate
     bool engaged = false;
     int held_ticks = 0;

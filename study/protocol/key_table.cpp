@@ -151,6 +151,10 @@ constexpr std::array kKeys{
     Key{"start_gate", "angle_tolerance_deg", Number, from(0, 180), "", "0", "How well it is aligned; 0 = not asked."},
     Key{"start_gate", "hold_ms", Number, from(0, 10000), "", "0", "How long it stays there."},
 
+    Key{"effects", "passivity_controller", Table, kAny, "", "(none)", "A damper that takes energy back where the controller gave more than it took in; the account itself is always recorded."},
+
+    Key{"effects.passivity_controller", "max_damping_Ns_per_m", Number, above(0), "", "!", "Most that it damps; a mass m cannot bear more than about m / (1 ms)."},
+
     Key{"factor", "name", Name, kAny, "", "!", "A column in every export."},
     Key{"factor", "key", Text, kAny, "", "(every level has its `set`)", "Key of the scene that varies, such as contact.method or part.plate.shape.bore_diameter; also task.* and feedback.*."},
     Key{"factor", "kind", Choice, kAny, "within", "within", "Everyone sees every level."},
@@ -211,7 +215,8 @@ constexpr std::array kTables{
     TableInfo{"device", "`[device]`", ""},
     TableInfo{"registration", "`[registration]`", ""},
     TableInfo{"start_gate", "`[start_gate]`", ""},
-    TableInfo{"effects", "`[effects]`", "No effect is known here yet: every key is an error."},
+    TableInfo{"effects", "`[effects]`", "A table for each effect; what is absent is not built."},
+    TableInfo{"effects.passivity_controller", "`[effects.passivity_controller]`", ""},
     TableInfo{"factor", "`[[factor]]`", ""},
     TableInfo{"level", "Levels written as tables", "A level has either a `value` or a `set`."},
     TableInfo{"task", "`[task]`", ""},

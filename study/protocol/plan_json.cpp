@@ -158,6 +158,7 @@ std::string paramsJson(const Condition& condition) {
                                 .number("angle_tolerance_rad", scene.start_gate.angle_tolerance)
                                 .integer("hold_ticks", scene.start_gate.hold_ticks)
                                 .str())
+        .json("effects", JsonObject().number("passivity_damping_Ns_per_m", scene.effects.passivity_damping).str())
         .json("task", taskJson(condition.task))
         .str();
 }

@@ -233,6 +233,16 @@ model::StartGate readStartGate(const TableReader& read) {
     return gate;
 }
 
+model::Effects readEffects(const TableReader& read, Errors& errors) {
+    model::Effects effects;
+    if (const Node* node = read.node("passivity_controller")) {
+        const TableReader controller(*node, {"effects.passivity_controller"}, read.pathOf("passivity_controller"),
+                                     errors);
+        effects.passivity_damping = controller.number("max_damping_Ns_per_m");
+    }
+    return effects;
+}
+
 }  // namespace
 
 SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids, const std::string& path,
@@ -262,7 +272,7 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
         checkSpacing(contact_table, content.scene);
     }
     content.scene.start_gate = readStartGate(open("start_gate"));
-    open("effects");
+    content.scene.effects = readEffects(open("effects"), errors);
     // What only the model itself can judge has no line of its own.
     if (errors.size() == before)
         for (const Error& error : content.scene.validate())

@@ -72,6 +72,10 @@ Layout makeTickLayout() {
     layout.add("proxy_depth_m", "float32", "m",
                "Depth of the held part's deepest sample point (contact.spacing_mm apart) at the proxy's pose",
                offsetof(TickRecord, proxy_depth_m));
+    layout.add(
+        "energy_J", "float32", "J",
+        "Energy that the controller has taken in through the handle since the trial's first tick; below 0: it gave",
+        offsetof(TickRecord, energy_J));
     layout.add("quality", "float32", "1", "Area fraction of the point shell that was proven or evaluated",
                offsetof(TickRecord, quality));
     layout.add("status", "uint32", "1", "Status bits of the tick; 0 = nothing to report", offsetof(TickRecord, status));

@@ -55,17 +55,19 @@ std::pair<std::vector<TickRecord>, session::LoopHealth> runTicks(const protocol:
 
 TEST(LoopApparatus, NamesTheStagesThatTheConditionCallsForAndNoOthers) {
     // Truth: invariant (what a scene does not name does not run)
-    EXPECT_EQ(stagesOf(condition("none")),
-              (Names{"input guard", "start gate", "contacts at the hand", "penalty wrench", "output limits"}));
-    EXPECT_EQ(stagesOf(condition("fair")), (Names{"input guard", "start gate", "proxy correction", "proxy motion",
-                                                  "proxy record", "hand depth", "virtual coupling", "output limits"}));
+    EXPECT_EQ(stagesOf(condition("none")), (Names{"input guard", "energy account", "start gate", "contacts at the hand",
+                                                  "penalty wrench", "output limits"}));
+    EXPECT_EQ(stagesOf(condition("fair")),
+              (Names{"input guard", "energy account", "start gate", "proxy correction", "proxy motion", "proxy record",
+                     "hand depth", "virtual coupling", "output limits"}));
     protocol::Condition bare = condition("fair");
     bare.scene.start_gate = {};
     bare.scene.record_hand_depth = false;
     bare.scene.contact.proxy_filter = 100.0;
     bare.scene.limits.delay_ticks = 3;
-    EXPECT_EQ(stagesOf(bare), (Names{"input guard", "proxy correction", "proxy motion", "proxy filter", "proxy record",
-                                     "virtual coupling", "output delay", "output limits"}));
+    EXPECT_EQ(stagesOf(bare),
+              (Names{"input guard", "energy account", "proxy correction", "proxy motion", "proxy filter",
+                     "proxy record", "virtual coupling", "output delay", "output limits"}));
 }
 
 TEST(LoopApparatus, RefusesADeviceThatItDoesNotKnow) {

@@ -1,0 +1,48 @@
+#include "core/tick/passivity.h"
+
+#include <algorithm>
+
+#include "core/tick/output_stage.h"
+
+namespace passung::tick {
+
+void observeEnergy(const TickModel&, TickState& state, TickFrame& frame) noexcept {
+    EnergyAccount& account = state.energy;
+    account.sent.force += state.last_sent.force;
+    account.sent.torque += state.last_sent.torque;
+    ++account.ticks;
+    if (!frame.input_usable) {
+        account.has_sample = false;
+        account.V_BD = Twist{};
+    } else if (frame.sample_periods > 0) {
+        const Pose& X = state.X_BD_good;
+        if (account.has_sample) {
+            const Vec3 dx = X.p - account.X_BD.p;
+            const Vec3 dphi = rotationVector(X.q * account.X_BD.q.conjugate());
+            account.taken_in -= (account.sent.force.dot(dx) + account.sent.torque.dot(dphi)) / account.ticks;
+            const double elapsed = kTickSeconds * static_cast<double>(frame.sample_periods);
+            account.V_BD = {dx / elapsed, dphi / elapsed};
+        }
+        account.X_BD = X;
+        account.has_sample = true;
+        account.sent = Wrench{};
+        account.ticks = 0;
+    }
+    frame.energy = account.taken_in;
+}
+
+void dampActivity(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
+    const EnergyAccount& account = state.energy;
+    if (!(account.taken_in < 0.0)) return;
+    const double rho2 = model.metric_radius * model.metric_radius;
+    const double square = account.V_BD.v.squaredNorm() + rho2 * account.V_BD.w.squaredNorm();
+    if (!(square > 0.0)) return;
+    const double alpha = std::min(-account.taken_in / (kTickSeconds * square), model.passivity_damping);
+    const Wrench damper{-alpha * account.V_BD.v, -alpha * rho2 * account.V_BD.w};
+    const Wrench F_H_W = wrenchOnHeldPart(model, frame, damper);
+    frame.F_H_W.force += F_H_W.force;
+    frame.F_H_W.torque += F_H_W.torque;
+    frame.status |= kPassivityActed;
+}
+
+}  // namespace passung::tick

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "core/tick/tick_model.h"
+
+namespace passung::tick {
+
+/// Energy that went into the controller through the device's handle, and a damper that takes back what the controller
+/// gave too much.
+/// Source: Hannaford and Ryu (2002), time domain passivity observer and controller; here in six degrees of freedom.
+///
+/// Symbols: Δx, Δφ how the handle moved from the good sample before to this one; F̄, T̄ the mean of the wrenches that
+/// were sent in between, each held for one tick; all about the handle's origin in the device's base frame, so that
+/// neither scale nor registration enters.
+///   E += -(F̄ · Δx + T̄ · Δφ)   [J]
+/// That is exact where one wrench was held: what the controller has taken in since the trial began. A passive one keeps
+/// E ≥ 0; what its springs hold counts as taken in and comes back. Rotation: with T̄ constant in base axes, exact to
+/// second order in |Δφ|.
+/// Limit cases: no motion or no wrench → E stays. A held sample books nothing until the next new one comes. After
+/// rejected samples the way between is not known and nothing is booked for it.
+///
+/// Stage, of every scene: reads the sample, writes E and the handle's velocity.
+void observeEnergy(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+
+/// Stage, only if the scene names the effect: while E < 0, for one tick,
+///   F += -α v,  T += -α ρ² ω,   α = min(-E / (τ (|v|² + ρ² |ω|²)), α_max)
+/// which takes -E back if the handle goes on as it moves; v, ω from sample to sample, τ the tick, ρ = metric_radius,
+/// α_max the scene's. Nothing at rest. After the wrench and its delay, before the output's limits, which may cut it.
+void dampActivity(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+
+}  // namespace passung::tick
