@@ -45,6 +45,12 @@ std::vector<Error> SceneSpec::validate() const {
             }
         }
     }
+    for (const PartSpec& part : parts) {
+        check.notNegative("part: friction", part.friction);
+        check.notNegative("part: sliding friction", part.sliding_friction);
+        check.require(!(part.sliding_friction > part.friction), "part: sliding friction", part.sliding_friction,
+                      "must not exceed the friction at rest");
+    }
     check.require(held == 1, "part: held", held, "exactly one part must be held");
     check.positive("contact: stiffness", contact.stiffness);
     check.notNegative("contact: rotational stiffness", contact.rotational_stiffness);

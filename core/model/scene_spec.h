@@ -25,6 +25,8 @@ struct PartSpec {
     std::variant<Shape, MeshFile> geometry;
     Pose X_WP;                         // part to world at the start
     bool held = false;                 // the hand's part; exactly one in a scene
+    double friction = 0.0;             // of the surface at rest: μ_s of a pair is the geometric mean, ≥ 0
+    double sliding_friction = 0.0;     // likewise μ_d, ≤ friction
     Vec3 shown_offset = Vec3::Zero();  // drawn this far from where it is touched, world axes [m]
 };
 

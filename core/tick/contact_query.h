@@ -11,11 +11,12 @@ namespace passung::tick {
 
 /// One shell point near or inside an obstacle, or a sphere that stands for points nobody looked at; world frame.
 struct ContactPoint {
-    Vec3 position;        // p_WP [m]
-    Vec3 normal;          // of the shell, unit, outward from the held part; of the field (turned) for edge samples
-    Vec3 gradient;        // of φ, as interpolated; zero if the request does without
-    double phi = 0.0;     // [m], < 0 inside the obstacle
-    double area = 0.0;    // [m²]; of a node that stands for its points: the length of Σ area · normal over them
+    Vec3 position;      // p_WP [m]
+    Vec3 normal;        // of the shell, unit, outward from the held part; of the field (turned) for edge samples
+    Vec3 gradient;      // of φ, as interpolated; zero if the request does without
+    double phi = 0.0;   // [m], < 0 inside the obstacle
+    double area = 0.0;  // [m²]; of a node that stands for its points: the length of Σ area · normal over them
+    std::uint32_t obstacle = 0;  // its place in the scene's list
     double radius = 0.0;  // of a sphere [m]: `position` is then its centre and `phi` a lower bound of what it holds
 };
 
@@ -36,6 +37,10 @@ public:
             points_[i].normal = -points_[i].normal;
             points_[i].gradient = -points_[i].gradient;
         }
+    }
+    /// Notes that the points from `first` on belong to `obstacle`.
+    void assign(std::size_t first, std::uint32_t obstacle) noexcept {
+        for (std::size_t i = first; i < count_; ++i) points_[i].obstacle = obstacle;
     }
     const ContactPoint* begin() const noexcept { return points_.data(); }
     const ContactPoint* end() const noexcept { return points_.data() + count_; }

@@ -21,7 +21,6 @@ struct Problem {
     const Vec3& p_WO;
     double metric_radius;
     double keep_out;
-    const Friction& friction;
 };
 
 Rows rowsOf(const Problem& problem, const FrictionPatch& patch) noexcept {
@@ -42,7 +41,8 @@ double effectiveRadius(const Problem& problem, const FrictionPatch& patch, const
     const Vec3 t1 = n.cross(std::abs(n.x()) < 0.6 ? Vec3::UnitX() : Vec3::UnitY()).normalized(), t2 = n.cross(t1);
     const auto touching = [&](const ContactPoint& c) {
         const double phi = c.phi + c.gradient.dot(dx + dphi.cross(c.position - problem.p_WO));
-        return phi < problem.keep_out + std::abs(problem.keep_out) && c.gradient.dot(n) > kSameWay * c.gradient.norm();
+        return c.obstacle == patch.obstacle && phi < problem.keep_out + std::abs(problem.keep_out) &&
+               c.gradient.dot(n) > kSameWay * c.gradient.norm();
     };
     const auto inPlane = [&](const ContactPoint& c) {
         const Vec3 r = c.position - patch.centre;
@@ -77,7 +77,9 @@ double effectiveRadius(const Problem& problem, const FrictionPatch& patch, const
     return weight > 0.0 ? sum / weight : 0.0;
 }
 
-bool alike(const FrictionPatch& a, const FrictionPatch& b) noexcept { return a.normal.dot(b.normal) > kSameWay; }
+bool alike(const FrictionPatch& a, const FrictionPatch& b) noexcept {
+    return a.obstacle == b.obstacle && a.normal.dot(b.normal) > kSameWay;
+}
 
 /// The patches of the contacts that hold `motion`. `known`: of the sweep before, whose tangents and friction stay, or
 /// (`first`) of the tick before, which only tells what was sliding.
@@ -89,6 +91,7 @@ FrictionPatches patchesOf(const Problem& problem, const ConstrainedMotion& motio
         const ContactPoint& contact = problem.manifold[held.contact];
         FrictionPatch one;
         one.normal = contact.gradient.normalized();
+        one.obstacle = contact.obstacle;
         int to = 0;
         while (to < result.count && !alike(result.patch[static_cast<std::size_t>(to)], one)) ++to;
         FrictionPatch& patch = result.patch[static_cast<std::size_t>(to)];
@@ -144,9 +147,9 @@ Vec3 rubFor(const Eigen::Matrix3d& H, const Vec3& target, double most) noexcept 
 }  // namespace
 
 RubbedMotion constrainWithFriction(const Motion& wanted, const ContactManifold& manifold, const Vec3& p_WO,
-                                   double metric_radius, double keep_out, const Friction& friction,
+                                   double metric_radius, double keep_out, std::span<const Friction> friction,
                                    const FrictionPatches& before) noexcept {
-    const Problem problem{wanted, manifold, p_WO, metric_radius, keep_out, friction};
+    const Problem problem{wanted, manifold, p_WO, metric_radius, keep_out};
     RubbedMotion result;
     const double small = kRubTolerance * wanted.norm();
     Motion drawn = wanted;  // with the friction found so far
@@ -160,16 +163,17 @@ RubbedMotion constrainWithFriction(const Motion& wanted, const ContactManifold& 
         for (int i = 0; i < result.patches.count; ++i) {
             FrictionPatch& patch = result.patches.patch[static_cast<std::size_t>(i)];
             if (!(patch.radius > 0.0))  // met for the first time
-                patch.radius = std::max(friction.least_radius, effectiveRadius(problem, patch, result.motion.u));
+                patch.radius = effectiveRadius(problem, patch, result.motion.u);
+            const Friction& rough = friction[patch.obstacle];
             const Rows B = rowsOf(problem, patch);
             const Eigen::Matrix<double, 6, 3> F = result.motion.free * B.transpose();
             const Eigen::Matrix3d H = B * F;
             const Vec3 slip = B * u;
-            const double most = (patch.slides ? friction.sliding : friction.at_rest) * patch.pressure;
+            const double most = (patch.slides ? rough.sliding : rough.at_rest) * patch.pressure;
             Vec3 rub = rubFor(H, H * patch.rub - slip, most);
             const Vec3 left = slip + H * (rub - patch.rub);
             const bool slides = left.norm() > kAtRest * wanted.norm();
-            if (slides && !patch.slides) rub = rubFor(H, H * patch.rub - slip, friction.sliding * patch.pressure);
+            if (slides && !patch.slides) rub = rubFor(H, H * patch.rub - slip, rough.sliding * patch.pressure);
             if (slides) patch.slides = true;
             change = std::max(change, (rub - patch.rub).norm());
             u += F * (rub - patch.rub);

@@ -1,26 +1,26 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "core/tick/constrained_motion.h"
 
 namespace passung::tick {
 
-/// Coulomb's coefficients of dry friction; both 0: none.
+/// Coulomb's coefficients of dry friction of two surfaces; both 0: none.
 struct Friction {
     double at_rest = 0.0;  // μ_s ≥ μ_d
     double sliding = 0.0;  // μ_d ≥ 0
-    double least_radius =
-        0.0;  // of a patch's torsion [m], ≥ 0: what a soft finger has even where bodies touch in a point
 };
 
-/// Contacts that face one way and rub as one.
+/// Contacts with one obstacle that face one way and rub as one.
 struct FrictionPatch {
     Vec3 normal = Vec3::Zero();  // unit, out of the obstacle
     Vec3 centre = Vec3::Zero();  // of pressure; world
     double radius = 0.0;         // r_e, the effective one of its torsion [m]
     double pressure = 0.0;       // what the contacts push with, as a motion [m]: times the coupling's stiffness [N]
     Vec3 rub = Vec3::Zero();     // x below [m]
+    std::uint32_t obstacle = 0;
     bool slides = false;
 };
 
@@ -57,9 +57,9 @@ inline constexpr int kRubSweeps = 60;
 /// only on the cone. Both in turn until nothing changes, at most kRubSweeps times.
 /// Limit cases: μ = 0 → constrainMotion. All patches at rest → u is zero along them, exactly: nothing creeps. One plane
 /// → |x| = μ λ in slip, along -s.
-/// `before`: patches of the motion before, which tell what was sliding. rt-safe, bounded.
+/// `friction`: of each obstacle. `before`: patches of the motion before, which tell what was sliding. rt-safe, bounded.
 RubbedMotion constrainWithFriction(const Motion& wanted, const ContactManifold& manifold, const Vec3& p_WO,
-                                   double metric_radius, double keep_out, const Friction& friction,
+                                   double metric_radius, double keep_out, std::span<const Friction> friction,
                                    const FrictionPatches& before) noexcept;
 
 }  // namespace passung::tick

@@ -102,6 +102,22 @@ void relieve(const TickModel& model, TickState& state, TickFrame& frame, double 
     }
 }
 
+/// #4: what the contacts leave of `wanted`.
+Motion allowedMotion(const TickModel& model, TickState& state, TickFrame& frame, const Motion& wanted) noexcept {
+    const double keep_out = -kKeep * model.finest_cell;
+    if (model.friction.empty()) {
+        const ConstrainedMotion constrained =
+            constrainMotion(wanted, state.manifold, state.X_WG.p, model.metric_radius, keep_out);
+        if (!constrained.converged) frame.status |= kIterationLimit;
+        return constrained.u;
+    }
+    const RubbedMotion rubbed = constrainWithFriction(wanted, state.manifold, state.X_WG.p, model.metric_radius,
+                                                      keep_out, model.friction, state.rubbing);
+    state.rubbing = rubbed.patches;
+    if (!rubbed.converged || !rubbed.motion.converged) frame.status |= kIterationLimit;
+    return rubbed.motion.u;
+}
+
 }  // namespace
 
 void correctProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
@@ -151,10 +167,7 @@ void moveProxy(const TickModel& model, TickState& state, TickFrame& frame) noexc
         }
         // Step as far as the contacts are known, farther only where there is proven room.
         const double known = std::max(state.manifold_reach, state.room);
-        const ConstrainedMotion constrained =
-            constrainMotion(wanted, state.manifold, state.X_WG.p, model.metric_radius, -kKeep * s);
-        if (!constrained.converged) frame.status |= kIterationLimit;
-        Motion u = constrained.u;
+        Motion u = allowedMotion(model, state, frame, wanted);
         const double step_path = longestPath(model, u);
         arrived = step_path < kStill;
         if (arrived) break;

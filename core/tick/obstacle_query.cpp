@@ -44,12 +44,16 @@ QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, QueryReques
     request.max_nodes = model.contact.budget_nodes;
     QueryAnswer all;
     all.phi = all.lower_bound = request.search_below;
+    std::uint32_t place = 0;
     for (const Obstacle& obstacle : model.obstacles) {
+        const std::size_t first = manifold.size();
         merge(queryContacts(*obstacle.field, obstacle.X_WF, *model.shell, X_WS, request, workspace, manifold), all);
         request.search_below = all.phi;
-        if (obstacle.shell == nullptr) continue;
-        merge(queryBack(model, obstacle, X_WS, request, workspace, manifold), all);
-        request.search_below = all.phi;
+        if (obstacle.shell != nullptr) {
+            merge(queryBack(model, obstacle, X_WS, request, workspace, manifold), all);
+            request.search_below = all.phi;
+        }
+        manifold.assign(first, place++);
     }
     return all;
 }

@@ -52,6 +52,21 @@ void addGodObject(TickModel& model, bool record_hand_depth) {
         {"virtual coupling", "step #6: spring and damper between proxy and hand", false, renderCoupling});
 }
 
+/// The coefficients of the held part with each obstacle, if any rubs.
+void addFriction(TickModel& model, const model::Scene& scene) {
+    const auto& parts = scene.spec.parts;
+    const model::PartSpec& held = parts[scene.held];
+    std::vector<Friction> friction;
+    bool any = false;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (i == scene.held) continue;
+        friction.push_back({std::sqrt(held.friction * parts[i].friction),
+                            std::sqrt(held.sliding_friction * parts[i].sliding_friction)});
+        any = any || friction.back().at_rest > 0.0;
+    }
+    if (any) model.friction = std::move(friction);
+}
+
 }  // namespace
 
 TickModel makeModel(const model::Scene& scene) {
@@ -75,6 +90,7 @@ TickModel makeModel(const model::Scene& scene) {
         const double cell = scene.parts[i]->field->cell();
         model.finest_cell = model.finest_cell > 0.0 ? std::min(model.finest_cell, cell) : cell;
     }
+    addFriction(model, scene);
     const double ratio = spec.contact.rotational_stiffness / spec.contact.stiffness;
     model.metric_radius = ratio > 0.0 ? std::sqrt(ratio) : std::max(model.shell->gyrationRadius(), 1e-6);
 

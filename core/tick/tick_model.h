@@ -7,7 +7,7 @@
 #include "core/base/tick_record.h"
 #include "core/base/types.h"
 #include "core/model/scene.h"
-#include "core/tick/contact_query.h"
+#include "core/tick/friction.h"
 
 namespace passung::tick {
 
@@ -55,6 +55,7 @@ struct TickModel {
     const model::SphereTree* shell = nullptr;
     const model::DistanceField* held_field = nullptr;  // two-way contact only
     std::vector<Obstacle> obstacles;
+    std::vector<Friction> friction;  // of each obstacle with the held part; empty: the scene names none
     Pose X_WG_start;
     model::ContactSpec contact;
     model::OutputLimits limits;
@@ -97,6 +98,7 @@ struct TickState {
     double manifold_reach = -1.0;  // < 0: nothing known
     double clearance = 0.0;        // least φ of the points that were looked at, as interpolated [m]
     double room = 0.0;             // least φ known of any point: beyond the reach proven, spheres included [m]
+    FrictionPatches rubbing;       // of the last motion in contact
     double last_motion = 0.0;      // of the proxy, in the metric of metric_radius [m]
     Pose X_WG_last;                // for the proxy filter
     bool has_last_proxy = false;

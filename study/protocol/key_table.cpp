@@ -63,6 +63,8 @@ constexpr std::array kKeys{
     Key{"part", "shape", Table, kAny, "", "(a mesh)", "Parametric shape."},
     Key{"part", "pose", Table, kAny, "", "(identity)", "Part to world at the start."},
     Key{"part", "held", Boolean, kAny, "", "false", "The part in the hand."},
+    Key{"part", "friction", Number, from(0, 10), "", "0", "Coefficient at rest. Two parts rub with the geometric mean of theirs: 0 on either side is none. God objects only."},
+    Key{"part", "sliding_friction", Number, from(0, 10), "", "(as `friction`)", "Coefficient while sliding; at most `friction`."},
     Key{"part", "shown_offset", LengthVector, kAny, "", "(zero)", "The part is drawn this far from where it is touched, along the world's axes; not for the held part."},
     Key{"part", "unit", Choice, kAny, "um|mm|cm|m|in", "(the scene's)", "Unit of this part's lengths."},
 

@@ -161,6 +161,9 @@ model::PartSpec readPartNode(const Node& table, const std::string& parent_path, 
     part.held = read.boolean("held");
     const double units = unitsPerMetre(read, units_per_metre);
     part.shown_offset = readPosition(read, "shown_offset", units);
+    part.friction = read.number("friction");
+    part.sliding_friction = read.numberOr("sliding_friction", part.friction);
+    if (part.sliding_friction > part.friction) read.fail("sliding_friction", "must not exceed `friction`");
     if (part.held && !part.shown_offset.isZero(0.0))
         read.fail("shown_offset", "the held part cannot be drawn elsewhere: it would move the hand's aim");
     if (const Node* pose = read.node("pose"))

@@ -29,6 +29,7 @@ std::string partJson(const model::PartSpec& part) {
         json.text("mesh", std::filesystem::path(mesh.path).filename().string())
             .number("metres_per_unit", mesh.metres_per_unit);
     }
+    json.number("friction", part.friction).number("sliding_friction", part.sliding_friction);
     return json.json("pose", poseJson(part.X_WP)).json("shown_offset_m", jsonVector(part.shown_offset)).str();
 }
 

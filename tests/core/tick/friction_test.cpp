@@ -47,7 +47,7 @@ Motion motion(const Vec3& dx, const Vec3& turn = Vec3::Zero()) {
 
 RubbedMotion rub(const Motion& wanted, const ContactManifold& manifold, const Friction& friction = kDry,
                  const FrictionPatches& before = {}) {
-    return constrainWithFriction(wanted, manifold, Vec3::Zero(), kRho, kKeepOut, friction, before);
+    return constrainWithFriction(wanted, manifold, Vec3::Zero(), kRho, kKeepOut, {&friction, 1}, before);
 }
 
 /// A disc of radius `radius` in the plane z = 0, contacts `spacing` apart.

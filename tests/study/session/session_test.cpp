@@ -138,8 +138,8 @@ protected:
             condition.params_json = std::string(R"({"name":")") + name + "\"}";
             condition.task.target = "plate";
             condition.scene.parts = {
-                {"peg", model::Peg{0.02, 0.05, 0.0}, Pose{}, true, Vec3::Zero()},
-                {"plate", model::BorePlate{0.1, 0.1, 0.03, 0.0201, 0.02, 0.0}, Pose{}, false, Vec3::Zero()}};
+                {.name = "peg", .geometry = model::Peg{0.02, 0.05, 0.0}, .X_WP = {}, .held = true},
+                {.name = "plate", .geometry = model::BorePlate{0.1, 0.1, 0.03, 0.0201, 0.02, 0.0}, .X_WP = {}}};
             plan_.conditions.push_back(condition);
         }
         plan_.name = "study";
