@@ -233,24 +233,37 @@ private:
         for (const auto& [path, name] : names) plan_.meshes.push_back({name, path});
     }
 
+    /// A sentence for the conditions that it concerns.
+    template <class Concerns>
+    void warn(std::string_view sentence, Concerns concerns) {
+        std::vector<std::string_view> names;
+        for (const Condition& condition : plan_.conditions)
+            if (concerns(condition.scene)) names.push_back(condition.name);
+        if (!names.empty())
+            plan_.warnings.push_back(fmt::format("{}; conditions: {}", sentence, fmt::join(names, ", ")));
+    }
+
     void warn() {
         using model::PenaltyVariant;
-        for (const PenaltyVariant variant : {PenaltyVariant::Raw, PenaltyVariant::AreaWeighted}) {
-            std::vector<std::string_view> names;
-            for (const Condition& condition : plan_.conditions) {
-                const auto& contact = condition.scene.contact;
-                if (contact.method == model::ContactMethod::Penalty && contact.variant == variant)
-                    names.push_back(condition.name);
-            }
-            if (names.empty()) continue;
-            const bool raw = variant == PenaltyVariant::Raw;
-            plan_.warnings.push_back(fmt::format(
-                "contact.variant = \"{}\" {}, so that nothing keeps the stiffness below the device's stable maximum; "
-                "conditions: {}",
-                raw ? "raw" : "area_weighted",
-                raw ? "adds the stiffness up over all points in contact" : "has a stiffness that grows with the area",
-                fmt::join(names, ", ")));
-        }
+        const auto penalty = [](const model::SceneSpec& scene) {
+            return scene.contact.method == model::ContactMethod::Penalty;
+        };
+        const auto renders = [&](PenaltyVariant variant) {
+            return [=](const model::SceneSpec& scene) { return penalty(scene) && scene.contact.variant == variant; };
+        };
+        warn(
+            "contact.variant = \"raw\" adds the stiffness up over all points in contact, so that nothing keeps the "
+            "stiffness below the device's stable maximum",
+            renders(PenaltyVariant::Raw));
+        warn(
+            "contact.variant = \"area_weighted\" has a stiffness that grows with the area, so that nothing keeps the "
+            "stiffness below the device's stable maximum",
+            renders(PenaltyVariant::AreaWeighted));
+        warn("contact.method = \"penalty\" renders no friction: that of the parts acts in other conditions only",
+             [&](const model::SceneSpec& scene) {
+                 return penalty(scene) && std::any_of(scene.parts.begin(), scene.parts.end(),
+                                                      [](const auto& part) { return part.friction > 0.0; });
+             });
     }
 
     const Node& document_;

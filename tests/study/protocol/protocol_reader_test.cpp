@@ -219,6 +219,21 @@ TEST(ProtocolReader, WarnsOfPenaltiesThatNoStiffnessLimits) {
     EXPECT_TRUE(god->warnings.empty()) << "the god object does not use the variant";
 }
 
+TEST(ProtocolReader, WarnsOfFrictionThatThePenaltyDoesNotRender) {
+    // Truth: invariant: a key without effect is told, and only where it has none.
+    std::string rough = kScene;
+    for (std::size_t at = 0; (at = rough.find("name = ", at)) != std::string::npos; at += 20)
+        rough.insert(at, "friction = 0.3, ");
+    for (const std::string method : {"penalty", "god_object_heuristic"}) {
+        const auto plan = read(kHead + rough + "[scene.contact]\nmethod = \"" + method + "\"\n" + kTask + kBlock +
+                               "order = \"listed\"\n");
+        ASSERT_TRUE(plan);
+        EXPECT_EQ(plan->conditions[0].scene.parts[0].sliding_friction, 0.3);
+        ASSERT_EQ(plan->warnings.size(), method == "penalty" ? 1u : 0u);
+        for (const auto& warning : plan->warnings) EXPECT_NE(warning.find("no friction"), std::string::npos);
+    }
+}
+
 TEST(ProtocolReader, TakesTheShareOfCyclesThatMayBeMissed) {
     // Truth: closed form: the documented default, a value, and one out of range.
     const std::string text = kHead + kScene + kTask + kFactors + kBlock;
