@@ -278,46 +278,55 @@ ClosestPoint TriangleTree::closest(const Vec3& p, double limit) const {
     return result;
 }
 
-void TriangleTree::findNear(const Vec3& p, double radius, std::vector<std::uint32_t>& found) const {
+static bool meet(const Bounds& box, const Vec3& low, const Vec3& high) {
+    return (low.array() <= box.high.array()).all() && (high.array() >= box.low.array()).all();
+}
+
+static bool meets(const Bounds& box, const TriangleTree::Corners& t) {
+    return meet(box, t.a.cwiseMin(t.b).cwiseMin(t.c), t.a.cwiseMax(t.b).cwiseMax(t.c));
+}
+
+/// Looks into the nodes that `enters` lets through, and gives the triangles of their leaves to `visit`, in tree order,
+/// until it says false.
+template <class Enters, class Visit>
+void TriangleTree::walk(Enters enters, Visit visit) const {
     std::array<std::uint32_t, kStack> stack;
     int size = 0;
     stack[static_cast<std::size_t>(size++)] = 0;
     while (size > 0) {
         const Node& node = nodes_[stack[static_cast<std::size_t>(--size)]];
-        if (squaredToBox(p, node.low, node.high) > radius * radius) continue;
+        if (!enters(node)) continue;
         if (node.count == 0) {
             stack[static_cast<std::size_t>(size++)] = node.first + 1;
             stack[static_cast<std::size_t>(size++)] = node.first;
             continue;
         }
-        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) found.push_back(i);
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
+            if (!visit(i)) return;
     }
+}
+
+void TriangleTree::findNear(const Vec3& p, double radius, std::vector<std::uint32_t>& found) const {
+    walk([&](const Node& node) { return squaredToBox(p, node.low, node.high) <= radius * radius; },
+         [&](std::uint32_t i) {
+             found.push_back(i);
+             return true;
+         });
 }
 
 void TriangleTree::findAbove(const Bounds& box, const Vec3& way, double least,
                              std::vector<std::uint32_t>& found) const {
     const Vec3 half_way = 0.5 * way, half_reach = half_way.cwiseAbs();
-    const auto meets = [&](const Vec3& low, const Vec3& high) {
-        return (low.array() <= box.high.array()).all() && (high.array() >= box.low.array()).all();
-    };
-    std::array<std::uint32_t, kStack> stack;
-    int size = 0;
-    stack[static_cast<std::size_t>(size++)] = 0;
-    while (size > 0) {
-        const Node& node = nodes_[stack[static_cast<std::size_t>(--size)]];
-        if (!meets(node.low, node.high)) continue;
-        if (half_way.dot(node.low + node.high) + half_reach.dot(node.high - node.low) < least) continue;
-        if (node.count == 0) {
-            stack[static_cast<std::size_t>(size++)] = node.first + 1;
-            stack[static_cast<std::size_t>(size++)] = node.first;
-            continue;
-        }
-        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+    walk(
+        [&](const Node& node) {
+            return meet(box, node.low, node.high) &&
+                   half_way.dot(node.low + node.high) + half_reach.dot(node.high - node.low) >= least;
+        },
+        [&](std::uint32_t i) {
             const Corners& t = corners_[i];
-            if (std::max({way.dot(t.a), way.dot(t.b), way.dot(t.c)}) < least) continue;
-            if (meets(t.a.cwiseMin(t.b).cwiseMin(t.c), t.a.cwiseMax(t.b).cwiseMax(t.c))) found.push_back(i);
-        }
-    }
+            if (std::max({way.dot(t.a), way.dot(t.b), way.dot(t.c)}) >= least && meets(box, t)) found.push_back(i);
+            return true;
+        });
 }
 
 /// Above is the distance u from the triangle nearest to the centre c, convex, hence nowhere above its values at the
@@ -331,27 +340,22 @@ void TriangleTree::findNearest(const Vec3& centre, double half, std::vector<std:
         const Vec3 corner = centre + half * Vec3(i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0);
         above[i] = (closestPoint(corners_[closest_point.place], corner) - corner).norm() + rounding;
     }
-    std::array<std::uint32_t, kStack> stack;
-    int size = 0;
-    stack[static_cast<std::size_t>(size++)] = 0;
-    while (size > 0) {
-        const Node& node = nodes_[stack[static_cast<std::size_t>(--size)]];
-        const Vec3 way = centre - centre.cwiseMax(node.low).cwiseMin(node.high);
-        const double d = way.norm();
-        const Vec3 turn = d > 0.0 ? Vec3((half / d) * way) : Vec3(Vec3::Zero());
-        bool near = false;
-        for (std::size_t i = 0; i < 8; ++i)
-            near |= d + ((i & 1 ? turn.x() : -turn.x()) + (i & 2 ? turn.y() : -turn.y()) +
-                         (i & 4 ? turn.z() : -turn.z())) <=
-                    above[i];
-        if (!near) continue;
-        if (node.count == 0) {
-            stack[static_cast<std::size_t>(size++)] = node.first + 1;
-            stack[static_cast<std::size_t>(size++)] = node.first;
-            continue;
-        }
-        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) found.push_back(i);
-    }
+    walk(
+        [&](const Node& node) {
+            const Vec3 way = centre - centre.cwiseMax(node.low).cwiseMin(node.high);
+            const double d = way.norm();
+            const Vec3 turn = d > 0.0 ? Vec3((half / d) * way) : Vec3(Vec3::Zero());
+            bool near = false;
+            for (std::size_t i = 0; i < 8; ++i)
+                near |= d + ((i & 1 ? turn.x() : -turn.x()) + (i & 2 ? turn.y() : -turn.y()) +
+                             (i & 4 ? turn.z() : -turn.z())) <=
+                        above[i];
+            return near;
+        },
+        [&](std::uint32_t i) {
+            found.push_back(i);
+            return true;
+        });
 }
 
 TrianglePair TriangleTree::closestTo(const TriangleCorners& triangle, double limit) const {
@@ -422,28 +426,14 @@ double TriangleTree::windingNumber(const Vec3& p) const {
 }
 
 void TriangleTree::collectWithin(const Bounds& box, std::size_t most, std::vector<std::uint32_t>& triangles) const {
-    const auto meets = [&](const Vec3& low, const Vec3& high) {
-        return (low.array() <= box.high.array()).all() && (high.array() >= box.low.array()).all();
-    };
     triangles.clear();
-    std::array<std::uint32_t, kStack> stack;
-    int size = 0;
-    stack[static_cast<std::size_t>(size++)] = 0;
-    while (size > 0) {
-        const Node& node = nodes_[stack[static_cast<std::size_t>(--size)]];
-        if (!meets(node.low, node.high)) continue;
-        if (node.count == 0) {
-            stack[static_cast<std::size_t>(size++)] = node.first + 1;
-            stack[static_cast<std::size_t>(size++)] = node.first;
-            continue;
-        }
-        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-            const Corners& t = corners_[i];
-            if (!meets(t.a.cwiseMin(t.b).cwiseMin(t.c), t.a.cwiseMax(t.b).cwiseMax(t.c))) continue;
-            if (triangles.size() == most) return;
-            triangles.push_back(original_[i]);
-        }
-    }
+    walk([&](const Node& node) { return meet(box, node.low, node.high); },
+         [&](std::uint32_t i) {
+             if (!meets(box, corners_[i])) return true;
+             if (triangles.size() == most) return false;
+             triangles.push_back(original_[i]);
+             return true;
+         });
 }
 
 }  // namespace passung::model

@@ -77,6 +77,8 @@ private:
         double far_squared;  // a point farther than this (squared) from `centre` sees the dipole [m²]
     };
     Cluster summarise(std::uint32_t first, std::uint32_t count) const;
+    template <class Enters, class Visit>
+    void walk(Enters enters, Visit visit) const;
 
     std::vector<Node> nodes_;
     std::vector<Cluster> clusters_;        // per node
