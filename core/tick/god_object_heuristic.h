@@ -27,7 +27,8 @@ namespace passung::tick {
 ///
 /// #3 unconstrained motion  u = (x_H - x_G, ρ log(R_H R_Gᵀ)).
 ///
-/// #4 constrained motion: the least change of u (Gauss) under  a_i · u ≥ -kKeep·s - φ_i,  see constrained_motion.h.
+/// #4 constrained motion: the least change of u (Gauss) under  a_i · u ≥ -kKeep·s - φ_i,  see constrained_motion.h;
+///    where parts rub on each other, held back by friction.h.
 ///    The step is no longer than what is known around the proxy: `reach`, or farther where free room is proven. It is
 ///    checked by a query. What the linearisation missed (around a rim) is pushed out by the least motion that the
 ///    contacts found there ask for; if the overlap is still not acceptable the step is halved; and all is repeated from
