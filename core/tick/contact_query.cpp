@@ -77,7 +77,8 @@ struct Traversal {
           p_WS(X_WS.p),
           request(r),
           ordered(r.max_nodes > 0 || r.search_below > r.collect_below),
-          grouped(r.groups && !ordered && !r.prove && !r.gradients && r.mode == model::FieldMode::Trilinear),
+          grouped(r.groups && r.collect_below == 0.0 && !ordered && !r.prove && !r.gradients &&
+                  r.mode == model::FieldMode::Trilinear),
           // No brick spans more: its cells are those asked for, or at most 1/72 of the longest side.
           slack(0x1p-20 * (f.bounds().size().norm() + 14.0 * f.cell())),
           workspace(w),
@@ -254,7 +255,8 @@ struct Traversal {
     /// Groups of the leaves first, then the points of those groups that matter.
     ///   Taking a group of radius R whole errs where the depth has its kink within it, |φ| < R, and by the surface's
     /// curvature; over n groups in contact such errors level out. So of n groups those are taken apart for which
-    ///   -R t < φ < R min(1, t),  t = kSettled / n:  all of a small contact, ever fewer at the rim of a larger one.
+    ///   -R t < φ < R min(1, t),  t = kSettled / n:  all of a small contact, ever fewer at the rim of a larger one,
+    /// and those that may hold the deepest point.
     void sweepGroups(std::size_t leaf) noexcept {
         const std::vector<QueryWorkspace::Entry>& heap = workspace.heap_;
         while (leaf < heap.size()) {
@@ -269,18 +271,27 @@ struct Traversal {
         }
         const double share = kSettled / std::max(1, groups_inside);
         const auto within = static_cast<float>(-share), without = static_cast<float>(std::min(1.0, share));
+        const auto takeApart = [&](std::uint32_t group) {
+            const std::uint32_t first = shell.groupPoints()[group], count = shell.groupPoints()[group + 1] - first;
+            if (batch.count + count > kBatch) evaluateBatch();
+            batch.append(shell.positions(), first, count);
+        };
+        if (lowest_group != kNoPoint) {
+            takeApart(lowest_group);
+            evaluateBatch();
+        }
         for (std::size_t i = 0; i < near_groups; ++i) {
             const auto& [phi, group] = workspace.near_[i];
+            if (group == lowest_group) continue;
             const float radius = shell.groupRadii()[group];
-            const std::uint32_t first = shell.groupPoints()[group], count = shell.groupPoints()[group + 1] - first;
-            if (group == lowest_group || (phi > within * radius && phi < without * radius)) {
-                if (batch.count + count > kBatch) evaluateBatch();
-                batch.append(shell.positions(), first, count);
+            const bool may_be_deepest = static_cast<double>(phi - radius) < answer.phi;
+            if (may_be_deepest || (phi > within * radius && phi < without * radius)) {
+                takeApart(group);
             } else if (phi < 0.0f) {
                 const model::Facing& whole = shell.groupFacings()[group];
                 collect(shell.groupPositions().at(group), whole.normal.cast<double>(), static_cast<double>(whole.area),
                         static_cast<double>(phi), Vec3::Zero());
-                answer.contacts += static_cast<int>(count) - 1;
+                answer.contacts += static_cast<int>(shell.groupPoints()[group + 1] - shell.groupPoints()[group]) - 1;
             }
         }
         if (batch.count > 0) evaluateBatch();

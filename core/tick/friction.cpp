@@ -11,7 +11,10 @@ namespace {
 
 constexpr double kSameWay = 0.985;      // cosine of 10 degrees: contacts that face so much alike rub as one
 constexpr double kRubTolerance = 1e-8;  // of what a sweep changes, relative to the wanted motion
-constexpr double kAtRest = 1e-6;        // slip relative to the wanted motion
+constexpr int kWholeSweeps = 10;
+constexpr double kRubAccepted = 1e-4;  // of what the last sweep changed, relative to the wanted motion
+constexpr double kUnsettled = 20.0;    // what is left to change, per last change, where sweeps shrink it by a twentieth
+constexpr double kAtRest = 1e-6;       // slip relative to the wanted motion
 
 using Rows = Eigen::Matrix<double, 3, 6>;
 
@@ -86,6 +89,7 @@ bool alike(const FrictionPatch& a, const FrictionPatch& b) noexcept {
 FrictionPatches patchesOf(const Problem& problem, const ConstrainedMotion& motion, const FrictionPatches& known,
                           bool first) noexcept {
     FrictionPatches result;
+    const double least = 1e-12 * problem.wanted.norm() + std::numeric_limits<double>::min();
     for (int i = 0; i < motion.active; ++i) {
         const HeldContact& held = motion.held[static_cast<std::size_t>(i)];
         const ContactPoint& contact = problem.manifold[held.contact];
@@ -99,14 +103,14 @@ FrictionPatches patchesOf(const Problem& problem, const ConstrainedMotion& motio
             patch = one;
             ++result.count;
         }
-        const double pressure = held.push;
+        // Without any pressure the first contact is the centre; a weight that no other feels.
+        const double pressure = std::max(held.push, least);
         patch.pressure += pressure;
         patch.centre += pressure * contact.position;
-        if (patch.pressure == 0.0) patch.centre = contact.position;
     }
     for (int i = 0; i < result.count; ++i) {
         FrictionPatch& patch = result.patch[static_cast<std::size_t>(i)];
-        if (patch.pressure > 0.0) patch.centre /= patch.pressure;
+        patch.centre /= patch.pressure;
         for (int k = 0; k < known.count; ++k) {
             const FrictionPatch& old = known.patch[static_cast<std::size_t>(k)];
             if (!alike(old, patch)) continue;
@@ -119,6 +123,18 @@ FrictionPatches patchesOf(const Problem& problem, const ConstrainedMotion& motio
         }
     }
     return result;
+}
+
+/// The largest friction of a patch that is there no longer.
+double lostRub(const FrictionPatches& before, const FrictionPatches& now) noexcept {
+    double lost = 0.0;
+    for (int i = 0; i < before.count; ++i) {
+        const FrictionPatch& old = before.patch[static_cast<std::size_t>(i)];
+        bool there = false;
+        for (int k = 0; k < now.count; ++k) there = there || alike(old, now.patch[static_cast<std::size_t>(k)]);
+        if (!there) lost = std::max(lost, old.rub.norm());
+    }
+    return lost;
 }
 
 /// x with |x| ≤ most that leaves no slip, or slip against it on the bound: (H + ν) x = target.
@@ -158,7 +174,8 @@ RubbedMotion constrainWithFriction(const Motion& wanted, const ContactManifold& 
         result.motion = constrainMotion(drawn, manifold, p_WO, metric_radius, keep_out);
         result.patches = patchesOf(problem, result.motion, known, sweep == 0);
         Motion u = result.motion.u;
-        double change = known.count != result.patches.count && sweep > 0 ? wanted.norm() : 0.0;
+        double change = sweep > 0 ? lostRub(known, result.patches) : 0.0;
+        const double share = sweep < kWholeSweeps ? 1.0 : 0.5;  // the half calms an iteration that swings
         drawn = wanted;
         for (int i = 0; i < result.patches.count; ++i) {
             FrictionPatch& patch = result.patches.patch[static_cast<std::size_t>(i)];
@@ -176,18 +193,24 @@ RubbedMotion constrainWithFriction(const Motion& wanted, const ContactManifold& 
             if (slides && !patch.slides) rub = rubFor(H, H * patch.rub - slip, rough.sliding * patch.pressure);
             if (slides) patch.slides = true;
             change = std::max(change, (rub - patch.rub).norm());
+            rub = patch.rub + share * (rub - patch.rub);
             u += F * (rub - patch.rub);
             patch.rub = rub;
             drawn += B.transpose() * rub;
         }
         known = result.patches;
         result.sweeps = sweep + 1;
-        result.converged = change <= small;
-        if (result.converged) break;
+        result.change = change / wanted.norm();
+        if (change <= small) break;
+    }
+    if (!(result.change <= kRubAccepted)) {
+        result.converged = false;
+        result.motion = constrainMotion(Motion::Zero(), manifold, p_WO, metric_radius, keep_out);
     }
     for (int i = 0; i < result.patches.count; ++i) {
         FrictionPatch& patch = result.patches.patch[static_cast<std::size_t>(i)];
-        patch.slides = (rowsOf(problem, patch) * result.motion.u).norm() > kAtRest * wanted.norm();
+        const double rest = (kAtRest + kUnsettled * result.change) * wanted.norm();
+        patch.slides = (rowsOf(problem, patch) * result.motion.u).norm() > rest;
     }
     return result;
 }

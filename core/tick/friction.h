@@ -34,10 +34,11 @@ struct RubbedMotion {
     ConstrainedMotion motion;
     FrictionPatches patches;
     int sweeps = 0;
-    bool converged = true;  // false: kRubSweeps were not enough, the cone is kept but slip may remain at rest
+    double change = 0.0;    // of friction in the last sweep, per wanted motion
+    bool converged = true;  // false: nothing was found that obeys the law; the body stays
 };
 
-inline constexpr int kRubSweeps = 60;
+inline constexpr int kRubSweeps = 40;
 
 /// The motion that the contacts leave to a body that is drawn along `wanted` by a spring, with friction.
 ///
@@ -54,7 +55,9 @@ inline constexpr int kRubSweeps = 60;
 ///
 /// Solution: for fixed x the motion is a problem without friction, solved exactly; for fixed active contacts and Λ the
 /// slip is s + H Δx, H = B (1 - N N⁺) Bᵀ, so that each x_p follows exactly, (H + ν) x = H x_p - s with ν ≥ 0 and ν > 0
-/// only on the cone. Both in turn until nothing changes, at most kRubSweeps times.
+/// only on the cone. Both in turn until nothing changes, at most kRubSweeps times, by half steps after the first ones.
+/// Where friction raises the pressure that raises the friction (a wedge that locks itself: a groove steeper than the
+/// cone) there is no end: then the body stays where it is, pushed out of overlap only, `converged` false.
 /// Limit cases: μ = 0 → constrainMotion. All patches at rest → u is zero along them, exactly: nothing creeps. One plane
 /// → |x| = μ λ in slip, along -s.
 /// `friction`: of each obstacle. `before`: patches of the motion before, which tell what was sliding. rt-safe, bounded.

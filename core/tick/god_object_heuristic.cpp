@@ -126,6 +126,7 @@ void correctProxy(const TickModel& model, TickState& state, TickFrame& frame) no
         state.X_WG = frame.X_WH;
         state.manifold_reach = -1.0;
         state.has_last_proxy = state.has_last_stretch = false;
+        state.rubbing = {};
     }
     if (state.manifold_reach < 0.0) look(model, state, frame, state.X_WG, kLongestStep * s, kLongestStep * s);
     for (int i = 0; i < kCorrections && overlap(state) > kAccept * s; ++i) {
@@ -161,6 +162,7 @@ void moveProxy(const TickModel& model, TickState& state, TickFrame& frame) noexc
         if (state.room > path) {  // nothing is in the way: arrive
             look(model, state, frame, frame.X_WH, reach, std::max(reach, 2.0 * path));
             arrived = overlap(state) <= accepted;
+            if (arrived) state.rubbing = {};  // free
             if (arrived) break;
             frame.status |= kStepRejected;
             look(model, state, frame, X_here, reach, reach);

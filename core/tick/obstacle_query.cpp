@@ -20,7 +20,7 @@ QueryAnswer queryBack(const TickModel& model, const Obstacle& obstacle, const Po
 }
 
 void merge(const QueryAnswer& answer, QueryAnswer& all) noexcept {
-    if (answer.found) {
+    if (answer.found && answer.phi < all.phi) {
         all.found = true;
         all.phi = answer.phi;
         all.closest_W = answer.closest_W;
@@ -44,14 +44,18 @@ QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, QueryReques
     request.max_nodes = model.contact.budget_nodes;
     QueryAnswer all;
     all.phi = all.lower_bound = request.search_below;
+    // What refinement finds between the samples must not hide the samples of another obstacle from it.
+    const auto narrow = [&] {
+        if (!request.refine) request.search_below = all.phi;
+    };
     std::uint32_t place = 0;
     for (const Obstacle& obstacle : model.obstacles) {
         const std::size_t first = manifold.size();
         merge(queryContacts(*obstacle.field, obstacle.X_WF, *model.shell, X_WS, request, workspace, manifold), all);
-        request.search_below = all.phi;
+        narrow();
         if (obstacle.shell != nullptr) {
             merge(queryBack(model, obstacle, X_WS, request, workspace, manifold), all);
-            request.search_below = all.phi;
+            narrow();
         }
         manifold.assign(first, place++);
     }

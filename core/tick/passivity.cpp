@@ -33,7 +33,8 @@ void observeEnergy(const TickModel&, TickState& state, TickFrame& frame) noexcep
 
 void dampActivity(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
     const EnergyAccount& account = state.energy;
-    if (!(account.taken_in < 0.0)) return;
+    // On a held tick nothing new is known, and what was asked back is on its way.
+    if (!(account.taken_in < 0.0) || frame.sample_periods == 0) return;
     const double rho2 = model.metric_radius * model.metric_radius;
     const double square = account.V_BD.v.squaredNorm() + rho2 * account.V_BD.w.squaredNorm();
     if (!(square > 0.0)) return;

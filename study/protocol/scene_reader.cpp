@@ -213,6 +213,7 @@ double readAccuracyBudget(const TableReader& read) {
     }
     for (const char* key : {"tolerance_um", "cell_mm", "spacing_mm", "mode", "budget_nodes"})
         if (read.has(key)) read.fail(key, "is picked by accuracy = \"auto\"");
+    if (read.boolean("two_way")) read.fail("two_way", "accuracy = \"auto\" measures the held part's points only");
     if (!read.has("accuracy_budget_us")) read.fail("accuracy_budget_us", "required by accuracy = \"auto\"");
     return read.numberOr("accuracy_budget_us", 0.0);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "core/base/random.h"
@@ -122,6 +123,7 @@ TEST(Friction, ObeysCoulombsLawOnRandomContacts) {
     // Truth: invariant (the law itself). Every patch: |x| ≤ μ Λ; at rest no slip; sliding |x| = μ_d Λ against the slip;
     // the normals are obeyed. Up to four contacts of which the first two face apart.
     Random random(3);
+    constexpr double kSlow = 20.0;  // what is left to change, per last change, where sweeps shrink it by a twentieth
     int resting = 0, sliding = 0, unsolved = 0, sweeps = 0;
     constexpr int kTrials = 2000;
     for (int trial = 0; trial < kTrials; ++trial) {
@@ -151,10 +153,12 @@ TEST(Friction, ObeysCoulombsLawOnRandomContacts) {
             const double x = patch.rub.norm();
             EXPECT_LE(x, kDry.at_rest * patch.pressure * (1 + 1e-6) + 1e-8 * size);
             if (patch.slides) {
-                EXPECT_NEAR(x, kDry.sliding * patch.pressure, 1e-5 * patch.pressure + 1e-7 * size) << trial;
+                EXPECT_NEAR(x, kDry.sliding * patch.pressure,
+                            1e-5 * patch.pressure + (1e-7 + kSlow * found.change) * size)
+                    << trial;
                 ++sliding;
             } else {
-                EXPECT_LT(slip.norm(), 1e-6 * size);
+                EXPECT_LT(slip.norm(), (1e-6 + kSlow * found.change) * size);
                 if (x > 1e-9 * size) ++resting;
             }
         }
@@ -178,6 +182,44 @@ TEST(Friction, DoesNotCreepAtRest) {
         p += found.motion.u.head<3>();
     }
     EXPECT_LT(p.norm(), 1e-12);
+}
+
+TEST(Friction, NeverThrowsABodyOutOfAGroove) {
+    // Truth: invariant. Pressed into a groove steeper than its cone a body locks: it does not rise, and no body moves
+    // farther than it was drawn, whatever the coefficient. Grooves of random planes beside it.
+    const auto wall = [](double side, double half_angle, double y) {
+        return contactAt({0.01 * side, y, 0}, Vec3(-side * std::cos(half_angle), 0, std::sin(half_angle)));
+    };
+    const double narrow = 15.0 * std::numbers::pi / 180.0;
+    const auto groove =
+        manifoldOf({wall(1, narrow, 0.01), wall(-1, narrow, 0.01), wall(1, narrow, -0.01), wall(-1, narrow, -0.01)});
+    const RubbedMotion pressed = rub(motion({2e-4, 0, -1e-3}), groove, {.at_rest = 0.4, .sliding = 0.3});
+    EXPECT_LT(pressed.motion.u.z(), 1e-8);
+    Random random(5);
+    for (int trial = 0; trial < 1000; ++trial) {
+        const auto any = [&](double size) {
+            return Vec3(random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size));
+        };
+        std::vector<ContactPoint> contacts;
+        for (int i = 0; i < 3; ++i) contacts.push_back(contactAt(any(0.02), any(1.0).normalized()));
+        const Motion wanted = motion(any(1e-3), any(1e-2));
+        const RubbedMotion found = rub(wanted, manifoldOf(contacts), {.at_rest = 1.0, .sliding = 1.0});
+        EXPECT_LE(found.motion.u.norm(), 1.01 * wanted.norm()) << trial << ' ' << found.converged;
+    }
+}
+
+TEST(Friction, FindsTheCentreWhereAContactBearsNothing) {
+    // Truth: closed form. Two contacts of one plane, drawn so that one of them bears nothing: the centre is the other.
+    for (const bool swapped : {false, true}) {
+        std::vector<ContactPoint> contacts{contactAt({0.009, 0, 0}, Vec3::UnitZ()),
+                                           contactAt(Vec3::Zero(), Vec3::UnitZ())};
+        if (swapped) std::swap(contacts[0], contacts[1]);
+        const RubbedMotion found =
+            rub(motion({0, 1e-4, -5e-4}), manifoldOf(contacts), {.at_rest = 0.5, .sliding = 0.3});
+        ASSERT_EQ(found.patches.count, 1);
+        EXPECT_LT(found.patches.patch[0].centre.norm(), 0.01);
+        EXPECT_NEAR(found.motion.u.y(), 0.0, 1e-9);
+    }
 }
 
 TEST(Friction, WithoutFrictionIsTheConstrainedMotion) {
