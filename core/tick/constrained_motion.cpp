@@ -66,11 +66,7 @@ class ActiveSet {
 public:
     int size() const noexcept { return count_; }
     Row& operator[](int i) noexcept { return rows_[static_cast<std::size_t>(i)]; }
-    /// 1 - N N⁺.
-    Eigen::Matrix<double, 6, 6> free() const noexcept {
-        const auto Q = Q_.leftCols(count_);
-        return Eigen::Matrix<double, 6, 6>::Identity() - Q * Q.transpose();
-    }
+    const Eigen::Matrix<double, 6, 6>& span() const noexcept { return Q_; }
 
     /// r = N⁺ a and z = a - N r, the latter by Gram-Schmidt twice.
     void split(const Motion& a, Motion& z, Motion& r) const noexcept {
@@ -170,7 +166,7 @@ bool solve(const Problem& problem, ConstrainedMotion& result) noexcept {
         }
     }
     result.active = active.size();
-    result.free = active.free();
+    result.held_span = active.span();
     for (int i = 0; i < active.size(); ++i)
         result.held[static_cast<std::size_t>(i)] = {active[i].contact, active[i].lambda * active[i].push_per_lambda};
     return true;

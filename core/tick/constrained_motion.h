@@ -18,10 +18,10 @@ struct HeldContact {
 
 struct ConstrainedMotion {
     Motion u = Motion::Zero();
-    std::array<HeldContact, 6> held{};                                           // the first `active`
-    Eigen::Matrix<double, 6, 6> free = Eigen::Matrix<double, 6, 6>::Identity();  // onto what they leave: 1 - N N⁺
-    int active = 0;         // contacts that hold the motion, at most six
-    int iterations = 0;     // contacts taken up or let go
+    std::array<HeldContact, 6> held{};      // the first `active`
+    Eigen::Matrix<double, 6, 6> held_span;  // the first `active` columns: orthonormal, span what they hold
+    int active = 0;                         // contacts that hold the motion, at most six
+    int iterations = 0;                     // contacts taken up or let go
     bool relaxed = false;   // the overlap could not be removed within this motion: it is only kept from growing
     bool converged = true;  // false: kMaxIterations reached; contacts may be violated
 };

@@ -137,6 +137,13 @@ double lostRub(const FrictionPatches& before, const FrictionPatches& now) noexce
     return lost;
 }
 
+/// What the contacts leave of a motion: 1 - N N⁺.
+Eigen::Matrix<double, 6, 6> freedom(const ConstrainedMotion& motion) noexcept {
+    Eigen::Matrix<double, 6, 6> free = Eigen::Matrix<double, 6, 6>::Identity();
+    for (int i = 0; i < motion.active; ++i) free -= motion.held_span.col(i) * motion.held_span.col(i).transpose();
+    return free;
+}
+
 /// x with |x| ≤ most that leaves no slip, or slip against it on the bound: (H + ν) x = target.
 Vec3 rubFor(const Eigen::Matrix3d& H, const Vec3& target, double most) noexcept {
     if (!(most > 0.0)) return Vec3::Zero();
@@ -177,13 +184,14 @@ RubbedMotion constrainWithFriction(const Motion& wanted, const ContactManifold& 
         double change = sweep > 0 ? lostRub(known, result.patches) : 0.0;
         const double share = sweep < kWholeSweeps ? 1.0 : 0.5;  // the half calms an iteration that swings
         drawn = wanted;
+        const Eigen::Matrix<double, 6, 6> free = freedom(result.motion);
         for (int i = 0; i < result.patches.count; ++i) {
             FrictionPatch& patch = result.patches.patch[static_cast<std::size_t>(i)];
             if (!(patch.radius > 0.0))  // met for the first time
                 patch.radius = effectiveRadius(problem, patch, result.motion.u);
             const Friction& rough = friction[patch.obstacle];
             const Rows B = rowsOf(problem, patch);
-            const Eigen::Matrix<double, 6, 3> F = result.motion.free * B.transpose();
+            const Eigen::Matrix<double, 6, 3> F = free * B.transpose();
             const Eigen::Matrix3d H = B * F;
             const Vec3 slip = B * u;
             const double most = (patch.slides ? rough.sliding : rough.at_rest) * patch.pressure;
