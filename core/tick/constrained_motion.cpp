@@ -40,9 +40,10 @@ bool mostViolated(const Problem& problem, const Motion& u, Row& row) noexcept {
     const Vec3 dx = u.head<3>();
     const Vec3 dphi = u.tail<3>() / problem.metric_radius;
     double violation = std::max(kMotionTolerance, 2.0 * kIndependent * problem.wanted.norm());
+    const Vec3 at_origin = dx - dphi.cross(problem.p_WO);
     const ContactPoint* worst = nullptr;
     for (const ContactPoint& contact : problem.manifold) {
-        const Vec3 motion = dx + dphi.cross(contact.position - problem.p_WO);
+        const Vec3 motion = at_origin + dphi.cross(contact.position);
         const double missing = problem.least(contact) - contact.gradient.dot(motion);
         if (missing > violation && contact.gradient.squaredNorm() > kLeastGradient * kLeastGradient) {
             violation = missing;
