@@ -15,14 +15,11 @@ constexpr double kFarther = 4.0;       // per removed overlap: a motion that is 
 /// The motion's problem with all that stays the same while it is solved.
 struct Problem {
     const Motion& wanted;
-    const ContactManifold& manifold;
-    const Vec3& p_WO;
-    double metric_radius;
-    double keep_out;
+    const Surroundings& around;
     bool relaxed = false;
 
     double least(const ContactPoint& contact) const noexcept {
-        const double b = keep_out - contact.phi;
+        const double b = around.keep_out - contact.phi;
         return relaxed || contact.radius > 0.0 ? std::min(b, 0.0) : b;
     }
 };
@@ -38,11 +35,11 @@ struct Row {
 /// The most violated contact as a row; false if there is none.
 bool mostViolated(const Problem& problem, const Motion& u, Row& row) noexcept {
     const Vec3 dx = u.head<3>();
-    const Vec3 dphi = u.tail<3>() / problem.metric_radius;
+    const Vec3 dphi = u.tail<3>() / problem.around.metric_radius;
     double violation = std::max(kMotionTolerance, 2.0 * kIndependent * problem.wanted.norm());
-    const Vec3 at_origin = dx - dphi.cross(problem.p_WO);
+    const Vec3 at_origin = dx - dphi.cross(problem.around.p_WO);
     const ContactPoint* worst = nullptr;
-    for (const ContactPoint& contact : problem.manifold) {
+    for (const ContactPoint& contact : problem.around.contacts) {
         const Vec3 motion = at_origin + dphi.cross(contact.position);
         const double missing = problem.least(contact) - contact.gradient.dot(motion);
         if (missing > violation && contact.gradient.squaredNorm() > kLeastGradient * kLeastGradient) {
@@ -52,13 +49,13 @@ bool mostViolated(const Problem& problem, const Motion& u, Row& row) noexcept {
     }
     if (worst == nullptr) return false;
     row.a.head<3>() = worst->gradient;
-    row.a.tail<3>() = (worst->position - problem.p_WO).cross(worst->gradient) / problem.metric_radius;
+    row.a.tail<3>() = (worst->position - problem.around.p_WO).cross(worst->gradient) / problem.around.metric_radius;
     const double length = row.a.norm();
     row.a /= length;
     row.b = problem.least(*worst) / length;
     row.lambda = 0.0;
     row.push_per_lambda = worst->gradient.norm() / length;
-    row.contact = static_cast<std::uint32_t>(worst - problem.manifold.begin());
+    row.contact = static_cast<std::uint32_t>(worst - problem.around.contacts.begin());
     return true;
 }
 
@@ -175,12 +172,11 @@ bool solve(const Problem& problem, ConstrainedMotion& result) noexcept {
 
 }  // namespace
 
-ConstrainedMotion constrainMotion(const Motion& wanted, const ContactManifold& manifold, const Vec3& p_WO,
-                                  double metric_radius, double keep_out) noexcept {
-    Problem problem{wanted, manifold, p_WO, metric_radius, keep_out};
+ConstrainedMotion constrainMotion(const Motion& wanted, const Surroundings& around) noexcept {
+    Problem problem{wanted, around};
     ConstrainedMotion result;
     double deepest = 0.0;  // what standing still would leave to be removed
-    for (const ContactPoint& contact : manifold) deepest = std::max(deepest, problem.least(contact));
+    for (const ContactPoint& contact : around.contacts) deepest = std::max(deepest, problem.least(contact));
     bool found = solve(problem, result);
     const double bend = (result.u - wanted).norm();
     if (deepest > 0.0 && !(found && result.converged && bend <= wanted.norm() + kFarther * deepest)) {

@@ -10,6 +10,19 @@ namespace passung::tick {
 /// A motion of a rigid body in one vector with the unit metre: (Δx, ρ Δφ).
 using Motion = Eigen::Matrix<double, 6, 1>;
 
+/// What a body's motion meets.
+struct Surroundings {
+    const ContactManifold& contacts;
+    Vec3 p_WO;             // the body's origin
+    double metric_radius;  // ρ [m]
+    double keep_out;       // the φ that a contact must keep, slightly negative [m]
+
+    /// How far the point at `p_WP` is carried by `u` [m].
+    Vec3 wayOf(const Vec3& p_WP, const Motion& u) const noexcept {
+        return u.head<3>() + (u.tail<3>() / metric_radius).cross(p_WP - p_WO);
+    }
+};
+
 /// A contact that holds a motion.
 struct HeldContact {
     std::uint32_t contact = 0;  // its place in the manifold
@@ -29,9 +42,9 @@ struct ConstrainedMotion {
 inline constexpr int kMaxIterations = 200;
 inline constexpr double kMotionTolerance = 1e-9;  // [m], of a constraint; 2e-7 of a wanted motion above 5 mm
 
-/// The motion nearest to `wanted` that obeys all contacts of `manifold`, by Gauss's principle of least constraint:
+/// The motion nearest to `wanted` that obeys all contacts, by Gauss's principle of least constraint:
 ///   min ½|u - w|²   s.t.   a_i · u ≥ b_i,   a_i = (g_i, (r_i × g_i)/ρ),  r_i = P_i - p_WO,  b_i = keep_out - φ_i
-/// g_i the gradient of φ, `keep_out` [m] the φ that a contact must keep (slightly negative), ρ = `metric_radius` [m].
+/// g_i the gradient of φ.
 ///
 /// Source: Goldfarb and Idnani (1983), dual active set, for a unit Hessian. With N the active rows, λ their multipliers
 /// and u = w + N λ, λ ≥ 0, the most violated row a is taken up along
@@ -44,8 +57,7 @@ inline constexpr double kMotionTolerance = 1e-9;  // [m], of a constraint; 2e-7 
 /// |u - w| ≤ |w|. A sphere that stands for points not looked at (ContactPoint::radius > 0) never asks for more than 0.
 /// Contacts whose field is flatter than kLeastGradient (a medial axis) say nothing about direction and are left out.
 /// Limit cases: no contact violated → wanted. One → the projection onto its plane. rt-safe, bounded.
-ConstrainedMotion constrainMotion(const Motion& wanted, const ContactManifold& manifold, const Vec3& p_WO,
-                                  double metric_radius, double keep_out) noexcept;
+ConstrainedMotion constrainMotion(const Motion& wanted, const Surroundings& around) noexcept;
 
 inline constexpr double kLeastGradient = 0.1;
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace passung::tick {
 
@@ -18,65 +19,54 @@ constexpr double kAtRest = 1e-6;       // slip relative to the wanted motion
 
 using Rows = Eigen::Matrix<double, 3, 6>;
 
-struct Problem {
-    const Motion& wanted;
-    const ContactManifold& manifold;
-    const Vec3& p_WO;
-    double metric_radius;
-    double keep_out;
-};
+/// Two unit vectors along the plane across `n`.
+std::pair<Vec3, Vec3> tangentsOf(const Vec3& n) noexcept {
+    const Vec3 t1 = n.cross(std::abs(n.x()) < 0.6 ? Vec3::UnitX() : Vec3::UnitY()).normalized();
+    return {t1, n.cross(t1)};
+}
 
-Rows rowsOf(const Problem& problem, const FrictionPatch& patch) noexcept {
-    const Vec3& n = patch.normal;
-    Vec3 t1 = n.cross(std::abs(n.x()) < 0.6 ? Vec3::UnitX() : Vec3::UnitY()).normalized();
-    const Vec3 t2 = n.cross(t1), r = patch.centre - problem.p_WO;
+Rows rowsOf(const Surroundings& around, const FrictionPatch& patch) noexcept {
+    const auto [t1, t2] = tangentsOf(patch.normal);
+    const Vec3 r = patch.centre - around.p_WO;
     Rows B;
-    B << t1.transpose(), r.cross(t1).transpose() / problem.metric_radius,  //
-        t2.transpose(), r.cross(t2).transpose() / problem.metric_radius,   //
-        Vec3::Zero().transpose(), patch.radius / problem.metric_radius * n.transpose();
+    B << t1.transpose(), r.cross(t1).transpose() / around.metric_radius,  //
+        t2.transpose(), r.cross(t2).transpose() / around.metric_radius,   //
+        Vec3::Zero().transpose(), patch.radius / around.metric_radius * patch.normal.transpose();
     return B;
 }
 
 /// Mean distance from the centre of pressure of the points that the patch touches after the motion.
-double effectiveRadius(const Problem& problem, const FrictionPatch& patch, const Motion& u) noexcept {
-    const Vec3 dx = u.head<3>(), dphi = u.tail<3>() / problem.metric_radius;
-    const Vec3& n = patch.normal;
-    const Vec3 t1 = n.cross(std::abs(n.x()) < 0.6 ? Vec3::UnitX() : Vec3::UnitY()).normalized(), t2 = n.cross(t1);
-    const auto touching = [&](const ContactPoint& c) {
-        const double phi = c.phi + c.gradient.dot(dx + dphi.cross(c.position - problem.p_WO));
-        return c.obstacle == patch.obstacle && phi < problem.keep_out + std::abs(problem.keep_out) &&
-               c.gradient.dot(n) > kSameWay * c.gradient.norm();
-    };
-    const auto inPlane = [&](const ContactPoint& c) {
-        const Vec3 r = c.position - patch.centre;
-        return Eigen::Vector2d(r.dot(t1), r.dot(t2));
+double effectiveRadius(const Surroundings& around, const FrictionPatch& patch, const Motion& u) noexcept {
+    const auto [t1, t2] = tangentsOf(patch.normal);
+    const auto forTouching = [&, t1 = t1, t2 = t2](auto use) {
+        for (const ContactPoint& c : around.contacts) {
+            const double phi = c.phi + c.gradient.dot(around.wayOf(c.position, u));
+            if (c.obstacle != patch.obstacle || !(phi < around.keep_out + std::abs(around.keep_out)) ||
+                !(c.gradient.dot(patch.normal) > kSameWay * c.gradient.norm()))
+                continue;
+            const Vec3 r = c.position - patch.centre;
+            use(c.area, Eigen::Vector2d(r.dot(t1), r.dot(t2)));
+        }
     };
     double area = 0.0;
     Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-    for (const ContactPoint& c : problem.manifold) {
-        if (!touching(c)) continue;
-        area += c.area;
-        mean += c.area * inPlane(c);
-    }
+    forTouching([&](double a, const Eigen::Vector2d& x) {
+        area += a;
+        mean += a * x;
+    });
     if (!(area > 0.0)) return 0.0;
     mean /= area;
     Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
-    for (const ContactPoint& c : problem.manifold) {
-        if (!touching(c)) continue;
-        const Eigen::Vector2d x = inPlane(c) - mean;
-        second += c.area / area * x * x.transpose();
-    }
+    forTouching([&](double a, const Eigen::Vector2d& x) { second += a / area * (x - mean) * (x - mean).transpose(); });
     // Pressure 1 + k · (x - mean) has its centre at 0 if second · k = -mean; a line of points has no k across.
     const double across = 1e-9 * second.trace() + std::numeric_limits<double>::min();
     const Eigen::Vector2d k = (second + across * Eigen::Matrix2d::Identity()).inverse() * -mean;
     double weight = 0.0, sum = 0.0;
-    for (const ContactPoint& c : problem.manifold) {
-        if (!touching(c)) continue;
-        const Eigen::Vector2d x = inPlane(c);
-        const double w = std::max(0.0, c.area * (1.0 + k.dot(x - mean)));
+    forTouching([&](double a, const Eigen::Vector2d& x) {
+        const double w = std::max(0.0, a * (1.0 + k.dot(x - mean)));
         weight += w;
         sum += w * x.norm();
-    }
+    });
     return weight > 0.0 ? sum / weight : 0.0;
 }
 
@@ -86,13 +76,13 @@ bool alike(const FrictionPatch& a, const FrictionPatch& b) noexcept {
 
 /// The patches of the contacts that hold `motion`. `known`: of the sweep before, whose tangents and friction stay, or
 /// (`first`) of the tick before, which only tells what was sliding.
-FrictionPatches patchesOf(const Problem& problem, const ConstrainedMotion& motion, const FrictionPatches& known,
-                          bool first) noexcept {
+FrictionPatches patchesOf(const Surroundings& around, const Motion& wanted, const ConstrainedMotion& motion,
+                          const FrictionPatches& known, bool first) noexcept {
     FrictionPatches result;
-    const double least = 1e-12 * problem.wanted.norm() + std::numeric_limits<double>::min();
+    const double least = 1e-12 * wanted.norm() + std::numeric_limits<double>::min();
     for (int i = 0; i < motion.active; ++i) {
         const HeldContact& held = motion.held[static_cast<std::size_t>(i)];
-        const ContactPoint& contact = problem.manifold[held.contact];
+        const ContactPoint& contact = around.contacts[held.contact];
         FrictionPatch one;
         one.normal = contact.gradient.normalized();
         one.obstacle = contact.obstacle;
@@ -169,17 +159,15 @@ Vec3 rubFor(const Eigen::Matrix3d& H, const Vec3& target, double most) noexcept 
 
 }  // namespace
 
-RubbedMotion constrainWithFriction(const Motion& wanted, const ContactManifold& manifold, const Vec3& p_WO,
-                                   double metric_radius, double keep_out, std::span<const Friction> friction,
+RubbedMotion constrainWithFriction(const Motion& wanted, const Surroundings& around, std::span<const Friction> friction,
                                    const FrictionPatches& before) noexcept {
-    const Problem problem{wanted, manifold, p_WO, metric_radius, keep_out};
     RubbedMotion result;
     const double small = kRubTolerance * wanted.norm();
     Motion drawn = wanted;  // with the friction found so far
     FrictionPatches known = before;
     for (int sweep = 0; sweep < kRubSweeps; ++sweep) {
-        result.motion = constrainMotion(drawn, manifold, p_WO, metric_radius, keep_out);
-        result.patches = patchesOf(problem, result.motion, known, sweep == 0);
+        result.motion = constrainMotion(drawn, around);
+        result.patches = patchesOf(around, wanted, result.motion, known, sweep == 0);
         Motion u = result.motion.u;
         double change = sweep > 0 ? lostRub(known, result.patches) : 0.0;
         const double share = sweep < kWholeSweeps ? 1.0 : 0.5;  // the half calms an iteration that swings
@@ -188,9 +176,9 @@ RubbedMotion constrainWithFriction(const Motion& wanted, const ContactManifold& 
         for (int i = 0; i < result.patches.count; ++i) {
             FrictionPatch& patch = result.patches.patch[static_cast<std::size_t>(i)];
             if (!(patch.radius > 0.0))  // met for the first time
-                patch.radius = effectiveRadius(problem, patch, result.motion.u);
+                patch.radius = effectiveRadius(around, patch, result.motion.u);
             const Friction& rough = friction[patch.obstacle];
-            const Rows B = rowsOf(problem, patch);
+            const Rows B = rowsOf(around, patch);
             const Eigen::Matrix<double, 6, 3> F = free * B.transpose();
             const Eigen::Matrix3d H = B * F;
             const Vec3 slip = B * u;
@@ -213,12 +201,12 @@ RubbedMotion constrainWithFriction(const Motion& wanted, const ContactManifold& 
     }
     if (!(result.change <= kRubAccepted)) {
         result.converged = false;
-        result.motion = constrainMotion(Motion::Zero(), manifold, p_WO, metric_radius, keep_out);
+        result.motion = constrainMotion(Motion::Zero(), around);
     }
     for (int i = 0; i < result.patches.count; ++i) {
         FrictionPatch& patch = result.patches.patch[static_cast<std::size_t>(i)];
         const double rest = (kAtRest + kUnsettled * result.change) * wanted.norm();
-        patch.slides = (rowsOf(problem, patch) * result.motion.u).norm() > rest;
+        patch.slides = (rowsOf(around, patch) * result.motion.u).norm() > rest;
     }
     return result;
 }

@@ -61,8 +61,7 @@ inline constexpr int kRubSweeps = 40;
 /// Limit cases: μ = 0 → constrainMotion. All patches at rest → u is zero along them, exactly: nothing creeps. One plane
 /// → |x| = μ λ in slip, along -s.
 /// `friction`: of each obstacle. `before`: patches of the motion before, which tell what was sliding. rt-safe, bounded.
-RubbedMotion constrainWithFriction(const Motion& wanted, const ContactManifold& manifold, const Vec3& p_WO,
-                                   double metric_radius, double keep_out, std::span<const Friction> friction,
+RubbedMotion constrainWithFriction(const Motion& wanted, const Surroundings& around, std::span<const Friction> friction,
                                    const FrictionPatches& before) noexcept;
 
 }  // namespace passung::tick

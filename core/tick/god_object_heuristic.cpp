@@ -90,13 +90,16 @@ Motion correctionOf(const TickModel& model, const TickState& state, double depth
     return u;
 }
 
+Surroundings surroundings(const TickModel& model, const TickState& state) noexcept {
+    return {state.manifold, state.X_WG.p, model.metric_radius, -kKeep * model.finest_cell};
+}
+
 /// Pushes the proxy out of the overlap that a step's linearisation missed, around a rim for instance: the least motion
 /// that obeys the contacts found there.
 void relieve(const TickModel& model, TickState& state, TickFrame& frame, double reach) noexcept {
     const double s = model.finest_cell;
     for (int i = 0; i < kReliefs && overlap(state) > kRelieve * s; ++i) {
-        const ConstrainedMotion out =
-            constrainMotion(Motion::Zero(), state.manifold, state.X_WG.p, model.metric_radius, -kKeep * s);
+        const ConstrainedMotion out = constrainMotion(Motion::Zero(), surroundings(model, state));
         if (longestPath(model, out.u) > kLongestStep * s) return;
         look(model, state, frame, moved(state.X_WG, out.u, model.metric_radius), reach, reach);
     }
@@ -104,15 +107,13 @@ void relieve(const TickModel& model, TickState& state, TickFrame& frame, double 
 
 /// #4: what the contacts leave of `wanted`.
 Motion allowedMotion(const TickModel& model, TickState& state, TickFrame& frame, const Motion& wanted) noexcept {
-    const double keep_out = -kKeep * model.finest_cell;
+    const Surroundings around = surroundings(model, state);
     if (model.friction.empty()) {
-        const ConstrainedMotion constrained =
-            constrainMotion(wanted, state.manifold, state.X_WG.p, model.metric_radius, keep_out);
+        const ConstrainedMotion constrained = constrainMotion(wanted, around);
         if (!constrained.converged) frame.status |= kIterationLimit;
         return constrained.u;
     }
-    const RubbedMotion rubbed = constrainWithFriction(wanted, state.manifold, state.X_WG.p, model.metric_radius,
-                                                      keep_out, model.friction, state.rubbing);
+    const RubbedMotion rubbed = constrainWithFriction(wanted, around, model.friction, state.rubbing);
     state.rubbing = rubbed.patches;
     if (!rubbed.converged || !rubbed.motion.converged) frame.status |= kIterationLimit;
     return rubbed.motion.u;

@@ -42,7 +42,7 @@ ContactPoint contactAt(const Vec3& position, const Vec3& gradient, double phi) {
 ConstrainedMotion solve(const Motion& wanted, const std::vector<ContactPoint>& contacts) {
     ContactManifold manifold(contacts.size());
     for (const auto& c : contacts) EXPECT_TRUE(manifold.tryPush(c));
-    return constrainMotion(wanted, manifold, Vec3::Zero(), kRho, kKeepOut);
+    return tick::constrainMotion(wanted, {manifold, Vec3::Zero(), kRho, kKeepOut});
 }
 
 struct Row {

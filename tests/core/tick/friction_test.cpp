@@ -48,7 +48,7 @@ Motion motion(const Vec3& dx, const Vec3& turn = Vec3::Zero()) {
 
 RubbedMotion rub(const Motion& wanted, const ContactManifold& manifold, const Friction& friction = kDry,
                  const FrictionPatches& before = {}) {
-    return constrainWithFriction(wanted, manifold, Vec3::Zero(), kRho, kKeepOut, {&friction, 1}, before);
+    return constrainWithFriction(wanted, {manifold, Vec3::Zero(), kRho, kKeepOut}, {&friction, 1}, before);
 }
 
 /// A disc of radius `radius` in the plane z = 0, contacts `spacing` apart.
@@ -232,7 +232,7 @@ TEST(Friction, WithoutFrictionIsTheConstrainedMotion) {
                                          Vec3(random.normal(), random.normal(), random.normal()).normalized()));
         const Motion wanted = motion(1e-4 * Vec3(random.normal(), random.normal(), random.normal()));
         const auto manifold = manifoldOf(contacts);
-        const auto plain = constrainMotion(wanted, manifold, Vec3::Zero(), kRho, kKeepOut);
+        const auto plain = tick::constrainMotion(wanted, {manifold, Vec3::Zero(), kRho, kKeepOut});
         EXPECT_EQ(rub(wanted, manifold, Friction{}).motion.u, plain.u);
     }
 }
