@@ -47,7 +47,7 @@ std::size_t DistanceField::coarseCell(int x, int y, int z) const noexcept {
 
 std::size_t DistanceField::memoryBytes() const {
     return coarse_.size() * sizeof(float) + brick_of_cell_.size() * sizeof(std::int32_t) +
-           bricks_.size() * (sizeof(Brick) + sizeof(Head)) + samples_.size() * sizeof(std::uint16_t) +
+           bricks_.size() * (sizeof(Brick) + sizeof(Slacks) + sizeof(Head)) + samples_.size() * sizeof(std::uint16_t) +
            index_.brick.size() * sizeof(std::int32_t);
 }
 
@@ -107,7 +107,7 @@ bool DistanceField::find(const Vec3& p, Spot& spot) const noexcept {
     const Brick& brick = bricks_[place.brick];
     spot.low = brick.low;
     spot.step = brick.step;
-    const double slack = kSlackUnit * brick.slack[place.octant];
+    const double slack = kSlackUnit * slacks_[place.brick][place.octant];
     spot.slack = bounded_within_ >= 0.0 ? 1.0 : slack;
     spot.most = bounded_within_ >= 0.0 ? slack * slack * spot.edge : kInfinity;
     spot.in_brick = true;

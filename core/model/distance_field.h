@@ -164,10 +164,10 @@ private:
     struct Brick {
         double low, step;                   // φ = low + step · stored number
         std::array<std::int32_t, 8> child;  // brick that replaces each octant (bits 1: x, 2: y, 4: z); -1: none
-        std::array<std::uint8_t, 8> slack;  // of each octant: k in 255ths, of shapes √(e / cell); see errorBound
         std::int32_t level;                 // 0: largest cells
         bool refined;                       // has a child
     };
+    using Slacks = std::array<std::uint8_t, 8>;  // of each octant: k in 255ths, of shapes √(e / cell); see errorBound
     /// What sampleMany needs of a brick, close together.
     struct Head {
         float low, step;
@@ -175,8 +175,9 @@ private:
         float cells;         // along a largest brick; negative: has a child
     };
 
-    static constexpr std::size_t kBrickBytes =
-        sizeof(Brick) + sizeof(Head) + kBrickSamples * sizeof(std::uint16_t) + kIndexPerBrick * sizeof(std::int32_t);
+    static constexpr std::size_t kBrickBytes = sizeof(Brick) + sizeof(Slacks) + sizeof(Head) +
+                                               kBrickSamples * sizeof(std::uint16_t) +
+                                               kIndexPerBrick * sizeof(std::int32_t);
 
     /// The smallest brick that holds a point.
     struct Place {
@@ -226,11 +227,12 @@ private:
     double sheet_offset_ = 0.0;
     double arithmetic_ = 0.0;  // what rounding in double precision may add up to [m]
     bool bound_proven_ = true;
-    double bounded_within_ = -1.0;  // [m]; ≥ 0: Brick::slack holds e, not k, of points with |φ| up to this
+    double bounded_within_ = -1.0;  // [m]; ≥ 0: Slacks hold e, not k, of points with |φ| up to this
     bool refined_ = true;
     std::vector<float> coarse_;                // nodes
     std::vector<std::int32_t> brick_of_cell_;  // -1: none
     std::vector<Brick> bricks_;
+    std::vector<Slacks> slacks_;          // of each brick
     std::vector<std::uint16_t> samples_;  // brickCount × 9³, x fastest
 
     /// For each cube with the edge of a brick of one level, the smallest brick of that level or above around it; -1:

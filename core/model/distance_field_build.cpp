@@ -217,6 +217,7 @@ void DistanceField::Builder::placeBricks() {
 /// Fills the bricks from `first` on, and tells which of their octants are wrong.
 void DistanceField::Builder::sampleLevel() {
     field.bricks_.resize(low.size());
+    field.slacks_.resize(low.size());
     field.samples_.resize(low.size() * kBrickSamples);
     wrong.resize(low.size() - first);
     parallelFor(wrong.size(), [&](std::size_t i) { sampleBrick(first + i); });
@@ -253,6 +254,7 @@ void DistanceField::Builder::sampleBrick(std::size_t brick) {
     info.step = 1.0;
     info.child.fill(-1);
     info.level = level;
+    auto& slacks = field.slacks_[brick];
     auto& depths = wrong[brick - first];
     if (accuracy.tolerance == 0.0) {
         depths = inBand(low[brick]);
@@ -271,14 +273,14 @@ void DistanceField::Builder::sampleBrick(std::size_t brick) {
             // Where finer cells follow nobody asks, or memory ends: then the Lipschitz constant alone bounds.
             const double most =
                 std::isfinite(depths[octant]) ? cell : exact.source.error_bound(block, low[brick], cell, octant, reach);
-            info.slack[octant] = static_cast<std::uint8_t>(std::ceil(255.0 * std::sqrt(std::min(most / cell, 1.0))));
+            slacks[octant] = static_cast<std::uint8_t>(std::ceil(255.0 * std::sqrt(std::min(most / cell, 1.0))));
         }
         return;
     }
     for (std::size_t i = 0; i < SurfaceBlock::kAllCells; ++i) {
         constexpr std::size_t kHalf = kBrickCells / 2;
         const std::size_t x = i % kBrickCells, y = i / kBrickCells % kBrickCells, z = i / (kBrickCells * kBrickCells);
-        std::uint8_t& slack = info.slack[x / kHalf | y / kHalf << 1 | z / kHalf << 2];
+        std::uint8_t& slack = slacks[x / kHalf | y / kHalf << 1 | z / kHalf << 2];
         slack = std::max(slack, static_cast<std::uint8_t>(std::ceil(255.0 * block.slack[i])));
     }
 }

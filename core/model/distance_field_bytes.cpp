@@ -26,11 +26,12 @@ std::string DistanceField::toBytes() const {
     for (const float value : coarse_) writer.put(std::bit_cast<std::uint32_t>(value), 4);
     for (const std::int32_t brick : brick_of_cell_) writer.put(static_cast<std::uint32_t>(brick), 4);
     writer.put(bricks_.size(), 8);
-    for (const Brick& brick : bricks_) {
+    for (std::size_t k = 0; k < bricks_.size(); ++k) {
+        const Brick& brick = bricks_[k];
         writer.put(brick.low);
         writer.put(brick.step);
         for (const std::int32_t child : brick.child) writer.put(static_cast<std::uint32_t>(child), 4);
-        for (const std::uint8_t slack : brick.slack) writer.put(slack, 1);
+        for (const std::uint8_t slack : slacks_[k]) writer.put(slack, 1);
         writer.put(static_cast<std::uint32_t>(brick.level), 4);
     }
     for (const std::uint16_t sample : samples_) writer.put(sample, 2);
@@ -104,11 +105,13 @@ std::optional<DistanceField> DistanceField::fromBytes(std::string_view bytes) {
     field.brick_of_cell_.resize(cells);
     for (std::int32_t& brick : field.brick_of_cell_) brick = static_cast<std::int32_t>(reader.take(4));
     field.bricks_.resize(reader.takeCount(60 + 2 * kBrickSamples));
-    for (Brick& brick : field.bricks_) {
+    field.slacks_.resize(field.bricks_.size());
+    for (std::size_t k = 0; k < field.bricks_.size(); ++k) {
+        Brick& brick = field.bricks_[k];
         brick.low = reader.takeDouble();
         brick.step = reader.takeDouble();
         for (std::int32_t& child : brick.child) child = static_cast<std::int32_t>(reader.take(4));
-        for (std::uint8_t& slack : brick.slack) slack = static_cast<std::uint8_t>(reader.take(1));
+        for (std::uint8_t& slack : field.slacks_[k]) slack = static_cast<std::uint8_t>(reader.take(1));
         brick.level = static_cast<std::int32_t>(reader.take(4));
         brick.refined = std::any_of(brick.child.begin(), brick.child.end(), [](std::int32_t c) { return c >= 0; });
     }

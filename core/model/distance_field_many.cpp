@@ -149,6 +149,7 @@ struct DistanceField::Block {
     /// The smallest brick of each point; where the index knows none the point is left to sample().
     template <bool kBounds>
     PASSUNG_INLINE void brickAll(const DistanceField& field, std::size_t count) {
+        const float largest_brick = static_cast<float>(field.largest_cell_ * kBrickCells);
         for (std::size_t i = 0; i < count; ++i) {
             const std::int32_t found = field.index_.brick[static_cast<std::size_t>(cube[i])];
             outside[i] |= found < 0;
@@ -164,10 +165,10 @@ struct DistanceField::Block {
                 head[i] = field.heads_[k];
             }
             if constexpr (kBounds) {
-                const Brick& brick = field.bricks_[k];
+                const float cells = std::abs(head[i].cells);  // a power of two times those of a largest brick
                 const float held =
-                    static_cast<float>(brick.slack[octant(i, static_cast<double>(2 << brick.level))]) * kSlackUnit;
-                edge[i] = static_cast<float>(field.largest_cell_ / static_cast<double>(1 << brick.level));
+                    static_cast<float>(field.slacks_[k][octant(i, 0.25 * static_cast<double>(cells))]) * kSlackUnit;
+                edge[i] = largest_brick / cells;
                 slack[i] = field.bounded_within_ >= 0.0 ? 1.0f : held;
                 most[i] = field.bounded_within_ >= 0.0 ? held * held * edge[i] : std::numeric_limits<float>::infinity();
             }

@@ -13,7 +13,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kBatch = 64;  // nodes or points that are looked at together
 constexpr std::uint32_t kNoPoint = ~0u;
-constexpr double kSettled = 128.0;  // groups in contact: from here on their errors level out, and some are taken whole
+constexpr double kSettled = 48.0;  // groups in contact: from here on their errors level out, and some are taken whole
 
 /// Places in the shell's frame, one after the other, though they are parted in memory.
 struct Batch {
@@ -50,6 +50,7 @@ struct Traversal {
     const QueryRequest& request;
     const bool ordered;  // best first
     const bool grouped;
+    const bool gradients;
     const double slack;  // sampleMany is off by at most this next to sample() [m]
     QueryWorkspace& workspace;
     ContactManifold& manifold;
@@ -63,6 +64,7 @@ struct Traversal {
     int groups_inside = 0;
     float least_in_group = std::numeric_limits<float>::infinity();
     std::uint32_t lowest_group = kNoPoint;
+    Vec3 force = Vec3::Zero(), moment = Vec3::Zero();  // of the load, in the shell's frame
 
     Traversal(const model::DistanceField& f, const Pose& X_WF_, const model::SphereTree& s, const Pose& X_FS_,
               const Pose& X_WS, const QueryRequest& r, QueryWorkspace& w, ContactManifold& m)
@@ -77,8 +79,8 @@ struct Traversal {
           p_WS(X_WS.p),
           request(r),
           ordered(r.max_nodes > 0 || r.search_below > r.collect_below),
-          grouped(r.groups && r.collect_below == 0.0 && !ordered && !r.prove && !r.gradients &&
-                  r.mode == model::FieldMode::Trilinear),
+          grouped(r.load && r.collect_below == 0.0 && !ordered && !r.prove && r.mode == model::FieldMode::Trilinear),
+          gradients(r.gradients && !r.load),
           // No brick spans more: its cells are those asked for, or at most 1/72 of the longest side.
           slack(0x1p-20 * (f.bounds().size().norm() + 14.0 * f.cell())),
           workspace(w),
@@ -143,16 +145,22 @@ struct Traversal {
         if (s.phi < request.collect_below) collect(position, normal, area, s.phi, s.gradient);
     }
 
-    void collect(const Vec3& position, const Vec3& normal, double area, double depth, const Vec3& gradient) noexcept {
+    void collect(const Vec3& position, const Vec3& normal, double area, double phi, const Vec3& gradient) noexcept {
+        ++answer.contacts;
+        if (request.load) {
+            const Vec3 f = area * phi * normal;
+            force += f;
+            moment += position.cross(f);
+            return;
+        }
         ContactPoint contact;
         contact.position = R_WS * position + p_WS;
         contact.gradient = R_WF * gradient;
         // A sample on an edge has no face of its own: the obstacle's face decides.
         contact.normal = area > 0.0 || contact.gradient.squaredNorm() < 1e-12 ? Vec3(R_WS * normal)
                                                                               : Vec3(-contact.gradient.normalized());
-        contact.phi = depth;
+        contact.phi = phi;
         contact.area = area;
-        ++answer.contacts;
         if (!manifold.tryPush(contact)) answer.manifold_full = true;
     }
 
@@ -182,7 +190,7 @@ struct Traversal {
         field.sampleMany(S, batch.all(batch.x), batch.all(batch.y), batch.all(batch.z),
                          {batch.read.data(), batch.count});
         answer.points_tested += static_cast<int>(batch.count);
-        const double read_off = request.gradients ? slack : 0.0;
+        const double read_off = gradients ? slack : 0.0;
         // Those that matter, without a jump, first.
         const auto limit = static_cast<float>(std::max(request.collect_below + read_off, answer.phi + slack));
         std::array<std::uint32_t, kBatch> near;
@@ -202,7 +210,8 @@ struct Traversal {
             const model::Facing& facing = shell.facings()[point];
             const Vec3 normal = facing.normal.cast<double>();
             const auto area = static_cast<double>(facing.area);
-            if (read < lowest || (read < request.collect_below + read_off && (request.gradients || !(area > 0.0)))) {
+            const bool exactly = gradients || (!request.load && !(area > 0.0));
+            if (read < lowest || (exactly && read < request.collect_below + read_off)) {
                 const Vec3 p_F = R_FS * position + p_FS;
                 take(p_F, position, normal, area, field.sample(p_F, request.mode), point);
             } else if (read < request.collect_below) {
@@ -384,6 +393,7 @@ QueryAnswer queryContacts(const model::DistanceField& field, const Pose& X_WF, c
     traversal.run();
     if (request.refine) traversal.refine();
     QueryAnswer& answer = traversal.answer;
+    if (request.load) answer.load = {traversal.R_WS * traversal.force, traversal.R_WS * traversal.moment};
     if (answer.found) {
         answer.closest_W = X_WF * answer.closest_F;
         const double length = answer.normal_W.norm();

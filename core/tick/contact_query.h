@@ -82,8 +82,8 @@ struct QueryRequest {
     bool spheres = false;   // a node left over by the budget also enters the manifold as a sphere
     bool gradients = true;  // of every contact; without them, φ of contacts is read in single precision, several times
                             // as fast (DistanceField::sampleMany), in FieldMode::Trilinear
-    bool groups = false;    // where many points are in contact, neighbours may enter the manifold as one: for sums over
-                            // area · depth · normal only; without budget, search or gradients
+    bool load = false;      // instead of contacts in the manifold QueryAnswer::load; where many points are in contact,
+                            // neighbours may then be taken as one
     bool refine = false;    // the deepest point is searched on the surface between the samples too
 };
 
@@ -97,7 +97,8 @@ struct QueryAnswer {
     double quality = 1.0;           // share of the shell's area pruned with proof or evaluated point by point
     int nodes_visited = 0;
     int points_tested = 0;
-    int contacts = 0;  // points with φ < collect_below, those of groups included
+    int contacts = 0;  // points with φ < collect_below, those taken as one included
+    Wrench load;  // if asked for: Σ area · depth · (-normal) over the contacts, about the shell's origin, world axes
     bool budget_reached = false;
     bool manifold_full = false;
 };

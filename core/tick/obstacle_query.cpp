@@ -15,6 +15,8 @@ QueryAnswer queryBack(const TickModel& model, const Obstacle& obstacle, const Po
     QueryAnswer answer =
         queryContacts(*model.held_field, X_WS, *obstacle.shell, obstacle.X_WF, request, workspace, manifold);
     manifold.reverseFrom(first);
+    answer.load.force = -answer.load.force;
+    answer.load.torque = (obstacle.X_WF.p - X_WS.p).cross(answer.load.force) - answer.load.torque;
     answer.normal_W = -answer.normal_W;
     return answer;
 }
@@ -32,6 +34,8 @@ void merge(const QueryAnswer& answer, QueryAnswer& all) noexcept {
     all.nodes_visited += answer.nodes_visited;
     all.points_tested += answer.points_tested;
     all.contacts += answer.contacts;
+    all.load.force += answer.load.force;
+    all.load.torque += answer.load.torque;
     all.budget_reached = all.budget_reached || answer.budget_reached;
     all.manifold_full = all.manifold_full || answer.manifold_full;
 }

@@ -8,6 +8,10 @@ namespace passung::tick {
 
 namespace {
 
+bool isWeighted(const model::ContactSpec& contact) noexcept {
+    return contact.variant == model::PenaltyVariant::AreaWeighted;
+}
+
 /// -b (v · û) û, no larger than what it opposes.
 Vec3 dampingAlong(const Vec3& load, const Vec3& velocity, double damping) noexcept {
     const double size = load.norm();
@@ -39,16 +43,25 @@ void measureHandVelocity(TickState& state, const TickFrame& frame) noexcept {
 void findContactsAtHand(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
     state.X_WG = frame.X_WH;
     state.manifold.clear();
-    const bool weighted = model.contact.variant == model::PenaltyVariant::AreaWeighted;
-    const QueryRequest request{.gradients = false, .groups = weighted, .refine = true};
-    const QueryAnswer answer = queryObstacles(model, frame.X_WH, request, state.workspace, state.manifold);
+    const QueryAnswer answer =
+        queryObstacles(model, frame.X_WH, penaltyRequest(model.contact), state.workspace, state.manifold);
     account(answer, frame);
+    frame.load = answer.load;
     frame.contacts = static_cast<std::uint32_t>(answer.contacts);
     frame.hand_depth = frame.proxy_depth = std::max(0.0, -answer.phi);
 }
 
+QueryRequest penaltyRequest(const model::ContactSpec& contact) noexcept {
+    return {.gradients = false, .load = isWeighted(contact), .refine = true};
+}
+
+Wrench weightedWrench(const model::ContactSpec& contact, const Wrench& load) noexcept {
+    const double scale = (contact.two_way ? 0.5 : 1.0) * contact.area_stiffness;
+    return {scale * load.force, scale * load.torque};
+}
+
 Wrench penaltyWrench(const model::ContactSpec& contact, const ContactManifold& manifold, const Vec3& p_WO) noexcept {
-    const bool weighted = contact.variant == model::PenaltyVariant::AreaWeighted;
+    const bool weighted = isWeighted(contact);
     Wrench sum;
     double depth_sum = 0.0, deepest = 0.0;
     for (const ContactPoint& c : manifold) {
@@ -60,8 +73,8 @@ Wrench penaltyWrench(const model::ContactSpec& contact, const ContactManifold& m
         depth_sum += depth;
         deepest = std::max(deepest, depth);
     }
-    double scale = weighted ? contact.area_stiffness : contact.stiffness;
-    if (contact.two_way) scale *= 0.5;
+    if (weighted) return weightedWrench(contact, sum);
+    double scale = (contact.two_way ? 0.5 : 1.0) * contact.stiffness;
     if (contact.variant == model::PenaltyVariant::MaxNormalised) {
         const double coherent = std::max(sum.force.norm(), kLeastCoherence * depth_sum);
         scale = coherent > 0.0 ? contact.stiffness * deepest / coherent : 0.0;
@@ -71,7 +84,8 @@ Wrench penaltyWrench(const model::ContactSpec& contact, const ContactManifold& m
 
 void renderPenalty(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
     measureHandVelocity(state, frame);
-    Wrench wrench = penaltyWrench(model.contact, state.manifold, frame.X_WH.p);
+    Wrench wrench = isWeighted(model.contact) ? weightedWrench(model.contact, frame.load)
+                                              : penaltyWrench(model.contact, state.manifold, frame.X_WH.p);
     const Vec3 force_damping = dampingAlong(wrench.force, state.V_H_last.v, model.contact.damping);
     const Vec3 torque_damping = dampingAlong(wrench.torque, state.V_H_last.w, model.contact.rotational_damping);
     wrench.force += force_damping;

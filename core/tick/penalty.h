@@ -5,10 +5,13 @@
 namespace passung::tick {
 
 /// Stage: contact at the device's pose.
-///   Reads X_WH; fills the manifold with all points inside obstacles, for area-weighted sums in groups where there are
-///   many (QueryRequest::groups); writes depth, contacts (points), quality.
+///   Reads X_WH; fills the manifold with all points inside obstacles, or where only their area-weighted sum matters,
+///   the frame's load (QueryRequest::load); writes depth, contacts (points), quality.
 ///   The proxy follows the device: X_WG = X_WH.
 void findContactsAtHand(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+
+/// What that stage asks of the query.
+QueryRequest penaltyRequest(const model::ContactSpec& contact) noexcept;
 
 /// Penalty wrench of a manifold on the held part about `p_WO`, world axes (Sagardia 2019, 3.3; McNeely 1999). rt-safe.
 ///   p_i = max(0, -φ_i) depth, n_i the shell's inward normal, a_i area, r_i = P_i - O.
@@ -24,6 +27,8 @@ void findContactsAtHand(const TickModel& model, TickState& state, TickFrame& fra
 /// and the scale of max_normalised would grow without bound; it is therefore held at Σ p_i n_i ≥ kLeastCoherence · Σ
 /// p_i (our addition), which lets the force fade to zero there.
 Wrench penaltyWrench(const model::ContactSpec& contact, const ContactManifold& manifold, const Vec3& p_WO) noexcept;
+/// The same for area_weighted, of QueryAnswer::load. rt-safe.
+Wrench weightedWrench(const model::ContactSpec& contact, const Wrench& load) noexcept;
 inline constexpr double kLeastCoherence = 0.2;
 
 /// Stage: the wrench of the manifold on the hand, with viscous damping along the force while in contact:

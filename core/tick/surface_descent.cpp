@@ -7,15 +7,13 @@ namespace passung::tick {
 
 namespace {
 
-constexpr std::size_t kDirections = 12;
-constexpr float kFirstStep = 0.5f, kLastStep = 0.02f;  // per cover radius
-constexpr float kShorter = 0.5f;
-/// Cosine and sine of 0°, 30°, ..., 330°; every other time they are turned by 15° more.
-constexpr float kSine60 = 0.866025404f, kSine15 = 0.258819045f, kSine75 = 0.965925826f;
-constexpr std::array<float, kDirections> kCosine{1.0f,  kSine60,  0.5f,  0.0f, -0.5f, -kSine60,
-                                                 -1.0f, -kSine60, -0.5f, 0.0f, 0.5f,  kSine60};
-constexpr std::array<float, kDirections> kSine{0.0f, 0.5f,  kSine60,  1.0f,  kSine60,  0.5f,
-                                               0.0f, -0.5f, -kSine60, -1.0f, -kSine60, -0.5f};
+constexpr std::size_t kDirections = 8;
+constexpr float kFirstStep = 0.5f, kLastStep = 0.04f;  // per cover radius
+constexpr float kShorter = 0.35f;
+/// Cosine and sine of 0°, 45°, ..., 315°; every other time they are turned by 22.5° more.
+constexpr float kDiagonal = 0.707106781f, kCosineTurn = 0.923879533f, kSineTurn = 0.382683432f;
+constexpr std::array<float, kDirections> kCosine{1.0f, kDiagonal, 0.0f, -kDiagonal, -1.0f, -kDiagonal, 0.0f, kDiagonal};
+constexpr std::array<float, kDirections> kSine{0.0f, kDiagonal, 1.0f, kDiagonal, 0.0f, -kDiagonal, -1.0f, -kDiagonal};
 
 }  // namespace
 
@@ -34,7 +32,7 @@ Descent descend(const model::DistanceField& field, const model::DistanceField::P
     for (; round < kDescentRounds && length > kLastStep * cover; ++round) {
         const auto [u, v] = surface.axes(best.triangle);
         const bool turned = round % 2 != 0;
-        const float c = length * (turned ? kSine75 : 1.0f), s = length * (turned ? kSine15 : 0.0f);
+        const float c = length * (turned ? kCosineTurn : 1.0f), s = length * (turned ? kSineTurn : 0.0f);
         const Eigen::Vector3f along = c * u + s * v, across = c * v - s * u;
         for (std::size_t i = 0; i < kDirections; ++i) {
             tried[i] = surface.moved(best, kCosine[i] * along + kSine[i] * across);

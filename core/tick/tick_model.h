@@ -23,6 +23,7 @@ struct TickFrame {
     // Periods between this tick's sample and the good one before it; 0: no new sample (X_WH is held), nothing has
     // moved.
     std::int64_t sample_periods = 0;
+    Wrench load;               // QueryAnswer::load at X_WH, of area-weighted penalty
     Wrench F_H_W;              // on the hand, about the held part's origin, world axes
     Wrench F_D_B;              // what is sent: on the hand, about the handle's origin, device base axes
     double proxy_depth = 0.0;  // [m], ≥ 0

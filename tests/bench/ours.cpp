@@ -39,20 +39,16 @@ private:
 class PenaltyTick : public Method {
 public:
     PenaltyTick(const model::Part& field, const model::Part& shell)
-        : field_(*field.field),
-          shell_(*shell.shell),
-          workspace_(shell_.nodes().size()),
-          manifold_(shell_.nodes().size() + shell_.points().size()) {
+        : field_(*field.field), shell_(*shell.shell), workspace_(shell_.nodes().size()) {
         contact_.variant = model::PenaltyVariant::AreaWeighted;
         contact_.area_stiffness = kAreaStiffness;
     }
 
     Answer at(const Pose& X_FS) override {
-        manifold_.clear();
-        const tick::QueryAnswer found = tick::queryContacts(
-            field_, Pose{}, shell_, X_FS, {.gradients = false, .groups = true, .refine = true}, workspace_, manifold_);
+        const tick::QueryAnswer found =
+            tick::queryContacts(field_, Pose{}, shell_, X_FS, tick::penaltyRequest(contact_), workspace_, manifold_);
         return {.signed_distance = found.found ? found.phi : kNotGiven,
-                .wrench = tick::penaltyWrench(contact_, manifold_, X_FS.p),
+                .wrench = tick::weightedWrench(contact_, found.load),
                 .contacts = static_cast<double>(found.contacts)};
     }
 
@@ -60,7 +56,7 @@ private:
     const model::DistanceField& field_;
     const model::SphereTree& shell_;
     tick::QueryWorkspace workspace_;
-    tick::ContactManifold manifold_;
+    tick::ContactManifold manifold_;  // stays empty
     model::ContactSpec contact_;
 };
 
