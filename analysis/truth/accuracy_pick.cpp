@@ -8,6 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include "core/base/assert.h"
+#include "core/model/parallel.h"
 #include "core/model/scene.h"
 
 namespace passung::truth {
@@ -28,7 +30,7 @@ constexpr double kPathShare = 0.4;  // of the work, as the progress shows it
 struct Pair {
     model::PartSpec obstacle, held;
     double length = 0.0, lever = 0.0;  // of the held part, see PairTruth
-    std::vector<JudgedPose> poses;
+    std::vector<JudgedPose> poses, two_way_poses;
     std::vector<Pose> timed;
 };
 
@@ -49,15 +51,37 @@ std::vector<Pose> along(const std::vector<JudgedPose>& poses) {
     return timed;
 }
 
-Result<Pair> makePair(const model::PartSpec& obstacle, const model::PartSpec& held, const ProgressReport& report) {
+/// The same poses as contact is both ways.
+Result<std::vector<JudgedPose>> judgedBothWays(const Pair& pair) {
+    const auto back = PairTruth::build(pair.held, pair.obstacle);
+    if (!back) return back.errors();
+    std::vector<JudgedPose> poses = pair.poses;
+    model::parallelFor(poses.size(), [&](std::size_t i) {
+        JudgedPose& pose = poses[i];
+        pose.truth = bothWays(pose.truth, back->quicklyAt(pose.X_FS.inverse()), pose.X_FS);
+    });
+    return poses;
+}
+
+Result<Pair> makePair(const model::PartSpec& obstacle, const model::PartSpec& held, bool two_way,
+                      const ProgressReport& report) {
     const auto truth = PairTruth::build(obstacle, held);
     if (!truth) return truth.errors();
-    Pair pair{obstacle, held, truth->length(), truth->lever(), contactPath(*truth, kPaths, kSeed, report, Truth::Quick),
-              {}};
+    Pair pair{.obstacle = obstacle,
+              .held = held,
+              .length = truth->length(),
+              .lever = truth->lever(),
+              .poses = contactPath(*truth, kPaths, kSeed, report, Truth::Quick),
+              .two_way_poses = {},
+              .timed = {}};
     if (pair.poses.empty())
         return Error{.message = "the held part never meets it, so that no accuracy can be picked",
                      .key = "part " + obstacle.name};
     pair.timed = along(pair.poses);
+    if (!two_way) return pair;
+    auto both = judgedBothWays(pair);
+    if (!both) return both.errors();
+    pair.two_way_poses = std::move(*both);
     return pair;
 }
 
@@ -73,8 +97,8 @@ void join(Spread& into, const Spread& other, const Join& joined) {
 template <class Join>
 void merge(AccuracyRow& row, const AccuracyRow& other, const Join& joined) {
     join(row.time, other.time, joined);
-    for (Spread AccuracyRow::*error : {&AccuracyRow::distance, &AccuracyRow::depth, &AccuracyRow::signed_distance,
-                                       &AccuracyRow::force, &AccuracyRow::direction, &AccuracyRow::torque})
+    for (Spread AccuracyRow::*error :
+         {&AccuracyRow::depth, &AccuracyRow::force, &AccuracyRow::direction, &AccuracyRow::torque})
         join(row.*error, other.*error, [](double a, double b) { return std::fmax(a, b); });
     row.points = std::max(row.points, other.points);
     row.field_bytes += other.field_bytes;
@@ -86,65 +110,88 @@ class Candidates {
 public:
     explicit Candidates(model::BuildStore* store) : parts_(store) {}
 
-    Result<Done> addScene(const model::SceneSpec& scene, const ProgressReport& report) {
-        const auto held =
-            std::find_if(scene.parts.begin(), scene.parts.end(), [](const auto& part) { return part.held; });
-        scenes_.emplace_back();
-        for (const model::PartSpec& part : scene.parts) {
+    Result<Done> addScene(const AskedScene& asked, const ProgressReport& report) {
+        const auto& parts = asked.scene->parts;
+        const auto held = std::find_if(parts.begin(), parts.end(), [](const auto& part) { return part.held; });
+        const bool two_way = std::any_of(asked.contacts.begin(), asked.contacts.end(),
+                                         [](const model::ContactSpec& contact) { return contact.two_way; });
+        Scene scene{{}, asked.contacts};
+        for (const model::PartSpec& part : parts) {
             if (part.held) continue;
-            auto pair = makePair(part, *held, report);
+            auto pair = makePair(part, *held, two_way, report);
             if (!pair) return pair.errors();
-            scenes_.back().push_back(std::move(*pair));
+            scene.pairs.push_back(std::move(*pair));
         }
+        PASSUNG_ASSERT(!scene.pairs.empty());
+        scenes_.push_back(std::move(scene));
         return Done{};
     }
 
     /// Longest side of a held part [m].
     double length() const {
         double length = 0.0;
-        for (const auto& scene : scenes_)
-            for (const Pair& pair : scene) length = std::max(length, pair.length);
+        for (const Scene& scene : scenes_)
+            for (const Pair& pair : scene.pairs) length = std::max(length, pair.length);
         return length;
     }
 
     Result<AccuracyRow> measure(const AccuracySetting& setting) {
         std::optional<AccuracyRow> all;
-        for (const std::vector<Pair>& scene : scenes_) {
-            std::optional<AccuracyRow> sum;
-            for (const Pair& pair : scene) {
-                const auto field = parts_.get(pair.obstacle, {.field = true, .tolerance = setting.tolerance});
-                if (!field) return field.errors();
-                const auto shell =
-                    parts_.get(pair.held, {.shell = true, .tolerance = setting.tolerance, .spacing = setting.spacing});
-                if (!shell) return shell.errors();
-                const AccuracyRow row =
-                    measureSetting(setting, **field, **shell, pair.poses, pair.timed, kRepetitions, pair.lever);
-                if (sum)
-                    merge(*sum, row, [](double a, double b) { return a + b; });
+        for (const Scene& scene : scenes_) {
+            for (const model::ContactSpec& contact : scene.contacts) {
+                const auto sum = measureScene(setting, contact, scene.pairs);
+                if (!sum) return sum.errors();
+                if (all)
+                    merge(*all, *sum, [](double a, double b) { return std::fmax(a, b); });
                 else
-                    sum = row;
+                    all = *sum;
             }
-            if (all)
-                merge(*all, *sum, [](double a, double b) { return std::fmax(a, b); });
-            else
-                all = sum;
         }
         return *all;
     }
 
 private:
+    struct Scene {
+        std::vector<Pair> pairs;
+        std::vector<model::ContactSpec> contacts;
+    };
+
+    Result<AccuracyRow> measureScene(const AccuracySetting& setting, const model::ContactSpec& contact,
+                                     const std::vector<Pair>& pairs) {
+        std::optional<AccuracyRow> sum;
+        for (const Pair& pair : pairs) {
+            const auto get = [&](const model::PartSpec& part) {
+                return parts_.get(part, {.field = !part.held || contact.two_way,
+                                         .shell = part.held || contact.two_way,
+                                         .tolerance = setting.tolerance,
+                                         .spacing = setting.spacing});
+            };
+            const auto field = get(pair.obstacle), shell = get(pair.held);
+            if (!field) return field.errors();
+            if (!shell) return shell.errors();
+            const AccuracyRow row =
+                measureSetting(setting, contact, *field, *shell, contact.two_way ? pair.two_way_poses : pair.poses,
+                               pair.timed, kRepetitions, pair.lever);
+            if (sum)
+                merge(*sum, row, [](double a, double b) { return a + b; });
+            else
+                sum = row;
+        }
+        return *sum;
+    }
+
     model::PartCache parts_;
-    std::vector<std::vector<Pair>> scenes_;
+    std::vector<Scene> scenes_;
 };
 
 }  // namespace
 
-Result<std::vector<AccuracyRow>> measureCandidates(const std::vector<const model::SceneSpec*>& scenes,
+Result<std::vector<AccuracyRow>> measureCandidates(const std::vector<AskedScene>& scenes,
                                                    std::span<const double> budgets, const StepReport& report,
                                                    model::BuildStore* store) {
     Candidates candidates(store);
     for (std::size_t i = 0; i < scenes.size(); ++i) {
-        const auto added = candidates.addScene(*scenes[i], [&](double share) {
+        const auto added = candidates.addScene(scenes[i], [&](double share) {
             report("what is true along contact paths",
                    kPathShare * (static_cast<double>(i) + share) / static_cast<double>(scenes.size()));
         });
@@ -178,11 +225,11 @@ Result<std::vector<AccuracyRow>> measureCandidates(const std::vector<const model
     return rows;
 }
 
-Result<double> timeOfSetting(const std::vector<const model::SceneSpec*>& scenes, const AccuracySetting& setting,
+Result<double> timeOfSetting(const std::vector<AskedScene>& scenes, const AccuracySetting& setting,
                              model::BuildStore* store) {
     Candidates candidates(store);
-    for (const model::SceneSpec* scene : scenes)
-        if (const auto added = candidates.addScene(*scene, [](double) {}); !added) return added.errors();
+    for (const AskedScene& scene : scenes)
+        if (const auto added = candidates.addScene(scene, [](double) {}); !added) return added.errors();
     const auto row = candidates.measure(setting);
     if (!row) return row.errors();
     return row->time.p99;
@@ -191,8 +238,8 @@ Result<double> timeOfSetting(const std::vector<const model::SceneSpec*>& scenes,
 std::optional<std::size_t> pickFinest(std::span<const AccuracyRow> rows, double budget) {
     std::optional<std::size_t> best;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (!(rows[i].time.p99 <= budget) || std::isnan(rows[i].signed_distance.p99)) continue;
-        const auto rank = [&](std::size_t k) { return std::pair(rows[k].signed_distance.p99, rows[k].time.p99); };
+        if (!(rows[i].time.p99 <= budget) || std::isnan(rows[i].depth.p99)) continue;
+        const auto rank = [&](std::size_t k) { return std::pair(rows[k].depth.p99, rows[k].time.p99); };
         if (!best || rank(i) < rank(*best)) best = i;
     }
     return best;

@@ -138,7 +138,8 @@ void drawAxes(Svg& svg, const Axis& x, const Axis& y, const char* label) {
     }
     svg.line(x.at_low, y.at_low, x.at_high, y.at_low, kInk, 1.2);
     svg.line(x.at_low, y.at_low, x.at_low, y.at_high, kInk, 1.2);
-    svg.text(0.5 * (x.at_low + x.at_high), y.at_low + 43, "time of a query, 99th percentile [µs]", kPlain, "middle");
+    svg.text(0.5 * (x.at_low + x.at_high), y.at_low + 43, "time of a tick's query, 99th percentile [µs]", kPlain,
+             "middle");
     const double middle = 0.5 * (y.at_low + y.at_high);
     svg.add(R"svg(<text transform="translate({:.1f} {:.1f}) rotate(-90)" text-anchor="middle" style="{}">{}</text>)svg",
             x.at_low - 56, middle, kPlain, escaped(label));
@@ -269,8 +270,8 @@ std::string accuracyPicture(const std::vector<AccuracyRow>& rows, const PictureT
         kPlain);
     const std::vector<double> spacings = spacingsOf(rows);
     const std::array panels{
-        Panel{"Distance and depth", "error of the signed distance [µm]",
-              [](const AccuracyRow& row) { return 1e6 * row.signed_distance.p99; }, &AccuracyRow::on_distance_front},
+        Panel{"Depth in contact", "error of the depth [µm]", [](const AccuracyRow& row) { return 1e6 * row.depth.p99; },
+              &AccuracyRow::on_depth_front},
         Panel{"Force in contact (poses with at least 1 % of the largest force)", "error of the force's magnitude [%]",
               [](const AccuracyRow& row) { return 100.0 * row.force.p99; }, &AccuracyRow::on_force_front}};
     for (std::size_t i = 0; i < panels.size(); ++i)

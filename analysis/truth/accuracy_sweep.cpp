@@ -11,6 +11,8 @@
 
 #include "core/model/timed_store.h"
 #include "core/query/part_query.h"
+#include "core/tick/god_object_heuristic.h"
+#include "core/tick/obstacle_query.h"
 #include "core/tick/penalty.h"
 
 namespace passung::truth {
@@ -27,7 +29,7 @@ double threadSeconds() {
 }
 
 struct Built {
-    model::Part part;
+    SharedPart part;
     double seconds = 0.0;  // that building the field or the points took
 };
 
@@ -35,53 +37,71 @@ Result<Built> build(const model::PartSpec& spec, const model::PartNeeds& needs, 
     model::TimedStore timed(store);
     auto part = model::buildPart(spec, needs, &timed);
     if (!part) return part.errors();
-    return Built{std::move(*part), timed.seconds()};
+    return Built{std::make_shared<const model::Part>(std::move(*part)), timed.seconds()};
 }
 
 /// What the tick's query says at one pose.
 struct Answer {
-    double signed_distance = 0.0;
+    double depth = 0.0;
     Wrench wrench;
 };
 
-/// The query of a tick: everything inside, the closest point, the area-weighted penalty; memory sized once.
+/// A scene of FIELD at the origin and SHELL in the hand.
+model::Scene sceneOf(const model::ContactSpec& contact, const SharedPart& field, const SharedPart& shell) {
+    model::Scene scene;
+    scene.spec.contact = contact;
+    scene.spec.parts.resize(2);
+    scene.spec.parts[1].held = true;
+    scene.parts = {field, shell};
+    scene.held = 1;
+    return scene;
+}
+
+/// The query of a tick, by the tick's own stages; memory sized once.
 class TickQuery {
 public:
-    TickQuery(const model::DistanceField& field, const model::SphereTree& shell, const AccuracySetting& setting)
-        : field_(field),
-          shell_(shell),
-          workspace_(shell.nodes().size()),
-          manifold_(shell.nodes().size() + shell.points().size()) {
-        request_.search_below = kUnlimited;
-        request_.max_nodes = setting.budget_nodes;
-        request_.mode = setting.mode;
-        contact_.variant = model::PenaltyVariant::AreaWeighted;
-        contact_.area_stiffness = kAreaStiffness;
+    TickQuery(const model::ContactSpec& contact, const SharedPart& field, const SharedPart& shell)
+        : scene_(sceneOf(contact, field, shell)), model_(tick::makeModel(scene_)), state_(tick::makeState(model_)) {
+        weighted_.variant = model::PenaltyVariant::AreaWeighted;
+        weighted_.area_stiffness = kAreaStiffness;
+        weighted_.two_way = contact.two_way;
     }
 
     Answer at(const Pose& X_FS) {
-        manifold_.clear();
-        const auto found = tick::queryContacts(field_, Pose{}, shell_, X_FS, request_, workspace_, manifold_);
-        return {found.phi, tick::penaltyWrench(contact_, manifold_, X_FS.p)};
+        tick::TickFrame frame;
+        frame.X_WH = X_FS;
+        if (model_.contact.method != model::ContactMethod::Penalty) {
+            tick::lookAround(model_, state_, frame, X_FS);
+            return {std::max(0.0, -state_.clearance), tick::penaltyWrench(weighted_, state_.manifold, X_FS.p)};
+        }
+        tick::findContactsAtHand(model_, state_, frame);
+        const bool summed = model_.contact.variant == model::PenaltyVariant::AreaWeighted;
+        return {frame.hand_depth, summed ? tick::weightedWrench(weighted_, frame.load)
+                                         : tick::penaltyWrench(weighted_, state_.manifold, X_FS.p)};
+    }
+
+    /// How far the nearest point is, wherever it is.
+    double distanceAt(const Pose& X_FS) {
+        tick::QueryRequest request = tick::penaltyRequest(model_.contact.variant);
+        request.search_below = kUnlimited;
+        state_.scratch.clear();
+        return tick::queryObstacles(model_, X_FS, request, state_.workspace, state_.scratch).phi;
     }
 
 private:
-    const model::DistanceField& field_;
-    const model::SphereTree& shell_;
-    tick::QueryRequest request_;
-    tick::QueryWorkspace workspace_;
-    tick::ContactManifold manifold_;
-    model::ContactSpec contact_;
+    model::Scene scene_;
+    tick::TickModel model_;
+    tick::TickState state_;
+    model::ContactSpec weighted_;
 };
 
 /// Errors of all poses so far.
 struct ErrorLists {
-    std::vector<double> distance, depth, both, force, direction, torque;
+    std::vector<double> depth, force, direction, torque;
 
     void add(const Answer& answer, const PoseTruth& truth, double lever, double least_force) {
-        const double error = std::abs(answer.signed_distance - truth.distance);
-        both.push_back(error);
-        (truth.inContact() ? depth : distance).push_back(error);
+        if (truth.inContact() || answer.depth > 0.0)
+            depth.push_back(std::abs(answer.depth - std::max(0.0, -truth.distance)));
         const double size = truth.wrench.force.norm();
         if (!(size > 0.0 && size >= least_force)) return;
         force.push_back(std::abs(answer.wrench.force.norm() - size) / size);
@@ -92,14 +112,26 @@ struct ErrorLists {
     }
 
     void summarise(AccuracyRow& row) const {
-        row.distance = spreadOf(distance);
         row.depth = spreadOf(depth);
-        row.signed_distance = spreadOf(both);
         row.force = spreadOf(force);
         row.direction = spreadOf(direction);
         row.torque = spreadOf(torque);
     }
 };
+
+/// What `ask` takes at each pose: the fastest of `repetitions` after one round that does not count.
+template <class Ask>
+Spread timesOf(const std::vector<Pose>& poses, int repetitions, const Ask& ask) {
+    std::vector<double> times(poses.size(), kUnlimited);
+    for (int round = 0; round <= repetitions; ++round) {
+        for (std::size_t i = 0; i < poses.size(); ++i) {
+            const double begin = threadSeconds();
+            ask(poses[i]);
+            if (round > 0) times[i] = std::min(times[i], threadSeconds() - begin);
+        }
+    }
+    return spreadOf(std::move(times));
+}
 
 /// Why `r` cannot be, given the truth; nothing if it can.
 std::optional<std::string> contradiction(const query::PartQueryResult& r, const PoseTruth& truth) {
@@ -175,35 +207,37 @@ Spread spreadOf(std::vector<double> values) {
 
 void markFronts(std::vector<AccuracyRow>& rows) {
     markFront(
-        rows, [](const AccuracyRow& row) { return row.signed_distance.p99; }, &AccuracyRow::on_distance_front);
+        rows, [](const AccuracyRow& row) { return row.depth.p99; }, &AccuracyRow::on_depth_front);
     markFront(
         rows, [](const AccuracyRow& row) { return row.force.p99; }, &AccuracyRow::on_force_front);
 }
 
-AccuracyRow measureSetting(const AccuracySetting& setting, const model::Part& field, const model::Part& shell,
-                           const std::vector<JudgedPose>& poses, const std::vector<Pose>& timed, int repetitions,
-                           double lever) {
-    const model::SphereTree& points = *shell.shell;
+AccuracyRow measureSetting(const AccuracySetting& setting, model::ContactSpec contact, const SharedPart& field,
+                           const SharedPart& shell, const std::vector<JudgedPose>& poses,
+                           const std::vector<Pose>& timed, int repetitions, double lever) {
+    contact.mode = setting.mode;
+    contact.budget_nodes = setting.budget_nodes;
+    const model::SphereTree& points = *shell->shell;
     AccuracyRow row{.setting = setting};
     row.points = points.points().size();
-    row.field_bytes = static_cast<double>(field.field->memoryBytes());
+    row.field_bytes = static_cast<double>(field->field->memoryBytes());
     row.shell_bytes = static_cast<double>(points.nodes().size_bytes() + points.points().size_bytes());
-    TickQuery query(*field.field, points, setting);
+    TickQuery query(contact, field, shell);
     double largest_force = 0.0;
     for (const JudgedPose& pose : poses) largest_force = std::max(largest_force, pose.truth.wrench.force.norm());
     ErrorLists errors;
-    for (const JudgedPose& pose : poses)
+    std::vector<Pose> apart;
+    std::vector<double> distance;
+    for (const JudgedPose& pose : poses) {
         errors.add(query.at(pose.X_FS), pose.truth, lever, kLeastForce * largest_force);
-    errors.summarise(row);
-    std::vector<double> times(timed.size(), kUnlimited);
-    for (int round = 0; round <= repetitions; ++round) {
-        for (std::size_t i = 0; i < timed.size(); ++i) {
-            const double begin = threadSeconds();
-            query.at(timed[i]);
-            if (round > 0) times[i] = std::min(times[i], threadSeconds() - begin);
-        }
+        if (pose.truth.inContact()) continue;
+        apart.push_back(pose.X_FS);
+        distance.push_back(std::abs(query.distanceAt(pose.X_FS) - pose.truth.distance));
     }
-    row.time = spreadOf(std::move(times));
+    errors.summarise(row);
+    row.distance = spreadOf(std::move(distance));
+    row.distance_time = timesOf(apart, repetitions, [&](const Pose& X_FS) { query.distanceAt(X_FS); });
+    row.time = timesOf(timed, repetitions, [&](const Pose& X_FS) { query.at(X_FS); });
     return row;
 }
 
@@ -212,6 +246,9 @@ Result<AccuracyResult> sweepAccuracy(const model::PartSpec& field, const model::
                                      const std::vector<JudgedPose>& shaken, double lever, const StepReport& report,
                                      model::BuildStore* store) {
     AccuracyResult result;
+    model::ContactSpec contact;
+    contact.method = model::ContactMethod::Penalty;
+    contact.variant = model::PenaltyVariant::AreaWeighted;
     std::vector<Pose> timed;
     for (const JudgedPose& pose : poses) timed.push_back(pose.X_FS);
     const double steps = static_cast<double>(space.tolerances.size() * (1 + space.spacings.size()));
@@ -227,11 +264,11 @@ Result<AccuracyResult> sweepAccuracy(const model::PartSpec& field, const model::
             if (!shell_part) return shell_part.errors();
             for (const model::FieldMode mode : space.modes) {
                 for (const int budget : space.budgets) {
-                    AccuracyRow row = measureSetting({mode, tolerance, spacing, budget}, field_part->part,
+                    AccuracyRow row = measureSetting({mode, tolerance, spacing, budget}, contact, field_part->part,
                                                      shell_part->part, poses, timed, space.repetitions, lever);
                     row.field_build = field_part->seconds;
                     row.shell_build = shell_part->seconds;
-                    query::PartQuery query(field_part->part, shell_part->part,
+                    query::PartQuery query(*field_part->part, *shell_part->part,
                                            {.area_stiffness = kAreaStiffness, .max_nodes = budget, .mode = mode});
                     compare(row.setting, query, poses, result, row.bound_max);
                     result.rows.push_back(row);
@@ -239,7 +276,7 @@ Result<AccuracyResult> sweepAccuracy(const model::PartSpec& field, const model::
             }
             // FCL alone, at many more poses: the bounds hold whatever the mode or the budget.
             double ignored = 0.0;
-            query::PartQuery query(field_part->part, shell_part->part, {.area_stiffness = kAreaStiffness});
+            query::PartQuery query(*field_part->part, *shell_part->part, {.area_stiffness = kAreaStiffness});
             compare({.tolerance = tolerance, .spacing = spacing}, query, shaken, result, ignored);
             done += 1.0;
         }

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -44,28 +45,32 @@ inline constexpr double kLeastForce = 0.01;
 /// What one setting costs and how much it errs. SI units; errors are absolute values against PoseTruth.
 struct AccuracyRow {
     AccuracySetting setting;
-    std::size_t points = 0;       // of SHELL
-    Spread time = {};             // of one query with its penalty wrench, on its core [s]
-    Spread distance = {};         // of the signed distance at poses without contact [m]
-    Spread depth = {};            // of the signed distance at poses in contact [m]
-    Spread signed_distance = {};  // of both together [m]
+    std::size_t points = 0;     // of SHELL
+    Spread time = {};           // of a tick's query with its penalty wrench, on its core [s]
+    Spread depth = {};          // of the depth, where there is contact or is said to be [m]
+    Spread distance = {};       // of the distance, where there is no contact [m]
+    Spread distance_time = {};  // of asking for it there, which no tick does [s]
     // At poses whose true force is at least kLeastForce of the largest one: a share of next to nothing says nothing.
     Spread force = {};       // | |F| - |F_true| | / |F_true|
     Spread direction = {};   // angle between F and F_true [rad], where the answer has a force
     Spread torque = {};      // |T - T_true| / (|F_true| · lever)
     double bound_max = 0.0;  // largest error bound that the proven query states [m]
     double field_bytes = 0.0, shell_bytes = 0.0;
-    double field_build = 0.0, shell_build = 0.0;             // wall time on all cores, when it was built [s]
-    bool on_distance_front = false, on_force_front = false;  // no other row is both faster (p99) and nearer the truth
+    double field_build = 0.0, shell_build = 0.0;          // wall time on all cores, when it was built [s]
+    bool on_depth_front = false, on_force_front = false;  // no other row is both faster (p99) and nearer the truth
 };
 
-/// Asks the query that a tick performs at all `poses` and compares it with what is known of their
-/// truth; times it at `timed`, `repetitions` times each (the fastest counts) after one round that does not count. Fills
-/// time, errors, points and memory of a row.
-/// @pre `field` holds a field, `shell` a shell.
-AccuracyRow measureSetting(const AccuracySetting& setting, const model::Part& field, const model::Part& shell,
-                           const std::vector<JudgedPose>& poses, const std::vector<Pose>& timed, int repetitions,
-                           double lever);
+/// shared_ptr: a scene that is asked holds its parts, and more than one has them.
+using SharedPart = std::shared_ptr<const model::Part>;
+
+/// Lets a tick ask at all `poses` and compares the answer with what is known of their truth; times it at `timed`,
+/// `repetitions` times each (the fastest counts) after one round that does not count. Fills times, errors, points and
+/// memory of a row. Of `contact` count method, variant and two_way: the query is that of the tick's own stages.
+/// Wrenches are the area-weighted penalty of the contacts that it finds, whatever the tick makes of them.
+/// @pre `field` holds a field, `shell` a shell, for two-way contact both.
+AccuracyRow measureSetting(const AccuracySetting& setting, model::ContactSpec contact, const SharedPart& field,
+                           const SharedPart& shell, const std::vector<JudgedPose>& poses,
+                           const std::vector<Pose>& timed, int repetitions, double lever);
 
 /// An answer that contradicts the truth by more than it vouches for.
 struct Disagreement {
@@ -83,16 +88,16 @@ struct AccuracyResult {
 
 using StepReport = std::function<void(const std::string& what, double share)>;
 
-/// Builds FIELD and SHELL at every resolution of `space`, times the query that a tick performs at all `poses`, compares
-/// it with their truth, and holds the proven query's intervals against the truth there and at `shaken`.
-/// `store`, if not null, keeps fields and points from run to run, with the time that building them took.
+/// Builds FIELD and SHELL at every resolution of `space`, times the query of a tick of the area-weighted penalty at all
+/// `poses`, compares it with their truth, and holds the proven query's intervals against the truth there and at
+/// `shaken`. `store`, if not null, keeps fields and points from run to run, with the time that building them took.
 /// Errors: a part cannot be built.
 Result<AccuracyResult> sweepAccuracy(const model::PartSpec& field, const model::PartSpec& shell,
                                      const AccuracySpace& space, const std::vector<JudgedPose>& poses,
                                      const std::vector<JudgedPose>& shaken, double lever, const StepReport& report,
                                      model::BuildStore* store = nullptr);
 
-/// Marks the rows that no other beats in both time (p99) and error (p99): of the signed distance, and of the force.
+/// Marks the rows that no other beats in both time (p99) and error (p99): of the depth, and of the force.
 void markFronts(std::vector<AccuracyRow>& rows);
 
 }  // namespace passung::truth

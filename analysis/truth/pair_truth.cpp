@@ -13,7 +13,7 @@ constexpr double kRoughTolerance = 20.0 * kTolerance;
 constexpr double kResolution = 1e-6;  // of the depth [m]
 constexpr std::size_t kQuickPieces = 20'000;
 constexpr double kDenseShare = 1.0 / 250;  // of SHELL's longest side: pieces of the dense sum
-constexpr double kCoarser = 2.0;           // a second sum, for the uncertainty of the first
+constexpr double kCoarser = 2.0;           // a second sum, for the uncertainty of the first; a quick sum
 
 Result<model::Part> surfaceOf(const model::PartSpec& spec, double tolerance) {
     auto part = model::buildPart(spec, {.tolerance = tolerance});
@@ -78,21 +78,40 @@ PoseTruth PairTruth::distanceAt(const Pose& X_FS, double resolution, std::size_t
     return truth;
 }
 
-PoseTruth PairTruth::quicklyAt(const Pose& X_FS) const { return distanceAt(X_FS, kResolution, kQuickPieces); }
-
-PoseTruth PairTruth::at(const Pose& X_FS) const {
-    PoseTruth truth = distanceAt(X_FS, kResolution);
-    if (!truth.inContact()) return truth;
-    const double edge = kDenseShare * length();
+void PairTruth::addWrench(const Pose& X_FS, double edge, PoseTruth& truth) const {
+    if (!truth.inContact()) return;
     truth.wrench = surface_->penaltyWrench(solid(), X_FS, kAreaStiffness, edge);
     const Wrench coarse = surface_->penaltyWrench(solid(), X_FS, kAreaStiffness, kCoarser * edge);
     const double size = truth.wrench.force.norm();
-    if (!(size > 0.0)) return truth;
+    if (!(size > 0.0)) return;
     // The midpoint rule errs as edge²: the finer sum by a third of the difference. The chords take depth away besides.
     const double change =
         std::max((truth.wrench.force - coarse.force).norm(), (truth.wrench.torque - coarse.torque).norm() / lever_);
     truth.wrench_uncertainty = change / size / (kCoarser * kCoarser - 1.0);
+}
+
+PoseTruth PairTruth::quicklyAt(const Pose& X_FS) const {
+    PoseTruth truth = distanceAt(X_FS, kResolution, kQuickPieces);
+    addWrench(X_FS, kCoarser * kDenseShare * length(), truth);
     return truth;
+}
+
+PoseTruth PairTruth::at(const Pose& X_FS) const {
+    PoseTruth truth = distanceAt(X_FS, kResolution);
+    addWrench(X_FS, kDenseShare * length(), truth);
+    return truth;
+}
+
+PoseTruth bothWays(const PoseTruth& there, const PoseTruth& back, const Pose& X_FS) {
+    PoseTruth both = there;
+    both.distance = std::min(there.distance, back.distance);
+    both.uncertainty = std::max(there.uncertainty, back.uncertainty);
+    both.wrench_uncertainty = std::max(there.wrench_uncertainty, back.wrench_uncertainty);
+    // `back` is on FIELD about FIELD's origin, in SHELL's axes: turned, moved to SHELL's origin, and its reaction.
+    const Vec3 force = -(X_FS.q * back.wrench.force);
+    const Vec3 torque = -(X_FS.q * back.wrench.torque) - X_FS.p.cross(force);
+    both.wrench = {0.5 * (there.wrench.force + force), 0.5 * (there.wrench.torque + torque)};
+    return both;
 }
 
 }  // namespace passung::truth

@@ -121,6 +121,11 @@ Motion allowedMotion(const TickModel& model, TickState& state, TickFrame& frame,
 
 }  // namespace
 
+void lookAround(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_WG) noexcept {
+    const double reach = kLongestStep * model.finest_cell;
+    look(model, state, frame, X_WG, reach, reach);
+}
+
 void correctProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
     const double s = model.finest_cell;
     if (frame.relocated) {
@@ -129,19 +134,19 @@ void correctProxy(const TickModel& model, TickState& state, TickFrame& frame) no
         state.has_last_proxy = state.has_last_stretch = false;
         state.rubbing = {};
     }
-    if (state.manifold_reach < 0.0) look(model, state, frame, state.X_WG, kLongestStep * s, kLongestStep * s);
+    if (state.manifold_reach < 0.0) lookAround(model, state, frame, state.X_WG);
     for (int i = 0; i < kCorrections && overlap(state) > kAccept * s; ++i) {
         const Pose X_before = state.X_WG;
         const double depth = overlap(state);
         Motion u = correctionOf(model, state, depth - kKeep * s);
         bool better = false;
         for (int half = 0; half <= kHalvings && !better; ++half, u *= 0.5) {
-            look(model, state, frame, moved(X_before, u, model.metric_radius), kLongestStep * s, kLongestStep * s);
+            lookAround(model, state, frame, moved(X_before, u, model.metric_radius));
             better = overlap(state) < depth;
         }
         if (!better) {
             frame.status |= kStepRejected;
-            look(model, state, frame, X_before, kLongestStep * s, kLongestStep * s);
+            lookAround(model, state, frame, X_before);
             return;
         }
     }

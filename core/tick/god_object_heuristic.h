@@ -61,6 +61,10 @@ inline constexpr int kSubSteps = 12;
 inline constexpr int kCorrections = 3;
 inline constexpr int kHalvings = 4;
 
+/// What is asked around the proxy when nothing is known of it yet: all contacts that any step could reach, and where
+/// there is none the proof of it. Moves the proxy to `X_WG`; fills the manifold, clearance and room. rt-safe.
+void lookAround(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_WG) noexcept;
+
 /// Stages, in this order.
 void correctProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept;  // #1, #2
 void moveProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept;     // #3, #4

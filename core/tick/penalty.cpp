@@ -40,19 +40,19 @@ void measureHandVelocity(TickState& state, const TickFrame& frame) noexcept {
 
 }  // namespace
 
+QueryRequest penaltyRequest(model::PenaltyVariant variant) noexcept {
+    return {.gradients = false, .load = variant == model::PenaltyVariant::AreaWeighted, .refine = true};
+}
+
 void findContactsAtHand(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
     state.X_WG = frame.X_WH;
     state.manifold.clear();
     const QueryAnswer answer =
-        queryObstacles(model, frame.X_WH, penaltyRequest(model.contact), state.workspace, state.manifold);
+        queryObstacles(model, frame.X_WH, penaltyRequest(model.contact.variant), state.workspace, state.manifold);
     account(answer, frame);
     frame.load = answer.load;
     frame.contacts = static_cast<std::uint32_t>(answer.contacts);
     frame.hand_depth = frame.proxy_depth = std::max(0.0, -answer.phi);
-}
-
-QueryRequest penaltyRequest(const model::ContactSpec& contact) noexcept {
-    return {.gradients = false, .load = isWeighted(contact), .refine = true};
 }
 
 Wrench weightedWrench(const model::ContactSpec& contact, const Wrench& load) noexcept {

@@ -4,14 +4,14 @@
 
 namespace passung::tick {
 
+/// What is asked at the device's pose: the deepest point, on the surface between the samples too, and all points inside
+/// obstacles, or where only their area-weighted sum matters that (QueryRequest::load). rt-safe.
+QueryRequest penaltyRequest(model::PenaltyVariant variant) noexcept;
+
 /// Stage: contact at the device's pose.
-///   Reads X_WH; fills the manifold with all points inside obstacles, or where only their area-weighted sum matters,
-///   the frame's load (QueryRequest::load); writes depth, contacts (points), quality.
+///   Reads X_WH; fills the manifold, or the frame's load, by penaltyRequest; writes depth, contacts (points), quality.
 ///   The proxy follows the device: X_WG = X_WH.
 void findContactsAtHand(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
-
-/// What that stage asks of the query.
-QueryRequest penaltyRequest(const model::ContactSpec& contact) noexcept;
 
 /// Penalty wrench of a manifold on the held part about `p_WO`, world axes (Sagardia 2019, 3.3; McNeely 1999). rt-safe.
 ///   p_i = max(0, -φ_i) depth, n_i the shell's inward normal, a_i area, r_i = P_i - O.

@@ -278,10 +278,18 @@ CREATE TABLE accuracy_pick(
     FOREIGN KEY(protocol_sha256, candidate) REFERENCES accuracy_candidate) STRICT, WITHOUT ROWID;
 )sql";
 
+constexpr const char* kRevision3 = R"sql(
+-- the wrench's errors beside the depth's; NULL: not measured
+ALTER TABLE accuracy_candidate ADD COLUMN force_error_p99_percent REAL;
+ALTER TABLE accuracy_candidate ADD COLUMN direction_error_p99_deg REAL;
+ALTER TABLE accuracy_candidate ADD COLUMN torque_error_p99_percent REAL;
+)sql";
+
 constexpr std::array kRevisions = {
     Revision{1, "Protocols, participants, sessions, trials, samples, timing and questionnaires", kRevision1, 1},
     // A reader that does not know what was picked would replay another scene.
     Revision{2, "What accuracy = \"auto\" picked, with its calibration", kRevision2, 2},
+    Revision{3, "The errors of force and torque in that calibration", kRevision3, 2},
 };
 
 bool isEmpty(const Database& database) { return database.integer("SELECT count(*) FROM sqlite_master") == 0; }

@@ -42,9 +42,14 @@ struct AccuracyRow {
     double time_median_us = 0.0;    // of a query
     double time_p99_us = 0.0;
     double time_max_us = 0.0;
-    double error_mean_um = 0.0;  // of the signed distance, against independent truth
+    double error_mean_um = 0.0;  // of the depth, against independent truth
     double error_p99_um = 0.0;
     double error_max_um = 0.0;
+    // Of the contacts' area-weighted penalty: size, direction, and torque as a share of force times lever. Empty where
+    // no answer had a force, and in files from before it was measured.
+    std::optional<double> force_error_p99_percent = {};
+    std::optional<double> direction_error_p99_deg = {};
+    std::optional<double> torque_error_p99_percent = {};
     std::vector<double> picked_for_us = {};  // budgets of a query that it was picked for, ascending
 };
 

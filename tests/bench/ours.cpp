@@ -45,8 +45,8 @@ public:
     }
 
     Answer at(const Pose& X_FS) override {
-        const tick::QueryAnswer found =
-            tick::queryContacts(field_, Pose{}, shell_, X_FS, tick::penaltyRequest(contact_), workspace_, manifold_);
+        const tick::QueryAnswer found = tick::queryContacts(
+            field_, Pose{}, shell_, X_FS, tick::penaltyRequest(contact_.variant), workspace_, manifold_);
         return {.signed_distance = found.found ? found.phi : kNotGiven,
                 .wrench = tick::weightedWrench(contact_, found.load),
                 .contacts = static_cast<double>(found.contacts)};

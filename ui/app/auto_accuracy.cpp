@@ -4,7 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
 #include <set>
+#include <string_view>
+#include <tuple>
 
 #include "analysis/truth/accuracy_pick.h"
 #include "study/protocol/plan_json.h"
@@ -14,7 +19,7 @@ namespace passung::app {
 
 namespace {
 
-constexpr double kUm = 1e6, kMm = 1e3, kUs = 1e6;
+constexpr double kUm = 1e6, kMm = 1e3, kUs = 1e6, kDegrees = 180.0 / std::numbers::pi;
 
 /// Of a query [s], each once, ascending.
 std::vector<double> budgetsOf(const protocol::StudyPlan& plan) {
@@ -37,18 +42,33 @@ std::string geometryOf(const model::PartSpec& part) {
     return text;
 }
 
-/// One scene for every geometry among those that ask for a pick.
-std::vector<const model::SceneSpec*> distinctScenes(const protocol::StudyPlan& plan) {
-    std::set<std::string> seen;
-    std::vector<const model::SceneSpec*> scenes;
+/// What of a contact makes its query another one.
+auto wayOfAsking(const model::ContactSpec& contact) {
+    const bool weighted = contact.variant == model::PenaltyVariant::AreaWeighted;
+    return std::tuple(contact.method, weighted && contact.method == model::ContactMethod::Penalty, contact.two_way);
+}
+
+/// One scene for every geometry among those that ask for a pick, with each way of asking once.
+std::vector<truth::AskedScene> distinctScenes(const protocol::StudyPlan& plan) {
+    std::map<std::string, std::size_t> seen;
+    std::vector<truth::AskedScene> scenes;
     for (const protocol::Condition& condition : plan.conditions) {
         if (!(condition.accuracy_budget > 0.0)) continue;
         std::string key;
         for (const model::PartSpec& part : condition.scene.parts) key += geometryOf(part) + '\n';
-        if (seen.insert(key).second) scenes.push_back(&condition.scene);
+        const auto [place, fresh] = seen.try_emplace(key, scenes.size());
+        if (fresh) scenes.push_back({&condition.scene, {}});
+        const model::ContactSpec& contact = condition.scene.contact;
+        auto& contacts = scenes[place->second].contacts;
+        if (std::none_of(contacts.begin(), contacts.end(),
+                         [&](const auto& other) { return wayOfAsking(other) == wayOfAsking(contact); }))
+            contacts.push_back(contact);
     }
     return scenes;
 }
+
+/// Nothing where a spread is of no pose at all.
+std::optional<double> asMeasured(double value) { return std::isnan(value) ? std::nullopt : std::optional(value); }
 
 store::AccuracyRow asStored(const std::string& protocol_sha256, std::int64_t number, const truth::AccuracyRow& row) {
     return {.protocol_sha256 = protocol_sha256,
@@ -61,9 +81,12 @@ store::AccuracyRow asStored(const std::string& protocol_sha256, std::int64_t num
             .time_median_us = kUs * row.time.median,
             .time_p99_us = kUs * row.time.p99,
             .time_max_us = kUs * row.time.max,
-            .error_mean_um = kUm * row.signed_distance.mean,
-            .error_p99_um = kUm * row.signed_distance.p99,
-            .error_max_um = kUm * row.signed_distance.max};
+            .error_mean_um = kUm * row.depth.mean,
+            .error_p99_um = kUm * row.depth.p99,
+            .error_max_um = kUm * row.depth.max,
+            .force_error_p99_percent = asMeasured(100.0 * row.force.p99),
+            .direction_error_p99_deg = asMeasured(kDegrees * row.direction.p99),
+            .torque_error_p99_percent = asMeasured(100.0 * row.torque.p99)};
 }
 
 std::string keysOf(const store::AccuracyRow& row) {
@@ -175,17 +198,27 @@ Result<protocol::StudyPlan> withKeptAccuracy(const protocol::StudyPlan& plan, co
 }
 
 std::string describeAccuracy(std::span<const store::AccuracyRow> rows) {
-    std::string text = fmt::format("  {:>12} {:>12} {:>12}  {}\n", "budget [µs]", "p99 [µs]", "error [µm]", "picked");
+    constexpr std::string_view kHead = "  {:>12} {:>10} {:>10} {:>9} {:>9} {:>9}  {}\n";
+    constexpr std::string_view kErrors = " {:>9.3g} {:>9} {:>9} {:>9}  ";
+    const auto errorsOf = [&](const store::AccuracyRow& row) {
+        const auto text = [](const std::optional<double>& value) {
+            return value ? fmt::format("{:.3g}", *value) : "-";
+        };
+        return fmt::format(kErrors, row.error_p99_um, text(row.force_error_p99_percent),
+                           text(row.direction_error_p99_deg), text(row.torque_error_p99_percent));
+    };
+    std::string text =
+        fmt::format(kHead, "budget [µs]", "p99 [µs]", "depth [µm]", "force [%]", "dir. [°]", "torque [%]", "picked");
     for (const store::AccuracyRow& row : rows)
         for (const double budget : row.picked_for_us)
-            text += fmt::format("  {:>11g} {:>11.3g} {:>11.3g}  {}\n", budget, row.time_p99_us, row.error_p99_um,
-                                keysOf(row));
+            text += fmt::format("  {:>11g} {:>9.3g}{}{}\n", budget, row.time_p99_us, errorsOf(row), keysOf(row));
     text += fmt::format(
         "  {} settings measured; times and errors are 99th percentiles over poses along contact paths\n", rows.size());
-    text += fmt::format("  {:>12} {:>12} {:>12}  {}\n", "median [µs]", "p99 [µs]", "error [µm]", "candidate");
+    text +=
+        fmt::format(kHead, "median [µs]", "p99 [µs]", "depth [µm]", "force [%]", "dir. [°]", "torque [%]", "candidate");
     for (const store::AccuracyRow& row : rows)
-        text += fmt::format("  {:>11.3g} {:>11.3g} {:>11.3g}  {}{}\n", row.time_median_us, row.time_p99_us,
-                            row.error_p99_um, keysOf(row), row.picked_for_us.empty() ? "" : "  <- picked");
+        text += fmt::format("  {:>11.3g} {:>9.3g}{}{}{}\n", row.time_median_us, row.time_p99_us, errorsOf(row),
+                            keysOf(row), row.picked_for_us.empty() ? "" : "  <- picked");
     return text;
 }
 

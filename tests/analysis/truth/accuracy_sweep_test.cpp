@@ -7,34 +7,28 @@
 
 #include "analysis/truth/accuracy_picture.h"
 #include "analysis/truth/accuracy_tables.h"
+#include "tests/support/named_part.h"
 
 namespace passung::truth {
 namespace {
 
-model::PartSpec spec(const char* name, const model::Shape& shape) {
-    model::PartSpec part;
-    part.name = name;
-    part.geometry = shape;
-    return part;
-}
-
-AccuracyRow rowAt(double time, double distance, double force) {
+AccuracyRow rowAt(double time, double depth, double force) {
     AccuracyRow row;
     row.time = {time, time, time, time};
-    row.signed_distance = {distance, distance, distance, distance};
+    row.depth = {depth, depth, depth, depth};
     row.force = {force, force, force, force};
     return row;
 }
 
 TEST(AccuracyFront, HoldsExactlyTheRowsThatNoOtherBeatsInBoth) {
-    // Truth: closed form. By hand: distance: (1, 9), (2, 5), (4, 1) are on the front; (3, 6) is beaten by (2, 5), (4,
+    // Truth: closed form. By hand: depth: (1, 9), (2, 5), (4, 1) are on the front; (3, 6) is beaten by (2, 5), (4,
     // 2) by (4, 1). Force has its own front; a row without a force is on none.
     std::vector<AccuracyRow> rows{rowAt(3, 6, 1), rowAt(1, 9, 8), rowAt(4, 2, 0.5), rowAt(2, 5, Spread::kNone),
                                   rowAt(4, 1, 0.7)};
     markFronts(rows);
-    const std::vector<bool> distance{false, true, false, true, true}, force{true, true, true, false, false};
+    const std::vector<bool> depth{false, true, false, true, true}, force{true, true, true, false, false};
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        EXPECT_EQ(rows[i].on_distance_front, distance[i]) << i;
+        EXPECT_EQ(rows[i].on_depth_front, depth[i]) << i;
         EXPECT_EQ(rows[i].on_force_front, force[i]) << i;
     }
 }
@@ -42,7 +36,8 @@ TEST(AccuracyFront, HoldsExactlyTheRowsThatNoOtherBeatsInBoth) {
 /// A ball that is pressed into a cube by three depths, and once apart.
 class BallOnCube : public ::testing::Test {
 protected:
-    const model::PartSpec cube_ = spec("cube", model::Box{0.04, 0.04, 0.04}), ball_ = spec("ball", model::Sphere{0.02});
+    const model::PartSpec cube_ = test::namedPart("cube", model::Box{0.04, 0.04, 0.04}),
+                          ball_ = test::namedPart("ball", model::Sphere{0.02});
     const AccuracySpace space_{.tolerances = {50e-6}, .spacings = {1e-3, 0.5e-3}, .budgets = {0, 30}, .repetitions = 1};
 
     std::vector<JudgedPose> poses() const {
@@ -68,8 +63,10 @@ TEST_F(BallOnCube, ErrsByNoMoreThanTheSpacingAdmitsAndLessWithFinerPoints) {
         if (row.setting.budget_nodes > 0) continue;
         // A layer is off by half a cell besides, and cells are at most 1/72 of the cube's side.
         const double layer = row.setting.mode == model::FieldMode::Layered ? 0.5 * 0.04 / 72 : 0.0;
-        EXPECT_LE(row.signed_distance.max, row.setting.spacing * row.setting.spacing / 0.02 + 50e-6 + layer);
+        for (const Spread& error : {row.depth, row.distance})
+            EXPECT_LE(error.max, row.setting.spacing * row.setting.spacing / 0.02 + 50e-6 + layer);
         EXPECT_GT(row.time.p99, 0.0);
+        EXPECT_GT(row.distance_time.p99, 0.0);
         EXPECT_GT(row.field_bytes, 0.0);
     }
     const auto find = [&](double spacing) {
@@ -80,6 +77,29 @@ TEST_F(BallOnCube, ErrsByNoMoreThanTheSpacingAdmitsAndLessWithFinerPoints) {
     };
     EXPECT_LT(find(0.5e-3)->force.mean, find(1e-3)->force.mean);
     EXPECT_LT(find(1e-3)->force.max, 0.15);
+}
+
+TEST_F(BallOnCube, AsksAsTheTickOfTheContactMethodAsks) {
+    // Truth: closed form. The ball's depth is 0.4 mm however it is turned. A tick of penalty contact follows the
+    // surface between the points: the field's tolerance is left, and 1 um of steps that end. The god object's tick
+    // takes points as they are, 3 mm apart: in some pose the nearest one is 1 mm aside, which costs 1 mm² / 2r = 50 um.
+    const auto built = [](const model::PartSpec& part, const model::PartNeeds& needs) {
+        return std::make_shared<const model::Part>(*model::buildPart(part, needs));
+    };
+    const auto cube = built(cube_, {.field = true, .tolerance = 20e-6});
+    const auto ball = built(ball_, {.shell = true, .spacing = 3e-3});
+    std::vector<JudgedPose> turned;
+    for (int i = 0; i < 10; ++i) {
+        turned.push_back({{rotationFromVector({0.3 * i, 0.5, -0.2 * i}), Vec3(0.001, 0.002, 0.03 - 0.4e-3)}, {}});
+        turned.back().truth.distance = -0.4e-3;
+    }
+    const auto errorOf = [&](model::ContactMethod method) {
+        model::ContactSpec contact;
+        contact.method = method;
+        return measureSetting({}, contact, cube, ball, turned, {}, 1, 0.01).depth.max;
+    };
+    EXPECT_LE(errorOf(model::ContactMethod::Penalty), 20e-6 + 1e-6);
+    EXPECT_GT(errorOf(model::ContactMethod::GodObjectHeuristic), 50e-6);
 }
 
 TEST_F(BallOnCube, NamesThePoseWhereAnAnswerContradictsTheTruth) {
@@ -116,7 +136,7 @@ TEST_F(BallOnCube, TablesHaveACellForEveryColumnAndThePictureEveryFrontSetting) 
     const std::string picture = accuracyPicture(result->rows, {"cube <1>", "ball", judged.size(), 3});
     for (const AccuracyRow& row : result->rows) {
         const bool shown = picture.find(settingText(row.setting) + "<") != std::string::npos;
-        EXPECT_EQ(shown, row.on_distance_front || row.on_force_front) << settingText(row.setting);
+        EXPECT_EQ(shown, row.on_depth_front || row.on_force_front) << settingText(row.setting);
     }
     EXPECT_EQ(picture.find("<1"), std::string::npos) << "a name must not become markup";
     EXPECT_EQ(picture.find("nan"), std::string::npos);

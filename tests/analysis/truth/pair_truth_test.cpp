@@ -6,16 +6,10 @@
 #include <numbers>
 
 #include "analysis/truth/contact_path.h"
+#include "tests/support/named_part.h"
 
 namespace passung::truth {
 namespace {
-
-model::PartSpec spec(const char* name, const model::Shape& shape) {
-    model::PartSpec part;
-    part.name = name;
-    part.geometry = shape;
-    return part;
-}
 
 const auto kCube = model::Box{0.1, 0.1, 0.1};
 const auto kBall = model::Sphere{0.02};
@@ -24,7 +18,7 @@ TEST(PairTruth, ABallOnACubeHasItsClosedFormDistanceAndForce) {
     // Truth: closed form. The ball's lowest point is `d` below or above the face; the penalty of the cap is κ V,
     // V = π d² (r - d/3), upright through the ball's middle, which is its origin: no torque. The ball's chords take at
     // most 0.25 µm of 1 mm, 0.1 % of the force.
-    const auto truth = PairTruth::build(spec("cube", kCube), spec("ball", kBall));
+    const auto truth = PairTruth::build(test::namedPart("cube", kCube), test::namedPart("ball", kBall));
     ASSERT_TRUE(truth);
     const double r = 0.01, d = 1e-3;
     const PoseTruth apart = truth->at({Quat::Identity(), Vec3(0.01, 0.02, 0.05 + r + d)});
@@ -41,16 +35,34 @@ TEST(PairTruth, ABallOnACubeHasItsClosedFormDistanceAndForce) {
     EXPECT_LT(pressed.wrench_uncertainty, 2e-3);
 }
 
+TEST(PairTruth, BothWaysIsTheMeanOfTwoForcesThatActWhereTheyDo) {
+    // Truth: closed form. F acts on SHELL at c in FIELD's frame: torque (c - p) x F about SHELL's origin p. What is
+    // true of the way back is the reaction -F', about FIELD's origin, in SHELL's axes.
+    const Pose X_FS{rotationFromVector({0.3, -0.5, 0.2}), Vec3(0.01, 0.02, 0.05)};
+    const Vec3 c(0.02, 0.01, 0.03), force(1, 2, 3), other(0.5, 2.5, 2);
+    PoseTruth there, back;
+    there.distance = -1e-3;
+    there.wrench = {force, (c - X_FS.p).cross(force)};
+    back.distance = -2e-3;
+    back.uncertainty = 1e-6;
+    back.wrench = {X_FS.q.conjugate() * -other, X_FS.q.conjugate() * -c.cross(other)};
+    const PoseTruth both = bothWays(there, back, X_FS);
+    EXPECT_EQ(both.distance, -2e-3);
+    EXPECT_EQ(both.uncertainty, 1e-6);
+    EXPECT_LT((both.wrench.force - 0.5 * (force + other)).norm(), 1e-12);
+    EXPECT_LT((both.wrench.torque - 0.5 * (c - X_FS.p).cross(force + other)).norm(), 1e-12);
+}
+
 TEST(PairTruth, NamesContainmentWhichFclCallsFree) {
     // Truth: closed form. A ball in the middle of the cube is 50 mm from its faces at its centre, 60 mm deep at the
     // far pole; the other way round the cube is nowhere inside the ball's surface.
-    const auto in_cube = PairTruth::build(spec("cube", kCube), spec("ball", kBall));
+    const auto in_cube = PairTruth::build(test::namedPart("cube", kCube), test::namedPart("ball", kBall));
     ASSERT_TRUE(in_cube);
     const PoseTruth inside = in_cube->at(Pose{});
     EXPECT_EQ(inside.relation, Relation::BInsideA);
     EXPECT_NEAR(inside.separation, 0.04, 1e-6);
     EXPECT_LE(inside.distance, -0.04);
-    const auto around = PairTruth::build(spec("ball", kBall), spec("cube", kCube));
+    const auto around = PairTruth::build(test::namedPart("ball", kBall), test::namedPart("cube", kCube));
     ASSERT_TRUE(around);
     const PoseTruth outside = around->at(Pose{});
     EXPECT_EQ(outside.relation, Relation::AInsideB);
@@ -59,7 +71,8 @@ TEST(PairTruth, NamesContainmentWhichFclCallsFree) {
 
 TEST(PairTruth, RefusesAFieldWithoutAnInside) {
     // Truth: invariant
-    const auto truth = PairTruth::build(spec("sheet", model::Sheet{0.05, 0.05}), spec("ball", kBall));
+    const auto truth =
+        PairTruth::build(test::namedPart("sheet", model::Sheet{0.05, 0.05}), test::namedPart("ball", kBall));
     ASSERT_FALSE(truth);
     EXPECT_NE(truth.errors().front().message.find("watertight"), std::string::npos);
 }
@@ -67,7 +80,7 @@ TEST(PairTruth, RefusesAFieldWithoutAnInside) {
 TEST(ContactPath, HasTheSamePosesForTheSameSeedAndMeetsContactAtTheAskedDepths) {
     // Truth: invariant. 11 poses a path: apart, then as deep as asked (within 2 %, and what the search resolves), then
     // slid; depths are shares of the ball's 20 mm.
-    const auto truth = PairTruth::build(spec("cube", kCube), spec("ball", kBall));
+    const auto truth = PairTruth::build(test::namedPart("cube", kCube), test::namedPart("ball", kBall));
     ASSERT_TRUE(truth);
     const auto quiet = [](double) {};
     const auto poses = contactPath(*truth, 2, 7, quiet), again = contactPath(*truth, 2, 7, quiet);
@@ -87,8 +100,9 @@ TEST(ContactPath, HasTheSamePosesForTheSameSeedAndMeetsContactAtTheAskedDepths) 
 TEST(ContactPath, OfAPegIncludesPosesInItsBore) {
     // Truth: invariant. Every other path begins where the peg is free in the bore: there its middle is below the
     // mouth's plane or less than half the peg's length above, and its axis upright.
-    const auto truth = PairTruth::build(spec("plate", model::BorePlate{0.06, 0.06, 0.03, 0.021, 0.025, 0.5e-3}),
-                                        spec("peg", model::Peg{0.02, 0.05, 0.5e-3}));
+    const auto truth =
+        PairTruth::build(test::namedPart("plate", model::BorePlate{0.06, 0.06, 0.03, 0.021, 0.025, 0.5e-3}),
+                         test::namedPart("peg", model::Peg{0.02, 0.05, 0.5e-3}));
     ASSERT_TRUE(truth);
     int in_bore = 0;
     for (const JudgedPose& pose : contactPath(*truth, 2, 1, [](double) {})) {

@@ -297,6 +297,9 @@ std::vector<AccuracyRow> twoCandidates(const std::string& protocol_sha256) {
     AccuracyRow coarse{protocol_sha256, 0, "trilinear", 50.0, 2.0, 0, 900, 10.5, 21.25, 30.0, 40.0, 81.0, 90.0};
     AccuracyRow fine{protocol_sha256, 1, "linear", 20.0, 0.5, 300, 5000, 30.5, 47.25, 60.0, 5.0, 9.0, 11.0};
     coarse.picked_for_us = {25.0, 40.0};
+    fine.force_error_p99_percent = 3.5;
+    fine.direction_error_p99_deg = 0.25;
+    fine.torque_error_p99_percent = 1.5;
     return {coarse, fine};
 }
 
@@ -315,7 +318,8 @@ TEST(Store, KeepsWhatAutomaticAccuracyMeasuredAndPickedOnceAndForGood) {
         const auto all = [](const AccuracyRow& r) {
             return std::tie(r.protocol_sha256, r.candidate, r.mode, r.tolerance_um, r.spacing_mm, r.budget_nodes,
                             r.points, r.time_median_us, r.time_p99_us, r.time_max_us, r.error_mean_um, r.error_p99_um,
-                            r.error_max_um, r.picked_for_us);
+                            r.error_max_um, r.force_error_p99_percent, r.direction_error_p99_deg,
+                            r.torque_error_p99_percent, r.picked_for_us);
         };
         EXPECT_EQ(all(kept[i]), all(expected[i])) << i;
     }
