@@ -205,7 +205,7 @@ model::ContactSpec readContact(const TableReader& read, const DeviceDescription*
 }
 
 /// The budget of accuracy = "auto" [s], else 0.
-double readAccuracyBudget(const TableReader& read) {
+double readAccuracyBudget(const TableReader& read, const model::SceneSpec& scene) {
     const bool automatic = read.text("accuracy") == "auto";
     if (!automatic) {
         if (read.has("accuracy_budget_us")) read.fail("accuracy_budget_us", "needs accuracy = \"auto\"");
@@ -213,7 +213,8 @@ double readAccuracyBudget(const TableReader& read) {
     }
     for (const char* key : {"tolerance_um", "cell_mm", "spacing_mm", "mode", "budget_nodes"})
         if (read.has(key)) read.fail(key, "is picked by accuracy = \"auto\"");
-    if (read.boolean("two_way")) read.fail("two_way", "accuracy = \"auto\" measures the held part's points only");
+    if (std::all_of(scene.parts.begin(), scene.parts.end(), [](const auto& part) { return part.held; }))
+        read.fail("accuracy", "needs a part that the held one can touch");
     if (!read.has("accuracy_budget_us")) read.fail("accuracy_budget_us", "required by accuracy = \"auto\"");
     return read.numberOr("accuracy_budget_us", 0.0);
 }
@@ -265,7 +266,7 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     content.scene.limits = readLimits(device_table, device);
     const auto contact_table = open("contact");
     content.scene.contact = readContact(contact_table, device, device_table.has("preset"));
-    content.accuracy_budget = readAccuracyBudget(contact_table);
+    content.accuracy_budget = readAccuracyBudget(contact_table, content.scene);
     const auto registration_table = open("registration");
     content.scene.registration = readRegistration(registration_table, units);
     if (errors.size() == before) {
@@ -295,8 +296,10 @@ Result<model::SceneSpec> readSceneText(const std::string& text, const std::strin
     Errors errors;
     auto content = readSceneNode(*document, {"scene"}, "", devices, errors);
     if (content.accuracy_budget > 0.0)
-        errors.push_back(errorAt(document->place, "contact.accuracy", "\"auto\"",
-                                 "only in a study, whose database keeps what was picked"));
+        errors.push_back(errorAt(document->find("contact")->find("accuracy")->place, "contact.accuracy", "\"auto\"",
+                                 "only in a study, whose database keeps what was picked; in a scene file write "
+                                 "tolerance_um, spacing_mm, mode and budget_nodes, as passung explain STUDY shows what "
+                                 "was picked or passung accuracy FIELD SHELL what there is"));
     tidy(errors);
     if (!errors.empty()) return errors;
     return std::move(content.scene);

@@ -359,7 +359,13 @@ TEST(SceneReader, AutomaticAccuracyNeedsABudgetAStudyAndNothingElseChosen) {
         const std::string found = contact("accuracy = \"auto\"\naccuracy_budget_us = 50\n" + std::string(key) + "\n");
         EXPECT_NE(found.find("is picked by accuracy = \"auto\""), std::string::npos) << key << ": " << found;
     }
-    EXPECT_NE(contact("accuracy = \"auto\"\naccuracy_budget_us = 50\n").find("only in a study"), std::string::npos);
+    const std::string alone = contact("accuracy = \"auto\"\naccuracy_budget_us = 50\ntwo_way = true\n");
+    EXPECT_NE(alone.find("only in a study"), std::string::npos);
+    EXPECT_EQ(alone.find('\n'), std::string::npos) << alone;
+    EXPECT_NE(errorsOf("[[part]]\nname = \"peg\"\nheld = true\nshape = { kind = \"sphere\", diameter = 10 }\n"
+                       "[contact]\naccuracy = \"auto\"\naccuracy_budget_us = 50\n")
+                  .find(":6:12: error: contact.accuracy: \"auto\": needs a part that the held one can touch"),
+              std::string::npos);
     EXPECT_EQ(contact("accuracy = \"chosen\"\ntolerance_um = 30\n"), "");
 }
 
