@@ -69,6 +69,12 @@ std::vector<Error> SceneSpec::validate() const {
     check.require(limits.delay_ticks >= 0 && limits.delay_ticks <= kMaxDelayTicks, "limits: delay_ticks",
                   limits.delay_ticks, "must be 0 … 100");
     check.notNegative("effects: passivity damping", effects.passivity_damping);
+    const Transients& transients = effects.transients;
+    check.notNegative("effects: transients: amplitude", transients.amplitude);
+    check.positive("effects: transients: frequency", transients.frequency);
+    check.require(!(transients.frequency >= 500.0), "effects: transients: frequency", transients.frequency,
+                  "must be below half the tick's rate, 500 Hz");
+    check.positive("effects: transients: decay", transients.decay);
     check.notNegative("contact: proxy filter", contact.proxy_filter);
     check.finite("registration: device base", registration.X_WB);
     check.finite("registration: handle", registration.X_DH);

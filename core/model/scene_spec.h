@@ -77,9 +77,17 @@ struct StartGate {
     int hold_ticks = 0;
 };
 
+/// A decaying vibration at every impact.
+struct Transients {
+    double amplitude = 0.0;    // force per speed of the impact [N·s/m], ≥ 0; 0: none
+    double frequency = 100.0;  // [Hz], > 0 and below half the tick's rate
+    double decay = 0.02;       // time constant [s], > 0
+};
+
 /// Effects beyond contact; what is 0 is not built.
 struct Effects {
     double passivity_damping = 0.0;  // most of the passivity controller's damper [N·s/m], ≥ 0; 0: no controller
+    Transients transients;
 };
 
 struct SceneSpec {

@@ -8,6 +8,7 @@
 #include "core/tick/output_stage.h"
 #include "core/tick/passivity.h"
 #include "core/tick/penalty.h"
+#include "core/tick/transients.h"
 #include "core/tick/virtual_coupling.h"
 
 namespace passung::tick {
@@ -77,6 +78,7 @@ TickModel makeModel(const model::Scene& scene) {
     model.registration = spec.registration;
     model.start_gate = spec.start_gate;
     model.passivity_damping = spec.effects.passivity_damping;
+    model.transients = spec.effects.transients;
     model.X_WG_start = spec.parts[scene.held].X_WP;
     model.shell = &*scene.parts[scene.held]->shell;
     const bool two_way = spec.contact.two_way;
@@ -108,6 +110,11 @@ TickModel makeModel(const model::Scene& scene) {
         addPenalty(model);
     } else {
         addGodObject(model, spec.record_hand_depth);
+    }
+    if (spec.effects.transients.amplitude > 0.0 && !model.obstacles.empty()) {
+        model.stages.push_back({"contact transients",
+                                "effects.transients is set: a decaying vibration is added at every impact", false,
+                                renderTransients});
     }
     if (spec.limits.delay_ticks > 0) {
         model.stages.push_back({"output delay", "device.delay_ticks is set", true, delayOutput});

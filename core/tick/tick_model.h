@@ -66,6 +66,7 @@ struct TickModel {
     double finest_cell = 0.0;        // of all fields [m]
     double metric_radius = 0.0;      // [m]: makes a rotation comparable with a translation (god_object_heuristic.h)
     double passivity_damping = 0.0;  // α_max of passivity.h [N·s/m]
+    model::Transients transients;
 };
 
 /// What went through the handle: passivity.h.
@@ -76,6 +77,14 @@ struct EnergyAccount {
     Twist V_BD;   // from the one before that
     Wrench sent;  // sum of what was sent since
     int ticks = 0;
+};
+
+/// Vibration after impacts: transients.h.
+struct Ringing {
+    Wrench now, next;  // of this tick and of the coming one, without a further impact
+    Pose X_WH_last;    // at the last new sample
+    bool has_last = false;
+    bool in_contact = false;  // there
 };
 
 /// Everything that a tick carries to the next. Sized by makeState; a tick never allocates.
@@ -111,6 +120,7 @@ struct TickState {
     Vec3 last_stretch = Vec3::Zero(), last_twist = Vec3::Zero();  // at the last new sample
     Vec3 last_stretch_rate = Vec3::Zero(), last_twist_rate = Vec3::Zero();
     bool has_last_stretch = false;
+    Ringing ringing;
     // output
     Wrench last_sent;       // F_D_B of the previous tick
     Wrench sent_at_sample;  // F_D_B of the last tick with a new sample

@@ -154,8 +154,13 @@ constexpr std::array kKeys{
     Key{"start_gate", "hold_ms", Number, from(0, 10000), "", "0", "How long it stays there."},
 
     Key{"effects", "passivity_controller", Table, kAny, "", "(none)", "A damper that takes energy back where the controller gave more than it took in; the account itself is always recorded."},
+    Key{"effects", "transients", Table, kAny, "", "(none)", "Event-based transients: a decaying vibration in proportion to the speed, added at every impact, as a tap on something hard gives."},
 
     Key{"effects.passivity_controller", "max_damping_Ns_per_m", Number, above(0), "", "!", "Most that it damps; a mass m cannot bear more than about m / (1 ms)."},
+
+    Key{"effects.transients", "amplitude_Ns_per_m", Number, above(0), "", "!", "Force of the vibration per speed of the impact. The device's limits hold for contact and vibration together."},
+    Key{"effects.transients", "frequency_hz", Number, aboveUpTo(0, 400), "", "!", "Of the vibration."},
+    Key{"effects.transients", "decay_ms", Number, aboveUpTo(0, 1000), "", "!", "Time in which it falls to 37 %."},
 
     Key{"factor", "name", Name, kAny, "", "!", "A column in every export."},
     Key{"factor", "key", Text, kAny, "", "(every level has its `set`)", "Key of the scene that varies, such as contact.method or part.plate.shape.bore_diameter; also task.* and feedback.*."},
@@ -219,6 +224,7 @@ constexpr std::array kTables{
     TableInfo{"start_gate", "`[start_gate]`", ""},
     TableInfo{"effects", "`[effects]`", "A table for each effect; what is absent is not built."},
     TableInfo{"effects.passivity_controller", "`[effects.passivity_controller]`", ""},
+    TableInfo{"effects.transients", "`[effects.transients]`", ""},
     TableInfo{"factor", "`[[factor]]`", ""},
     TableInfo{"level", "Levels written as tables", "A level has either a `value` or a `set`."},
     TableInfo{"task", "`[task]`", ""},

@@ -82,6 +82,18 @@ std::string limitsJson(const model::OutputLimits& limits) {
         .str();
 }
 
+std::string effectsJson(const model::Effects& effects) {
+    JsonObject json;
+    json.number("passivity_damping_Ns_per_m", effects.passivity_damping);
+    if (effects.transients.amplitude > 0.0)
+        json.json("transients", JsonObject()
+                                    .number("amplitude_Ns_per_m", effects.transients.amplitude)
+                                    .number("frequency_hz", effects.transients.frequency)
+                                    .number("decay_s", effects.transients.decay)
+                                    .str());
+    return json.str();
+}
+
 std::string taskJson(const PegInHoleTask& task) {
     return JsonObject()
         .text("type", "peg_in_hole")
@@ -159,7 +171,7 @@ std::string paramsJson(const Condition& condition) {
                                 .number("angle_tolerance_rad", scene.start_gate.angle_tolerance)
                                 .integer("hold_ticks", scene.start_gate.hold_ticks)
                                 .str())
-        .json("effects", JsonObject().number("passivity_damping_Ns_per_m", scene.effects.passivity_damping).str())
+        .json("effects", effectsJson(scene.effects))
         .json("task", taskJson(condition.task))
         .str();
 }

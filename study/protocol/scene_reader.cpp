@@ -242,6 +242,12 @@ model::Effects readEffects(const TableReader& read, Errors& errors) {
                                      errors);
         effects.passivity_damping = controller.number("max_damping_Ns_per_m");
     }
+    if (const Node* node = read.node("transients")) {
+        const TableReader transients(*node, {"effects.transients"}, read.pathOf("transients"), errors);
+        effects.transients = {.amplitude = transients.number("amplitude_Ns_per_m"),
+                              .frequency = transients.number("frequency_hz"),
+                              .decay = transients.number("decay_ms")};
+    }
     return effects;
 }
 

@@ -42,6 +42,19 @@ model::SceneSpec pressing(model::ContactMethod method) {
     return spec;
 }
 
+/// The same with everything that a scene can name.
+model::SceneSpec withEveryEffect(model::SceneSpec spec) {
+    spec.effects.passivity_damping = 5;
+    spec.effects.transients = {.amplitude = 20, .frequency = 150, .decay = 0.01};
+    spec.limits.delay_ticks = 2;
+    spec.contact.proxy_filter = 150;
+    spec.contact.damping = 3;
+    spec.contact.rotational_damping = 1e-3;
+    spec.contact.two_way = true;
+    for (auto& part : spec.parts) part.friction = 0.4, part.sliding_friction = 0.3;
+    return spec;
+}
+
 std::vector<TickRecord> record(const test::Bench& bench, std::uint64_t& hash) {
     Wobble device;
     loop::RecordRing ring(4096);
@@ -65,6 +78,14 @@ TEST(Replayer, ReproducesEveryRecordedBitOfEveryMethod) {
             << report.first_difference->column << " at " << report.first_difference->tick;
         EXPECT_EQ(report.state_hash, hash);
         EXPECT_EQ(report.ticks, 2000);
+
+        test::Bench every(withEveryEffect(pressing(method)));
+        std::uint64_t every_hash = 0;
+        const auto every_records = record(every, every_hash);
+        EXPECT_NE(every_hash, hash);
+        const auto every_report = replay::replay(every.scene(), every_records);
+        EXPECT_FALSE(every_report.first_difference);
+        EXPECT_EQ(every_report.state_hash, every_hash);
     }
 }
 

@@ -48,6 +48,9 @@ std::vector<std::pair<const char*, model::SceneSpec>> everyKindOfScene() {
     scenes.back().second.contact.budget_nodes = 200;
     scenes.back().second.limits.delay_ticks = 2;
     scenes.back().second.start_gate = {0.02, 0.1, 50};
+    scenes.back().second.effects.passivity_damping = 5;
+    scenes.back().second.effects.transients = {.amplitude = 5, .frequency = 150, .decay = 0.01};
+    for (auto& part : scenes.back().second.parts) part.friction = part.sliding_friction = 0.3;
     scenes.emplace_back("penalty, two-way", pegAndPlate(model::ContactMethod::Penalty));
     scenes.back().second.contact.two_way = true;
     scenes.emplace_back("god object, two-way", pegAndPlate(model::ContactMethod::GodObjectHeuristic));

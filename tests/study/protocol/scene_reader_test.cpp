@@ -237,6 +237,20 @@ TEST(SceneReader, RefusesWhatTheStableMaximumWasNotFoundFor) {
         << "without a preset nothing is promised";
 }
 
+TEST(SceneReader, BuildsTransientsOnlyIfTheyAreNamedAndComplete) {
+    // Truth: closed form: 40 ms are 0.04 s; without the table there are none.
+    EXPECT_EQ(read(kParts)->effects.transients.amplitude, 0.0);
+    const std::string table = kParts + "[effects.transients]\nfrequency_hz = 120\ndecay_ms = 40\n";
+    const auto scene = read(table + "amplitude_Ns_per_m = 6\n");
+    ASSERT_TRUE(scene);
+    EXPECT_EQ(scene->effects.transients.amplitude, 6.0);
+    EXPECT_EQ(scene->effects.transients.frequency, 120.0);
+    EXPECT_DOUBLE_EQ(scene->effects.transients.decay, 0.04);
+    EXPECT_EQ(errorsOf(table), "s.toml:11:1: error: effects.transients.amplitude_Ns_per_m: required");
+    EXPECT_EQ(errorsOf(table + "amplitude_Ns_per_m = 0\n"),
+              "s.toml:14:22: error: effects.transients.amplitude_Ns_per_m: 0: must be > 0");
+}
+
 TEST(SceneReader, RefusesAnOffsetPictureOfTheHeldPart) {
     // Truth: closed form: the offset stands in line 11, after the held part.
     EXPECT_EQ(errorsOf(kParts + "shown_offset = [0, 0, 2]\n"),

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "core/tick/tick_model.h"
+
+namespace passung::tick {
+
+/// Event-based transients: what a tap feels like, a vibration that dies out, added to the contact's own wrench at every
+/// impact. A coupling alone renders all materials alike and soft.
+/// Source: Kuchenbecker, Fiene, Niemeyer (2006): open loop, amplitude proportional to the speed of the impact.
+///
+/// Symbols: F, T wrench of the contact on the hand, about the held part's origin, world axes; v, ω the hand's twist
+/// there, from the sample before to this one; A, f, τ the scene's amplitude [N·s/m], frequency and time constant.
+///   Impact: the contact's force, zero at the last new sample, is not zero now. Its speed, that of the point in contact
+///   along the force,   s = max(0, -(F · v + T · ω)/|F|).
+///   From then on, t after it:   (F, T) += A s exp(-t/τ) sin(2π f t) (n, m),   (n, m) = (F, T)/|F| at the impact.
+/// Coded as what each axis of the wrench has in common with every other, the impulse response of a resonator,
+///   y_k+1 = 2 r cos φ y_k - r² y_k-1,   r = exp(-h/τ),  φ = 2π f h, h the tick;   an impact at k adds A s r sin φ to
+///   y_k+1,
+/// so that impacts that follow closely add up exactly and the state does not grow with their number.
+/// Limit cases: s = 0 → nothing; no further impact → y falls below any limit, as r < 1.
+/// Invariant: along any motion that is nowhere faster than V an impact gives out at most A s V τ, the waveform's
+/// absolute integral being less than A s τ. No impact: contact at the first sample of all or after rejected ones
+/// (nothing is known of its speed), contact that begins on a held tick, and a pure torque. Rejected ticks end what
+/// rings.
+///
+/// Stage, only if the scene names the effect: after the contact's wrench, before its delay, so that the energy account,
+/// the passivity controller and the output's limits see it as part of the wrench.
+void renderTransients(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+
+}  // namespace passung::tick
