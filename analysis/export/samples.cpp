@@ -103,6 +103,7 @@ std::string samplesCsv(std::span<const TickRecord> records) {
         row.add(r.contacts);
         row.add(r.iterations);
         row.add(r.nodes_visited);
+        row.add(r.hand_energy_J);
         row.endRow();
     }
     return text;

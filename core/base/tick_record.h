@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 #include "core/base/types.h"
@@ -35,6 +36,9 @@ struct DeviceReading {
     bool fresh = true;          // false: the device had nothing new
     std::uint32_t buttons = 0;  // bit per button
     std::uint32_t periods = 1;  // haptic periods since the previous tick: 1, more after missed cycles; set by the loop
+    // That the hand has put into the handle since the device was made; for the record, no tick looks at it. NaN: not
+    // known, as of every real device.
+    double hand_energy_J = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// One tick: its exact inputs, from which a replay reproduces everything else, and its outputs.
@@ -64,6 +68,8 @@ struct TickRecord {
     std::uint32_t contacts = 0;    // points inside an obstacle at the proxy
     std::uint32_t iterations = 0;  // proxy sub-steps
     std::uint32_t nodes_visited = 0;
+    // an input, known of simulated hands only: DeviceReading::hand_energy_J
+    float hand_energy_J = std::numeric_limits<float>::quiet_NaN();
     // measured, never compared by a replay
     std::int64_t duration_ns = 0;  // of the tick's computation
 };

@@ -15,6 +15,8 @@ namespace passung::tick {
 /// That is exact where one wrench was held: what the controller has taken in since the trial began. A passive one keeps
 /// E ≥ 0; what its springs hold counts as taken in and comes back. Rotation: with T̄ constant in base axes, exact to
 /// second order in |Δφ|.
+/// The motion is known in encoder steps q only, booked when the reading changes: a spring K pressed by x and released
+/// comes out low by K q x, also where the motors did no work in all.
 /// Limit cases: no motion or no wrench → E stays. A held sample books nothing until the next new one comes. After
 /// rejected samples the way between is not known and nothing is booked for it.
 ///

@@ -86,6 +86,7 @@ TickRecord makeRecord(std::int64_t tick, const DeviceReading& reading, const Tic
     record.contacts = frame.contacts;
     record.iterations = frame.iterations;
     record.nodes_visited = frame.nodes_visited;
+    record.hand_energy_J = static_cast<float>(reading.hand_energy_J);
     return record;
 }
 
@@ -97,6 +98,7 @@ DeviceReading readingOf(const TickRecord& record) noexcept {
     reading.fresh = (record.input_flags & 1u) != 0;
     reading.buttons = record.input_flags >> 8;
     reading.periods = record.periods;
+    reading.hand_energy_J = record.hand_energy_J;
     return reading;
 }
 

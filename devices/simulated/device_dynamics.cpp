@@ -5,6 +5,8 @@
 //     x_new = x_old + h u,    v_new = 2 u - v_old.
 // Dry friction follows as a separate shrink of the speed by h f_c/M, never below zero: it can only take energy away.
 // A handle at rest stays exactly where it is while the other forces do not exceed f_c (no creep).
+// What the hand puts into the handle follows from the mechanism's own balance, all of it exact for the substep:
+//     E += m_d (v_new² - v_old²)/2 + b u² h + D - F_motor u h,    D what dry friction took, M (u's v_new² - v_new²)/2.
 // Limits: f_c = k = 0: v decays as exp(-b t/M) to O(h²); b = k = 0 with friction alone: stops after v² M/(2 f_c).
 #include "devices/simulated/device_dynamics.h"
 
@@ -20,20 +22,28 @@ constexpr int kSubsteps = 4;
 constexpr double kStep = kTickSeconds / kSubsteps;
 
 struct Axis {
-    double mass, damping, stiffness, coulomb;
+    double mass, damping, coulomb;  // of the mechanism
+    double hand_mass, hand_damping, hand_stiffness;
 };
 
-// Advances the velocity and returns the displacement. `force` excludes spring and damper, `error` = set-point -
-// position.
-Vec3 advanceVelocity(const Axis& a, const Vec3& force, const Vec3& error, Vec3& v) noexcept {
-    const Vec3 driving = force + a.stiffness * error;
+// Advances the velocity and returns the displacement; adds what the hand put in to `from_hand`. `motors` and `muscles`
+// exclude spring and damper, `error` = set-point - position.
+Vec3 advanceVelocity(const Axis& a, const Vec3& motors, const Vec3& muscles, const Vec3& error, Vec3& v,
+                     double& from_hand) noexcept {
+    const Vec3 driving = motors + muscles + a.hand_stiffness * error;
     if (v.isZero(0.0) && driving.norm() <= a.coulomb) return Vec3::Zero();
-    const double inertial = 2.0 * a.mass / kStep;
-    const Vec3 u = (inertial * v + driving) / (inertial + a.damping + 0.5 * a.stiffness * kStep);
+    const double mass = a.mass + a.hand_mass;
+    const double inertial = 2.0 * mass / kStep;
+    const Vec3 u =
+        (inertial * v + driving) / (inertial + (a.damping + a.hand_damping) + 0.5 * a.hand_stiffness * kStep);
+    const double before = v.squaredNorm();
     v = 2.0 * u - v;
     const double speed = v.norm();
-    const double loss = kStep * a.coulomb / a.mass;
+    const double loss = kStep * a.coulomb / mass;
     v = speed > loss ? Vec3((1.0 - loss / speed) * v) : Vec3(Vec3::Zero());
+    const double after = v.squaredNorm();
+    from_hand += 0.5 * a.mass * (after - before) + kStep * a.damping * u.squaredNorm() +
+                 0.5 * mass * (speed * speed - after) - kStep * motors.dot(u);
     return kStep * u;
 }
 
@@ -73,18 +83,17 @@ void DeviceDynamics::advance(const HandCoupling& hand) noexcept {
     pending_[next_] = last;
 
     const double held = hand.attached ? 1.0 : 0.0;
-    const Axis linear{params_.mass.value + held * hand.mass, params_.damping.value + held * hand.damping,
-                      held * hand.stiffness, params_.coulomb_force.value};
-    const Axis angular{params_.inertia.value + held * hand.inertia,
-                       params_.rotational_damping.value + held * hand.rotational_damping,
-                       held * hand.rotational_stiffness, params_.coulomb_torque.value};
-    const Vec3 force = acting_.force + held * hand.F_D_B.force;
-    const Vec3 torque = acting_.torque + held * hand.F_D_B.torque;
+    const Axis linear{params_.mass.value, params_.damping.value, params_.coulomb_force.value,
+                      held * hand.mass,   held * hand.damping,   held * hand.stiffness};
+    const Axis angular{params_.inertia.value, params_.rotational_damping.value, params_.coulomb_torque.value,
+                       held * hand.inertia,   held * hand.rotational_damping,   held * hand.rotational_stiffness};
+    const Wrench muscles{held * hand.F_D_B.force, held * hand.F_D_B.torque};
     for (int i = 0; i < kSubsteps; ++i) {
-        X_BD_.p += advanceVelocity(linear, force, hand.X_BSet.p - X_BD_.p, V_BD_B_.v);
+        X_BD_.p +=
+            advanceVelocity(linear, acting_.force, muscles.force, hand.X_BSet.p - X_BD_.p, V_BD_B_.v, hand_energy_);
         if (params_.sensed_degrees == 6) {
             const Vec3 error = rotationVector(hand.X_BSet.q * X_BD_.q.conjugate());
-            const Vec3 turn = advanceVelocity(angular, torque, error, V_BD_B_.w);
+            const Vec3 turn = advanceVelocity(angular, acting_.torque, muscles.torque, error, V_BD_B_.w, hand_energy_);
             X_BD_.q = (rotationFromVector(turn) * X_BD_.q).normalized();
         }
     }

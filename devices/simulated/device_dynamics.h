@@ -44,6 +44,11 @@ public:
     /// The wrench that the motors gave during the last tick: after limits and delay.
     const Wrench& actingWrench() const noexcept { return acting_; }
 
+    /// What the hand has put into the handle in all: the energy account at the hand's port [J]. Less than zero:
+    /// mechanism and controller have given out more than they took in. (A speed from place() counts as the hand's to
+    /// take.)
+    double handEnergy() const noexcept { return hand_energy_; }
+
 private:
     Wrench limited(const Wrench& wrench) const noexcept;
 
@@ -52,6 +57,7 @@ private:
     Pose X_BD_;
     Twist V_BD_B_;
     Wrench acting_;
+    double hand_energy_ = 0.0;
     std::array<Wrench, loop::kMaxDeviceDelayTicks + 1> pending_{};  // ring: the command of tick k at k modulo its size
     std::size_t next_ = 0;
 };

@@ -34,7 +34,7 @@ SimulatedDevice::SimulatedDevice(const DeviceParams& device, const HandParams& h
 DeviceReading SimulatedDevice::read() noexcept {
     // The hand feels the handle itself and what the motors gave, not the encoders.
     dynamics_.advance(hand_.act(dynamics_.truePose(), dynamics_.actingWrench()));
-    return {.X_BD = dynamics_.readPose(), .fresh = true, .buttons = 0};
+    return {.X_BD = dynamics_.readPose(), .fresh = true, .buttons = 0, .hand_energy_J = dynamics_.handEnergy()};
 }
 
 }  // namespace passung::simulated

@@ -24,6 +24,16 @@ struct Layout {
     std::vector<Channel> channels;
     std::vector<Field> fields;
     std::size_t bytes_per_tick = 0;
+    std::size_t later_columns = 0;  // at the end, that older chunks may lack
+
+    /// How many columns `chunk` has; 0 if its size fits none of the layouts there were.
+    std::size_t columnsOf(const Chunk& chunk) const {
+        if (chunk.count < 1 || chunk.count > static_cast<std::int64_t>(kChunkTicks)) return 0;
+        std::size_t width = bytes_per_tick;
+        for (std::size_t n = fields.size(); n + later_columns >= fields.size(); width -= fields[--n].width)
+            if (chunk.data.size() == static_cast<std::size_t>(chunk.count) * width) return n;
+        return 0;
+    }
 
     void add(std::string name, std::string type, std::string unit, std::string label, std::size_t offset) {
         const std::size_t width = type == "float64" || type == "int64" ? 8 : 4;
@@ -82,6 +92,12 @@ Layout makeTickLayout() {
     layout.add("contacts", "uint32", "1", "Points inside an obstacle at the proxy", offsetof(TickRecord, contacts));
     layout.add("iterations", "uint32", "1", "Sub-steps of the proxy", offsetof(TickRecord, iterations));
     layout.add("nodes_visited", "uint32", "1", "Nodes that the queries visited", offsetof(TickRecord, nodes_visited));
+    // The last: chunks of databases from before it end here, and its values are then not known.
+    layout.add("hand_energy_J", "float32", "J",
+               "Energy that the simulated hand has put into the handle since the trial's first tick; not a number of "
+               "real hands",
+               offsetof(TickRecord, hand_energy_J));
+    layout.later_columns = 1;
     return layout;
 }
 
@@ -120,8 +136,7 @@ Chunk encode(const Layout& layout, std::span<const TickRecord> records) {
 
 Result<Done> check(const Layout& layout, const Chunk& chunk) {
     const std::string place = "chunk of samples from tick " + std::to_string(chunk.first_tick);
-    if (chunk.count < 1 || chunk.count > static_cast<std::int64_t>(kChunkTicks) ||
-        chunk.data.size() != static_cast<std::size_t>(chunk.count) * layout.bytes_per_tick) {
+    if (layout.columnsOf(chunk) == 0) {
         return Error{
             .message = place + ": its size does not fit its number of ticks", .file = {}, .key = {}, .value = {}};
     }
@@ -135,7 +150,7 @@ Result<Done> check(const Layout& layout, const Chunk& chunk) {
 void decode(const Layout& layout, const Chunk& chunk, std::span<TickRecord> records, std::size_t skip_rows) {
     const auto rows = static_cast<std::size_t>(chunk.count);
     const std::byte* column = chunk.data.data();
-    for (const Field& field : layout.fields) {
+    for (const Field& field : std::span(layout.fields).first(layout.columnsOf(chunk))) {
         for (std::size_t row = 0; row < records.size(); ++row) {
             std::memcpy(reinterpret_cast<std::byte*>(&records[row]) + field.offset,
                         column + (skip_rows + row) * field.width, field.width);

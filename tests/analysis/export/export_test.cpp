@@ -175,6 +175,7 @@ TEST_F(Export, SamplesUnpackToTheRecordedTicks) {
         EXPECT_EQ(std::stof(samples.at(i, "proxy_depth_m")), r.proxy_depth_m);
         EXPECT_EQ(samples.at(i, "status"), std::to_string(r.status));
         EXPECT_EQ(samples.at(i, "nodes_visited"), std::to_string(r.nodes_visited));
+        EXPECT_EQ(std::stof(samples.at(i, "hand_energy_J")), r.hand_energy_J);
     }
     EXPECT_EQ(samples.at(14, "t_s"), "0.014");
     EXPECT_EQ(samples.at(15, "periods"), "3");  // two missed cycles

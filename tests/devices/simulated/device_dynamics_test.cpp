@@ -111,6 +111,67 @@ TEST(DeviceDynamics, HeldHandleNeverGainsEnergy) {
     EXPECT_LE(hand.stiffness * (hand.X_BSet.p - device.truePose().p).norm(), 0.3);
 }
 
+TEST(DeviceDynamics, AccountsForWhatTheHandPutsIn) {
+    // Truth: closed form. A hand of mass m_h pushes with F for t: the handle gets m_d v²/2, v = F t/(m_d + m_h), and
+    // not what stays in the hand. With dry friction f on the way x: f x more (F - f accelerates). With motors that give
+    // M: M x less. Turning alike.
+    constexpr double F = 2.0, kTime = 0.2, kHandMass = 0.3;
+    const auto push = [&](double friction, double motors) {
+        DeviceParams p = smoothDevice();
+        p.damping.value = p.rotational_damping.value = 0;
+        p.coulomb_force.value = friction;
+        DeviceDynamics device(p, {});
+        HandCoupling hand;
+        hand.attached = true;
+        hand.mass = kHandMass;
+        hand.F_D_B.force.x() = F;
+        for (int k = 0; k < 200; ++k) {
+            device.command({Vec3(motors, 0, 0), Vec3::Zero()});
+            device.advance(hand);
+        }
+        const double v = (F + motors - friction) / (p.mass.value + kHandMass) * kTime;
+        EXPECT_NEAR(device.trueTwist().v.x(), v, 1e-9);
+        const double way = device.truePose().p.x();
+        // Friction acts at the end of a substep h, on a speed that is higher by what it takes: f h v/2 more in all.
+        const double expected =
+            0.5 * p.mass.value * v * v + friction * (way + 0.5 * kTickSeconds / 4 * v) - motors * way;
+        EXPECT_NEAR(device.handEnergy(), expected, 1e-12) << friction << ' ' << motors;
+    };
+    push(0.0, 0.0);
+    push(0.5, 0.0);
+    push(0.0, 1.0);
+    push(0.5, -1.0);
+
+    DeviceParams p = smoothDevice();
+    p.rotational_damping.value = 0;
+    DeviceDynamics device(p, {});
+    HandCoupling hand;
+    hand.attached = true;
+    hand.inertia = 1e-3;
+    hand.F_D_B.torque.z() = 1e-3;
+    for (int k = 0; k < 200; ++k) device.advance(hand);
+    const double w = 1e-3 / (p.inertia.value + hand.inertia) * kTime;
+    EXPECT_NEAR(device.handEnergy(), 0.5 * p.inertia.value * w * w, 1e-12);
+}
+
+TEST(DeviceDynamics, GivesTheHandBackOnlyWhatItHadFromIt) {
+    // Truth: invariant. Without motors the handle is passive: its account at the hand's port is never below zero.
+    DeviceDynamics device(*findPreset("virtuose6d"), {});
+    HandCoupling hand;
+    hand.attached = true;
+    hand.mass = 0.5;
+    hand.stiffness = 300;
+    hand.damping = 15;
+    double most = 0.0;
+    for (int k = 0; k < 5000; ++k) {
+        hand.X_BSet.p = 0.05 * Vec3(std::sin(0.011 * k), std::sin(0.017 * k), std::sin(0.023 * k * k / 5000));
+        device.advance(hand);
+        ASSERT_GE(device.handEnergy(), 0.0) << k;
+        most = std::max(most, device.handEnergy());
+    }
+    EXPECT_GT(most, 0.01);
+}
+
 TEST(DeviceDynamics, CommandActsAfterExactlyItsDelay) {
     // Truth: invariant; the command of cycle k moves the handle in cycle k + d and not before.
     for (const int d : {0, 1, 3, loop::kMaxDeviceDelayTicks}) {

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string>
 
 #include "core/base/tick_record.h"
 #include "core/loop/stability.h"
 #include "devices/simulated/device_dynamics.h"
+#include "devices/simulated/simulated_device.h"
 #include "tests/support/scenes.h"
 
 namespace passung {
@@ -75,6 +77,79 @@ TEST(PassivityController, StopsAWallThatIsStifferThanTheDeviceBears) {
     EXPECT_GT(free.fastest, 0.05);
     EXPECT_GT(controlled.least_energy, -1e-3);
     EXPECT_LT(controlled.fastest, 0.1 * free.fastest);
+}
+
+/// The least of both energy accounts while a simulated participant presses and searches on a plate for a bore that is
+/// not where it sees it, at the stiffness that the preset is rated for.
+struct Accounts {
+    double hand = 0.0, controller = 0.0;  // least so far [J]
+    double motors = 0.0;                  // least of minus their work on the handle's true motion [J]
+    double last_hand = 0.0;
+    double contact = 0.0;  // share of ticks in contact
+};
+
+Accounts searchOnAPlate(const simulated::DeviceParams& preset, model::ContactMethod method, double passivity_damping,
+                        int ticks) {
+    const DeviceDescription rated = simulated::describe(preset);
+    simulated::VisibleTask task;
+    task.X_WHeldStart = {Quat::Identity(), Vec3(-0.002, 0.001, 0.008)};
+    model::SceneSpec spec = test::scene(model::Peg{0.01, 0.03, 0.0005}, task.X_WHeldStart, model::Box{0.08, 0.08, 0.02},
+                                        {Quat::Identity(), Vec3(0, 0, -0.01)}, method);
+    spec.registration.X_DH.p = Vec3(0, 0, -0.02);
+    spec.contact.spacing = 2e-3;
+    spec.record_hand_depth = false;
+    spec.contact.stiffness = rated.stable_stiffness_N_per_m;
+    spec.contact.rotational_stiffness = rated.stable_rotational_stiffness_Nm_per_rad;
+    spec.contact.damping = rated.recommended_damping_Ns_per_m;
+    spec.contact.rotational_damping = rated.recommended_rotational_damping_Nms_per_rad;
+    spec.limits.max_force = rated.max_force_N;
+    spec.limits.max_torque = rated.max_torque_Nm;
+    spec.limits.max_force_rate = rated.max_force_rate_N_per_s;
+    spec.limits.actuates_torque = rated.actuated_degrees == 6;
+    spec.effects.passivity_damping = passivity_damping;
+    test::Bench bench(spec);
+    simulated::SimulatedDevice device(preset, {}, task, {spec.registration.X_WB, 1.0, spec.registration.X_DH}, 7);
+    Accounts found;
+    int contact = 0;
+    double motors = 0.0;
+    for (int i = 0; i < ticks; ++i) {
+        const Pose before = device.dynamics().truePose();
+        const DeviceReading reading = device.read();
+        const Wrench& acted = device.dynamics().actingWrench();
+        const Pose& X = device.dynamics().truePose();
+        motors += acted.force.dot(X.p - before.p) + acted.torque.dot(rotationVector(X.q * before.q.conjugate()));
+        found.motors = std::min(found.motors, -motors);
+        const auto output = bench.step(reading);
+        device.command(output.F_D_B);
+        if (i % 16 == 0) device.show({.tick = i, .X_WShown = output.X_WG, .running = i > 500});
+        found.hand = std::min(found.hand, reading.hand_energy_J);
+        found.controller = std::min(found.controller, output.frame.energy);
+        found.last_hand = reading.hand_energy_J;
+        contact += output.frame.contacts > 0 || output.F_D_B.force.norm() > 1e-6 ? 1 : 0;
+    }
+    found.contact = static_cast<double>(contact) / ticks;
+    return found;
+}
+
+TEST(HandsPort, GivesOutNoEnergyInAMinuteOfContactAtTheRatedStiffness) {
+    // Truth: invariant. Net energy at the hand's port at least -1 mJ with the passivity controller off, and at the
+    // controller's port, that is of the motors on the handle's true motion, at least -1 mJ with it on. Printed beside:
+    // the controller's own account, which knows the motion in encoder steps q only and so comes out low, by K q x for
+    // every press by x and release.
+    for (const simulated::DeviceParams& preset : simulated::presets()) {
+        const int ticks = preset.name == "sigma7" || preset.name == "falcon" ? 60000 : 10000;
+        const auto off = searchOnAPlate(preset, model::ContactMethod::GodObjectHeuristic, 0.0, ticks);
+        const auto on = searchOnAPlate(preset, model::ContactMethod::GodObjectHeuristic, 5.0, ticks);
+        std::printf(
+            "%-11s %2d s, %2.0f %% in contact: hand's port least %8.1e J, in all %8.1e J; controller on: motors least "
+            "%8.1e J, own account %8.1e J\n",
+            std::string(preset.name).c_str(), ticks / 1000, 100 * off.contact, off.hand, off.last_hand, on.motors,
+            on.controller);
+        EXPECT_GE(off.hand, -1e-3) << preset.name;
+        EXPECT_GE(on.motors, -1e-3) << preset.name;
+        EXPECT_GT(off.contact, 0.4) << preset.name;
+        EXPECT_GT(off.last_hand, 1e-3) << preset.name;
+    }
 }
 
 }  // namespace

@@ -85,6 +85,8 @@ inline std::vector<TickRecord> makeRecords(std::uint64_t seed, std::size_t count
         r.contacts = static_cast<std::uint32_t>(random.next());
         r.iterations = static_cast<std::uint32_t>(random.next());
         r.nodes_visited = static_cast<std::uint32_t>(random.next());
+        r.energy_J = static_cast<float>(random.normal());
+        r.hand_energy_J = static_cast<float>(random.normal());
         r.duration_ns = 987'650'000 + static_cast<std::int64_t>(random.below(10'000));
     }
     return records;
@@ -99,7 +101,8 @@ inline bool sameStoredBits(const TickRecord& a, const TickRecord& b) {
            same(a.proxy_position_m, b.proxy_position_m) && same(a.proxy_quaternion, b.proxy_quaternion) &&
            same(a.force_N, b.force_N) && same(a.torque_Nm, b.torque_Nm) && same(a.hand_depth_m, b.hand_depth_m) &&
            same(a.proxy_depth_m, b.proxy_depth_m) && same(a.quality, b.quality) && a.status == b.status &&
-           a.contacts == b.contacts && a.iterations == b.iterations && a.nodes_visited == b.nodes_visited;
+           a.contacts == b.contacts && a.iterations == b.iterations && a.nodes_visited == b.nodes_visited &&
+           same(a.energy_J, b.energy_J) && same(a.hand_energy_J, b.hand_energy_J);
 }
 
 inline bool sameStoredBits(const std::vector<TickRecord>& a, const std::vector<TickRecord>& b) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "study/store/digest.h"
 #include "tests/study/store/fake_study.h"
 
 namespace passung::store {
@@ -102,10 +103,35 @@ TEST(SampleCodec, LayoutIsWhatItsDescriptionSays) {
         if (channel.name == "nodes_visited") {
             EXPECT_TRUE(holds(r.nodes_visited));
         }
+        if (channel.name == "energy_J") {
+            EXPECT_TRUE(holds(r.energy_J));
+        }
+        if (channel.name == "hand_energy_J") {
+            EXPECT_TRUE(holds(r.hand_energy_J));
+        }
         offset += 10 * width;
     }
     EXPECT_EQ(offset, chunk.data.size());
-    EXPECT_EQ(checked, 9);
+    EXPECT_EQ(checked, 11);
+}
+
+TEST(SampleCodec, ReadsChunksFromBeforeTheHandsEnergyWasRecorded) {
+    // Truth: invariant: all other columns as they were, and the hand's energy not known.
+    auto records = fake::makeRecords(3, 10);
+    Chunk old = encodeTicks(records);
+    old.data.resize(old.data.size() - 10 * sizeof(float));
+    old.crc32 = crc32(old.data);
+    std::vector<TickRecord> back;
+    ASSERT_TRUE(decodeTicks(old, back));
+    ASSERT_EQ(back.size(), records.size());
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        EXPECT_TRUE(std::isnan(back[i].hand_energy_J));
+        back[i].hand_energy_J = records[i].hand_energy_J;
+    }
+    EXPECT_TRUE(fake::sameStoredBits(records, back));
+    old.data.resize(old.data.size() - 10 * sizeof(float));  // one more is damage
+    old.crc32 = crc32(old.data);
+    EXPECT_FALSE(decodeTicks(old, back));
 }
 
 TEST(SampleCodec, AChunkEndsAtAGapAndAtItsLargestSize) {
