@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "study/measures/period_clock.h"
 #include "study/measures/tick_facts.h"
@@ -215,10 +217,23 @@ Optional saturatedShare(const Trial& trial) {
     return static_cast<double>(saturated) / static_cast<double>(trial.ticks.size());
 }
 
+/// How many trial ticks carry a status bit.
+template <TickStatus bit>
+Optional ticksWith(const Trial& trial) {
+    return sumOverTicks(trial, [](const TickRecord& record) { return (record.status & bit) != 0 ? 1.0 : 0.0; });
+}
+
 struct Measure {
     Definition definition;
     Optional (*compute)(const Trial&);
 };
+
+template <TickStatus bit>
+Measure countOf(std::string name, std::string label) {
+    return {{std::move(name), std::move(label), "1",
+             "number of trial ticks whose status has the bit " + std::to_string(bit)},
+            ticksWith<bit>};
+}
 
 // Words shared by the formulas: a trial tick is a recorded tick with start tick ≤ tick < end tick. A contact tick is a
 // trial tick with |force| > 1e-6 N or |torque| > 1e-9 N·m or contacts > 0. The tip is the origin of the held part's
@@ -306,6 +321,13 @@ const std::vector<Measure>& measures() {
         {{"saturated_share", "Share of ticks at the force limit", "1",
           "trial ticks with status bit 4 (force or torque limited) / trial ticks"},
          saturatedShare},
+        countOf<kInputHeld>("input_held_ticks", "Ticks on the last good pose after a bad sample"),
+        countOf<kInputRejected>("input_rejected_ticks", "Ticks without usable device input, hence without force"),
+        countOf<kDeviceStale>("device_stale_ticks", "Ticks for which the device had nothing new"),
+        countOf<kNonFiniteLatched>("latched_ticks", "Ticks without force because a computed one was not finite"),
+        countOf<kForceLimited>("force_limited_ticks", "Ticks at the limit of force or torque"),
+        countOf<kRateLimited>("rate_limited_ticks", "Ticks at the limit of rising force"),
+        countOf<kPassivityActed>("passivity_ticks", "Ticks in which the passivity controller acted"),
     };
     return all;
 }

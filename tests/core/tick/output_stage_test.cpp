@@ -28,6 +28,49 @@ tick::TickOutput pressed(test::Bench& bench, double depth) {
     return out;
 }
 
+/// The last stage alone, behind a handle 50 mm beside the held part and turned, on a base that is turned in the world.
+/// 12 N, 0.2 N·m, 0.97 N a tick and so 0.97/60 N·m a tick: no whole number of rises makes a limit or a wrench asked for
+/// below, so that rounding decides nothing.
+class LastStage {
+public:
+    static constexpr double kMaxForce = 12, kMaxTorque = 0.2, kForceRise = 0.97, kTorqueRise = kForceRise / 60;
+
+    LastStage() {
+        model.limits.max_force = kMaxForce;
+        model.limits.max_torque = kMaxTorque;
+        model.limits.max_force_rate = kForceRise / kTickSeconds;
+        model.registration.X_WB = {rotationFromVector(Vec3(0.3, -0.8, 0.5)), Vec3(1, 2, 3)};
+        model.registration.X_DH = {rotationFromVector(Vec3(-0.4, 0.2, 0.9)), Vec3(0.05, -0.02, 0.03)};
+    }
+    /// From the handle's origin to the held part's, world axes, by way of the handle's pose.
+    Vec3 lever(const Pose& X_WH) const { return X_WH.p - (X_WH * model.registration.X_DH.inverse()).p; }
+    /// A wrench at the handle in base axes, as the held part asks for it.
+    Wrench atHeldPart(const Wrench& F_D_B, const Pose& X_WH) const {
+        const Vec3 force = model.registration.X_WB.q * F_D_B.force;
+        return {force, model.registration.X_WB.q * F_D_B.torque - lever(X_WH).cross(force)};
+    }
+    Wrench atHandle(const Wrench& F_H_W, const Pose& X_WH) const {
+        const Quat R_BW = model.registration.X_WB.q.conjugate();
+        return {R_BW * F_H_W.force, R_BW * (F_H_W.torque + lever(X_WH).cross(F_H_W.force))};
+    }
+    tick::TickFrame limit(const Wrench& F_H_W, const Pose& X_WH, int sample_periods = 1, bool usable = true) {
+        tick::TickFrame frame;
+        frame.X_WH = X_WH;
+        frame.F_H_W = F_H_W;
+        frame.sample_periods = sample_periods;
+        frame.input_usable = usable;
+        tick::limitOutput(model, state, frame);
+        return frame;
+    }
+    /// Asks for a wrench at the handle.
+    tick::TickFrame limitAtHandle(const Wrench& F_D_B, int sample_periods = 1, bool usable = true) {
+        return limit(atHeldPart(F_D_B, Pose{}), Pose{}, sample_periods, usable);
+    }
+
+    tick::TickModel model;
+    tick::TickState state;
+};
+
 TEST(OutputStage, KeepsDirectionAndScalesForceAndTorqueTogether) {
     // Truth: closed form. One factor for both.
     auto spec = pressing();
@@ -74,6 +117,99 @@ TEST(OutputStage, LimitsTheRiseOfForceButNotItsFall) {
     EXPECT_FALSE(out.frame.status & kRateLimited);
 }
 
+TEST(OutputStage, RampsInFromZeroWhereContactIsThereAtTheStart) {
+    // Truth: closed form. 4.25 N asked for from the first tick with contact on, at 0.5 N a tick: eight ticks rise and
+    // say so, all later ones give it. So at the first tick of all, when the start gate opens, after lost samples, and
+    // when the state is made anew.
+    auto spec = pressing();
+    spec.parts[0].X_WP = at(0.00575);
+    spec.contact.damping = 0;
+    spec.limits.max_force_rate = 500;
+    spec.contact.method = model::ContactMethod::Penalty;
+    auto unlimited = spec;
+    unlimited.limits.max_force_rate = 1e12;
+    const double asked = test::Bench(unlimited).step(at(0.00575)).F_D_B.force.norm();
+    ASSERT_NEAR(asked, 4.25, 0.05);  // the lowest of the ball's sample points is a little higher than the ball
+    const auto ramp = [&](test::Bench& bench) {
+        for (int i = 1; i <= 12; ++i) {
+            const auto out = bench.step(at(0.00575));
+            EXPECT_NEAR(out.F_D_B.force.norm(), std::min(0.5 * i, asked), 1e-9) << i;
+            EXPECT_EQ(out.frame.status, kEngaged | (i <= 8 ? kRateLimited : kStatusOk)) << i;
+        }
+    };
+    test::Bench bench(spec);
+    ramp(bench);
+    bench.state() = tick::makeState(bench.model());
+    ramp(bench);
+    DeviceReading lost{at(0.00575)};
+    lost.fresh = false;
+    for (int i = 0; i < 3; ++i) bench.step(lost);
+    ramp(bench);
+
+    spec.start_gate = {0.001, 0.1, 20};
+    test::Bench gated(spec);
+    for (int i = 0; i < 20; ++i) EXPECT_EQ(gated.step(at(0.00575)).F_D_B.force.norm(), 0.0) << i;
+    ramp(gated);
+}
+
+TEST(OutputStage, SaysExactlyWhichGuardActed) {
+    // Truth: closed form, the whole status of every tick: what acted and nothing else.
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    struct Case {
+        const char* name;
+        DeviceReading reading;
+        std::uint32_t first, second;  // of two such samples in a row, after good ones
+    };
+    DeviceReading stale{at(0.006)}, broken{at(nan)}, far{at(0.5)};
+    stale.fresh = false;
+    for (const Case& c : {Case{"stale", stale, kDeviceStale | kInputHeld, kDeviceStale | kInputRejected},
+                          Case{"no pose", broken, kInputNotAPose | kInputHeld, kInputNotAPose | kInputRejected},
+                          Case{"jump", far, kInputJump | kInputHeld, kInputJump | kInputRejected}}) {
+        test::Bench bench(pressing());
+        EXPECT_EQ(pressed(bench, 0.004).frame.status, kEngaged) << c.name;
+        EXPECT_EQ(bench.step(c.reading).frame.status, kEngaged | c.first) << c.name;
+        DeviceReading again = c.reading;
+        again.X_BD.p.z() *= -1.0;
+        const auto out = bench.step(again);
+        EXPECT_EQ(out.frame.status, kEngaged | c.second) << c.name;
+        EXPECT_EQ(out.F_D_B.force.norm(), 0.0) << c.name;
+        EXPECT_EQ(tick::makeRecord(7, again, out).status, out.frame.status) << c.name;
+    }
+    LastStage last;
+    EXPECT_EQ(last.limitAtHandle({Vec3(0, 0, 0.9), Vec3::Zero()}).status, kStatusOk);
+    EXPECT_EQ(last.limitAtHandle({Vec3(0, 0, 5), Vec3::Zero()}).status, kRateLimited);
+    EXPECT_EQ(last.limitAtHandle({Vec3(0, 0, 20), Vec3::Zero()}).status, kForceLimited | kRateLimited);
+    for (int i = 0; i < 20; ++i) last.limitAtHandle({Vec3(0, 0, 12), Vec3::Zero()});
+    EXPECT_EQ(last.limitAtHandle({Vec3(0, 0, 20), Vec3::Zero()}).status, kForceLimited);
+    EXPECT_EQ(last.limitAtHandle({Vec3(0, 0, 0.1), Vec3::Zero()}).status, kStatusOk);
+    EXPECT_EQ(last.limitAtHandle({Vec3::Zero(), Vec3(0, 0.3, 0)}).status, kForceLimited | kRateLimited);
+}
+
+TEST(OutputStage, LatchesWhateverPartOfTheWrenchIsNotFinite) {
+    // Truth: invariant, of each of the six numbers, NaN and infinite, also in a tick whose input is not usable: zero
+    // from then on, said in every tick, and the other guards have nothing to say; a new state is armed again.
+    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        for (int axis = 0; axis < 6; ++axis) {
+            for (const bool usable : {true, false}) {
+                LastStage last;
+                for (int i = 0; i < 30; ++i) last.limitAtHandle({Vec3(0, 0, 10), Vec3(0.1, 0, 0)});
+                Wrench wrench{Vec3(0, 0, 10), Vec3(0.1, 0, 0)};
+                (axis < 3 ? wrench.force : wrench.torque)[axis % 3] = bad;
+                for (int i = 0; i < 5; ++i) {
+                    const auto frame = i == 0 ? last.limit(wrench, Pose{}, usable ? 1 : 0, usable)
+                                              : last.limitAtHandle({Vec3(0, 0, 50), Vec3(0.1, 0, 0)});
+                    EXPECT_EQ(frame.status, static_cast<std::uint32_t>(kNonFiniteLatched));
+                    EXPECT_EQ(frame.F_D_B.force.norm() + frame.F_D_B.torque.norm(), 0.0);
+                    EXPECT_EQ(frame.F_H_W.force.norm() + frame.F_H_W.torque.norm(), 0.0);
+                }
+                last.state = tick::TickState();
+                EXPECT_NEAR(last.limitAtHandle({Vec3(0, 0, 10), Vec3::Zero()}).F_D_B.force.z(), LastStage::kForceRise,
+                            1e-12);
+            }
+        }
+    }
+}
+
 TEST(OutputStage, HoldsThePoseForOneBadSampleThenGivesZero) {
     // Truth: invariant (the output stage's contract), for each kind of bad sample.
     const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -99,49 +235,6 @@ TEST(OutputStage, HoldsThePoseForOneBadSampleThenGivesZero) {
         }
     }
 }
-
-/// The last stage alone, behind a handle 50 mm beside the held part and turned, on a base that is turned in the world.
-/// 12 N, 0.2 N·m, 0.97 N a tick and so 0.97/60 N·m a tick: no whole number of rises makes a limit or a wrench asked for
-/// below, so that rounding decides nothing.
-class LastStage {
-public:
-    static constexpr double kMaxForce = 12, kMaxTorque = 0.2, kForceRise = 0.97, kTorqueRise = kForceRise / 60;
-
-    LastStage() {
-        model.limits.max_force = kMaxForce;
-        model.limits.max_torque = kMaxTorque;
-        model.limits.max_force_rate = kForceRise / kTickSeconds;
-        model.registration.X_WB = {rotationFromVector(Vec3(0.3, -0.8, 0.5)), Vec3(1, 2, 3)};
-        model.registration.X_DH = {rotationFromVector(Vec3(-0.4, 0.2, 0.9)), Vec3(0.05, -0.02, 0.03)};
-    }
-    /// From the handle's origin to the held part's, world axes, by way of the handle's pose.
-    Vec3 lever(const Pose& X_WH) const { return X_WH.p - (X_WH * model.registration.X_DH.inverse()).p; }
-    /// A wrench at the handle in base axes, as the held part asks for it.
-    Wrench atHeldPart(const Wrench& F_D_B, const Pose& X_WH) const {
-        const Vec3 force = model.registration.X_WB.q * F_D_B.force;
-        return {force, model.registration.X_WB.q * F_D_B.torque - lever(X_WH).cross(force)};
-    }
-    Wrench atHandle(const Wrench& F_H_W, const Pose& X_WH) const {
-        const Quat R_BW = model.registration.X_WB.q.conjugate();
-        return {R_BW * F_H_W.force, R_BW * (F_H_W.torque + lever(X_WH).cross(F_H_W.force))};
-    }
-    tick::TickFrame limit(const Wrench& F_H_W, const Pose& X_WH, int sample_periods = 1, bool usable = true) {
-        tick::TickFrame frame;
-        frame.X_WH = X_WH;
-        frame.F_H_W = F_H_W;
-        frame.sample_periods = sample_periods;
-        frame.input_usable = usable;
-        tick::limitOutput(model, state, frame);
-        return frame;
-    }
-    /// Asks for a wrench at the handle.
-    tick::TickFrame limitAtHandle(const Wrench& F_D_B, int sample_periods = 1, bool usable = true) {
-        return limit(atHeldPart(F_D_B, Pose{}), Pose{}, sample_periods, usable);
-    }
-
-    tick::TickModel model;
-    tick::TickState state;
-};
 
 TEST(OutputStage, KeepsASteadyForceWhileTheTorqueTurnsRound) {
     // Truth: closed form. The torque may rise by 0.97/60 N·m a tick; the force is asked for and given, 10 N.

@@ -274,6 +274,29 @@ TEST(Measures, PegPressedIntoTheWallBesideTheBoreIsNeitherEngagedNorInserted) {
     EXPECT_EQ(values.at("insertion_depth_m"), 0.0);
 }
 
+TEST(Measures, CountTheTicksInWhichEachGuardActed) {
+    // Truth: closed form. Each bit in a number of ticks of its own, from tick 10 on, beside bits that are not counted;
+    // one tick before the trial and one at its end count for none.
+    const std::vector<std::pair<const char*, TickStatus>> counted = {
+        {"input_held_ticks", kInputHeld},       {"input_rejected_ticks", kInputRejected},
+        {"device_stale_ticks", kDeviceStale},   {"latched_ticks", kNonFiniteLatched},
+        {"force_limited_ticks", kForceLimited}, {"rate_limited_ticks", kRateLimited},
+        {"passivity_ticks", kPassivityActed}};
+    auto records = restingTicks(101);
+    TrialContext context = contextUntil(100);
+    context.start_tick = 10;
+    for (std::size_t n = 0; n < counted.size(); ++n) {
+        for (std::size_t i = 0; i <= 2 * n; ++i) records[10 + i].status |= counted[n].second;
+        records[9].status |= counted[n].second;
+        records[100].status |= counted[n].second;
+    }
+    for (auto& record : records) record.status |= kEngaged | kOverrun | kContactCap;
+    const auto values = measure(records, context);
+    for (std::size_t n = 0; n < counted.size(); ++n)
+        EXPECT_EQ(values.at(counted[n].first), 2.0 * static_cast<double>(n) + 1.0) << counted[n].first;
+    EXPECT_EQ(measure(restingTicks(101), context).at("rate_limited_ticks"), 0.0);
+}
+
 TEST(Measures, TicksOutsideTheTrialAreIgnored) {
     // Truth: invariant: loud ticks before the start and after the end change nothing.
     auto records = insertion();
