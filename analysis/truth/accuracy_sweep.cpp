@@ -11,9 +11,9 @@
 
 #include "core/model/timed_store.h"
 #include "core/query/part_query.h"
-#include "core/tick/god_object_heuristic.h"
 #include "core/tick/obstacle_query.h"
 #include "core/tick/penalty.h"
+#include "core/tick/proxy.h"
 
 namespace passung::truth {
 

@@ -30,7 +30,7 @@ struct PartSpec {
     Vec3 shown_offset = Vec3::Zero();  // drawn this far from where it is touched, world axes [m]
 };
 
-enum class ContactMethod { Penalty, GodObjectHeuristic };
+enum class ContactMethod { Penalty, GodObjectHeuristic, GodObject };
 enum class PenaltyVariant { MaxNormalised, AreaWeighted, Raw };
 
 struct ContactSpec {

@@ -19,7 +19,7 @@ struct Problem {
     bool relaxed = false;
 
     double least(const ContactPoint& contact) const noexcept {
-        const double b = around.keep_out - contact.phi;
+        const double b = std::min(around.keep_out - contact.phi, around.most_out);
         return relaxed || contact.radius > 0.0 ? std::min(b, 0.0) : b;
     }
 };

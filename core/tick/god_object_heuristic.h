@@ -22,9 +22,6 @@ namespace passung::tick {
 ///    Δx = λ p_max F̂,  Δφ = (1 - λ) θ T̂.  Accepted only if the query at the corrected pose finds less overlap, else
 ///    halved; at most kCorrections times.
 ///
-///    Where the input guard believes the device to be elsewhere than it can have come from (a false first reading), the
-///    proxy is set to the hand before: a spring from the old place would throw the hand across the room.
-///
 /// #3 unconstrained motion  u = (x_H - x_G, ρ log(R_H R_Gᵀ)).
 ///
 /// #4 constrained motion: the least change of u (Gauss) under  a_i · u ≥ -kKeep·s - φ_i,  see constrained_motion.h;
@@ -37,8 +34,7 @@ namespace passung::tick {
 ///    that nobody looked at (contact_query.h): they may leave and slide but not go deeper, so that the proxy stops too
 ///    early rather than pass.
 ///
-/// #5 low-pass of the proxy, a stage of its own (only if the scene names its corner f_c), while in contact:
-///    G_k = G_{k-1} ⊕ α (G* ⊖ G_{k-1}),  α = 1 - exp(-2π f_c T); dropped for a tick where it would cost overlap.
+/// #5 low-pass of the proxy, a stage of its own: filterProxy in proxy.h.
 ///
 /// #6 coupling: virtual_coupling.h.
 ///
@@ -59,19 +55,9 @@ inline constexpr double kRelieve = 0.02;  // overlap after a step that is pushed
 inline constexpr int kReliefs = 2;
 inline constexpr int kSubSteps = 12;
 inline constexpr int kCorrections = 3;
-inline constexpr int kHalvings = 4;
 
-/// What is asked around the proxy when nothing is known of it yet: all contacts that any step could reach, and where
-/// there is none the proof of it. Moves the proxy to `X_WG`; fills the manifold, clearance and room. rt-safe.
-void lookAround(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_WG) noexcept;
-
-/// Stages, in this order.
+/// Stages, in this order; those of proxy.h follow.
 void correctProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept;  // #1, #2
 void moveProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept;     // #3, #4
-void filterProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept;   // #5
-/// Writes the depths and the number of contacts of the frame's record.
-void describeProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
-/// Depth of the held part at the hand's pose: only for the record, an extra query.
-void measureHandDepth(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
 
 }  // namespace passung::tick

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/tick/god_object.h"
 #include "core/tick/god_object_heuristic.h"
 #include "core/tick/input_guard.h"
 #include "core/tick/output_stage.h"
 #include "core/tick/passivity.h"
 #include "core/tick/penalty.h"
+#include "core/tick/proxy.h"
 #include "core/tick/transients.h"
 #include "core/tick/virtual_coupling.h"
 
@@ -30,7 +32,9 @@ void addPenalty(TickModel& model) {
         {"penalty wrench", "turns the overlap into force and torque by contact.variant", false, renderPenalty});
 }
 
-void addGodObject(TickModel& model, bool record_hand_depth) {
+void addGodObjectHeuristic(TickModel& model) {
+    const double s = model.finest_cell;
+    model.margins = {kKeep * s, kRelieve * s, kAccept * s};
     model.stages.push_back({"proxy correction",
                             model.contact.two_way
                                 ? "contact.method is god_object_heuristic: steps #1 and #2, contacts at the last proxy "
@@ -41,16 +45,33 @@ void addGodObject(TickModel& model, bool record_hand_depth) {
                             false, correctProxy});
     model.stages.push_back({"proxy motion", "steps #3 and #4: the proxy follows the hand as far as the contacts let it",
                             false, moveProxy});
+}
+
+void addGodObject(TickModel& model) {
+    const double s = model.finest_cell;
+    model.margins = {kKept * s, kRelieved * s, kAccepted * s};
+    model.stages.push_back({"proxy sweep",
+                            model.contact.two_way
+                                ? "contact.method is god_object: the proxy follows the hand as far as all contacts "
+                                  "within reach let it; contact.two_way: of the held part's points and of the "
+                                  "obstacles' points"
+                                : "contact.method is god_object: the proxy follows the hand as far as all contacts "
+                                  "within reach let it",
+                            false, sweepProxy});
+}
+
+/// What follows the proxy's motion, whatever the method.
+void addProxy(TickModel& model, bool record_hand_depth) {
     if (model.contact.proxy_filter > 0.0) {
-        model.stages.push_back({"proxy filter", "contact.proxy_filter_Hz is set: step #5", false, filterProxy});
+        model.stages.push_back(
+            {"proxy filter", "contact.proxy_filter_hz is set: a low-pass of the proxy in contact", false, filterProxy});
     }
     model.stages.push_back({"proxy record", "overlap and contacts at the proxy, for the record", false, describeProxy});
     if (record_hand_depth) {
         model.stages.push_back(
             {"hand depth", "the overlap at the device's pose is measured and recorded", false, measureHandDepth});
     }
-    model.stages.push_back(
-        {"virtual coupling", "step #6: spring and damper between proxy and hand", false, renderCoupling});
+    model.stages.push_back({"virtual coupling", "spring and damper between proxy and hand", false, renderCoupling});
 }
 
 /// The coefficients of the held part with each obstacle, if any rubs.
@@ -109,7 +130,11 @@ TickModel makeModel(const model::Scene& scene) {
     } else if (spec.contact.method == model::ContactMethod::Penalty) {
         addPenalty(model);
     } else {
-        addGodObject(model, spec.record_hand_depth);
+        if (spec.contact.method == model::ContactMethod::GodObject)
+            addGodObject(model);
+        else
+            addGodObjectHeuristic(model);
+        addProxy(model, spec.record_hand_depth);
     }
     if (spec.effects.transients.amplitude > 0.0 && !model.obstacles.empty()) {
         model.stages.push_back({"contact transients",

@@ -51,6 +51,13 @@ struct Obstacle {
     const model::SphereTree* shell = nullptr;  // two-way contact only
 };
 
+/// Overlap of a proxy [m].
+struct ProxyMargins {
+    double keep = 0.0;     // kept in contact: tells contact from nearness
+    double relieve = 0.0;  // after a step: more is pushed out again
+    double accept = 0.0;   // after a step: more, and it is taken back
+};
+
 /// Everything that does not change while a trial runs. Borrows the scene's parts.
 struct TickModel {
     const model::SphereTree* shell = nullptr;
@@ -63,8 +70,9 @@ struct TickModel {
     model::Registration registration;
     model::StartGate start_gate;
     std::vector<Stage> stages;
-    double finest_cell = 0.0;        // of all fields [m]
-    double metric_radius = 0.0;      // [m]: makes a rotation comparable with a translation (god_object_heuristic.h)
+    double finest_cell = 0.0;    // of all fields [m]
+    double metric_radius = 0.0;  // [m]: makes a rotation comparable with a translation (god_object_heuristic.h)
+    ProxyMargins margins;
     double passivity_damping = 0.0;  // α_max of passivity.h [N·s/m]
     model::Transients transients;
 };

@@ -119,7 +119,7 @@ constexpr std::array kKeys{
     Key{"shape.fit", "nominal_diameter", Length, above(0), "", "(none)", "At most 500 mm; needed by the fit."},
     Key{"shape.fit", "deviation", Choice, kAny, "mean|min|max", "mean", "Which of the pairs that the fit allows: mean, least or most clearance."},
 
-    Key{"contact", "method", Choice, kAny, "penalty|god_object_heuristic", "god_object_heuristic", "How penetration becomes force: springs in every contact, or a proxy that stays outside and is coupled to the hand."},
+    Key{"contact", "method", Choice, kAny, "penalty|god_object_heuristic|god_object", "god_object_heuristic", "How penetration becomes force: springs in every contact, or a proxy that stays outside and is coupled to the hand; god_object keeps it farther out, by the constraints alone."},
     Key{"contact", "variant", Choice, kAny, "max_normalised|area_weighted|raw", "max_normalised", "Weighting of the penalty; unused by other methods. Only max_normalised keeps to the stiffness: raw adds it up over all points, area_weighted has area_stiffness_N_per_m3 instead; neither is held below the device's stable maximum, and `check` warns of them."},
     Key{"contact", "stiffness_N_per_m", Stiffness, above(0), "", "(\"max\"; without a device preset 1000)", "Number, or fraction of the device's stable maximum: \"max\", \"0.5 max\"; never above it. The maximum is known only for the recommended damping, no added delay and scale 1."},
     Key{"contact", "rotational_stiffness_Nm_per_rad", Stiffness, atLeast(0), "", "(the same fraction of the device's maximum as the stiffness; without a device preset 1)", "As the stiffness, for rotations."},

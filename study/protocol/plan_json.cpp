@@ -34,7 +34,15 @@ std::string partJson(const model::PartSpec& part) {
 }
 
 const char* methodName(model::ContactMethod method) {
-    return method == model::ContactMethod::Penalty ? "penalty" : "god_object_heuristic";
+    switch (method) {
+        case model::ContactMethod::Penalty:
+            return "penalty";
+        case model::ContactMethod::GodObjectHeuristic:
+            return "god_object_heuristic";
+        case model::ContactMethod::GodObject:
+            return "god_object";
+    }
+    return "";
 }
 
 const char* variantName(model::PenaltyVariant variant) {

@@ -186,8 +186,10 @@ void checkSpacing(const TableReader& contact_table, const model::SceneSpec& scen
 
 model::ContactSpec readContact(const TableReader& read, const DeviceDescription* device, bool device_named) {
     model::ContactSpec contact;
-    contact.method =
-        read.text("method") == "penalty" ? model::ContactMethod::Penalty : model::ContactMethod::GodObjectHeuristic;
+    const auto method = read.text("method");
+    contact.method = method == "penalty"      ? model::ContactMethod::Penalty
+                     : method == "god_object" ? model::ContactMethod::GodObject
+                                              : model::ContactMethod::GodObjectHeuristic;
     const auto variant = read.text("variant");
     contact.variant = variant == "raw"             ? model::PenaltyVariant::Raw
                       : variant == "area_weighted" ? model::PenaltyVariant::AreaWeighted

@@ -68,7 +68,8 @@ std::vector<TickRecord> record(const test::Bench& bench, std::uint64_t& hash) {
 
 TEST(Replayer, ReproducesEveryRecordedBitOfEveryMethod) {
     // Truth: invariant. Recorded inputs through the same scene give the recorded outputs and the same state hash.
-    for (const auto method : {model::ContactMethod::Penalty, model::ContactMethod::GodObjectHeuristic}) {
+    for (const auto method :
+         {model::ContactMethod::Penalty, model::ContactMethod::GodObjectHeuristic, model::ContactMethod::GodObject}) {
         test::Bench bench(pressing(method));
         std::uint64_t hash = 0;
         const auto records = record(bench, hash);
@@ -118,9 +119,15 @@ TEST(Determinism, StateHashOfAFixedRunIsTheRecordedOne) {
     test::Bench penalty(pressing(model::ContactMethod::Penalty));
     record(penalty, hash);
     EXPECT_EQ(hash, 4324370664675427872u);
-    test::Bench god_object(pressing(model::ContactMethod::GodObjectHeuristic));
-    record(god_object, hash);
+    test::Bench heuristic(pressing(model::ContactMethod::GodObjectHeuristic));
+    record(heuristic, hash);
     EXPECT_EQ(hash, 5442569037385349444u);
+    auto rough = pressing(model::ContactMethod::GodObject);
+    rough.contact.two_way = true;
+    for (auto& part : rough.parts) part.friction = part.sliding_friction = 0.3;
+    test::Bench god_object(rough);
+    record(god_object, hash);
+    EXPECT_EQ(hash, 3250389381719783625u);
 }
 
 }  // namespace

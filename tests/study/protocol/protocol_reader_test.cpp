@@ -129,7 +129,8 @@ name = "tolerance"
 key = "contact.tolerance_um"
 levels = [10, 20, 40]
 )" + kBlock),
-              "p.toml:23:3: error: scene.contact.method: \"voodoo\": must be \"penalty\" or \"god_object_heuristic\"");
+              "p.toml:23:3: error: scene.contact.method: \"voodoo\": must be \"penalty\", \"god_object_heuristic\" or "
+              "\"god_object\"");
 }
 
 TEST(ProtocolReader, RefusesFactorsThatCannotBe) {

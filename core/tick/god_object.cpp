@@ -1,0 +1,98 @@
+#include "core/tick/god_object.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/tick/proxy.h"
+
+namespace passung::tick {
+
+namespace {
+
+/// The way of a proxy within one tick, in a metric in which no point of the held part moves farther than √2 times it.
+class Way {
+public:
+    Way(const TickModel& model) : turn_scale_(model.shell->reach() / model.metric_radius) {}
+    /// How far from the straight line between its ends the way would lie at most after another step: within the
+    /// ellipse whose foci are the ends.
+    double bentBy(const Motion& u) const noexcept {
+        const double length = length_ + scaled(u).norm(), chord = (sum_ + scaled(u)).norm();
+        return 0.5 * std::sqrt(std::max(0.0, length * length - chord * chord));
+    }
+    void add(const Motion& u) noexcept {
+        length_ += scaled(u).norm();
+        sum_ += scaled(u);
+    }
+
+private:
+    Motion scaled(const Motion& u) const noexcept {
+        Motion v = u;
+        v.tail<3>() *= turn_scale_;
+        return v;
+    }
+    double turn_scale_, length_ = 0.0;
+    Motion sum_ = Motion::Zero();
+};
+
+/// Makes `u`, or as much of it as leaves no more overlap than `accepted`; the share made, 0 if the proxy stays.
+double makeStep(const TickModel& model, TickState& state, TickFrame& frame, const Motion& u, double reach,
+                double search, double accepted) noexcept {
+    const Pose X_here = state.X_WG;
+    double share = 1.0;
+    for (int half = 0; half <= kHalvings; ++half, share *= 0.5) {
+        look(model, state, frame, moved(model, X_here, share * u), reach, search);
+        if (overlap(state) <= accepted) return share;
+        frame.status |= kStepRejected;
+    }
+    look(model, state, frame, X_here, reach, reach);
+    return 0.0;
+}
+
+}  // namespace
+
+void sweepProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
+    startProxy(model, state, frame);
+    const ProxyMargins& margins = model.margins;
+    const double longest = kLongestStep * model.finest_cell, bent = kBent * model.finest_cell;
+    const Pose X_before = state.X_WG;
+    double reach = nextReach(model, state);
+    double repair = kRepair * model.finest_cell;
+    Way way(model);
+    bool arrived = false;
+    for (int sweep = 0; sweep < kSweeps && !arrived; ++sweep) {
+        const Motion wanted = unconstrainedMotion(model, state.X_WG, frame.X_WH);
+        const double path = longestPath(model, wanted);
+        const double before = overlap(state);
+        arrived = path < kStill && before <= margins.relieve;
+        if (arrived) break;
+        frame.iterations = static_cast<std::uint32_t>(sweep + 1);
+        const double accepted = std::max(margins.accept, before + 0.1 * margins.keep);
+        const bool free = state.room > path;
+        if (free && way.bentBy(wanted) > bent) break;
+        arrived = free && arriveFreely(model, state, frame, path, reach, accepted);
+        if (arrived) break;
+
+        Surroundings around = surroundings(model, state);
+        around.most_out = repair;
+        const AllowedMotion allowed = allowedMotion(model, state, frame, wanted, around);
+        const double step = longestPath(model, allowed.u);
+        const double known = std::max(state.manifold_reach, state.room);
+        const double share = step > known ? known / step : 1.0;
+        const double next_reach = std::clamp(kReachGrowth * std::min(step, path), reach, longest);
+        if (way.bentBy(share * allowed.u) > bent) break;
+        const double made = step < kStill ? 1.0
+                                          : makeStep(model, state, frame, share * allowed.u, next_reach,
+                                                     std::max(next_reach, path), accepted);
+        if (made == 0.0) break;
+        way.add(made * share * allowed.u);
+        if (made == 1.0) state.rubbing = allowed.rubbing;
+        repair = std::max(0.0, repair - std::max(0.0, before - margins.keep));
+        const bool whole = made * share == 1.0;
+        arrived = whole && (step < kStill || overlap(state) <= margins.relieve);
+        reach = next_reach;
+    }
+    if (!arrived) frame.status |= kIterationLimit;
+    state.last_motion = unconstrainedMotion(model, X_before, state.X_WG).norm();
+}
+
+}  // namespace passung::tick

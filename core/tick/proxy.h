@@ -1,0 +1,72 @@
+#pragma once
+
+#include "core/tick/constrained_motion.h"
+#include "core/tick/tick_model.h"
+
+namespace passung::tick {
+
+/// What the methods with a proxy (god object) share: what is known around it, how it may move, what is told of it.
+
+inline constexpr double kLongestStep = 0.5;     // of a sub-step near an obstacle, per cell
+inline constexpr double kShortestReach = 0.04;  // per cell: what is looked at even when nothing moves
+inline constexpr double kReachGrowth = 2.0;     // over the last motion, so that a start from rest is not held back long
+inline constexpr double kStill = 1e-8;          // [m]: a motion below this is none
+inline constexpr int kHalvings = 4;
+
+/// `pose` moved by `u`.
+Pose moved(const TickModel& model, const Pose& pose, const Motion& u) noexcept;
+
+/// u = (x_H - x_G, ρ log(R_H R_Gᵀ)): what takes the proxy to the hand.
+Motion unconstrainedMotion(const TickModel& model, const Pose& X_WG, const Pose& X_WH) noexcept;
+
+/// No point of the shell moves farther than this [m].
+double longestPath(const TickModel& model, const Motion& u) noexcept;
+
+/// Of the deepest point that was looked at [m], ≥ 0.
+double overlap(const TickState& state) noexcept;
+
+/// True for a point inside an obstacle, false for one that is only near and for a sphere that stands in.
+bool isInside(const ContactPoint& contact) noexcept;
+
+/// Puts the proxy at `X_WG` and looks around: all contacts within `reach`, and up to `search` [m] how far the nearest
+/// one is if none is. Room beyond the reach is used without another look, so that it has to be proven.
+void look(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_WG, double reach,
+          double search) noexcept;
+
+/// What is asked around the proxy when nothing is known of it yet: all contacts that any step could reach, and where
+/// there is none the proof of it. rt-safe.
+void lookAround(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_WG) noexcept;
+
+/// Where the input guard believes the device to be elsewhere than it can have come from (a false first reading), the
+/// proxy is set to the hand and its past forgotten: a spring from the old place would throw the hand across the room.
+/// Looks around if nothing is known.
+void startProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+
+/// How far around the proxy to look next, from how far it went in the last tick [m].
+double nextReach(const TickModel& model, const TickState& state) noexcept;
+
+/// Takes the proxy straight to the hand, `path` away, through room that is proven to be free. False, and it stays, if
+/// it would overlap there by more than `accepted`.
+bool arriveFreely(const TickModel& model, TickState& state, TickFrame& frame, double path, double reach,
+                  double accepted) noexcept;
+
+Surroundings surroundings(const TickModel& model, const TickState& state) noexcept;
+
+/// What the contacts, and friction, leave of a motion.
+struct AllowedMotion {
+    Motion u;
+    FrictionPatches rubbing;
+};
+AllowedMotion allowedMotion(const TickModel& model, const TickState& state, TickFrame& frame, const Motion& wanted,
+                            const Surroundings& around) noexcept;
+
+/// Stages that follow the proxy's motion.
+/// Low-pass (only if the scene names its corner f_c), while in contact:
+///   G_k = G_{k-1} ⊕ α (G* ⊖ G_{k-1}),  α = 1 - exp(-2π f_c T); dropped for a tick where it would cost overlap.
+void filterProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+/// Writes the depths and the number of contacts of the frame's record.
+void describeProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+/// Depth of the held part at the hand's pose: only for the record, an extra query.
+void measureHandDepth(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+
+}  // namespace passung::tick
