@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include "core/tick/contact_query.h"
 
@@ -54,12 +55,68 @@ inline constexpr double kMotionTolerance = 1e-9;  // [m], of a constraint; 2e-7 
 /// where the second is smaller, row j is let go and the step repeated. Active rows are independent, hence at most six;
 /// N is kept as Q R. Exact when it ends, and it ends because the dual objective grows with each row taken up.
 ///
+/// Many contacts: rows are made of those only that some u on the way has violated. All contacts are looked at when no
+/// row is violated any more; of those that are, the worst of each of 64 bins goes into the rows, the bins by the signs
+/// of a's six numbers: the extreme points of what is violated, seen all around. At most kMostRows; when they are full
+/// those that do not hold are forgotten. At the end no contact is violated, so that nothing is lost against rows of
+/// all: a motion nearest under some constraints, that obeys the others too, is the nearest under all.
+///
+/// Warm start: with rows N that held before, λ = (NᵀN)⁻¹ (b - Nᵀw); a row with λ < 0 pulls and is let go, the worst
+/// first, until none does. Then (u, λ) is what the method itself would hold if these were the only rows, and it goes on
+/// from there: the same motion in the end, found in as few steps as contacts changed.
+///
 /// Rows that ask for more than standing still (b_i > 0: overlap to be removed) may have no common solution, or only one
 /// far away (a part pressed between two walls). Then b_i becomes min(b_i, 0), `relaxed`: u = 0 obeys that always, and
 /// |u - w| ≤ |w|. A sphere that stands for points not looked at (ContactPoint::radius > 0) never asks for more than 0.
 /// Contacts whose field is flatter than kLeastGradient (a medial axis) say nothing about direction and are left out.
 /// Limit cases: no contact violated → wanted. One → the projection onto its plane. rt-safe, bounded.
-ConstrainedMotion constrainMotion(const Motion& wanted, const Surroundings& around) noexcept;
+class MotionSolver {
+public:
+    /// `likely`: places in the manifold of at most six contacts that held a motion like those to come.
+    explicit MotionSolver(const Surroundings& around, std::span<const std::uint32_t> likely = {}) noexcept;
+
+    /// Starts from what held the motion before.
+    ConstrainedMotion solve(const Motion& wanted) noexcept;
+    /// The same under the contacts only that were met so far.
+    ConstrainedMotion solveMet(const Motion& wanted) noexcept;
+    /// True if `u` violates contacts that were not met so far; they now are.
+    bool meetsMore(const Motion& u) noexcept;
+
+    static constexpr int kMostRows = 200;
+
+private:
+    struct Row {
+        Motion a;         // unit
+        double b;         // for it, before it is relaxed
+        double length;    // of a before it was made unit
+        double gradient;  // length of g
+        std::uint32_t contact;
+        bool sphere;
+    };
+    class ActiveSet;
+    enum class Taken { Yes, Infeasible, Capped };
+
+    double least(const ContactPoint& contact) const noexcept;
+    double boundOf(const Row& row) const noexcept;
+    void addRow(const ContactPoint& contact) noexcept;
+    const Row* mostViolated(const Motion& u) const noexcept;
+    ConstrainedMotion solve(const Motion& wanted, bool all) noexcept;
+    bool attempt(const Motion& wanted, bool all, ConstrainedMotion& result) noexcept;
+    void startWarm(const Motion& wanted, ActiveSet& active, Motion& u) const noexcept;
+    Taken takeUp(const Row& row, ActiveSet& active, Motion& u, int& iterations) const noexcept;
+
+    const Surroundings& around_;
+    std::array<Row, kMostRows> rows_;
+    int count_ = 0;
+    std::array<Row, 6> held_;  // the last motion
+    int held_count_ = 0;
+    double tolerance_ = kMotionTolerance;
+    bool relaxed_ = false;
+};
+
+/// One motion: MotionSolver::solve.
+ConstrainedMotion constrainMotion(const Motion& wanted, const Surroundings& around,
+                                  std::span<const std::uint32_t> likely = {}) noexcept;
 
 inline constexpr double kLeastGradient = 0.1;
 

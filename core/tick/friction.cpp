@@ -50,14 +50,15 @@ double effectiveRadius(const Surroundings& around, const FrictionPatch& patch, c
     };
     double area = 0.0;
     Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
     forTouching([&](double a, const Eigen::Vector2d& x) {
         area += a;
         mean += a * x;
+        second += a * x * x.transpose();
     });
     if (!(area > 0.0)) return 0.0;
     mean /= area;
-    Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
-    forTouching([&](double a, const Eigen::Vector2d& x) { second += a / area * (x - mean) * (x - mean).transpose(); });
+    second = second / area - mean * mean.transpose();
     // Pressure 1 + k · (x - mean) has its centre at 0 if second · k = -mean; a line of points has no k across.
     const double across = 1e-9 * second.trace() + std::numeric_limits<double>::min();
     const Eigen::Vector2d k = (second + across * Eigen::Matrix2d::Identity()).inverse() * -mean;
@@ -70,12 +71,20 @@ double effectiveRadius(const Surroundings& around, const FrictionPatch& patch, c
     return weight > 0.0 ? sum / weight : 0.0;
 }
 
+/// The friction of `patch` in the tangents of a normal that differs a little.
+Vec3 turned(const FrictionPatch& patch, const Vec3& normal) noexcept {
+    const auto [t1, t2] = tangentsOf(patch.normal);
+    const auto [s1, s2] = tangentsOf(normal);
+    const Vec3 along = patch.rub.x() * t1 + patch.rub.y() * t2;
+    return {along.dot(s1), along.dot(s2), patch.rub.z()};
+}
+
 bool alike(const FrictionPatch& a, const FrictionPatch& b) noexcept {
     return a.obstacle == b.obstacle && a.normal.dot(b.normal) > kSameWay;
 }
 
-/// The patches of the contacts that hold `motion`. `known`: of the sweep before, whose tangents and friction stay, or
-/// (`first`) of the tick before, which only tells what was sliding.
+/// The patches of the contacts that hold `motion`. `known`: of the sweep before, whose tangents and radius stay, or
+/// (`first`) of the motion before, whose friction is where the search begins.
 FrictionPatches patchesOf(const Surroundings& around, const Motion& wanted, const ConstrainedMotion& motion,
                           const FrictionPatches& known, bool first) noexcept {
     FrictionPatches result;
@@ -105,7 +114,10 @@ FrictionPatches patchesOf(const Surroundings& around, const Motion& wanted, cons
             const FrictionPatch& old = known.patch[static_cast<std::size_t>(k)];
             if (!alike(old, patch)) continue;
             patch.slides = old.slides;
-            if (first) break;
+            if (first) {
+                patch.rub = turned(old, patch.normal);
+                break;
+            }
             patch.normal = old.normal;
             patch.rub = old.rub;
             patch.radius = old.radius;
@@ -160,16 +172,22 @@ Vec3 rubFor(const Eigen::Matrix3d& H, const Vec3& target, double most) noexcept 
 }  // namespace
 
 RubbedMotion constrainWithFriction(const Motion& wanted, const Surroundings& around, std::span<const Friction> friction,
-                                   const FrictionPatches& before) noexcept {
+                                   const FrictionPatches& before, std::span<const std::uint32_t> likely) noexcept {
     RubbedMotion result;
     const double small = kRubTolerance * wanted.norm();
+    MotionSolver solver(around, likely);
     Motion drawn = wanted;  // with the friction found so far
     FrictionPatches known = before;
+    for (int i = 0; i < known.count; ++i) {
+        const FrictionPatch& patch = known.patch[static_cast<std::size_t>(i)];
+        drawn += rowsOf(around, patch).transpose() * patch.rub;
+    }
+    bool settled = false;
     for (int sweep = 0; sweep < kRubSweeps; ++sweep) {
-        result.motion = constrainMotion(drawn, around);
+        result.motion = sweep == 0 ? solver.solve(drawn) : solver.solveMet(drawn);
         result.patches = patchesOf(around, wanted, result.motion, known, sweep == 0);
         Motion u = result.motion.u;
-        double change = sweep > 0 ? lostRub(known, result.patches) : 0.0;
+        double change = lostRub(known, result.patches);
         const double share = sweep < kWholeSweeps ? 1.0 : 0.5;  // the half calms an iteration that swings
         drawn = wanted;
         const Eigen::Matrix<double, 6, 6> free = freedom(result.motion);
@@ -197,14 +215,16 @@ RubbedMotion constrainWithFriction(const Motion& wanted, const Surroundings& aro
         known = result.patches;
         result.sweeps = sweep + 1;
         result.change = change / wanted.norm();
-        if (change <= small) break;
+        settled = change <= small && !solver.meetsMore(result.motion.u);
+        if (settled) break;
     }
-    if (!(result.change <= kRubAccepted)) {
+    if (!settled && (!(result.change <= kRubAccepted) || solver.meetsMore(result.motion.u))) {
         result.converged = false;
-        result.motion = constrainMotion(Motion::Zero(), around);
+        result.motion = solver.solve(Motion::Zero());
     }
     for (int i = 0; i < result.patches.count; ++i) {
         FrictionPatch& patch = result.patches.patch[static_cast<std::size_t>(i)];
+        if (!result.converged) patch.rub.setZero();  // nowhere to begin the next search
         const double rest = (kAtRest + kUnsettled * result.change) * wanted.norm();
         patch.slides = (rowsOf(around, patch) * result.motion.u).norm() > rest;
     }

@@ -62,6 +62,6 @@ inline constexpr int kRubSweeps = 40;
 /// → |x| = μ λ in slip, along -s.
 /// `friction`: of each obstacle. `before`: patches of the motion before, which tell what was sliding. rt-safe, bounded.
 RubbedMotion constrainWithFriction(const Motion& wanted, const Surroundings& around, std::span<const Friction> friction,
-                                   const FrictionPatches& before) noexcept;
+                                   const FrictionPatches& before, std::span<const std::uint32_t> likely = {}) noexcept;
 
 }  // namespace passung::tick

@@ -8,6 +8,47 @@
 
 namespace passung::tick {
 
+namespace {
+
+constexpr double kSamePoint = 1e-6;  // [m]: points of one part are farther apart
+
+/// The contacts of now that held the last motion.
+std::span<const std::uint32_t> likelyContacts(const TickModel& model, const TickState& state,
+                                              std::array<std::uint32_t, 6>& places) noexcept {
+    std::size_t found = 0;
+    std::array<Vec3, 12> held;
+    const auto count = static_cast<std::size_t>(2 * state.held.count);
+    for (std::size_t i = 0; 2 * i < count; ++i) {
+        held[2 * i] = state.X_WG * state.held.point[i].p_G;
+        held[2 * i + 1] = state.held.point[i].p_W;
+    }
+    if (count == 0) return {};
+    for (std::size_t k = 0; k < state.manifold.size() && found < places.size(); ++k) {
+        const ContactPoint& contact = state.manifold[k];
+        if (contact.phi > model.margins.relieve) continue;  // a contact that held is hardly farther away
+        for (std::size_t i = 0; i < count; ++i) {
+            if (std::abs(contact.position.x() - held[i].x()) > kSamePoint ||
+                (contact.position - held[i]).squaredNorm() > kSamePoint * kSamePoint)
+                continue;
+            places[found++] = static_cast<std::uint32_t>(k);
+            break;
+        }
+    }
+    return {places.data(), found};
+}
+
+void noteHeld(const ConstrainedMotion& motion, TickState& state) noexcept {
+    state.held.count = motion.active;
+    const Pose X_GW = state.X_WG.inverse();
+    for (int i = 0; i < motion.active; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        const Vec3& p = state.manifold[motion.held[at].contact].position;
+        state.held.point[at] = {X_GW * p, p};
+    }
+}
+
+}  // namespace
+
 Pose moved(const TickModel& model, const Pose& pose, const Motion& u) noexcept {
     Pose result{rotationFromVector(u.tail<3>() / model.metric_radius) * pose.q, pose.p + u.head<3>()};
     result.q.normalize();
@@ -85,16 +126,23 @@ Surroundings surroundings(const TickModel& model, const TickState& state) noexce
     return {state.manifold, state.X_WG.p, model.metric_radius, -model.margins.keep};
 }
 
-AllowedMotion allowedMotion(const TickModel& model, const TickState& state, TickFrame& frame, const Motion& wanted,
+AllowedMotion allowedMotion(const TickModel& model, TickState& state, TickFrame& frame, const Motion& wanted,
                             const Surroundings& around) noexcept {
+    std::array<std::uint32_t, 6> places;
+    const auto likely = likelyContacts(model, state, places);
+    AllowedMotion allowed;
     if (model.friction.empty()) {
-        const ConstrainedMotion constrained = constrainMotion(wanted, around);
+        const ConstrainedMotion constrained = constrainMotion(wanted, around, likely);
         if (!constrained.converged) frame.status |= kIterationLimit;
-        return {constrained.u, {}};
+        allowed.u = constrained.u;
+        noteHeld(constrained, state);
+    } else {
+        const RubbedMotion rubbed = constrainWithFriction(wanted, around, model.friction, state.rubbing, likely);
+        if (!rubbed.converged || !rubbed.motion.converged) frame.status |= kIterationLimit;
+        allowed = {rubbed.motion.u, rubbed.patches};
+        noteHeld(rubbed.motion, state);
     }
-    const RubbedMotion rubbed = constrainWithFriction(wanted, around, model.friction, state.rubbing);
-    if (!rubbed.converged || !rubbed.motion.converged) frame.status |= kIterationLimit;
-    return {rubbed.motion.u, rubbed.patches};
+    return allowed;
 }
 
 void filterProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept {

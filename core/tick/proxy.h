@@ -52,12 +52,12 @@ bool arriveFreely(const TickModel& model, TickState& state, TickFrame& frame, do
 
 Surroundings surroundings(const TickModel& model, const TickState& state) noexcept;
 
-/// What the contacts, and friction, leave of a motion.
+/// What the contacts, and friction, leave of a motion. Begins with the contacts that held the one before.
 struct AllowedMotion {
     Motion u;
     FrictionPatches rubbing;
 };
-AllowedMotion allowedMotion(const TickModel& model, const TickState& state, TickFrame& frame, const Motion& wanted,
+AllowedMotion allowedMotion(const TickModel& model, TickState& state, TickFrame& frame, const Motion& wanted,
                             const Surroundings& around) noexcept;
 
 /// Stages that follow the proxy's motion.

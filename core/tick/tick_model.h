@@ -77,6 +77,15 @@ struct TickModel {
     model::Transients transients;
 };
 
+/// Where contacts held the proxy's last motion: each is a point of the held part or of an obstacle.
+struct HeldPoints {
+    struct Point {
+        Vec3 p_G, p_W;  // in the proxy, in the world
+    };
+    std::array<Point, 6> point;
+    int count = 0;
+};
+
 /// What went through the handle: passivity.h.
 struct EnergyAccount {
     double taken_in = 0.0;  // by the controller [J]
@@ -117,6 +126,7 @@ struct TickState {
     double clearance = 0.0;        // least φ of the points that were looked at, as interpolated [m]
     double room = 0.0;             // least φ known of any point: beyond the reach proven, spheres included [m]
     FrictionPatches rubbing;       // of the last motion in contact
+    HeldPoints held;               // of the last motion: where the solver of the next one begins
     double last_motion = 0.0;      // of the proxy, in the metric of metric_radius [m]
     Pose X_WG_last;                // for the proxy filter
     bool has_last_proxy = false;

@@ -222,6 +222,32 @@ TEST(Friction, FindsTheCentreWhereAContactBearsNothing) {
     }
 }
 
+TEST(Friction, BeginsWithTheFrictionBeforeAndEndsWhereItEndsWithout) {
+    // Truth: invariant. A body drawn along a wide groove, ever more to one side, that slides all the time: the same
+    // motion, in fewer sweeps if the friction of the tick before is known.
+    std::vector<ContactPoint> contacts;
+    for (const double side : {1.0, -1.0})
+        for (const double y : {0.01, -0.01})
+            contacts.push_back(contactAt({0.01 * side, y, 0}, Vec3(-0.5 * side, 0, std::sqrt(0.75))));
+    const auto manifold = manifoldOf(contacts);
+    FrictionPatches before = rub(motion({0, 3e-4, -2e-4}), manifold).patches;
+    int cold_sweeps = 0, warm_sweeps = 0;
+    for (int i = 1; i <= 100; ++i) {
+        const Motion wanted = motion({5e-7 * i, 3e-4, -2e-4});
+        FrictionPatches unknown = before;
+        for (auto& patch : unknown.patch) patch.rub.setZero();
+        const RubbedMotion warm = rub(wanted, manifold, kDry, before), cold = rub(wanted, manifold, kDry, unknown);
+        ASSERT_TRUE(warm.converged && cold.converged);
+        ASSERT_TRUE(warm.patches.patch[0].slides);
+        EXPECT_LT((warm.motion.u - cold.motion.u).norm(), 1e-6 * wanted.norm()) << i;
+        before = warm.patches;
+        cold_sweeps += cold.sweeps;
+        warm_sweeps += warm.sweeps;
+    }
+    std::printf("sweeps of 100 motions: cold %d, warm %d\n", cold_sweeps, warm_sweeps);
+    EXPECT_LT(warm_sweeps, cold_sweeps);
+}
+
 TEST(Friction, WithoutFrictionIsTheConstrainedMotion) {
     // Truth: regression against constrainMotion, which has truths of its own.
     Random random(9);
