@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/single_precision.h"
 #include "core/model/distance_field_modes.h"
 #include "core/model/interpolation.h"
 #include "core/model/parallel.h"
@@ -14,8 +15,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSlackUnit = 1.0 / 255.0 * (1.0 + 0x1p-40);
-constexpr double kFloatRounding = 0x1p-24 * (1.0 + 0x1p-20);  // of a value stored as a float, relative
-constexpr double kStepRounding = 0.5 * (1.0 + 0x1p-20);       // of a value stored in a brick, in steps
+constexpr double kStepRounding = 0.5 * (1.0 + 0x1p-20);  // of a value stored in a brick, in steps
 
 /// Edge of a cell of each level over that of a brick of the first.
 constexpr auto kCellEdge = [] {

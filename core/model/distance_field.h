@@ -156,7 +156,7 @@ private:
 
     static constexpr std::size_t kIndexPerBrick = 32;  // the index is not larger than so many numbers a brick
 
-    struct Builder;  // distance_field_build.cpp
+    struct Builder;  // distance_field_builder.h
     struct Cell;     // a spot and the eight corners
     template <class Number>
     struct Lattice;  // distance_field_modes.cpp

@@ -1,12 +1,21 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/base/types.h"
 
 namespace passung::model {
 
 using TriangleCorners = std::array<Vec3, 3>;
+
+inline Vec3 centroid(const TriangleCorners& t) { return (t[0] + t[1] + t[2]) / 3.0; }
+
+/// How far the farthest corner is from `p`.
+inline double farthestCorner(const Vec3& p, const TriangleCorners& t) {
+    return std::sqrt(std::max({(t[0] - p).squaredNorm(), (t[1] - p).squaredNorm(), (t[2] - p).squaredNorm()}));
+}
 
 /// The point of a segment that is nearest to `p`.
 Vec3 closestOnSegment(const Vec3& p, const Vec3& a, const Vec3& b);

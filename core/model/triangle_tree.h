@@ -66,6 +66,9 @@ public:
     void collectWithin(const Bounds& box, std::size_t most, std::vector<std::uint32_t>& triangles) const;
 
 private:
+    static constexpr int kSahDepth = 32;           // below: halves, so that the depth stays under kStack
+    static constexpr int kStack = kSahDepth + 40;  // log2(2^32) and slack
+
     struct Node {
         Vec3 low, high;              // box
         std::uint32_t first, count;  // triangles if a leaf (count > 0), else left child = first, right = first + 1

@@ -7,41 +7,24 @@
 #include <queue>
 #include <span>
 
+#include "core/query/neighbour_list.h"
+#include "core/query/triangle_pieces.h"
+
 namespace passung::query {
 
 namespace {
 
+using model::centroid;
+using model::farthestCorner;
 using model::TriangleCorners;
 
-constexpr std::size_t kBlock = 64;             // points that the field is asked for at once
-constexpr std::size_t kFewTriangles = 4;       // for which neighbours need not be collected
-constexpr std::size_t kMostNeighbours = 1000;  // beyond, a tree finds them faster
-constexpr std::size_t kMostPerTriangle = 3;    // steps
+constexpr std::size_t kBlock = 64;           // points that the field is asked for at once
+constexpr std::size_t kFewTriangles = 4;     // for which neighbours need not be collected
+constexpr std::size_t kMostPerTriangle = 3;  // steps
 constexpr std::size_t kMostPerPiece = 8;
-constexpr double kLooseShare =
-    0.5;  // of a sphere's radius: what the field may leave open before exact distances are asked
-/// The middles of the sixteen parts of a triangle that is quartered twice, along two of its sides.
-constexpr auto kSixteenths = [] {
-    std::array<std::array<double, 2>, 16> middles{};
-    std::size_t n = 0;
-    for (int i = 0; i < 4; ++i)
-        for (int j = 0; i + j < 4; ++j) {
-            middles[n++] = {(i + 1.0 / 3.0) / 4.0, (j + 1.0 / 3.0) / 4.0};
-            if (i + j < 3) middles[n++] = {(i + 2.0 / 3.0) / 4.0, (j + 2.0 / 3.0) / 4.0};
-        }
-    return middles;
-}();
+// Of a sphere's radius: what the field may leave open before exact distances are asked.
+constexpr double kLooseShare = 0.5;
 constexpr double kArithmetic = 1e-12;  // rounding of what is computed here, per metre of the numbers it comes from
-
-Vec3 middleOf(const TriangleCorners& t) { return (t[0] + t[1] + t[2]) / 3.0; }
-
-/// The farthest corner of `piece` from the triangle `t`: no point of the piece is farther.
-double farthestFrom(const TriangleCorners& t, const TriangleCorners& piece) {
-    double farthest = 0.0;
-    for (const Vec3& corner : piece)
-        farthest = std::max(farthest, (model::closestOnTriangle(corner, t[0], t[1], t[2]) - corner).norm());
-    return farthest;
-}
 
 }  // namespace
 
@@ -51,19 +34,11 @@ struct SurfaceSearch::Waiting {
     std::uint32_t index;
 };
 
-/// A triangle of A.
-struct SurfaceSearch::Neighbour {
-    double end;  // how far it reaches along Search::way [m]
-    Vec3 middle;
-    double reach;  // of the corners from the middle [m]
-    TriangleCorners corners;
-};
-
 /// Memory that searches use one after the other.
 struct SurfaceSearch::Scratch {
     std::vector<Waiting> wave, next, triangles;
-    std::vector<std::uint32_t> corners, near;
-    std::vector<Neighbour> neighbours;
+    std::vector<std::uint32_t> corners;
+    NeighbourList neighbours;
 };
 
 SurfaceSearch::SurfaceSearch(const model::Part& a, const model::Part& b)
@@ -107,10 +82,7 @@ struct SurfaceSearch::Search {
     std::vector<Waiting>& triangles;
     std::vector<std::uint32_t>& corners;  // of them
     std::priority_queue<Piece> pieces;
-    bool collected = false;              // are neighbours
-    std::vector<Neighbour>& neighbours;  // all of A that may be nearer to `triangles` than found.upper
-    Vec3 way = Vec3::Zero();             // in which they are measured
-    double highest = -std::numeric_limits<double>::infinity();  // how far any of them reaches [m]
+    NeighbourList& neighbours;  // all of A that may be nearer to `triangles` than found.upper
     Points points;
 
     Search(SurfaceSearch& search, const Pose& X_AB, double tolerance_, int most)
@@ -128,7 +100,7 @@ struct SurfaceSearch::Search {
           corners(search.scratch_->corners),
           neighbours(search.scratch_->neighbours) {
         triangles.clear();
-        neighbours.clear();
+        neighbours.begin(search.triangles_, rounding);
         found.upper = std::numeric_limits<double>::infinity();
     }
 
@@ -288,31 +260,11 @@ struct SurfaceSearch::Search {
 
     /// A piece of a triangle that is not known to be outside.
     void pushPiece(const TriangleCorners& piece, double above) {
-        const TriangleCorners near = look(middleOf(piece));
-        double depth = farthestFrom(near, piece);
-        if (-depth < found.upper) {
-            std::size_t deepest = 0;
-            double most = -1.0;
-            for (std::size_t i = 0; i < 3; ++i) {
-                const double d = (model::closestOnTriangle(piece[i], near[0], near[1], near[2]) - piece[i]).norm();
-                if (d > most) {
-                    most = d;
-                    deepest = i;
-                }
-            }
-            depth = std::min(depth, farthestFrom(look(piece[deepest]), piece));
-        }
+        const TriangleCorners near = look(centroid(piece));
+        auto [depth, deepest] = farthestFrom(near, piece);
+        if (-depth < found.upper) depth = std::min(depth, farthestFrom(look(piece[deepest]), piece).distance);
         const double lower = std::max(above, -depth - rounding);
         if (!leave(lower)) pieces.push({lower, piece});
-    }
-
-    static std::array<TriangleCorners, 4> quarters(const TriangleCorners& t) {
-        const Vec3 ab = 0.5 * (t[0] + t[1]), bc = 0.5 * (t[1] + t[2]), ca = 0.5 * (t[2] + t[0]);
-        return {{{t[0], ab, ca}, {ab, t[1], bc}, {ca, bc, t[2]}, {ab, bc, ca}}};
-    }
-
-    static double reachFrom(const Vec3& p, const TriangleCorners& t) {
-        return std::sqrt(std::max({(t[0] - p).squaredNorm(), (t[1] - p).squaredNorm(), (t[2] - p).squaredNorm()}));
     }
 
     TriangleCorners cornersInA(const Waiting& triangle) const {
@@ -322,7 +274,7 @@ struct SurfaceSearch::Search {
 
     void findNeighbours() {
         if (triangles.size() < kFewTriangles) return;
-        way = found.normal;
+        const Vec3 way = found.normal;
         model::Bounds box;
         double begin = std::numeric_limits<double>::infinity();
         for (const Waiting& triangle : triangles)
@@ -330,44 +282,13 @@ struct SurfaceSearch::Search {
                 box.extend(corner);
                 begin = std::min(begin, way.dot(corner));
             }
-        const double limit = found.upper + rounding;
-        of.scratch_->near.clear();
-        of.triangles_.findAbove({box.low - Vec3::Constant(limit), box.high + Vec3::Constant(limit)}, way, begin - limit,
-                                of.scratch_->near);
-        if (of.scratch_->near.size() > kMostNeighbours) return;
-        collected = true;
-        for (const std::uint32_t place : of.scratch_->near) {
-            const auto& [a, b, c, needle] = of.triangles_.corners()[place];
-            const TriangleCorners t{a, b, c};
-            const Vec3 middle = middleOf(t);
-            const double end = std::max({way.dot(a), way.dot(b), way.dot(c)});
-            highest = std::max(highest, end);
-            neighbours.push_back({end, middle, reachFrom(middle, t), t});
-        }
-    }
-
-    /// As TriangleTree::closestTo.
-    model::TrianglePair nearestTo(const TriangleCorners& t, double limit) const {
-        if (!collected) return of.triangles_.closestTo(t, limit);
-        model::TrianglePair best{limit, t[0], t[0]};
-        const double begin = std::min({way.dot(t[0]), way.dot(t[1]), way.dot(t[2])});
-        if (begin - highest > limit + rounding) return best;
-        const Vec3 middle = middleOf(t);
-        const double reach = reachFrom(middle, t) + rounding;
-        for (const Neighbour& other : neighbours) {
-            if (begin - other.end > best.distance + rounding) continue;
-            const double span = best.distance + reach + other.reach;
-            if ((middle - other.middle).squaredNorm() > span * span) continue;
-            const model::TrianglePair pair = model::closestPair(t, other.corners, best.distance);
-            if (pair.distance < best.distance) best = pair;
-        }
-        return best;
+        neighbours.collect(box, way, begin, found.upper);
     }
 
     /// The distance of a triangle of B that is nearer than `limit`, exactly.
     void lookAtTriangle(const Waiting& triangle, double limit) {
         const TriangleCorners t = cornersInA(triangle);
-        const model::TrianglePair pair = nearestTo(t, limit);
+        const model::TrianglePair pair = neighbours.closestTo(t, limit);
         ++found.steps;
         const bool outside = triangle.lower > 0.0;
         const bool whole = outside || pair.distance > rounding;  // on one side
@@ -375,7 +296,7 @@ struct SurfaceSearch::Search {
         if (pair.distance < limit && (outside || !whole || !isInside(pair.on_first)))
             offer(pair.distance, pair.on_first, pair.on_second);
         left = std::min(left, std::max(triangle.lower, pair.distance - rounding));
-        if (outside || !canBeInside() || (whole && !isInside(middleOf(t)))) return;
+        if (outside || !canBeInside() || (whole && !isInside(centroid(t)))) return;
         pushPiece(t, triangle.lower);
     }
 
@@ -389,8 +310,8 @@ struct SurfaceSearch::Search {
             for (std::size_t i = begin; i < end; ++i) {
                 const TriangleCorners t{vertex(triangles[i], 0).p, vertex(triangles[i], 1).p,
                                         vertex(triangles[i], 2).p};
-                const Vec3 middle = middleOf(t);
-                reach[i - begin] = reachFrom(middle, t) + of.spheres_.float_rounding;
+                const Vec3 middle = centroid(t);
+                reach[i - begin] = farthestCorner(middle, t) + of.spheres_.float_rounding;
                 points.add(middle);
             }
             askBounds();
@@ -411,7 +332,7 @@ struct SurfaceSearch::Search {
         for (Waiting triangle : triangles) {
             const Vec3 &a = vertex(triangle, 0).p, &b = vertex(triangle, 1).p, &c = vertex(triangle, 2).p;
             const Vec3 ab = b - a, ac = c - a, middle = a + (ab + ac) / 3.0;
-            const double reach = reachFrom(middle, {a, b, c});
+            const double reach = farthestCorner(middle, {a, b, c});
             points.count = 0;
             for (const auto& [s, t] : kSixteenths) points.add(a + s * ab + t * ac);
             askBounds();

@@ -44,7 +44,6 @@ public:
 private:
     struct Search;
     struct Waiting;
-    struct Neighbour;
     struct Scratch;
 
     const model::Part& a_;

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/model/triangle_tree.h"
+
+namespace passung::query {
+
+/// The distances of a few triangles that lie together from a mesh: for them its triangles that may matter are collected
+/// once, and looked through instead of the tree. Memory is kept from one use to the next.
+class NeighbourList {
+public:
+    /// Forgets all; from here on closestTo asks `tree`. `rounding`: of the coordinates [m].
+    void begin(const model::TriangleTree& tree, double rounding);
+
+    /// Collects the triangles that may be nearer than `limit` to any within `box`, no point of which lies less far
+    /// along `way` (unit) than `least`, unless there are more than kMost.
+    void collect(const model::Bounds& box, const Vec3& way, double least, double limit);
+    static constexpr std::size_t kMost = 1000;  // beyond, a tree finds them faster
+
+    /// As TriangleTree::closestTo. @pre after collect: `t` lies within its box, and `limit` is not larger than its.
+    model::TrianglePair closestTo(const model::TriangleCorners& t, double limit) const;
+
+private:
+    struct Neighbour {
+        double end;  // how far it reaches along way_ [m]
+        Vec3 middle;
+        double reach;  // of the corners from the middle [m]
+        model::TriangleCorners corners;
+    };
+
+    const model::TriangleTree* tree_ = nullptr;
+    double rounding_ = 0.0;
+    bool collected_ = false;
+    std::vector<Neighbour> neighbours_;
+    Vec3 way_ = Vec3::Zero();  // in which they are measured
+    double highest_ = 0.0;     // how far any of them reaches [m]
+    std::vector<std::uint32_t> places_;
+};
+
+}  // namespace passung::query
