@@ -9,6 +9,8 @@ namespace passung::query {
 
 namespace {
 
+constexpr double kArithmetic = 1e-12;  // rounding of a closed form, per metre of its point
+
 std::size_t nodesOf(const model::Part& part) { return part.shell ? part.shell->nodes().size() : 0; }
 std::size_t pointsOf(const model::Part& part) { return part.shell ? part.shell->points().size() : 0; }
 
@@ -26,12 +28,20 @@ void boundError(PartQueryResult& result) {
     result.error_bound = std::max({0.0, above, result.signed_distance - result.lower_bound});
 }
 
+/// What the field is wrong by at most at the point found [m]: of a shape the truth there is known, and the field's own
+/// bound, one for many cells, is far above it at rims and in corners.
+double fieldErrorAtClosest(const model::Part& field, const tick::QueryAnswer& answer, model::FieldMode mode) {
+    if (!field.shape) return field.field->errorBound(answer.closest_F, mode);
+    const double truth = model::signedDistance(*field.shape, answer.closest_F);
+    return std::abs(answer.phi + field.field->sheetOffset() - truth) + kArithmetic * (1.0 + answer.closest_F.norm());
+}
+
 /// Sets the bound of the field at the shell's points: `least` is no more than the smallest true φ there.
 void boundField(const model::Part& field, const tick::QueryAnswer& answer, model::FieldMode mode, double least,
                 PartQueryResult& result) {
     result.field_error_bound = answer.phi - least;
     if (answer.found)
-        result.field_error_bound = std::max(result.field_error_bound, field.field->errorBound(answer.closest_F, mode));
+        result.field_error_bound = std::max(result.field_error_bound, fieldErrorAtClosest(field, answer, mode));
 }
 
 /// The interval that one direction proves, from what the traversal found; see PartQuery. `meshes`: what the meshes may
@@ -46,8 +56,7 @@ void proveInterval(const model::Part& field, const model::Part& shell, const tic
     result.lower_bound = least + offset - shell.shell->coverRadius() - chords;
     result.upper_bound = std::numeric_limits<double>::infinity();
     if (answer.found) {
-        const double error = field.field->errorBound(answer.closest_F, mode);
-        result.upper_bound = answer.phi + error + offset + chords;
+        result.upper_bound = answer.phi + fieldErrorAtClosest(field, answer, mode) + offset + chords;
     }
     boundField(field, answer, mode, least, result);
     boundError(result);

@@ -59,7 +59,8 @@ struct PartQueryResult {
 /// ∂A. Apart, m_1 = m_2 = the distance of the surfaces. Where they meet, -m_1 is how deep B's surface reaches into A
 /// and -m_2 how deep A's reaches into B, two different depths. A within B: m_1 > 0 > m_2.
 ///
-/// What one way proves. φ_k: read from the field at point k of the shell, which is wrong by at most e_k; l_k ≤ φ_A: the
+/// What one way proves. φ_k: read from the field at point k of the shell, which is wrong by at most e_k (of a shape:
+/// exactly by |φ_k - φ_A|, its closed form asked at the best point); l_k ≤ φ_A: the
 /// field's lower bound there (of many points at once where a branch is pruned); c: cover radius of the shell; h: sum of
 /// both parts' chord errors and of the rounding of the shell's points to floats; s: offset of an open sheet, whose
 /// field holds φ_A - s.

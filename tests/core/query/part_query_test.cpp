@@ -88,6 +88,37 @@ TEST(PartQuery, TwoWaysOfASphereInAPlaneAgreeOnDepthAndWrench) {
     EXPECT_LT(r.wrench.torque.norm(), 0.01 * expected * R);
 }
 
+TEST(PartQuery, OfAShapeTheFieldsErrorWhereItWasReadIsKnownExactly) {
+    // Truth: closed form of the plate. A peg leans towards a bore that is 0.1 mm wider; at rims and over the blind
+    // floor the field's own bound, the largest of 64 cells, is many times what it errs by. What is above the distance
+    // read are that error, and the chords.
+    const auto built = [](const model::Shape& shape) {
+        model::PartSpec spec;
+        spec.geometry = shape;
+        auto part = model::buildPart(spec, {.field = true, .shell = true});
+        EXPECT_TRUE(part);
+        return std::move(*part);
+    };
+    const model::Shape bore = model::BorePlate{0.03, 0.03, 0.025, 0.01, 0.02, 0.5e-3};
+    const model::Part plate = built(bore), peg = built(model::Peg{0.0099, 0.03, 0.5e-3});
+    query::PartQueryRequest unrefined;
+    unrefined.tolerance = std::numeric_limits<double>::infinity();
+    query::PartQuery query(plate, peg, unrefined);
+    const double chords = plate.chord_error + peg.chord_error + peg.shell->rounding();
+    double largest_bound = 0.0;
+    Random random(5);
+    for (int i = 0; i < 100; ++i) {
+        const double lean = 40e-6 * random.uniform();
+        const auto r = query.at({Quat::Identity(), Vec3(lean, 0.5 * lean, -0.02 * random.uniform())});
+        const double error = std::abs(r.signed_distance - model::signedDistance(bore, r.closest));
+        ASSERT_NEAR(r.upper_bound, r.signed_distance + error + chords, 1e-11);
+        ASSERT_GE(r.field_error_bound, error);
+        largest_bound =
+            std::max(largest_bound, plate.field->errorBound(r.closest, model::FieldMode::Trilinear) - error);
+    }
+    EXPECT_GT(largest_bound, 20e-6);
+}
+
 TEST(PartQuery, TheBoundHoldsAndIsNoLargerThanSpacingAndCellAllow) {
     // Truth: closed form of two spheres. Within the fine bricks (four cells of the surface) the field errs by less than
     // √3 cells (each corner is nearer than a diagonal), which enters twice: at the closest point and below it.
