@@ -176,6 +176,14 @@ std::vector<Mark> judge(const std::vector<Row>& rows) {
     marks.push_back(orderOf(rows, kCellAtEdges, "order of the field's error in the cell, edges", 0.75));
     marks.push_back(orderOf(rows, kSpacingOnSmooth, "order of the depth's error in the spacing, smooth", 1.75));
     marks.push_back(orderOf(rows, kSpacingAtEdges, "order of the depth's error in the spacing, edge", 1.0));
+    for (const Row& row : rows) {
+        if (std::isnan(row.figure)) continue;
+        marks.push_back({.name = row.group + ": " + row.method,
+                         .value = row.figure,
+                         .limit = row.figure_mark,
+                         .unit = " " + row.figure_unit,
+                         .note = row.settings});
+    }
     return marks;
 }
 

@@ -40,7 +40,7 @@ std::string csvHeader() {
            "p99_deg,force_turn_max_deg,"
            "torque_error_mean_percent,torque_error_p99_percent,torque_error_max_percent,wrong_signs_percent,other_bits,"
            "order,"
-           "contacts_mean,memory_MB,build_s\n";
+           "contacts_mean,memory_MB,build_s,figure,figure_mark\n";
 }
 
 std::string csvLine(const Row& row) {
@@ -69,7 +69,9 @@ std::string csvLine(const Row& row) {
                                row.order,
                                row.contacts_mean,
                                row.memory_MB,
-                               row.build_s})
+                               row.build_s,
+                               row.figure,
+                               row.figure_mark})
         line += "," + number(value, "NA");
     return line + "\n";
 }
@@ -110,6 +112,8 @@ std::string table(const std::vector<Row>& rows) {
         add("| contacts", {row.contacts_mean}, "");
         add("| memory", {row.memory_MB}, " MB");
         add("build", {row.build_s}, " s");
+        add("| figure", {row.figure}, (" " + row.figure_unit).c_str());
+        add("mark", {row.figure_mark}, row.figure <= row.figure_mark ? ", met" : ", MISSED");
         text += "\n";
     }
     return text;

@@ -34,6 +34,8 @@ struct Row {
     double contacts_mean = kNotGiven;
     double memory_MB = kNotGiven;
     double build_s = kNotGiven;
+    double figure = kNotGiven, figure_mark = kNotGiven;  // a number of its own, met if figure ≤ figure_mark
+    std::string figure_unit = {};
 };
 
 std::string csvHeader();

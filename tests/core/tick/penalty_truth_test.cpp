@@ -6,6 +6,7 @@
 #include "core/base/random.h"
 #include "core/model/part.h"
 #include "core/tick/penalty.h"
+#include "tests/support/submerged.h"
 
 namespace passung {
 namespace {
@@ -72,31 +73,6 @@ TEST(PenaltyTruth, TiltedBoxIntoPlaneFeelsItsSubmergedVolumeAtItsCentroid) {
     EXPECT_NEAR(w.torque.y(), torque.y(), 0.01 * std::abs(torque.y()));
 }
 
-/// Volume of a closed mesh below z = 0 and its first moment, by clipping every triangle at the plane and summing the
-/// tetrahedra to a point of the plane: the cut face lies in the plane and adds nothing.
-struct Submerged {
-    double volume = 0.0;
-    Vec3 moment = Vec3::Zero();  // ∫ x dV
-};
-
-Submerged submerged(const model::TriangleMesh& mesh, const Pose& X_WM) {
-    Submerged sum;
-    for (const auto& t : mesh.triangles) {
-        std::vector<Vec3> polygon;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Vec3 a = X_WM * mesh.vertices[t[k]], b = X_WM * mesh.vertices[t[(k + 1) % 3]];
-            if (a.z() <= 0) polygon.push_back(a);
-            if ((a.z() < 0) != (b.z() < 0)) polygon.push_back(a + (b - a) * (a.z() / (a.z() - b.z())));
-        }
-        for (std::size_t k = 2; k < polygon.size(); ++k) {
-            const double volume = polygon[0].dot(polygon[k - 1].cross(polygon[k])) / 6;
-            sum.volume += volume;
-            sum.moment += volume * (polygon[0] + polygon[k - 1] + polygon[k]) / 4;  // centroid with the origin
-        }
-    }
-    return sum;
-}
-
 TEST(PenaltyTruth, AnyBodyAtAnyPoseFeelsItsSubmergedVolumeAtItsCentroid) {
     // Truth: closed form (Archimedes, by the divergence theorem): F = κ V n through the centroid of V; V by exact
     // clipping.
@@ -111,7 +87,7 @@ TEST(PenaltyTruth, AnyBodyAtAnyPoseFeelsItsSubmergedVolumeAtItsCentroid) {
             double lowest = 1e300;
             for (const Vec3& v : body.mesh.vertices) lowest = std::min(lowest, (q * v).z());
             const Pose X_WS{q, Vec3(0.002, -0.001, -lowest - random.uniform(0.003, 0.008))};
-            const Submerged wet = submerged(body.mesh, X_WS);
+            const test::Submerged wet = test::submerged(body.mesh, X_WS);
             const Wrench w = areaPenalty(plane, kTableTop, body, X_WS, kKappa);
             const double expected = kKappa * wet.volume;
             ASSERT_NEAR(w.force.z(), expected, 0.01 * expected) << model::kindName(shape) << " pose " << i;

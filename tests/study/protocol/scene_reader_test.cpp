@@ -279,9 +279,9 @@ TEST(SceneReader, BoundsLengths) {
               "s.toml:12:14: error: contact.spacing_mm: 0.03: part peg: points 0.03 mm apart on a part of 20 x 20 x "
               "50 mm are about 4.2e+06, more than 2e+06: check its unit, or choose a spacing of at least 0.0436 mm");
     EXPECT_EQ(errorsOf(kParts + "[contact]\nspacing_mm = 0.05\n"), "");
-    EXPECT_EQ(errorsOf(kParts + "[contact]\ncell_mm = 0.001\nspacing_mm = 1000\n"),
-              "s.toml:12:11: error: contact.cell_mm: 0.001: must be from 0.01 to 100\n"
-              "s.toml:13:14: error: contact.spacing_mm: 1000: must be from 0.01 to 100");
+    EXPECT_EQ(errorsOf(kParts + "[contact]\ncell_mm = 0.000001\nspacing_mm = 100000\n"),
+              "s.toml:12:11: error: contact.cell_mm: 1e-06: must be from 1e-05 to 10000\n"
+              "s.toml:13:14: error: contact.spacing_mm: 100000: must be from 1e-05 to 10000");
 }
 
 TEST(SceneReader, KnowsEveryModeByItsName) {
@@ -301,7 +301,7 @@ TEST(SceneReader, CollectsEveryProblem) {
     EXPECT_EQ(errorsOf("unit = 3\n[contact]\nspacing_mm = -1\nmod = \"linear\"\n"),
               "s.toml:1:1: error: part: required\n"
               "s.toml:1:8: error: unit: 3: must be a string, not an integer\n"
-              "s.toml:3:14: error: contact.spacing_mm: -1: must be from 0.01 to 100\n"
+              "s.toml:3:14: error: contact.spacing_mm: -1: must be from 1e-05 to 10000\n"
               "s.toml:4:1: error: contact.mod: unknown key; did you mean \"mode\"?");
 }
 

@@ -1,0 +1,102 @@
+#include "tests/hard/case.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+
+#include "core/tick/god_object_heuristic.h"
+#include "core/tick/tick_model.h"
+
+namespace passung::hard {
+
+namespace {
+
+/// Most looks of a tick: kCorrections times the halvings, and per sub-step an arrival, its return and the halvings with
+/// their reliefs, each look perhaps with a second one for its proof.
+constexpr std::uint32_t kMostLooks = 2 * (1 + tick::kCorrections * (tick::kHalvings + 2) +
+                                          tick::kSubSteps * (3 + (tick::kHalvings + 1) * (1 + tick::kReliefs)));
+
+/// What holds in every case.
+std::string commonFaults(const Run& run) {
+    for (std::size_t i = 0; i < run.ticks.size(); ++i) {
+        const Tick& t = run.ticks[i];
+        const auto fault = [&](const char* what) { return fmt::format("{} at tick {}", what, i); };
+        if (!isFinite(t.sent) || !isFinite(t.proxy)) return fault("not finite");
+        const double force = t.sent.force.norm(), limit = run.spec.limits.max_force;
+        if (!(force <= limit * (1.0 + 1e-9))) return fault("above the force limit");
+        if (t.status & kNonFiniteLatched) return fault("a computed wrench was not finite");
+        if (t.status & kContactCap) return fault("the manifold was full");
+        if (t.contacts > run.most_points) return fault("more points than the cap");
+        if (t.iterations > static_cast<std::uint32_t>(tick::kSubSteps)) return fault("more sub-steps than the cap");
+        if (t.nodes > kMostLooks * run.all_nodes) return fault("more nodes than the cap");
+    }
+    return {};
+}
+
+}  // namespace
+
+std::span<const std::pair<model::ContactMethod, const char*>> methods() {
+    static constexpr std::array kMethods{std::pair{model::ContactMethod::Penalty, "penalty"},
+                                         std::pair{model::ContactMethod::GodObjectHeuristic, "god_object_heuristic"}};
+    return kMethods;
+}
+
+double Measured::p999_us() const {
+    if (us.empty()) return 0.0;
+    std::vector<double> sorted = us;
+    const auto place = static_cast<std::size_t>(std::ceil(0.999 * static_cast<double>(us.size()))) - 1;
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(place), sorted.end());
+    return sorted[place];
+}
+
+bool fullSize() { return std::getenv("PASSUNG_HARD_FULL") != nullptr; }
+
+const Case* findCase(const std::string& name) {
+    for (const Case& c : cases())
+        if (name == c.name) return &c;
+    return nullptr;
+}
+
+Result<Run> runCase(const Case& c, model::ContactMethod method, std::uint64_t seed, bool full) {
+    auto spec = readHardScene(c.scene);
+    if (!spec) return spec.errors();
+    spec->contact.method = method;
+    if (c.vary != nullptr && seed > 0) c.vary(*spec, seed);
+    return runScene(*spec, c.drive(*spec, seed), std::llround((full ? c.full_seconds : c.seconds) / kTickSeconds));
+}
+
+Result<Measured> measure(const Case& c, model::ContactMethod method, bool full) {
+    Measured result;
+    result.judgement.value = c.adds ? 0.0 : -1e300;
+    for (int seed = 0; seed < (full ? c.full_seeds : c.seeds); ++seed) {
+        const auto run = runCase(c, method, static_cast<std::uint64_t>(seed), full);
+        if (!run) return run.errors();
+        Judgement found = c.judge(*run);
+        result.judgement.value =
+            c.adds ? result.judgement.value + found.value : std::max(result.judgement.value, found.value);
+        if (found.broken.empty()) found.broken = commonFaults(*run);
+        if (result.judgement.broken.empty() && !found.broken.empty())
+            result.judgement.broken = fmt::format("seed {}: {}", seed, found.broken);
+        for (const Tick& t : run->ticks) {
+            result.us.push_back(static_cast<double>(t.us));
+            result.nodes = std::max(result.nodes, t.nodes);
+            result.points = std::max(result.points, t.contacts);
+            result.iterations = std::max(result.iterations, t.iterations);
+        }
+    }
+    return result;
+}
+
+std::string describe(const Case& c, const char* method, const Measured& m) {
+    return fmt::format(
+        "{:6} {:28} {:20} {:>10.4g} <= {:<8.4g} {:5} {}{}{}; p99.9 {:.0f} us, {} nodes, {} points, {} "
+        "iterations, {} ticks\n",
+        m.met(c) ? "met" : "MISSED", c.name, method, m.judgement.value, c.mark, c.unit, c.figure,
+        m.judgement.broken.empty() ? "" : "; ", m.judgement.broken, m.p999_us(), m.nodes, m.points, m.iterations,
+        m.us.size());
+}
+
+}  // namespace passung::hard

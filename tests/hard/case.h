@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/result.h"
+#include "tests/hard/run.h"
+
+namespace passung::hard {
+
+/// What a run says about its case.
+struct Judgement {
+    double value = 0.0;       // in the case's unit; least is best
+    std::string broken = {};  // what else had to hold and did not; empty: nothing
+};
+
+/// A scene file, a device path and one number to hold. `passung simulate` runs the same scene and path.
+struct Case {
+    const char* name;
+    const char* scene;   // in tests/hard/scenes, without its ending
+    const char* figure;  // what the number is
+    const char* unit;
+    double mark;  // met if value ≤ mark
+    int seeds, full_seeds;
+    double seconds, full_seconds;  // of a run
+    Drive (*drive)(const model::SceneSpec&, std::uint64_t seed);
+    Judgement (*judge)(const Run&);
+    void (*vary)(model::SceneSpec&, std::uint64_t seed) = nullptr;  // seed 0 leaves the scene as its file says
+    unsigned methods = 0b110;                                       // by ContactMethod: who has to hold the mark
+    bool adds = false;  // the seeds' numbers are summed up; else the worst counts
+};
+
+/// The whole table; the order is that of the printed one.
+std::span<const Case> cases();
+const Case* findCase(const std::string& name);
+
+/// Over all seeds.
+struct Measured {
+    Judgement judgement;
+    std::vector<double> us;  // processor time of every tick
+    std::uint32_t nodes = 0, points = 0, iterations = 0;
+    double p999_us() const;
+    bool met(const Case& c) const { return judgement.value <= c.mark && judgement.broken.empty(); }
+};
+
+/// Runs a case with `method`, by default in a reduced size. Besides the case's own number every tick must be finite,
+/// within the device's limits and below the hard caps of nodes, points and iterations. Errors: the scene cannot be
+/// read or built.
+Result<Measured> measure(const Case& c, model::ContactMethod method, bool full);
+
+/// The same for one seed, with the run.
+Result<Run> runCase(const Case& c, model::ContactMethod method, std::uint64_t seed, bool full);
+
+/// True if PASSUNG_HARD_FULL is in the environment.
+bool fullSize();
+
+/// The methods of the table and their names in scene files.
+std::span<const std::pair<model::ContactMethod, const char*>> methods();
+inline bool applies(const Case& c, model::ContactMethod method) { return (c.methods >> static_cast<int>(method)) & 1u; }
+
+/// One line: met or MISSED, name, method, value beside mark, cost.
+std::string describe(const Case& c, const char* method, const Measured& measured);
+
+}  // namespace passung::hard

@@ -1,0 +1,413 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "core/loop/stability.h"
+#include "devices/simulated/device_dynamics.h"
+#include "tests/hard/case.h"
+#include "tests/hard/figures.h"
+#include "tests/hard/paths.h"
+#include "tests/hard/truth_cases.h"
+
+namespace passung::hard {
+
+namespace {
+
+using model::SceneSpec;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+Pose worldOf(const SceneSpec& spec) { return fixedPart(spec).X_WP; }
+
+/// The whole scene turned and moved at random: no cell of a field lies as before.
+void anywhere(SceneSpec& spec, std::uint64_t seed) {
+    Random random(streamSeed("hard", "", "", "world", seed));
+    const auto three = [&] { return Vec3(random.normal(), random.normal(), random.normal()); };
+    const Pose X{Quat(random.normal(), random.normal(), random.normal(), random.normal()).normalized(),
+                 0.013 * three()};
+    for (model::PartSpec& part : spec.parts) part.X_WP = X * part.X_WP;
+}
+
+// ---- paths ----------------------------------------------------------------------------------------------------------
+
+/// Strokes through a sheet at 0.1 to 5 m/s, from both sides; `turning`: while the tool spins.
+Drive strokes(const SceneSpec& spec, std::uint64_t seed, bool turning) {
+    Random random(streamSeed("hard", "", "", "strokes", seed));
+    Walk walk(at(0, 0, 12));
+    double side = 1.0;
+    const auto turned = [&](double share) {
+        const double a = share * std::numbers::pi;
+        return Vec3(random.uniform(-a, a), random.uniform(-a, a), random.uniform(-a, a));
+    };
+    for (int k = 0; k < 4000; ++k) {
+        const double speed = 0.1 * std::pow(50.0, random.uniform()), reach = random.uniform(8, 16);
+        walk.to(at(random.uniform(-15, 15), random.uniform(-15, 15), 12 * side, turned(0.5)), 0.5).rest(5);
+        const Pose here = walk.last();
+        const Vec3 beyond(1e-3 * random.uniform(-15, 15), 1e-3 * random.uniform(-15, 15), -1e-3 * reach * side);
+        const Quat q = turning ? (rotationFromVector(turned(0.9)) * here.q).normalized() : here.q;
+        walk.to({q, beyond}, speed, 150.0).rest(10).to(here, speed, 150.0).rest(10);
+        if (k % 4 == 3) {  // round the sheet to its other side
+            walk.to(at(0, 0, 12 * side), 0.5).to(at(45, 0, 12 * side), 1).to(at(45, 0, -12 * side), 1);
+            walk.to(at(0, 0, -12 * side), 1).rest(20);
+            side = -side;
+        }
+    }
+    return walk.drive(worldOf(spec));
+}
+
+Drive straightStrokes(const SceneSpec& spec, std::uint64_t seed) { return strokes(spec, seed, false); }
+Drive turningStrokes(const SceneSpec& spec, std::uint64_t seed) { return strokes(spec, seed, true); }
+
+/// Along the sheet's plane against its edge, and on for a centimetre.
+Drive edgeStrokes(const SceneSpec& spec, std::uint64_t seed) {
+    Random random(streamSeed("hard", "", "", "edge strokes", seed));
+    Walk walk(at(0, 0, 12));
+    walk.to(at(45, 0, 12), 0.5);
+    for (int k = 0; k < 3000; ++k) {
+        const double speed = 0.1 * std::pow(50.0, random.uniform());
+        const double y = random.uniform(-15, 15), z = random.uniform(-0.5, 0.5);
+        const Vec3 turn(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+        walk.to(at(45, y, z, turn), 0.5).rest(5);
+        walk.to(at(45 - random.uniform(15, 25), y + random.uniform(-3, 3), z, turn), speed).rest(10);
+        walk.to(at(45, y, z, turn), speed).rest(10);
+    }
+    return walk.drive(worldOf(spec));
+}
+
+/// A peg over its bore, every three seconds: down while it is pushed and tilted, held, and out again. Lengths per 20 mm
+/// of depth.
+Drive pegPush(const SceneSpec& spec, std::uint64_t seed, double yaw) {
+    const auto dims = model::namedDimensions(std::get<model::Shape>(fixedPart(spec).geometry));
+    double depth = 0.0;
+    for (const model::Dimension& d : dims)
+        if (std::string(d.key) == "bore_depth") depth = d.value;
+    const double unit = depth / 20.0;  // 1 mm of a bore of 20 mm
+    const RandomPush push(streamSeed("hard", "", "", "peg", seed), unit * Vec3(1.5, 1.5, 0.3),
+                          Vec3(2 * kDegree, 2 * kDegree, yaw));
+    return [=, X_WO = worldOf(spec)](std::int64_t tick, const tick::TickOutput*) {
+        const double t = static_cast<double>(tick) * kTickSeconds, phase = std::fmod(t, 3.0);
+        const double high = 2.0 * unit, low = -depth - 3.0 * unit;
+        const double share = phase < 1.5 ? phase / 1.5 : phase < 2.5 ? 1.0 : 2.0 * (3.0 - phase);
+        const double ramp = std::min(1.0, t / 0.3);
+        const Pose X = push.at(t);
+        Pose pose{Quat::Identity().slerp(ramp, X.q), ramp * X.p};
+        pose.p.z() += high + share * (low - high);
+        return DeviceReading{X_WO * pose};
+    };
+}
+
+Drive roundPeg(const SceneSpec& spec, std::uint64_t seed) { return pegPush(spec, seed, 20 * kDegree); }
+Drive shapedPeg(const SceneSpec& spec, std::uint64_t seed) { return pegPush(spec, seed, 1 * kDegree); }
+
+/// Pushes the held part from its start by (0, 0, -depth), there in every direction.
+Drive pushDown(const SceneSpec& spec, std::uint64_t seed, double depth_mm, const Vec3& lateral_mm, double tilt) {
+    const RandomPush push(streamSeed("hard", "", "", "push", seed), 1e-3 * lateral_mm, Vec3::Constant(tilt));
+    return [=, start = heldPart(spec).X_WP](std::int64_t tick, const tick::TickOutput*) {
+        const double t = static_cast<double>(tick) * kTickSeconds, ramp = std::min(1.0, t / 0.3);
+        const Pose X = push.at(t);
+        Pose pose{(Quat::Identity().slerp(ramp, X.q) * start.q).normalized(), start.p + ramp * X.p};
+        pose.p.z() -= ramp * 1e-3 * depth_mm;
+        return DeviceReading{pose};
+    };
+}
+
+template <int depth_mm, int lateral_mm, int tilt_deg>
+Drive push(const SceneSpec& spec, std::uint64_t seed) {
+    return pushDown(spec, seed, depth_mm, Vec3(lateral_mm, lateral_mm, 2), tilt_deg * kDegree);
+}
+
+Drive stay(const SceneSpec& spec, std::uint64_t) { return Walk(heldPart(spec).X_WP).drive(Pose{}); }
+
+/// The bar is turned on and on against the posts.
+Drive turnOn(const SceneSpec&, std::uint64_t) {
+    Walk walk(at(0, 0, 0));
+    walk.turn(Vec3::UnitZ(), 4.5 * std::numbers::pi, 6.0).turn(Vec3::UnitZ(), -9.0 * std::numbers::pi, 12.0);
+    return walk.drive(Pose{});
+}
+
+/// A ball is pressed by 1 mm and drawn over a cube's faces, edges and corners.
+Drive rubCube(const SceneSpec&, std::uint64_t seed) {
+    Random random(streamSeed("hard", "", "", "rub", seed));
+    std::vector<Wander> wander;
+    for (int i = 0; i < 3; ++i) wander.emplace_back(random, 0.1, 0.5);
+    return [=](std::int64_t tick, const tick::TickOutput*) {
+        const double t = static_cast<double>(tick) * kTickSeconds;
+        const Vec3 d(wander[0].at(t), wander[1].at(t), wander[2].at(t));
+        const Vec3 there = 13e-3 / std::max(1e-3, d.cwiseAbs().maxCoeff()) * d;
+        const double ramp = std::min(1.0, t / 0.3);  // from above, at the start's place, outside
+        const Vec3 from = d.normalized() * 25e-3;
+        return DeviceReading{{Quat::Identity(), ramp < 1.0 ? Vec3(from + ramp * (there - from)) : there}};
+    };
+}
+
+/// Down onto the table by `depth_mm`, there to and fro along a curve.
+Drive slide(const SceneSpec& spec, std::uint64_t, double depth_mm) {
+    return [=, start = heldPart(spec).X_WP](std::int64_t tick, const tick::TickOutput*) {
+        const double t = static_cast<double>(tick) * kTickSeconds, ramp = std::min(1.0, t / 0.2);
+        const double along = 20e-3 * std::sin(0.4 * 2 * std::numbers::pi * std::max(0.0, t - 0.2));
+        return DeviceReading{{start.q, start.p + Vec3(along, 0.3 * along, -ramp * 1e-3 * (depth_mm + 2.0))}};
+    };
+}
+
+/// Pressed by 2 mm, leaning a little, and held.
+Drive press(const SceneSpec& spec, std::uint64_t) {
+    Walk walk(heldPart(spec).X_WP);
+    const Pose start = walk.last();
+    walk.to({(rotationFromVector(Vec3(0.02, 0.05, 0.1)) * start.q).normalized(), start.p - Vec3(0, 0, 4e-3)}, 0.02);
+    return walk.drive(Pose{});
+}
+
+/// Slides, and now and then the loop wakes late by 1, 5 and 50 ms: those ticks are missing.
+Drive missTicks(const SceneSpec& spec, std::uint64_t) {
+    return [inner = slide(spec, 0, 2.0), late = std::int64_t{0}](std::int64_t tick, const tick::TickOutput*) mutable {
+        const std::int64_t missed = tick % 300 == 100 ? 1 : tick % 300 == 150 ? 5 : tick % 300 == 200 ? 50 : 0;
+        late += missed;
+        DeviceReading reading = inner(tick + late, nullptr);
+        reading.periods = static_cast<std::uint32_t>(1 + missed);
+        return reading;
+    };
+}
+
+/// Slides with a sensor that says NaN, infinity, jumps a metre, or says the same for a while.
+Drive lie(const SceneSpec& spec, std::uint64_t) {
+    return [inner = slide(spec, 0, 2.0), frozen = Pose{}](std::int64_t tick, const tick::TickOutput*) mutable {
+        DeviceReading reading = inner(tick, nullptr);
+        const std::int64_t phase = tick % 500;
+        if (phase >= 100 && phase < 100 + (tick / 500) * 7 + 1) reading.X_BD.p = Vec3(kNan, 0, 0);
+        if (phase >= 200 && phase < 210) reading.X_BD.q = Quat(std::numeric_limits<double>::infinity(), 0, 0, 0);
+        if (phase >= 300 && phase < 310) reading.X_BD.p += Vec3(1, -1, phase % 2 == 0 ? 1 : -1);
+        if (phase < 400) frozen = reading.X_BD;
+        if (phase >= 400 && phase < 460) reading.X_BD = frozen;
+        return reading;
+    };
+}
+
+// ---- a device in the loop -------------------------------------------------------------------------------------------
+
+/// Every preset with a delay of 0 to 3 ticks, at 0.95 times its own border.
+struct Station {
+    const simulated::DeviceParams* preset;
+    int delay;
+};
+
+Station stationOf(std::uint64_t seed) {
+    const auto& presets = simulated::presets();
+    if (seed == 0) return {simulated::findPreset("sigma7"), 0};  // as the scene's file says
+    return {&presets[((seed - 1) / 4) % presets.size()], static_cast<int>((seed - 1) % 4)};
+}
+
+simulated::DeviceParams paramsOf(const Station& station) {
+    simulated::DeviceParams params = *station.preset;
+    params.delay_ticks = station.delay;
+    return params;
+}
+
+void atTheBorder(SceneSpec& spec, std::uint64_t seed) {
+    const simulated::DeviceParams p = paramsOf(stationOf(seed));
+    const loop::SampledWall wall{.mass = p.mass.value,
+                                 .damping = p.damping.value,
+                                 .virtual_damping = p.recommended_damping.value,
+                                 .period = kTickSeconds,
+                                 .delay_ticks = p.delay_ticks};
+    spec.contact.stiffness = 0.95 * stableStiffnessBorder(wall);
+    spec.contact.damping = p.recommended_damping.value;
+    spec.contact.rotational_stiffness = 0.0;
+    spec.contact.rotational_damping = 0.0;
+    spec.limits.max_force = p.max_force.value;
+    spec.limits.max_torque = p.max_torque.value;
+    spec.limits.max_force_rate = p.max_force_rate.value;
+    spec.limits.actuates_torque = p.actuated_degrees == 6;
+}
+
+Drive pressedHandle(const SceneSpec& spec, std::uint64_t seed) {
+    const simulated::DeviceParams params = paramsOf(stationOf(seed));
+    simulated::DeviceDynamics dynamics(params, heldPart(spec).X_WP);
+    dynamics.place(heldPart(spec).X_WP, {{0, 0, -0.1}, Vec3::Zero()});
+    simulated::HandCoupling hand;
+    hand.attached = true;
+    hand.F_D_B.force = Vec3(0, 0, -0.3 * params.max_force.value);
+    return [=](std::int64_t, const tick::TickOutput* last) mutable {
+        if (last != nullptr) {
+            dynamics.command(last->F_D_B);
+            dynamics.advance(hand);
+        }
+        return DeviceReading{dynamics.readPose()};
+    };
+}
+
+// ---- judgements -----------------------------------------------------------------------------------------------------
+
+/// Swing of the handle in the last second above that in the second one, encoder steps excepted [µm]: the largest of
+/// such a step keeps it swinging by some of them.
+Judgement swingGrowth(const Run& run) {
+    const auto swing = [&](std::size_t first) {
+        double low = 1e300, high = -1e300;
+        for (std::size_t i = first; i < first + 1000; ++i) {
+            low = std::min(low, run.ticks[i].device.p.z());
+            high = std::max(high, run.ticks[i].device.p.z());
+        }
+        return high - low;
+    };
+    double quantum = 0.0;
+    for (const simulated::DeviceParams& p : simulated::presets())
+        if (p.max_force.value == run.spec.limits.max_force) quantum = std::max(quantum, p.quantum.value);
+    const double late = swing(run.ticks.size() - 1000);
+    Judgement result{kUm * (late - swing(1000) - 3.0 * quantum)};
+    if (late > 1e-3) result.broken = fmt::format("swings by {:.3g} mm", 1e3 * late);
+    bool touches = false;
+    for (const Tick& t : run.ticks) touches = touches || t.sent.force.z() > 0.0;
+    if (!touches) result.broken = "no contact";
+    return result;
+}
+
+/// The proxy's speed when it leaves the overlap it began with [m/s].
+Judgement kick(const Run& run) {
+    Judgement result;
+    Pose last = heldPart(run.spec).X_WP;
+    double force = 0.0;
+    for (const Tick& t : run.ticks) {
+        result.value = std::max(result.value, (t.proxy.p - last.p).norm() / kTickSeconds);
+        force = std::max(force, t.sent.force.norm());
+        last = t.proxy;
+    }
+    // 5 mm to the face, and a hair for the rounding of the field.
+    const double allowed = run.spec.contact.stiffness * 5.1e-3;
+    if (force > allowed) result.broken = fmt::format("{:.3g} N, {:.3g} allowed", force, allowed);
+    Run end = run;
+    end.ticks.assign(run.ticks.end() - 10, run.ticks.end());
+    const double left = deepestOverlap(end);
+    if (left > run.spec.contact.tolerance) result.broken = fmt::format("{:.3g} um of overlap stay", kUm * left);
+    return result;
+}
+
+/// Motion of the proxy from the first second on [µm].
+Judgement drift(const Run& run) {
+    Judgement result;
+    const Pose& there = run.ticks[1000].proxy;
+    double gained = 0.0;
+    for (std::size_t i = 1000; i < run.ticks.size(); ++i) {
+        const Tick& t = run.ticks[i];
+        result.value = std::max(result.value, kUm * ((t.proxy.p - there.p).norm() +
+                                                     0.02 * rotationVector(t.proxy.q * there.q.conjugate()).norm()));
+        gained = std::max(gained, run.ticks[1000].energy - t.energy);
+    }
+    if (gained > 1e-9) result.broken = fmt::format("{:.3g} J given out at rest", gained);
+    return result;
+}
+
+/// Force above the device's limit, or while there is no sample to go by [N].
+Judgement forceOfLies(const Run& run) {
+    Judgement result;
+    for (const Tick& t : run.ticks) {
+        const double force = t.sent.force.norm();
+        result.value = std::max(result.value, (t.status & kInputRejected) ? force : force - run.spec.limits.max_force);
+    }
+    const double overlap = deepestOverlap(run);
+    if (overlap > run.spec.contact.tolerance) result.broken = fmt::format("{:.3g} um of overlap", kUm * overlap);
+    return result;
+}
+
+const model::Shape kCube = model::Box{0.02, 0.02, 0.02};
+
+/// Against the cube that the mesh was before it was damaged.
+Judgement overlapOfCube(const Run& run) {
+    std::vector<std::pair<DenseBody, Pose>> cube;
+    cube.emplace_back(denseBody(kCube, 1e-3), fixedPart(run.spec).X_WP);
+    return {kUm *
+            deepestOverlap(run, denseBody(std::get<model::Shape>(heldPart(run.spec).geometry), 1e-3), std::move(cube))};
+}
+
+Judgement overlapOfPins(const Run& run) {
+    std::vector<std::pair<DenseBody, Pose>> pins;
+    for (int i = 0; i < 10; ++i)
+        for (int k = 0; k < 10; ++k)
+            pins.emplace_back(denseBody(model::Box{1.5e-3, 1.5e-3, 0.01}, 0.5e-3),
+                              fixedPart(run.spec).X_WP * at(-22.5 + 5 * i, -22.5 + 5 * k, -5));
+    Judgement result{kUm * deepestOverlap(run, denseBody(std::get<model::Shape>(heldPart(run.spec).geometry), 1e-3),
+                                          std::move(pins))};
+    return result;
+}
+
+Judgement overlapOfMany(const Run& run) {
+    Judgement result = overlapUm(run);
+    const auto most = std::max_element(run.ticks.begin(), run.ticks.end(),
+                                       [](const Tick& a, const Tick& b) { return a.contacts < b.contacts; });
+    if (most->contacts < 1000) result.broken = fmt::format("only {} contacts", most->contacts);
+    return result;
+}
+
+/// Overlap per 20 mm of diameter [µm].
+Judgement insertedOfTiny(const Run& run) {
+    Judgement result = insertedUm(run);
+    result.value *= 1000.0;
+    return result;
+}
+Judgement insertedOfHuge(const Run& run) {
+    Judgement result = insertedUm(run);
+    result.value *= 20e-3 / 6.0;
+    return result;
+}
+
+constexpr unsigned kGods = 0b110;
+constexpr const char* kOverlap = "deepest overlap";
+constexpr const char* kCrossed = "poses in which FCL finds the sheet in the tool less the tolerance";
+constexpr double kPegMark = 2.0, kFieldMark = 20.0;  // µm: of closed-form pegs; the scenes' tolerance_um
+
+}  // namespace
+
+std::span<const Case> cases() {
+    static const std::vector<Case> kCases = [] {
+        std::vector<Case> all{
+            {"sheet_strokes", "sheet", kCrossed, "", 0, 1, 8, 8, 300, straightStrokes, crossingCount, anywhere, kGods,
+             true},
+            {"sheet_edge", "sheet", kCrossed, "", 0, 1, 8, 6, 150, edgeStrokes, crossingCount, anywhere, kGods, true},
+            {"sheet_turning", "sheet", kCrossed, "", 0, 1, 8, 8, 300, turningStrokes, crossingCount, anywhere, kGods,
+             true},
+            {"peg_100um", "peg_100um", kOverlap, "um", kPegMark, 1, 20, 2, 60, roundPeg, insertedUm, anywhere},
+            {"peg_50um", "peg_50um", kOverlap, "um", kPegMark, 1, 20, 2, 60, roundPeg, insertedUm, anywhere},
+            {"peg_10um", "peg_10um", kOverlap, "um", kPegMark, 1, 20, 2, 60, roundPeg, insertedUm, anywhere},
+            {"peg_4mm", "peg_4mm", kOverlap, "um", kPegMark, 1, 20, 2, 60, roundPeg, insertedUm, anywhere},
+            {"keyed_peg", "keyed_peg", kOverlap, "um", kPegMark, 1, 20, 2, 60, shapedPeg, insertedUm, anywhere},
+            {"square_peg", "square_peg", kOverlap, "um", kPegMark, 1, 20, 2, 60, shapedPeg, insertedUm, anywhere},
+            {"wedge", "wedge", kOverlap, "um", kFieldMark, 1, 10, 2, 20, push<20, 4, 20>, overlapUm, anywhere},
+            {"acute_corner", "acute_corner", kOverlap, "um", kFieldMark, 1, 10, 2, 20, push<20, 4, 20>, overlapUm},
+            {"ball_in_cone", "ball_in_cone", kOverlap, "um", kFieldMark, 1, 10, 2, 20, push<6, 3, 20>, overlapUm},
+            {"edge_on_edge", "edge_on_edge", kOverlap, "um", kFieldMark, 1, 10, 2, 20, push<8, 4, 20>, overlapUm},
+            {"groove_vertex", "groove_vertex", kOverlap, "um", kFieldMark, 1, 10, 2, 20, push<18, 4, 60>, overlapUm},
+            {"deep_start", "deep_start", "fastest proxy", "m/s", 1.0, 1, 1, 1, 1, stay, kick},
+            {"needle", "needle", kOverlap, "um", kFieldMark, 1, 10, 2, 20, push<6, 4, 20>, overlapUm},
+            {"plate", "plate", kOverlap, "um", kFieldMark, 1, 10, 2, 20, push<6, 4, 30>, overlapUm},
+            {"half_turn", "half_turn", kOverlap, "um", kFieldMark, 1, 1, 5, 5, turnOn, overlapUm},
+            {"peg_tiny", "peg_tiny", "overlap per 20 mm of diameter", "um", kPegMark, 1, 5, 2, 60, roundPeg,
+             insertedOfTiny},
+            {"peg_huge", "peg_huge", "overlap per 20 mm of diameter", "um", kPegMark, 1, 5, 2, 60, roundPeg,
+             insertedOfHuge},
+            {"mesh_holed", "mesh_holed", kOverlap, "um", kFieldMark, 1, 5, 2, 10, rubCube, overlapOfCube},
+            {"mesh_flipped", "mesh_flipped", kOverlap, "um", kFieldMark, 1, 5, 2, 10, rubCube, overlapOfCube},
+            {"mesh_degenerate", "mesh_degenerate", kOverlap, "um", kFieldMark, 1, 5, 2, 10, rubCube, overlapOfCube},
+            {"mesh_crossing", "mesh_crossing", kOverlap, "um", kFieldMark, 1, 5, 2, 10, rubCube, overlapOfCube},
+            {"border_stiffness", "ball_sigma7", "growth of the handle's swing at 0.95 of the border, delay 0-3", "um",
+             0, 25, 25, 3, 8, pressedHandle, swingGrowth, atTheBorder, 0b111},
+            {"missed_ticks", "table", kOverlap, "um", kFieldMark, 1, 1, 2, 20, missTicks, overlapUm},
+            {"lying_device", "table", "force above the limit or without a sample", "N", 0, 1, 1, 3, 30, lie,
+             forceOfLies},
+            {"rest", "table", "drift of the proxy", "um", 1e-3, 1, 1, 10, 1000, press, drift},
+            {"thousand_contacts", "thousand_contacts", kOverlap, "um", kFieldMark, 1, 1, 0.6, 10, push<3, 2, 2>,
+             overlapOfMany},
+            {"hundred_patches", "hundred_patches", kOverlap, "um", kFieldMark, 1, 1, 0.6, 10, push<3, 2, 2>,
+             overlapOfPins},
+        };
+        const auto truth = truthCases();
+        all.insert(all.end(), truth.begin(), truth.end());
+        return all;
+    }();
+    return kCases;
+}
+
+}  // namespace passung::hard

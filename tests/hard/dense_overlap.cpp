@@ -1,0 +1,148 @@
+#include "tests/hard/dense_overlap.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace passung::hard {
+
+namespace {
+
+constexpr std::size_t kBlock = 16;     // points that rest and wake together
+constexpr double kFineChord = 5e-6;    // of a circle, per size of the body: 700 samples a turn
+constexpr double kCoarseChord = 1e-3;  // for faces
+constexpr double kFeature = 0.94;      // cosine of the angle of a sharp edge: 20°
+constexpr double kEdgeSpacing = 5e-3;  // per size
+constexpr double kBallChord = 1e-4;    // bodies without edges are sampled by vertices alone
+
+void sampleSegment(const Vec3& a, const Vec3& b, double spacing, std::vector<Vec3>& points) {
+    const int n = std::max(1, static_cast<int>(std::ceil((b - a).norm() / spacing)));
+    for (int i = 0; i <= n; ++i) points.push_back(a + (b - a) * (static_cast<double>(i) / n));
+}
+
+Vec3 normalOf(const model::TriangleMesh& mesh, const model::Triangle& t) {
+    return (mesh.vertices[t[1]] - mesh.vertices[t[0]]).cross(mesh.vertices[t[2]] - mesh.vertices[t[0]]).normalized();
+}
+
+struct Edge {
+    int triangles = 0;
+    Vec3 normal = Vec3::Zero();  // of the first
+    bool sharp = false;
+};
+
+/// Vertices with the same place count as one.
+std::map<std::pair<std::uint32_t, std::uint32_t>, Edge> edgesOf(const model::TriangleMesh& mesh) {
+    std::map<std::array<double, 3>, std::uint32_t> first;
+    std::vector<std::uint32_t> same(mesh.vertices.size());
+    for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
+        const Vec3& v = mesh.vertices[i];
+        same[i] = first.emplace(std::array{v.x(), v.y(), v.z()}, i).first->second;
+    }
+    std::map<std::pair<std::uint32_t, std::uint32_t>, Edge> edges;
+    for (const model::Triangle& t : mesh.triangles) {
+        const Vec3 n = normalOf(mesh, t);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto [a, b] = std::minmax(same[t[k]], same[t[(k + 1) % 3]]);
+            Edge& edge = edges[{a, b}];
+            if (edge.triangles++ == 0) {
+                edge.normal = n;
+            } else {
+                edge.sharp = edge.sharp || n.dot(edge.normal) < kFeature;
+            }
+        }
+    }
+    for (auto& [ends, edge] : edges) edge.sharp = edge.sharp || edge.triangles == 1;
+    return edges;
+}
+
+void sampleFaces(const model::TriangleMesh& mesh, double spacing, std::vector<Vec3>& points) {
+    for (const auto& [ends, edge] : edgesOf(mesh))
+        sampleSegment(mesh.vertices[ends.first], mesh.vertices[ends.second], spacing, points);
+    for (const model::Triangle& t : mesh.triangles) {
+        const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+        const double longest = std::max({(b - a).norm(), (c - a).norm(), (c - b).norm()});
+        const double height = (b - a).cross(c - a).norm() / longest;
+        if (height < spacing) continue;
+        const int n = static_cast<int>(std::ceil(longest / spacing));
+        for (int i = 1; i < n; ++i)
+            for (int k = 1; i + k < n; ++k) points.push_back(a + (b - a) * i / n + (c - a) * k / n);
+    }
+}
+
+}  // namespace
+
+DenseBody denseBody(const model::Shape& shape, double spacing) {
+    const double size = boundsOf(model::tessellate(shape, 1e-3)).size().maxCoeff();
+    DenseBody body;
+    const model::TriangleMesh fine = model::tessellate(
+        shape, size * (std::holds_alternative<model::Sphere>(shape) || std::holds_alternative<model::Torus>(shape)
+                           ? kBallChord
+                           : kFineChord));
+    const bool edgeless = std::holds_alternative<model::Sphere>(shape) || std::holds_alternative<model::Torus>(shape);
+    if (edgeless) {
+        body.points = fine.vertices;
+    } else {
+        for (const auto& [ends, edge] : edgesOf(fine))
+            if (edge.sharp)
+                sampleSegment(fine.vertices[ends.first], fine.vertices[ends.second],
+                              std::min(kEdgeSpacing * size, spacing), body.points);
+        sampleFaces(model::tessellate(shape, size * kCoarseChord), spacing, body.points);
+    }
+    body.distance = [shape](const Vec3& p) { return model::signedDistance(shape, p); };
+    return body;
+}
+
+DenseBody denseUnion(const std::vector<std::pair<model::Shape, Pose>>& shapes, double spacing) {
+    DenseBody body;
+    for (const auto& [shape, X] : shapes)
+        for (const Vec3& p : denseBody(shape, spacing).points) body.points.push_back(X * p);
+    body.distance = [shapes](const Vec3& p) {
+        double least = std::numeric_limits<double>::infinity();
+        for (const auto& [shape, X] : shapes) least = std::min(least, model::signedDistance(shape, X.inverse() * p));
+        return least;
+    };
+    return body;
+}
+
+DenseOverlap::DenseOverlap(DenseBody moving, std::vector<std::pair<DenseBody, Pose>> fixed)
+    : moving_(std::move(moving)), fixed_(std::move(fixed)) {
+    for (const Vec3& p : moving_.points) reach_ = std::max(reach_, p.norm());
+    const auto blocks = [](const std::vector<Vec3>& points) { return (points.size() + kBlock - 1) / kBlock; };
+    for (std::size_t i = 0; i < fixed_.size(); ++i) {
+        const DenseBody& other = fixed_[i].first;
+        sides_.push_back({&moving_.points, &other.distance, i, true, std::vector<double>(blocks(moving_.points), 0.0)});
+        sides_.push_back({&other.points, &moving_.distance, i, false, std::vector<double>(blocks(other.points), 0.0)});
+    }
+}
+
+void DenseOverlap::look(const Pose& X_WM) {
+    if (poses_++ > 0) path_ += (X_WM.p - last_.p).norm() + reach_ * rotationVector(X_WM.q * last_.q.conjugate()).norm();
+    last_ = X_WM;
+    for (Side& side : sides_) {
+        const Pose X_FM = fixed_[side.fixed].second.inverse() * X_WM;
+        const Pose X = side.moving ? X_FM : X_FM.inverse();
+        const Mat3 R = X.q.toRotationMatrix();
+        for (std::size_t b = 0; b < side.wake.size(); ++b) {
+            if (side.wake[b] > path_) continue;
+            double least = std::numeric_limits<double>::infinity();
+            for (std::size_t i = kBlock * b; i < std::min(kBlock * (b + 1), side.points->size()); ++i)
+                least = std::min(least, (*side.distance)(R * (*side.points)[i] + X.p));
+            deepest_ = std::max(deepest_, -least);
+            side.wake[b] = path_ + least + deepest_;
+        }
+    }
+}
+
+void DenseOverlap::see(const Pose& X_WM, int between) {
+    if (poses_ > 0) {
+        const Pose from = last_;
+        for (int i = 1; i <= between; ++i) {
+            const double share = static_cast<double>(i) / (between + 1);
+            look({from.q.slerp(share, X_WM.q), from.p + share * (X_WM.p - from.p)});
+        }
+    }
+    look(X_WM);
+}
+
+}  // namespace passung::hard

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "tests/hard/case.h"
+#include "tests/hard/dense_overlap.h"
+
+/// Numbers of a run, each by means that share nothing with the solver but the shapes' closed forms.
+namespace passung::hard {
+
+inline constexpr double kUm = 1e6;
+
+/// The held part of a scene of shapes.
+const model::PartSpec& heldPart(const model::SceneSpec& spec);
+/// The first other one: its frame is that of the paths.
+const model::PartSpec& fixedPart(const model::SceneSpec& spec);
+
+/// Deepest overlap of the proxy with the obstacles, at all ticks and between them [m]; spacing of the samples on faces
+/// [m].
+double deepestOverlap(const Run& run, double spacing = 1e-3);
+double deepestOverlap(const Run& run, DenseBody held, std::vector<std::pair<DenseBody, Pose>> obstacles);
+
+/// Poses (at ticks and between them) at which FCL finds the thin obstacle in the held part shrunk by the field's
+/// tolerance on every side.
+double crossings(const Run& run);
+
+/// Tip of the held peg below the obstacle's mouth at its deepest [m].
+double insertedDepth(const Run& run);
+
+/// RMS of the part above `hz` of a signal of 1 kHz, by a Hann window and Parseval.
+double rmsAbove(const std::vector<double>& signal, double hz);
+
+/// Judgements by these: overlap in µm.
+Judgement overlapUm(const Run& run);
+Judgement crossingCount(const Run& run);
+Judgement insertedUm(const Run& run);  // overlap, and at least 19/20 of the bore's depth reached
+
+}  // namespace passung::hard

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/model/scene.h"
+#include "core/tick/step.h"
+
+namespace passung::hard {
+
+/// A tick of a run as it is judged.
+struct Tick {
+    Pose device, proxy;  // of the held part: X_WH, X_WG
+    Wrench sent;         // on the hand, about the held part's origin, world axes, after the output stage
+    double energy = 0.0;
+    double proxy_depth = 0.0;  // as the program says [m]
+    std::uint32_t status = 0, contacts = 0, iterations = 0, nodes = 0;
+    float us = 0.0f;  // processor time of the tick
+};
+
+/// What a case's scene did on its device path.
+struct Run {
+    model::SceneSpec spec;
+    std::vector<DeviceReading> readings;
+    std::vector<Tick> ticks;
+    std::size_t most_points = 0;  // that a manifold holds
+    std::size_t all_nodes = 0;    // of all trees
+};
+
+/// The next reading of the device at `tick`; `last`: what the tick before gave back (nullptr at first).
+using Drive = std::function<DeviceReading(std::int64_t tick, const tick::TickOutput* last)>;
+
+/// A scene file of tests/hard/scenes, without its ending; registration and start gate as `passung simulate` has them.
+Result<model::SceneSpec> readHardScene(const std::string& name);
+std::string hardScenePath(const std::string& name);
+
+/// Errors: as model::buildScene.
+Result<Run> runScene(const model::SceneSpec& spec, const Drive& drive, std::int64_t ticks);
+
+/// The run's device path as `passung simulate --trajectory` reads it.
+std::string trajectoryCsv(const Run& run);
+
+}  // namespace passung::hard
