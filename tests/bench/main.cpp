@@ -9,6 +9,7 @@
 
 #include "tests/bench/contact_rows.h"
 #include "tests/bench/convergence_rows.h"
+#include "tests/bench/force_rows.h"
 #include "tests/bench/hard_rows.h"
 #include "tests/bench/marks.h"
 #include "tests/bench/million_rows.h"
@@ -23,7 +24,7 @@ using namespace passung::bench;
 namespace {
 
 struct Options {
-    std::string out, filter, make_poses, data = PASSUNG_BENCH_DATA;
+    std::string out, filter, make_poses, data = PASSUNG_BENCH_DATA, protocol = PASSUNG_BENCH_PROTOCOL;
     std::string hard_paths;
     bool check = false, quick = false;
     std::size_t poses = 500;
@@ -44,7 +45,8 @@ bool trustworthy(const std::vector<Row>& rows) {
             fmt::print(stderr, "error: {}: {}: {}: {}\n", row.group, row.method, row.settings, what);
             fine = false;
         };
-        const bool times_only = row.group == kMillionGroup || row.group == kPiecesGroup || row.group == kHardGroup;
+        const bool times_only = row.group == kMillionGroup || row.group == kPiecesGroup || row.group == kHardGroup ||
+                                row.group == kForceGroup;
         if (!std::isfinite(row.distance_error_um.max) && !times_only) complain("an error is not a number");
         if (row.bound_broken > 0.0) complain(fmt::format("{} answers are outside their own bound", row.bound_broken));
     }
@@ -79,7 +81,7 @@ int run(const Options& options) {
         [&] { return contactRows(*scene, extent); },  [&] { return millionRows(*scene, extent); },
         [&] { return samplingRows(*bunny, extent); }, [&] { return partRows(*bunny, extent); },
         [&] { return convergenceRows(extent); },      [&] { return hardRows(extent); },
-        [&] { return piecesRows(*scene, extent); }};
+        [&] { return piecesRows(*scene, extent); },   [&] { return forceRows(options.protocol, extent); }};
     for (const Group& group : groups) {
         const auto measured = group();
         if (!measured) return fail(measured.errors());
@@ -118,6 +120,7 @@ int main(int argc, char** argv) {
                    "only write the device paths of the hard cases into this folder, for passung simulate");
     app.add_option("--seed", options.seed, "of the poses that are made");
     app.add_option("--data", options.data, "folder of bunny.off and bunny_torus_poses.csv");
+    app.add_option("--protocol", options.protocol, "study of the kind peg_in_hole whose forces are measured");
     app.add_flag("--quick", options.quick, "few settings, one repetition: to see that it works")->excludes(check);
     try {
         app.parse(argc, argv);

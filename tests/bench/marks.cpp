@@ -7,6 +7,7 @@
 
 #include "tests/bench/contact_rows.h"
 #include "tests/bench/convergence_rows.h"
+#include "tests/bench/force_rows.h"
 #include "tests/bench/million_rows.h"
 #include "tests/bench/part_rows.h"
 #include "tests/bench/sampling_rows.h"
@@ -33,8 +34,13 @@ double otherBits(const Row& row) { return row.other_bits; }
 double falseContacts(const Row& row) { return row.contacts_mean; }
 double memory(const Row& row) { return row.memory_MB; }
 double order(const Row& row) { return row.order; }
+double p999Time(const Row& row) { return row.time_us.p999; }
+double deepest(const Row& row) { return row.depth_um.max; }
 
 bool always(const Row&) { return true; }
+bool isMotion(const Row& row) { return row.method == kQpMethod; }
+bool isForce(const Row& row) { return row.method == kForceMethod; }
+bool isTick(const Row& row) { return row.method == kTickMethod; }
 bool isAccurateOnAverage(const Row& row) {
     return row.distance_error_um.mean <= kMostDistanceError_um &&
            row.force_error_percent.mean <= kMostForceError_percent && row.force_turn_deg.mean <= kMostForceTurn_deg &&
@@ -94,6 +100,22 @@ Mark orderOf(const std::vector<Row>& rows, const char* method, const char* name,
     });
     Mark mark = figureOf(row != rows.end() ? &*row : nullptr, order, name, limit, "");
     mark.at_least = true;
+    return mark;
+}
+
+/// The overlap of the god object over that of the penalty in the same scene, where it is worst.
+Mark overlapMark(const std::vector<Row>& rows) {
+    Mark mark{.name = "forces: overlap over the penalty's, deepest", .limit = 0.01, .note = "no row counts"};
+    for (const Row& ours : rows) {
+        if (ours.group != kForceGroup || ours.method != kDepthMethod) continue;
+        for (const Row& penalty : rows) {
+            if (penalty.group != kForceGroup || penalty.method != kPenaltyDepthMethod ||
+                penalty.settings != ours.settings || deepest(ours) / deepest(penalty) <= mark.value)
+                continue;
+            mark.value = deepest(ours) / deepest(penalty);
+            mark.note = fmt::format("{:.3g} : {:.4g} um, {}", deepest(ours), deepest(penalty), ours.settings);
+        }
+    }
     return mark;
 }
 
@@ -176,6 +198,15 @@ std::vector<Mark> judge(const std::vector<Row>& rows) {
     marks.push_back(orderOf(rows, kCellAtEdges, "order of the field's error in the cell, edges", 0.75));
     marks.push_back(orderOf(rows, kSpacingOnSmooth, "order of the depth's error in the spacing, smooth", 1.75));
     marks.push_back(orderOf(rows, kSpacingAtEdges, "order of the depth's error in the spacing, edge", 1.0));
+    const auto force = [&](Test test, Figure figure, const char* name, double limit) {
+        marks.push_back(figureOf(worst(rows, kForceGroup, test, figure), figure, name, limit, " us"));
+    };
+    force(isMotion, medianTime, "forces: one warm QP, 200 contacts, median", 5.0);
+    force(isMotion, p999Time, "forces: one warm QP, 200 contacts, p99.9", 20.0);
+    force(isForce, medianTime, "forces: tick without field samples, median", 15.0);
+    force(isForce, p999Time, "forces: tick without field samples, p99.9", 60.0);
+    force(isTick, p999Time, "forces: whole tick, p99.9", 150.0);
+    marks.push_back(overlapMark(rows));
     for (const Row& row : rows) {
         if (std::isnan(row.figure)) continue;
         marks.push_back({.name = row.group + ": " + row.method,

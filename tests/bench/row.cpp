@@ -26,21 +26,26 @@ std::string cell(double value) {
 Times summarise(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     const std::size_t n = values.size();
-    const auto rank = static_cast<std::size_t>(std::ceil(0.99 * static_cast<double>(n)));
+    const auto ranked = [&](double share) {
+        const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(n)));
+        return values[std::max<std::size_t>(rank, 1) - 1];
+    };
     return {.mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(n),
             .median = 0.5 * (values[(n - 1) / 2] + values[n / 2]),
-            .p99 = values[std::max<std::size_t>(rank, 1) - 1],
-            .max = values.back()};
+            .p99 = ranked(0.99),
+            .max = values.back(),
+            .p999 = ranked(0.999)};
 }
 
 std::string csvHeader() {
-    return "group,method,settings,samples,time_mean_us,time_median_us,time_p99_us,time_max_us,time_per_point_ns,"
+    return "group,method,settings,samples,time_mean_us,time_median_us,time_p99_us,time_p999_us,time_max_us,time_per_"
+           "point_ns,"
            "distance_error_mean_um,distance_error_p99_um,distance_error_max_um,error_bound_max_um,bounds_broken,"
            "force_error_mean_percent,force_error_p99_percent,force_error_max_percent,force_turn_mean_deg,force_turn_"
            "p99_deg,force_turn_max_deg,"
            "torque_error_mean_percent,torque_error_p99_percent,torque_error_max_percent,wrong_signs_percent,other_bits,"
            "order,"
-           "contacts_mean,memory_MB,build_s,figure,figure_mark\n";
+           "contacts_mean,depth_mean_um,depth_p99_um,depth_max_um,memory_MB,build_s,figure,figure_mark\n";
 }
 
 std::string csvLine(const Row& row) {
@@ -48,6 +53,7 @@ std::string csvLine(const Row& row) {
     for (const double value : {row.time_us.mean,
                                row.time_us.median,
                                row.time_us.p99,
+                               row.time_us.p999,
                                row.time_us.max,
                                row.ns_per_point,
                                row.distance_error_um.mean,
@@ -68,6 +74,9 @@ std::string csvLine(const Row& row) {
                                row.other_bits,
                                row.order,
                                row.contacts_mean,
+                               row.depth_um.mean,
+                               row.depth_um.p99,
+                               row.depth_um.max,
                                row.memory_MB,
                                row.build_s,
                                row.figure,
@@ -94,8 +103,8 @@ std::string table(const std::vector<Row>& rows) {
             }
             text += unit;
         };
-        add("time mean/median/p99/max", {row.time_us.mean, row.time_us.median, row.time_us.p99, row.time_us.max},
-            " us");
+        add("time mean/median/p99/p99.9/max",
+            {row.time_us.mean, row.time_us.median, row.time_us.p99, row.time_us.p999, row.time_us.max}, " us");
         add("each", {row.ns_per_point}, " ns");
         add("| distance error mean/p99/max",
             {row.distance_error_um.mean, row.distance_error_um.p99, row.distance_error_um.max}, " um");
@@ -110,6 +119,7 @@ std::string table(const std::vector<Row>& rows) {
         add("| other bits", {row.other_bits}, "");
         add("| order", {row.order}, "");
         add("| contacts", {row.contacts_mean}, "");
+        add("| overlap mean/p99/max", {row.depth_um.mean, row.depth_um.p99, row.depth_um.max}, " um");
         add("| memory", {row.memory_MB}, " MB");
         add("build", {row.build_s}, " s");
         add("| figure", {row.figure}, (" " + row.figure_unit).c_str());

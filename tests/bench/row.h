@@ -8,7 +8,8 @@
 namespace passung::bench {
 
 struct Times {
-    double mean = kNotGiven, median = kNotGiven, p99 = kNotGiven, max = kNotGiven;  // p99: nearest rank
+    double mean = kNotGiven, median = kNotGiven, p99 = kNotGiven, max = kNotGiven;
+    double p999 = kNotGiven;  // p99, p99.9: nearest rank
 };
 
 /// @pre not empty
@@ -32,6 +33,7 @@ struct Row {
     double other_bits = kNotGiven;  // values that differ in any bit from those of our first variant
     double order = kNotGiven;       // log2 of the ratio of errors when the resolution is halved
     double contacts_mean = kNotGiven;
+    Times depth_um = {};  // overlap that a method leaves
     double memory_MB = kNotGiven;
     double build_s = kNotGiven;
     double figure = kNotGiven, figure_mark = kNotGiven;  // a number of its own, met if figure ≤ figure_mark

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "tests/bench/contact_rows.h"
+#include "tests/bench/force_rows.h"
 #include "tests/bench/marks.h"
 
 namespace passung::bench {
@@ -18,6 +19,7 @@ TEST(BenchRow, SummaryIsMeanMedianNearestRankAndMaximum) {
     EXPECT_EQ(t.mean, 100.5);
     EXPECT_EQ(t.median, 100.5);
     EXPECT_EQ(t.p99, 198.0);
+    EXPECT_EQ(t.p999, 200.0);
     EXPECT_EQ(t.max, 200.0);
     EXPECT_EQ(summarise({3.0}).p99, 3.0);
 }
@@ -46,6 +48,31 @@ TEST(BenchMarks, AreMetAtAFiftiethOfTheTime) {
     EXPECT_TRUE(judge(rows(2.0, 5.0))[0].met());
     EXPECT_FALSE(judge(rows(2.1, 5.0))[0].met());
     EXPECT_NEAR(judge(rows(2.1, 5.0))[0].value, 0.021, 1e-12);
+}
+
+TEST(BenchMarks, JudgeForcesByTheirWorstScene) {
+    // Truth: closed form. Of two scenes the worse one counts; an overlap of 5 um is 1/100 of 500 um, and more of 400.
+    const auto mark = [](double time, double penalty_um, const std::string& name) {
+        std::vector<Row> rows;
+        for (const double share : {0.5, 1.0}) {
+            Row tick{.group = kForceGroup, .method = kTickMethod, .settings = std::to_string(share), .ours = true};
+            tick.time_us.p999 = share * time;
+            Row ours{.group = kForceGroup, .method = kDepthMethod, .settings = tick.settings, .ours = true};
+            ours.depth_um.max = 5.0;
+            Row penalty{.group = kForceGroup, .method = kPenaltyDepthMethod, .settings = tick.settings};
+            penalty.depth_um.max = penalty_um / share;
+            rows.insert(rows.end(), {tick, ours, penalty});
+        }
+        for (const Mark& each : judge(rows))
+            if (each.name == name) return each;
+        return Mark{};
+    };
+    const std::string whole = "forces: whole tick, p99.9", overlap = "forces: overlap over the penalty's, deepest";
+    EXPECT_TRUE(mark(150.0, 500.0, whole).met());
+    EXPECT_FALSE(mark(151.0, 500.0, whole).met());
+    EXPECT_TRUE(mark(150.0, 500.0, overlap).met());
+    EXPECT_NEAR(mark(150.0, 400.0, overlap).value, 0.0125, 1e-12);
+    EXPECT_FALSE(mark(150.0, 400.0, overlap).met());
 }
 
 TEST(BenchMarks, DoNotCountASpeedWithoutItsAccuracy) {

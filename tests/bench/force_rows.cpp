@@ -1,0 +1,227 @@
+#include "tests/bench/force_rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/random.h"
+#include "core/tick/obstacle_query.h"
+#include "core/tick/proxy.h"
+#include "core/tick/step.h"
+#include "study/protocol/protocol_reader.h"
+#include "tests/bench/stopwatch.h"
+#include "ui/app/disk_store.h"
+#include "ui/app/loop_apparatus.h"
+#include "ui/app/run_study.h"
+#include "ui/app/simulated_hand.h"
+
+namespace {
+
+/// Time and number of the queries of the tick that runs.
+struct QueryClock {
+    bool running = false;
+    double seconds = 0.0;
+    int queries = 0;
+};
+QueryClock query_clock;
+
+}  // namespace
+
+// The linker sends the tick's calls of tick::queryObstacles to `timed` (CMakeLists.txt): the tick has no clock.
+namespace passung::tick {
+QueryAnswer real(const TickModel& model, const Pose& X_WS, QueryRequest request, QueryWorkspace& workspace,
+                 ContactManifold& manifold) noexcept asm("__real_" PASSUNG_QUERY_SYMBOL);
+QueryAnswer timed(const TickModel& model, const Pose& X_WS, QueryRequest request, QueryWorkspace& workspace,
+                  ContactManifold& manifold) noexcept asm("__wrap_" PASSUNG_QUERY_SYMBOL);
+
+QueryAnswer timed(const TickModel& model, const Pose& X_WS, QueryRequest request, QueryWorkspace& workspace,
+                  ContactManifold& manifold) noexcept {
+    if (!query_clock.running) return real(model, X_WS, request, workspace, manifold);
+    const bench::Stopwatch watch;
+    const QueryAnswer answer = real(model, X_WS, request, workspace, manifold);
+    query_clock.seconds += watch.seconds();
+    ++query_clock.queries;
+    return answer;
+}
+}  // namespace passung::tick
+
+namespace passung::bench {
+
+namespace {
+
+constexpr double kUs = 1e6, kUm = 1e6;
+constexpr std::int64_t kTicks = 12'000, kFewTicks = 3'000;
+constexpr std::size_t kMostContacts = 200;
+constexpr const char* kParticipant = "P01";
+constexpr std::uint64_t kSeed = 20260302;
+
+/// The device's readings while the simulated participant does a trial.
+Result<std::vector<TickRecord>> perform(const protocol::StudyPlan& plan, const protocol::Condition& condition,
+                                        std::int64_t ticks) {
+    const simulated::DeviceParams* device = simulated::findPreset(condition.device);
+    if (device == nullptr) return Error{.message = "no such device preset", .value = condition.device};
+    app::LoopApparatus apparatus(*device, app::simulatedHand(plan, kParticipant), app::Clock::Virtual);
+    const auto prepared = apparatus.prepare(condition, kSeed);
+    if (!prepared) return prepared.errors();
+    std::vector<TickRecord> records(static_cast<std::size_t>(ticks));
+    apparatus.start();
+    for (std::size_t taken = 0; taken < records.size();) {
+        apparatus.advance(1000);
+        taken += apparatus.takeRecords(std::span(records).subspan(taken));
+    }
+    apparatus.stop();
+    return records;
+}
+
+/// What it takes to read the clock.
+double clockCost() {
+    constexpr int kReads = 2000;
+    const Stopwatch watch;
+    double sum = 0.0;
+    for (int i = 0; i < kReads; ++i) sum += watch.seconds();
+    return sum > 0.0 ? watch.seconds() / kReads : 0.0;
+}
+
+/// One replay after another of the same readings.
+class Replay {
+public:
+    Replay(const model::Scene& scene, const std::vector<TickRecord>& records)
+        : model_(tick::makeModel(scene)), records_(records) {}
+
+    /// Time of every tick [us], its queries left out or not; ticks that are not in contact are NaN.
+    std::vector<double> times(bool without_queries, int repetitions) {
+        std::vector<double> best(records_.size(), kNotGiven);
+        const double clock = clockCost();
+        for (int repetition = 0; repetition < repetitions; ++repetition) {
+            tick::TickState state = tick::makeState(model_);
+            for (std::size_t i = 0; i < records_.size(); ++i) {
+                query_clock = {.running = without_queries};
+                const Stopwatch watch;
+                const auto out = tick::step(model_, state, tick::readingOf(records_[i]));
+                double time = watch.seconds() - clock;
+                query_clock.running = false;
+                if (without_queries) queries_ += query_clock.queries;
+                // Each query read the clock twice, once of it within its own time.
+                if (without_queries) time -= query_clock.seconds + clock * query_clock.queries;
+                if (out.frame.contacts > 0) best[i] = std::fmin(best[i], kUs * time);
+            }
+        }
+        return best;
+    }
+
+    /// Queries that were left out so far.
+    int queries() const { return queries_; }
+
+    /// Time of one motion for every tick in contact [us]; `contacts`: the mean number of them that it was solved under.
+    std::vector<double> motionTimes(int repetitions, double& contacts) {
+        std::vector<double> times;
+        double sum = 0.0;
+        tick::TickState state = tick::makeState(model_), wide = tick::makeState(model_);
+        tick::ContactManifold nearest(kMostContacts);
+        tick::Motion wanted_before = tick::Motion::Zero();
+        const double clock = clockCost();
+        for (const TickRecord& record : records_) {
+            const auto out = tick::step(model_, state, tick::readingOf(record));
+            const tick::Motion wanted = tick::unconstrainedMotion(model_, state.X_WG, out.frame.X_WH);
+            const tick::Motion before = std::exchange(wanted_before, wanted);
+            if (out.frame.contacts == 0) continue;
+            tick::TickFrame frame;
+            tick::lookAround(model_, wide, frame, state.X_WG);
+            takeNearest(wide.manifold, nearest);
+            const tick::Surroundings around{nearest, state.X_WG.p, model_.metric_radius, -model_.margins.keep};
+            const tick::ConstrainedMotion last = tick::constrainMotion(before, around);
+            std::vector<std::uint32_t> held;
+            for (int i = 0; i < last.active; ++i) held.push_back(last.held[static_cast<std::size_t>(i)].contact);
+            double best = kNotGiven;
+            for (int repetition = 0; repetition < repetitions; ++repetition) {
+                const Stopwatch watch;
+                const tick::ConstrainedMotion motion = tick::constrainMotion(wanted, around, held);
+                const double time = watch.seconds() - clock;
+                if (motion.active > 0) best = std::fmin(best, kUs * time);
+            }
+            if (std::isnan(best)) continue;
+            times.push_back(best);
+            sum += static_cast<double>(nearest.size());
+        }
+        contacts = sum / static_cast<double>(std::max<std::size_t>(times.size(), 1));
+        return times;
+    }
+
+private:
+    static void takeNearest(const tick::ContactManifold& all, tick::ContactManifold& nearest) {
+        std::vector<tick::ContactPoint> points(all.begin(), all.end());
+        const std::size_t count = std::min(points.size(), kMostContacts);
+        std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count), points.end(),
+                         [](const auto& a, const auto& b) { return a.phi < b.phi; });
+        nearest.clear();
+        for (std::size_t i = 0; i < count; ++i) nearest.tryPush(points[i]);
+    }
+
+    tick::TickModel model_;
+    const std::vector<TickRecord>& records_;
+    int queries_ = 0;
+};
+
+std::vector<double> given(std::vector<double> values) {
+    std::erase_if(values, [](double value) { return std::isnan(value); });
+    return values;
+}
+
+Row rowOf(const char* method, const std::string& settings, bool ours, std::size_t samples) {
+    return {.group = kForceGroup, .method = method, .settings = settings, .ours = ours, .samples = samples};
+}
+
+Row depthRow(const char* method, const std::string& settings, const std::vector<TickRecord>& records, bool ours) {
+    std::vector<double> depths;
+    for (const TickRecord& record : records)
+        if (record.contacts > 0) depths.push_back(kUm * static_cast<double>(record.proxy_depth_m));
+    Row row = rowOf(method, settings, ours, depths.size());
+    if (!depths.empty()) row.depth_um = summarise(depths);
+    return row;
+}
+
+}  // namespace
+
+Result<std::vector<Row>> forceRows(const std::string& protocol, const Extent& extent) {
+    std::vector<Row> rows;
+    bool wanted = false;
+    for (const char* method : {kQpMethod, kForceMethod, kTickMethod, kDepthMethod, kPenaltyDepthMethod})
+        wanted = wanted || extent.wanted(kForceGroup, method);
+    if (!wanted) return rows;
+    const auto plan = protocol::readProtocol(protocol, app::knownDevices(), app::knownMeasures());
+    if (!plan) return plan.errors();
+    const auto store = app::openDiskStore();
+    model::PartCache parts(store.get());
+    const std::int64_t ticks = extent.few_settings ? kFewTicks : kTicks;
+    for (protocol::Condition condition : plan->conditions) {
+        if (condition.scene.contact.method != model::ContactMethod::Penalty) continue;
+        std::string settings = condition.name;
+        if (const auto at = settings.find("penalty/"); at != std::string::npos) settings.erase(at, 8);
+        const auto penalty = perform(*plan, condition, ticks);
+        if (!penalty) return penalty.errors();
+        condition.scene.contact.method = model::ContactMethod::GodObject;
+        const auto records = perform(*plan, condition, ticks);
+        if (!records) return records.errors();
+        const auto scene = model::buildScene(condition.scene, parts);
+        if (!scene) return scene.errors();
+        Replay replay(*scene, *records);
+        const auto timed = [&](const char* method, std::vector<double> times) {
+            Row row = rowOf(method, settings, true, times.size());
+            if (!times.empty()) row.time_us = summarise(std::move(times));
+            rows.push_back(row);
+        };
+        double contacts = 0.0;
+        timed(kQpMethod, replay.motionTimes(extent.repetitions + 1, contacts));
+        rows.back().contacts_mean = contacts;
+        timed(kForceMethod, given(replay.times(true, extent.repetitions)));
+        if (replay.queries() == 0) return Error{.message = "no query of the tick was seen: it has another name now"};
+        timed(kTickMethod, given(replay.times(false, extent.repetitions)));
+        rows.push_back(depthRow(kDepthMethod, settings, *records, true));
+        rows.push_back(depthRow(kPenaltyDepthMethod, settings, *penalty, false));
+        if (extent.few_settings) break;
+    }
+    return rows;
+}
+
+}  // namespace passung::bench

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+#include "tests/bench/contact_rows.h"
+
+namespace passung::bench {
+
+inline constexpr const char* kForceGroup = "forces, peg in hole";
+inline constexpr const char* kQpMethod = "god_object, one warm QP of at most 200 contacts";
+inline constexpr const char* kForceMethod = "god_object, tick without field samples";
+inline constexpr const char* kTickMethod = "god_object, whole tick";
+inline constexpr const char* kDepthMethod = "god_object, overlap";
+inline constexpr const char* kPenaltyDepthMethod = "penalty, overlap";
+
+/// What the god object costs and leaves of overlap in the scenes of the study `protocol`, a peg_in_hole: its simulated
+/// participant inserts the peg in each pair of clearance and stiffness, with the god object and with the penalty; the
+/// recorded device paths are replayed. Times are of the thread, of each tick the fastest of the repetitions:
+///   QP: the motion of each tick in contact under the 200 nearest of the contacts within half a cell of the proxy,
+///   begun with what holds the motion that the tick before wanted;
+///   without field samples: the whole tick less its queries;
+///   whole: with the query at the hand that the record asks for.
+/// Overlap, of both methods on their own paths: of ticks in contact, the held part's as the tick records it.
+/// Errors: the study cannot be read, a scene cannot be built.
+Result<std::vector<Row>> forceRows(const std::string& protocol, const Extent& extent);
+
+}  // namespace passung::bench
