@@ -7,7 +7,9 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "core/tick/god_object.h"
 #include "core/tick/god_object_heuristic.h"
+#include "core/tick/proxy.h"
 #include "core/tick/tick_model.h"
 
 namespace passung::hard {
@@ -15,7 +17,7 @@ namespace passung::hard {
 namespace {
 
 /// Most looks of a tick: kCorrections times the halvings, and per sub-step an arrival, its return and the halvings with
-/// their reliefs, each look perhaps with a second one for its proof.
+/// their reliefs, each look perhaps with a second one for its proof. (The sweeps of the god object take fewer.)
 constexpr std::uint32_t kMostLooks = 2 * (1 + tick::kCorrections * (tick::kHalvings + 2) +
                                           tick::kSubSteps * (3 + (tick::kHalvings + 1) * (1 + tick::kReliefs)));
 
@@ -30,7 +32,8 @@ std::string commonFaults(const Run& run) {
         if (t.status & kNonFiniteLatched) return fault("a computed wrench was not finite");
         if (t.status & kContactCap) return fault("the manifold was full");
         if (t.contacts > run.most_points) return fault("more points than the cap");
-        if (t.iterations > static_cast<std::uint32_t>(tick::kSubSteps)) return fault("more sub-steps than the cap");
+        if (t.iterations > static_cast<std::uint32_t>(std::max(tick::kSubSteps, tick::kSweeps)))
+            return fault("more sub-steps than the cap");
         if (t.nodes > kMostLooks * run.all_nodes) return fault("more nodes than the cap");
     }
     return {};
