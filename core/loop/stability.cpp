@@ -142,6 +142,14 @@ double passiveStiffness(const SampledWall& wall) {
     return upper > lower ? upper : 0;
 }
 
+// The reading steps by Δ, the spring's force by K Δ. In by Δ and out again the force may be a whole step lower on the
+// way in than on the way out: K Δ² given out, of which friction takes 2 f_c Δ. Hence K <= 2 f_c/Δ.
+double passiveStiffness(const SampledWall& wall, double coulomb, double quantum) {
+    const double smooth = passiveStiffness(wall);
+    if (!(quantum > 0) || !(coulomb >= 0)) return smooth;
+    return std::min(smooth, 2 * coulomb / quantum);
+}
+
 double linearStiffness(const SampledWall& wall) {
     return (wall.damping + wall.virtual_damping) / (wall.period * (0.5 + wall.delay_ticks));
 }

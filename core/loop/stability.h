@@ -30,6 +30,11 @@ double stableStiffnessBorder(const SampledWall& wall);
 /// The largest stiffness at which the wall can never give out energy [N/m]; 0 if there is none. Stricter than stable.
 double passiveStiffness(const SampledWall& wall);
 
+/// The same for a handle with dry friction `coulomb` f_c [N] whose encoder steps by `quantum` Δ [m]: at most 2 f_c/Δ as
+/// well (Diolaiti and others 2006, Abbott and Okamura 2005), so that the friction takes more than a step of the spring
+/// gives. 0 < Δ without friction leaves nothing; Δ = 0 asks for none.
+double passiveStiffness(const SampledWall& wall, double coulomb, double quantum);
+
 /// The rule of thumb K = (b + B)/(T/2 + t_d) [N/m]. The tangent of the exact border at the origin: optimistic as soon
 /// as B outweighs b (by 5 % at BT/m = 0.05), so an upper estimate and no guarantee.
 double linearStiffness(const SampledWall& wall);
