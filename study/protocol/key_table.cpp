@@ -58,6 +58,14 @@ constexpr std::array kKeys{
     Key{"part_file", "unit", Choice, kAny, "um|mm|cm|m|in", "(the caller's)", "Unit of lengths without one in their key."},
     Key{"part_file", "part", Tables, kAny, "", "!", "Exactly one part."},
 
+    Key{"calibration", "device", Text, kAny, "", "!", "Name of the device."},
+    Key{"calibration", "stable_stiffness_N_per_m", Number, atLeast(0), "", "!", "That \"max\" stands for."},
+    Key{"calibration", "stable_rotational_stiffness_Nm_per_rad", Number, atLeast(0), "", "!", "Likewise; 0 = torque is not actuated."},
+    Key{"calibration", "calm_stiffness_N_per_m", Number, atLeast(0), "", "!", "Largest at which the device came to rest."},
+    Key{"calibration", "calm_rotational_stiffness_Nm_per_rad", Number, atLeast(0), "", "!", "Likewise."},
+    Key{"calibration", "damping_Ns_per_m", Number, atLeast(0), "", "!", "Of the wall, with which it was found; the recommended one."},
+    Key{"calibration", "rotational_damping_Nms_per_rad", Number, atLeast(0), "", "!", "Likewise."},
+
     Key{"part", "name", Name, kAny, "", "!", "Unique; factors address the part by it."},
     Key{"part", "mesh", Text, kAny, "", "(a shape)", "Mesh file, relative to the file that names it. Not its content is stored with the data but the SHA-256 of this one file: keep it beside the study; a replay refuses another."},
     Key{"part", "shape", Table, kAny, "", "(a mesh)", "Parametric shape."},
@@ -121,8 +129,9 @@ constexpr std::array kKeys{
 
     Key{"contact", "method", Choice, kAny, "penalty|god_object_heuristic|god_object", "god_object_heuristic", "How penetration becomes force: springs in every contact, or a proxy that stays outside and is coupled to the hand; god_object keeps it farther out, by the constraints alone."},
     Key{"contact", "variant", Choice, kAny, "max_normalised|area_weighted|raw", "max_normalised", "Weighting of the penalty; unused by other methods. Only max_normalised keeps to the stiffness: raw adds it up over all points, area_weighted has area_stiffness_N_per_m3 instead; neither is held below the device's stable maximum, and `check` warns of them."},
-    Key{"contact", "stiffness_N_per_m", Stiffness, above(0), "", "(\"max\"; without a device preset 1000)", "Number, or fraction of the device's stable maximum: \"max\", \"0.5 max\"; never above it. The maximum is known only for the recommended damping, no added delay and scale 1."},
+    Key{"contact", "stiffness_N_per_m", Stiffness, above(0), "", "(\"max\"; without a device preset 1000)", "Number, or fraction of the device's stable maximum: \"max\", \"0.5 max\"; never above it, unless `allow_unstable`. The maximum is what was found on this machine's device (`passung doctor --device NAME --find-stiffness`), else the preset's below; a study keeps the one with which it began. The maximum is known only for the recommended damping, no added delay and scale 1."},
     Key{"contact", "rotational_stiffness_Nm_per_rad", Stiffness, atLeast(0), "", "(the same fraction of the device's maximum as the stiffness; without a device preset 1)", "As the stiffness, for rotations."},
+    Key{"contact", "allow_unstable", Boolean, kAny, "", "false", "Lifts the rules that keep a stiffness where the device is known to be stable: the stable maximum as an upper limit, the recommended damping, no added delay, scale 1."},
     Key{"contact", "damping_Ns_per_m", Number, atLeast(0), "", "(1 times the device's recommended damping; without a device preset 0)", "Damping of the coupling between hand and scene; with a device preset only what it recommends."},
     Key{"contact", "rotational_damping_Nms_per_rad", Number, atLeast(0), "", "(1 times the device's recommended damping; without a device preset 0)", "As the damping, for rotations."},
     Key{"contact", "area_stiffness_N_per_m3", Number, above(0), "", "1e9", "Pressure per depth of the area-weighted penalty."},
@@ -203,6 +212,7 @@ constexpr std::array kTables{
     TableInfo{"study", "`[study]`", ""},
     TableInfo{"scene", "Top level of a scene", "In a study below `[scene]`: `[scene.contact]`, `[[scene.part]]` and so on. A study holds its scene itself, so that\nthe stored text is all of it."},
     TableInfo{"part_file", "Top level of a part file", ""},
+    TableInfo{"calibration", "Calibration of a device", "The program writes it: `passung doctor --device NAME --find-stiffness`. `passung doctor` says where it is."},
     TableInfo{"part", "`[[part]]`", "A part has either a `mesh` or a `shape`."},
     TableInfo{"pose", "`pose` of a part", ""},
     TableInfo{"shape", "`shape` of a part", ""},

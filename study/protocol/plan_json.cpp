@@ -65,6 +65,7 @@ std::string contactJson(const Condition& condition) {
         .text("variant", variantName(contact.variant))
         .number("stiffness_N_per_m", contact.stiffness)
         .number("rotational_stiffness_Nm_per_rad", contact.rotational_stiffness)
+        .boolean("allow_unstable", condition.allow_unstable)
         .number("damping_Ns_per_m", contact.damping)
         .number("rotational_damping_Nms_per_rad", contact.rotational_damping)
         .number("area_stiffness_N_per_m3", contact.area_stiffness);
@@ -136,6 +137,15 @@ std::string conditionJson(const Condition& condition) {
         .str();
 }
 
+std::string stableJson(const StableStiffness& stable) {
+    return JsonObject()
+        .text("device", stable.device)
+        .number("stable_stiffness_N_per_m", stable.linear)
+        .number("stable_rotational_stiffness_Nm_per_rad", stable.rotational)
+        .text("origin", stable.origin)
+        .str();
+}
+
 std::string blockJson(const Block& block) {
     return JsonObject()
         .text("name", block.name)
@@ -195,6 +205,7 @@ std::string expandedJson(const StudyPlan& plan) {
         .json("conditions", listOf(plan.conditions, conditionJson))
         .json("blocks", listOf(plan.blocks, blockJson))
         .json("loop", JsonObject().number("max_missed_share", plan.max_missed_share).str())
+        .json("stable_stiffness", listOf(plan.stable_stiffness, stableJson))
         .json("measures", listOf(plan.measures, [](const std::string& name) { return jsonText(name); }))
         .str();
 }

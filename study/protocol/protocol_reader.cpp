@@ -51,6 +51,7 @@ public:
         tidy(errors_);
         if (!errors_.empty()) return errors_;
         listMeshes();
+        listDevices();
         warn();
         plan_.expanded_json = expandedJson(plan_);
         return std::move(plan_);
@@ -124,6 +125,7 @@ private:
         }
         condition.scene = std::move(content.scene);
         condition.accuracy_budget = content.accuracy_budget;
+        condition.allow_unstable = content.allow_unstable;
         condition.device = std::move(content.device);
         if (errors_.size() == before && root_.has("task")) condition.task = readTask(tables, condition.scene, errors_);
         condition.shown = readFeedback(tables.feedback);
@@ -219,6 +221,18 @@ private:
         }
     }
 
+    void listDevices() {
+        std::set<std::string> named;
+        for (const Condition& condition : plan_.conditions) named.insert(condition.device);
+        for (const DeviceDescription& device : devices_)
+            if (named.erase(device.name) > 0)
+                plan_.stable_stiffness.push_back({device.name, device.stable_stiffness_N_per_m,
+                                                  device.stable_rotational_stiffness_Nm_per_rad,
+                                                  device.stability_source});
+        std::sort(plan_.stable_stiffness.begin(), plan_.stable_stiffness.end(),
+                  [](const StableStiffness& a, const StableStiffness& b) { return a.device < b.device; });
+    }
+
     void listMeshes() {
         const auto folder = std::filesystem::path(document_.place.file).parent_path();
         std::map<std::string, std::string> names;  // by path
@@ -238,19 +252,25 @@ private:
     void warn(std::string_view sentence, Concerns concerns) {
         std::vector<std::string_view> names;
         for (const Condition& condition : plan_.conditions)
-            if (concerns(condition.scene)) names.push_back(condition.name);
+            if (concerns(condition)) names.push_back(condition.name);
         if (!names.empty())
             plan_.warnings.push_back(fmt::format("{}; conditions: {}", sentence, fmt::join(names, ", ")));
     }
 
     void warn() {
         using model::PenaltyVariant;
-        const auto penalty = [](const model::SceneSpec& scene) {
-            return scene.contact.method == model::ContactMethod::Penalty;
+        const auto penalty = [](const Condition& condition) {
+            return condition.scene.contact.method == model::ContactMethod::Penalty;
         };
         const auto renders = [&](PenaltyVariant variant) {
-            return [=](const model::SceneSpec& scene) { return penalty(scene) && scene.contact.variant == variant; };
+            return [=](const Condition& condition) {
+                return penalty(condition) && condition.scene.contact.variant == variant;
+            };
         };
+        warn(
+            "contact.allow_unstable = true: nothing keeps the stiffness where the device is known to be stable; "
+            "`explain` says how far the border is",
+            [](const Condition& condition) { return condition.allow_unstable; });
         warn(
             "contact.variant = \"raw\" adds the stiffness up over all points in contact, so that nothing keeps the "
             "stiffness below the device's stable maximum",
@@ -260,9 +280,10 @@ private:
             "stiffness below the device's stable maximum",
             renders(PenaltyVariant::AreaWeighted));
         warn("contact.method = \"penalty\" renders no friction: that of the parts acts in other conditions only",
-             [&](const model::SceneSpec& scene) {
-                 return penalty(scene) && std::any_of(scene.parts.begin(), scene.parts.end(),
-                                                      [](const auto& part) { return part.friction > 0.0; });
+             [&](const Condition& condition) {
+                 const auto& parts = condition.scene.parts;
+                 return penalty(condition) &&
+                        std::any_of(parts.begin(), parts.end(), [](const auto& part) { return part.friction > 0.0; });
              });
     }
 

@@ -16,6 +16,7 @@ struct SceneContent {
     model::SceneSpec scene;
     std::string device;            // preset, empty if none is named
     double accuracy_budget = 0.0;  // [s] > 0: contact.accuracy is "auto"
+    bool allow_unstable = false;
 };
 
 /// Reads a scene's table. `ids`: its tables in the key table; `path`: its name in messages ("scene" or "").

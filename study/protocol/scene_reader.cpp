@@ -93,8 +93,9 @@ Stiffness resolveStiffness(const TableReader& read, const char* key, double maxi
             read.fail(key, fmt::format("the stable maximum of {} is not known", device->name));
         return {fraction * maximum, fraction};
     }
-    if (limited && node->number > maximum)
-        read.fail(key, fmt::format("must not exceed the stable maximum of {}: {}", device->name, maximum));
+    if (limited && node->number > maximum && !read.boolean("allow_unstable"))
+        read.fail(key, fmt::format("must not exceed the stable maximum of {}: {}; allow_unstable = true lifts this",
+                                   device->name, maximum));
     return {node->number, limited ? node->number / maximum : 1.0};
 }
 
@@ -123,11 +124,12 @@ void readCoupling(const TableReader& read, const DeviceDescription* device, bool
 /// The device's stable maximum was found under these circumstances only: under others nothing is known to be stable.
 void checkStability(const TableReader& device_table, const TableReader& contact_table, const TableReader& registration,
                     const DeviceDescription* device, const model::SceneSpec& scene) {
-    if (device == nullptr) return;
+    if (device == nullptr || contact_table.boolean("allow_unstable")) return;
     const bool linear = device->stable_stiffness_N_per_m > 0.0;
     const bool rotational = device->stable_rotational_stiffness_Nm_per_rad > 0.0;
     const auto refuse = [&](const TableReader& read, const char* key, const std::string& remedy) {
-        read.fail(key, fmt::format("the stable maximum of {} is not known for this; {}", device->name, remedy));
+        read.fail(key, fmt::format("the stable maximum of {} is not known for this; {}, or allow_unstable = true",
+                                   device->name, remedy));
     };
     const auto checkDamping = [&](const char* key, double damping, double recommended) {
         if (damping != recommended)
@@ -275,6 +277,7 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     const auto contact_table = open("contact");
     content.scene.contact = readContact(contact_table, device, device_table.has("preset"));
     content.accuracy_budget = readAccuracyBudget(contact_table, content.scene);
+    content.allow_unstable = contact_table.boolean("allow_unstable");
     const auto registration_table = open("registration");
     content.scene.registration = readRegistration(registration_table, units);
     if (errors.size() == before) {
@@ -298,6 +301,13 @@ Result<model::SceneSpec> readScene(const std::string& path, std::span<const Devi
 
 Result<model::SceneSpec> readSceneText(const std::string& text, const std::string& path,
                                        std::span<const DeviceDescription> devices) {
+    auto scene = readSceneOnDevice(text, path, devices);
+    if (!scene) return scene.errors();
+    return std::move(scene->scene);
+}
+
+Result<SceneOnDevice> readSceneOnDevice(const std::string& text, const std::string& path,
+                                        std::span<const DeviceDescription> devices) {
     const auto document = parseDocument(text, path);
     if (!document) return document.errors();
     if (const auto other = otherKind(*document, FileKind::Scene)) return errorAt(document->place, "", "", *other);
@@ -310,7 +320,7 @@ Result<model::SceneSpec> readSceneText(const std::string& text, const std::strin
                                  "was picked or passung accuracy FIELD SHELL what there is"));
     tidy(errors);
     if (!errors.empty()) return errors;
-    return std::move(content.scene);
+    return SceneOnDevice{std::move(content.scene), std::move(content.device)};
 }
 
 Result<model::PartSpec> readPart(const std::string& path, double metres_per_unit) {

@@ -18,6 +18,14 @@ Result<model::SceneSpec> readScene(const std::string& path, std::span<const Devi
 Result<model::SceneSpec> readSceneText(const std::string& text, const std::string& path,
                                        std::span<const DeviceDescription> devices);
 
+/// A scene and the preset that it names, empty if none.
+struct SceneOnDevice {
+    model::SceneSpec scene;
+    std::string device;
+};
+Result<SceneOnDevice> readSceneOnDevice(const std::string& text, const std::string& path,
+                                        std::span<const DeviceDescription> devices);
+
 /// Reads a file with one [[part]], held or not. `metres_per_unit` applies where the file has no `unit`.
 Result<model::PartSpec> readPart(const std::string& path, double metres_per_unit = 1e-3);
 

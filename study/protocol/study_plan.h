@@ -46,9 +46,10 @@ struct Condition {
     std::vector<std::size_t> levels;  // index per factor
     std::string levels_json;          // {"factor": "label", ...}
     model::SceneSpec scene;           // complete: stiffness resolved to numbers
-    double accuracy_budget = 0.0;     // of a query [s]; > 0: accuracy = "auto" picks what the scene's contact has of
-                                      // tolerance, cell, spacing, mode and nodes
-    bool accuracy_picked = false;     // it has
+    bool allow_unstable = false;   // the protocol takes responsibility for a stiffness that is not known to be stable
+    double accuracy_budget = 0.0;  // of a query [s]; > 0: accuracy = "auto" picks what the scene's contact has of
+                                   // tolerance, cell, spacing, mode and nodes
+    bool accuracy_picked = false;  // it has
     PegInHoleTask task;
     ShownPose shown = ShownPose::Proxy;
     std::string device;       // preset
@@ -64,6 +65,14 @@ struct Block {
     int repetitions = 1;  // passes through the order
     BlockOrder order = BlockOrder::Williams;
     int trials = 0;  // 0 = every condition of the pass; else the first so many (practice)
+};
+
+/// What a device displays stably, as the stiffnesses of a protocol were resolved against it.
+struct StableStiffness {
+    std::string device;
+    double linear = 0.0;      // [N/m], 0: not known
+    double rotational = 0.0;  // [N·m/rad], 0: not known or not actuated
+    std::string origin;       // in words
 };
 
 /// A mesh file that a study names.
@@ -82,10 +91,11 @@ struct StudyPlan {
     std::vector<Factor> factors;
     std::vector<Condition> conditions;  // the first factor varies slowest
     std::vector<Block> blocks;
-    double max_missed_share = 0.01;     // of a trial's cycles: an attempt that missed more is not valid
-    std::vector<std::string> measures;  // names, all known to study/measures
-    std::vector<MeshSource> meshes;     // each once; their content is no part of the text
-    std::string source_text;            // the file, byte for byte
+    double max_missed_share = 0.01;                 // of a trial's cycles: an attempt that missed more is not valid
+    std::vector<std::string> measures;              // names, all known to study/measures
+    std::vector<MeshSource> meshes;                 // each once; their content is no part of the text
+    std::vector<StableStiffness> stable_stiffness;  // of each device that a condition names, by name
+    std::string source_text;                        // the file, byte for byte
     std::string source_path;
     std::string expanded_json;          // factors, conditions, blocks after expansion
     std::vector<std::string> warnings;  // sentences: allowed, but the experimenter should know

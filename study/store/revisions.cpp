@@ -285,11 +285,24 @@ ALTER TABLE accuracy_candidate ADD COLUMN direction_error_p99_deg REAL;
 ALTER TABLE accuracy_candidate ADD COLUMN torque_error_p99_percent REAL;
 )sql";
 
+constexpr const char* kRevision4 = R"sql(
+-- the stable maxima of the devices when the protocol was first imported: what "max" means in it, and where they are from
+CREATE TABLE stable_stiffness(
+    protocol_sha256 TEXT NOT NULL REFERENCES protocol_version,
+    device TEXT NOT NULL,
+    stable_stiffness_N_per_m REAL NOT NULL CHECK(stable_stiffness_N_per_m >= 0),
+    stable_rotational_stiffness_Nm_per_rad REAL NOT NULL CHECK(stable_rotational_stiffness_Nm_per_rad >= 0),
+    origin TEXT NOT NULL,
+    PRIMARY KEY(protocol_sha256, device)) STRICT, WITHOUT ROWID;
+)sql";
+
 constexpr std::array kRevisions = {
     Revision{1, "Protocols, participants, sessions, trials, samples, timing and questionnaires", kRevision1, 1},
     // A reader that does not know what was picked would replay another scene.
     Revision{2, "What accuracy = \"auto\" picked, with its calibration", kRevision2, 2},
     Revision{3, "The errors of force and torque in that calibration", kRevision3, 2},
+    // As for the picks; and chunks of samples have a column more.
+    Revision{4, "Stable stiffness of a protocol's devices", kRevision4, 4},
 };
 
 bool isEmpty(const Database& database) { return database.integer("SELECT count(*) FROM sqlite_master") == 0; }

@@ -12,6 +12,7 @@
 #include "study/store/process_lock.h"
 #include "study/store/revisions.h"
 #include "study/store/session_json.h"
+#include "study/store/stable_stiffness_rows.h"
 #include "study/store/writer_thread.h"
 
 namespace passung::store {
@@ -61,11 +62,11 @@ void insertConditions(const Database& database, const std::string& sha256, const
     }
 }
 
-/// Measures belong to the whole file: one formula per name, or the numbers of one column would mean two things.
-void insertMeasures(const Database& database, const std::string& sha256, const protocol::StudyPlan& plan) {
+/// Measures belong to the whole file: one formula per name, or the numbers of one column would mean two things. Those
+/// that the file does not know yet, from before this program had them, are added.
+void insertMeasures(const Database& database) {
     Statement insert = database.prepare("INSERT INTO measure VALUES(?, ?, ?, 'number', ?, ?, ?)");
     Statement find = database.prepare("SELECT formula_version FROM measure WHERE measure=?");
-    Statement declare = database.prepare("INSERT INTO protocol_measure VALUES(?, ?)");
     std::int64_t position = 0;
     for (const measures::Definition& definition : measures::definitions()) {
         if (!find.bind(definition.name).step()) {
@@ -79,6 +80,12 @@ void insertMeasures(const Database& database, const std::string& sha256, const p
                                      std::to_string(definition.version) + ": use a new database");
         }
         ++position;
+    }
+}
+
+void declareMeasures(const Database& database, const std::string& sha256, const protocol::StudyPlan& plan) {
+    Statement declare = database.prepare("INSERT INTO protocol_measure VALUES(?, ?)");
+    for (const measures::Definition& definition : measures::definitions()) {
         const bool declared = plan.measures.empty() || std::find(plan.measures.begin(), plan.measures.end(),
                                                                  definition.name) != plan.measures.end();
         if (declared) declare.bind(sha256, definition.name).run();
@@ -160,6 +167,7 @@ std::string importPlan(const Database& database, const protocol::StudyPlan& plan
         requireSeed(database, sha256, plan.seed);
         requireMeshes(database, sha256, meshes);
         storeSeed(database, sha256, plan.seed);
+        insertMeasures(database);
         transaction.commit();
         return sha256;
     }
@@ -173,7 +181,11 @@ std::string importPlan(const Database& database, const protocol::StudyPlan& plan
     for (const MeshContent& mesh : meshes) insert_mesh.bind(sha256, mesh.mesh, mesh.sha256, mesh.bytes).run();
     insertFactors(database, sha256, plan);
     insertConditions(database, sha256, plan);
-    insertMeasures(database, sha256, plan);
+    insertMeasures(database);
+    declareMeasures(database, sha256, plan);
+    Statement insert_stable = database.prepare("INSERT INTO stable_stiffness VALUES(?, ?, ?, ?, ?)");
+    for (const protocol::StableStiffness& stable : plan.stable_stiffness)
+        insert_stable.bind(sha256, stable.device, stable.linear, stable.rotational, stable.origin).run();
     const std::int64_t sequences = sequenceCount(plan);
     for (std::int64_t first = 0; first < plan.participants; first += sequences) {
         insertSlots(database, sha256, protocol::participantKindName(protocol::ParticipantKind::Real), first / sequences,
@@ -364,6 +376,10 @@ Result<std::vector<AccuracyRow>> Store::accuracy(const std::string& protocol_sha
         std::erase_if(rows, [&](const AccuracyRow& row) { return row.protocol_sha256 != protocol_sha256; });
         return rows;
     });
+}
+
+Result<std::vector<protocol::StableStiffness>> Store::stableStiffness(const std::string& protocol_sha256) {
+    return thread_->call([&](const Database& database) { return readStableStiffness(database, protocol_sha256); });
 }
 
 Result<Done> Store::keepAccuracy(const std::vector<AccuracyRow>& rows) {

@@ -86,6 +86,10 @@ public:
     /// Keeps that for good. A protocol that has it already is an error.
     Result<Done> keepAccuracy(const std::vector<AccuracyRow>& rows);
 
+    /// Stable stiffness of the devices as the plan had it when it was first imported: what the protocol's stiffnesses
+    /// mean in this database, for good. None in protocols from before revision 4.
+    Result<std::vector<protocol::StableStiffness>> stableStiffness(const std::string& protocol_sha256);
+
     /// True if the participant is new, false if already enrolled with this kind; another kind is an error, and so is a
     /// code that does not begin with the kind's letter.
     Result<bool> enrol(const std::string& code, protocol::ParticipantKind kind, const std::string& created_utc);

@@ -4,6 +4,7 @@
 #include "study/store/open_database.h"
 #include "study/store/sample_codec.h"
 #include "study/store/sqlite.h"
+#include "study/store/stable_stiffness_rows.h"
 
 namespace passung::store {
 namespace {
@@ -199,6 +200,10 @@ Result<std::vector<MeshRow>> StoreReader::meshes() const {
 
 Result<std::vector<AccuracyRow>> StoreReader::accuracy() const {
     return guarded(path_, [&] { return readAccuracy(*database_); });
+}
+
+Result<std::vector<protocol::StableStiffness>> StoreReader::stableStiffness(const std::string& protocol_sha256) const {
+    return guarded(path_, [&] { return readStableStiffness(*database_, protocol_sha256); });
 }
 
 Result<std::vector<FactorRow>> StoreReader::factors() const {

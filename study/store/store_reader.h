@@ -6,6 +6,7 @@
 
 #include "core/base/result.h"
 #include "core/base/tick_record.h"
+#include "study/protocol/study_plan.h"
 #include "study/store/rows.h"
 
 namespace passung::store {
@@ -23,9 +24,10 @@ public:
 
     const std::string& path() const { return path_; }
 
-    Result<std::vector<ProtocolRow>> protocols() const;    // by name, version, hash
-    Result<std::vector<MeshRow>> meshes() const;           // protocols as above, meshes by name
-    Result<std::vector<AccuracyRow>> accuracy() const;     // by protocol hash, then candidate
+    Result<std::vector<ProtocolRow>> protocols() const;  // by name, version, hash
+    Result<std::vector<MeshRow>> meshes() const;         // protocols as above, meshes by name
+    Result<std::vector<AccuracyRow>> accuracy() const;   // by protocol hash, then candidate
+    Result<std::vector<protocol::StableStiffness>> stableStiffness(const std::string& protocol_sha256) const;
     Result<std::vector<FactorRow>> factors() const;        // protocols as above, factors as the protocol lists them
     Result<std::vector<ConditionRow>> conditions() const;  // likewise
     Result<std::vector<MeasureRow>> measures() const;

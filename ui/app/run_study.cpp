@@ -3,12 +3,14 @@
 #include <sys/utsname.h>
 
 #include <chrono>
+#include <stdexcept>
 
 #include "devices/simulated/presets.h"
 #include "study/measures/measures.h"
 #include "study/session/participant_order.h"
 #include "study/store/identity.h"
 #include "ui/app/auto_accuracy.h"
+#include "ui/app/calibration.h"
 #include "ui/app/disk_store.h"
 #include "ui/app/simulated_hand.h"
 
@@ -92,11 +94,22 @@ private:
 
 }  // namespace
 
-const std::vector<DeviceDescription>& knownDevices() {
+const std::vector<DeviceDescription>& presetDevices() {
     static const std::vector<DeviceDescription> devices = [] {
         std::vector<DeviceDescription> all;
         for (const auto& preset : simulated::presets()) all.push_back(simulated::describe(preset));
         return all;
+    }();
+    return devices;
+}
+
+const std::vector<DeviceDescription>& knownDevices() {
+    static const std::vector<DeviceDescription> devices = [] {
+        const auto calibrated = withCalibrations(presetDevices());
+        if (calibrated) return *calibrated;
+        std::string lines;
+        for (const Error& error : calibrated.errors()) lines += (lines.empty() ? "" : "\n") + toString(error);
+        throw std::runtime_error(lines);
     }();
     return devices;
 }
@@ -126,7 +139,13 @@ Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& optio
         if (!slow) return slow.errors();
         for (const std::string& what : *slow) listener.warned(what);
     }
-    auto picked = withKeptAccuracy(plan, *sha256, *opened.store, listener.calibrating);
+    const auto stable = opened.store->stableStiffness(*sha256);
+    if (!stable) return stable.errors();
+    const auto kept_plan = withKeptStiffness(plan, *stable);
+    if (!kept_plan) return kept_plan.errors();
+    if (listener.warned)
+        for (const std::string& difference : stiffnessDifferences(plan, *kept_plan)) listener.warned(difference);
+    auto picked = withKeptAccuracy(*kept_plan, *sha256, *opened.store, listener.calibrating);
     if (!picked) return picked.errors();
     StudyRun run(*picked, options, listener, *opened.store, *sha256);
     for (int i = 0; i < options.simulated; ++i) {

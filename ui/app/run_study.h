@@ -39,7 +39,11 @@ struct RunListener {
 /// is too slow for it is warned of.
 Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& options, const RunListener& listener);
 
-/// Every device that a protocol may name.
+/// Every device that a protocol may name, as its maker or its model describes it.
+const std::vector<DeviceDescription>& presetDevices();
+
+/// The same with the stable stiffness that was found on this machine, where it was. Throws std::runtime_error if a
+/// calibration file is not sound.
 const std::vector<DeviceDescription>& knownDevices();
 
 /// Names of all measures.

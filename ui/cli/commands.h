@@ -95,6 +95,8 @@ int bench(const BenchOptions& options);
 
 struct DoctorOptions {
     double seconds = 10.0;
+    std::string device;           // preset; empty: all, with a check of the loop
+    bool find_stiffness = false;  // of the device, and keep it
 };
 int doctor(const DoctorOptions& options);
 

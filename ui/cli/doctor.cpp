@@ -5,22 +5,56 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "ui/app/calibration.h"
 #include "ui/app/loop_check.h"
 #include "ui/app/run_study.h"
+#include "ui/app/stability_report.h"
 #include "ui/cli/commands.h"
+#include "ui/cli/console.h"
 
 namespace passung::cli {
 
 namespace {
 
-void printDevices() {
-    fmt::print("devices\n");
-    fmt::print("  {:<12}{:<56}{:>12}{:>13}\n", "simulated", "", "stable N/m", "Nm/rad");
-    for (const DeviceDescription& d : app::knownDevices()) {
-        fmt::print("  {:<12}{:<56}{:>12.0f}{:>13.3g}\n", d.name, d.label, d.stable_stiffness_N_per_m,
-                   d.stable_rotational_stiffness_Nm_per_rad);
+void printBounds(const char* unit, double stable, const app::WallBounds& bounds) {
+    const auto cell = [](double bound) { return bound > 0.0 ? fmt::format("{:.4g}", bound) : std::string("none"); };
+    fmt::print("              {:<7}{:>10}{:>10}{:>10}{:>10}{:>12}\n", unit, cell(stable), cell(bounds.border),
+               cell(bounds.linear), cell(bounds.passive), cell(bounds.passive_undamped));
+}
+
+void printDevice(const DeviceDescription& d) {
+    fmt::print("  {:<12}{}\n", d.name, d.label);
+    if (d.mechanism) {
+        printBounds("N/m", d.stable_stiffness_N_per_m,
+                    app::translationBounds(*d.mechanism, d.recommended_damping_Ns_per_m, d.delay_ticks));
+        if (d.actuated_degrees >= 6)
+            printBounds("Nm/rad", d.stable_rotational_stiffness_Nm_per_rad,
+                        app::rotationBounds(*d.mechanism, d.recommended_rotational_damping_Nms_per_rad, d.delay_ticks));
     }
+    fmt::print("              {}\n", d.stability_source);
+}
+
+/// `device` empty: all.
+void printDevices(const std::string& device) {
+    fmt::print(
+        "devices: stiffness that a study may use (\"max\"), and by the model of the mechanism at the recommended "
+        "damping: exact border, linear rule, passive bound with encoder steps and dry friction, the same undamped\n");
+    fmt::print("  {:<19}{:>10}{:>10}{:>10}{:>10}{:>12}\n", "simulated", "max", "border", "linear", "passive",
+               "(undamped)");
+    for (const DeviceDescription& d : app::knownDevices())
+        if (device.empty() || d.name == device) printDevice(d);
     fmt::print("  real        none: this version has drivers for simulated devices only\n");
+}
+
+int findStiffness(const simulated::DeviceParams& device) {
+    const auto found = app::findStiffness(device);
+    if (!found) return fail(found.errors());
+    if (const auto kept = app::keepCalibration(*found); !kept) return fail(kept.errors());
+    fmt::print("{}: calm up to {:.6g} N/m", device.name, found->calm_stiffness);
+    if (found->calm_rotational_stiffness > 0.0) fmt::print(" and {:.6g} Nm/rad", found->calm_rotational_stiffness);
+    fmt::print(", kept for this user in {}\n", app::calibrationPath(found->device));
+    printDevices(found->device);
+    return 0;
 }
 
 std::string limitText(int resource) {
@@ -64,8 +98,20 @@ void printLoop(const app::LoopCheck& check) {
 }  // namespace
 
 int doctor(const DoctorOptions& options) {
+    if (!options.device.empty()) {
+        const simulated::DeviceParams* device = simulated::findPreset(options.device);
+        if (device == nullptr) {
+            std::string names;
+            for (const auto& preset : simulated::presets()) names.append(names.empty() ? "" : ", ").append(preset.name);
+            return fail(
+                {{.message = "unknown device; known devices: " + names, .key = "--device", .value = options.device}});
+        }
+        if (options.find_stiffness) return findStiffness(*device);
+        printDevices(options.device);
+        return 0;
+    }
     printVersions();
-    printDevices();
+    printDevices("");
     const char* display = std::getenv("DISPLAY");
     fmt::print("display\n  {}\n", display != nullptr ? display : "none (DISPLAY is not set)");
     fmt::print("loop check: {:.0f} s\n", options.seconds);

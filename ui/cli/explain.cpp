@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
+#include <span>
 
 #include "study/protocol/document.h"
 #include "study/protocol/plan_json.h"
@@ -10,8 +12,10 @@
 #include "study/store/digest.h"
 #include "study/store/store_reader.h"
 #include "ui/app/auto_accuracy.h"
+#include "ui/app/calibration.h"
 #include "ui/app/disk_store.h"
 #include "ui/app/run_study.h"
+#include "ui/app/stability_report.h"
 #include "ui/app/stage_cost.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
@@ -49,6 +53,53 @@ Result<Done> printStages(const model::SceneSpec& spec, model::PartCache& cache) 
         fmt::print("  {:<22}{:>10.1f}{:>10.1f}  {}\n", cost.name, cost.median_us, cost.p99_us, cost.reason);
     }
     return Done{};
+}
+
+const DeviceDescription* findDevice(const std::string& name, std::span<const DeviceDescription> devices) {
+    const auto found = std::find_if(devices.begin(), devices.end(), [&](const auto& d) { return d.name == name; });
+    return found == devices.end() ? nullptr : &*found;
+}
+
+/// A line of the stiffness of a scene: how far it is from what its device bears, by the model of its mechanism.
+void printWall(const std::string& what, std::size_t width, const char* unit, double maximum,
+               const app::SceneWall& wall) {
+    const app::WallBounds& b = wall.bounds;
+    const auto cell = [](double bound) { return bound > 0.0 ? fmt::format("{:.4g}", bound) : std::string("none"); };
+    const auto share = [&](double bound) {
+        return bound > 0.0 ? fmt::format("{:.2f}", wall.stiffness / bound) : std::string("-");
+    };
+    fmt::print("  {:<{}}  {:>10.4g} {:<6}{:>8}{:>11}{:>10}{:>10}{:>10}{:>12}{}\n", what, width, wall.stiffness, unit,
+               share(maximum), share(b.border), cell(b.border), cell(b.linear), cell(b.passive),
+               cell(b.passive_undamped), wall.stiffness < b.border ? "" : "  UNSTABLE by the model");
+}
+
+void printStabilityHead(std::size_t width) {
+    fmt::print(
+        "\nStability of the wall that the device feels: share of its \"max\" and of the model's exact border; linear "
+        "rule, passive bound, the same undamped\n");
+    fmt::print("  {:<{}}  {:>10} {:<6}{:>8}{:>11}{:>10}{:>10}{:>10}{:>12}\n", "", width, "stiffness", "", "of max",
+               "of border", "border", "linear", "passive", "(undamped)");
+}
+
+void printStability(const std::string& what, std::size_t width, const DeviceDescription& device,
+                    const model::SceneSpec& scene) {
+    if (!device.mechanism) {
+        fmt::print("  {:<{}}  {}: no model of its mechanism\n", what, width, device.name);
+        return;
+    }
+    printWall(what, width, "N/m", device.stable_stiffness_N_per_m, app::translationWall(device, scene));
+    if (device.actuated_degrees >= 6 && scene.contact.rotational_stiffness > 0.0)
+        printWall("", width, "Nm/rad", device.stable_rotational_stiffness_Nm_per_rad, app::rotationWall(device, scene));
+}
+
+void explainStability(const protocol::StudyPlan& plan, std::span<const DeviceDescription> devices) {
+    std::size_t width = 0;
+    for (const auto& condition : plan.conditions) width = std::max(width, condition.name.size());
+    printStabilityHead(width);
+    for (const auto& condition : plan.conditions)
+        if (const auto* device = findDevice(condition.device, devices))
+            printStability(condition.name, width, *device, condition.scene);
+    for (const auto& stable : plan.stable_stiffness) fmt::print("  {}: {}\n", stable.device, stable.origin);
 }
 
 /// Everything that decides which stages run and what they cost: geometry, resolution, method. Conditions that agree in
@@ -125,15 +176,33 @@ int explain(const ExplainOptions& options) {
     const auto is_study = isStudy(options.file);
     if (!is_study) return fail(is_study.errors());
     if (!*is_study) {
-        const auto spec = protocol::readScene(options.file, app::knownDevices());
+        const auto text = protocol::readFile(options.file);
+        if (!text) return fail(text.errors());
+        const auto spec = protocol::readSceneOnDevice(*text, options.file, app::knownDevices());
         if (!spec) return fail(spec.errors());
-        const auto done = printStages(*spec, cache);
+        const auto done = printStages(spec->scene, cache);
+        if (const auto* device = findDevice(spec->device, app::knownDevices())) {
+            printStabilityHead(device->name.size());
+            printStability(device->name, device->name.size(), *device, spec->scene);
+            fmt::print("  {}: {}\n", device->name, device->stability_source);
+        }
         return done ? 0 : fail(done.errors());
     }
-    auto plan = protocol::readProtocol(options.file, app::knownDevices(), app::knownMeasures());
+    auto devices = app::knownDevices();
+    auto plan = protocol::readProtocol(options.file, devices, app::knownMeasures());
     if (!plan) return fail(plan.errors());
+    if (!options.database.empty()) {
+        const auto reader = store::StoreReader::open(options.database);
+        if (!reader) return fail(reader.errors());
+        const auto stable = reader->stableStiffness(store::sha256Hex(plan->source_text));
+        if (!stable) return fail(stable.errors());
+        plan = app::withKeptStiffness(*plan, *stable);
+        if (!plan) return fail(plan.errors());
+        devices = app::devicesAsKept(*stable);
+    }
     fmt::print("{}",
                session::describePlan(*plan, options.participants > 0 ? options.participants : plan->participants));
+    explainStability(*plan, devices);
     if (const auto picked = explainAccuracy(options.database, *plan, store.get()); !picked)
         return fail(picked.errors());
     const auto done = explainEffects(*plan, cache);

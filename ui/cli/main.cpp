@@ -195,6 +195,11 @@ private:
         sub = command("doctor", "devices, permissions and a check of the loop", doctor_, doctor);
         sub->add_option("--seconds", doctor_.seconds, "of the loop check")
             ->check(between(0.1, 3600.0, "a number from 0.1 to 3600"));
+        auto* device = sub->add_option("--device", doctor_.device, "tell of this device alone, without a loop check");
+        sub->add_flag("--find-stiffness", doctor_.find_stiffness,
+                      "try how stiff a wall the device bears (nobody holds it) and keep it as this user's calibration: "
+                      "\"max\" of a stiffness then stands for it")
+            ->needs(device);
     }
 
     void addAccuracyCommand(const CLI::Validator& units) {

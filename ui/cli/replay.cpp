@@ -11,6 +11,7 @@
 #include "study/store/hex_text.h"
 #include "study/store/store_reader.h"
 #include "ui/app/auto_accuracy.h"
+#include "ui/app/calibration.h"
 #include "ui/app/disk_store.h"
 #include "ui/app/run_study.h"
 #include "ui/cli/commands.h"
@@ -101,10 +102,13 @@ private:
 
     /// The stored protocol with the mesh files of the first folder that has them all.
     Result<protocol::StudyPlan> readPlan(const store::ProtocolRow& row) {
+        const auto stable = reader_.stableStiffness(row.sha256);
+        if (!stable) return stable.errors();
+        const auto devices = app::devicesAsKept(*stable);
         Errors errors;
         for (const std::filesystem::path& folder : folders_) {
-            auto plan = protocol::readProtocolText(row.source_text, (folder / (row.name + ".toml")).string(),
-                                                   app::knownDevices(), app::knownMeasures());
+            auto plan = protocol::readProtocolText(row.source_text, (folder / (row.name + ".toml")).string(), devices,
+                                                   app::knownMeasures());
             if (!plan) {
                 if (errors.empty()) errors = plan.errors();
                 continue;

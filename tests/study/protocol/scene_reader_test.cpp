@@ -208,7 +208,8 @@ TEST(SceneReader, RefusesStiffnessAboveTheStableMaximum) {
     // Truth: closed form: 4000 N/m is the fake device's maximum; 11 lines stand before.
     EXPECT_EQ(
         errorsOf(kParts + "[device]\npreset = \"arm\"\n[contact]\nstiffness_N_per_m = 4000.5\n"),
-        "s.toml:14:21: error: contact.stiffness_N_per_m: 4000.5: must not exceed the stable maximum of arm: 4000");
+        "s.toml:14:21: error: contact.stiffness_N_per_m: 4000.5: must not exceed the stable maximum of arm: 4000; "
+        "allow_unstable = true lifts this");
     EXPECT_EQ(errorsOf(kParts + "[contact]\nstiffness_N_per_m = \"max\"\n"),
               "s.toml:12:21: error: contact.stiffness_N_per_m: \"max\": a fraction of the stable maximum needs "
               "device.preset");
@@ -220,14 +221,16 @@ TEST(SceneReader, RefusesWhatTheStableMaximumWasNotFoundFor) {
     // Truth: closed form: it holds for the fake device's damping 5 and 0.002, no added delay and scale 1.
     const std::string arm = kParts + "[device]\npreset = \"arm\"\n";
     const std::string not_known = "the stable maximum of arm is not known for this; leave it out or set ";
-    EXPECT_EQ(errorsOf(arm + "delay_ticks = 20\n"), "s.toml:13:15: error: device.delay_ticks: 20: " + not_known + "0");
+    const std::string unless = ", or allow_unstable = true";
+    EXPECT_EQ(errorsOf(arm + "delay_ticks = 20\n"),
+              "s.toml:13:15: error: device.delay_ticks: 20: " + not_known + "0" + unless);
     EXPECT_EQ(errorsOf(arm + "[contact]\ndamping_Ns_per_m = 0\nstiffness_N_per_m = 4000\n"),
-              "s.toml:14:20: error: contact.damping_Ns_per_m: 0: " + not_known + "the recommended 5");
-    EXPECT_EQ(
-        errorsOf(arm + "[contact]\nrotational_damping_Nms_per_rad = 0.1\n"),
-        "s.toml:14:34: error: contact.rotational_damping_Nms_per_rad: 0.1: " + not_known + "the recommended 0.002");
+              "s.toml:14:20: error: contact.damping_Ns_per_m: 0: " + not_known + "the recommended 5" + unless);
+    EXPECT_EQ(errorsOf(arm + "[contact]\nrotational_damping_Nms_per_rad = 0.1\n"),
+              "s.toml:14:34: error: contact.rotational_damping_Nms_per_rad: 0.1: " + not_known +
+                  "the recommended 0.002" + unless);
     EXPECT_EQ(errorsOf(arm + "[registration]\nscale = 5\n"),
-              "s.toml:14:9: error: registration.scale: 5: " + not_known + "1");
+              "s.toml:14:9: error: registration.scale: 5: " + not_known + "1" + unless);
     EXPECT_EQ(errorsOf(arm + "delay_ticks = 0\n[contact]\ndamping_Ns_per_m = 5\n"
                              "rotational_damping_Nms_per_rad = 0.002\n[registration]\nscale = 1\n"),
               "");
@@ -235,6 +238,14 @@ TEST(SceneReader, RefusesWhatTheStableMaximumWasNotFoundFor) {
                                 "[registration]\nscale = 5\n"),
               "")
         << "without a preset nothing is promised";
+    const auto unstable = read(arm +
+                               "delay_ticks = 20\n[contact]\nallow_unstable = true\ndamping_Ns_per_m = 0\n"
+                               "stiffness_N_per_m = 9000\nrotational_stiffness_Nm_per_rad = 20\n"
+                               "[registration]\nscale = 5\n");
+    ASSERT_TRUE(unstable) << "but who takes responsibility may";
+    EXPECT_EQ(unstable->contact.stiffness, 9000.0);
+    EXPECT_EQ(unstable->contact.rotational_stiffness, 20.0);
+    EXPECT_NE(errorsOf(arm + "[contact]\nallow_unstable = false\nstiffness_N_per_m = 9000\n"), "");
 }
 
 TEST(SceneReader, BuildsTransientsOnlyIfTheyAreNamedAndComplete) {

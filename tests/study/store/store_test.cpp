@@ -328,6 +328,52 @@ TEST(Store, KeepsWhatAutomaticAccuracyMeasuredAndPickedOnceAndForGood) {
     EXPECT_TRUE(require(store->accuracy("no such protocol")).empty());
 }
 
+TEST(Store, KeepsTheStableStiffnessWithWhichAProtocolWasFirstImported) {
+    // Truth: invariant; exact doubles, and a later import with others changes nothing.
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    auto plan = fake::makePlan();
+    plan.stable_stiffness = {{"arm", 1234.0 + 1.0 / 3.0, 0.1, "found here"}, {"stick", 1000.0, 0.0, "its maker"}};
+    std::string sha256;
+    {
+        auto opened = Store::open(path, fake::options());
+        ASSERT_TRUE(opened.store);
+        sha256 = require(opened.store->importProtocol(plan));
+        plan.stable_stiffness[0].linear = 9999.0;
+        EXPECT_EQ(require(opened.store->importProtocol(plan)), sha256);
+        EXPECT_EQ(require(opened.store->stableStiffness(sha256))[0].linear, 1234.0 + 1.0 / 3.0);
+        EXPECT_TRUE(require(opened.store->stableStiffness("no such protocol")).empty());
+    }
+    const auto reader = StoreReader::open(path);
+    ASSERT_TRUE(reader);
+    const auto kept = require(reader->stableStiffness(sha256));
+    ASSERT_EQ(kept.size(), 2u);
+    EXPECT_EQ(kept[0].device, "arm");
+    EXPECT_EQ(kept[0].linear, 1234.0 + 1.0 / 3.0);
+    EXPECT_EQ(kept[0].rotational, 0.1);
+    EXPECT_EQ(kept[0].origin, "found here");
+    EXPECT_EQ(kept[1].device, "stick");
+}
+
+TEST(Store, MeasuresThatAFileDoesNotKnowYetAreAddedWhenItsProtocolRunsAgain) {
+    // Truth: invariant; a database from before a measure was there can take its values.
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    { require(Store::open(path, fake::options()).store->importProtocol(fake::makePlan())); }
+    const auto count = [&] {
+        return Database(path, OpenMode::ReadWrite)
+            .integer("SELECT count(*) FROM measure WHERE measure='latched_ticks'");
+    };
+    {
+        const Database older(path, OpenMode::ReadWrite);
+        older.execute("DELETE FROM protocol_measure WHERE measure='latched_ticks'");
+        older.execute("DELETE FROM measure WHERE measure='latched_ticks'");
+    }
+    ASSERT_EQ(count(), 0);
+    { require(Store::open(path, fake::options()).store->importProtocol(fake::makePlan())); }
+    EXPECT_EQ(count(), 1);
+}
+
 TEST(Store, AFileOfTheFirstRevisionIsUpgradedAndKeepsPicksThen) {
     // Truth: invariant. The first revision's own statement makes the file.
     const fake::TempFolder folder;

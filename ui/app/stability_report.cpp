@@ -1,0 +1,59 @@
+#include "ui/app/stability_report.h"
+
+#include "core/base/tick_record.h"
+
+namespace passung::app {
+
+namespace {
+
+WallBounds boundsOf(const loop::SampledWall& wall, double coulomb, double quantum) {
+    // Beyond the longest delay that the model covers nothing is known to be stable: its functions give 0 then.
+    const bool known = wall.delay_ticks <= loop::kMaxDeviceDelayTicks;
+    loop::SampledWall undamped = wall;
+    undamped.virtual_damping = 0.0;
+    return {.border = stableStiffnessBorder(wall),
+            .linear = known ? linearStiffness(wall) : 0.0,
+            .passive = passiveStiffness(wall, coulomb, quantum),
+            .passive_undamped = passiveStiffness(undamped, coulomb, quantum)};
+}
+
+}  // namespace
+
+WallBounds translationBounds(const DeviceMechanism& m, double damping, int delay_ticks) {
+    return boundsOf({.mass = m.mass_kg,
+                     .damping = m.damping_Ns_per_m,
+                     .stiffness = 0,
+                     .virtual_damping = damping,
+                     .period = kTickSeconds,
+                     .delay_ticks = delay_ticks},
+                    m.coulomb_force_N, m.quantum_m);
+}
+
+WallBounds rotationBounds(const DeviceMechanism& m, double damping, int delay_ticks) {
+    return boundsOf({.mass = m.inertia_kg_m2,
+                     .damping = m.rotational_damping_Nms_per_rad,
+                     .stiffness = 0,
+                     .virtual_damping = damping,
+                     .period = kTickSeconds,
+                     .delay_ticks = delay_ticks},
+                    m.coulomb_torque_Nm, m.rotational_quantum_rad);
+}
+
+SceneWall translationWall(const DeviceDescription& device, const model::SceneSpec& scene) {
+    const double scale = scene.registration.scale;
+    SceneWall wall{.stiffness = scale * scene.contact.stiffness, .bounds = {}};
+    if (device.mechanism)
+        wall.bounds = translationBounds(*device.mechanism, scale * scene.contact.damping,
+                                        device.delay_ticks + scene.limits.delay_ticks);
+    return wall;
+}
+
+SceneWall rotationWall(const DeviceDescription& device, const model::SceneSpec& scene) {
+    SceneWall wall{.stiffness = scene.contact.rotational_stiffness, .bounds = {}};
+    if (device.mechanism)
+        wall.bounds = rotationBounds(*device.mechanism, scene.contact.rotational_damping,
+                                     device.delay_ticks + scene.limits.delay_ticks);
+    return wall;
+}
+
+}  // namespace passung::app

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "core/base/device_description.h"
+#include "core/loop/stability.h"
+#include "core/model/scene_spec.h"
+
+namespace passung::app {
+
+/// How stiff a wall a device bears by the model of its mechanism: translation [N/m] or rotation [N·m/rad]; 0: none.
+struct WallBounds {
+    double border = 0.0;            // exact, of the linear model
+    double linear = 0.0;            // rule of thumb
+    double passive = 0.0;           // never gives out energy, with the device's encoder steps and dry friction
+    double passive_undamped = 0.0;  // the same for a wall without damping
+};
+
+/// Bounds of a wall with `damping` felt on the device, `delay_ticks` in all.
+WallBounds translationBounds(const DeviceMechanism& mechanism, double damping, int delay_ticks);
+WallBounds rotationBounds(const DeviceMechanism& mechanism, double damping, int delay_ticks);
+
+/// A scene's wall as its device feels it, and the bounds for it.
+struct SceneWall {
+    double stiffness = 0.0;  // scale included: lengths of the scene are longer by it, forces are not
+    WallBounds bounds;
+};
+SceneWall translationWall(const DeviceDescription& device, const model::SceneSpec& scene);
+SceneWall rotationWall(const DeviceDescription& device, const model::SceneSpec& scene);
+
+}  // namespace passung::app
