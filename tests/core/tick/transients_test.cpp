@@ -56,7 +56,8 @@ private:
     test::Bench with_, without_;
 };
 
-constexpr model::ContactMethod kMethods[] = {model::ContactMethod::Penalty, model::ContactMethod::GodObjectHeuristic};
+constexpr model::ContactMethod kMethods[] = {model::ContactMethod::Penalty, model::ContactMethod::GodObjectHeuristic,
+                                             model::ContactMethod::GodObject};
 
 TEST(Transients, OfAnImpactOnAPlaneAreADecayingSineInProportionToItsSpeed) {
     // Truth: closed form, A s exp(-t/tau) sin(2 pi f t) along the contact's force n at the impact, zero in the impact's

@@ -162,7 +162,7 @@ TEST(StabilityBorder, AtNineteenTwentiethsOfItAPressedHandleComesToRest) {
             SampledWall wall = wallOf(preset, Axis::Translation);
             wall.delay_ticks = delay;
             const double stiffness = 0.95 * stableStiffnessBorder(wall);
-            for (const auto method : {model::ContactMethod::Penalty, model::ContactMethod::GodObjectHeuristic}) {
+            for (const auto method : {model::ContactMethod::Penalty, model::ContactMethod::GodObject}) {
                 const Press found = press(preset, method, stiffness);
                 std::printf("%-11s %d ms %-10s K %7.0f N/m: swing %8.2f um, later %8.2f um\n",
                             std::string(preset.name).c_str(), delay,
