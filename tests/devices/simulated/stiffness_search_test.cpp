@@ -135,6 +135,17 @@ TEST(StiffnessSearch, LetsGoInTheTickInWhichAnythingIsWrong) {
         if (bad == 2) reading.X_BD.p.x() = std::nan("");
         EXPECT_EQ(search.step(reading).force.norm(), 0.0) << bad;
     }
+    // A little farther than allowed, which a soft spring answers with little force.
+    auto narrow = params;
+    narrow.max_travel = 2e-3;
+    loop::StiffnessSearch search_narrow(narrow);
+    DeviceReading reading;
+    Wrench wrench;
+    for (int i = 0; i < 500; ++i) wrench = search_narrow.step(reading);
+    ASSERT_GT(wrench.force.norm(), 0.1);
+    reading.X_BD.p.y() = 2.1e-3;
+    EXPECT_EQ(search_narrow.step(reading).force.norm(), 0.0);
+
     params.first *= 30.0;
     params.highest *= 30.0;
     const Found found = search(preset, params);
