@@ -110,9 +110,13 @@ MotionSolver::MotionSolver(const Surroundings& around, std::span<const std::uint
     }
 }
 
-/// What a contact asks of g · motion [m].
+/// What a contact asks of g · motion [m], if that can be had.
+double MotionSolver::wantedOf(const ContactPoint& contact) const noexcept {
+    return (contact.phi < around_.keep_out ? around_.sunk_out : around_.keep_out) - contact.phi;
+}
+
 double MotionSolver::least(const ContactPoint& contact) const noexcept {
-    const double b = std::min(around_.keep_out - contact.phi, around_.most_out);
+    const double b = wantedOf(contact);
     return relaxed_ || contact.radius > 0.0 ? std::min(b, 0.0) : b;
 }
 
@@ -128,7 +132,7 @@ void MotionSolver::addRow(const ContactPoint& contact) noexcept {
     row.a.tail<3>() = (contact.position - around_.p_WO).cross(contact.gradient) / around_.metric_radius;
     row.length = row.a.norm();
     row.a /= row.length;
-    row.b = std::min(around_.keep_out - contact.phi, around_.most_out) / row.length;
+    row.b = wantedOf(contact) / row.length;
     row.gradient = gradient;
     row.contact = static_cast<std::uint32_t>(&contact - around_.contacts.begin());
     row.sphere = contact.radius > 0.0;

@@ -15,10 +15,10 @@ using Motion = Eigen::Matrix<double, 6, 1>;
 /// What a body's motion meets.
 struct Surroundings {
     const ContactManifold& contacts;
-    Vec3 p_WO;             // the body's origin
-    double metric_radius;  // ρ [m]
-    double keep_out;       // the φ that a contact must keep, slightly negative [m]
-    double most_out = std::numeric_limits<double>::infinity();  // of overlap that one motion removes [m], ≥ 0
+    Vec3 p_WO;                   // the body's origin
+    double metric_radius;        // ρ [m]
+    double keep_out;             // the φ that a contact must keep, slightly negative [m]
+    double sunk_out = keep_out;  // and that one keeps which is deeper already, ≤ keep_out
 
     /// How far the point at `p_WP` is carried by `u` [m].
     Vec3 wayOf(const Vec3& p_WP, const Motion& u) const noexcept {
@@ -47,7 +47,7 @@ inline constexpr double kMotionTolerance = 1e-9;  // [m], of a constraint; 2e-7 
 
 /// The motion nearest to `wanted` that obeys all contacts, by Gauss's principle of least constraint:
 ///   min ½|u - w|²   s.t.   a_i · u ≥ b_i,   a_i = (g_i, (r_i × g_i)/ρ),  r_i = P_i - p_WO,  b_i = keep_out - φ_i
-/// g_i the gradient of φ; b_i is at most most_out.
+/// g_i the gradient of φ; where φ_i < keep_out, b_i = sunk_out - φ_i: the deepest come out first.
 ///
 /// Source: Goldfarb and Idnani (1983), dual active set, for a unit Hessian. With N the active rows, λ their multipliers
 /// and u = w + N λ, λ ≥ 0, the most violated row a is taken up along
@@ -96,6 +96,7 @@ private:
     class ActiveSet;
     enum class Taken { Yes, Infeasible, Capped };
 
+    double wantedOf(const ContactPoint& contact) const noexcept;
     double least(const ContactPoint& contact) const noexcept;
     double boundOf(const Row& row) const noexcept;
     void addRow(const ContactPoint& contact) noexcept;

@@ -19,6 +19,7 @@ public:
         const double length = length_ + scaled(u).norm(), chord = (sum_ + scaled(u)).norm();
         return 0.5 * std::sqrt(std::max(0.0, length * length - chord * chord));
     }
+    double length() const noexcept { return length_; }
     void add(const Motion& u) noexcept {
         length_ += scaled(u).norm();
         sum_ += scaled(u);
@@ -58,37 +59,42 @@ void sweepProxy(const TickModel& model, TickState& state, TickFrame& frame) noex
     double reach = nextReach(model, state);
     double repair = kRepair * model.finest_cell;
     Way way(model);
-    bool arrived = false;
-    for (int sweep = 0; sweep < kSweeps && !arrived; ++sweep) {
+    bool arrived = false, whole = false;  // whole: the last step was all that was allowed
+    for (int sweep = 0; sweep <= kSweeps; ++sweep) {
         const Motion wanted = unconstrainedMotion(model, state.X_WG, frame.X_WH);
         const double path = longestPath(model, wanted);
         const double before = overlap(state);
         arrived = path < kStill && before <= margins.relieve;
         if (arrived) break;
-        frame.iterations = static_cast<std::uint32_t>(sweep + 1);
         const double accepted = std::max(margins.accept, before + 0.1 * margins.keep);
-        const bool free = state.room > path;
-        if (free && way.bentBy(wanted) > bent) break;
-        arrived = free && arriveFreely(model, state, frame, path, reach, accepted);
-        if (arrived) break;
+        if (sweep < kSweeps && state.room > path) {
+            if (way.bentBy(wanted) > bent) break;
+            frame.iterations = static_cast<std::uint32_t>(sweep + 1);
+            arrived = arriveFreely(model, state, frame, path, reach, accepted);
+            if (arrived) break;
+        }
 
         Surroundings around = surroundings(model, state);
-        around.most_out = repair;
+        around.sunk_out = -std::max(margins.keep, before - repair);
         const AllowedMotion allowed = allowedMotion(model, state, frame, wanted, around);
         const double step = longestPath(model, allowed.u);
         const double known = std::max(state.manifold_reach, state.room);
         const double share = step > known ? known / step : 1.0;
         const double next_reach = std::clamp(kReachGrowth * std::min(step, path), reach, longest);
-        if (way.bentBy(share * allowed.u) > bent) break;
-        const double made = step < kStill ? 1.0
-                                          : makeStep(model, state, frame, share * allowed.u, next_reach,
-                                                     std::max(next_reach, path), accepted);
+        // Contacts that held may be left behind by now, so that the way ends only where those of now leave nothing.
+        const bool on_the_way = whole && before <= margins.relieve;
+        arrived = step < (on_the_way ? std::max(kEnough * model.finest_cell, kRest * way.length()) : kStill);
+        if (arrived && sweep == 0) state.rubbing = allowed.rubbing;
+        if (arrived || way.bentBy(share * allowed.u) > bent) break;
+        if (sweep == kSweeps) break;
+        frame.iterations = static_cast<std::uint32_t>(sweep + 1);
+        const double made =
+            makeStep(model, state, frame, share * allowed.u, next_reach, std::max(next_reach, path), accepted);
         if (made == 0.0) break;
         way.add(made * share * allowed.u);
         if (made == 1.0) state.rubbing = allowed.rubbing;
-        repair = std::max(0.0, repair - std::max(0.0, before - margins.keep));
-        const bool whole = made * share == 1.0;
-        arrived = whole && (step < kStill || overlap(state) <= margins.relieve);
+        repair = std::max(0.0, repair - std::max(0.0, before - overlap(state)));
+        whole = made * share == 1.0;
         reach = next_reach;
     }
     if (!arrived) frame.status |= kIterationLimit;

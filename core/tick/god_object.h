@@ -15,21 +15,22 @@ namespace passung::tick {
 /// Derivation. The coupling holds G by the energy E = ½K|x_H - x_G|² + ½K_φ|φ|². A body without mass, moved slowly, is
 /// where E is least among the poses without overlap. For a small motion u = (Δx, ρ Δφ) of G towards
 /// w = (x_H - x_G, ρ log(R_H R_Gᵀ)), E = ½K|u - w|² and φ_i changes by a_i · u, a_i = (g_i, (r_i × g_i)/ρ):
-///   min ½|u - w|²   s.t.   a_i · u ≥ b_i,   b_i = min(-keep - φ_i, what is left to repair),
+///   min ½|u - w|²   s.t.   a_i · u ≥ b_i,   b_i = -keep - φ_i,
 /// strictly convex in six unknowns: one solution, found exactly (constrained_motion.h); with friction, friction.h. Its
 /// multipliers λ_i ≥ 0 are the contact forces: the coupling's wrench K(w - u) = -K Σ λ_i a_i is what they push with.
 ///
 /// Sweep. a_i is true to first order only. A step therefore goes no farther than is known around the proxy (`reach`,
 /// more where free room is proven) and than half a cell, is looked at, and everything is set up anew from there, until
-/// the whole allowed motion is made: at most kSweeps times. A step that ends with more overlap than kAccepted is
-/// halved; one with more than kRelieved is followed by another, whose rows ask for it (b_i > 0).
+/// nothing is left that is allowed: at most kSweeps times. A step that ends with more overlap than kAccepted is halved;
+/// one with more than kRelieved is followed by another, whose rows ask for it (b_i > 0).
 ///
 /// A tick's way that bends by more than kBent ends early, so that the straight line between two ticks' poses, which is
 /// what others see of it, is as free as the way itself.
 ///
-/// Repair. A start in overlap is no special case: its rows ask for -keep - φ_i, all steps of one tick together for no
-/// more than kRepair · s, so that the proxy comes out at kRepair · s a tick and the coupling's force rises no faster
-/// than K times that. Overlap that cannot be removed is only kept from growing (`relaxed`).
+/// Repair. A start in overlap is no special case: what is in overlap has to come to φ ≥ -max(keep, d - kRepair · s), d
+/// the deepest overlap when the tick begins. The deepest points come out first, at kRepair · s a tick, so that the
+/// coupling's force rises no faster than K times that; those between are not asked yet, because far inside what is
+/// nearest may be the wrong side. Overlap that cannot be removed is only kept from growing (`relaxed`).
 ///
 /// Limit cases: no contact within reach → G = H. One plane → G is H's projection onto it, at -keep. Two, three: H's
 /// projection onto the edge, the corner. More than the body's freedom allows (a tight bore): the rest is held.
@@ -37,11 +38,14 @@ namespace passung::tick {
 /// that is near ends at φ ≥ -accept, or the step is taken back; for it to have come to the other side of an open sheet
 /// (φ ≥ 0 again 2 cells farther on) it would have had to go farther than half a cell. Without friction the wrench is
 /// Σ λ_i a_i, λ_i ≥ 0: nothing holds along a surface.
-/// What is not seen: an edge between two samples; `two_way` asks the other part's points for it.
+/// What is not seen: an edge between two samples; `two_way` asks the other part's points for it. Between the samples
+/// an open sheet is still not passed if their cover radius is less than its offset, one cell.
 inline constexpr double kKept = 0.002;      // overlap kept, per cell
 inline constexpr double kRelieved = 0.006;  // overlap after a step that another one follows, per cell
 inline constexpr double kAccepted = 0.02;   // overlap after a step that is taken back, per cell
 inline constexpr double kRepair = 0.2;      // of overlap that was there before, per cell and tick
+inline constexpr double kEnough = 0.002;    // of motion that is left after a step and not made, per cell
+inline constexpr double kRest = 0.5;        // the same, per way made
 inline constexpr double kBent = 0.25;       // of the way in one tick, per cell
 inline constexpr int kSweeps = 16;
 

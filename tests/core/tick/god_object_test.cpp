@@ -299,6 +299,19 @@ TEST(GodObject, LeavesADeepOverlapAtABoundedSpeed) {
                 25e-6);  // the field's tolerance, and the sag of a sample's distance from the pole
 }
 
+TEST(GodObject, LeavesByTheNearestFaceWhereSomePointsAskForAnother) {
+    // Truth: closed form. A block 5 mm deep in a table, two-way: of the table's points inside the block those near its
+    // sides would leave it sideways, to all sides at once. The deepest first: it rises, straight.
+    auto spec = test::scene(model::Box{0.02, 0.02, 0.02}, at({0, 0, 0.005}), model::Box{0.06, 0.06, 0.03},
+                            at({0, 0, -0.015}), ContactMethod::GodObject);
+    spec.contact.two_way = true;
+    test::Bench bench(spec);
+    tick::TickOutput out;
+    for (int i = 0; i < 100; ++i) out = bench.step(at({0, 0, 0.005}));
+    EXPECT_NEAR(out.X_WG.p.z(), 0.01, 5e-6);
+    EXPECT_LT(out.X_WG.p.head<2>().norm(), 50e-6);
+}
+
 TEST(GodObject, HoldsWhatIsWedgedTooTight) {
     // Truth: invariant. A block between two walls 0.2 mm too near: nothing can remove the overlap, the block stays
     // between them and slides along them only.
