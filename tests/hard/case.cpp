@@ -16,13 +16,22 @@ namespace passung::hard {
 
 namespace {
 
-/// Most looks of a tick: kCorrections times the halvings, and per sub-step an arrival, its return and the halvings with
-/// their reliefs, each look perhaps with a second one for its proof. (The sweeps of the god object take fewer.)
-constexpr std::uint32_t kMostLooks = 2 * (1 + tick::kCorrections * (tick::kHalvings + 2) +
-                                          tick::kSubSteps * (3 + (tick::kHalvings + 1) * (1 + tick::kReliefs)));
+struct Caps {
+    std::uint32_t iterations, looks;  // of a tick
+};
+
+/// Each look perhaps with a second one for its proof.
+Caps capsOf(model::ContactMethod method) {
+    if (method == model::ContactMethod::GodObject) return {tick::kSweeps, 2 * tick::kSweeps * (tick::kHalvings + 3)};
+    // Corrections with their halvings, then per sub-step an arrival, its return and the halvings with their reliefs.
+    const int sub_step = 3 + (tick::kHalvings + 1) * (1 + tick::kReliefs);
+    const int looks = 2 * (1 + tick::kCorrections * (tick::kHalvings + 2) + tick::kSubSteps * sub_step);
+    return {tick::kSubSteps, static_cast<std::uint32_t>(looks)};
+}
 
 /// What holds in every case.
 std::string commonFaults(const Run& run) {
+    const Caps caps = capsOf(run.spec.contact.method);
     for (std::size_t i = 0; i < run.ticks.size(); ++i) {
         const Tick& t = run.ticks[i];
         const auto fault = [&](const char* what) { return fmt::format("{} at tick {}", what, i); };
@@ -32,9 +41,8 @@ std::string commonFaults(const Run& run) {
         if (t.status & kNonFiniteLatched) return fault("a computed wrench was not finite");
         if (t.status & kContactCap) return fault("the manifold was full");
         if (t.contacts > run.most_points) return fault("more points than the cap");
-        if (t.iterations > static_cast<std::uint32_t>(std::max(tick::kSubSteps, tick::kSweeps)))
-            return fault("more sub-steps than the cap");
-        if (t.nodes > kMostLooks * run.all_nodes) return fault("more nodes than the cap");
+        if (t.iterations > caps.iterations) return fault("more sub-steps than the cap");
+        if (t.nodes > caps.looks * run.all_nodes) return fault("more nodes than the cap");
     }
     return {};
 }
@@ -43,7 +51,8 @@ std::string commonFaults(const Run& run) {
 
 std::span<const std::pair<model::ContactMethod, const char*>> methods() {
     static constexpr std::array kMethods{std::pair{model::ContactMethod::Penalty, "penalty"},
-                                         std::pair{model::ContactMethod::GodObjectHeuristic, "god_object_heuristic"}};
+                                         std::pair{model::ContactMethod::GodObjectHeuristic, "god_object_heuristic"},
+                                         std::pair{model::ContactMethod::GodObject, "god_object"}};
     return kMethods;
 }
 

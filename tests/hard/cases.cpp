@@ -80,7 +80,7 @@ Drive edgeStrokes(const SceneSpec& spec, std::uint64_t seed) {
     return walk.drive(worldOf(spec));
 }
 
-/// A peg over its bore, every three seconds: down while it is pushed and tilted, held, and out again. Lengths per 20 mm
+/// A peg over its bore, every two seconds: down while it is pushed and tilted, held, and out again. Lengths per 20 mm
 /// of depth.
 Drive pegPush(const SceneSpec& spec, std::uint64_t seed, double yaw) {
     const auto dims = model::namedDimensions(std::get<model::Shape>(fixedPart(spec).geometry));
@@ -91,9 +91,9 @@ Drive pegPush(const SceneSpec& spec, std::uint64_t seed, double yaw) {
     const RandomPush push(streamSeed("hard", "", "", "peg", seed), unit * Vec3(1.5, 1.5, 0.3),
                           Vec3(2 * kDegree, 2 * kDegree, yaw));
     return [=, X_WO = worldOf(spec)](std::int64_t tick, const tick::TickOutput*) {
-        const double t = static_cast<double>(tick) * kTickSeconds, phase = std::fmod(t, 3.0);
+        const double t = static_cast<double>(tick) * kTickSeconds, phase = std::fmod(t, 2.0);
         const double high = 2.0 * unit, low = -depth - 3.0 * unit;
-        const double share = phase < 1.5 ? phase / 1.5 : phase < 2.5 ? 1.0 : 2.0 * (3.0 - phase);
+        const double share = phase < 1.0 ? phase : phase < 1.5 ? 1.0 : 2.0 * (2.0 - phase);
         const double ramp = std::min(1.0, t / 0.3);
         const Pose X = push.at(t);
         Pose pose{Quat::Identity().slerp(ramp, X.q), ramp * X.p};
@@ -369,24 +369,25 @@ std::span<const Case> cases() {
             {"sheet_edge", "sheet", kCrossed, "", 0, 1, 8, 6, 150, edgeStrokes, crossingCount, anywhere, kGods, true},
             {"sheet_turning", "sheet", kCrossed, "", 0, 1, 8, 8, 300, turningStrokes, crossingCount, anywhere, kGods,
              true},
-            {"peg_100um", "peg_100um", kOverlap, "um", kPegMark, 1, 20, 2, 60, roundPeg, insertedUm, anywhere},
-            {"peg_50um", "peg_50um", kOverlap, "um", kPegMark, 1, 20, 2, 60, roundPeg, insertedUm, anywhere},
-            {"peg_10um", "peg_10um", kOverlap, "um", kPegMark, 1, 20, 2, 60, roundPeg, insertedUm, anywhere},
-            {"peg_4mm", "peg_4mm", kOverlap, "um", kPegMark, 1, 20, 2, 60, roundPeg, insertedUm, anywhere},
-            {"keyed_peg", "keyed_peg", kOverlap, "um", kPegMark, 1, 20, 2, 60, shapedPeg, insertedUm, anywhere},
-            {"square_peg", "square_peg", kOverlap, "um", kPegMark, 1, 20, 2, 60, shapedPeg, insertedUm, anywhere},
+            {"peg_100um", "peg_100um", kOverlap, "um", kPegMark, 1, 20, 1.5, 60, roundPeg, insertedUm, anywhere},
+            {"peg_50um", "peg_50um", kOverlap, "um", kPegMark, 1, 20, 1.5, 60, roundPeg, insertedUm, anywhere},
+            {"peg_10um", "peg_10um", kOverlap, "um", kPegMark, 1, 20, 1.5, 60, roundPeg, insertedUm, anywhere},
+            {"peg_4mm", "peg_4mm", kOverlap, "um", kPegMark, 1, 20, 1.5, 60, roundPeg, insertedUm, anywhere},
+            {"keyed_peg", "keyed_peg", kOverlap, "um", kPegMark, 1, 20, 1.5, 60, shapedPeg, insertedUm, anywhere},
+            {"square_peg", "square_peg", kOverlap, "um", kPegMark, 1, 20, 1.5, 60, shapedPeg, insertedUm, anywhere},
             {"wedge", "wedge", kOverlap, "um", kFieldMark, 1, 10, 2, 20, push<20, 4, 20>, overlapUm, anywhere},
             {"acute_corner", "acute_corner", kOverlap, "um", kFieldMark, 1, 10, 2, 20, push<20, 4, 20>, overlapUm},
             {"ball_in_cone", "ball_in_cone", kOverlap, "um", kFieldMark, 1, 10, 2, 20, push<6, 3, 20>, overlapUm},
             {"edge_on_edge", "edge_on_edge", kOverlap, "um", kFieldMark, 1, 10, 2, 20, push<8, 4, 20>, overlapUm},
             {"groove_vertex", "groove_vertex", kOverlap, "um", kFieldMark, 1, 10, 2, 20, push<18, 4, 60>, overlapUm},
             {"deep_start", "deep_start", "fastest proxy", "m/s", 1.0, 1, 1, 1, 1, stay, kick},
+            {"deep_start_two_way", "deep_start_two_way", "fastest proxy", "m/s", 1.0, 1, 1, 1, 1, stay, kick},
             {"needle", "needle", kOverlap, "um", kFieldMark, 1, 10, 2, 20, push<6, 4, 20>, overlapUm},
             {"plate", "plate", kOverlap, "um", kFieldMark, 1, 10, 2, 20, push<6, 4, 30>, overlapUm},
             {"half_turn", "half_turn", kOverlap, "um", kFieldMark, 1, 1, 5, 5, turnOn, overlapUm},
-            {"peg_tiny", "peg_tiny", "overlap per 20 mm of diameter", "um", kPegMark, 1, 5, 2, 60, roundPeg,
+            {"peg_tiny", "peg_tiny", "overlap per 20 mm of diameter", "um", kPegMark, 1, 5, 1.5, 60, roundPeg,
              insertedOfTiny},
-            {"peg_huge", "peg_huge", "overlap per 20 mm of diameter", "um", kPegMark, 1, 5, 2, 60, roundPeg,
+            {"peg_huge", "peg_huge", "overlap per 20 mm of diameter", "um", kPegMark, 1, 5, 1.5, 60, roundPeg,
              insertedOfHuge},
             {"mesh_holed", "mesh_holed", kOverlap, "um", kFieldMark, 1, 5, 2, 10, rubCube, overlapOfCube},
             {"mesh_flipped", "mesh_flipped", kOverlap, "um", kFieldMark, 1, 5, 2, 10, rubCube, overlapOfCube},

@@ -14,6 +14,7 @@ constexpr double kFineChord = 5e-6;    // of a circle, per size of the body: 700
 constexpr double kCoarseChord = 1e-3;  // for faces
 constexpr double kFeature = 0.94;      // cosine of the angle of a sharp edge: 20°
 constexpr double kEdgeSpacing = 5e-3;  // per size
+constexpr double kOnSurface = 1e-6;    // per size
 constexpr double kBallChord = 1e-4;    // bodies without edges are sampled by vertices alone
 
 void sampleSegment(const Vec3& a, const Vec3& b, double spacing, std::vector<Vec3>& points) {
@@ -90,6 +91,8 @@ DenseBody denseBody(const model::Shape& shape, double spacing) {
         sampleFaces(model::tessellate(shape, size * kCoarseChord), spacing, body.points);
     }
     body.distance = [shape](const Vec3& p) { return model::signedDistance(shape, p); };
+    // What lies on a chord of a round face is off the surface, of a bore even in the air.
+    std::erase_if(body.points, [&](const Vec3& p) { return std::abs(body.distance(p)) > kOnSurface * size; });
     return body;
 }
 

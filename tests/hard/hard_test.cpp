@@ -35,15 +35,14 @@ class Hard : public testing::TestWithParam<Hold> {};
 TEST_P(Hard, CaseHoldsItsMark) {
     // Truth: closed form or independent program (FCL), as the case's judgement says.
     const auto& [c, method, name] = GetParam();
+    const KnownMiss* miss = missOf(GetParam());
+    if (miss != nullptr && !fullSize()) GTEST_SKIP() << "known to be missed: see passung bench --filter hard";
     const auto measured = measure(*c, method, fullSize());
     ASSERT_TRUE(measured) << toString(measured.errors().front());
     std::printf("%s", describe(*c, name, *measured).c_str());
     const Judgement& found = measured->judgement;
-    if (const KnownMiss* miss = missOf(GetParam())) {
-        if (fullSize()) GTEST_SKIP() << "known to be missed";
+    if (miss != nullptr) {
         EXPECT_FALSE(measured->met(*c)) << "met now: take it from the list of known misses";
-        EXPECT_LE(found.value, miss->reached) << c->unit;
-        EXPECT_TRUE(miss->broken || found.broken.empty()) << found.broken;
         return;
     }
     EXPECT_LE(found.value, c->mark) << c->unit;
