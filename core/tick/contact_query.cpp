@@ -13,6 +13,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kBatch = 64;  // nodes or points that are looked at together
 constexpr std::uint32_t kNoPoint = ~0u;
+constexpr double kFacing = 0.8;    // cosine between a face's inward normal and φ's gradient
 constexpr double kSettled = 48.0;  // groups in contact: from here on their errors level out, and some are taken whole
 
 /// Places in the shell's frame, one after the other, though they are parted in memory.
@@ -51,6 +52,7 @@ struct Traversal {
     const bool ordered;  // best first
     const bool grouped;
     const bool gradients;
+    const bool facing;
     const double slack;  // sampleMany is off by at most this next to sample() [m]
     QueryWorkspace& workspace;
     ContactManifold& manifold;
@@ -81,6 +83,7 @@ struct Traversal {
           ordered(r.max_nodes > 0 || r.search_below > r.collect_below),
           grouped(r.load && r.collect_below == 0.0 && !ordered && !r.prove && r.mode == model::FieldMode::Trilinear),
           gradients(r.gradients && !r.load),
+          facing(r.facing && !(f.sheetOffset() > 0.0)),
           // No brick spans more: its cells are those asked for, or at most 1/72 of the longest side.
           slack(0x1p-20 * (f.bounds().size().norm() + 14.0 * f.cell())),
           workspace(w),
@@ -146,6 +149,7 @@ struct Traversal {
     }
 
     void collect(const Vec3& position, const Vec3& normal, double area, double phi, const Vec3& gradient) noexcept {
+        if (facing && area > 0.0 && !(-normal.dot(R_FS.transpose() * gradient) > kFacing * gradient.norm())) return;
         ++answer.contacts;
         if (request.load) {
             const Vec3 f = area * phi * normal;

@@ -82,9 +82,11 @@ struct QueryRequest {
     bool spheres = false;   // a node left over by the budget also enters the manifold as a sphere
     bool gradients = true;  // of every contact; without them, φ of contacts is read in single precision, several times
                             // as fast (DistanceField::sampleMany), in FieldMode::Trilinear
-    bool load = false;      // instead of contacts in the manifold QueryAnswer::load; where many points are in contact,
-                            // neighbours may then be taken as one
-    bool refine = false;    // the deepest point is searched on the surface between the samples too
+    bool facing = false;  // a sample of a face is a contact only where the other surface faces it, not at a rim, whose
+                          // own samples are then asked too (two_way); with gradients; not of open sheets
+    bool load = false;    // instead of contacts in the manifold QueryAnswer::load; where many points are in contact,
+                          // neighbours may then be taken as one
+    bool refine = false;  // the deepest point is searched on the surface between the samples too
 };
 
 struct QueryAnswer {

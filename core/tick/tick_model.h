@@ -101,7 +101,7 @@ struct Ringing {
     Wrench now, next;  // of this tick and of the coming one, without a further impact
     Pose X_WH_last;    // at the last new sample
     bool has_last = false;
-    bool in_contact = false;  // there
+    bool in_contact = false;  // at the last tick
 };
 
 /// Everything that a tick carries to the next. Sized by makeState; a tick never allocates.

@@ -12,15 +12,18 @@ Wrench sum(double a, const Wrench& x, double b, const Wrench& y) noexcept {
     return {a * x.force + b * y.force, a * x.torque + b * y.torque};
 }
 
-/// s of the header; 0 where there is no impact.
-double impactSpeed(const Ringing& ringing, const TickFrame& frame) noexcept {
+/// |F| of the header.
+double sizeOf(const TickModel& model, const Wrench& wrench) noexcept {
+    return std::max(wrench.force.norm(), wrench.torque.norm() / model.shell->reach());
+}
+
+/// s of the header.
+double impactSpeed(const TickModel& model, const Ringing& ringing, const TickFrame& frame) noexcept {
     const Wrench& F = frame.F_H_W;
-    const double force = F.force.norm();
-    if (!ringing.has_last || ringing.in_contact || !(force > 0.0)) return 0.0;
     const double elapsed = kTickSeconds * static_cast<double>(frame.sample_periods);
     const Vec3 v = (frame.X_WH.p - ringing.X_WH_last.p) / elapsed;
     const Vec3 w = rotationVector(frame.X_WH.q * ringing.X_WH_last.q.conjugate()) / elapsed;
-    return std::max(0.0, -(F.force.dot(v) + F.torque.dot(w)) / force);
+    return std::max(0.0, -(F.force.dot(v) + F.torque.dot(w)) / sizeOf(model, F));
 }
 
 }  // namespace
@@ -38,12 +41,16 @@ void renderTransients(const TickModel& model, TickState& state, TickFrame& frame
     const Wrench now = ringing.next;
     ringing.next = sum(2.0 * r * std::cos(phi), now, -r * r, ringing.now);
     ringing.now = now;
+    const double size = sizeOf(model, contact);
+    // A proxy that lags behind in free room pulls too: that is no contact.
+    const bool in_contact = frame.contacts > 0 && size > 0.0;
+    const bool begins = in_contact && !ringing.in_contact && ringing.has_last;
+    ringing.in_contact = in_contact;
     if (frame.sample_periods > 0) {
-        const double speed = impactSpeed(ringing, frame);
-        if (speed > 0.0)
-            ringing.next =
-                sum(1.0, ringing.next, t.amplitude * speed * r * std::sin(phi) / contact.force.norm(), contact);
-        ringing.in_contact = !contact.force.isZero(0.0);
+        if (begins) {
+            const double speed = impactSpeed(model, ringing, frame);
+            ringing.next = sum(1.0, ringing.next, t.amplitude * speed * r * std::sin(phi) / size, contact);
+        }
         ringing.X_WH_last = frame.X_WH;
         ringing.has_last = true;
     }

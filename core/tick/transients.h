@@ -10,18 +10,18 @@ namespace passung::tick {
 ///
 /// Symbols: F, T wrench of the contact on the hand, about the held part's origin, world axes; v, ω the hand's twist
 /// there, from the sample before to this one; A, f, τ the scene's amplitude [N·s/m], frequency and time constant.
-///   Impact: the contact's force, zero at the last new sample, is not zero now. Its speed, that of the point in contact
-///   along the force,   s = max(0, -(F · v + T · ω)/|F|).
-///   From then on, t after it:   (F, T) += A s exp(-t/τ) sin(2π f t) (n, m),   (n, m) = (F, T)/|F| at the impact.
+///   Impact: there are contacts and a wrench of theirs now, and were not a tick before. Its speed, that of the point in
+///   contact along the force,   s = max(0, -(F · v + T · ω)/|F, T|),  |F, T| = max(|F|, |T|/R),  R the distance of the
+///   held part's farthest point from o: |F| for one contact, and contacts whose forces nearly cancel do not blow s up.
+///   From then on, t after it:   (F, T) += A s exp(-t/τ) sin(2π f t) (n, m),   (n, m) = (F, T)/|F, T| at the impact.
 /// Coded as what each axis of the wrench has in common with every other, the impulse response of a resonator,
 ///   y_k+1 = 2 r cos φ y_k - r² y_k-1,   r = exp(-h/τ),  φ = 2π f h, h the tick;   an impact at k adds A s r sin φ to
 ///   y_k+1,
 /// so that impacts that follow closely add up exactly and the state does not grow with their number.
 /// Limit cases: s = 0 → nothing; no further impact → y falls below any limit, as r < 1.
-/// Invariant: along any motion that is nowhere faster than V an impact gives out at most A s V τ, the waveform's
-/// absolute integral being less than A s τ. No impact: contact at the first sample of all or after rejected ones
-/// (nothing is known of its speed), contact that begins on a held tick, and a pure torque. Rejected ticks end what
-/// rings.
+/// Invariant: along any motion with |v| + R |ω| ≤ V an impact gives out at most A s V τ, the waveform's absolute
+/// integral being less than A s τ; and s ≤ V. No impact: contact at the first sample of all or after rejected ones
+/// (nothing is known of its speed), and contact that begins on a held tick. Rejected ticks end what rings.
 ///
 /// Stage, only if the scene names the effect: after the contact's wrench, before its delay, so that the energy account,
 /// the passivity controller and the output's limits see it as part of the wrench.

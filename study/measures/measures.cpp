@@ -1,6 +1,7 @@
 #include "study/measures/measures.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -231,7 +232,7 @@ struct Measure {
 template <TickStatus bit>
 Measure countOf(std::string name, std::string label) {
     return {{std::move(name), std::move(label), "1",
-             "number of trial ticks whose status has the bit " + std::to_string(bit)},
+             "number of trial ticks with status bit " + std::to_string(std::countr_zero(std::uint32_t{bit}))},
             ticksWith<bit>};
 }
 

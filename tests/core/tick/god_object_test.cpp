@@ -113,6 +113,29 @@ TEST(GodObject, SlidesWithoutFrictionAlongAPlane) {
     }
 }
 
+TEST(GodObject, SlidesAlongAPlaneWhosePointsItsRimPasses) {
+    // Truth: closed form. In two-way contact the table's points just ahead of the block lie as near to its side as to
+    // its foot. They face the foot alone: no tangential force, no lag, at any speed, with both god objects.
+    for (const auto method : {ContactMethod::GodObject, ContactMethod::GodObjectHeuristic}) {
+        for (const double speed : {0.1, 0.5}) {
+            Room room(model::Box{0.02, 0.02, 0.01}, {-0.015, 0, 0.005}, Quat::Identity());
+            room.spec.contact.method = method;
+            room.spec.contact.two_way = true;
+            test::Bench bench(room.spec);
+            double lag = 0.0, share = 0.0;
+            for (int i = 0; i < static_cast<int>(0.03 / speed / kTickSeconds); ++i) {
+                const Vec3 hand(-0.015 + speed * kTickSeconds * i, 0.0, 0.005 - std::min(2e-3, 1e-4 * i));
+                const auto out = bench.step(room.world(hand));
+                lag = std::max(lag, std::abs(out.X_WG.p.x() - hand.x()));
+                const Vec3& force = out.frame.F_H_W.force;
+                if (i > 20) share = std::max(share, force.head<2>().norm() / force.z());
+            }
+            EXPECT_LT(lag, kCell) << speed;
+            EXPECT_LT(share, 0.05) << speed;
+        }
+    }
+}
+
 TEST(GodObject, FollowsTheHandExactlyInFreeMotion) {
     // Truth: invariant. Without contact G = H and the wrench is zero, down to a hundredth of a millimetre over a plate.
     Room room(model::Sphere{0.02}, {0, 0, 0.03}, Quat::Identity());

@@ -113,6 +113,45 @@ TEST(Transients, AreNotThereWithoutAnImpact) {
     }
 }
 
+TEST(Transients, DoNotComeFromAProxyThatLagsBehindInFreeRoom) {
+    // Truth: closed form. A block that moves along a plate, 20 um above it, touches nothing.
+    for (const auto method : kMethods) {
+        auto spec = ballOverPlate(method, 0.0);
+        spec.parts[0].geometry = model::Box{0.01, 0.01, 0.01};
+        spec.parts[0].X_WP.p = Vec3(-0.02, 0, 0.00502);
+        spec.contact.cell = 0.1e-3;
+        Added sliding(spec);
+        for (int i = 0; i < 40; ++i) {
+            Pose X = spec.parts[0].X_WP;
+            X.p.x() += 1e-3 * i;
+            EXPECT_EQ(sliding.step(X).norm(), 0.0) << i;
+        }
+    }
+}
+
+TEST(Transients, OfContactsWhoseForcesCancelAreNoStrongerThanTheirPointsAreFast) {
+    // Truth: invariant, s ≤ V: a bar that turns against two posts at once has hardly a force there, but a torque.
+    for (const auto method : kMethods) {
+        auto spec = ballOverPlate(method, 0.0);
+        spec.parts[0].geometry = model::Box{0.03, 0.004, 0.004};
+        spec.parts[0].X_WP = Pose{};
+        spec.parts[1].geometry = model::Cylinder{0.006, 0.02};
+        spec.parts[1].X_WP.p = Vec3(0.012, 0.006, 0);
+        spec.parts.push_back(spec.parts[1]);
+        spec.parts[2].name = "other";
+        spec.parts[2].X_WP.p = Vec3(-0.012, -0.006, 0);
+        spec.contact.rotational_stiffness = 1.0;
+        Added turning(spec);
+        double largest = 0.0;
+        constexpr double kSpin = 6.0;  // [rad/s]
+        for (int i = 0; i < 60; ++i)
+            largest = std::max(
+                largest,
+                turning.step(Pose{rotationFromVector(Vec3(0, 0, kSpin * kTickSeconds * i)), Vec3::Zero()}).norm());
+        EXPECT_LE(largest, kAmplitude * kSpin * Vec3(0.015, 0.002, 0.002).norm());
+    }
+}
+
 TEST(Transients, OfImpactsThatFollowOneAnotherAddUp) {
     // Truth: closed form. Two taps 10 ticks apart: the sum of two waveforms.
     const auto spec = ballOverPlate(model::ContactMethod::GodObjectHeuristic, 0.5e-4);
@@ -134,7 +173,7 @@ TEST(Transients, OfImpactsThatFollowOneAnotherAddUp) {
 }
 
 TEST(Transients, OfAPartThatTurnsComeFromTheSpeedOfThePointThatHits) {
-    // Truth: closed form. The held ball 50 mm beside its own origin's axis of rotation: turning at w, with the origin
+    // Truth: closed form. A bar whose end lies 50 mm beside its own axis of rotation: turning at w, with the origin
     // at rest, its point in contact comes down at about 0.05 w, and the vibration has the contact's line of action.
     auto spec = ballOverPlate(model::ContactMethod::GodObjectHeuristic, 0.0);
     spec.parts[0].geometry = model::Box{0.1, 0.01, 0.01};
