@@ -84,6 +84,8 @@ void sweepProxy(const TickModel& model, TickState& state, TickFrame& frame) noex
         // Contacts that held may be left behind by now, so that the way ends only where those of now leave nothing.
         const bool on_the_way = whole && before <= margins.relieve;
         arrived = step < (on_the_way ? std::max(kEnough * model.finest_cell, kRest * way.length()) : kStill);
+        // Nor does it go on round a bend that it need not take in this tick.
+        arrived = arrived || (on_the_way && way.bentBy(share * allowed.u) > margins.relieve);
         if (arrived && sweep == 0) state.rubbing = allowed.rubbing;
         if (arrived || way.bentBy(share * allowed.u) > bent) break;
         if (sweep == kSweeps) break;
