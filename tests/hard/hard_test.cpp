@@ -56,7 +56,7 @@ INSTANTIATE_TEST_SUITE_P(Table, Hard, testing::ValuesIn(holds()), [](const auto&
 TEST(HardCases, PenaltyFallsThroughSheetAndThinPlate) {
     // Truth: independent program (FCL): forces from the overlap alone hold nothing back, so that what these cases count
     // is there to be found.
-    for (const char* name : {"sheet_strokes", "a11_thin_plate"}) {
+    for (const char* name : {"sheet_strokes", "sheet_edge", "sheet_turning", "a11_thin_plate"}) {
         const Case* c = findCase(name);
         ASSERT_NE(c, nullptr);
         Case some = *c;
@@ -64,7 +64,7 @@ TEST(HardCases, PenaltyFallsThroughSheetAndThinPlate) {
         const auto measured = measure(some, model::ContactMethod::Penalty, false);
         ASSERT_TRUE(measured);
         std::printf("%s", describe(some, "penalty", *measured).c_str());
-        EXPECT_GT(measured->judgement.value, 100.0);
+        EXPECT_GT(measured->judgement.value, 50.0);
     }
 }
 
