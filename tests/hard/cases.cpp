@@ -102,7 +102,19 @@ Drive pegPush(const SceneSpec& spec, std::uint64_t seed, double yaw) {
     };
 }
 
+/// The shapes that the meshes of peg and plate approximate, in their place.
+SceneSpec withShapes(SceneSpec spec) {
+    for (model::PartSpec& part : spec.parts) {
+        if (part.held)
+            part.geometry = model::Shape(model::Peg{20e-3, 24e-3, 0.5e-3});
+        else
+            part.geometry = model::Shape(model::BorePlate{26e-3, 26e-3, 23e-3, 20.2e-3, 20e-3, 0.5e-3});
+    }
+    return spec;
+}
+
 Drive roundPeg(const SceneSpec& spec, std::uint64_t seed) { return pegPush(spec, seed, 20 * kDegree); }
+Drive meshPeg(const SceneSpec& spec, std::uint64_t seed) { return roundPeg(withShapes(spec), seed); }
 Drive shapedPeg(const SceneSpec& spec, std::uint64_t seed) { return pegPush(spec, seed, 1 * kDegree); }
 
 /// Pushes the held part from its start by (0, 0, -depth), there in every direction.
@@ -342,6 +354,12 @@ Judgement overlapOfMany(const Run& run) {
     return result;
 }
 
+Judgement insertedOfMesh(const Run& run) {
+    Run round = run;
+    round.spec = withShapes(run.spec);
+    return insertedUm(round);
+}
+
 /// Overlap per 20 mm of diameter [µm].
 Judgement insertedOfTiny(const Run& run) {
     Judgement result = insertedUm(run);
@@ -357,7 +375,8 @@ Judgement insertedOfHuge(const Run& run) {
 constexpr unsigned kGods = 0b110;
 constexpr const char* kOverlap = "deepest overlap";
 constexpr const char* kCrossed = "poses in which FCL finds the sheet in the tool less the tolerance";
-constexpr double kPegMark = 2.0, kFieldMark = 20.0;  // µm: of closed-form pegs; the scenes' tolerance_um
+constexpr double kPegMark = 2.0, kMeshMark = 10.0,
+                 kFieldMark = 20.0;  // µm: of closed-form pegs; the scenes' tolerance_um
 
 }  // namespace
 
@@ -373,6 +392,7 @@ std::span<const Case> cases() {
             {"peg_50um", "peg_50um", kOverlap, "um", kPegMark, 1, 20, 1.5, 60, roundPeg, insertedUm, anywhere},
             {"peg_10um", "peg_10um", kOverlap, "um", kPegMark, 1, 20, 1.5, 60, roundPeg, insertedUm, anywhere},
             {"peg_4mm", "peg_4mm", kOverlap, "um", kPegMark, 1, 20, 1.5, 60, roundPeg, insertedUm, anywhere},
+            {"peg_mesh", "peg_mesh", kOverlap, "um", kMeshMark, 1, 20, 1.5, 60, meshPeg, insertedOfMesh, anywhere},
             {"keyed_peg", "keyed_peg", kOverlap, "um", kPegMark, 1, 20, 1.5, 60, shapedPeg, insertedUm, anywhere},
             {"square_peg", "square_peg", kOverlap, "um", kPegMark, 1, 20, 1.5, 60, shapedPeg, insertedUm, anywhere},
             {"wedge", "wedge", kOverlap, "um", kFieldMark, 1, 10, 2, 20, push<20, 4, 20>, overlapUm, anywhere},
