@@ -73,7 +73,8 @@ bool isInside(const ContactPoint& contact) noexcept { return contact.phi < 0.0 &
 void look(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_WG, double reach,
           double search) noexcept {
     state.scratch.clear();
-    QueryRequest request{.collect_below = reach, .search_below = search, .spheres = true, .facing = model.contact.two_way};
+    QueryRequest request{
+        .collect_below = reach, .search_below = search, .spheres = true, .facing = model.contact.two_way};
     QueryAnswer answer = queryObstacles(model, X_WG, request, state.workspace, state.scratch);
     account(answer, frame);
     std::swap(state.manifold, state.scratch);

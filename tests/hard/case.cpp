@@ -87,6 +87,7 @@ Result<Measured> measure(const Case& c, model::ContactMethod method, bool full) 
         const auto run = runCase(c, method, static_cast<std::uint64_t>(seed), full);
         if (!run) return run.errors();
         Judgement found = c.judge(*run);
+        if (!std::isfinite(found.value) && found.broken.empty()) found.broken = "not a number";
         result.judgement.value =
             c.adds ? result.judgement.value + found.value : std::max(result.judgement.value, found.value);
         if (found.broken.empty()) found.broken = commonFaults(*run);
