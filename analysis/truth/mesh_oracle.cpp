@@ -12,13 +12,21 @@ namespace {
 
 using Surface = fcl::BVHModel<fcl::OBBRSSd>;
 
+// FCL's distance leaves the face out of a triangle whose doubled area squared is below 1e-15: in metres, of edges below
+// 0.2 mm. Then it says 0 of triangles that are apart, or takes an edge for the nearest. Its lengths are therefore
+// smaller units; a power of two, so that nothing is rounded by it.
+constexpr double kPerMetre = 65536.0;
+
 std::unique_ptr<Surface> surfaceOf(const model::TriangleMesh& mesh) {
+    std::vector<Vec3> vertices;
+    vertices.reserve(mesh.vertices.size());
+    for (const Vec3& v : mesh.vertices) vertices.push_back(kPerMetre * v);
     std::vector<fcl::Triangle> triangles;
     triangles.reserve(mesh.triangles.size());
     for (const model::Triangle& t : mesh.triangles) triangles.emplace_back(t[0], t[1], t[2]);
     auto surface = std::make_unique<Surface>();
     surface->beginModel();
-    surface->addSubModel(mesh.vertices, triangles);
+    surface->addSubModel(vertices, triangles);
     surface->endModel();
     return surface;
 }
@@ -26,7 +34,7 @@ std::unique_ptr<Surface> surfaceOf(const model::TriangleMesh& mesh) {
 fcl::Transform3d transformOf(const Pose& pose) {
     fcl::Transform3d transform = fcl::Transform3d::Identity();
     transform.linear() = pose.q.toRotationMatrix();
-    transform.translation() = pose.p;
+    transform.translation() = kPerMetre * pose.p;
     return transform;
 }
 
@@ -76,7 +84,7 @@ Result<double> MeshOracle::separation(const Pose& X_AB) const {
     fcl::DistanceResultd result;
     fcl::distance(surfaces_->a.get(), fcl::Transform3d::Identity(), surfaces_->b.get(), transformOf(X_AB), request,
                   result);
-    return std::max(0.0, result.min_distance);
+    return std::max(0.0, result.min_distance / kPerMetre);
 }
 
 Result<Relation> MeshOracle::relation(const Pose& X_AB) const {

@@ -64,7 +64,8 @@ PoseTruth PairTruth::relationAt(const Pose& X_FS) const {
         const bool around =
             shell_.report.watertight && oracle_->b().contains(X_FS.inverse() * oracle_->a().triangles().front()[0]);
         truth.relation = around ? Relation::AInsideB : Relation::Apart;
-        truth.distance = truth.separation;
+        // A separation of 0 contradicts that nothing meets: then the distance is left to exact geometry.
+        if (truth.separation > 0.0) truth.distance = truth.separation;
     }
     return truth;
 }

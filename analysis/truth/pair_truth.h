@@ -40,7 +40,7 @@ public:
     /// to search for poses. Of two meshes this one itself.
     const PairTruth& rough() const { return rough_ ? *rough_ : *this; }
 
-    /// What FCL and ray parity say; the distance only where it is the separation.
+    /// What FCL and ray parity say; the distance only where it is the separation, and that does not contradict them.
     PoseTruth relationAt(const Pose& X_FS) const;
 
     /// PoseTruth without the wrench, its depth to `resolution` [m] unless `max_pieces` ended the search.

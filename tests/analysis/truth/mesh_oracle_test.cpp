@@ -36,6 +36,23 @@ TEST(MeshOracle, SeparatesTwoBalls) {
     }
 }
 
+TEST(MeshOracle, SeparatesACornerFromABallOfTinyTriangles) {
+    // Truth: closed form (the corner is nearest to a ball in its octant). The ball's triangles have edges of about
+    // 0.1 mm, whose faces FCL in metres leaves out: it would say 0, or how far an edge is.
+    constexpr double kFine = 0.5e-6, kRadius = 2.5e-3;
+    const MeshOracle oracle(model::tessellate(model::Box{0.01, 0.01, 0.01}, kFine),
+                            model::tessellate(model::Sphere{2 * kRadius}, kFine));
+    Random random(3);
+    for (int i = 0; i < 200; ++i) {
+        const double gap = random.uniform(2e-6, 20e-6);
+        const Vec3 away = Vec3(random.uniform(), random.uniform(), random.uniform()).normalized();
+        const Pose X_AB{randomTurn(random), Vec3::Constant(5e-3) + (kRadius + gap) * away};
+        EXPECT_FALSE(*oracle.surfacesIntersect(X_AB));
+        EXPECT_GE(*oracle.separation(X_AB), gap - 1e-12);
+        EXPECT_LE(*oracle.separation(X_AB), gap + kFine);
+    }
+}
+
 TEST(MeshOracle, FindsBallsThatOverlap) {
     // Truth: closed form (surfaces meet if |r1 - r2| < centres' distance < r1 + r2, chord errors kept off)
     const MeshOracle oracle = oracleOf(model::Sphere{0.04}, model::Sphere{0.02});
