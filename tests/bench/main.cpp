@@ -1,8 +1,12 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <string>
@@ -53,7 +57,31 @@ bool trustworthy(const std::vector<Row>& rows) {
     return fine;
 }
 
+/// Minutes of measuring are not to be lost: can this file be written? It is not touched.
+Result<Done> checkWritable(const std::string& out) {
+    const std::filesystem::path file(out);
+    std::error_code unknown;
+    if (std::filesystem::is_directory(file, unknown)) return Error{.message = "is a folder", .file = out};
+    const bool there = std::filesystem::exists(file, unknown);
+    const auto folder = file.has_parent_path() ? file.parent_path() / "" : std::filesystem::path("./");
+    if (access(there ? file.c_str() : folder.c_str(), W_OK) == 0) return Done{};
+    return Error{.message = std::string("cannot be written: ") + std::strerror(errno), .file = out};
+}
+
+Error nothingMatches(const std::string& filter) {
+    std::string message = "no row's group and method contain this text; groups:";
+    const char* between = " ";
+    for (const char* group : {kPressedGroup, kApartGroup, kMillionGroup, kSamplingGroup, kBuildGroup, kBoreGroup,
+                              kDefectGroup, kConvergenceGroup, kHardGroup, kPiecesGroup, kForceGroup}) {
+        message += between + fmt::format("'{}'", group);
+        between = ", ";
+    }
+    return {.message = message, .key = "--filter", .value = filter};
+}
+
 int run(const Options& options) {
+    if (!options.out.empty())
+        if (const auto writable = checkWritable(options.out); !writable) return fail(writable.errors());
     Extent extent;
     extent.few_settings = options.quick;
     extent.repetitions = options.quick ? 1 : 5;
@@ -89,6 +117,7 @@ int run(const Options& options) {
         std::fflush(stdout);
         rows.insert(rows.end(), measured->begin(), measured->end());
     }
+    if (rows.empty() && !options.filter.empty()) return fail({nothingMatches(options.filter)});
     if (!options.out.empty()) {
         std::ofstream out(options.out);
         out << csvHeader();

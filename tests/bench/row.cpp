@@ -15,6 +15,13 @@ std::string number(double value, const char* missing) {
     return std::isnan(value) ? missing : fmt::format("{:.5g}", value);
 }
 
+/// Between quotes, for it may hold commas.
+std::string quoted(const std::string& text) {
+    std::string field = "\"";
+    for (const char c : text) field += c == '"' ? "\"\"" : std::string(1, c);
+    return field + "\"";
+}
+
 std::string cell(double value) {
     if (std::isnan(value)) return "-";
     const double size = std::abs(value);
@@ -49,7 +56,8 @@ std::string csvHeader() {
 }
 
 std::string csvLine(const Row& row) {
-    std::string line = fmt::format("{},{},\"{}\",{}", row.group, row.method, row.settings, row.samples);
+    std::string line =
+        fmt::format("{},{},{},{}", quoted(row.group), quoted(row.method), quoted(row.settings), row.samples);
     for (const double value : {row.time_us.mean,
                                row.time_us.median,
                                row.time_us.p99,

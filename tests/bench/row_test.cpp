@@ -32,6 +32,12 @@ TEST(BenchRow, CsvLineHasAsManyCellsAsItsHeader) {
     EXPECT_EQ(line.find(",,"), std::string::npos);
 }
 
+TEST(BenchRow, CsvLineQuotesItsTexts) {
+    // Truth: closed form. As RFC 4180 has it: commas within quotes part nothing, a quote within is doubled.
+    const Row row{.group = "a, b", .method = "c, \"d\"", .settings = "e, f"};
+    EXPECT_EQ(csvLine(row).find("\"a, b\",\"c, \"\"d\"\"\",\"e, f\",0,NA,"), 0u) << csvLine(row);
+}
+
 /// Ours at `time` with a depth error, and FCL at 100 µs.
 std::vector<Row> rows(double time, double depth_error_um) {
     Row ours{.group = kPressedGroup, .method = "passung tick", .settings = "s", .ours = true};
