@@ -16,6 +16,29 @@ namespace {
 /// errno right after a call that failed; never 0.
 int failure() { return errno != 0 ? errno : EIO; }
 
+/// The file that `path` names, through symbolic links, whether it exists or not.
+std::string followed(const std::string& path) {
+    constexpr int kMostLinks = 40;  // as the kernel follows
+    std::filesystem::path file(path);
+    std::error_code none;
+    for (int i = 0; i < kMostLinks && std::filesystem::is_symlink(file, none); ++i) {
+        const auto to = std::filesystem::read_symlink(file, none);
+        if (none) break;
+        file = file.parent_path() / to;
+    }
+    return file.string();
+}
+
+constexpr const char* kNoPlainFile = "is no regular file (a folder, a pipe or a device): name a file";
+
+/// True for a folder, pipe, device and the like, which a rename would replace instead of writing to it.
+bool isNoPlainFile(const std::string& path) {
+    std::error_code none;
+    const auto status = std::filesystem::status(path, none);
+    if (std::filesystem::exists(status)) return !std::filesystem::is_regular_file(status);
+    return std::filesystem::is_symlink(followed(path), none);  // links in a circle
+}
+
 }  // namespace
 
 int fail(const Errors& errors) {
@@ -29,6 +52,7 @@ void warn(const std::string& file, const std::vector<std::string>& warnings) {
 }
 
 Result<Done> refuseOverwriting(const std::string& out, const std::vector<std::string>& inputs) {
+    if (isNoPlainFile(out)) return Error{.message = kNoPlainFile, .file = out};
     for (const std::string& input : inputs) {
         std::error_code none;  // a file that is not there is another one
         if (std::filesystem::equivalent(out, input, none) && !none)
@@ -38,7 +62,10 @@ Result<Done> refuseOverwriting(const std::string& out, const std::vector<std::st
     return Done{};
 }
 
-OutputFile::OutputFile(std::string path) : path_(std::move(path)), temporary_(path_ + ".part") {
+OutputFile::OutputFile(std::string path)
+    : path_(std::move(path)), target_(followed(path_)), temporary_(target_ + ".part") {
+    refused_ = isNoPlainFile(target_);
+    if (refused_) return;
     file_ = std::fopen(temporary_.c_str(), "wb");
     if (file_ == nullptr) error_ = failure();
 }
@@ -50,10 +77,12 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::write(std::string_view text) {
+    if (refused_) return;
     if (error_ == 0 && std::fwrite(text.data(), 1, text.size(), file_) != text.size()) error_ = failure();
 }
 
 Result<Done> OutputFile::commit() {
+    if (refused_) return Error{.message = kNoPlainFile, .file = path_};
     const bool opened = file_ != nullptr;
     // The number of the first failure: every later call may change it.
     const auto note = [this](bool good) {
@@ -63,7 +92,7 @@ Result<Done> OutputFile::commit() {
         note(std::fflush(file_) == 0);
         note(std::fclose(file_) == 0);
         file_ = nullptr;
-        if (error_ == 0) note(std::rename(temporary_.c_str(), path_.c_str()) == 0);
+        if (error_ == 0) note(std::rename(temporary_.c_str(), target_.c_str()) == 0);
     }
     if (error_ == 0) return Done{};
     const std::string reason = std::strerror(error_);

@@ -15,10 +15,11 @@ int fail(const Errors& errors);
 /// Prints every warning about `file` on a line of its own on standard error.
 void warn(const std::string& file, const std::vector<std::string>& warnings);
 
-/// Refuses an output that is one of the input files, which would be lost.
+/// Refuses an output that is one of the input files, which would be lost, or no regular file.
 Result<Done> refuseOverwriting(const std::string& out, const std::vector<std::string>& inputs);
 
-/// A file that appears complete or not at all: written beside its place, renamed by commit().
+/// A file that appears complete or not at all: written beside its place, renamed by commit(). Of a symbolic link the
+/// file that it leads to; what exists and is no regular file is refused by commit() and left as it is.
 class OutputFile {
 public:
     explicit OutputFile(std::string path);
@@ -30,7 +31,8 @@ public:
     Result<Done> commit();
 
 private:
-    std::string path_, temporary_;
+    std::string path_, target_, temporary_;
+    bool refused_ = false;
     std::FILE* file_ = nullptr;
     int error_ = 0;  // errno of the first failure
 };

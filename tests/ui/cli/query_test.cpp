@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
 #include <numbers>
@@ -125,6 +126,40 @@ TEST_F(Query, ListsThePatchesOfContactOfEveryPose) {
     const Ended same = runProgram(folder_.path(), {"query", "box.toml", "ball.toml", "--poses", "poses.csv", "--out",
                                                    "r.csv", "--patches", "r.csv"});
     EXPECT_EQ(same.exit_code, 1);
+}
+
+TEST_F(Query, WritesThroughLinksAndRefusesWhatIsNoFile) {
+    // Truth: invariant (a link stays a link, a pipe a pipe; a rename would put a file in their place).
+    namespace fs = std::filesystem;
+    writePoses({Vec3(0, 0, 0.03)});
+    fs::create_directory(folder_ / "far");
+    fs::create_symlink("far/back.csv", folder_ / "there.csv");
+    fs::create_symlink("../result.csv", folder_ / "far/back.csv");
+    ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+    fs::create_symlink("pipe", folder_ / "to_pipe");
+    fs::create_symlink("circle", folder_ / "circle");
+    const auto into = [&](const std::string& out) {
+        return runProgram(folder_.path(), {"query", "box.toml", "ball.toml", "--poses", "poses.csv", "--out", out});
+    };
+    for (int i = 0; i < 2; ++i) {  // the link leads nowhere at first
+        const Ended good = into("there.csv");
+        EXPECT_EQ(good.exit_code, 0) << good.err;
+        EXPECT_TRUE(fs::is_symlink(folder_ / "there.csv"));
+        EXPECT_TRUE(fs::is_symlink(folder_ / "far/back.csv"));
+        EXPECT_EQ(linesOf(readText(folder_ / "result.csv")).size(), 2u);
+        writeText(folder_ / "result.csv", "old");
+    }
+    for (const char* out : {"pipe", "to_pipe", "circle", "far"}) {
+        const Ended bad = into(out);
+        EXPECT_EQ(bad.exit_code, 1) << out;
+        EXPECT_EQ(bad.err, std::string(out) +
+                               ": error: is no regular file (a folder, a pipe or a device): name a "
+                               "file\n");
+        EXPECT_FALSE(fs::exists(folder_ / (std::string(out) + ".part")));
+    }
+    EXPECT_TRUE(fs::is_fifo(folder_ / "pipe"));
+    EXPECT_TRUE(fs::is_symlink(folder_ / "to_pipe"));
+    EXPECT_TRUE(fs::is_symlink(folder_ / "circle"));
 }
 
 TEST_F(Query, KeepsFurtherColumnsAndNamesTheLineOfABadPose) {
