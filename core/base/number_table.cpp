@@ -53,6 +53,11 @@ std::string joined(const std::vector<std::string>& texts) {
     return line;
 }
 
+/// What to add to a message about a line that has too few cells.
+std::string commasExpected(const std::string& line) {
+    return line.find(';') == std::string::npos ? "" : ", parted by commas, not by semicolons";
+}
+
 /// Reads the rows below the header.
 class RowReader {
 public:
@@ -62,11 +67,12 @@ public:
     void read(const std::string& line, int number) {
         const auto row = cells(line);
         if (row.size() != table_.columns.size()) {
-            errors.push_back({.message = "a row needs " + std::to_string(table_.columns.size()) + " values",
-                              .file = path_,
-                              .line = number,
-                              .column = 1,
-                              .value = std::to_string(row.size())});
+            errors.push_back(
+                {.message = "a row needs " + std::to_string(table_.columns.size()) + " values" + commasExpected(line),
+                 .file = path_,
+                 .line = number,
+                 .column = 1,
+                 .value = std::to_string(row.size())});
             return;
         }
         std::vector<double> values(numbers_);
@@ -106,13 +112,14 @@ Result<NumberTable> readNumbers(const std::string& path, const std::vector<std::
     if (!file) return Error{.message = "cannot be read", .file = path};
     std::string line;
     if (!readLine(file, line)) return Error{.message = "is empty; a header row is required", .file = path};
+    if (line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);  // the byte order mark that spreadsheets write
     NumberTable table;
     for (const auto name : cells(line)) table.columns.emplace_back(trimmed(name));
     for (std::size_t i = 0; i < required.size(); ++i) {
         if (i < table.columns.size() && table.columns[i] == required[i]) continue;
         return Error{.message = "the header must be " + joined(required) +
                                 " (further columns may follow): its column " + std::to_string(i + 1) + " must be " +
-                                required[i],
+                                required[i] + commasExpected(line),
                      .file = path,
                      .line = 1,
                      .column = 1,

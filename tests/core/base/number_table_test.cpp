@@ -28,6 +28,20 @@ TEST(NumberTable, ReadsNumbersNanAndForeignLineEnds) {
     EXPECT_TRUE(std::isinf(table->rows[2][0]));
 }
 
+TEST(NumberTable, PassesOverAByteOrderMarkAndNamesSemicolons) {
+    // Truth: closed form (the text itself).
+    const auto table = readNumbers(file("\xEF\xBB\xBF"
+                                        "a,b\n1,2\n"),
+                                   {"a", "b"});
+    ASSERT_TRUE(table) << toString(table.errors().front());
+    EXPECT_EQ(table->headerLine(), "a,b");
+    for (const char* text : {"a;b\n1;2\n", "a,b\n1;2\n"}) {
+        const auto bad = readNumbers(file(text), {"a", "b"});
+        ASSERT_FALSE(bad);
+        EXPECT_NE(toString(bad.errors().front()).find("commas, not by semicolons"), std::string::npos);
+    }
+}
+
 TEST(NumberTable, KeepsFurtherColumnsAsTheyAreWritten) {
     // Truth: closed form (the text itself): a comma in quotes parts nothing, a quote is doubled.
     const auto table = readNumbers(file("a,b,note,\"x, y\"\n1,2,\"one, \"\"or\"\" two\",0.10\n3,4,,7\n"), {"a", "b"});
