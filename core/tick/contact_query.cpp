@@ -211,9 +211,9 @@ struct Traversal {
             const double read = static_cast<double>(batch.read[near[k]]);
             const std::uint32_t point = batch.index[near[k]];
             const Vec3 position = batch.position(near[k]);
-            const model::Facing& facing = shell.facings()[point];
-            const Vec3 normal = facing.normal.cast<double>();
-            const auto area = static_cast<double>(facing.area);
+            const model::Facing& weight = shell.facings()[point];
+            const Vec3 normal = weight.normal.cast<double>();
+            const auto area = static_cast<double>(weight.area);
             const bool exactly = gradients || (!request.load && !(area > 0.0));
             if (read < lowest || (exactly && read < request.collect_below + read_off)) {
                 const Vec3 p_F = R_FS * position + p_FS;
