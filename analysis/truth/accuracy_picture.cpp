@@ -38,6 +38,10 @@ std::string escaped(const std::string& text) {
     return result;
 }
 
+std::string titleOf(const PictureText& text) {
+    return "What accuracy costs in time: " + text.shell + " against " + text.field;
+}
+
 class Svg {
 public:
     template <class... Args>
@@ -255,13 +259,17 @@ void drawLegend(Svg& svg, const std::vector<AccuracyRow>& rows, const std::vecto
 
 }  // namespace
 
+bool isPictureOf(const std::string& picture, const PictureText& text) {
+    return picture.find(">" + escaped(titleOf(text)) + "</text>") != std::string::npos;
+}
+
 std::string accuracyPicture(const std::vector<AccuracyRow>& rows, const PictureText& text) {
     Svg svg;
     svg.add(R"(<svg xmlns="http://www.w3.org/2000/svg" width="{0}" height="{1}" viewBox="0 0 {0} {1}" )"
             R"(font-family="Liberation Sans, DejaVu Sans, Arial, sans-serif">)",
             kWidth, kHeight);
     svg.add(R"(<rect width="{}" height="{}" fill="#FFFFFF"/>)", kWidth, kHeight);
-    svg.text(kLeft - 56, 38, "What accuracy costs in time: " + text.shell + " against " + text.field, kTitle);
+    svg.text(kLeft - 56, 38, titleOf(text), kTitle);
     svg.text(
         kLeft - 56, 64,
         fmt::format("{} settings, each asked the same {} poses ({} in contact), beside independent truth. Lower is "

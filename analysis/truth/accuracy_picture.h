@@ -17,4 +17,7 @@ struct PictureText {
 /// the point spacing, shaped by the mode; each Pareto front a line, its settings written beside it.
 std::string accuracyPicture(const std::vector<AccuracyRow>& rows, const PictureText& text);
 
+/// Is `picture` one of the same two parts, by their names?
+bool isPictureOf(const std::string& picture, const PictureText& text);
+
 }  // namespace passung::truth

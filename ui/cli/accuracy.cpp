@@ -1,12 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <system_error>
 
 #include "analysis/truth/accuracy_picture.h"
 #include "analysis/truth/accuracy_sweep.h"
 #include "analysis/truth/accuracy_tables.h"
+#include "study/protocol/document.h"
 #include "ui/app/disk_store.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
@@ -17,7 +19,58 @@ namespace passung::cli {
 
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr std::size_t kMostPrinted = 20;  // disagreements
+// The picture first, for it tells whose results these are: so does what an interrupted run leaves.
+constexpr std::array kFiles{"accuracy.svg", "accuracy.csv", "poses.csv", "codebook.csv"};
+
+/// A folder for the results; whatever of it was not there before and is still empty in the end is removed.
+class ResultFolder {
+public:
+    explicit ResultFolder(const std::string& name) : folder_(name) {}
+    ~ResultFolder() {
+        std::error_code full;
+        for (const fs::path& made : made_) fs::remove(made, full);
+    }
+    ResultFolder(const ResultFolder&) = delete;
+    ResultFolder& operator=(const ResultFolder&) = delete;
+
+    /// Only nothing, an empty folder, or earlier results of the same pair and nothing else may be replaced.
+    Result<Done> begin(const truth::PictureText& pair) {
+        try {
+            if (auto replaceable = checkReplaceable(pair); !replaceable) return replaceable;
+            for (fs::path part = folder_; !part.empty() && !fs::exists(fs::symlink_status(part));
+                 part = part.parent_path())
+                made_.push_back(part);
+            fs::create_directories(folder_);
+        } catch (const fs::filesystem_error& failed) {
+            return error("cannot be made: " + failed.code().message());
+        }
+        return Done{};
+    }
+
+private:
+    Error error(std::string message) const { return {.message = std::move(message), .file = folder_.string()}; }
+
+    Result<Done> checkReplaceable(const truth::PictureText& pair) const {
+        if (!fs::exists(folder_)) return Done{};
+        if (!fs::is_directory(folder_)) return error("exists and is not a folder");
+        if (fs::is_empty(folder_)) return Done{};
+        for (const auto& entry : fs::directory_iterator(folder_))
+            if (std::find(kFiles.begin(), kFiles.end(), entry.path().filename()) == kFiles.end())
+                return error("exists and holds something else than results of accuracy (" +
+                             entry.path().filename().string() + "): name another folder");
+        const auto picture = protocol::readFile((folder_ / "accuracy.svg").string());
+        if (!picture || !truth::isPictureOf(*picture, pair))
+            return error("holds results that are not of " + pair.shell + " against " + pair.field +
+                         ": name another folder");
+        return Done{};
+    }
+
+    fs::path folder_;
+    std::vector<fs::path> made_;  // innermost first
+};
 
 truth::AccuracySpace spaceOf(const AccuracyOptions& options, double length) {
     truth::AccuracySpace space;
@@ -35,24 +88,23 @@ truth::AccuracySpace spaceOf(const AccuracyOptions& options, double length) {
     return space;
 }
 
-Result<Done> writeFile(const std::filesystem::path& path, const std::string& text) {
+Result<Done> writeFile(const fs::path& path, const std::string& text) {
     OutputFile file(path.string());
     file.write(text);
     return file.commit();
 }
 
-std::string nameOf(const std::string& path) { return std::filesystem::path(path).stem().string(); }
+std::string nameOf(const std::string& path) { return fs::path(path).stem().string(); }
 
 Result<Done> writeAll(const AccuracyOptions& options, const truth::AccuracyResult& result,
                       const std::vector<truth::JudgedPose>& poses) {
-    const std::filesystem::path folder(options.out);
+    const fs::path folder(options.out);
     truth::PictureText text{nameOf(options.field), nameOf(options.shell), poses.size(), 0};
     for (const auto& pose : poses) text.contacts += pose.truth.inContact() ? 1 : 0;
-    for (const auto& [name, content] : {std::pair{"accuracy.csv", truth::accuracyCsv(result.rows)},
-                                        {"poses.csv", truth::posesCsv(poses)},
-                                        {"codebook.csv", truth::accuracyCodebook()},
-                                        {"accuracy.svg", truth::accuracyPicture(result.rows, text)}})
-        if (auto done = writeFile(folder / name, content); !done) return done;
+    const std::array contents{truth::accuracyPicture(result.rows, text), truth::accuracyCsv(result.rows),
+                              truth::posesCsv(poses), truth::accuracyCodebook()};
+    for (std::size_t i = 0; i < kFiles.size(); ++i)
+        if (auto done = writeFile(folder / kFiles[i], contents[i]); !done) return done;
     return Done{};
 }
 
@@ -87,9 +139,9 @@ int accuracy(const AccuracyOptions& options) {
         if (poses->empty()) return fail({{.message = "has no pose", .file = options.poses}});
         given = std::move(*poses);
     }
-    std::error_code problem;
-    std::filesystem::create_directories(options.out, problem);
-    if (problem) return fail({{.message = "cannot be made: " + problem.message(), .file = options.out}});
+    ResultFolder folder(options.out);
+    if (const auto begun = folder.begin({nameOf(options.field), nameOf(options.shell)}); !begun)
+        return fail(begun.errors());
 
     ProgressLine progress;
     progress.show("reading the parts");

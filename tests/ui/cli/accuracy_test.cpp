@@ -73,6 +73,34 @@ TEST_F(Accuracy, RefusesAFieldWithoutAnInsideInOneLine) {
     EXPECT_EQ(ended.exit_code, 1);
     EXPECT_EQ(linesOf(ended.err).size(), 1u) << ended.err;
     EXPECT_NE(ended.err.find("watertight"), std::string::npos) << ended.err;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+}
+
+TEST_F(Accuracy, ReplacesItsOwnResultsAndNoOthers) {
+    // Truth: invariant
+    const std::string small = "[[part]]\nname = \"ball\"\nshape = { kind = \"sphere\", diameter = 1 }\n";
+    writeText(folder_ / "ball.toml", small);
+    writeText(folder_ / "poses.csv", "x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0.0204,1,0,0,0\n");
+    const std::vector<std::string> quick{
+        "--poses", "poses.csv", "--tolerances-um", "100", "--spacings-mm", "4", "--budgets", "0",
+        "--modes", "trilinear", "--fcl-poses",     "0",   "--repetitions", "1"};
+    ASSERT_EQ(run(quick).exit_code, 0);
+    const Ended again = run(quick);
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    const std::string before = readText(folder_ / "out/accuracy.csv");
+    const auto refused = [&](const std::string& shell, const std::string& why) {
+        std::vector<std::string> words{"accuracy", "box.toml", shell, "--out", "out"};
+        words.insert(words.end(), quick.begin(), quick.end());
+        const Ended ended = runProgram(folder_.path(), words);
+        EXPECT_EQ(ended.exit_code, 1);
+        EXPECT_EQ(linesOf(ended.err).size(), 1u) << ended.err;
+        EXPECT_NE(ended.err.find(why), std::string::npos) << ended.err;
+        EXPECT_EQ(readText(folder_ / "out/accuracy.csv"), before);
+    };
+    writeText(folder_ / "other.toml", small);
+    refused("other.toml", "not of other against box");
+    writeText(folder_ / "out/notes.txt", "mine");
+    refused("ball.toml", "notes.txt");
 }
 
 }  // namespace
