@@ -125,6 +125,8 @@ private:
         }
         condition.scene = std::move(content.scene);
         condition.accuracy_budget = content.accuracy_budget;
+        condition.accuracy_line = content.accuracy_place.line;
+        condition.accuracy_column = content.accuracy_place.column;
         condition.allow_unstable = content.allow_unstable;
         condition.device = std::move(content.device);
         if (errors_.size() == before && root_.has("task")) condition.task = readTask(tables, condition.scene, errors_);

@@ -16,6 +16,7 @@ struct SceneContent {
     model::SceneSpec scene;
     std::string device;            // preset, empty if none is named
     double accuracy_budget = 0.0;  // [s] > 0: contact.accuracy is "auto"
+    Place accuracy_place;          // of that budget
     bool allow_unstable = false;
 };
 

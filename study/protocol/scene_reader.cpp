@@ -277,6 +277,7 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     const auto contact_table = open("contact");
     content.scene.contact = readContact(contact_table, device, device_table.has("preset"));
     content.accuracy_budget = readAccuracyBudget(contact_table, content.scene);
+    if (const Node* budget = contact_table.node("accuracy_budget_us")) content.accuracy_place = budget->place;
     content.allow_unstable = contact_table.boolean("allow_unstable");
     const auto registration_table = open("registration");
     content.scene.registration = readRegistration(registration_table, units);

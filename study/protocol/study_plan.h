@@ -49,7 +49,8 @@ struct Condition {
     bool allow_unstable = false;   // the protocol takes responsibility for a stiffness that is not known to be stable
     double accuracy_budget = 0.0;  // of a query [s]; > 0: accuracy = "auto" picks what the scene's contact has of
                                    // tolerance, cell, spacing, mode and nodes
-    bool accuracy_picked = false;  // it has
+    int accuracy_line = 0, accuracy_column = 0;  // where the protocol writes that budget, from 1
+    bool accuracy_picked = false;                // it has
     PegInHoleTask task;
     ShownPose shown = ShownPose::Proxy;
     std::string device;       // preset

@@ -160,7 +160,7 @@ void requireSameStudy(const Database& database, const protocol::StudyPlan& plan)
 }
 
 std::string importPlan(const Database& database, const protocol::StudyPlan& plan,
-                       const std::vector<MeshContent>& meshes, const OpenOptions& options) {
+                       const std::vector<MeshContent>& meshes, const OpenOptions& options, bool keep) {
     const std::string sha256 = sha256Hex(plan.source_text);
     Transaction transaction(database);
     if (database.prepare("SELECT 1 FROM protocol_version WHERE protocol_sha256=?").bind(sha256).step()) {
@@ -168,7 +168,7 @@ std::string importPlan(const Database& database, const protocol::StudyPlan& plan
         requireMeshes(database, sha256, meshes);
         storeSeed(database, sha256, plan.seed);
         insertMeasures(database);
-        transaction.commit();
+        if (keep) transaction.commit();
         return sha256;
     }
     requireSameStudy(database, plan);
@@ -191,7 +191,7 @@ std::string importPlan(const Database& database, const protocol::StudyPlan& plan
         insertSlots(database, sha256, protocol::participantKindName(protocol::ParticipantKind::Real), first / sequences,
                     sequences);
     }
-    transaction.commit();
+    if (keep) transaction.commit();
     return sha256;
 }
 
@@ -364,10 +364,14 @@ Store::Opened Store::open(const std::string& path, const OpenOptions& options) {
     return opened;
 }
 
-Result<std::string> Store::importProtocol(const protocol::StudyPlan& plan) {
+Result<std::string> Store::importProtocol(const protocol::StudyPlan& plan) { return importOrCheck(plan, true); }
+
+Result<std::string> Store::checkProtocol(const protocol::StudyPlan& plan) { return importOrCheck(plan, false); }
+
+Result<std::string> Store::importOrCheck(const protocol::StudyPlan& plan, bool keep) {
     const auto meshes = readMeshes(plan);
     if (!meshes) return meshes.errors();
-    return thread_->call([&](const Database& database) { return importPlan(database, plan, *meshes, options_); });
+    return thread_->call([&](const Database& database) { return importPlan(database, plan, *meshes, options_, keep); });
 }
 
 Result<std::vector<AccuracyRow>> Store::accuracy(const std::string& protocol_sha256) {

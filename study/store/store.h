@@ -80,6 +80,8 @@ public:
     /// changes nothing; another seed than that of the sessions of this protocol is refused, and so is a mesh file with
     /// another content.
     Result<std::string> importProtocol(const protocol::StudyPlan& plan);
+    /// The same answer, but nothing is stored.
+    Result<std::string> checkProtocol(const protocol::StudyPlan& plan);
 
     /// What was measured and picked for the protocol's accuracy = "auto", by candidate; none if it never ran so.
     Result<std::vector<AccuracyRow>> accuracy(const std::string& protocol_sha256);
@@ -113,6 +115,7 @@ public:
                                                          std::span<const design::PlannedTrial> plan);
 
 private:
+    Result<std::string> importOrCheck(const protocol::StudyPlan& plan, bool keep);
     Store(OpenOptions options, std::unique_ptr<ProcessLock> lock, std::unique_ptr<WriterThread> thread);
 
     OpenOptions options_;

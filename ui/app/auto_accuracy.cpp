@@ -94,6 +94,19 @@ std::string keysOf(const store::AccuracyRow& row) {
                        row.spacing_mm, row.mode, row.budget_nodes);
 }
 
+/// `budget`: one of the plan's, below `fastest` [s].
+Error unfitting(const protocol::StudyPlan& plan, double budget, double fastest) {
+    const auto asking =
+        std::find_if(plan.conditions.begin(), plan.conditions.end(),
+                     [&](const protocol::Condition& condition) { return condition.accuracy_budget == budget; });
+    return {.message = fmt::format("no setting fits on this machine; the fastest takes {:.3g} µs", kUs * fastest),
+            .file = plan.source_path,
+            .line = asking->accuracy_line,
+            .column = asking->accuracy_column,
+            .key = "scene.contact.accuracy_budget_us",
+            .value = fmt::format("{:g}", inMicroseconds(budget))};
+}
+
 Result<model::FieldMode> modeOf(const store::AccuracyRow& row) {
     if (const auto mode = model::modeNamed(row.mode)) return *mode;
     return Error{.message = "this version of the program does not know the mode that was picked",
@@ -123,10 +136,7 @@ Result<std::vector<store::AccuracyRow>> measureAccuracy(const protocol::StudyPla
         if (const auto best = truth::pickFinest(*measured, budget))
             rows[*best].picked_for_us.push_back(inMicroseconds(budget));
         else
-            errors.push_back(
-                {.message = fmt::format("no setting fits on this machine; the fastest takes {:.3g} µs", kUs * fastest),
-                 .key = "contact.accuracy_budget_us",
-                 .value = fmt::format("{:g}", inMicroseconds(budget))});
+            errors.push_back(unfitting(plan, budget, fastest));
     }
     if (!errors.empty()) return errors;
     return rows;
@@ -182,17 +192,11 @@ Result<std::vector<std::string>> tooSlowHere(const protocol::StudyPlan& plan, st
 }
 
 Result<protocol::StudyPlan> withKeptAccuracy(const protocol::StudyPlan& plan, const std::string& protocol_sha256,
-                                             store::Store& store, const truth::StepReport& report) {
+                                             store::Store& store) {
     protocol::StudyPlan complete = plan;
     if (!asksForAccuracy(plan)) return complete;
-    auto rows = store.accuracy(protocol_sha256);
+    const auto rows = store.accuracy(protocol_sha256);
     if (!rows) return rows.errors();
-    if (rows->empty()) {
-        const auto builds = openDiskStore();
-        rows = measureAccuracy(plan, protocol_sha256, report, builds.get());
-        if (!rows) return rows.errors();
-        if (const auto kept = store.keepAccuracy(*rows); !kept) return kept.errors();
-    }
     if (const auto applied = applyAccuracy(protocol_sha256, *rows, complete); !applied) return applied.errors();
     return complete;
 }

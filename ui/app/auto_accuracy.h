@@ -32,9 +32,9 @@ Result<Done> applyAccuracy(const std::string& protocol_sha256, std::span<const s
 Result<std::vector<std::string>> tooSlowHere(const protocol::StudyPlan& plan, std::span<const store::AccuracyRow> rows,
                                              model::BuildStore* builds);
 
-/// The plan with what `store` keeps; if that is nothing yet it is measured and kept, for good.
+/// The plan with what `store` keeps.
 Result<protocol::StudyPlan> withKeptAccuracy(const protocol::StudyPlan& plan, const std::string& protocol_sha256,
-                                             store::Store& store, const truth::StepReport& report);
+                                             store::Store& store);
 
 /// What was picked, in words, with what was measured, and the keys that would fix it in a protocol. `rows`: of one
 /// protocol.

@@ -3,12 +3,14 @@
 #include <sys/utsname.h>
 
 #include <chrono>
+#include <filesystem>
 #include <stdexcept>
 
 #include "devices/simulated/presets.h"
 #include "study/measures/measures.h"
 #include "study/session/participant_order.h"
 #include "study/store/identity.h"
+#include "study/store/digest.h"
 #include "ui/app/auto_accuracy.h"
 #include "ui/app/calibration.h"
 #include "ui/app/disk_store.h"
@@ -125,12 +127,35 @@ const std::vector<std::string>& knownMeasures() {
 
 Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& options, const RunListener& listener) {
     const std::int64_t now = unixMilliseconds();
+    // A calibration that fails must leave nothing behind: neither a new database nor the protocol in an old one.
+    std::vector<store::AccuracyRow> measured;
+    const auto measure = [&]() -> Result<Done> {
+        const auto builds = openDiskStore();
+        auto rows = measureAccuracy(plan, store::sha256Hex(plan.source_text), listener.calibrating, builds.get());
+        if (!rows) return rows.errors();
+        measured = std::move(*rows);
+        return Done{};
+    };
+    const bool calibrates = asksForAccuracy(plan);
+    std::error_code none;
+    if (calibrates && !std::filesystem::exists(options.database, none))
+        if (const auto done = measure(); !done) return done.errors();
     auto opened = store::Store::open(options.database,
                                      {.app_version = PASSUNG_VERSION, .now_utc = store::UtcClock::wall(now).at(0)});
     if (!opened.store) return opened.errors;
     if (listener.recovered && !opened.recovery.empty()) listener.recovered(opened.recovery);
+    if (calibrates && measured.empty()) {
+        const auto known = opened.store->checkProtocol(plan);
+        if (!known) return known.errors();
+        const auto there = opened.store->accuracy(*known);
+        if (!there) return there.errors();
+        if (there->empty())
+            if (const auto done = measure(); !done) return done.errors();
+    }
     auto sha256 = opened.store->importProtocol(plan);
     if (!sha256) return sha256.errors();
+    if (!measured.empty())
+        if (const auto done = opened.store->keepAccuracy(measured); !done) return done.errors();
     const auto kept = opened.store->accuracy(*sha256);
     if (!kept) return kept.errors();
     if (options.clock == Clock::RealTime && listener.warned && !kept->empty()) {
@@ -145,7 +170,7 @@ Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& optio
     if (!kept_plan) return kept_plan.errors();
     if (listener.warned)
         for (const std::string& difference : stiffnessDifferences(plan, *kept_plan)) listener.warned(difference);
-    auto picked = withKeptAccuracy(*kept_plan, *sha256, *opened.store, listener.calibrating);
+    auto picked = withKeptAccuracy(*kept_plan, *sha256, *opened.store);
     if (!picked) return picked.errors();
     StudyRun run(*picked, options, listener, *opened.store, *sha256);
     for (int i = 0; i < options.simulated; ++i) {

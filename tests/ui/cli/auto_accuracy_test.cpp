@@ -57,14 +57,37 @@ TEST(AutoAccuracyStudy, PicksOnceKeepsTheCalibrationAndReplaysWithIt) {
     EXPECT_EQ(linesOf(readText(folder / "e/accuracy.csv")).size(), rows.size() + 1);
 }
 
-TEST(AutoAccuracyStudy, RefusesABudgetThatNothingFits) {
-    // Truth: invariant. No query takes a nanosecond.
+TEST(AutoAccuracyStudy, RefusesABudgetThatNothingFitsAndLeavesNothingBehind) {
+    // Truth: invariant (no query takes a nanosecond; the line names where the budget stands; a corrected protocol of
+    // the same version runs)
     const TempFolder folder;
-    writeText(folder / "s.toml", automaticStudy("0.001"));
-    const Ended ended = runProgram(folder.path(), {"run", "s.toml", "--db", "s.db"});
-    EXPECT_EQ(ended.exit_code, 1);
-    EXPECT_NE(ended.err.find("no setting fits on this machine"), std::string::npos) << ended.err;
-    EXPECT_EQ(linesOf(ended.err).size(), 1u) << ended.err;
+    const std::string bad = automaticStudy("0.001");
+    const auto run = [&](const std::string& text) {
+        writeText(folder / "s.toml", text);
+        return runProgram(folder.path(), {"run", "s.toml", "--db", "s.db"});
+    };
+    const auto before = linesOf(bad.substr(0, bad.find("0.001")));
+    const std::string place =
+        "s.toml:" + std::to_string(before.size()) + ":" + std::to_string(before.back().size() + 1) + ": error: ";
+    const auto refused = [&] {
+        const Ended ended = run(bad);
+        EXPECT_EQ(ended.exit_code, 1);
+        EXPECT_TRUE(ended.err.starts_with(place)) << ended.err << place;
+        EXPECT_NE(ended.err.find("no setting fits on this machine"), std::string::npos) << ended.err;
+        EXPECT_EQ(linesOf(ended.err).size(), 1u) << ended.err;
+    };
+    refused();
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+        EXPECT_EQ(entry.path().filename().string().find("s.db"), std::string::npos) << entry.path();
+
+    // In a database that is there, of another version of the study.
+    std::string other = smallStudy();
+    const std::string version = "version = \"";
+    other.insert(other.find(version) + version.size(), "0.");
+    ASSERT_EQ(run(other).exit_code, 0);
+    refused();
+    const Ended corrected = run(smallStudy());
+    EXPECT_EQ(corrected.exit_code, 0) << corrected.err;
 }
 
 }  // namespace
