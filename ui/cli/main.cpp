@@ -156,7 +156,10 @@ private:
                         "CSV of results: the poses and what was found; force_* and torque_* are the penalty on SHELL "
                         "about its origin, 1e9 N/m3 times depth times area, for comparisons; no device's force")
             ->required();
-        sub->add_option("--tolerance-um", query_.tolerance_um, "of the field")->check(above0());
+        sub->add_option("--tolerance-um", query_.tolerance_um,
+                        "of the field and of every distance; default 20. Status bound_not_reached: the row's "
+                        "error_bound_m is above it (few steps, hard pose, or --budget-nodes)")
+            ->check(above0());
         sub->add_option("--cell-mm", query_.cell_mm, "of the field, instead of a tolerance")->check(above0());
         sub->add_option("--spacing-mm", query_.spacing_mm, "of the shell")->check(above0());
         sub->add_option("--mode", query_.mode, "of interpolation; default trilinear")->check(aMode());
@@ -169,7 +172,7 @@ private:
         sub->add_flag("--two-way", query_.two_way, "each part's points against the other's field");
         sub->add_option("--patches", query_.patches,
                         "JSON of the patches of contact at every pose, the deepest first: deepest point, area, mean "
-                        "normal and force of each");
+                        "normal and force of each; not with --two-way");
         sub->add_option("--unit", query_.unit, "of files that have none; default mm")->check(units);
         sub->add_option("--field-unit", query_.field_unit, "of FIELD, instead of --unit")->check(units);
         sub->add_option("--shell-unit", query_.shell_unit, "of SHELL, instead of --unit")->check(units);

@@ -57,7 +57,8 @@ Errors refuseResultNames(const std::string& path, const NumberTable& table) {
     return errors;
 }
 
-std::string statusOf(const query::PartQueryResult& r) {
+/// `tolerance`: asked for [m].
+std::string statusOf(const query::PartQueryResult& r, double tolerance) {
     std::string status;
     const auto add = [&](bool holds, const char* word) {
         if (!holds) return;
@@ -67,18 +68,20 @@ std::string statusOf(const query::PartQueryResult& r) {
     add(r.beyond_proximity, "beyond_proximity");
     add(r.budget_reached, "budget_reached");
     add(r.quality_overruled_budget, "quality_overruled_budget");
+    add(!r.beyond_proximity && !(r.error_bound <= tolerance), "bound_not_reached");
     return status.empty() ? "ok" : status;
 }
 
 /// `input`: the row as the file writes it.
-void writeRow(fmt::memory_buffer& text, std::string_view input, const query::PartQueryResult& r, double us) {
+void writeRow(fmt::memory_buffer& text, std::string_view input, const query::PartQueryResult& r, double tolerance,
+              double us) {
     auto out = std::back_inserter(text);
     fmt::format_to(out, "{},", input);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const Vec3 closest = r.beyond_proximity ? Vec3(Vec3::Constant(nan)) : r.closest;
     const Vec3 normal = r.beyond_proximity ? Vec3(Vec3::Constant(nan)) : r.normal;
     fmt::format_to(out, "{},{},{},{},{}", r.signed_distance, r.field_error_bound, r.error_bound, r.quality,
-                   statusOf(r));
+                   statusOf(r, tolerance));
     for (const Vec3& v : {closest, normal, r.wrench.force, r.wrench.torque}) {
         for (int axis = 0; axis < 3; ++axis) fmt::format_to(out, ",{}", v[axis]);
     }
@@ -120,6 +123,10 @@ int query(const QueryOptions& options) {
     }
     if (options.patches == options.out)
         return fail({{.message = "is the file of the results too; give the patches another", .file = options.patches}});
+    if (options.two_way && !options.patches.empty())
+        return fail({{.message = "--patches lists SHELL's points in FIELD only: leave out --two-way, or ask again with "
+                                 "FIELD and SHELL exchanged for the other way",
+                      .file = options.patches}});
     NumberTable table;
     const auto poses = readPoses(options.poses, table);
     if (!poses) return fail(poses.errors());
@@ -158,7 +165,7 @@ int query(const QueryOptions& options) {
         const query::PartQueryResult result = part_query.at((*poses)[i]);
         const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
         text.clear();
-        writeRow(text, table.rowLine(i), result, took.count());
+        writeRow(text, table.rowLine(i), result, request.tolerance, took.count());
         out.write({text.data(), text.size()});
         if (patches) patches->write((i > 0 ? ",\n" : "\n") + patchesJson(i + 1, result, request.area_stiffness));
         if (i % 1000 == 0) progress.show(fmt::format("{} of {} poses", i, poses->size()));

@@ -126,6 +126,12 @@ TEST_F(Query, ListsThePatchesOfContactOfEveryPose) {
     const Ended same = runProgram(folder_.path(), {"query", "box.toml", "ball.toml", "--poses", "poses.csv", "--out",
                                                    "r.csv", "--patches", "r.csv"});
     EXPECT_EQ(same.exit_code, 1);
+    std::filesystem::remove(folder_ / "r.csv");
+    const Ended both = runProgram(folder_.path(), {"query", "box.toml", "ball.toml", "--poses", "poses.csv", "--out",
+                                                   "r.csv", "--patches", "q.json", "--two-way"});
+    EXPECT_EQ(both.exit_code, 1);
+    EXPECT_EQ(linesOf(both.err).size(), 1u) << both.err;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "r.csv") || std::filesystem::exists(folder_ / "q.json"));
 }
 
 TEST_F(Query, WritesThroughLinksAndRefusesWhatIsNoFile) {
@@ -160,6 +166,22 @@ TEST_F(Query, WritesThroughLinksAndRefusesWhatIsNoFile) {
     EXPECT_TRUE(fs::is_fifo(folder_ / "pipe"));
     EXPECT_TRUE(fs::is_symlink(folder_ / "to_pipe"));
     EXPECT_TRUE(fs::is_symlink(folder_ / "circle"));
+}
+
+TEST_F(Query, SaysWhereTheBoundMissesTheTolerance) {
+    // Truth: invariant (the status and the bound beside it). No step is left to refine with after one node.
+    writePoses({Vec3(0.001, 0.002, 0.0201), Vec3(0.05, 0.003, 0.001)});
+    std::size_t missed = 0;
+    for (const std::string budget : {"1", "1000000"}) {
+        const fake::CsvFile r = query("box.toml", "ball.toml", {"--tolerance-um", "5", "--budget-nodes", budget});
+        for (const std::size_t row : {0u, 1u}) {
+            const bool above = number(r, row, "error_bound_m") > 5e-6;
+            EXPECT_EQ(r.at(row, "status").find("bound_not_reached") != std::string::npos, above) << budget;
+            missed += above ? 1 : 0;
+        }
+    }
+    EXPECT_GT(missed, 0u);
+    EXPECT_LT(missed, 4u);
 }
 
 TEST_F(Query, KeepsFurtherColumnsAndNamesTheLineOfABadPose) {
@@ -286,7 +308,7 @@ TEST_F(Query, ABudgetEndsTheSearchAndAQualityWins) {
     writePoses({{0.003, -0.002, 0.0185}});
     const fake::CsvFile full = query("box.toml", "ball.toml");
     const fake::CsvFile budget = query("box.toml", "ball.toml", {"--budget-nodes", "3"});
-    EXPECT_EQ(budget.at(0, "status"), "budget_reached");
+    EXPECT_EQ(budget.at(0, "status"), "budget_reached+bound_not_reached");
     EXPECT_LT(number(budget, 0, "quality"), 1.0);
     EXPECT_GE(number(budget, 0, "quality"), 0.0);
     EXPECT_LE(number(budget, 0, "nodes_visited"), 3.0 + 16.0) << "the children of the node at hand are finished";
