@@ -3,14 +3,13 @@
 #include <algorithm>
 
 #include "core/tick/obstacle_query.h"
+#include "core/tick/twist_between.h"
 
 namespace passung::tick {
 
 namespace {
 
-bool isWeighted(const model::ContactSpec& contact) noexcept {
-    return contact.variant == model::PenaltyVariant::AreaWeighted;
-}
+bool isWeighted(model::PenaltyVariant variant) noexcept { return variant == model::PenaltyVariant::AreaWeighted; }
 
 /// -b (v · û) û, no larger than what it opposes.
 Vec3 dampingAlong(const Vec3& load, const Vec3& velocity, double damping) noexcept {
@@ -29,11 +28,7 @@ void measureHandVelocity(TickState& state, const TickFrame& frame) noexcept {
         return;
     }
     if (frame.sample_periods == 0) return;
-    if (state.has_last_hand) {
-        const double elapsed = kTickSeconds * static_cast<double>(frame.sample_periods);
-        state.V_H_last.v = (frame.X_WH.p - state.X_WH_last.p) / elapsed;
-        state.V_H_last.w = rotationVector(frame.X_WH.q * state.X_WH_last.q.conjugate()) / elapsed;
-    }
+    if (state.has_last_hand) state.V_H_last = twistBetween(state.X_WH_last, frame.X_WH, frame.sample_periods);
     state.X_WH_last = frame.X_WH;
     state.has_last_hand = true;
 }
@@ -41,7 +36,7 @@ void measureHandVelocity(TickState& state, const TickFrame& frame) noexcept {
 }  // namespace
 
 QueryRequest penaltyRequest(model::PenaltyVariant variant) noexcept {
-    return {.gradients = false, .load = variant == model::PenaltyVariant::AreaWeighted, .refine = true};
+    return {.gradients = false, .load = isWeighted(variant), .refine = true};
 }
 
 void findContactsAtHand(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
@@ -61,7 +56,7 @@ Wrench weightedWrench(const model::ContactSpec& contact, const Wrench& load) noe
 }
 
 Wrench penaltyWrench(const model::ContactSpec& contact, const ContactManifold& manifold, const Vec3& p_WO) noexcept {
-    const bool weighted = isWeighted(contact);
+    const bool weighted = isWeighted(contact.variant);
     Wrench sum;
     double depth_sum = 0.0, deepest = 0.0;
     for (const ContactPoint& c : manifold) {
@@ -84,8 +79,8 @@ Wrench penaltyWrench(const model::ContactSpec& contact, const ContactManifold& m
 
 void renderPenalty(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
     measureHandVelocity(state, frame);
-    Wrench wrench = isWeighted(model.contact) ? weightedWrench(model.contact, frame.load)
-                                              : penaltyWrench(model.contact, state.manifold, frame.X_WH.p);
+    Wrench wrench = isWeighted(model.contact.variant) ? weightedWrench(model.contact, frame.load)
+                                                      : penaltyWrench(model.contact, state.manifold, frame.X_WH.p);
     const Vec3 force_damping = dampingAlong(wrench.force, state.V_H_last.v, model.contact.damping);
     const Vec3 torque_damping = dampingAlong(wrench.torque, state.V_H_last.w, model.contact.rotational_damping);
     wrench.force += force_damping;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/tick/twist_between.h"
+
 namespace passung::tick {
 
 namespace {
@@ -20,10 +22,8 @@ double sizeOf(const TickModel& model, const Wrench& wrench) noexcept {
 /// s of the header.
 double impactSpeed(const TickModel& model, const Ringing& ringing, const TickFrame& frame) noexcept {
     const Wrench& F = frame.F_H_W;
-    const double elapsed = kTickSeconds * static_cast<double>(frame.sample_periods);
-    const Vec3 v = (frame.X_WH.p - ringing.X_WH_last.p) / elapsed;
-    const Vec3 w = rotationVector(frame.X_WH.q * ringing.X_WH_last.q.conjugate()) / elapsed;
-    return std::max(0.0, -(F.force.dot(v) + F.torque.dot(w)) / sizeOf(model, F));
+    const Twist V = twistBetween(ringing.X_WH_last, frame.X_WH, frame.sample_periods);
+    return std::max(0.0, -(F.force.dot(V.v) + F.torque.dot(V.w)) / sizeOf(model, F));
 }
 
 }  // namespace
