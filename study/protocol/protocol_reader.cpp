@@ -281,12 +281,17 @@ private:
             "contact.variant = \"area_weighted\" has a stiffness that grows with the area, so that nothing keeps the "
             "stiffness below the device's stable maximum",
             renders(PenaltyVariant::AreaWeighted));
+        const auto rubs = [](const Condition& condition, bool held) {
+            const auto& parts = condition.scene.parts;
+            return std::any_of(parts.begin(), parts.end(),
+                               [=](const auto& part) { return part.held == held && part.friction > 0.0; });
+        };
         warn("contact.method = \"penalty\" renders no friction: that of the parts acts in other conditions only",
              [&](const Condition& condition) {
-                 const auto& parts = condition.scene.parts;
-                 return penalty(condition) &&
-                        std::any_of(parts.begin(), parts.end(), [](const auto& part) { return part.friction > 0.0; });
+                 return penalty(condition) && rubs(condition, true) && rubs(condition, false);
              });
+        warn("friction of one side only has no effect: the held part rubs with another if neither has 0",
+             [&](const Condition& condition) { return rubs(condition, true) != rubs(condition, false); });
     }
 
     const Node& document_;

@@ -235,6 +235,19 @@ TEST(ProtocolReader, WarnsOfFrictionThatThePenaltyDoesNotRender) {
     }
 }
 
+TEST(ProtocolReader, WarnsOfFrictionThatOnlyOneSideHas) {
+    // Truth: closed form: the geometric mean of any coefficient and 0 is 0.
+    std::string rough = kScene;
+    rough.insert(rough.find("name = "), "friction = 0.3, ");
+    for (const std::string method : {"penalty", "god_object"}) {
+        const auto plan = read(kHead + rough + "[scene.contact]\nmethod = \"" + method + "\"\n" + kTask + kBlock +
+                               "order = \"listed\"\n");
+        ASSERT_TRUE(plan);
+        ASSERT_EQ(plan->warnings.size(), 1u);
+        EXPECT_NE(plan->warnings[0].find("one side only"), std::string::npos);
+    }
+}
+
 TEST(ProtocolReader, TakesTheShareOfCyclesThatMayBeMissed) {
     // Truth: closed form: the documented default, a value, and one out of range.
     const std::string text = kHead + kScene + kTask + kFactors + kBlock;
