@@ -65,36 +65,42 @@ std::string aligned(const std::vector<Line>& lines) {
     return text;
 }
 
+/// Empty without attempts of that kind under that protocol.
+std::string tableOf(const StudyData& study, const std::vector<Cell>& cells, const std::string& kind,
+                    const store::ProtocolRow& protocol) {
+    std::set<std::string> people;
+    for (const store::AttemptRow& attempt : study.attempts)
+        if (attempt.kind == kind && attempt.protocol_sha256 == protocol.sha256) people.insert(attempt.participant_id);
+    if (people.empty()) return {};
+    std::vector<Line> lines = {headerLine()};
+    for (const store::ConditionRow& condition : study.conditions) {
+        if (condition.protocol_sha256 != protocol.sha256) continue;
+        std::vector<const store::AttemptRow*> attempts;
+        for (const Cell& cell : cells)
+            if (cell.kind == kind && cell.condition == &condition)
+                attempts.insert(attempts.end(), cell.attempts.begin(), cell.attempts.end());
+        lines.push_back(conditionLine(condition.condition, attempts));
+    }
+    const std::string version =
+        study.protocols.size() > 1 ? fmt::format("{} {}, ", protocol.name, protocol.version) : "";
+    return fmt::format(
+               "{}{} participants: {}. Means over valid main trials; depths are the trial's largest, mean force over "
+               "contact time.\n",
+               version, kind, people.size()) +
+           aligned(lines);
+}
+
 }  // namespace
 
 Result<std::string> summaryTable(const store::StoreReader& reader) {
     const auto study = readStudy(reader);
     if (!study) return study.errors();
+    const std::vector<Cell> cells = cellsOf(*study);
     std::string text;
-    for (const std::string& kind : protocol::participantKindNames()) {
-        std::set<std::string> people;
-        for (const store::AttemptRow& attempt : study->attempts) {
-            if (attempt.kind == kind) people.insert(attempt.participant_id);
-        }
-        if (people.empty()) continue;
-        const std::vector<Cell> cells = cellsOf(*study);
-        std::vector<Line> lines = {headerLine()};
-        for (const store::ConditionRow& condition : study->conditions) {
-            std::vector<const store::AttemptRow*> attempts;
-            for (const Cell& cell : cells) {
-                if (cell.kind != kind || cell.condition != &condition) continue;
-                attempts.insert(attempts.end(), cell.attempts.begin(), cell.attempts.end());
-            }
-            lines.push_back(conditionLine(condition.condition, attempts));
-        }
-        if (!text.empty()) text += '\n';
-        text += fmt::format(
-            "{} participants: {}. Means over valid main trials; depths are the trial's largest, mean force over "
-            "contact "
-            "time.\n",
-            kind, people.size());
-        text += aligned(lines);
-    }
+    for (const std::string& kind : protocol::participantKindNames())
+        for (const store::ProtocolRow& protocol : study->protocols)
+            if (const std::string table = tableOf(*study, cells, kind, protocol); !table.empty())
+                text += (text.empty() ? "" : "\n") + table;
     return text.empty() ? std::string("no trials yet\n") : text;
 }
 

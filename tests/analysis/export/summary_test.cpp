@@ -52,6 +52,26 @@ TEST(Summary, CountsOnlyValidMainTrialsAndAveragesThem) {
     EXPECT_EQ(header.size(), fourth.size());
 }
 
+TEST(Summary, KeepsVersionsOfAProtocolApart) {
+    // Truth: closed form: one participant with one attempt (1.0 s) under each of two versions.
+    const fake::TempFolder folder;
+    protocol::StudyPlan later = fake::makePlan();
+    later.version = "1.1";
+    later.source_text += "# changed\n";
+    {
+        auto store = fake::openStore(folder / "s.db");
+        require(fake::writeAttempt(*fake::beginSession(*store, "S001", 1), 0, 5));
+        require(fake::writeAttempt(*fake::beginSession(*store, "S002", 1, false, later), 0, 5));
+    }
+    const std::string text = summaryOf(folder / "s.db");
+    const auto first = text.find("fake 1.0, simulated participants: 1."),
+               second = text.find("fake 1.1, simulated participants: 1.");
+    ASSERT_NE(first, std::string::npos) << text;
+    ASSERT_NE(second, std::string::npos) << text;
+    EXPECT_LT(text.find("penalty/0.1       1"), second) << text;
+    EXPECT_EQ(text.find("penalty/0.1       2"), std::string::npos) << text;
+}
+
 TEST(Summary, AnEmptyStudyHasNoTable) {
     // Truth: invariant
     const fake::TempFolder folder;

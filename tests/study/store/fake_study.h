@@ -148,8 +148,8 @@ inline std::unique_ptr<store::Store> openStore(const std::string& path, const st
 }
 
 inline std::unique_ptr<store::SessionWriter> beginSession(store::Store& store, const std::string& participant,
-                                                          std::int64_t trials, bool timing_measured = false) {
-    const protocol::StudyPlan plan = makePlan();
+                                                          std::int64_t trials, bool timing_measured = false,
+                                                          const protocol::StudyPlan& plan = makePlan()) {
     store::SessionStart start;
     start.protocol_sha256 = require(store.importProtocol(plan));
     require(store.enrol(participant, protocol::ParticipantKind::Simulated, store::UtcClock::virtualEpoch().at(0)));
