@@ -94,6 +94,14 @@ std::string keysOf(const store::AccuracyRow& row) {
                        row.spacing_mm, row.mode, row.budget_nodes);
 }
 
+constexpr std::string_view kHead = "  {:>12} {:>10} {:>10} {:>9} {:>9} {:>9}  {}\n";
+
+std::string errorsOf(const store::AccuracyRow& row) {
+    const auto text = [](const std::optional<double>& value) { return value ? fmt::format("{:.3g}", *value) : "-"; };
+    return fmt::format(" {:>9.3g} {:>9} {:>9} {:>9}  ", row.error_p99_um, text(row.force_error_p99_percent),
+                       text(row.direction_error_p99_deg), text(row.torque_error_p99_percent));
+}
+
 /// `budget`: one of the plan's, below `fastest` [s].
 Error unfitting(const protocol::StudyPlan& plan, double budget, double fastest) {
     const auto asking =
@@ -201,23 +209,21 @@ Result<protocol::StudyPlan> withKeptAccuracy(const protocol::StudyPlan& plan, co
     return complete;
 }
 
-std::string describeAccuracy(std::span<const store::AccuracyRow> rows) {
-    constexpr std::string_view kHead = "  {:>12} {:>10} {:>10} {:>9} {:>9} {:>9}  {}\n";
-    constexpr std::string_view kErrors = " {:>9.3g} {:>9} {:>9} {:>9}  ";
-    const auto errorsOf = [&](const store::AccuracyRow& row) {
-        const auto text = [](const std::optional<double>& value) {
-            return value ? fmt::format("{:.3g}", *value) : "-";
-        };
-        return fmt::format(kErrors, row.error_p99_um, text(row.force_error_p99_percent),
-                           text(row.direction_error_p99_deg), text(row.torque_error_p99_percent));
-    };
+std::string describePick(std::span<const store::AccuracyRow> rows) {
     std::string text =
         fmt::format(kHead, "budget [µs]", "p99 [µs]", "depth [µm]", "force [%]", "dir. [°]", "torque [%]", "picked");
     for (const store::AccuracyRow& row : rows)
         for (const double budget : row.picked_for_us)
             text += fmt::format("  {:>11g} {:>9.3g}{}{}\n", budget, row.time_p99_us, errorsOf(row), keysOf(row));
     text += fmt::format(
-        "  {} settings measured; times and errors are 99th percentiles over poses along contact paths\n", rows.size());
+        "  {} settings measured; picked: the least depth error within the budget; times and errors are 99th "
+        "percentiles over poses along contact paths\n",
+        rows.size());
+    return text;
+}
+
+std::string describeAccuracy(std::span<const store::AccuracyRow> rows) {
+    std::string text = describePick(rows);
     text +=
         fmt::format(kHead, "median [µs]", "p99 [µs]", "depth [µm]", "force [%]", "dir. [°]", "torque [%]", "candidate");
     for (const store::AccuracyRow& row : rows)

@@ -36,8 +36,11 @@ Result<std::vector<std::string>> tooSlowHere(const protocol::StudyPlan& plan, st
 Result<protocol::StudyPlan> withKeptAccuracy(const protocol::StudyPlan& plan, const std::string& protocol_sha256,
                                              store::Store& store);
 
-/// What was picked, in words, with what was measured, and the keys that would fix it in a protocol. `rows`: of one
+/// What was picked for each budget and why, in words, the keys that would fix it in a protocol. `rows`: of one
 /// protocol.
+std::string describePick(std::span<const store::AccuracyRow> rows);
+
+/// What was picked, in words, with everything that was measured. `rows`: of one protocol.
 std::string describeAccuracy(std::span<const store::AccuracyRow> rows);
 
 }  // namespace passung::app

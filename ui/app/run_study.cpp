@@ -154,8 +154,10 @@ Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& optio
     }
     auto sha256 = opened.store->importProtocol(plan);
     if (!sha256) return sha256.errors();
-    if (!measured.empty())
+    if (!measured.empty()) {
         if (const auto done = opened.store->keepAccuracy(measured); !done) return done.errors();
+        if (listener.calibrated) listener.calibrated(describePick(measured));
+    }
     const auto kept = opened.store->accuracy(*sha256);
     if (!kept) return kept.errors();
     if (options.clock == Clock::RealTime && listener.warned && !kept->empty()) {

@@ -26,6 +26,7 @@ enum class RunEnd { Complete, Interrupted };
 struct RunListener {
     std::function<void(const store::RecoveryReport&)> recovered;
     std::function<void(const std::string& what, double share)> calibrating;  // for contact.accuracy = "auto"
+    std::function<void(const std::string&)> calibrated;                      // what was picked and why, in words
     std::function<void(const std::string&)> warned;
     std::function<void(const std::string& participant, int number, int of)> session;
     std::function<void(const session::TrialProgress&)> trial;

@@ -43,6 +43,9 @@ void printDevices(const std::string& device) {
                "(undamped)");
     for (const DeviceDescription& d : app::knownDevices())
         if (device.empty() || d.name == device) printDevice(d);
+    fmt::print(
+        "  none: no stiffness has it at that damping; a \"max\" above the border was found on the device, where dry "
+        "friction and the hand damp what the model leaves free\n");
     fmt::print("  real        none: this version has drivers for simulated devices only\n");
 }
 

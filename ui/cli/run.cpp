@@ -68,6 +68,11 @@ int run(const RunOptions& options) {
     app::RunListener listener;
     listener.recovered = [&](const store::RecoveryReport& report) { tellRecovery(what.database, report); };
     listener.calibrating = [&](const std::string& step, double share) { progress.show(progressBar(step, share)); };
+    listener.calibrated = [&](const std::string& picked) {
+        progress.show("");
+        fmt::print("accuracy = \"auto\": measured on this machine, kept in {} for the whole study\n{}\n", what.database,
+                   picked);
+    };
     listener.warned = [&](const std::string& warning) { warn(options.protocol, {warning}); };
     listener.session = [&](const std::string& who, int number, int of) {
         code = who;
