@@ -51,9 +51,15 @@ inline double distanceToTriangle(const model::TriangleMesh& mesh, std::size_t i,
     return distanceToTriangle(p, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
 }
 
+/// Triangles whose box is farther away than the best so far are left out.
 inline double distanceToMesh(const model::TriangleMesh& mesh, const Vec3& p) {
-    double best = 1e300;
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) best = std::min(best, distanceToTriangle(mesh, i, p));
+    double best = 1e150;
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const auto& t = mesh.triangles[i];
+        const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+        const Vec3 outside = (a.cwiseMin(b).cwiseMin(c) - p).cwiseMax(p - a.cwiseMax(b).cwiseMax(c)).cwiseMax(0.0);
+        if (outside.squaredNorm() <= best * best) best = std::min(best, distanceToTriangle(mesh, i, p));
+    }
     return best;
 }
 
