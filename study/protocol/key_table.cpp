@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/model/scene_spec.h"
+#include "study/protocol/questionnaire_keys.h"
 
 namespace passung::protocol {
 namespace {
@@ -30,7 +31,7 @@ constexpr Range aboveUpTo(double low, double high) { return {.low = low, .high =
 using enum KeyType;
 
 // clang-format off
-constexpr std::array kKeys{
+constexpr std::array kStudyKeys{
     Key{"protocol", "passung", Integer, from(1, 1), "", "!", "Version of this file format."},
     Key{"protocol", "study", Table, kAny, "", "!", "What the study is called and how many take part."},
     Key{"protocol", "scene", Table, kAny, "", "!", "Parts, contact, device and registration."},
@@ -38,6 +39,7 @@ constexpr std::array kKeys{
     Key{"protocol", "task", Table, kAny, "", "!", "What a trial asks for and how it is judged."},
     Key{"protocol", "feedback", Table, kAny, "", "(its defaults)", "What the participant is given to feel and see."},
     Key{"protocol", "block", Tables, kAny, "", "!", "Blocks of trials in the order in which they run."},
+    Key{"protocol", "questionnaire", Tables, kAny, "", "(none)", "Questionnaires and when they are asked."},
     Key{"protocol", "loop", Table, kAny, "", "(its defaults)", "How well the haptic loop must keep its rate."},
     Key{"protocol", "measures", Texts, kAny, "", "(all)", "Names of the measures to store for every trial."},
 
@@ -203,6 +205,14 @@ constexpr std::array kKeys{
     Key{"loop", "max_missed_share", Number, from(0, 1), "", "0.01", "An attempt that missed a larger part of the cycles between start and end of its trial is not valid. In virtual time no cycle is missed."},
 };
 
+template <std::size_t n, std::size_t m>
+constexpr std::array<Key, n + m> joined(const std::array<Key, n>& first, const std::array<Key, m>& second) {
+    return [&]<std::size_t... i, std::size_t... j>(std::index_sequence<i...>, std::index_sequence<j...>) {
+        return std::array<Key, n + m>{first[i]..., second[j]...};
+    }(std::make_index_sequence<n>{}, std::make_index_sequence<m>{});
+}
+constexpr auto kKeys = joined(kStudyKeys, kQuestionnaireKeys);
+
 /// Tables in the order of the documentation: id, heading, sentence.
 struct TableInfo {
     std::string_view id, heading, doc;
@@ -241,6 +251,16 @@ constexpr std::array kTables{
     TableInfo{"feedback", "`[feedback]`", ""},
     TableInfo{"block", "`[[block]]`", ""},
     TableInfo{"loop", "`[loop]`", ""},
+    TableInfo{"questionnaire", "`[[questionnaire]]`", "In a study: what is asked, and when. Where several are due at one moment they come as listed."},
+    TableInfo{"questionnaire_file", "Top level of a questionnaire file", "See `protocols/questionnaires/`. A text for each language is a table `{ en = \"...\", de = \"...\" }`; with one language a\nstring will do."},
+    TableInfo{"questionnaire_response", "`[[response]]` of a questionnaire", ""},
+    TableInfo{"questionnaire_option", "`options` of a response", ""},
+    TableInfo{"questionnaire_item", "`[[item]]` of a questionnaire", ""},
+    TableInfo{"questionnaire_scale", "`[[scale]]` of a questionnaire", "`factor` times the mean or sum of answer + `shift`; a reversed item's answer is aligned first. `pair_weighted`: the sum\nof weight times answer by the number of pairs; an item's weight is how many of the pairs it won."},
+    TableInfo{"questionnaire_class", "`classes` of a scale", ""},
+    TableInfo{"questionnaire_golden", "`[[golden]]` of a questionnaire", "Computed whenever the file is read; a score that differs is an error."},
+    TableInfo{"questionnaire_texts", "Top level of a file with a lab's texts", ""},
+    TableInfo{"questionnaire_text", "`[[item]]` of a file with a lab's texts", ""},
 };
 // clang-format on
 
@@ -367,7 +387,7 @@ std::optional<std::string_view> closestWord(std::string_view word, std::span<con
 
 std::string keyTable(std::span<const DeviceDescription> devices, std::span<const KnownWord> measures) {
     std::string text =
-        "# Keys of study, scene and part files\n\n"
+        "# Keys of study, scene, part and questionnaire files\n\n"
         "Printed by the program from the table that its reader uses. Files are TOML; a key that is not listed is an\n"
         "error. Lengths are in the file's `unit`; keys with a unit in their name are in that unit.\n";
     for (const auto& table : kTables) {

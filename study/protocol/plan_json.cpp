@@ -156,6 +156,19 @@ std::string blockJson(const Block& block) {
         .str();
 }
 
+std::string questionnaireJson(const PlannedQuestionnaire& planned) {
+    return JsonObject()
+        .text("questionnaire", planned.definition.key)
+        .text("version", planned.definition.version)
+        .text("file", planned.file)
+        .text("texts", planned.texts)
+        .text("language", planned.language)
+        .text("moment", momentName(planned.moment))
+        .text("block", planned.block)
+        .json("source", planned.source_json.empty() ? "null" : planned.source_json)
+        .str();
+}
+
 template <class T, class Function>
 std::string listOf(const std::vector<T>& items, Function json) {
     std::vector<std::string> texts;
@@ -204,6 +217,7 @@ std::string expandedJson(const StudyPlan& plan) {
         .json("factors", listOf(plan.factors, factorJson))
         .json("conditions", listOf(plan.conditions, conditionJson))
         .json("blocks", listOf(plan.blocks, blockJson))
+        .json("questionnaires", listOf(plan.questionnaires, questionnaireJson))
         .json("loop", JsonObject().number("max_missed_share", plan.max_missed_share).str())
         .json("stable_stiffness", listOf(plan.stable_stiffness, stableJson))
         .json("measures", listOf(plan.measures, [](const std::string& name) { return jsonText(name); }))

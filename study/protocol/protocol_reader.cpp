@@ -10,6 +10,7 @@
 
 #include "study/protocol/factors.h"
 #include "study/protocol/plan_json.h"
+#include "study/protocol/planned_questionnaires.h"
 #include "study/protocol/scene_node.h"
 #include "study/protocol/start_pose.h"
 #include "study/protocol/task_reader.h"
@@ -46,6 +47,7 @@ public:
         readStudy();
         readConditions();
         readBlocks();
+        plan_.questionnaires = readQuestionnaires(root_.items("questionnaire"), plan_.blocks, errors_);
         readLoop();
         readMeasures();
         tidy(errors_);
@@ -309,7 +311,10 @@ Result<StudyPlan> readProtocol(const std::string& path, std::span<const DeviceDe
                                std::span<const std::string> known_measures) {
     const auto text = readFile(path);
     if (!text) return text.errors();
-    return readProtocolText(*text, path, devices, known_measures);
+    auto plan = readProtocolText(*text, path, devices, known_measures);
+    if (!plan || plan->questionnaires.empty()) return plan;
+    if (const auto done = loadQuestionnaires(*plan, readFile); !done) return done.errors();
+    return plan;
 }
 
 Result<StudyPlan> readProtocolText(const std::string& text, const std::string& path,

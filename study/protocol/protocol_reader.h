@@ -10,11 +10,13 @@
 namespace passung::protocol {
 
 /// Reads a study file: checks everything and expands it to conditions that are ready to run. `devices` are the known
-/// presets, `known_measures` the names that `measures` may list. All problems are collected, each with its place.
+/// presets, `known_measures` the names that `measures` may list. All problems are collected, each with its place; those
+/// of the questionnaires' files once the study itself is sound.
 Result<StudyPlan> readProtocol(const std::string& path, std::span<const DeviceDescription> devices,
                                std::span<const std::string> known_measures);
 
-/// The same for a text that stands for the file `path` (names in messages and the base of other paths).
+/// The same for a text that stands for the file `path` (names in messages and the base of other paths). The files of
+/// questionnaires are not opened: see loadQuestionnaires().
 Result<StudyPlan> readProtocolText(const std::string& text, const std::string& path,
                                    std::span<const DeviceDescription> devices,
                                    std::span<const std::string> known_measures);

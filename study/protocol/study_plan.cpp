@@ -16,4 +16,22 @@ const char* blockOrderName(BlockOrder order) {
     return "";
 }
 
+const char* momentName(Moment moment) {
+    switch (moment) {
+        case Moment::SessionStart:
+            return "session_start";
+        case Moment::BeforeBlock:
+            return "before_block";
+        case Moment::AfterBlock:
+            return "after_block";
+        case Moment::AfterTrial:
+            return "after_trial";
+        case Moment::AfterCondition:
+            return "after_condition";
+        case Moment::SessionEnd:
+            return "session_end";
+    }
+    return "";
+}
+
 }  // namespace passung::protocol

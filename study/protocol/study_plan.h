@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/model/scene_spec.h"
+#include "study/questionnaire/definition.h"
 
 namespace passung::protocol {
 
@@ -68,6 +69,20 @@ struct Block {
     int trials = 0;  // 0 = every condition of the pass; else the first so many (practice)
 };
 
+enum class Moment { SessionStart, BeforeBlock, AfterBlock, AfterTrial, AfterCondition, SessionEnd };
+const char* momentName(Moment moment);  // "session_start", …: as stored
+
+/// A questionnaire and when it is asked.
+struct PlannedQuestionnaire {
+    std::string file, texts;  // as the protocol writes them; texts: the lab's, for a slot
+    std::string language;
+    Moment moment = Moment::SessionEnd;
+    std::string block;                     // whose moment it is; empty: every main block's
+    int line = 0, column = 0;              // of the table in the protocol
+    questionnaire::Definition definition;  // without items until loadQuestionnaires()
+    std::string source_json;               // {"definition": text of `file`, "texts": text of `texts`}, byte for byte
+};
+
 /// What a device displays stably, as the stiffnesses of a protocol were resolved against it.
 struct StableStiffness {
     std::string device;
@@ -92,6 +107,7 @@ struct StudyPlan {
     std::vector<Factor> factors;
     std::vector<Condition> conditions;  // the first factor varies slowest
     std::vector<Block> blocks;
+    std::vector<PlannedQuestionnaire> questionnaires;
     double max_missed_share = 0.01;                 // of a trial's cycles: an attempt that missed more is not valid
     std::vector<std::string> measures;              // names, all known to study/measures
     std::vector<MeshSource> meshes;                 // each once; their content is no part of the text

@@ -1,0 +1,143 @@
+#include "study/protocol/planned_questionnaires.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+
+#include "study/protocol/json.h"
+#include "study/protocol/plan_json.h"
+#include "study/protocol/questionnaire_reader.h"
+#include "study/protocol/questionnaire_texts.h"
+#include "study/protocol/table_reader.h"
+
+namespace passung::protocol {
+namespace {
+
+constexpr Moment kMoments[]{Moment::SessionStart, Moment::BeforeBlock,    Moment::AfterBlock,
+                            Moment::AfterTrial,   Moment::AfterCondition, Moment::SessionEnd};
+
+bool isOfSession(Moment moment) { return moment == Moment::SessionStart || moment == Moment::SessionEnd; }
+
+void checkBlock(const TableReader& read, const PlannedQuestionnaire& planned, const std::vector<Block>& blocks) {
+    if (!read.has("block")) return;
+    if (isOfSession(planned.moment)) return read.fail("block", "has no meaning at the start or end of a session");
+    const auto named = [&](const Block& block) { return block.name == planned.block; };
+    if (std::none_of(blocks.begin(), blocks.end(), named)) read.fail("block", "no block has this name");
+}
+
+/// Loads one questionnaire; errors name the study's table where they are about it.
+class Loader {
+public:
+    Loader(const StudyPlan& plan, const std::function<Result<std::string>(const std::string&)>& read, Errors& errors)
+        : plan_(plan), read_(read), errors_(errors) {}
+
+    void load(PlannedQuestionnaire& planned) {
+        const auto text = open(planned, "file", planned.file);
+        if (!text) return;
+        const std::string path = pathOf(planned.file);
+        // A slot's language is that of the lab's texts.
+        auto definition = readQuestionnaire(*text, path, "");
+        if (!definition) return add(definition.errors());
+        const bool slot = definition->slot;
+        if (slot && planned.texts.empty())
+            return fail(planned, "texts", "", "required: " + definition->key + " is a slot for the lab's texts");
+        if (!slot && !planned.texts.empty())
+            return fail(planned, "texts", planned.texts, definition->key + " has texts of its own");
+        JsonObject source;
+        source.text("definition", *text);
+        if (slot) {
+            const auto texts = open(planned, "texts", planned.texts);
+            if (!texts) return;
+            definition = withTexts(*std::move(definition), *texts, pathOf(planned.texts));
+            source.text("texts", *texts);
+        } else {
+            definition = readQuestionnaire(*text, path, planned.language);
+        }
+        if (!definition) return add(definition.errors());
+        if (definition->language != planned.language)
+            return fail(planned, "language", planned.language,
+                        fmt::format("there are no texts of {} in this language", definition->key));
+        planned.definition = *std::move(definition);
+        planned.source_json = source.str();
+    }
+
+private:
+    std::string pathOf(const std::string& file) const {
+        return (std::filesystem::path(plan_.source_path).parent_path() / file).string();
+    }
+
+    Result<std::string> open(const PlannedQuestionnaire& planned, std::string_view key, const std::string& file) {
+        auto text = read_(pathOf(file));
+        if (!text) fail(planned, key, file, text.errors().front().message);
+        return text;
+    }
+
+    void add(const Errors& errors) { errors_.insert(errors_.end(), errors.begin(), errors.end()); }
+
+    void fail(const PlannedQuestionnaire& planned, std::string_view key, const std::string& value,
+              std::string message) {
+        errors_.push_back(errorAt({plan_.source_path, planned.line, planned.column},
+                                  fmt::format("questionnaire.{}", key),
+                                  value.empty() ? "" : fmt::format("\"{}\"", value), std::move(message)));
+    }
+
+    const StudyPlan& plan_;
+    const std::function<Result<std::string>(const std::string&)>& read_;
+    Errors& errors_;
+};
+
+/// The answers to one moment must be told apart by the questionnaire's name.
+void checkDistinct(const StudyPlan& plan, const std::vector<PlannedQuestionnaire>& all, Errors& errors) {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const auto twin = [&](const PlannedQuestionnaire& other) {
+            return other.definition.key == all[i].definition.key && other.moment == all[i].moment &&
+                   other.block == all[i].block;
+        };
+        const auto end = all.begin() + static_cast<std::ptrdiff_t>(i);
+        if (all[i].definition.key.empty() || std::none_of(all.begin(), end, twin)) continue;
+        errors.push_back(errorAt({plan.source_path, all[i].line, all[i].column}, "questionnaire.file",
+                                 fmt::format("\"{}\"", all[i].file),
+                                 fmt::format("{} is asked twice at this moment", all[i].definition.key)));
+    }
+}
+
+}  // namespace
+
+std::vector<PlannedQuestionnaire> readQuestionnaires(const std::vector<Node>& tables, const std::vector<Block>& blocks,
+                                                     Errors& errors) {
+    std::vector<PlannedQuestionnaire> all;
+    for (const Node& table : tables) {
+        const TableReader read(table, {"questionnaire"}, "questionnaire", errors);
+        PlannedQuestionnaire planned;
+        planned.file = read.text("file");
+        planned.texts = read.text("texts");
+        planned.language = read.text("language");
+        planned.block = read.text("block");
+        planned.line = table.place.line;
+        planned.column = table.place.column;
+        const auto moment = read.text("moment");
+        const auto named = [&](Moment each) { return moment == momentName(each); };
+        const auto found = std::find_if(std::begin(kMoments), std::end(kMoments), named);
+        if (found != std::end(kMoments)) planned.moment = *found;
+        checkBlock(read, planned, blocks);
+        all.push_back(std::move(planned));
+    }
+    return all;
+}
+
+Result<Done> loadQuestionnaires(StudyPlan& plan, const std::function<Result<std::string>(const std::string&)>& read) {
+    Errors errors;
+    std::vector<PlannedQuestionnaire> all = plan.questionnaires;
+    Loader loader(plan, read, errors);
+    for (PlannedQuestionnaire& planned : all) loader.load(planned);
+    checkDistinct(plan, all, errors);
+    tidy(errors);
+    if (!errors.empty()) return errors;
+    plan.questionnaires = std::move(all);
+    plan.expanded_json = expandedJson(plan);
+    return Done{};
+}
+
+}  // namespace passung::protocol

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "study/protocol/document.h"
+#include "study/protocol/study_plan.h"
+
+namespace passung::protocol {
+
+/// Reads a study's [[questionnaire]] tables; their files are not opened.
+std::vector<PlannedQuestionnaire> readQuestionnaires(const std::vector<Node>& tables, const std::vector<Block>& blocks,
+                                                     Errors& errors);
+
+/// Reads the files that the plan's questionnaires name, relative to the plan's own, and checks them; the plan's
+/// expanded JSON then holds their texts. `read` gives a file's bytes by its path. A plan with an error in it stays as
+/// it was.
+Result<Done> loadQuestionnaires(StudyPlan& plan, const std::function<Result<std::string>(const std::string&)>& read);
+
+}  // namespace passung::protocol

@@ -1,0 +1,99 @@
+#include "study/protocol/planned_questionnaires.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+namespace passung::protocol {
+namespace {
+
+StudyPlan planOf(const std::string& tables, Errors& errors) {
+    StudyPlan plan;
+    plan.source_path = "studies/study.toml";
+    plan.blocks = {{"practice", Phase::Practice, 1, BlockOrder::Listed, 0},
+                   {"main", Phase::Main, 1, BlockOrder::Listed, 0}};
+    const auto document = parseDocument(tables, plan.source_path);
+    plan.questionnaires = readQuestionnaires(document->find("questionnaire")->items, plan.blocks, errors);
+    return plan;
+}
+
+/// Files by path, and which were read.
+struct Files {
+    std::map<std::string, std::string> text;
+    std::vector<std::string> read = {};
+    Result<std::string> operator()(const std::string& path) {
+        read.push_back(path);
+        if (text.count(path) == 0) return Error{"cannot be opened", path};
+        return text.at(path);
+    }
+};
+
+std::string shipped(const std::string& key) {
+    return *readFile(PASSUNG_SOURCE_DIR "/protocols/questionnaires/" + key + ".toml");
+}
+
+constexpr const char* kTlx = "[[questionnaire]]\nfile = \"q/tlx.toml\"\nmoment = \"after_block\"\nlanguage = \"de\"\n";
+
+TEST(PlannedQuestionnaires, FilesLieBesideTheStudyAndGoIntoItsExpandedText) {
+    // Truth: closed form
+    Errors errors;
+    StudyPlan plan = planOf(kTlx, errors);
+    EXPECT_TRUE(errors.empty());
+    Files files{{{"studies/q/tlx.toml", shipped("nasa_tlx_raw")}}};
+    ASSERT_TRUE(loadQuestionnaires(plan, std::ref(files)));
+    const PlannedQuestionnaire& planned = plan.questionnaires.front();
+    EXPECT_EQ(planned.moment, Moment::AfterBlock);
+    EXPECT_EQ(planned.definition.language, "de");
+    EXPECT_EQ(planned.definition.items.size(), 6u);
+    EXPECT_NE(plan.expanded_json.find(planned.source_json), std::string::npos);
+    EXPECT_NE(planned.source_json.find("Wie geistig anstrengend"), std::string::npos);
+}
+
+TEST(PlannedQuestionnaires, AFaultLeavesThePlanAsItWasAndNamesTheFile) {
+    // Truth: invariant: a golden vector of the file was changed.
+    Errors errors;
+    StudyPlan plan = planOf(kTlx, errors);
+    std::string wrong = shipped("nasa_tlx_raw");
+    wrong.replace(wrong.find("47.5"), 4, "47.6");
+    Files files{{{"studies/q/tlx.toml", wrong}}};
+    const auto done = loadQuestionnaires(plan, std::ref(files));
+    ASSERT_FALSE(done);
+    EXPECT_EQ(done.errors().front().file, "studies/q/tlx.toml");
+    EXPECT_EQ(done.errors().front().message, "scale workload gives 47.5, not 47.6");
+    EXPECT_TRUE(plan.questionnaires.front().definition.items.empty());
+    EXPECT_EQ(plan.expanded_json, "");
+}
+
+TEST(PlannedQuestionnaires, ASlotNeedsTextsInTheStudysLanguageAndNothingElseTakesTexts) {
+    // Truth: closed form; the words are a regression
+    std::string texts = "texts_for = \"ueq_s\"\nlanguage = \"de\"\nsource = \"made up\"\nlow = 1\nhigh = 7\n";
+    for (int i = 1; i <= 8; ++i) texts += "[[item]]\nid = \"i" + std::to_string(i) + "\"\ntext = \"Text\"\n";
+    Files files{{{"studies/u.toml", shipped("ueq_s")}, {"studies/t.toml", texts}, {"studies/n.toml", shipped("ssq")}}};
+    const auto faultOf = [&](const std::string& table) -> std::string {
+        Errors errors;
+        StudyPlan plan = planOf("[[questionnaire]]\nmoment = \"session_end\"\n" + table, errors);
+        const auto done = loadQuestionnaires(plan, std::ref(files));
+        return done ? "" : toString(done.errors().front());
+    };
+    EXPECT_EQ(faultOf("file = \"u.toml\"\ntexts = \"t.toml\"\nlanguage = \"de\"\n"), "");
+    EXPECT_EQ(
+        faultOf("file = \"u.toml\"\ntexts = \"t.toml\"\n"),
+        "studies/study.toml:1:1: error: questionnaire.language: \"en\": there are no texts of ueq_s in this language");
+    EXPECT_EQ(faultOf("file = \"n.toml\"\ntexts = \"t.toml\"\n"),
+              "studies/study.toml:1:1: error: questionnaire.texts: \"t.toml\": ssq has texts of its own");
+    EXPECT_EQ(faultOf("file = \"u.toml\"\ntexts = \"none.toml\"\n"),
+              "studies/study.toml:1:1: error: questionnaire.texts: \"none.toml\": cannot be opened");
+}
+
+TEST(PlannedQuestionnaires, ABlockHasNoMeaningAtTheEndsOfASession) {
+    // Truth: closed form; the words are a regression
+    Errors errors;
+    planOf("[[questionnaire]]\nfile = \"x\"\nmoment = \"session_end\"\nblock = \"main\"\n", errors);
+    ASSERT_EQ(errors.size(), 1u);
+    EXPECT_EQ(toString(errors.front()),
+              "studies/study.toml:4:9: error: questionnaire.block: \"main\": has no meaning at the start or end of a "
+              "session");
+}
+
+}  // namespace
+}  // namespace passung::protocol
