@@ -41,6 +41,7 @@ constexpr std::array kStudyKeys{
     Key{"protocol", "block", Tables, kAny, "", "!", "Blocks of trials in the order in which they run."},
     Key{"protocol", "questionnaire", Tables, kAny, "", "(none)", "Questionnaires and when they are asked."},
     Key{"protocol", "loop", Table, kAny, "", "(its defaults)", "How well the haptic loop must keep its rate."},
+    Key{"protocol", "consent", Tables, kAny, "", "(none)", "What people are asked to agree to before they take part."},
     Key{"protocol", "measures", Texts, kAny, "", "(all)", "Names of the measures to store for every trial."},
 
     Key{"study", "name", Name, kAny, "", "!", "Short name; part of every random stream, so renaming a study changes its orders."},
@@ -202,6 +203,10 @@ constexpr std::array kStudyKeys{
     Key{"block", "order", Choice, kAny, "williams|random|listed", "williams", "The participant's row of a Williams square, a new shuffle for every pass, or as listed."},
     Key{"block", "trials", Integer, atLeast(1), "", "(all)", "Only the first so many conditions of each pass."},
 
+    Key{"consent", "clause", Name, kAny, "", "!", "Unique; decisions are stored by it."},
+    Key{"consent", "required", Boolean, kAny, "", "true", "Who does not say yes to it cannot take part. Simulated participants are not asked."},
+    Key{"consent", "text", Table, kAny, "", "!", "What is asked, a text per language: `{ en = \"...\", de = \"...\" }`; every clause in the same languages. Until when data can be withdrawn belongs here."},
+
     Key{"loop", "max_missed_share", Number, from(0, 1), "", "0.01", "An attempt that missed a larger part of the cycles between start and end of its trial is not valid. In virtual time no cycle is missed."},
 };
 
@@ -250,6 +255,7 @@ constexpr std::array kTables{
     TableInfo{"task", "`[task]`", ""},
     TableInfo{"feedback", "`[feedback]`", ""},
     TableInfo{"block", "`[[block]]`", ""},
+    TableInfo{"consent", "`[[consent]]`", "Each decision is stored with the SHA-256 of the text that it answers: a changed text has to be asked anew."},
     TableInfo{"loop", "`[loop]`", ""},
     TableInfo{"questionnaire", "`[[questionnaire]]`", "In a study: what is asked, and when. Where several are due at one moment they come as listed."},
     TableInfo{"questionnaire_file", "Top level of a questionnaire file", "See `protocols/questionnaires/`. A text for each language is a table `{ en = \"...\", de = \"...\" }`; with one language a\nstring will do."},

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "study/protocol/consent_reader.h"
 #include "study/protocol/factors.h"
 #include "study/protocol/plan_json.h"
 #include "study/protocol/planned_questionnaires.h"
@@ -49,6 +50,7 @@ public:
         readBlocks();
         plan_.questionnaires = readQuestionnaires(root_.items("questionnaire"), plan_.blocks, errors_);
         readLoop();
+        plan_.consent = readConsent(root_, errors_);
         readMeasures();
         tidy(errors_);
         if (!errors_.empty()) return errors_;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/model/scene_spec.h"
@@ -91,6 +92,13 @@ struct StableStiffness {
     std::string origin;       // in words
 };
 
+/// Something that people are asked to agree to.
+struct ConsentClause {
+    std::string clause;  // unique name
+    bool required = true;
+    std::vector<std::pair<std::string, std::string>> texts;  // language, text; every clause in the same languages
+};
+
 /// A mesh file that a study names.
 struct MeshSource {
     std::string name;  // as the protocol writes it
@@ -111,6 +119,7 @@ struct StudyPlan {
     double max_missed_share = 0.01;                 // of a trial's cycles: an attempt that missed more is not valid
     std::vector<std::string> measures;              // names, all known to study/measures
     std::vector<MeshSource> meshes;                 // each once; their content is no part of the text
+    std::vector<ConsentClause> consent;             // in the order in which they are asked
     std::vector<StableStiffness> stable_stiffness;  // of each device that a condition names, by name
     std::string source_text;                        // the file, byte for byte
     std::string source_path;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -9,6 +10,12 @@ namespace passung::store {
 
 /// SHA-256 as 64 lower-case hex digits.
 std::string sha256Hex(std::string_view bytes);
+
+/// The same of a file's bytes; throws if it cannot be read.
+std::string sha256OfFile(const std::string& path);
+
+/// So many random bytes of the system's generator, as hex digits: for what nobody may guess, never for data.
+std::string randomHex(std::size_t bytes);
 
 /// CRC-32 as zlib computes it (polynomial 0xEDB88320, as in gzip and PNG).
 std::uint32_t crc32(std::span<const std::byte> bytes);

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "study/store/backup.h"
 #include "study/store/revisions.h"
 
 namespace passung::store {
@@ -9,6 +10,16 @@ namespace {
 
 Error fileError(const std::string& path, std::string message) {
     return Error{.message = std::move(message), .file = path, .key = {}, .value = {}};
+}
+
+/// Where a database is damaged and has a copy, its error says so.
+Errors withBackupNamed(const std::string& path, Errors errors) {
+    const std::string backup = backupPath(path);
+    std::error_code none;
+    for (Error& error : errors)
+        if (error.message.starts_with("the database is damaged") && std::filesystem::exists(backup, none))
+            error.message += "; its copy from the end of the last run is " + backup;
+    return errors;
 }
 
 constexpr const char* kForeign = "not a Passung database";
@@ -20,7 +31,7 @@ std::string newerText(const Database& database, const char* consequence) {
 
 void checkIntegrity(const Database& database) {
     const std::string verdict = database.text("PRAGMA quick_check(1)");
-    if (verdict != "ok") throw std::runtime_error("the database is damaged: " + verdict);
+    if (verdict != "ok") throw std::runtime_error("the database is damaged (" + verdict + ")");
 }
 
 /// Attempts without an end belong to a process that is gone: the lock says that no other one writes.
@@ -50,14 +61,24 @@ RecoveryReport markCrashed(const Database& database) {
     return report;
 }
 
+/// Texts of UTC sort as their times. Virtual time says nothing about the clock.
+std::string laterUtc(const Database& database, const std::string& now_utc) {
+    const std::string newest = database.text(
+        "SELECT max(t) FROM (SELECT max(started_utc, coalesce(ended_utc, '')) t FROM session WHERE epoch='wall' "
+        "UNION ALL SELECT t_utc FROM audit)");
+    return newest > now_utc ? newest : std::string();
+}
+
 /// Fills `opened` for a file whose schema this program may write.
 void prepareForWriting(const OpenOptions& options, SchemaState state, OpenedDatabase& opened) {
     const Database& database = *opened.database;
+    database.execute("PRAGMA busy_timeout=" + std::to_string(options.busy_timeout_ms));
     if (options.max_pages > 0) database.execute("PRAGMA max_page_count=" + std::to_string(options.max_pages));
     checkIntegrity(database);
     database.execute("PRAGMA journal_mode=WAL");
     if (state != SchemaState::Current) upgradeSchema(database, options.now_utc);
     opened.recovery = markCrashed(database);
+    opened.recovery.later_utc = laterUtc(database, options.now_utc);
     opened.outcome = state == SchemaState::Empty     ? OpenOutcome::Created
                      : state == SchemaState::Current ? OpenOutcome::Current
                                                      : OpenOutcome::Upgraded;
@@ -102,7 +123,7 @@ OpenedDatabase openForWriting(const std::string& path, const OpenOptions& option
     });
     if (!done) {
         opened.outcome = OpenOutcome::Failed;
-        opened.errors = done.errors();
+        opened.errors = withBackupNamed(path, done.errors());
     }
     if (!opened.errors.empty()) opened.database.reset();
     if (!opened.database && !existed) {
@@ -114,7 +135,7 @@ OpenedDatabase openForWriting(const std::string& path, const OpenOptions& option
 
 Result<std::unique_ptr<Database>> openForReading(const std::string& path) {
     if (!std::filesystem::exists(path)) return fileError(path, "no such file");
-    return guarded(path, [&] {
+    auto opened = guarded(path, [&] {
         // A connection that may write tidies SQLite's side files away when it closes; query_only keeps it from writing.
         auto database = std::make_unique<Database>(path, OpenMode::ReadWrite);
         database->execute("PRAGMA query_only=ON");
@@ -133,6 +154,8 @@ Result<std::unique_ptr<Database>> openForReading(const std::string& path) {
         checkIntegrity(*database);
         return database;
     });
+    if (!opened) return withBackupNamed(path, opened.errors());
+    return opened;
 }
 
 }  // namespace passung::store

@@ -296,6 +296,22 @@ CREATE TABLE stable_stiffness(
     PRIMARY KEY(protocol_sha256, device)) STRICT, WITHOUT ROWID;
 )sql";
 
+constexpr const char* kRevision5 = R"sql(
+-- what people are asked to agree to, by protocol
+CREATE TABLE consent_clause(
+    protocol_sha256 TEXT NOT NULL REFERENCES protocol_version,
+    clause TEXT NOT NULL,
+    language TEXT NOT NULL,
+    text TEXT NOT NULL,
+    text_sha256 TEXT NOT NULL,
+    required INTEGER NOT NULL CHECK(required IN(0,1)),
+    position INTEGER NOT NULL,
+    PRIMARY KEY(protocol_sha256, clause, language)) STRICT, WITHOUT ROWID;
+-- The chain runs over this hash, so that it still holds when erasing a participant takes a detail away.
+ALTER TABLE audit ADD COLUMN detail_sha256 TEXT NOT NULL DEFAULT '';
+CREATE INDEX consent_of_participant ON consent(participant_id);
+)sql";
+
 constexpr std::array kRevisions = {
     Revision{1, "Protocols, participants, sessions, trials, samples, timing and questionnaires", kRevision1, 1},
     // A reader that does not know what was picked would replay another scene.
@@ -303,6 +319,7 @@ constexpr std::array kRevisions = {
     Revision{3, "The errors of force and torque in that calibration", kRevision3, 2},
     // As for the picks; and chunks of samples have a column more.
     Revision{4, "Stable stiffness of a protocol's devices", kRevision4, 4},
+    Revision{5, "Clauses of consent, and an audit whose details can be taken away", kRevision5, 4},
 };
 
 bool isEmpty(const Database& database) { return database.integer("SELECT count(*) FROM sqlite_master") == 0; }
@@ -329,16 +346,16 @@ SchemaState inspectSchema(const Database& database) {
 
 void upgradeSchema(const Database& database, const std::string& applied_utc) {
     const int found = isEmpty(database) ? 0 : fileSchemaNumber(database);
+    Transaction transaction(database);
+    database.execute("PRAGMA application_id=" + std::to_string(kApplicationId));
     for (const Revision& revision : kRevisions) {
         if (revision.number <= found) continue;
-        Transaction transaction(database);
-        database.execute("PRAGMA application_id=" + std::to_string(kApplicationId));
         database.execute(revision.sql);
         database.prepare("INSERT INTO schema_revision VALUES(?, ?, ?, ?)")
             .bind(revision.number, revision.sentence, revision.oldest_reader, applied_utc)
             .run();
-        transaction.commit();
     }
+    transaction.commit();
 }
 
 }  // namespace passung::store

@@ -38,7 +38,7 @@ SchemaState inspectSchema(const Database& database);
 /// The number of the newest revision in the file; 0 if none.
 int fileSchemaNumber(const Database& database);
 
-/// Brings a file up to the current schema, one transaction per revision. @pre Empty or Older
+/// Brings a file up to the current schema in one transaction: all of it or nothing. @pre Empty or Older
 void upgradeSchema(const Database& database, const std::string& applied_utc);
 
 }  // namespace passung::store

@@ -90,6 +90,34 @@ struct ParticipantRow {
     std::int64_t sessions = 0;
 };
 
+/// A text that people are asked to agree to.
+struct ConsentClauseRow {
+    std::string protocol_sha256;
+    std::string protocol_version;
+    std::string clause;
+    std::string language;
+    std::string text;
+    std::string text_sha256;
+    bool required = true;
+};
+
+/// What somebody last decided on one text.
+struct ConsentRow {
+    std::string participant_id;
+    std::string clause;
+    std::string language;
+    std::string text_sha256;
+    std::string decision;  // "yes", "no", "withdrawn"
+    std::string decided_utc;
+};
+
+/// What a walk along the audit's chain found.
+struct AuditReport {
+    std::int64_t rows = 0;
+    std::int64_t erased = 0;          // rows whose detail an erasure took away
+    std::vector<std::string> faults;  // sentences; empty: the chain is whole
+};
+
 struct SessionRow {
     std::string session_id;
     std::string participant_id;

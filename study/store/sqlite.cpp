@@ -132,6 +132,15 @@ std::string Database::text(std::string_view sql) const {
     return statement.step() ? statement.text(0) : std::string();
 }
 
+void Database::copyTo(const std::string& path) const {
+    const Database copy(path, OpenMode::Create);
+    sqlite3_backup* backup = sqlite3_backup_init(copy.connection_, "main", connection_, "main");
+    if (backup == nullptr) fail(copy.connection_, sqlite3_errcode(copy.connection_));
+    const int result = sqlite3_backup_step(backup, -1);
+    sqlite3_backup_finish(backup);
+    if (result != SQLITE_DONE) throw SqliteError(sqlite3_errstr(result), result);
+}
+
 std::int64_t Database::lastRowId() const { return sqlite3_last_insert_rowid(connection_); }
 std::int64_t Database::changes() const { return sqlite3_changes64(connection_); }
 
@@ -172,6 +181,9 @@ Error sqliteError(const std::string& path, const SqliteError& error) {
             break;
         case SQLITE_CANTOPEN:
             message = "cannot be opened (" + message + ")";
+            break;
+        case SQLITE_IOERR:
+            message = "the disk refuses it (" + message + ")";
             break;
         case SQLITE_READONLY:
             message = "cannot be written (" + message + ")";

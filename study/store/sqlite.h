@@ -92,6 +92,8 @@ public:
     void execute(const std::string& sql) const;
     std::int64_t integer(std::string_view sql) const;  // first column of the first row
     std::string text(std::string_view sql) const;
+    /// The whole database as it is now into a new file, on the disk when this returns.
+    void copyTo(const std::string& path) const;
     std::int64_t lastRowId() const;
     std::int64_t changes() const;  // rows that the last statement changed
 

@@ -7,8 +7,13 @@
 #include "study/protocol/document.h"
 #include "study/protocol/json.h"
 #include "study/store/accuracy_rows.h"
+#include "study/store/admission.h"
+#include "study/store/audit.h"
+#include "study/store/backup.h"
+#include "study/store/consent_rows.h"
 #include "study/store/digest.h"
 #include "study/store/open_database.h"
+#include "study/store/participant_rows.h"
 #include "study/store/process_lock.h"
 #include "study/store/revisions.h"
 #include "study/store/session_json.h"
@@ -186,6 +191,7 @@ std::string importPlan(const Database& database, const protocol::StudyPlan& plan
     Statement insert_stable = database.prepare("INSERT INTO stable_stiffness VALUES(?, ?, ?, ?, ?)");
     for (const protocol::StableStiffness& stable : plan.stable_stiffness)
         insert_stable.bind(sha256, stable.device, stable.linear, stable.rotational, stable.origin).run();
+    insertConsentClauses(database, sha256, plan.consent);
     const std::int64_t sequences = sequenceCount(plan);
     for (std::int64_t first = 0; first < plan.participants; first += sequences) {
         insertSlots(database, sha256, protocol::participantKindName(protocol::ParticipantKind::Real), first / sequences,
@@ -226,6 +232,7 @@ Slot takeSlot(const Database& database, const std::string& sha256, const std::st
     const std::int64_t sequences = sequencesOf(database, sha256);
     const std::string kind = kindOf(database, participant);
     refuseComplete(database, sha256, participant);
+    requireAdmission(database, sha256, participant);
     Statement own =
         database.prepare("SELECT protocol_sha256, sequence_index, replicate FROM design_slot WHERE participant_id=?");
     if (own.bind(participant).step()) {
@@ -249,30 +256,6 @@ Slot takeSlot(const Database& database, const std::string& sha256, const std::st
     free.reset();
     transaction.commit();
     return slot;
-}
-
-bool insertParticipant(const Database& database, const std::string& code, protocol::ParticipantKind wanted,
-                       const std::string& created_utc) {
-    const char* kind = protocol::participantKindName(wanted);
-    if (!protocol::isParticipantCode(code)) {
-        throw std::runtime_error("participant code '" + code +
-                                 "' is not a capital letter, then capital letters, digits, '_' or '-', then a digit, "
-                                 "such as " +
-                                 protocol::participantCode(wanted, 1));
-    }
-    if (code.front() != protocol::codeLetter(wanted)) {
-        throw std::runtime_error("participant code '" + code + "': codes of " + kind + " participants begin with " +
-                                 protocol::codeLetter(wanted) + ", such as " + protocol::participantCode(wanted, 1));
-    }
-    Transaction transaction(database);
-    Statement find = database.prepare("SELECT kind FROM participant WHERE participant_id=?");
-    if (find.bind(code).step()) {
-        if (find.text(0) == kind) return false;
-        throw std::runtime_error("participant " + code + " is " + find.text(0) + ", not " + kind);
-    }
-    database.prepare("INSERT INTO participant VALUES(?, ?, 'enrolled', NULL, ?)").bind(code, kind, created_utc).run();
-    transaction.commit();
-    return true;
 }
 
 void insertTrialPlan(const Database& database, const SessionStart& start, std::span<const design::PlannedTrial> plan) {
@@ -310,6 +293,7 @@ SessionWriter::Rows insertSession(const Database& database, const SessionStart& 
     Transaction transaction(database);
     requireSeed(database, start.protocol_sha256, start.seed);
     refuseComplete(database, start.protocol_sha256, start.participant);
+    requireAdmission(database, start.protocol_sha256, start.participant);
     database.prepare("INSERT INTO session VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, NULL, NULL, ?)")
         .bind(start.session_id, start.participant, start.protocol_sha256, start.ordinal, start.station,
               orNull(start.experimenter), start.language, start.seed, start.random_name, started_utc,
@@ -394,14 +378,19 @@ Result<Done> Store::keepAccuracy(const std::vector<AccuracyRow>& rows) {
 }
 
 Result<bool> Store::enrol(const std::string& code, protocol::ParticipantKind kind, const std::string& created_utc) {
-    return thread_->call(
-        [&](const Database& database) { return insertParticipant(database, code, kind, created_utc); });
+    return thread_->call([&](const Database& database) {
+        Transaction transaction(database);
+        const bool fresh = insertParticipant(database, code, kind, created_utc);
+        transaction.commit();
+        return fresh;
+    });
 }
 
 Result<std::string> Store::nextCode(protocol::ParticipantKind kind) {
     return thread_->call([&](const Database& database) {
         Statement find = database.prepare("SELECT 1 FROM participant WHERE participant_id=?");
-        std::int64_t number = 1;
+        // Whoever was erased may have had any code up to there: it must not come to mean somebody else.
+        std::int64_t number = erasedCodesTo(database, kind) + 1;
         while (find.bind(protocol::participantCode(kind, number)).step()) ++number;
         return protocol::participantCode(kind, number);
     });
@@ -409,6 +398,13 @@ Result<std::string> Store::nextCode(protocol::ParticipantKind kind) {
 
 Result<Slot> Store::assignSlot(const std::string& protocol_sha256, const std::string& participant) {
     return thread_->call([&](const Database& database) { return takeSlot(database, protocol_sha256, participant); });
+}
+
+Result<Done> Store::backup() {
+    return thread_->call([&](const Database& database) {
+        writeBackup(database, thread_->path());
+        return Done{};
+    });
 }
 
 Result<int> Store::nextOrdinal(const std::string& participant) {

@@ -28,6 +28,7 @@ enum class OpenOutcome { Current, Upgraded, Created, NewerCompatible, NewerIncom
 struct RecoveryReport {
     std::vector<std::string> crashed_attempts;  // for people, from 1: "S001, session 1, trial 4, attempt 1"
     std::vector<std::string> crashed_sessions;  // "S001, session 1"
+    std::string later_utc;  // the newest time that this file holds, if this machine's clock says an earlier one
     bool empty() const { return crashed_attempts.empty() && crashed_sessions.empty(); }
 };
 
@@ -35,6 +36,7 @@ struct OpenOptions {
     std::string app_version;     // of the program, stored with protocols and segments
     std::string now_utc;         // wall clock for rows about the file itself (schema, import); never exported
     bool create = true;          // false: the file has to exist
+    int busy_timeout_ms = 5000;  // how long another program may hold the file before this is an error
     std::int64_t max_pages = 0;  // refuse to grow beyond so many pages of 4096 bytes; 0 = as far as the disk goes
 };
 
@@ -114,7 +116,11 @@ public:
     Result<std::unique_ptr<SessionWriter>> createSession(const SessionStart& start,
                                                          std::span<const design::PlannedTrial> plan);
 
+    /// Copies the database as it is now (see backupPath()).
+    Result<Done> backup();
+
 private:
+    friend class ParticipantDesk;
     Result<std::string> importOrCheck(const protocol::StudyPlan& plan, bool keep);
     Store(OpenOptions options, std::unique_ptr<ProcessLock> lock, std::unique_ptr<WriterThread> thread);
 

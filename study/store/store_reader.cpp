@@ -1,6 +1,8 @@
 #include "study/store/store_reader.h"
 
 #include "study/store/accuracy_rows.h"
+#include "study/store/audit.h"
+#include "study/store/consent_rows.h"
 #include "study/store/open_database.h"
 #include "study/store/sample_codec.h"
 #include "study/store/sqlite.h"
@@ -47,7 +49,10 @@ constexpr std::string_view kAttemptColumns =
     "s.station, coalesce(json_extract(a.params_json, '$.device'), json_extract(g.device_json, '$.name')), "
     "t.block_index, t.block, t.phase, t.trial_index, "
     "t.trial_in_block, t.repetition, a.attempt_no, c.condition, c.levels_json, a.start_ns, a.end_ns, a.outcome, "
-    "a.valid, a.invalid_reason, a.params_json, a.stages_json, a.seed, a.state_hash, s.protocol_sha256, g.app_version, "
+    // Whoever is excluded counts nowhere; their rows stay as they are.
+    "a.valid AND pa.status<>'excluded', "
+    "CASE WHEN a.valid AND pa.status='excluded' THEN 'participant excluded' ELSE a.invalid_reason END, a.params_json, "
+    "a.stages_json, a.seed, a.state_hash, s.protocol_sha256, g.app_version, "
     "m.loop, m.ticks, m.mean_us, m.sd_us, m.p99_us, m.p999_us, m.max_us, m.overruns, m.dropped_samples "
     "FROM attempt a JOIN trial_plan t USING(trial_id) JOIN session s USING(session_id) "
     "JOIN participant pa USING(participant_id) JOIN segment g ON g.segment_id=a.segment_id "
@@ -266,6 +271,18 @@ Result<std::vector<ParticipantRow>> StoreReader::participants() const {
     });
 }
 
+Result<std::vector<ConsentClauseRow>> StoreReader::consentClauses() const {
+    return guarded(path_, [&] { return readConsentClauses(*database_); });
+}
+
+Result<std::vector<ConsentRow>> StoreReader::consents() const {
+    return guarded(path_, [&] { return readConsents(*database_); });
+}
+
+Result<AuditReport> StoreReader::audit() const {
+    return guarded(path_, [&] { return checkAudit(*database_); });
+}
+
 Result<std::vector<SessionRow>> StoreReader::sessions() const {
     return guarded(path_, [&] {
         return readAll<SessionRow>(
@@ -277,7 +294,8 @@ Result<std::vector<SessionRow>> StoreReader::sessions() const {
                 "(SELECT count(*) FROM trial_plan t WHERE t.session_id=s.session_id), "
                 "(SELECT count(*) FROM attempt a JOIN trial_plan t USING(trial_id) WHERE t.session_id=s.session_id), "
                 "(SELECT count(*) FROM attempt a JOIN trial_plan t USING(trial_id) WHERE t.session_id=s.session_id "
-                "AND a.valid) FROM session s JOIN participant p USING(participant_id) JOIN segment g ON g.segment_id="
+                "AND a.valid AND p.status<>'excluded') FROM session s JOIN participant p USING(participant_id) JOIN "
+                "segment g ON g.segment_id="
                 "(SELECT min(n.segment_id) FROM segment n WHERE n.session_id=s.session_id) "
                 "ORDER BY s.participant_id, s.ordinal"),
             readSession);

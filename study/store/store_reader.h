@@ -32,6 +32,9 @@ public:
     Result<std::vector<ConditionRow>> conditions() const;  // likewise
     Result<std::vector<MeasureRow>> measures() const;
     Result<std::vector<ParticipantRow>> participants() const;
+    Result<std::vector<ConsentClauseRow>> consentClauses() const;  // protocols as above, clauses as they are asked
+    Result<std::vector<ConsentRow>> consents() const;              // by participant
+    Result<AuditReport> audit() const;
     Result<std::vector<SessionRow>> sessions() const;
     Result<std::vector<AttemptRow>> attempts() const;
     Result<AttemptRow> attempt(std::int64_t attempt_id) const;

@@ -2,7 +2,6 @@
 
 #include <sys/utsname.h>
 
-#include <chrono>
 #include <filesystem>
 #include <stdexcept>
 
@@ -15,15 +14,11 @@
 #include "ui/app/calibration.h"
 #include "ui/app/disk_store.h"
 #include "ui/app/simulated_hand.h"
+#include "ui/app/wall_clock.h"
 
 namespace passung::app {
 
 namespace {
-
-std::int64_t unixMilliseconds() {
-    const auto now = std::chrono::system_clock::now().time_since_epoch();
-    return std::chrono::duration_cast<std::chrono::milliseconds>(now).count();
-}
 
 std::string hostText() {
     utsname name{};
@@ -144,6 +139,9 @@ Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& optio
                                      {.app_version = PASSUNG_VERSION, .now_utc = store::UtcClock::wall(now).at(0)});
     if (!opened.store) return opened.errors;
     if (listener.recovered && !opened.recovery.empty()) listener.recovered(opened.recovery);
+    if (listener.warned && !opened.recovery.later_utc.empty())
+        listener.warned("this machine's clock is behind: the database holds the time " + opened.recovery.later_utc +
+                        "; orders and durations do not depend on it, stored dates will");
     if (calibrates && measured.empty()) {
         const auto known = opened.store->checkProtocol(plan);
         if (!known) return known.errors();
@@ -175,10 +173,12 @@ Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& optio
     auto picked = withKeptAccuracy(*kept_plan, *sha256, *opened.store);
     if (!picked) return picked.errors();
     StudyRun run(*picked, options, listener, *opened.store, *sha256);
-    for (int i = 0; i < options.simulated; ++i) {
-        if (auto end = run.participant(i + 1); !end || *end == RunEnd::Interrupted) return end;
-    }
-    return RunEnd::Complete;
+    Result<RunEnd> end = RunEnd::Complete;
+    for (int i = 0; i < options.simulated && end && *end == RunEnd::Complete; ++i) end = run.participant(i + 1);
+    if (!options.backup) return end;
+    if (const auto copied = opened.store->backup(); !copied && listener.warned)
+        listener.warned("no backup copy was made: " + copied.errors().front().message);
+    return end;
 }
 
 }  // namespace passung::app

@@ -29,9 +29,29 @@ struct RunOptions {
     int simulated = 1;
     bool real_time = false;
     std::optional<std::uint64_t> seed;
+    bool no_backup = false;
     int acknowledge_fd = -1;  // open file descriptor that gets a line per durable attempt
 };
 int run(const RunOptions& options);
+
+struct ParticipantOptions {
+    std::string database;
+    std::string code;  // empty: the first unused one
+    std::string kind = "real";
+    std::string protocol;              // study file; empty: the database has it
+    std::vector<std::string> clauses;  // empty: all
+    std::string decision = "yes";      // "no", "withdrawn"
+    std::string language = "en";
+    std::string scope;  // "stop", "exclude", "erase"
+    std::string reason;
+    std::string by = "experimenter";
+};
+int enrolParticipant(const ParticipantOptions& options);
+int listParticipants(const ParticipantOptions& options);
+int decideConsent(const ParticipantOptions& options);
+int withdrawParticipant(const ParticipantOptions& options);
+int excludeParticipant(const ParticipantOptions& options);
+int auditParticipants(const ParticipantOptions& options);
 
 struct ExportOptions {
     std::string database;

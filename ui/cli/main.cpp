@@ -9,6 +9,7 @@
 
 #include "core/model/field_mode.h"
 #include "study/protocol/key_table.h"
+#include "study/protocol/participant.h"
 #include "ui/cli/commands.h"
 
 // The command line: names, options and their help. What a command does is in its own file.
@@ -63,6 +64,7 @@ public:
         app_.set_version_flag("--version", PASSUNG_VERSION);
         app_.require_subcommand(1);
         addStudyCommands();
+        addParticipantCommands();
         addDataCommands();
         addCoreCommands();
     }
@@ -99,7 +101,13 @@ private:
 
     template <class Options>
     CLI::App* command(const char* name, const char* help, Options& options, int (*function)(const Options&)) {
-        CLI::App* sub = app_.add_subcommand(name, help);
+        return command(app_, name, help, options, function);
+    }
+
+    template <class Options>
+    CLI::App* command(CLI::App& parent, const char* name, const char* help, Options& options,
+                      int (*function)(const Options&)) {
+        CLI::App* sub = parent.add_subcommand(name, help);
         sub->callback([this, &options, function] { chosen_ = [&options, function] { return function(options); }; });
         return sub;
     }
@@ -123,7 +131,53 @@ private:
             ->excludes(participant);
         sub->add_flag("--real-time", run_.real_time, "at 1 kHz by the clock instead of as fast as the machine goes");
         sub->add_option("--seed", run_.seed, "instead of the protocol's")->check(wholeFrom<std::uint64_t>(0));
+        sub->add_flag("--no-backup", run_.no_backup, "leave out the copy DB.backup and its SHA-256 at the end");
         sub->add_option("--acknowledge-fd", run_.acknowledge_fd, "file descriptor for a line per durable attempt");
+    }
+
+    void addParticipantCommands() {
+        CLI::App& desk = *app_.add_subcommand("participant", "who takes part: codes and consent, never names");
+        desk.require_subcommand(1);
+        const auto action = [&](const char* name, const char* help, int (*function)(const ParticipantOptions&)) {
+            auto* sub = command(desk, name, help, participant_, function);
+            sub->add_option("DB", participant_.database, "database of a study")->required();
+            return sub;
+        };
+        const auto about = [&](CLI::App* sub) {
+            sub->add_option("CODE", participant_.code, "such as P001")->required();
+            sub->add_option("--by", participant_.by, "who does it, for the audit; default experimenter");
+        };
+        auto* sub = action("enrol", "add somebody; prints the code", enrolParticipant);
+        sub->add_option("CODE", participant_.code, "such as P001; default: the first unused one");
+        sub->add_option("--kind", participant_.kind, "default real")
+            ->check(CLI::IsMember(passung::protocol::participantKindNames()));
+        sub->add_option("--protocol", participant_.protocol,
+                        "study file: stored first if the database does not have it, which is made if it is not there");
+        sub->add_option("--by", participant_.by, "who does it, for the audit; default experimenter");
+
+        action("list", "everybody, with state, place in the design and consent", listParticipants);
+
+        sub = action("consent", "store decisions on the protocol's clauses of consent", decideConsent);
+        about(sub);
+        sub->add_option("--decision", participant_.decision, "default yes")
+            ->check(CLI::IsMember({"yes", "no", "withdrawn"}));
+        sub->add_option("--clause", participant_.clauses, "default: all")->expected(1)->take_all();
+        sub->add_option("--language", participant_.language, "in which the text was read; default en");
+
+        sub = action("withdraw", "somebody ends their part", withdrawParticipant);
+        about(sub);
+        sub->add_option("--scope", participant_.scope,
+                        "stop: no more sessions, the data stays; exclude: it counts nowhere any more; erase: nothing "
+                        "of it is left in the database")
+            ->required()
+            ->check(CLI::IsMember({"stop", "exclude", "erase"}));
+        sub->add_option("--reason", participant_.reason, "if they gave one; of no one else's concern: no names");
+
+        sub = action("exclude", "leave somebody out of the analysis and free their place", excludeParticipant);
+        about(sub);
+        sub->add_option("--reason", participant_.reason, "stored with the status")->required();
+
+        action("audit", "check the chain of what was done to participants", auditParticipants);
     }
 
     void addDataCommands() {
@@ -242,6 +296,7 @@ private:
     CheckOptions check_;
     ExplainOptions explain_;
     RunOptions run_;
+    ParticipantOptions participant_;
     ExportOptions export_;
     ReplayOptions replay_;
     MeshOptions mesh_;

@@ -57,6 +57,7 @@ int run(const RunOptions& options) {
     what.database = options.database.empty() ? plan->name + ".db" : options.database;
     what.participant = options.participant;
     what.simulated = options.participant.empty() ? options.simulated : 1;
+    what.backup = !options.no_backup;
     what.clock = options.real_time ? app::Clock::RealTime : app::Clock::Virtual;
 
     listenForSignals();

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "study/store/sqlite.h"
+
+namespace passung::store {
+
+/// Throws unless the participant may begin a session of this protocol: not excluded nor withdrawn, and, unless
+/// simulated, with a yes to every required clause of consent in the words that this protocol has now. For this room
+/// only.
+void requireAdmission(const Database& database, const std::string& protocol_sha256, const std::string& participant);
+
+}  // namespace passung::store

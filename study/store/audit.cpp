@@ -1,0 +1,82 @@
+#include "study/store/audit.h"
+
+#include <set>
+
+#include "study/store/digest.h"
+
+namespace passung::store {
+namespace {
+
+std::string linkHash(const std::string& previous, const std::string& t_utc, const std::string& actor,
+                     const std::string& action, const std::string& detail_sha256) {
+    return sha256Hex(protocol::JsonObject()
+                         .text("prev_hash", previous)
+                         .text("t_utc", t_utc)
+                         .text("actor", actor)
+                         .text("action", action)
+                         .text("detail_sha256", detail_sha256)
+                         .str());
+}
+
+std::string erasedDetail(const std::string& surrogate) {
+    return protocol::JsonObject().text("erased", surrogate).str();
+}
+
+}  // namespace
+
+void appendAudit(const Database& database, const Actor& actor, const std::string& action, protocol::JsonObject detail) {
+    const std::string text = detail.text("nonce", randomHex(16)).str();
+    const std::string detail_sha256 = sha256Hex(text);
+    const std::string previous = database.text("SELECT hash FROM audit ORDER BY audit_id DESC LIMIT 1");
+    const std::string hash = linkHash(previous, actor.now_utc, actor.name, action, detail_sha256);
+    database
+        .prepare(
+            "INSERT INTO audit(t_utc, actor, action, detail_json, prev_hash, hash, detail_sha256) "
+            "VALUES(?, ?, ?, ?, ?, ?, ?)")
+        .bind(actor.now_utc, actor.name, action, text, previous, hash, detail_sha256)
+        .run();
+}
+
+void eraseAuditDetails(const Database& database, const std::string& participant, const std::string& surrogate) {
+    database.prepare("UPDATE audit SET detail_json=?2 WHERE json_extract(detail_json, '$.participant')=?1")
+        .bind(participant, erasedDetail(surrogate))
+        .run();
+}
+
+std::int64_t erasedCodesTo(const Database& database, protocol::ParticipantKind kind) {
+    Statement last = database.prepare(
+        "SELECT coalesce(max(json_extract(detail_json, '$.codes_to')), 0) FROM audit "
+        "WHERE action='erase' AND json_extract(detail_json, '$.kind')=?");
+    last.bind(protocol::participantKindName(kind)).step();
+    return last.integer(0);
+}
+
+AuditReport checkAudit(const Database& database) {
+    AuditReport report;
+    std::set<std::string> surrogates;
+    Statement erased =
+        database.prepare("SELECT json_extract(detail_json, '$.surrogate') FROM audit WHERE action='erase'");
+    while (erased.step()) surrogates.insert(erasedDetail(erased.text(0)));
+    const auto report_fault = [&](std::int64_t row, const char* what) {
+        report.faults.push_back("row " + std::to_string(row) + ": " + what);
+    };
+    std::string previous;
+    Statement row = database.prepare(
+        "SELECT audit_id, t_utc, actor, action, detail_json, prev_hash, hash, detail_sha256 FROM audit "
+        "ORDER BY audit_id");
+    while (row.step()) {
+        const std::string detail = row.text(4), detail_sha256 = row.text(7);
+        if (row.text(5) != previous) report_fault(row.integer(0), "does not follow the row before it");
+        if (row.text(6) != linkHash(row.text(5), row.text(1), row.text(2), row.text(3), detail_sha256))
+            report_fault(row.integer(0), "has been changed");
+        const bool taken_away = surrogates.count(detail) > 0;
+        if (!taken_away && sha256Hex(detail) != detail_sha256)
+            report_fault(row.integer(0), "its detail has been changed");
+        previous = row.text(6);
+        ++report.rows;
+        report.erased += taken_away ? 1 : 0;
+    }
+    return report;
+}
+
+}  // namespace passung::store

@@ -1,0 +1,79 @@
+#include "study/store/erase.h"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <stdexcept>
+
+#include "study/store/digest.h"
+
+namespace passung::store {
+namespace {
+
+/// VACUUM writes a second copy and then the file; its journal holds the old one meanwhile.
+void requireRoom(const std::string& path) {
+    std::error_code error;
+    const auto size = std::filesystem::file_size(path, error);
+    if (error) return;
+    const auto room = std::filesystem::space(std::filesystem::absolute(path).parent_path(), error);
+    if (!error && room.available < 2 * size)
+        throw std::runtime_error("erasing needs " + std::to_string(2 * size / 1'000'000 + 1) +
+                                 " MB of free space beside the database; nothing was erased");
+}
+
+/// The number at the end of codes such as P012.
+std::int64_t numberOf(const std::string& code) {
+    const std::size_t digits = code.find_last_not_of("0123456789") + 1;
+    std::int64_t number = 0;
+    std::from_chars(code.data() + digits, code.data() + code.size(), number);
+    return number;
+}
+
+std::int64_t highestNumber(const Database& database, const std::string& kind) {
+    std::int64_t highest = 0;
+    Statement codes = database.prepare("SELECT participant_id FROM participant WHERE kind=?");
+    codes.bind(kind);
+    while (codes.step()) highest = std::max(highest, numberOf(codes.text(0)));
+    return highest;
+}
+
+std::string deleteRows(const Database& database, const std::string& participant, const Actor& actor) {
+    Transaction transaction(database);
+    Statement find = database.prepare("SELECT kind FROM participant WHERE participant_id=?");
+    if (!find.bind(participant).step()) throw std::runtime_error("participant " + participant + " is not enrolled");
+    const std::string kind = find.text(0);
+    find.reset();
+    const std::string surrogate = randomHex(8);
+    protocol::JsonObject tombstone;
+    tombstone.text("surrogate", surrogate).text("kind", kind).integer("codes_to", highestNumber(database, kind));
+    database.prepare("UPDATE design_slot SET state='free', participant_id=NULL WHERE participant_id=?")
+        .bind(participant)
+        .run();
+    database.prepare("DELETE FROM participant WHERE participant_id=?").bind(participant).run();
+    eraseAuditDetails(database, participant, surrogate);
+    appendAudit(database, actor, "erase", tombstone);
+    transaction.commit();
+    return surrogate;
+}
+
+}  // namespace
+
+std::string eraseParticipant(const Database& database, const std::string& path, const std::string& participant,
+                             const Actor& actor) {
+    requireRoom(path);
+    database.execute("PRAGMA secure_delete=ON");
+    // Empties and removes the log, and fails while anybody else has the file open.
+    if (database.text("PRAGMA journal_mode=DELETE") != "delete")
+        throw std::runtime_error("another program has the database open: end it first; nothing was erased");
+    const std::string surrogate = deleteRows(database, participant, actor);
+    try {
+        database.execute("VACUUM");
+    } catch (const SqliteError& error) {
+        throw std::runtime_error("the participant is erased, but the file could not be written anew (" +
+                                 std::string(error.what()) + "): run VACUUM on it with sqlite3");
+    }
+    database.execute("PRAGMA journal_mode=WAL");
+    return surrogate;
+}
+
+}  // namespace passung::store

@@ -1,0 +1,16 @@
+#include "ui/app/wall_clock.h"
+
+#include <chrono>
+
+namespace passung::app {
+
+std::int64_t unixMilliseconds() {
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    return std::chrono::duration_cast<std::chrono::milliseconds>(now).count();
+}
+
+store::OpenOptions openOptionsNow() {
+    return {.app_version = PASSUNG_VERSION, .now_utc = store::UtcClock::wall(unixMilliseconds()).at(0)};
+}
+
+}  // namespace passung::app

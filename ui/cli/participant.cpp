@@ -1,0 +1,152 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <optional>
+
+#include "study/protocol/protocol_reader.h"
+#include "study/store/participant_desk.h"
+#include "study/store/store_reader.h"
+#include "ui/app/known_copies.h"
+#include "ui/app/run_study.h"
+#include "ui/app/wall_clock.h"
+#include "ui/cli/commands.h"
+#include "ui/cli/console.h"
+
+namespace passung::cli {
+
+namespace {
+
+protocol::ParticipantKind kindNamed(const std::string& name) {
+    for (const auto kind : {protocol::ParticipantKind::Real, protocol::ParticipantKind::Pilot})
+        if (protocol::participantKindName(kind) == name) return kind;
+    return protocol::ParticipantKind::Simulated;
+}
+
+/// Opens the database, lets `work` do its part at the desk, prints errors. The database has to be there unless
+/// `create`.
+int atTheDesk(const ParticipantOptions& options, bool create,
+              const std::function<Result<Done>(store::Store&, store::ParticipantDesk&)>& work) {
+    auto open = app::openOptionsNow();
+    open.create = create;
+    const auto opened = store::Store::open(options.database, open);
+    if (!opened.store) return fail(opened.errors);
+    store::ParticipantDesk desk(*opened.store, {options.by, open.now_utc});
+    const auto done = work(*opened.store, desk);
+    return done ? 0 : fail(done.errors());
+}
+
+/// The latest decision on each clause, whatever the words: "data_use yes, photos no".
+std::string consentText(const std::vector<store::ConsentRow>& consents, const std::string& participant) {
+    std::map<std::string, std::string> latest;
+    for (const auto& row : consents)
+        if (row.participant_id == participant) latest[row.clause] = row.decision;
+    std::string text;
+    for (const auto& [clause, decision] : latest)
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", clause, decision);
+    return text.empty() ? "-" : text;
+}
+
+}  // namespace
+
+int enrolParticipant(const ParticipantOptions& options) {
+    std::optional<protocol::StudyPlan> plan;
+    if (!options.protocol.empty()) {
+        auto read = protocol::readProtocol(options.protocol, app::knownDevices(), app::knownMeasures());
+        if (!read) return fail(read.errors());
+        plan = *std::move(read);
+    }
+    return atTheDesk(options, plan.has_value(), [&](store::Store& store, store::ParticipantDesk& desk) -> Result<Done> {
+        if (plan)
+            if (const auto imported = store.importProtocol(*plan); !imported) return imported.errors();
+        const auto kind = kindNamed(options.kind);
+        std::string code = options.code;
+        if (code.empty()) {
+            const auto next = store.nextCode(kind);
+            if (!next) return next.errors();
+            code = *next;
+        }
+        const bool simulated = kind == protocol::ParticipantKind::Simulated;
+        const auto clock = simulated ? store::UtcClock::virtualEpoch() : store::UtcClock::wall(app::unixMilliseconds());
+        if (const auto done = desk.enrol(code, kind, clock.at(0)); !done) return done;
+        fmt::print("{}: {} participant, enrolled\n", code, options.kind);
+        return Done{};
+    });
+}
+
+int listParticipants(const ParticipantOptions& options) {
+    const auto reader = store::StoreReader::open(options.database);
+    if (!reader) return fail(reader.errors());
+    const auto people = reader->participants();
+    if (!people) return fail(people.errors());
+    const auto consents = reader->consents();
+    if (!consents) return fail(consents.errors());
+    fmt::print("{:<12} {:<10} {:<10} {:>5} {:>8}  {}\n", "code", "kind", "status", "place", "sessions",
+               "consent; reason of the status");
+    for (const auto& person : *people) {
+        const std::string place =
+            person.sequence_index ? fmt::format("{}.{}", *person.replicate + 1, *person.sequence_index + 1) : "-";
+        fmt::print("{:<12} {:<10} {:<10} {:>5} {:>8}  {}{}\n", person.participant_id, person.kind, person.status, place,
+                   person.sessions, consentText(*consents, person.participant_id),
+                   person.status_reason ? "; " + *person.status_reason : "");
+    }
+    return 0;
+}
+
+int decideConsent(const ParticipantOptions& options) {
+    const auto decision = options.decision == "yes"  ? store::Consent::Yes
+                          : options.decision == "no" ? store::Consent::No
+                                                     : store::Consent::Withdrawn;
+    return atTheDesk(options, false, [&](store::Store&, store::ParticipantDesk& desk) -> Result<Done> {
+        const auto decided = desk.decide(options.code, options.clauses, options.language, decision);
+        if (!decided) return decided.errors();
+        fmt::print("{}: {}: {}\n", options.code, options.decision, fmt::join(*decided, ", "));
+        return Done{};
+    });
+}
+
+int withdrawParticipant(const ParticipantOptions& options) {
+    return atTheDesk(options, false, [&](store::Store&, store::ParticipantDesk& desk) -> Result<Done> {
+        if (options.scope != "erase") {
+            const auto done = options.scope == "stop" ? desk.withdraw(options.code, options.reason)
+                                                      : desk.exclude(options.code, options.reason, "withdraw");
+            if (!done) return done;
+            fmt::print("{}: withdrawn; {}\n", options.code,
+                       options.scope == "stop" ? "the data stays in the analysis" : "the data counts nowhere any more");
+            return Done{};
+        }
+        const auto copies = app::knownCopies(options.database, options.code);
+        const auto surrogate = desk.erase(options.code);
+        if (!surrogate) return surrogate.errors();
+        fmt::print("{}: erased from {}; the audit says {} in its place\n", options.code, options.database, *surrogate);
+        for (const std::string& copy : copies) fmt::print("delete this copy too: {}\n", copy);
+        fmt::print("and whatever copies of the database and exports lie elsewhere\n");
+        return Done{};
+    });
+}
+
+int excludeParticipant(const ParticipantOptions& options) {
+    return atTheDesk(options, false, [&](store::Store&, store::ParticipantDesk& desk) -> Result<Done> {
+        if (const auto done = desk.exclude(options.code, options.reason); !done) return done;
+        fmt::print("{}: excluded; the data counts nowhere any more and the place in the design is free\n",
+                   options.code);
+        return Done{};
+    });
+}
+
+int auditParticipants(const ParticipantOptions& options) {
+    const auto reader = store::StoreReader::open(options.database);
+    if (!reader) return fail(reader.errors());
+    const auto report = reader->audit();
+    if (!report) return fail(report.errors());
+    Errors faults;
+    for (const std::string& fault : report->faults)
+        faults.push_back({.message = fault, .file = options.database, .key = "audit"});
+    if (!faults.empty()) return fail(faults);
+    fmt::print("{}: ok: {} actions in an unbroken chain, the details of {} erased\n", options.database, report->rows,
+               report->erased);
+    return 0;
+}
+
+}  // namespace passung::cli
