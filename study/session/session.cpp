@@ -92,7 +92,7 @@ void Session::beginTrial() {
     start.start_ns = session_ns_;
     start.params_json = condition.params_json;
     start.seed = attemptSeed(setup_, trial(), start.attempt_no);
-    auto stages = apparatus_.prepare(condition, start.seed);
+    auto stages = apparatus_.prepare(condition, start.seed, start.trial_index);
     if (!stages) return fail("prepare", stages.errors());
     start.stages = *std::move(stages);
 

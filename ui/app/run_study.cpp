@@ -7,13 +7,13 @@
 
 #include "devices/simulated/presets.h"
 #include "study/measures/measures.h"
+#include "study/person/simulated_person.h"
 #include "study/session/participant_order.h"
 #include "study/store/digest.h"
 #include "study/store/identity.h"
 #include "ui/app/auto_accuracy.h"
 #include "ui/app/calibration.h"
 #include "ui/app/disk_store.h"
-#include "ui/app/simulated_hand.h"
 #include "ui/app/wall_clock.h"
 
 namespace passung::app {
@@ -60,7 +60,7 @@ public:
         start.seed = plan_.seed;
         start.clock = clock;
         const simulated::DeviceParams* device = simulated::findPreset(plan_.conditions.front().device);
-        LoopApparatus apparatus(*device, simulatedHand(plan_, code), options_.clock);
+        LoopApparatus apparatus(*device, person::personOf(plan_.name, code, plan_.seed), options_.clock);
         start.device = apparatus.device();
         if (measured) start.host = hostText();
         start.timing_measured = measured;

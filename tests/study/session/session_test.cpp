@@ -26,14 +26,17 @@ public:
     std::int64_t ticks_after_stop = 0;       // the loop's last ticks, still in the ring when stop() returns
     std::size_t fail_prepare_at = SIZE_MAX;  // index of the trial
     std::vector<std::uint64_t> seeds;
+    std::vector<std::int64_t> trials_before;
     std::int64_t most_ticks_at_once = 0;
 
     const DeviceDescription& device() const override { return device_; }
 
-    Result<std::vector<StageNote>> prepare(const protocol::Condition& condition, std::uint64_t seed) override {
+    Result<std::vector<StageNote>> prepare(const protocol::Condition& condition, std::uint64_t seed,
+                                           std::int64_t before) override {
         log_.push_back("prepare " + condition.name);
         if (seeds.size() == fail_prepare_at) return Error{"the mesh is gone", {}, 0, 0, {}, {}};
         seeds.push_back(seed);
+        trials_before.push_back(before);
         return std::vector<StageNote>{{"query", "parts can touch"}};
     }
     void start() override {
@@ -262,6 +265,7 @@ TEST_F(SessionTest, SeedBelongsToParticipantTrialAndAttemptAndNotToWhatRanBefore
     planTrials({successScript(), successScript()});
     ASSERT_TRUE(runSession());
     ASSERT_EQ(apparatus_.seeds.size(), 2u);
+    EXPECT_EQ(apparatus_.trials_before, (std::vector<std::int64_t>{0, 1}));
     EXPECT_NE(apparatus_.seeds[0], apparatus_.seeds[1]);
     EXPECT_EQ(sink_.starts[1].seed, apparatus_.seeds[1]);
     const SessionSetup resumed{plan_, {trials_[1]}, "P001", 7, false};

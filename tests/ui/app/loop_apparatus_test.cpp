@@ -27,7 +27,7 @@ LoopApparatus makeApparatus() { return {*simulated::findPreset("sigma7"), {}, Cl
 
 Names stagesOf(const protocol::Condition& c) {
     LoopApparatus apparatus = makeApparatus();
-    const auto stages = apparatus.prepare(c, 1);
+    const auto stages = apparatus.prepare(c, 1, 0);
     Names names;
     for (const session::StageNote& stage : *stages) {
         EXPECT_FALSE(stage.reason.empty()) << stage.name;
@@ -40,7 +40,7 @@ Names stagesOf(const protocol::Condition& c) {
 std::pair<std::vector<TickRecord>, session::LoopHealth> runTicks(const protocol::Condition& c, std::uint64_t seed,
                                                                  std::int64_t ticks) {
     LoopApparatus apparatus = makeApparatus();
-    EXPECT_TRUE(apparatus.prepare(c, seed));
+    EXPECT_TRUE(apparatus.prepare(c, seed, 0));
     apparatus.start();
     std::vector<TickRecord> records;
     std::array<TickRecord, 64> buffer;
@@ -75,7 +75,7 @@ TEST(LoopApparatus, RefusesADeviceThatItDoesNotKnow) {
     protocol::Condition other = condition("fair");
     other.device = "sigma8";
     LoopApparatus apparatus = makeApparatus();
-    const auto stages = apparatus.prepare(other, 1);
+    const auto stages = apparatus.prepare(other, 1, 0);
     ASSERT_FALSE(stages);
     EXPECT_EQ(stages.errors().front().key, "device.preset");
     EXPECT_EQ(stages.errors().front().value, "sigma8");
@@ -94,12 +94,26 @@ TEST(LoopApparatus, GivesARecordForEveryTickAndTheSameHashForTheSameSeed) {
     EXPECT_NE(runTicks(condition("fair"), 6, 800).second.state_hash, health.state_hash);
 }
 
+TEST(LoopApparatus, APersonMovesOtherwiseInALaterTrial) {
+    // Truth: invariant; reaching for the start is alike, the way to the bore is practised.
+    LoopApparatus apparatus = makeApparatus();
+    std::vector<std::uint64_t> hashes;
+    for (const std::int64_t trials_before : {0, 40, 0}) {
+        ASSERT_TRUE(apparatus.prepare(condition("fair"), 9, trials_before));
+        apparatus.start();
+        apparatus.advance(3000);
+        hashes.push_back(apparatus.stop().state_hash);
+    }
+    EXPECT_EQ(hashes[0], hashes[2]);
+    EXPECT_NE(hashes[0], hashes[1]);
+}
+
 TEST(LoopApparatus, BeginsEveryTrialAnew) {
     // Truth: invariant (a trial does not depend on what the same apparatus did before)
     LoopApparatus apparatus = makeApparatus();
     std::vector<std::uint64_t> hashes;
     for (const char* name : {"fair", "none", "fair"}) {
-        ASSERT_TRUE(apparatus.prepare(condition(name), 9));
+        ASSERT_TRUE(apparatus.prepare(condition(name), 9, 0));
         apparatus.start();
         apparatus.advance(500);
         hashes.push_back(apparatus.stop().state_hash);
