@@ -22,6 +22,8 @@ set(rooms
   "study/store         | core/base ${study_rooms} study/session"
   "analysis/truth      | core/base core/model core/tick core/query"
   "analysis/export     | core/base study/protocol study/questionnaire study/measures study/store"
+  "analysis/stats      | core/base"
+  "analysis/power      | core/base ${study_rooms} study/session study/store analysis/export analysis/stats"
   "ui/cli              | *"
   "ui/app              | *"
   "tests               | *")
@@ -38,6 +40,7 @@ set(libraries
   "zlib     | ^zlib[.]h$                       | study/store analysis/export tests      | cpp"
   "OpenSSL  | ^openssl/                        | study/store analysis/export tests      | cpp"
   "FCL      | ^fcl/                            | analysis/truth tests                   | cpp"
+  "Boost.Math | ^boost/math/                     | analysis/stats tests                   | cpp"
   "spdlog   | ^spdlog/                         | ui tests                               | cpp"
   "CLI11    | ^CLI/                            | ui/cli ui/app tests                    | cpp"
   "ODE      | ^ode/                            | tests                                  | cpp"
