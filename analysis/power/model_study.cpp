@@ -1,5 +1,7 @@
 #include "analysis/power/model_study.h"
 
+#include <stdexcept>
+
 #include "core/base/random.h"
 #include "study/person/completion_time.h"
 #include "study/protocol/participant.h"
@@ -15,15 +17,22 @@ store::Levels levelsOf(const protocol::StudyPlan& plan, const protocol::Conditio
     return levels;
 }
 
-void perform(const protocol::StudyPlan& plan, std::size_t slot, exporter::StudyData& study) {
+void perform(const protocol::StudyPlan& plan, std::size_t number, const session::DesignPlace& place,
+             exporter::StudyData& study) {
     const auto kind = protocol::ParticipantKind::Simulated;
-    const std::string code = protocol::participantCode(kind, static_cast<std::int64_t>(slot) + 1);
+    const std::string code = protocol::participantCode(kind, static_cast<std::int64_t>(number) + 1);
     const person::SimulatedPerson person = person::personOf(plan.name, code, plan.seed);
     store::SessionRow session;
     session.session_id = session.participant_id = code;
     session.end_state = "complete";
     study.sessions.push_back(session);
-    for (const design::PlannedTrial& trial : session::planTrials(plan, slot, code)) {
+    std::vector<design::PlannedTrial> trials;
+    for (int part = 1; part <= protocol::sessionsOf(plan); ++part) {
+        const auto planned = session::planTrials(plan, place, code, part);
+        if (!planned) throw std::runtime_error(toString(planned.errors().front()));
+        trials.insert(trials.end(), planned->begin(), planned->end());
+    }
+    for (const design::PlannedTrial& trial : trials) {
         const std::string purpose = "simulated|model|" + std::to_string(trial.trial_index);
         Random random(streamSeed(plan.name, code, trial.phase, purpose, plan.seed));
         store::AttemptRow attempt;
@@ -47,7 +56,9 @@ exporter::StudyData modelStudy(const protocol::StudyPlan& plan, int participants
     study.protocols.emplace_back();  // all rows are of this one, without a hash
     for (const protocol::Condition& condition : plan.conditions)
         study.conditions.push_back({{}, condition.name, levelsOf(plan, condition)});
-    for (int i = 0; i < participants; ++i) perform(plan, static_cast<std::size_t>(i), study);
+    const auto count = static_cast<std::size_t>(participants);
+    const auto places = session::firstPlaces(plan, count, protocol::ParticipantKind::Simulated);
+    for (std::size_t i = 0; i < count; ++i) perform(plan, i, places[i], study);
     return study;
 }
 

@@ -36,6 +36,7 @@ constexpr std::array kStudyKeys{
     Key{"protocol", "study", Table, kAny, "", "!", "What the study is called and how many take part."},
     Key{"protocol", "scene", Table, kAny, "", "!", "Parts, contact, device and registration."},
     Key{"protocol", "factor", Tables, kAny, "", "(none: one condition)", "What is varied; every combination of levels is a condition."},
+    Key{"protocol", "exclude", Tables, kAny, "", "(none)", "Combinations of levels that are left out: [{ method = \"penalty\", clearance = \"0.1\" }, ...]; factors not named stand for all of their levels."},
     Key{"protocol", "task", Table, kAny, "", "!", "What a trial asks for and how it is judged."},
     Key{"protocol", "feedback", Table, kAny, "", "(its defaults)", "What the participant is given to feel and see."},
     Key{"protocol", "block", Tables, kAny, "", "!", "Blocks of trials in the order in which they run."},
@@ -49,6 +50,7 @@ constexpr std::array kStudyKeys{
     Key{"study", "title", Text, kAny, "", "(the name)", "Title for people."},
     Key{"study", "seed", Integer, atLeast(0), "", "!", "Everything random follows from it."},
     Key{"study", "participants", Integer, from(1, 100000), "", "!", "How many are planned; a multiple of the rows of the Williams square keeps orders balanced."},
+    Key{"study", "allocation_blocks", Integer, from(1, 10), "", "1", "Participants are allotted to groups in permuted blocks that hold each group so often."},
 
     Key{"scene", "unit", Choice, kAny, "um|mm|cm|m|in", "mm", "Unit of lengths without one in their key: shapes, positions, meshes that do not say theirs."},
     Key{"scene", "part", Tables, kAny, "", "!", "The parts; exactly one is held."},
@@ -176,12 +178,13 @@ constexpr std::array kStudyKeys{
 
     Key{"factor", "name", Name, kAny, "", "!", "A column in every export."},
     Key{"factor", "key", Text, kAny, "", "(every level has its `set`)", "Key of the scene that varies, such as contact.method or part.plate.shape.bore_diameter; also task.* and feedback.*."},
-    Key{"factor", "kind", Choice, kAny, "within", "within", "Everyone sees every level."},
+    Key{"factor", "kind", Choice, kAny, "within|between|nuisance", "within", "within: everyone sees every level. between: a participant's group sees one. nuisance: its levels are assigned to the other conditions, to each another one in every row of a square, so that nobody sees every combination and all together see each equally often."},
     Key{"factor", "unit", Text, kAny, "", "(none)", "Unit of the labels, for tables."},
     Key{"factor", "levels", Levels, kAny, "", "!", "At least two: plain values, or tables as below."},
 
     Key{"level", "label", Text, kAny, "", "(the value)", "As it appears in tables and exports; unique."},
     Key{"level", "value", Any, kAny, "", "(its `set`)", "What the factor's key becomes."},
+    Key{"level", "catch", Boolean, kAny, "", "false", "Conditions with this level are catch trials: in no pass, only where a block has `catch_trials`."},
     Key{"level", "set", Table, kAny, "", "(its `value`)", "Several keys at once: { \"contact.method\" = \"penalty\", ... }."},
 
     Key{"task", "type", Choice, kAny, "peg_in_hole", "!", "Kind of trial."},
@@ -200,12 +203,27 @@ constexpr std::array kStudyKeys{
     Key{"block", "name", Name, kAny, "", "!", "Unique."},
     Key{"block", "phase", Choice, kAny, "practice|main", "main", "Practice is stored and marked."},
     Key{"block", "repetitions", Integer, from(1, 1000), "", "1", "Passes through the order."},
-    Key{"block", "order", Choice, kAny, "williams|random|listed", "williams", "The participant's row of a Williams square, a new shuffle for every pass, or as listed."},
+    Key{"block", "order", Choice, kAny, "williams|permutations|random|shuffled|listed", "williams", "The participant's row of a Williams square or of the list of all orders (at most 5 conditions), a new shuffle for every pass, all passes shuffled together, or as listed."},
+    Key{"block", "blocked", Text, kAny, "", "(none)", "Name of a within factor whose levels come one after the other, all repetitions of each: devices that take time to swap. `order` is of the conditions inside a level."},
+    Key{"block", "blocked_order", Choice, kAny, "williams|permutations|random|listed", "williams", "Order of these levels. With two squares the rows of the inner one change after a whole turn of the outer one, so that both are balanced together."},
+    Key{"block", "constraints", Tables, kAny, "", "(none)", "Rules that random and shuffled orders keep to; catch trials do not count."},
+    Key{"block", "catch_trials", Integer, from(0, 1000), "", "0", "In every pass so many trials of the conditions whose level has `catch = true`, at random positions; their phase is catch."},
+    Key{"block", "catch_from", Integer, atLeast(1), "", "1", "First position in the pass that a catch trial may have."},
+    Key{"block", "catch_to", Integer, atLeast(1), "", "(the last)", "Last such position."},
+    Key{"block", "session", Integer, from(1, 100), "", "1", "Which of a participant's sessions has the block; all blocks of one before those of the next."},
+    Key{"block", "rest_s", Number, from(0, 86400), "", "0", "At least so long is rested before the block."},
     Key{"block", "trials", Integer, atLeast(1), "", "(all)", "Only the first so many conditions of each pass."},
 
     Key{"consent", "clause", Name, kAny, "", "!", "Unique; decisions are stored by it."},
     Key{"consent", "required", Boolean, kAny, "", "true", "Who does not say yes to it cannot take part. Simulated participants are not asked."},
     Key{"consent", "text", Table, kAny, "", "!", "What is asked, a text per language: `{ en = \"...\", de = \"...\" }`; every clause in the same languages. Until when data can be withdrawn belongs here."},
+
+    Key{"constraint", "rule", Choice, kAny, "max_run|min_distance|no_repeat|first_not|position_window", "!", "max_run: at most `count` trials in a row have the same level of `factor`. min_distance: two such trials are at least `count` trials apart. no_repeat: no condition twice in a row. first_not: the block does not begin with `level`. position_window: trials with `level` stand at the block's positions `from` to `to`."},
+    Key{"constraint", "factor", Text, kAny, "", "(not for no_repeat)", "Name of the factor."},
+    Key{"constraint", "level", Text, kAny, "", "(only first_not and position_window)", "Label of the level."},
+    Key{"constraint", "count", Integer, from(1, 1000), "", "(only max_run and min_distance)", "In trials."},
+    Key{"constraint", "from", Integer, atLeast(1), "", "1", "First position in the block, from 1; only position_window."},
+    Key{"constraint", "to", Integer, atLeast(1), "", "(only position_window)", "Last position."},
 
     Key{"loop", "max_missed_share", Number, from(0, 1), "", "0.01", "An attempt that missed a larger part of the cycles between start and end of its trial is not valid. In virtual time no cycle is missed."},
 };
@@ -256,6 +274,7 @@ constexpr std::array kTables{
     TableInfo{"feedback", "`[feedback]`", ""},
     TableInfo{"block", "`[[block]]`", ""},
     TableInfo{"consent", "`[[consent]]`", "Each decision is stored with the SHA-256 of the text that it answers: a changed text has to be asked anew."},
+    TableInfo{"constraint", "`constraints` of a block", "An order that no shuffle and no search finds is an error that says why."},
     TableInfo{"loop", "`[loop]`", ""},
     TableInfo{"questionnaire", "`[[questionnaire]]`", "In a study: what is asked, and when. Where several are due at one moment they come as listed."},
     TableInfo{"questionnaire_file", "Top level of a questionnaire file", "See `protocols/questionnaires/`. A text for each language is a table `{ en = \"...\", de = \"...\" }`; with one language a\nstring will do."},

@@ -44,6 +44,9 @@ public:
     virtual Result<std::vector<StageNote>> prepare(const protocol::Condition& condition, std::uint64_t seed,
                                                    std::int64_t trials_before) = 0;
 
+    /// Lets so many periods pass while no loop runs: at once in virtual time.
+    virtual void wait(std::int64_t ticks) = 0;
+
     /// Starts the loop at tick 0.
     virtual void start() = 0;
 

@@ -55,14 +55,17 @@ enum class SessionState { BetweenTrials, InTrial, Complete, Failed, Interrupted 
 class Session {
 public:
     static constexpr std::int64_t kTicksPerLook = 20;
-    static constexpr int kSilentLooks = 50;  // looks without any record after which the loop counts as dead
+    static constexpr std::int64_t kTicksPerRest = 100;  // of a rest at a time
+    static constexpr int kSilentLooks = 50;             // looks without any record after which the loop counts as dead
 
     Session(SessionSetup setup, Apparatus& apparatus, TrialSink& sink, SessionListener listener);
     ~Session();  // stops the apparatus if a trial is running
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
-    /// One bounded piece of work: begin the next trial, watch the running one for kTicksPerLook, or close the session.
+    /// One bounded piece of work: rest for kTicksPerRest before a block that asks for it (events rest_started,
+    /// rest_ended), begin the next trial (event swap_device if it is on another device than the one before), watch the
+    /// running one for kTicksPerLook, or close the session.
     /// Whatever is to be done to a session from outside is done between two calls.
     SessionState advance();
 
@@ -92,6 +95,7 @@ private:
     };
 
     const design::PlannedTrial& trial() const { return setup_.trials[finished_]; }
+    bool rest();
     void beginTrial();
     void watchTrial();
     std::size_t takeRecords();
@@ -110,7 +114,10 @@ private:
     SessionState state_ = SessionState::BetweenTrials;
     std::optional<Attempt> attempt_;
     std::size_t finished_ = 0;
-    std::int64_t session_ns_ = 0;  // at tick 0 of the running or next attempt
+    std::optional<std::size_t> rested_for_;  // number of finished trials when a rest was last looked for
+    std::int64_t rest_left_ = 0;             // [periods] of the running rest
+    std::string device_in_use_;              // of the last trial
+    std::int64_t session_ns_ = 0;            // at tick 0 of the running or next attempt
     Errors errors_;
 };
 

@@ -59,6 +59,10 @@ Result<std::vector<session::StageNote>> LoopApparatus::prepare(const protocol::C
     return stageNotes(run_->model);
 }
 
+void LoopApparatus::wait(std::int64_t ticks) {
+    if (clock_ == Clock::RealTime) std::this_thread::sleep_for(std::chrono::nanoseconds(ticks * kTickNanoseconds));
+}
+
 void LoopApparatus::start() {
     if (clock_ == Clock::RealTime) run_->thread = std::make_unique<loop::RealTimeThread>(run_->cycle);
 }

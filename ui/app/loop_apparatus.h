@@ -23,6 +23,7 @@ public:
     const DeviceDescription& device() const override { return description_; }
     Result<std::vector<session::StageNote>> prepare(const protocol::Condition& condition, std::uint64_t seed,
                                                     std::int64_t trials_before) override;
+    void wait(std::int64_t ticks) override;
     void start() override;
     void advance(std::int64_t ticks) override;
     std::size_t takeRecords(std::span<TickRecord> into) override;

@@ -33,10 +33,9 @@ public:
              store::Store& store, std::string protocol_sha256)
         : plan_(plan), options_(options), listener_(listener), store_(store), sha256_(std::move(protocol_sha256)) {}
 
+    /// All sessions that are left to do; of a participant named by code the next one.
     Result<RunEnd> participant(int number) {
-        const bool measured = options_.clock == Clock::RealTime;
-        const store::UtcClock clock =
-            measured ? store::UtcClock::wall(unixMilliseconds()) : store::UtcClock::virtualEpoch();
+        const store::UtcClock clock = clockNow();
         std::string code = options_.participant;
         if (code.empty()) {
             auto next = store_.nextCode(protocol::ParticipantKind::Simulated);
@@ -48,10 +47,28 @@ public:
         }
         auto slot = store_.assignSlot(sha256_, code);
         if (!slot) return slot.errors();
+        auto part = store_.nextPart(sha256_, code);
+        if (!part) return part.errors();
+        const int last = options_.participant.empty() ? protocol::sessionsOf(plan_) : *part;
+        if (listener_.session) listener_.session(code, number, options_.simulated);
+        for (int p = *part; p <= last; ++p)
+            if (auto end = session(code, {static_cast<std::size_t>(slot->number), slot->group}, p, clock);
+                !end || *end == RunEnd::Interrupted)
+                return end;
+        return RunEnd::Complete;
+    }
+
+private:
+    store::UtcClock clockNow() const {
+        return options_.clock == Clock::RealTime ? store::UtcClock::wall(unixMilliseconds())
+                                                 : store::UtcClock::virtualEpoch();
+    }
+
+    Result<RunEnd> session(const std::string& code, const session::DesignPlace& place, int part,
+                           const store::UtcClock& clock) {
+        const bool measured = options_.clock == Clock::RealTime;
         auto ordinal = store_.nextOrdinal(code);
         if (!ordinal) return ordinal.errors();
-        if (listener_.session) listener_.session(code, number, options_.simulated);
-
         store::SessionStart start;
         start.session_id = store::sessionId(plan_.name, code, *ordinal, plan_.seed);
         start.participant = code;
@@ -65,10 +82,11 @@ public:
         if (measured) start.host = hostText();
         start.timing_measured = measured;
 
-        const auto trials = session::planTrials(plan_, static_cast<std::size_t>(slot->number), code);
-        auto writer = store_.createSession(start, trials);
+        const auto trials = session::planTrials(plan_, place, code, part);
+        if (!trials) return trials.errors();
+        auto writer = store_.createSession(start, *trials);
         if (!writer) return writer.errors();
-        session::Session session({plan_, trials, code, plan_.seed, measured, *ordinal}, apparatus, **writer,
+        session::Session session({plan_, *trials, code, plan_.seed, measured, *ordinal}, apparatus, **writer,
                                  {listener_.acknowledge, listener_.trial});
         while (session.state() == session::SessionState::BetweenTrials ||
                session.state() == session::SessionState::InTrial) {
@@ -81,7 +99,6 @@ public:
         return session.state() == session::SessionState::Interrupted ? RunEnd::Interrupted : RunEnd::Complete;
     }
 
-private:
     const protocol::StudyPlan& plan_;
     const RunOptions& options_;
     const RunListener& listener_;

@@ -28,6 +28,7 @@ public:
     std::vector<std::uint64_t> seeds;
     std::vector<std::int64_t> trials_before;
     std::int64_t most_ticks_at_once = 0;
+    std::int64_t waited_ticks = 0;
 
     const DeviceDescription& device() const override { return device_; }
 
@@ -38,6 +39,10 @@ public:
         seeds.push_back(seed);
         trials_before.push_back(before);
         return std::vector<StageNote>{{"query", "parts can touch"}};
+    }
+    void wait(std::int64_t ticks) override {
+        waited_ticks += ticks;
+        most_ticks_at_once = std::max(most_ticks_at_once, ticks);
     }
     void start() override {
         log_.push_back("start");
@@ -224,6 +229,29 @@ TEST_F(SessionTest, CallsComeInTheOrderThatKeepsDataSafe) {
                          "acknowledge", "progress 1/2", "prepare hard", "startAttempt", "start", "appendRecords",
                          "stop", "finishAttempt", "acknowledge", "progress 2/2", "finishSession"}));
     EXPECT_EQ(apparatus_.most_ticks_at_once, Session::kTicksPerLook);
+}
+
+TEST_F(SessionTest, RestsBeforeABlockAndSaysWhenTheDeviceIsSwapped) {
+    // Truth: closed form: the second block asks for 2.05 s before its first trial, nothing before its second.
+    planTrials({successScript(), successScript(), successScript()});
+    plan_.blocks.resize(2);
+    plan_.blocks[1].rest = 2.05;
+    for (std::size_t i = 1; i < 3; ++i) {
+        trials_[i].block_index = 1;
+        trials_[i].block = "late";
+        trials_[i].trial_in_block = static_cast<std::int64_t>(i) - 1;
+    }
+    plan_.conditions[0].device = "arm";
+    plan_.conditions[1].device = "stick";
+    ASSERT_TRUE(runSession());
+    EXPECT_EQ(apparatus_.waited_ticks, 2050);
+    EXPECT_EQ(apparatus_.most_ticks_at_once, Session::kTicksPerRest);
+    std::vector<std::string> notes;
+    for (const Event& event : sink_.events)
+        if (!event.attempt) notes.push_back(event.event + " " + event.payload_json);
+    EXPECT_EQ(notes, (std::vector<std::string>{R"(rest_started {"block":"late"})", R"(rest_ended {"block":"late"})",
+                                               R"(swap_device {"to":"stick"})", R"(swap_device {"to":"arm"})"}));
+    EXPECT_EQ(sink_.starts[1].start_ns, sink_.starts[0].start_ns + 1560 * kMs + 2050 * kMs);
 }
 
 TEST_F(SessionTest, EveryTickThatTheLoopMadeIsStoredBeforeTheAttemptIsFinished) {
