@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/assert.h"
+#include "core/base/random.h"
 
 namespace passung::person {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 using P = SimulatedPerson;
 
 // The order is part of the definition: a new trait goes to the end, so that known persons stay who they are.
-constexpr std::array<Trait, 22> kTraits = {{
+constexpr std::array<Trait, 19> kTraits = {{
     {"visual_delay", "s", "sight to reaction", &P::visual_delay, 0.15, 0.15, 0.32},
     {"haptic_delay", "s", "touch to reaction", &P::haptic_delay, 0.15, 0.09, 0.20},
     {"arm_mass", "kg", "at the handle", &P::arm_mass, 0.25, 0.3, 1.0},
@@ -34,10 +35,6 @@ constexpr std::array<Trait, 22> kTraits = {{
     {"lapse_rate", "1", "share of trials with a lapse: lost in thought before the part is lowered", &P::lapse_rate, 0.6,
      0.004, 0.1},
     {"lapse_duration", "s", "of a lapse", &P::lapse_duration, 0.3, 0.7, 3.5},
-    {"rating_extremity", "1", "use of a scale's ends: 1 as meant, more: nearer to the ends", &P::rating_extremity, 0.25,
-     0.5, 1.8},
-    {"rating_leaning", "1", "above 1: towards the high end of every scale", &P::rating_leaning, 0.15, 0.65, 1.5},
-    {"rating_noise", "1", "standard deviation of an answer, share of the scale", &P::rating_noise, 0.3, 0.02, 0.15},
 }};
 
 }  // namespace
@@ -67,14 +64,6 @@ SimulatedPerson drawPerson(std::uint64_t seed) {
 
 SimulatedPerson personOf(std::string_view study, std::string_view code, std::uint64_t study_seed) {
     return drawPerson(streamSeed(study, code, "person", "simulated", study_seed));
-}
-
-int rate(const SimulatedPerson& person, double impression, int lowest, int highest, Random& random) {
-    PASSUNG_ASSERT(highest > lowest);
-    const double meant = std::isnan(impression) ? 0.5 : std::clamp(impression, 0.0, 1.0);
-    const double leant = std::pow(meant, 1.0 / person.rating_leaning);
-    const double u = 0.5 + person.rating_extremity * (leant - 0.5) + person.rating_noise * random.normal();
-    return lowest + static_cast<int>(std::lround(std::clamp(u, 0.0, 1.0) * (highest - lowest)));
 }
 
 }  // namespace passung::person

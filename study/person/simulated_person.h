@@ -4,8 +4,6 @@
 #include <span>
 #include <string_view>
 
-#include "core/base/random.h"
-
 namespace passung::person {
 
 /// Who a simulated participant is: the traits that stay for all of a person's trials. SI units; unit, spread and range
@@ -31,9 +29,6 @@ struct SimulatedPerson {
     double learning_trials = 8.0;
     double lapse_rate = 0.02;
     double lapse_duration = 1.5;
-    double rating_extremity = 1.0;
-    double rating_leaning = 1.0;
-    double rating_noise = 0.06;
 
     /// N·s/m and N·m·s/rad from the ratios.
     double armDamping() const;
@@ -63,11 +58,5 @@ SimulatedPerson drawPerson(std::uint64_t seed);
 /// The simulated participant `code` of a study: the same in all their trials and sessions (stream "simulated" of the
 /// code, in a phase of its own, because who somebody is does not depend on what they do).
 SimulatedPerson personOf(std::string_view study, std::string_view code, std::uint64_t study_seed);
-
-/// What the person answers on a scale from `lowest` to `highest`, whole numbers, of which they would have to say
-/// `impression` (0: the low end, 1: the high end) if everybody used scales alike:
-///   u = 0.5 + extremity · (impression^(1/leaning) - 0.5) + noise · normal,
-/// kept in 0 … 1 and rounded to the nearest number of the scale. NaN counts as 0.5. @pre highest > lowest
-int rate(const SimulatedPerson& person, double impression, int lowest, int highest, Random& random);
 
 }  // namespace passung::person

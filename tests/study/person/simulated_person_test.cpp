@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <vector>
 
@@ -17,13 +16,6 @@ std::vector<double> values(const SimulatedPerson& person) {
     std::vector<double> all;
     for (const Trait& trait : traits()) all.push_back(person.*trait.value);
     return all;
-}
-
-/// Somebody who answers exactly what they mean.
-SimulatedPerson plainRater() {
-    SimulatedPerson person;
-    person.rating_noise = 0.0;
-    return person;
 }
 
 }  // namespace
@@ -103,43 +95,4 @@ TEST(SimulatedPerson, PracticeMakesFasterByAnExponentialLaw) {
     EXPECT_DOUBLE_EQ(p.paceAfter(0), 1.2 / 1.5);
     EXPECT_DOUBLE_EQ(p.paceAfter(4), 1.2 / (1.0 + 0.5 / std::exp(1.0)));
     EXPECT_NEAR(p.paceAfter(200), 1.2, 1e-12);
-}
-
-TEST(SimulatedPerson, RatesByTheStatedFunction) {
-    // Truth: closed form.
-    Random random(1);
-    SimulatedPerson p = plainRater();
-    const auto rated = [&](double impression) { return rate(p, impression, 1, 7, random); };
-    EXPECT_EQ(rated(0.0), 1);
-    EXPECT_EQ(rated(0.5), 4);
-    EXPECT_EQ(rated(0.7), 5);  // 1 + 4.2
-    EXPECT_EQ(rated(1.0), 7);
-    EXPECT_EQ(rated(9.0), 7);
-    EXPECT_EQ(rated(std::numeric_limits<double>::quiet_NaN()), 4);
-    p.rating_extremity = 1.5;
-    EXPECT_EQ(rated(0.7), 6);   // 1 + 6 · 0.8 = 5.8
-    EXPECT_EQ(rated(0.25), 2);  // 1 + 6 · 0.125 = 1.75
-    p = plainRater();
-    p.rating_leaning = 0.5;
-    EXPECT_EQ(rated(0.5), 3);  // 1 + 6 · 0.5² = 2.5
-    p.rating_leaning = 1.5;
-    EXPECT_EQ(rated(0.5), 5);  // 1 + 6 · 0.63 = 4.8
-}
-
-TEST(SimulatedPerson, RatingsScatterWithThePersonsNoiseAndStayOnTheScale) {
-    // Truth: closed form, a normal of standard deviation 0.06 on a scale of 0 … 1000 rounded to 1; the deviation of
-    // 2000 draws has a standard error of sd / sqrt(4000) = 0.95, of which 4 are allowed.
-    Random random(7);
-    double sum = 0.0, squares = 0.0;
-    constexpr int kDraws = 2000;
-    for (int i = 0; i < kDraws; ++i) {
-        const double r = rate(SimulatedPerson{}, 0.5, 0, 1000, random);
-        sum += r;
-        squares += r * r;
-        const int low = rate(SimulatedPerson{}, 0.0, 0, 20, random);
-        ASSERT_TRUE(low >= 0 && low <= 20);
-    }
-    const double mean = sum / kDraws;
-    EXPECT_NEAR(mean, 500.0, 4 * 60.0 / std::sqrt(kDraws));
-    EXPECT_NEAR(std::sqrt(squares / kDraws - mean * mean), 60.0, 4 * 0.95);
 }
