@@ -77,6 +77,22 @@ std::string blocksText(const protocol::StudyPlan& plan) {
     return text + "\n";
 }
 
+std::string questionnairesText(const protocol::StudyPlan& plan) {
+    if (plan.questionnaires.empty()) return "";
+    std::string text = "Questionnaires\n";
+    for (const auto& planned : plan.questionnaires) {
+        const bool of_session =
+            planned.moment == protocol::Moment::SessionStart || planned.moment == protocol::Moment::SessionEnd;
+        text += fmt::format("  {} {}  {}{}, {}, {}\n", planned.definition.key, planned.definition.version,
+                            protocol::momentName(planned.moment),
+                            of_session              ? ""
+                            : planned.block.empty() ? " of every main block"
+                                                    : " of block " + planned.block,
+                            planned.language, design::counted(planned.definition.items.size(), "item"));
+    }
+    return text + "\n";
+}
+
 /// One participant's session: the condition numbers of each pass, blocks parted by |, catch trials marked with a star;
 /// passes that repeat the one before are counted.
 std::string orderText(const protocol::StudyPlan& plan, const std::vector<design::PlannedTrial>& trials) {
@@ -168,7 +184,7 @@ Result<std::string> describePlan(const protocol::StudyPlan& plan, int participan
     std::string text =
         fmt::format("{}\nstudy {}, version {}, seed {}, {} planned\n\n", plan.title, plan.name, plan.version, plan.seed,
                     design::counted(static_cast<std::size_t>(plan.participants), "participant"));
-    text += factorsText(plan) + conditionsText(plan) + blocksText(plan);
+    text += factorsText(plan) + conditionsText(plan) + blocksText(plan) + questionnairesText(plan);
 
     text += "Orders (numbers of conditions; blocks parted by |)\n";
     const auto groups = protocol::groupNames(plan);

@@ -36,7 +36,11 @@ std::uint64_t attemptSeed(const SessionSetup& setup, const design::PlannedTrial&
 }
 
 Session::Session(SessionSetup setup, Apparatus& apparatus, TrialSink& sink, SessionListener listener)
-    : setup_(std::move(setup)), apparatus_(apparatus), sink_(sink), listener_(std::move(listener)) {}
+    : setup_(std::move(setup)),
+      apparatus_(apparatus),
+      sink_(sink),
+      listener_(std::move(listener)),
+      desk_(setup_.plan, {setup_.participant, setup_.seed, setup_.ordinal}, setup_.answers, sink) {}
 
 Session::~Session() {
     if (state_ == SessionState::InTrial) apparatus_.stop();
@@ -65,6 +69,7 @@ void Session::interrupt(const std::string& reason) {
 SessionState Session::advance() {
     switch (state_) {
         case SessionState::BetweenTrials:
+            if (asksQuestionnaire()) break;
             if (finished_ < setup_.trials.size()) {
                 if (!rest()) beginTrial();
             } else {
@@ -80,6 +85,13 @@ SessionState Session::advance() {
             break;
     }
     return state_;
+}
+
+/// True while a questionnaire is open, or after it failed.
+bool Session::asksQuestionnaire() {
+    const auto open = desk_.ask(std::span(setup_.trials).subspan(finished_), session_ns_);
+    if (!open) fail("questionnaire", open.errors());
+    return !open || *open;
 }
 
 /// A piece of the rest before the next trial's block; false if there is nothing to rest any more.
@@ -183,6 +195,7 @@ void Session::finishTrial() {
     state_ = SessionState::BetweenTrials;
     if (listener_.acknowledge) listener_.acknowledge(attempt.id, end.outcome);
     const design::PlannedTrial& done = trial();
+    desk_.remember({done, end.measures});
     ++finished_;
     if (!listener_.progress) return;
     std::optional<double> trial_time_s;

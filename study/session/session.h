@@ -11,6 +11,7 @@
 #include "study/design/trial_order.h"
 #include "study/protocol/study_plan.h"
 #include "study/session/apparatus.h"
+#include "study/session/questionnaire_desk.h"
 #include "study/session/trial_course.h"
 #include "study/session/trial_sink.h"
 
@@ -23,6 +24,7 @@ struct SessionSetup {
     std::uint64_t seed = 0;                    // of the study
     bool timing_measured = true;               // false in virtual time
     int ordinal = 1;                           // number of the participant's session
+    QuestionnaireSource* answers = nullptr;    // who answers; may stay null if the plan has no questionnaire
 };
 
 /// A trial that is over and durable.
@@ -63,10 +65,10 @@ public:
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
-    /// One bounded piece of work: rest for kTicksPerRest before a block that asks for it (events rest_started,
-    /// rest_ended), begin the next trial (event swap_device if it is on another device than the one before), watch the
-    /// running one for kTicksPerLook, or close the session.
-    /// Whatever is to be done to a session from outside is done between two calls.
+    /// One bounded piece of work: look whether a due questionnaire is filled, rest for kTicksPerRest before a block
+    /// that asks for it (events rest_started, rest_ended), begin the next trial (event swap_device if it is on another
+    /// device than the one before), watch the running one for kTicksPerLook, or close the session. Whatever is to be
+    /// done to a session from outside is done between two calls.
     SessionState advance();
 
     /// Ends the session from outside, between two calls of advance(): a running trial is stored as aborted for
@@ -98,6 +100,7 @@ private:
     bool rest();
     void beginTrial();
     void watchTrial();
+    bool asksQuestionnaire();
     std::size_t takeRecords();
     void judge(std::span<const TickRecord> records);
     void finishTrial();
@@ -111,6 +114,7 @@ private:
     Apparatus& apparatus_;
     TrialSink& sink_;
     SessionListener listener_;
+    QuestionnaireDesk desk_;
     SessionState state_ = SessionState::BetweenTrials;
     std::optional<Attempt> attempt_;
     std::size_t finished_ = 0;

@@ -10,6 +10,7 @@
 #include "core/base/tick_record.h"
 #include "study/measures/measures.h"
 #include "study/session/apparatus.h"
+#include "study/session/questionnaire_source.h"
 
 namespace passung::session {
 
@@ -42,7 +43,8 @@ struct Event {
     std::string payload_json = "{}";
 };
 
-/// Where a session's data goes. Calls return quickly; finishAttempt and finishSession return when the data is durable.
+/// Where a session's data goes. Calls return quickly; finishAttempt, storeQuestionnaire and finishSession return when
+/// the data is durable.
 class TrialSink {
 public:
     virtual ~TrialSink() = default;
@@ -50,6 +52,7 @@ public:
     virtual void appendRecords(AttemptId attempt, std::span<const TickRecord> records) = 0;
     virtual void appendEvent(const Event& event) = 0;
     virtual Result<Done> finishAttempt(AttemptId attempt, const AttemptEnd& end) = 0;
+    virtual Result<Done> storeQuestionnaire(const QuestionnaireRun& run) = 0;
     virtual Result<Done> finishSession(bool complete, std::int64_t end_ns) = 0;
 };
 

@@ -201,4 +201,46 @@ struct EventRow {
     std::string payload_json;
 };
 
+struct ItemResponseRow {
+    std::string item;
+    std::int64_t presented_index = 0;  // from 0
+    std::optional<double> value_num;
+    std::optional<std::string> value_text;
+    bool skipped = false;
+    std::optional<std::int64_t> rt_ms;  // empty: not measured
+    std::int64_t changes = 0;
+};
+
+struct ScoreRow {
+    std::string scale;
+    std::optional<double> value;
+    std::int64_t n_items = 0;
+    std::int64_t n_missing = 0;
+    std::int64_t scoring_version = 1;
+};
+
+/// One filled questionnaire.
+struct QuestionnaireRunRow {
+    std::string participant_id;
+    std::string kind;
+    std::int64_t session_ordinal = 1;
+    std::string session_id;
+    std::string protocol_sha256;
+    std::string questionnaire;  // its key
+    std::string version;
+    std::string language;
+    std::string definition_text;            // the questionnaire's file
+    std::optional<std::string> texts_text;  // the lab's texts, of a slot
+    std::string moment;
+    std::optional<std::int64_t> block_index;
+    std::optional<std::string> block;
+    std::optional<std::int64_t> trial_index;
+    std::optional<std::string> condition;
+    std::optional<std::int64_t> condition_position;  // as the protocol lists conditions
+    std::string started_utc;
+    std::optional<std::string> completed_utc;
+    std::vector<ItemResponseRow> responses;
+    std::vector<ScoreRow> scores;
+};
+
 }  // namespace passung::store

@@ -1,6 +1,7 @@
 #include "study/store/session_writer.h"
 
 #include "study/store/hex_text.h"
+#include "study/store/questionnaire_rows.h"
 #include "study/store/session_json.h"
 #include "study/store/sqlite.h"
 #include "study/store/writer_thread.h"
@@ -216,6 +217,16 @@ Result<Done> SessionWriter::finishAttempt(session::AttemptId attempt, const sess
     return thread_.call([&](const Database& database) {
         throwFailure();
         storeEnd(database, ended, end);
+        return Done{};
+    });
+}
+
+Result<Done> SessionWriter::storeQuestionnaire(const session::QuestionnaireRun& run) {
+    return thread_.call([&](const Database& database) {
+        throwFailure();
+        Transaction transaction(database, Durability::Full);
+        insertQuestionnaireRun(database, rows_.session_id, rows_.segment_id, run, clock_);
+        transaction.commit();
         return Done{};
     });
 }

@@ -15,6 +15,7 @@
 #include "study/store/open_database.h"
 #include "study/store/participant_rows.h"
 #include "study/store/process_lock.h"
+#include "study/store/questionnaire_rows.h"
 #include "study/store/revisions.h"
 #include "study/store/session_json.h"
 #include "study/store/stable_stiffness_rows.h"
@@ -201,6 +202,7 @@ std::string importPlan(const Database& database, const protocol::StudyPlan& plan
     if (database.prepare("SELECT 1 FROM protocol_version WHERE protocol_sha256=?").bind(sha256).step()) {
         requireSeed(database, sha256, plan.seed);
         requireMeshes(database, sha256, meshes);
+        requireQuestionnaires(database, sha256, plan);
         storeSeed(database, sha256, plan.seed);
         insertMeasures(database);
         if (keep) transaction.commit();
@@ -216,6 +218,7 @@ std::string importPlan(const Database& database, const protocol::StudyPlan& plan
     for (const MeshContent& mesh : meshes) insert_mesh.bind(sha256, mesh.mesh, mesh.sha256, mesh.bytes).run();
     insertFactors(database, sha256, plan);
     insertConditions(database, sha256, plan);
+    insertQuestionnaires(database, plan);
     insertMeasures(database);
     declareMeasures(database, sha256, plan);
     Statement insert_stable = database.prepare("INSERT INTO stable_stiffness VALUES(?, ?, ?, ?, ?)");

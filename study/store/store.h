@@ -80,8 +80,8 @@ public:
 
     /// Stores the protocol with its text, factors, conditions, measures, the SHA-256 of every mesh file that it names
     /// and a free slot for every planned participant. Returns the SHA-256 of the text. Importing the same text again
-    /// changes nothing; another seed than that of the sessions of this protocol is refused, and so is a mesh file with
-    /// another content.
+    /// changes nothing; another seed than that of the sessions of this protocol is refused, and so is a mesh or
+    /// questionnaire file with another content.
     Result<std::string> importProtocol(const protocol::StudyPlan& plan);
     /// The same answer, but nothing is stored.
     Result<std::string> checkProtocol(const protocol::StudyPlan& plan);

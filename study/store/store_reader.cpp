@@ -4,6 +4,7 @@
 #include "study/store/audit.h"
 #include "study/store/consent_rows.h"
 #include "study/store/open_database.h"
+#include "study/store/questionnaire_rows.h"
 #include "study/store/sample_codec.h"
 #include "study/store/sqlite.h"
 #include "study/store/stable_stiffness_rows.h"
@@ -336,6 +337,10 @@ Result<std::vector<EventRow>> StoreReader::events() const {
                                 row.text(8)};
             });
     });
+}
+
+Result<std::vector<QuestionnaireRunRow>> StoreReader::questionnaireRuns() const {
+    return guarded(path_, [&] { return readQuestionnaireRuns(*database_); });
 }
 
 Result<std::vector<TickRecord>> StoreReader::records(std::int64_t attempt_id) const {

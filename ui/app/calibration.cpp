@@ -133,7 +133,9 @@ Result<protocol::StudyPlan> withKeptStiffness(const protocol::StudyPlan& plan,
     if (std::equal(kept.begin(), kept.end(), plan.stable_stiffness.begin(), plan.stable_stiffness.end(), same))
         return plan;
     auto again = protocol::readProtocolText(plan.source_text, plan.source_path, devicesAsKept(kept), knownMeasures());
-    if (again) again->seed = plan.seed;
+    if (!again) return again;
+    again->seed = plan.seed;
+    again->questionnaires = plan.questionnaires;  // their files are not part of the text
     return again;
 }
 

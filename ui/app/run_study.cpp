@@ -14,6 +14,7 @@
 #include "ui/app/auto_accuracy.h"
 #include "ui/app/calibration.h"
 #include "ui/app/disk_store.h"
+#include "ui/app/simulated_answers.h"
 #include "ui/app/wall_clock.h"
 
 namespace passung::app {
@@ -86,7 +87,8 @@ private:
         if (!trials) return trials.errors();
         auto writer = store_.createSession(start, *trials);
         if (!writer) return writer.errors();
-        session::Session session({plan_, *trials, code, plan_.seed, measured, *ordinal}, apparatus, **writer,
+        SimulatedAnswers answers(plan_, code);
+        session::Session session({plan_, *trials, code, plan_.seed, measured, *ordinal, &answers}, apparatus, **writer,
                                  {listener_.acknowledge, listener_.trial});
         while (session.state() == session::SessionState::BetweenTrials ||
                session.state() == session::SessionState::InTrial) {

@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "core/model/mesh_import.h"
 #include "core/model/part.h"
+#include "study/protocol/document.h"
 #include "study/protocol/protocol_reader.h"
+#include "study/protocol/questionnaire_reader.h"
 #include "study/session/participant_order.h"
 #include "study/session/plan_text.h"
 #include "ui/app/run_study.h"
@@ -38,9 +41,22 @@ Result<Done> checkMeshes(const protocol::StudyPlan& plan) {
     return Done{};
 }
 
+/// A questionnaire's file by itself; nothing if it is none.
+std::optional<int> checkQuestionnaire(const std::string& path) {
+    const auto text = protocol::readFile(path);
+    if (!text || !protocol::isQuestionnaire(*text, path)) return std::nullopt;
+    const auto definition = protocol::readQuestionnaire(*text, path, "");
+    if (!definition) return fail(definition.errors());
+    fmt::print("{}: ok: {} {}, {} items, {} scales, {} golden vectors{}\n", path, definition->key, definition->version,
+               definition->items.size(), definition->scales.size(), definition->golden.size(),
+               definition->slot ? ", a slot for the lab's texts" : "");
+    return 0;
+}
+
 }  // namespace
 
 int check(const CheckOptions& options) {
+    if (const auto code = checkQuestionnaire(options.protocol)) return *code;
     const auto plan = protocol::readProtocol(options.protocol, app::knownDevices(), app::knownMeasures());
     if (!plan) return fail(plan.errors());
     if (const auto meshes = checkMeshes(*plan); !meshes) return fail(meshes.errors());

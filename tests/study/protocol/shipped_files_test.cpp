@@ -60,6 +60,17 @@ TEST(ShippedFiles, PegInHoleHasItsTwelveConditions) {
     EXPECT_EQ(plan->measures.size(), measures::definitions().size());
 }
 
+TEST(ShippedFiles, PegInHoleAsksForLoadAfterItsMainBlockAndForTheContactOfEachCondition) {
+    // Truth: closed form: as the study's own comments say.
+    const auto plan = readShipped("peg_in_hole/study.toml");
+    ASSERT_TRUE(plan);
+    ASSERT_EQ(plan->questionnaires.size(), 2u);
+    EXPECT_EQ(plan->questionnaires[0].definition.key, "nasa_tlx_raw");
+    EXPECT_EQ(plan->questionnaires[0].moment, Moment::AfterBlock);
+    EXPECT_EQ(plan->questionnaires[1].definition.key, "contact_perception");
+    EXPECT_EQ(plan->questionnaires[1].moment, Moment::AfterCondition);
+}
+
 TEST(ShippedFiles, DesignsGivesEveryCombinationEquallyOften) {
     // Truth: closed form: 8 rows x 2 groups; of 32 conditions everybody meets 4, catch trials apart, in the main block,
     // each half of the chamfers; over all, each of the 16 without catch stands there 16 x 4 / 16 = 4 times.

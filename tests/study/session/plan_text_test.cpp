@@ -86,5 +86,27 @@ TEST(ParticipantOrder, FollowsTheBlocksOfTheProtocol) {
     EXPECT_EQ(trials[13].repetition, 3);
 }
 
+TEST(PlanText, ListsWhatIsAskedAndWhen) {
+    // Truth: closed form; the words are a regression
+    auto plan = smallPlan();
+    EXPECT_EQ(describePlan(plan, 1).find("Questionnaires"), std::string::npos);
+    for (const auto moment :
+         {protocol::Moment::SessionEnd, protocol::Moment::AfterBlock, protocol::Moment::AfterTrial}) {
+        protocol::PlannedQuestionnaire planned;
+        planned.definition.key = "ssq";
+        planned.definition.version = "1.0";
+        planned.definition.items.resize(16);
+        planned.language = "de";
+        planned.moment = moment;
+        if (moment == protocol::Moment::AfterTrial) planned.block = "practice";
+        plan.questionnaires.push_back(planned);
+    }
+    EXPECT_NE(describePlan(plan, 1).find("\nQuestionnaires\n"
+                                         "  ssq 1.0  session_end, de, 16 items\n"
+                                         "  ssq 1.0  after_block of every main block, de, 16 items\n"
+                                         "  ssq 1.0  after_trial of block practice, de, 16 items\n"),
+              std::string::npos);
+}
+
 }  // namespace
 }  // namespace passung::session

@@ -107,6 +107,10 @@ public:
         ends.push_back(end);
         return Done{};
     }
+    Result<Done> storeQuestionnaire(const QuestionnaireRun& run) override {
+        log_.push_back("storeQuestionnaire " + run.form.planned.definition.key);
+        return Done{};
+    }
     Result<Done> finishSession(bool all, std::int64_t end_ns) override {
         log_.push_back("finishSession");
         complete = all;
@@ -252,6 +256,46 @@ TEST_F(SessionTest, RestsBeforeABlockAndSaysWhenTheDeviceIsSwapped) {
     EXPECT_EQ(notes, (std::vector<std::string>{R"(rest_started {"block":"late"})", R"(rest_ended {"block":"late"})",
                                                R"(swap_device {"to":"stick"})", R"(swap_device {"to":"arm"})"}));
     EXPECT_EQ(sink_.starts[1].start_ns, sink_.starts[0].start_ns + 1560 * kMs + 2050 * kMs);
+}
+
+/// Answers 1 to the only item of every form, at the second look.
+class Answering : public QuestionnaireSource {
+public:
+    std::optional<FilledForm> fill(const Form&) override {
+        if (++looks_ % 2 == 1) return std::nullopt;
+        return FilledForm{{{{1.0, ""}, {}, 0}}, "simulated"};
+    }
+
+private:
+    int looks_ = 0;
+};
+
+TEST_F(SessionTest, QuestionnairesAreAskedWhenTheTrialBeforeIsDurableAndTheNextHasNotBegun) {
+    // Truth: invariant: the list of calls. Nobody there to answer: the session fails before its first trial.
+    for (const auto& [key, moment] : {std::pair{"start", protocol::Moment::SessionStart},
+                                      {"trial", protocol::Moment::AfterTrial},
+                                      {"end", protocol::Moment::SessionEnd}}) {
+        protocol::PlannedQuestionnaire planned;
+        planned.definition.key = key;
+        planned.definition.items.resize(1);
+        planned.definition.items[0].response.high = 1.0;
+        planned.moment = moment;
+        plan_.questionnaires.push_back(planned);
+    }
+    planTrials({successScript(), successScript()});
+    Answering answers;
+    {
+        Session session({plan_, trials_, "P001", 7, false, 1, &answers}, apparatus_, sink_, {});
+        ASSERT_TRUE(session.run());
+    }
+    EXPECT_EQ(log_, (Log{"storeQuestionnaire start", "prepare soft", "startAttempt", "start", "appendRecords", "stop",
+                         "finishAttempt", "storeQuestionnaire trial", "prepare hard", "startAttempt", "start",
+                         "appendRecords", "stop", "finishAttempt", "storeQuestionnaire trial", "storeQuestionnaire end",
+                         "finishSession"}));
+    EXPECT_EQ(sink_.complete, true);
+    Session alone({plan_, trials_, "P001", 7, false}, apparatus_, sink_, {});
+    EXPECT_FALSE(alone.run());
+    EXPECT_EQ(alone.errors().front().message, "nobody is there to answer it");
 }
 
 TEST_F(SessionTest, EveryTickThatTheLoopMadeIsStoredBeforeTheAttemptIsFinished) {

@@ -1,0 +1,85 @@
+#include "study/session/questionnaire_moments.h"
+
+#include <algorithm>
+
+namespace passung::session {
+namespace {
+
+using protocol::Moment;
+using Trials = std::span<const design::PlannedTrial>;
+
+bool endsBlock(const design::PlannedTrial& trial, Trials to_do) {
+    return std::none_of(to_do.begin(), to_do.end(),
+                        [&](const design::PlannedTrial& later) { return later.block_index == trial.block_index; });
+}
+
+bool endsCondition(const design::PlannedTrial& trial, Trials to_do) {
+    return std::none_of(to_do.begin(), to_do.end(), [&](const design::PlannedTrial& later) {
+        return later.block_index == trial.block_index && later.condition == trial.condition;
+    });
+}
+
+bool beginsBlock(const design::PlannedTrial& trial, const design::PlannedTrial* before) {
+    return before != nullptr ? before->block_index != trial.block_index : trial.trial_in_block == 0;
+}
+
+bool isOfBlock(const protocol::PlannedQuestionnaire& planned, const design::PlannedTrial& trial) {
+    if (planned.block.empty()) return trial.phase != protocol::phaseName(protocol::Phase::Practice);
+    return planned.block == trial.block;
+}
+
+/// Nothing if the moment is not now.
+std::optional<Occasion> occasionOf(const protocol::PlannedQuestionnaire& planned, const design::PlannedTrial* before,
+                                   Trials to_do) {
+    const design::PlannedTrial* after = to_do.empty() ? nullptr : &to_do.front();
+    const bool after_block = before != nullptr && isOfBlock(planned, *before);
+    switch (planned.moment) {
+        case Moment::AfterTrial:
+            if (after_block) return Occasion{0, before->block_index, before->trial_index, before->condition};
+            break;
+        case Moment::AfterCondition:
+            if (after_block && endsCondition(*before, to_do))
+                return Occasion{0, before->block_index, {}, before->condition};
+            break;
+        case Moment::AfterBlock:
+            if (after_block && endsBlock(*before, to_do)) return Occasion{0, before->block_index, {}, {}};
+            break;
+        case Moment::SessionEnd:
+            if (after == nullptr) return Occasion{};
+            break;
+        case Moment::SessionStart:
+            if (before == nullptr && after != nullptr && after->trial_index == 0) return Occasion{};
+            break;
+        case Moment::BeforeBlock:
+            if (after != nullptr && beginsBlock(*after, before) && isOfBlock(planned, *after))
+                return Occasion{0, after->block_index, {}, {}};
+            break;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<Occasion> occasionsBetween(const protocol::StudyPlan& plan, const design::PlannedTrial* before,
+                                       Trials to_do) {
+    std::vector<Occasion> due;
+    for (const Moment moment : {Moment::AfterTrial, Moment::AfterCondition, Moment::AfterBlock, Moment::SessionEnd,
+                                Moment::SessionStart, Moment::BeforeBlock})
+        for (std::size_t i = 0; i < plan.questionnaires.size(); ++i) {
+            if (plan.questionnaires[i].moment != moment) continue;
+            auto occasion = occasionOf(plan.questionnaires[i], before, to_do);
+            if (!occasion) continue;
+            occasion->questionnaire = i;
+            due.push_back(*occasion);
+        }
+    return due;
+}
+
+bool isAbout(const protocol::StudyPlan& plan, const Occasion& occasion, const design::PlannedTrial& trial) {
+    if (plan.questionnaires[occasion.questionnaire].moment == Moment::BeforeBlock) return false;
+    return (!occasion.block_index || *occasion.block_index == trial.block_index) &&
+           (!occasion.trial_index || *occasion.trial_index == trial.trial_index) &&
+           (!occasion.condition || *occasion.condition == trial.condition);
+}
+
+}  // namespace passung::session

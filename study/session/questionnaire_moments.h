@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "study/session/questionnaire_source.h"
+
+namespace passung::session {
+
+/// What is asked between two trials, in this order: after the trial, its condition, its block, at the session's end or
+/// start, before the block; those of one moment as the plan lists them. `before`: the trial that was over last in this
+/// run of the session, nullptr if none was. `to_do`: all that are still to do, the next one first. A condition or block
+/// ends when none of its trials is left to do.
+std::vector<Occasion> occasionsBetween(const protocol::StudyPlan& plan, const design::PlannedTrial* before,
+                                       std::span<const design::PlannedTrial> to_do);
+
+/// Does a form of this occasion ask about the trial?
+bool isAbout(const protocol::StudyPlan& plan, const Occasion& occasion, const design::PlannedTrial& trial);
+
+}  // namespace passung::session

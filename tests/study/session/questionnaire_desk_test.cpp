@@ -1,0 +1,154 @@
+#include "study/session/questionnaire_desk.h"
+
+#include <gtest/gtest.h>
+
+#include <span>
+
+namespace passung::session {
+namespace {
+
+/// A questionnaire of six ratings from 0 to 10; the mean of the first three is a scale.
+protocol::PlannedQuestionnaire sixRatings(const char* key, protocol::Moment moment) {
+    protocol::PlannedQuestionnaire planned;
+    planned.moment = moment;
+    planned.definition.key = key;
+    planned.definition.shuffled = true;
+    for (const char* id : {"a", "b", "c", "d", "e", "f"}) {
+        questionnaire::Item item;
+        item.id = id;
+        item.response.high = 10.0;
+        planned.definition.items.push_back(item);
+    }
+    planned.definition.scales.emplace_back();
+    planned.definition.scales[0].items = {0, 1, 2};
+    return planned;
+}
+
+/// Takes `looks` looks for a form, then gives 1, 2, 6, 0, 0, 0.
+class SlowPerson : public QuestionnaireSource {
+public:
+    int looks = 0;
+    std::vector<double> values = {1, 2, 6, 0, 0, 0};
+    std::vector<std::string> occasions;
+    std::vector<std::vector<std::size_t>> orders;
+    std::vector<std::size_t> trials;
+
+    std::optional<FilledForm> fill(const Form& form) override {
+        if (looked_++ < looks) return std::nullopt;
+        looked_ = 0;
+        occasions.push_back(form.planned.definition.key + " " + form.occasion_text);
+        orders.push_back(form.order);
+        trials.push_back(form.trials.size());
+        FilledForm filled{{}, "participant"};
+        for (const double value : values) filled.answers.push_back({{value, ""}, 800, 1});
+        return filled;
+    }
+
+private:
+    int looked_ = 0;
+};
+
+class StoringSink : public TrialSink {
+public:
+    std::vector<double> scores;
+    std::vector<std::int64_t> times;
+    bool full = false;
+    Result<AttemptId> startAttempt(const AttemptStart&) override { return AttemptId{1}; }
+    void appendRecords(AttemptId, std::span<const TickRecord>) override {}
+    void appendEvent(const Event&) override {}
+    Result<Done> finishAttempt(AttemptId, const AttemptEnd&) override { return Done{}; }
+    Result<Done> storeQuestionnaire(const QuestionnaireRun& run) override {
+        if (full) return Error{"the disk is full"};
+        scores.push_back(run.scores.at(0).value.value());
+        times.push_back(run.completed_ns);
+        return Done{};
+    }
+    Result<Done> finishSession(bool, std::int64_t) override { return Done{}; }
+};
+
+class QuestionnaireDeskTest : public testing::Test {
+protected:
+    QuestionnaireDeskTest() {
+        plan_.name = "study";
+        plan_.conditions.resize(2);
+        plan_.questionnaires = {sixRatings("first", protocol::Moment::AfterTrial),
+                                sixRatings("second", protocol::Moment::AfterBlock)};
+        for (std::int64_t i = 0; i < 2; ++i)
+            trials_.push_back({i, 0, "main", i, "main", static_cast<std::size_t>(i), 1});
+    }
+    QuestionnaireDesk desk(QuestionnaireSource* source) { return {plan_, {"P001", 7, 1}, source, sink_}; }
+
+    std::span<const design::PlannedTrial> from(std::size_t next) const { return std::span(trials_).subspan(next); }
+
+    protocol::StudyPlan plan_;
+    std::vector<design::PlannedTrial> trials_;
+    StoringSink sink_;
+    SlowPerson person_;
+};
+
+TEST_F(QuestionnaireDeskTest, TheTrialWaitsUntilTheLastFormIsStored) {
+    // Truth: closed form: three looks for each form; nothing is due before trial 0; means of 1, 2, 6.
+    person_.looks = 2;
+    auto asking = desk(&person_);
+    EXPECT_FALSE(*asking.ask(from(0), 0));
+    asking.remember({trials_[0], {}});
+    for (const bool waits : {true, true, false}) EXPECT_EQ(*asking.ask(from(1), 5), waits);
+    EXPECT_FALSE(*asking.ask(from(1), 5)) << "asked once";
+    asking.remember({trials_[1], {}});
+    for (const bool waits : {true, true, true, true, true, false}) EXPECT_EQ(*asking.ask(from(2), 9), waits);
+    EXPECT_EQ(sink_.scores, (std::vector<double>{3, 3, 3}));
+    EXPECT_EQ(sink_.times, (std::vector<std::int64_t>{5, 9, 9}));
+    EXPECT_EQ(person_.occasions, (std::vector<std::string>{"first 1|after_trial|0|0|0", "first 1|after_trial|0|1|1",
+                                                           "second 1|after_block|0||"}));
+    EXPECT_EQ(person_.trials, (std::vector<std::size_t>{1, 1, 2}));
+}
+
+TEST_F(QuestionnaireDeskTest, TheOrderOfItemsFollowsFromTheOccasionAlone) {
+    // Truth: invariant: a session that begins later (resumed) shows the same order.
+    auto whole = desk(&person_);
+    whole.remember({trials_[0], {}});
+    static_cast<void>(whole.ask(from(1), 0));
+    whole.remember({trials_[1], {}});
+    static_cast<void>(whole.ask(from(2), 0));
+    static_cast<void>(whole.ask(from(2), 0));
+    auto later = desk(&person_);
+    later.remember({trials_[1], {}});
+    static_cast<void>(later.ask(from(2), 0));
+    ASSERT_EQ(person_.orders.size(), 4u);
+    EXPECT_EQ(person_.occasions[3], person_.occasions[1]);
+    EXPECT_EQ(person_.orders[3], person_.orders[1]);
+    EXPECT_NE(person_.orders[0], person_.orders[1]) << "another occasion, another order";
+}
+
+TEST_F(QuestionnaireDeskTest, RefusesAnswersThatAreNotOnOffer) {
+    // Truth: closed form; the words are a regression
+    person_.values = {1, 2, 11, 0, 0, 0};
+    auto asking = desk(&person_);
+    asking.remember({trials_[0], {}});
+    const auto result = asking.ask(from(1), 0);
+    ASSERT_FALSE(result);
+    EXPECT_EQ(toString(result.errors().front()), "error: questionnaire first: item c: must be from 0 to 10");
+    person_.values = {1, 2};
+    auto short_form = desk(&person_);
+    short_form.remember({trials_[0], {}});
+    EXPECT_FALSE(short_form.ask(from(1), 0));
+    EXPECT_TRUE(sink_.scores.empty());
+}
+
+TEST_F(QuestionnaireDeskTest, FailsWhereNobodyAnswersOrNothingCanBeStored) {
+    // Truth: invariant
+    auto nobody = desk(nullptr);
+    nobody.remember({trials_[0], {}});
+    EXPECT_FALSE(nobody.ask(from(1), 0));
+    sink_.full = true;
+    auto asking = desk(&person_);
+    asking.remember({trials_[0], {}});
+    const auto full = asking.ask(from(1), 0);
+    ASSERT_FALSE(full);
+    EXPECT_EQ(full.errors().front().message, "the disk is full");
+    plan_.questionnaires.clear();
+    EXPECT_FALSE(*desk(nullptr).ask(from(1), 0)) << "without questionnaires nobody is needed";
+}
+
+}  // namespace
+}  // namespace passung::session

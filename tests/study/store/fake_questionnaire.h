@@ -1,0 +1,64 @@
+#pragma once
+
+#include "study/protocol/document.h"
+#include "study/protocol/json.h"
+#include "study/protocol/questionnaire_reader.h"
+#include "study/questionnaire/scoring.h"
+#include "tests/study/store/fake_study.h"
+
+/// The fake study with shipped questionnaires, for tests of store and export.
+namespace passung::fake {
+
+inline protocol::PlannedQuestionnaire shippedQuestionnaire(const std::string& key, protocol::Moment moment) {
+    const std::string path = PASSUNG_SOURCE_DIR "/protocols/questionnaires/" + key + ".toml";
+    const std::string text = *protocol::readFile(path);
+    protocol::PlannedQuestionnaire planned;
+    planned.language = "de";
+    planned.moment = moment;
+    planned.definition = *protocol::readQuestionnaire(text, path, "de");
+    planned.source_json = protocol::JsonObject().text("definition", text).str();
+    return planned;
+}
+
+/// Contact perception after each condition, demographics at the end.
+inline protocol::StudyPlan makeAskingPlan() {
+    protocol::StudyPlan plan = makePlan();
+    plan.source_text += "# asks\n";
+    plan.questionnaires = {shippedQuestionnaire("contact_perception", protocol::Moment::AfterCondition),
+                           shippedQuestionnaire("demographics", protocol::Moment::SessionEnd)};
+    plan.expanded_json = R"({"questionnaires": ["contact_perception", "demographics"]})";
+    return plan;
+}
+
+inline std::unique_ptr<store::SessionWriter> beginAskingSession(store::Store& store, const protocol::StudyPlan& plan,
+                                                                const std::string& participant, std::int64_t trials) {
+    store::SessionStart start;
+    start.protocol_sha256 = require(store.importProtocol(plan));
+    require(store.enrol(participant, protocol::ParticipantKind::Simulated, store::UtcClock::virtualEpoch().at(0)));
+    require(store.assignSlot(start.protocol_sha256, participant));
+    start.participant = participant;
+    start.seed = plan.seed;
+    start.session_id = store::sessionId(plan.name, participant, 1, start.seed);
+    start.device.name = "sigma7";
+    return require(store.createSession(start, makeTrials(plan, trials)));
+}
+
+/// Stores a filled form: `numbers` in the order of the items, shown last item first; none for a skipped one.
+inline Result<Done> storeForm(store::SessionWriter& writer, const protocol::StudyPlan& plan,
+                              const session::Occasion& occasion, const std::vector<std::optional<double>>& numbers,
+                              std::int64_t time_ns, const std::string& text = "") {
+    const auto& planned = plan.questionnaires.at(occasion.questionnaire);
+    session::Form form{planned, occasion, "", {}, {}};
+    session::FilledForm filled{{}, "participant"};
+    std::vector<questionnaire::Answer> answers;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        form.order.push_back(numbers.size() - 1 - i);
+        answers.push_back({numbers[i], ""});
+        if (planned.definition.items[i].response.kind == questionnaire::AnswerKind::Text) answers[i].text = text;
+        filled.answers.push_back({answers[i], 700 + static_cast<std::int64_t>(i), 2});
+    }
+    return writer.storeQuestionnaire(
+        {form, filled, questionnaire::computeScores(planned.definition, answers), time_ns, time_ns});
+}
+
+}  // namespace passung::fake
