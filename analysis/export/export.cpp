@@ -8,6 +8,7 @@
 #include "analysis/export/codebook.h"
 #include "analysis/export/export_folder.h"
 #include "analysis/export/gzip.h"
+#include "analysis/export/questionnaire_tables.h"
 #include "analysis/export/samples.h"
 #include "analysis/export/session_tables.h"
 #include "analysis/export/study_data.h"
@@ -25,6 +26,12 @@ std::vector<Table> makeTables(const StudyData& study) {
     tables.push_back(makeSessions(study));
     tables.push_back(makeParticipants(study));
     tables.push_back(makeTiming(study));
+    if (!study.questionnaires.empty()) {
+        tables.push_back(makeQuestionnaireItems(study));
+        tables.push_back(makeQuestionnaireScores(study));
+        tables.push_back(makeScoresWide(study));
+        tables.push_back(makeReliability(study));
+    }
     if (!study.accuracy.empty()) tables.push_back(makeAccuracy(study));
     return tables;
 }

@@ -126,17 +126,6 @@ std::vector<std::string> trialRow(const StudyData& study, const store::AttemptRo
     return row;
 }
 
-/// A condition as part of a column's name: everything but letters, digits, '.', '-' and '_' becomes '_'.
-std::string columnPart(const std::string& condition) {
-    std::string part = condition;
-    for (char& c : part) {
-        const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' ||
-                           c == '-' || c == '_';
-        if (!plain) c = '_';
-    }
-    return part;
-}
-
 /// What a participant's columns tell apart: the condition's name without the levels that a group or an assignment
 /// gives.
 std::string seenName(const StudyData& study, const store::ConditionRow& condition) {
@@ -176,6 +165,16 @@ std::vector<std::pair<std::string, std::string>> conditionParts(const StudyData&
 }
 
 }  // namespace
+
+std::string columnPart(const std::string& condition) {
+    std::string part = condition;
+    for (char& c : part) {
+        const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' ||
+                           c == '-' || c == '_';
+        if (!plain) c = '_';
+    }
+    return part;
+}
 
 std::vector<Column> fixedColumns() {
     std::vector<Column> columns = leadingColumns();

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "analysis/export/study_data.h"
 #include "analysis/export/table.h"
 
 namespace passung::exporter {
+
+/// A condition's name as part of a column's name: everything but letters, digits, '.', '-' and '_' becomes '_'.
+std::string columnPart(const std::string& condition);
 
 /// The columns of trials.csv that every study has; factors and measures come in between.
 std::vector<Column> fixedColumns();

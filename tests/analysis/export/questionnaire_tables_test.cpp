@@ -1,0 +1,124 @@
+#include "analysis/export/questionnaire_tables.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "analysis/export/export.h"
+#include "study/questionnaire/cronbach_alpha.h"
+#include "tests/analysis/export/csv_reader.h"
+#include "tests/study/store/fake_questionnaire.h"
+
+namespace passung::exporter {
+namespace {
+
+using fake::require;
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+/// Two people with all four conditions. Answers of person p in condition c: every item 2 + p + c, but one is skipped.
+class QuestionnaireTables : public testing::Test {
+protected:
+    void SetUp() override {
+        auto store = fake::openStore(folder_ / "s.db");
+        for (int person = 0; person < 2; ++person) {
+            auto writer = fake::beginAskingSession(*store, plan_, person == 0 ? "S001" : "S002", 4);
+            for (std::size_t c = 0; c < 4; ++c) {
+                // Not in the order of the conditions: the wide table must not depend on it.
+                const std::size_t condition = person == 0 ? 3 - c : c;
+                std::vector<std::optional<double>> answers(8, 2.0 + person + static_cast<double>(condition));
+                if (person == 1 && condition == 0) answers[0].reset();
+                require(fake::storeForm(*writer, plan_, {0, 0, {}, condition}, answers, kSecond));
+            }
+            require(fake::storeForm(*writer, plan_, {1, {}, {}, {}}, {34, 1, 2, 1, 0, 3, std::nullopt}, 2 * kSecond,
+                                    fake::kHardText));
+            require(writer->finishSession(true, 3 * kSecond));
+        }
+        const auto reader = require(store::StoreReader::open(folder_ / "s.db"));
+        require(exportAll(reader, folder_ / "out", {}));
+    }
+    fake::CsvFile csv(const std::string& name) {
+        std::ifstream stream(folder_ / ("out/" + name), std::ios::binary);
+        return fake::readCsv({std::istreambuf_iterator<char>(stream), {}});
+    }
+
+    fake::TempFolder folder_;
+    protocol::StudyPlan plan_ = fake::makeAskingPlan();
+};
+
+TEST_F(QuestionnaireTables, ItemsHaveOneRowPerAnswerAsShown) {
+    // Truth: closed form (what was written; items are shown last one first)
+    const auto items = csv("questionnaire_items.csv");
+    ASSERT_EQ(items.rows.size(), 2u * (4u * 8u + 7u));
+    EXPECT_EQ(items.at(0, "participant_id"), "S001");
+    EXPECT_EQ(items.at(0, "kind"), "simulated");
+    EXPECT_EQ(items.at(0, "questionnaire"), "contact_perception");
+    EXPECT_EQ(items.at(0, "condition"), "god/0,5");
+    EXPECT_EQ(items.at(0, "item"), "matched");
+    EXPECT_EQ(items.at(0, "presented_index"), "0");
+    EXPECT_EQ(items.at(0, "value"), "5");
+    EXPECT_EQ(items.at(0, "response_time_ms"), "707");
+    EXPECT_EQ(items.at(0, "changes"), "2");
+    EXPECT_EQ(items.at(32, "item"), "impairment");
+    EXPECT_EQ(items.at(32, "value"), "NA");
+    EXPECT_EQ(items.at(32, "value_text"), fake::kHardText);
+    EXPECT_EQ(items.at(32, "block"), "NA");
+}
+
+TEST_F(QuestionnaireTables, ScoresSayScaleAndFormula) {
+    // Truth: closed form: of answers 5, one of the two reversed: (5 + 8 - 5) / 2 = 4.
+    const auto scores = csv("questionnaire_scores.csv");
+    ASSERT_EQ(scores.rows.size(), 2u * 4u * 5u);
+    std::size_t row = 0;
+    while (scores.at(row, "scale") != "hardness") ++row;
+    EXPECT_EQ(scores.at(row, "score"), "4");
+    EXPECT_EQ(scores.at(row, "scale_label"), "Hard walls, 1 to 7");
+    EXPECT_EQ(scores.at(row, "scale_formula"), "mean over hard, sank_in (reversed)");
+    EXPECT_EQ(scores.at(row, "class"), "NA");
+    EXPECT_EQ(scores.at(row, "scoring_version"), "1");
+}
+
+TEST_F(QuestionnaireTables, WideHasAColumnForEachOccasionInTheOrderOfConditions) {
+    // Truth: closed form: clarity is the mean of two unreversed items, 2 + person + condition.
+    const auto wide = csv("scores_wide.csv");
+    ASSERT_EQ(wide.rows.size(), 2u);
+    std::vector<std::string> columns;
+    for (const std::string& name : wide.header)
+        if (name.find("clarity") != std::string::npos) columns.push_back(name);
+    const std::string start = "contact_perception.clarity.after_condition.main, \"first\".";
+    EXPECT_EQ(columns, (std::vector<std::string>{start + "penalty_0.1", start + "penalty_0_5", start + "god_0.1",
+                                                 start + "god_0_5"}));
+    for (std::size_t person = 0; person < 2; ++person)
+        for (std::size_t c = 0; c < 4; ++c) EXPECT_EQ(wide.at(person, columns[c]), std::to_string(2 + person + c));
+    EXPECT_EQ(wide.at(1, "contact_perception.hardness.after_condition.main, \"first\".penalty_0.1"), "NA");
+}
+
+TEST_F(QuestionnaireTables, ReliabilityLeavesOutFormsWithAMissingItem) {
+    // Truth: closed form: two equal items have alpha 1; an item and its reversal have sums that do not vary.
+    const auto table = csv("questionnaire_reliability.csv");
+    ASSERT_EQ(table.rows.size(), 5u);
+    for (std::size_t row = 0; row < 5; ++row) {
+        if (table.at(row, "scale") == "clarity") {
+            EXPECT_EQ(table.at(row, "n_forms"), "8");
+            EXPECT_EQ(table.at(row, "cronbach_alpha"), "1");
+        } else if (table.at(row, "scale") == "hardness") {
+            EXPECT_EQ(table.at(row, "n_forms"), "7");
+            EXPECT_EQ(table.at(row, "cronbach_alpha"), "NA");
+        }
+    }
+}
+
+TEST_F(QuestionnaireTables, AreInTheCodebook) {
+    // Truth: invariant: every column of every table is described.
+    const auto book = csv("codebook.csv");
+    for (const char* file :
+         {"questionnaire_items.csv", "questionnaire_scores.csv", "scores_wide.csv", "questionnaire_reliability.csv"}) {
+        std::vector<std::string> described;
+        for (std::size_t row = 0; row < book.rows.size(); ++row)
+            if (book.at(row, "file") == file) described.push_back(book.at(row, "column"));
+        EXPECT_EQ(described, csv(file).header) << file;
+    }
+}
+
+}  // namespace
+}  // namespace passung::exporter
