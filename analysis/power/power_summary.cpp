@@ -77,7 +77,8 @@ std::string summaryText(const PowerResult& result) {
     if (s.coverage)
         text += fmt::format("of the studies' 95 % intervals {:.1f} % hold what was added\n", 100.0 * *s.coverage);
     text += fmt::format("closed form for normal differences of that d: power {:.4f}", s.closed_form);
-    if (std::isfinite(s.size_for_80)) text += fmt::format("; 80 % with {:.1f} participants", s.size_for_80);
+    const bool found = !s.difference_interval.holds(0.0);
+    if (found && std::isfinite(s.size_for_80)) text += fmt::format("; 80 % with {:.1f} participants", s.size_for_80);
     return text + "\nSimulated participants show what design and analysis can find, never how people behave.\n";
 }
 

@@ -47,6 +47,7 @@ Result<exporter::StudyData> hapticStudy(const protocol::StudyPlan& plan, int par
     RunOptions options;
     options.database = (folder.path() / "study.db").string();
     options.simulated = participants;
+    options.backup = false;
     if (const auto end = runStudy(plan, options, {}); !end) return end.errors();
     const auto reader = store::StoreReader::open(options.database);
     if (!reader) return reader.errors();
