@@ -1,7 +1,5 @@
 #include "analysis/power/model_study.h"
 
-#include <stdexcept>
-
 #include "core/base/random.h"
 #include "study/person/completion_time.h"
 #include "study/protocol/participant.h"
@@ -17,27 +15,25 @@ store::Levels levelsOf(const protocol::StudyPlan& plan, const protocol::Conditio
     return levels;
 }
 
-void perform(const protocol::StudyPlan& plan, std::size_t number, const session::DesignPlace& place,
-             exporter::StudyData& study) {
-    const auto kind = protocol::ParticipantKind::Simulated;
-    const std::string code = protocol::participantCode(kind, static_cast<std::int64_t>(number) + 1);
+/// One session of a participant.
+Result<Done> perform(const protocol::StudyPlan& plan, const std::string& code, const session::DesignPlace& place,
+                     int part, exporter::StudyData& study) {
+    const auto trials = session::planTrials(plan, place, code, part);
+    if (!trials) return trials.errors();
     const person::SimulatedPerson person = person::personOf(plan.name, code, plan.seed);
     store::SessionRow session;
-    session.session_id = session.participant_id = code;
+    session.session_id = code + '|' + std::to_string(part);
+    session.participant_id = code;
+    session.ordinal = part;
     session.end_state = "complete";
-    study.sessions.push_back(session);
-    std::vector<design::PlannedTrial> trials;
-    for (int part = 1; part <= protocol::sessionsOf(plan); ++part) {
-        const auto planned = session::planTrials(plan, place, code, part);
-        if (!planned) throw std::runtime_error(toString(planned.errors().front()));
-        trials.insert(trials.end(), planned->begin(), planned->end());
-    }
-    for (const design::PlannedTrial& trial : trials) {
-        const std::string purpose = "simulated|model|" + std::to_string(trial.trial_index);
-        Random random(streamSeed(plan.name, code, trial.phase, purpose, plan.seed));
+    for (const design::PlannedTrial& trial : *trials) {
+        const std::string purpose = "model|" + std::to_string(part) + '|' + std::to_string(trial.trial_index);
+        Random random(streamSeed(plan.name, code, trial.phase, "simulated|" + purpose, plan.seed));
         store::AttemptRow attempt;
-        attempt.session_id = attempt.participant_id = code;
-        attempt.kind = protocol::participantKindName(kind);
+        attempt.session_id = session.session_id;
+        attempt.participant_id = code;
+        attempt.kind = protocol::participantKindName(protocol::ParticipantKind::Simulated);
+        attempt.session_ordinal = part;
         attempt.phase = trial.phase;
         attempt.trial_index = trial.trial_index;
         attempt.condition = study.conditions[trial.condition].condition;
@@ -47,18 +43,27 @@ void perform(const protocol::StudyPlan& plan, std::size_t number, const session:
         attempt.measures[kModelMeasure] = person::completionTime(person, trial.trial_index, random);
         study.attempts.push_back(std::move(attempt));
     }
+    study.sessions.push_back(std::move(session));
+    return Done{};
 }
 
 }  // namespace
 
-exporter::StudyData modelStudy(const protocol::StudyPlan& plan, int participants) {
+Result<exporter::StudyData> modelStudy(const protocol::StudyPlan& plan, int participants) {
+    const auto kind = protocol::ParticipantKind::Simulated;
     exporter::StudyData study;
     study.protocols.emplace_back();  // all rows are of this one, without a hash
+    for (const protocol::Factor& factor : plan.factors)
+        study.factors.push_back({factor.name, factor.name, protocol::factorKindName(factor.kind), factor.unit, {}});
     for (const protocol::Condition& condition : plan.conditions)
         study.conditions.push_back({{}, condition.name, levelsOf(plan, condition)});
     const auto count = static_cast<std::size_t>(participants);
-    const auto places = session::firstPlaces(plan, count, protocol::ParticipantKind::Simulated);
-    for (std::size_t i = 0; i < count; ++i) perform(plan, i, places[i], study);
+    const auto places = session::firstPlaces(plan, count, kind);
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::string code = protocol::participantCode(kind, static_cast<std::int64_t>(i) + 1);
+        for (int part = 1; part <= protocol::sessionsOf(plan); ++part)
+            if (const auto done = perform(plan, code, places[i], part, study); !done) return done.errors();
+    }
     return study;
 }
 

@@ -58,7 +58,7 @@ TEST(PlantedEffect, NamesWhatThePlanDoesNotHave) {
 
 TEST(PlantedEffect, ChangesTheMeasureAtItsLevelOnly) {
     // Truth: closed form
-    const exporter::StudyData before = modelStudy(smallPlan(), 2);
+    const exporter::StudyData before = *modelStudy(smallPlan(), 2);
     exporter::StudyData after = before;
     PlantedEffect effect = effectOf("method:d=x2");
     effect.shift = 0.5;
@@ -96,7 +96,7 @@ void append(exporter::StudyData& study, const std::string& code, const std::vect
 
 TEST(TestEffect, ComparesMeansOfCellMeans) {
     // Truth: closed form. Levels a and d of three people: means over the sizes 1 and 2; the fourth lacks a cell.
-    exporter::StudyData study = modelStudy(smallPlan(), 0);
+    exporter::StudyData study = *modelStudy(smallPlan(), 0);
     append(study, "S001", {1, 3, 9, 9, 4, 4});  // a 2, d 4
     append(study, "S002", {1, 1, 9, 9, 1, 5});  // a 1, d 3
     append(study, "S003", {2, 4, 9, 9, 6, 8});  // a 3, d 7
@@ -109,19 +109,43 @@ TEST(TestEffect, ComparesMeansOfCellMeans) {
     EXPECT_NEAR(testEffect(effectOf("method:a=+0", "d"), study).mean, -8.0 / 3.0, 1e-12);
 }
 
+std::vector<double> timesOf(const exporter::StudyData& study) {
+    std::vector<double> times;
+    for (const auto& attempt : study.attempts) times.push_back(attempt.measures.at(kModelMeasure));
+    return times;
+}
+
 TEST(ModelStudy, IsTheSameForTheSamePlanAndDiffersBetweenPeople) {
     // Truth: invariant
-    const auto timesOf = [](const exporter::StudyData& study) {
-        std::vector<double> times;
-        for (const auto& attempt : study.attempts) times.push_back(attempt.measures.at(kModelMeasure));
-        return times;
-    };
-    const std::vector<double> times = timesOf(modelStudy(smallPlan(), 3));
-    EXPECT_EQ(times, timesOf(modelStudy(smallPlan(), 3)));
+    const std::vector<double> times = timesOf(*modelStudy(smallPlan(), 3));
+    EXPECT_EQ(times, timesOf(*modelStudy(smallPlan(), 3)));
     protocol::StudyPlan other = smallPlan();
     other.seed = 12;
-    EXPECT_NE(times, timesOf(modelStudy(other, 3)));
+    EXPECT_NE(times, timesOf(*modelStudy(other, 3)));
     for (std::size_t i = 0; i < 13; ++i) EXPECT_NE(times[i], times[13 + i]);
+}
+
+TEST(ModelStudy, ASecondSessionIsDrawnAnew) {
+    // Truth: invariant; the same block again, trial by trial.
+    protocol::StudyPlan plan = smallPlan();
+    plan.blocks.erase(plan.blocks.begin());
+    plan.blocks.push_back(plan.blocks.front());
+    plan.blocks.back().name = "again";
+    plan.blocks.back().session = 2;
+    const exporter::StudyData study = *modelStudy(plan, 1);
+    const std::vector<double> times = timesOf(study);
+    ASSERT_EQ(times.size(), 24u);
+    EXPECT_EQ(study.sessions.size(), 2u);
+    for (std::size_t i = 0; i < 12; ++i) EXPECT_NE(times[i], times[12 + i]);
+}
+
+TEST(TestEffect, TakesEverybodyWhereNobodyMeetsEveryCondition) {
+    // Truth: invariant; the sizes are assigned to the methods, a participant meets three of the six conditions.
+    protocol::StudyPlan plan = smallPlan();
+    plan.factors[1].kind = protocol::FactorKind::Nuisance;
+    const exporter::StudyData study = *modelStudy(plan, 6);
+    EXPECT_EQ(study.attempts.size(), 6u * 7u);
+    EXPECT_EQ(testEffect(effectOf("method:d=+0"), study).n, 6u);
 }
 
 }  // namespace

@@ -11,10 +11,6 @@
 namespace passung::power {
 namespace {
 
-Result<exporter::StudyData> perform(const protocol::StudyPlan& plan, int participants) {
-    return modelStudy(plan, participants);
-}
-
 PowerResult run(const protocol::StudyPlan& plan, const std::string& text, int repeats, const Shard& shard = {}) {
     const auto effect = readEffect(text, "", kModelMeasure, plan);
     if (!effect) throw std::runtime_error(toString(effect.errors().front()));
@@ -23,7 +19,7 @@ PowerResult run(const protocol::StudyPlan& plan, const std::string& text, int re
     job.participants = plan.participants;
     job.repeats = repeats;
     job.effect = text;
-    const auto result = runShard(job, shard, *effect, plan, perform, {});
+    const auto result = runShard(job, shard, *effect, plan, modelStudy, {});
     if (!result) throw std::runtime_error(toString(result.errors().front()));
     return *result;
 }
