@@ -7,10 +7,8 @@ namespace passung::tick {
 
 namespace {
 
-constexpr double kIndependent = 1e-7;  // a unit row is independent if more than this of it is left
-constexpr double kFarther = 4.0;       // per removed overlap: a motion that is bent by more has been sent far away
-constexpr std::size_t kBins = 64;      // by the signs of a row's six numbers
-constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kFarther = 4.0;   // per removed overlap: a motion that is bent by more has been sent far away
+constexpr std::size_t kBins = 64;  // by the signs of a row's six numbers
 
 std::size_t binOf(const Vec3& gradient, const Vec3& lever) noexcept {
     std::size_t bin = 0;
@@ -19,87 +17,6 @@ std::size_t binOf(const Vec3& gradient, const Vec3& lever) noexcept {
 }
 
 }  // namespace
-
-/// The active rows N = Q R and their multipliers.
-class MotionSolver::ActiveSet {
-public:
-    int size() const noexcept { return count_; }
-    const Row& row(int i) const noexcept { return rows_[static_cast<std::size_t>(i)]; }
-    double& lambda(int i) noexcept { return lambdas_[static_cast<std::size_t>(i)]; }
-    const Eigen::Matrix<double, 6, 6>& span() const noexcept { return Q_; }
-
-    /// What of `a` lies in the span, as r = N⁺ a, and what does not, as z = a - N r; by Gram-Schmidt twice.
-    void split(const Motion& a, Motion& z, Motion& r) const noexcept {
-        Motion q = Motion::Zero();
-        z = a;
-        for (int pass = 0; pass < 2; ++pass) {
-            for (int i = 0; i < count_; ++i) {
-                const double along = Q_.col(i).dot(z);
-                q[i] += along;
-                z -= along * Q_.col(i);
-            }
-        }
-        r.setZero();
-        for (int i = count_ - 1; i >= 0; --i) {
-            double sum = q[i];
-            for (int k = i + 1; k < count_; ++k) sum -= R_(i, k) * r[k];
-            r[i] = sum / R_(i, i);
-        }
-    }
-
-    /// False if the row depends on those that are there, or these are six.
-    bool tryAdd(const Row& row, double lambda) noexcept {
-        if (count_ == 6) return false;
-        Motion rest = row.a;
-        R_.col(count_).setZero();
-        for (int pass = 0; pass < 2; ++pass) {
-            for (int i = 0; i < count_; ++i) {
-                const double along = Q_.col(i).dot(rest);
-                R_(i, count_) += along;
-                rest -= along * Q_.col(i);
-            }
-        }
-        const double left = rest.norm();
-        if (!(left > kIndependent)) return false;
-        R_(count_, count_) = left;
-        Q_.col(count_) = rest / left;
-        lambdas_[static_cast<std::size_t>(count_)] = lambda;
-        rows_[static_cast<std::size_t>(count_++)] = row;
-        return true;
-    }
-
-    /// Rows before `which` stay as they are, those behind it move up.
-    void drop(int which) noexcept {
-        const int end = count_;
-        count_ = which;
-        for (int i = which + 1; i < end; ++i) {
-            const Row row = rows_[static_cast<std::size_t>(i)];
-            tryAdd(row, lambdas_[static_cast<std::size_t>(i)]);
-        }
-    }
-
-    /// λ = (NᵀN)⁻¹ rhs = R⁻¹ R⁻ᵀ rhs.
-    Motion multipliersFor(const Motion& rhs) const noexcept {
-        Motion y = Motion::Zero();
-        for (int i = 0; i < count_; ++i) {
-            double sum = rhs[i];
-            for (int k = 0; k < i; ++k) sum -= R_(k, i) * y[k];
-            y[i] = sum / R_(i, i);
-        }
-        for (int i = count_ - 1; i >= 0; --i) {
-            double sum = y[i];
-            for (int k = i + 1; k < count_; ++k) sum -= R_(i, k) * y[k];
-            y[i] = sum / R_(i, i);
-        }
-        return y;
-    }
-
-private:
-    std::array<Row, 6> rows_;
-    std::array<double, 6> lambdas_{};
-    Eigen::Matrix<double, 6, 6> Q_ = Eigen::Matrix<double, 6, 6>::Zero(), R_ = Eigen::Matrix<double, 6, 6>::Zero();
-    int count_ = 0;
-};
 
 MotionSolver::MotionSolver(const Surroundings& around, std::span<const std::uint32_t> likely) noexcept
     : around_(around) {
@@ -120,14 +37,14 @@ double MotionSolver::least(const ContactPoint& contact) const noexcept {
     return relaxed_ || contact.radius > 0.0 ? std::min(b, 0.0) : b;
 }
 
-double MotionSolver::boundOf(const Row& row) const noexcept {
+double MotionSolver::boundOf(const MotionRow& row) const noexcept {
     return relaxed_ || row.sphere ? std::min(row.b, 0.0) : row.b;
 }
 
 void MotionSolver::addRow(const ContactPoint& contact) noexcept {
     const double gradient = contact.gradient.norm();
     if (!(gradient > kLeastGradient)) return;
-    Row& row = rows_[static_cast<std::size_t>(count_++)];
+    MotionRow& row = rows_[static_cast<std::size_t>(count_++)];
     row.a.head<3>() = contact.gradient;
     row.a.tail<3>() = (contact.position - around_.p_WO).cross(contact.gradient) / around_.metric_radius;
     row.length = row.a.norm();
@@ -136,14 +53,15 @@ void MotionSolver::addRow(const ContactPoint& contact) noexcept {
     row.gradient = gradient;
     row.contact = static_cast<std::uint32_t>(&contact - around_.contacts.begin());
     row.sphere = contact.radius > 0.0;
+    row.bound = boundOf(row);
 }
 
-const MotionSolver::Row* MotionSolver::mostViolated(const Motion& u) const noexcept {
+const MotionRow* MotionSolver::mostViolated(const Motion& u) const noexcept {
     double violation = tolerance_;
-    const Row* worst = nullptr;
+    const MotionRow* worst = nullptr;
     for (int i = 0; i < count_; ++i) {
-        const Row& row = rows_[static_cast<std::size_t>(i)];
-        const double missing = (boundOf(row) - row.a.dot(u)) * row.length;
+        const MotionRow& row = rows_[static_cast<std::size_t>(i)];
+        const double missing = (row.bound - row.a.dot(u)) * row.length;
         if (!(missing > violation)) continue;
         violation = missing;
         worst = &row;
@@ -151,6 +69,7 @@ const MotionSolver::Row* MotionSolver::mostViolated(const Motion& u) const noexc
     return worst;
 }
 
+/// True if `u` violates contacts that were not met so far; they now are.
 bool MotionSolver::meetsMore(const Motion& u) noexcept {
     const Vec3 dphi = u.tail<3>() / around_.metric_radius;
     const Vec3 at_origin = u.head<3>() - dphi.cross(around_.p_WO);
@@ -175,100 +94,52 @@ bool MotionSolver::meetsMore(const Motion& u) noexcept {
     return count_ > before;
 }
 
-void MotionSolver::startWarm(const Motion& wanted, ActiveSet& active, Motion& u) const noexcept {
-    for (int i = 0; i < held_count_; ++i) active.tryAdd(held_[static_cast<std::size_t>(i)], 0.0);
-    while (active.size() > 0) {
-        Motion missing = Motion::Zero();
-        for (int i = 0; i < active.size(); ++i) missing[i] = boundOf(active.row(i)) - active.row(i).a.dot(wanted);
-        const Motion lambda = active.multipliersFor(missing);
-        int pulls = 0;
-        for (int i = 1; i < active.size(); ++i)
-            if (lambda[i] < lambda[pulls]) pulls = i;
-        if (lambda[pulls] < 0.0) {
-            active.drop(pulls);
-            continue;
-        }
-        for (int i = 0; i < active.size(); ++i) {
-            active.lambda(i) = lambda[i];
-            u += lambda[i] * active.row(i).a;
-        }
-        return;
-    }
-}
-
-/// Takes `row` up, letting others go where they are in the way.
-MotionSolver::Taken MotionSolver::takeUp(const Row& row, ActiveSet& active, Motion& u, int& iterations) const noexcept {
-    double lambda = 0.0;
-    while (++iterations <= kMaxIterations) {
-        Motion z, r;
-        active.split(row.a, z, r);
-        const double z2 = z.squaredNorm();
-        const double full =
-            active.size() < 6 && z2 > kIndependent * kIndependent ? (boundOf(row) - row.a.dot(u)) / z2 : kNever;
-        double partial = kNever;
-        int let_go = -1;
-        for (int i = 0; i < active.size(); ++i) {
-            if (!(r[i] > 1e-12) || !(active.lambda(i) / r[i] < partial)) continue;
-            partial = active.lambda(i) / r[i];
-            let_go = i;
-        }
-        const double t = std::min(full, partial);
-        if (t == kNever) return Taken::Infeasible;
-        if (full < kNever) u += t * z;
-        for (int i = 0; i < active.size(); ++i) active.lambda(i) = std::max(0.0, active.lambda(i) - t * r[i]);
-        lambda += t;
-        if (t == full) {
-            active.tryAdd(row, lambda);
-            return Taken::Yes;
-        }
-        active.drop(let_go);
-    }
-    return Taken::Capped;
-}
-
 /// False if the rows have no common solution.
-bool MotionSolver::attempt(const Motion& wanted, bool all, ConstrainedMotion& result) noexcept {
+bool MotionSolver::attempt(const Motion& wanted, ConstrainedMotion& result) noexcept {
+    for (MotionRow& row : std::span(rows_).first(static_cast<std::size_t>(count_))) row.bound = boundOf(row);
     ActiveSet active;
-    result.u = wanted;
+    for (MotionRow& row : std::span(held_).first(static_cast<std::size_t>(held_count_))) {
+        row.bound = boundOf(row);
+        active.tryAdd(row, 0.0);
+    }
+    result.u = active.start(wanted);
     result.iterations = 0;
     result.converged = true;
-    startWarm(wanted, active, result.u);
     while (true) {
-        const Row* worst = mostViolated(result.u);
-        if (worst == nullptr && all) {
+        const MotionRow* worst = mostViolated(result.u);
+        if (worst == nullptr) {
             held_count_ = active.size();
             for (int i = 0; i < held_count_; ++i) held_[static_cast<std::size_t>(i)] = active.row(i);
             if (meetsMore(result.u)) worst = mostViolated(result.u);
         }
         if (worst == nullptr) break;
-        const Taken taken = takeUp(Row(*worst), active, result.u, result.iterations);
-        if (taken == Taken::Infeasible) return false;
-        if (taken == Taken::Capped) {
+        const auto taken = active.takeUp(MotionRow(*worst), result.u, result.iterations, kMaxIterations);
+        if (taken == ActiveSet::Taken::Infeasible) return false;
+        if (taken == ActiveSet::Taken::Capped) {
             result.converged = false;
             break;
         }
     }
     result.active = held_count_ = active.size();
-    result.held_span = active.span();
     for (int i = 0; i < active.size(); ++i) {
-        const Row& row = held_[static_cast<std::size_t>(i)] = active.row(i);
+        const MotionRow& row = held_[static_cast<std::size_t>(i)] = active.row(i);
         result.held[static_cast<std::size_t>(i)] = {row.contact, active.lambda(i) * row.gradient / row.length};
     }
     return true;
 }
 
-ConstrainedMotion MotionSolver::solve(const Motion& wanted, bool all) noexcept {
-    tolerance_ = std::max(kMotionTolerance, 2.0 * kIndependent * wanted.norm());
+ConstrainedMotion MotionSolver::solve(const Motion& wanted) noexcept {
+    tolerance_ = std::max(kMotionTolerance, 2.0 * ActiveSet::kIndependent * wanted.norm());
     relaxed_ = false;
     ConstrainedMotion result;
-    bool found = attempt(wanted, all, result);
+    bool found = attempt(wanted, result);
     const double bend = (result.u - wanted).norm();
     if (!(found && result.converged && bend <= wanted.norm())) {
         double deepest = 0.0;  // what standing still would leave to be removed
         for (const ContactPoint& contact : around_.contacts) deepest = std::max(deepest, least(contact));
         if (deepest > 0.0 && !(found && result.converged && bend <= wanted.norm() + kFarther * deepest)) {
             relaxed_ = result.relaxed = true;
-            found = attempt(wanted, all, result);
+            found = attempt(wanted, result);
         }
     }
     if (!found) {  // rounding only: these rows allow u = 0
@@ -278,10 +149,6 @@ ConstrainedMotion MotionSolver::solve(const Motion& wanted, bool all) noexcept {
     }
     return result;
 }
-
-ConstrainedMotion MotionSolver::solve(const Motion& wanted) noexcept { return solve(wanted, true); }
-
-ConstrainedMotion MotionSolver::solveMet(const Motion& wanted) noexcept { return solve(wanted, false); }
 
 ConstrainedMotion constrainMotion(const Motion& wanted, const Surroundings& around,
                                   std::span<const std::uint32_t> likely) noexcept {

@@ -5,12 +5,10 @@
 #include <limits>
 #include <span>
 
+#include "core/tick/active_set.h"
 #include "core/tick/contact_query.h"
 
 namespace passung::tick {
-
-/// A motion of a rigid body in one vector with the unit metre: (Δx, ρ Δφ).
-using Motion = Eigen::Matrix<double, 6, 1>;
 
 /// What a body's motion meets.
 struct Surroundings {
@@ -34,10 +32,9 @@ struct HeldContact {
 
 struct ConstrainedMotion {
     Motion u = Motion::Zero();
-    std::array<HeldContact, 6> held{};      // the first `active`
-    Eigen::Matrix<double, 6, 6> held_span;  // the first `active` columns: orthonormal, span what they hold
-    int active = 0;                         // contacts that hold the motion, at most six
-    int iterations = 0;                     // contacts taken up or let go
+    std::array<HeldContact, 6> held{};  // the first `active`
+    int active = 0;                     // contacts that hold the motion, at most six
+    int iterations = 0;                 // contacts taken up or let go
     bool relaxed = false;   // the overlap could not be removed within this motion: it is only kept from growing
     bool converged = true;  // false: kMaxIterations reached; contacts may be violated
 };
@@ -75,41 +72,23 @@ public:
     /// `likely`: places in the manifold of at most six contacts that held a motion like those to come.
     explicit MotionSolver(const Surroundings& around, std::span<const std::uint32_t> likely = {}) noexcept;
 
-    /// Starts from what held the motion before.
     ConstrainedMotion solve(const Motion& wanted) noexcept;
-    /// The same under the contacts only that were met so far.
-    ConstrainedMotion solveMet(const Motion& wanted) noexcept;
-    /// True if `u` violates contacts that were not met so far; they now are.
-    bool meetsMore(const Motion& u) noexcept;
 
     static constexpr int kMostRows = 200;
 
 private:
-    struct Row {
-        Motion a;         // unit
-        double b;         // for it, before it is relaxed
-        double length;    // of a before it was made unit
-        double gradient;  // length of g
-        std::uint32_t contact;
-        bool sphere;
-    };
-    class ActiveSet;
-    enum class Taken { Yes, Infeasible, Capped };
-
     double wantedOf(const ContactPoint& contact) const noexcept;
     double least(const ContactPoint& contact) const noexcept;
-    double boundOf(const Row& row) const noexcept;
+    double boundOf(const MotionRow& row) const noexcept;
     void addRow(const ContactPoint& contact) noexcept;
-    const Row* mostViolated(const Motion& u) const noexcept;
-    ConstrainedMotion solve(const Motion& wanted, bool all) noexcept;
-    bool attempt(const Motion& wanted, bool all, ConstrainedMotion& result) noexcept;
-    void startWarm(const Motion& wanted, ActiveSet& active, Motion& u) const noexcept;
-    Taken takeUp(const Row& row, ActiveSet& active, Motion& u, int& iterations) const noexcept;
+    const MotionRow* mostViolated(const Motion& u) const noexcept;
+    bool meetsMore(const Motion& u) noexcept;
+    bool attempt(const Motion& wanted, ConstrainedMotion& result) noexcept;
 
     const Surroundings& around_;
-    std::array<Row, kMostRows> rows_;
+    std::array<MotionRow, kMostRows> rows_;
     int count_ = 0;
-    std::array<Row, 6> held_;  // the last motion
+    std::array<MotionRow, 6> held_;  // the last motion
     int held_count_ = 0;
     double tolerance_ = kMotionTolerance;
     bool relaxed_ = false;

@@ -21,6 +21,7 @@ struct FrictionPatch {
     double pressure = 0.0;       // what the contacts push with, as a motion [m]: times the coupling's stiffness [N]
     Vec3 rub = Vec3::Zero();     // x below [m]
     std::uint32_t obstacle = 0;
+    double slip = 0.0;  // |s| below [m]
     bool slides = false;
 };
 
@@ -34,11 +35,11 @@ struct RubbedMotion {
     ConstrainedMotion motion;
     FrictionPatches patches;
     int sweeps = 0;
-    double change = 0.0;    // of friction in the last sweep, per wanted motion
-    bool converged = true;  // false: nothing was found that obeys the law; the body stays
+    double change = 0.0;    // of slip in the last sweep, per wanted motion
+    bool converged = true;  // false: contacts and cone are obeyed, but what slips rises
 };
 
-inline constexpr int kRubSweeps = 40;
+inline constexpr int kRubSweeps = 30;
 
 /// The motion that the contacts leave to a body that is drawn along `wanted` by a spring, with friction.
 ///
@@ -53,11 +54,8 @@ inline constexpr int kRubSweeps = 40;
 /// r_e is the mean distance from the centre of pressure over the patch, under the pressure that varies linearly over it
 /// and has that centre: 2/3 R for a disc pressed evenly, half the distance for two equal feet.
 ///
-/// Solution: for fixed x the motion is a problem without friction, solved exactly; for fixed active contacts and Λ the
-/// slip is s + H Δx, H = B (1 - N N⁺) Bᵀ, so that each x_p follows exactly, (H + ν) x = H x_p - s with ν ≥ 0 and ν > 0
-/// only on the cone. Both in turn until nothing changes, at most kRubSweeps times, by half steps after the first ones.
-/// Where friction raises the pressure that raises the friction (a wedge that locks itself: a groove steeper than the
-/// cone) there is no end: then the body stays where it is, pushed out of overlap only, `converged` false.
+/// Solution: friction_balance.h. Contacts and cone are obeyed always, up to the tolerance of constrained_motion.h and
+/// up to μ `change` |w|; slip is against friction where `converged`.
 /// Limit cases: μ = 0 → constrainMotion. All patches at rest → u is zero along them, exactly: nothing creeps. One plane
 /// → |x| = μ λ in slip, along -s.
 /// `friction`: of each obstacle. `before`: patches of the motion before, which tell what was sliding. rt-safe, bounded.

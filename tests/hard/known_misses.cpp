@@ -21,9 +21,6 @@ std::span<const KnownMiss> knownMisses() {
         // Two edges that cross between their samples.
         KnownMiss{"edge_on_edge", "god_object_heuristic"},
         KnownMiss{"edge_on_edge", "god_object"},
-        // Where the friction's sweeps find no balance, the peg is held.
-        KnownMiss{"a7_wedging", "god_object_heuristic"},
-        KnownMiss{"a7_wedging", "god_object"},
         // At the block's rim its field points askew: a thousandth of the press is felt along the table.
         KnownMiss{"a9_plane_two_way", "god_object_heuristic"},
         KnownMiss{"a9_plane_two_way", "god_object"},

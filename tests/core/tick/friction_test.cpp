@@ -208,6 +208,69 @@ TEST(Friction, NeverThrowsABodyOutOfAGroove) {
     }
 }
 
+TEST(Friction, SlidesAlongARightAngledCornerAgainstBothItsWalls) {
+    // Truth: closed form. Pressed by d onto a floor and by a against a wall, drawn by t along their edge: both rub
+    // along it and neither along the other, u = t - μ_d (a + d). What rests may be held by more than μ_s (a + d), since
+    // friction across the edge presses the walls; by less than that it is. To 1e-5 of the motion.
+    constexpr double d = 1e-4, a = 2e-4;
+    const auto manifold = manifoldOf({contactAt(Vec3::Zero(), Vec3::UnitZ()), contactAt(Vec3::Zero(), -Vec3::UnitX())});
+    for (const double share : {0.2, 0.49, 0.7, 1.0, 3.0}) {
+        const Motion wanted = motion({a, share * (a + d), -d});
+        const RubbedMotion found = rub(wanted, manifold);
+        const double slip = share <= kDry.at_rest ? 0.0 : (share - kDry.sliding) * (a + d);
+        EXPECT_TRUE(found.converged);
+        EXPECT_NEAR((found.motion.u.head<3>() - slip * Vec3::UnitY()).norm(), 0.0, 1e-5 * wanted.norm()) << share;
+    }
+}
+
+TEST(Friction, SlidesOnTheEdgeOfATableThatItTipsOver) {
+    // Truth: closed form. A body whose origin is beyond a table's edge, pressed there by d, stands on the edge only, b
+    // behind its origin, and tips: Λ = d/(1 + b²/ρ²). Drawn along the edge by t its contact goes t - μ d, or stays.
+    constexpr double d = 1e-4, b = 0.008;
+    const auto manifold = manifoldOf({contactAt({-b, 0, 0}, Vec3::UnitZ()), contactAt({-2 * b, 0, 0}, Vec3::UnitZ())});
+    for (const double share : {0.2, 0.49, 0.51, 0.7, 3.0}) {
+        const RubbedMotion found = rub(motion({0, share * d, -d}), manifold);
+        const Vec3 turn = found.motion.u.tail<3>() / kRho;
+        const double slip = found.motion.u.y() + turn.cross(Vec3(-b, 0, 0)).y();
+        EXPECT_TRUE(found.converged);
+        EXPECT_NEAR(slip, share <= kDry.at_rest ? 0.0 : (share - kDry.sliding) * d, 1e-6 * d) << share;
+        ASSERT_EQ(found.patches.count, 1);
+        EXPECT_NEAR(found.patches.patch[0].pressure, d / (1.0 + b * b / (kRho * kRho)), 1e-6 * d);
+    }
+}
+
+TEST(Friction, MovesInACornerWithoutEverHoldingWhatSlides) {
+    // Truth: invariant. A box in a corner of two planes, drawn hard along it and anyhow besides: contacts and cones are
+    // obeyed, and it moves along by more than friction could take.
+    Random random(11);
+    std::vector<ContactPoint> contacts;
+    for (const double y : {-0.01, 0.01})
+        for (const double far : {0.0, 0.02}) {
+            contacts.push_back(contactAt({-far, y, 0}, Vec3::UnitZ()));
+            contacts.push_back(contactAt({0, y, far}, -Vec3::UnitX()));
+        }
+    const auto manifold = manifoldOf(contacts);
+    int unsolved = 0;
+    for (int trial = 0; trial < 1000; ++trial) {
+        const auto any = [&](double size) {
+            return Vec3(random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size));
+        };
+        const Motion wanted = motion(Vec3(2e-4, 2e-3, -2e-4) + any(2e-4), any(5e-3));
+        const RubbedMotion found = rub(wanted, manifold);
+        unsolved += found.converged ? 0 : 1;
+        EXPECT_GT(found.motion.u.y(), 0.2e-3) << trial;
+        for (const auto& c : contacts) {
+            const Vec3 dx = found.motion.u.head<3>() + (found.motion.u.tail<3>() / kRho).cross(c.position);
+            EXPECT_GT(c.gradient.dot(dx), -1e-8) << trial;
+        }
+        for (int i = 0; i < found.patches.count; ++i) {
+            const auto& patch = found.patches.patch[static_cast<std::size_t>(i)];
+            EXPECT_LE(patch.rub.norm(), kDry.at_rest * patch.pressure * (1 + 1e-9)) << trial;
+        }
+    }
+    EXPECT_LE(unsolved, 10);
+}
+
 TEST(Friction, FindsTheCentreWhereAContactBearsNothing) {
     // Truth: closed form. Two contacts of one plane, drawn so that one of them bears nothing: the centre is the other.
     for (const bool swapped : {false, true}) {
@@ -235,7 +298,10 @@ TEST(Friction, BeginsWithTheFrictionBeforeAndEndsWhereItEndsWithout) {
     for (int i = 1; i <= 100; ++i) {
         const Motion wanted = motion({5e-7 * i, 3e-4, -2e-4});
         FrictionPatches unknown = before;
-        for (auto& patch : unknown.patch) patch.rub.setZero();
+        for (auto& patch : unknown.patch) {
+            patch.rub.setZero();
+            patch.slip = 0.0;
+        }
         const RubbedMotion warm = rub(wanted, manifold, kDry, before), cold = rub(wanted, manifold, kDry, unknown);
         ASSERT_TRUE(warm.converged && cold.converged);
         ASSERT_TRUE(warm.patches.patch[0].slides);
