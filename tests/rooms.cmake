@@ -39,6 +39,7 @@ set(libraries
   "SQLite   | ^sqlite3[.]h$                    | study/store tests                      | any"
   "zlib     | ^zlib[.]h$                       | study/store analysis/export tests      | cpp"
   "OpenSSL  | ^openssl/                        | study/store analysis/export tests      | cpp"
+  "libpqxx  | ^pqxx/                           | study/store tests                      | cpp"
   "FCL      | ^fcl/                            | analysis/truth tests                   | cpp"
   "Boost.Math | ^boost/math/                     | analysis/stats tests                   | cpp"
   "spdlog   | ^spdlog/                         | ui tests                               | cpp"
@@ -49,7 +50,7 @@ set(libraries
   "Qt       | ^Q[A-Zt]                         | ui                                     | any"
   "gbench   | ^benchmark/                      | tests                                  | cpp"
   "gtest    | ^g(test|mock)/                   | tests                                  | any"
-  "POSIX    | ^(sys|linux|arpa|netinet)/|^(unistd|pthread|sched|fcntl|poll|semaphore|signal|time|dlfcn|termios|malloc)[.]h$ | core/loop devices study/store ui tests | cpp")
+  "POSIX    | ^(sys|linux|arpa|netinet)/|^(unistd|pthread|sched|fcntl|poll|semaphore|signal|time|dlfcn|termios|malloc|pwd|grp)[.]h$ | core/loop devices study/store ui tests | cpp")
 
 # The tick: a positive list. What is not here allocates, locks, throws, waits or talks to the system.
 set(tick_standard_headers algorithm array atomic bit bitset cassert cfloat climits cmath compare concepts cstddef

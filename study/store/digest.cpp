@@ -6,7 +6,6 @@
 
 #include <array>
 #include <fstream>
-#include <memory>
 #include <stdexcept>
 #include <vector>
 
@@ -23,21 +22,37 @@ std::string sha256Hex(std::string_view bytes) {
     return hexText(std::span(digest).first(length));
 }
 
-std::string sha256OfFile(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), &EVP_MD_CTX_free);
-    bool good = file.is_open() && EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) == 1;
-    std::vector<char> buffer(1 << 20);
-    while (good && file) {
-        file.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
-        good =
-            !file.bad() && EVP_DigestUpdate(context.get(), buffer.data(), static_cast<std::size_t>(file.gcount())) == 1;
+Sha256::Sha256() : context_(EVP_MD_CTX_new()) {
+    if (EVP_DigestInit_ex(static_cast<EVP_MD_CTX*>(context_), EVP_sha256(), nullptr) != 1) {
+        EVP_MD_CTX_free(static_cast<EVP_MD_CTX*>(context_));
+        throw std::runtime_error("SHA-256 is not available");
     }
+}
+
+Sha256::~Sha256() { EVP_MD_CTX_free(static_cast<EVP_MD_CTX*>(context_)); }
+
+void Sha256::update(std::string_view bytes) {
+    EVP_DigestUpdate(static_cast<EVP_MD_CTX*>(context_), bytes.data(), bytes.size());
+}
+
+std::string Sha256::hex() {
     std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
     unsigned int length = 0;
-    if (!good || EVP_DigestFinal_ex(context.get(), digest.data(), &length) != 1)
-        throw std::runtime_error("the SHA-256 of " + path + " cannot be computed");
+    EVP_DigestFinal_ex(static_cast<EVP_MD_CTX*>(context_), digest.data(), &length);
     return hexText(std::span<const unsigned char>(digest).first(length));
+}
+
+std::string sha256OfFile(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw std::runtime_error("cannot read " + path);
+    Sha256 digest;
+    std::vector<char> buffer(1 << 20);
+    while (file) {
+        file.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
+        digest.update({buffer.data(), static_cast<std::size_t>(file.gcount())});
+    }
+    if (file.bad()) throw std::runtime_error("cannot read " + path);
+    return digest.hex();
 }
 
 std::string randomHex(std::size_t bytes) {

@@ -1,11 +1,11 @@
 #include "study/store/erase.h"
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <stdexcept>
 
 #include "study/store/digest.h"
+#include "study/store/participant_rows.h"
 
 namespace passung::store {
 namespace {
@@ -21,19 +21,11 @@ void requireRoom(const std::string& path) {
                                  " MB of free space beside the database; nothing was erased");
 }
 
-/// The number at the end of codes such as P012.
-std::int64_t numberOf(const std::string& code) {
-    const std::size_t digits = code.find_last_not_of("0123456789") + 1;
-    std::int64_t number = 0;
-    std::from_chars(code.data() + digits, code.data() + code.size(), number);
-    return number;
-}
-
 std::int64_t highestNumber(const Database& database, const std::string& kind) {
     std::int64_t highest = 0;
     Statement codes = database.prepare("SELECT participant_id FROM participant WHERE kind=?");
     codes.bind(kind);
-    while (codes.step()) highest = std::max(highest, numberOf(codes.text(0)));
+    while (codes.step()) highest = std::max(highest, codeNumber(codes.text(0)));
     return highest;
 }
 

@@ -21,11 +21,10 @@ void requireEnrolled(const Database& database, const std::string& code) {
 
 void refuseErasedCode(const Database& database, const std::string& code, protocol::ParticipantKind kind) {
     const std::int64_t to = erasedCodesTo(database, kind);
-    for (std::int64_t number = 1; number <= to; ++number)
-        if (protocol::participantCode(kind, number) == code)
-            throw std::runtime_error("participant code " + code +
-                                     " may be that of somebody who was erased: take one from " +
-                                     protocol::participantCode(kind, to + 1) + " on");
+    if (codeNumber(code) <= to)
+        throw std::runtime_error("participant code " + code +
+                                 " may be that of somebody who was erased: take one with a number above " +
+                                 std::to_string(to));
 }
 
 /// Every yes that still holds is followed by its end.

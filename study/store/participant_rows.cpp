@@ -1,8 +1,16 @@
 #include "study/store/participant_rows.h"
 
+#include <charconv>
 #include <stdexcept>
 
 namespace passung::store {
+
+std::int64_t codeNumber(const std::string& code) {
+    const std::size_t digits = code.find_last_not_of("0123456789") + 1;
+    std::int64_t number = 0;
+    std::from_chars(code.data() + digits, code.data() + code.size(), number);
+    return number;
+}
 
 bool insertParticipant(const Database& database, const std::string& code, protocol::ParticipantKind wanted,
                        const std::string& created_utc) {

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "study/protocol/participant.h"
 #include "study/store/sqlite.h"
 
 namespace passung::store {
+
+/// The number at the end of a code: 12 of P012.
+std::int64_t codeNumber(const std::string& code);
 
 /// False if the participant is there already with this kind. Throws for a code that is none of this kind. For this room
 /// only, within the caller's transaction.

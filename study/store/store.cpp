@@ -255,7 +255,8 @@ void refuseComplete(const Database& database, const std::string& sha256, const s
                              "; nobody takes part twice");
 }
 
-Slot takeSlot(const Database& database, const std::string& sha256, const std::string& participant) {
+Slot takeSlot(const Database& database, const std::string& sha256, const std::string& participant,
+              const Station& station) {
     Transaction transaction(database);
     const SlotDesign slots = slotDesignOf(database, sha256);
     const std::string kind = kindOf(database, participant);
@@ -269,13 +270,12 @@ Slot takeSlot(const Database& database, const std::string& sha256, const std::st
     }
     Statement free = database.prepare(
         "SELECT slot_id, sequence_index, replicate, between_group FROM design_slot "
-        "WHERE protocol_sha256=? AND kind=? AND state='free' ORDER BY slot_id LIMIT 1");
-    if (!free.bind(sha256, kind).step()) {
+        "WHERE protocol_sha256=? AND kind=? AND state='free' AND replicate % ?=? ORDER BY slot_id LIMIT 1");
+    while (!free.bind(sha256, kind, station.count, station.index).step()) {
         insertSlots(database, sha256, kind.c_str());
-        free.bind(sha256, kind).step();
     }
-    database.prepare("UPDATE design_slot SET state='assigned', participant_id=? WHERE slot_id=?")
-        .bind(participant, free.integer(0))
+    database.prepare("UPDATE design_slot SET state='assigned', participant_id=?, station=? WHERE slot_id=?")
+        .bind(participant, station.name, free.integer(0))
         .run();
     const Slot slot = slotOf(free, slots);
     free.reset();
@@ -416,13 +416,18 @@ Result<std::string> Store::nextCode(protocol::ParticipantKind kind) {
         Statement find = database.prepare("SELECT 1 FROM participant WHERE participant_id=?");
         // Whoever was erased may have had any code up to there: it must not come to mean somebody else.
         std::int64_t number = erasedCodesTo(database, kind) + 1;
-        while (find.bind(protocol::participantCode(kind, number)).step()) ++number;
-        return protocol::participantCode(kind, number);
+        const auto code = [&] {
+            std::string text = protocol::participantCode(kind, number);
+            return options_.station.count > 1 ? text.insert(1, options_.station.name) : text;
+        };
+        while (find.bind(code()).step()) ++number;
+        return code();
     });
 }
 
 Result<Slot> Store::assignSlot(const std::string& protocol_sha256, const std::string& participant) {
-    return thread_->call([&](const Database& database) { return takeSlot(database, protocol_sha256, participant); });
+    return thread_->call(
+        [&](const Database& database) { return takeSlot(database, protocol_sha256, participant, options_.station); });
 }
 
 Result<Done> Store::backup() {

@@ -32,9 +32,18 @@ struct RecoveryReport {
     bool empty() const { return crashed_attempts.empty() && crashed_sessions.empty(); }
 };
 
+/// One of several places where a study runs, each with a database of its own. Each takes only its own replicates of the
+/// square and has codes of its own, so that the databases can be merged.
+struct Station {
+    std::string name = "local";  // of several: a capital letter
+    int index = 0;               // from 0
+    int count = 1;
+};
+
 struct OpenOptions {
-    std::string app_version;     // of the program, stored with protocols and segments
-    std::string now_utc;         // wall clock for rows about the file itself (schema, import); never exported
+    std::string app_version;  // of the program, stored with protocols and segments
+    std::string now_utc;      // wall clock for rows about the file itself (schema, import); never exported
+    Station station;
     bool create = true;          // false: the file has to exist
     int busy_timeout_ms = 5000;  // how long another program may hold the file before this is an error
     std::int64_t max_pages = 0;  // refuse to grow beyond so many pages of 4096 bytes; 0 = as far as the disk goes
@@ -99,7 +108,7 @@ public:
     /// code that does not begin with the kind's letter.
     Result<bool> enrol(const std::string& code, protocol::ParticipantKind kind, const std::string& created_utc);
 
-    /// The first unused code of the kind: P001, P002 … for real participants.
+    /// The first unused code of the kind: P001, P002 … for real participants; of several stations PB001, PB002 ….
     Result<std::string> nextCode(protocol::ParticipantKind kind);
 
     /// The participant's slot: the one they have, else the first free one in the order of design::placesOf(), its

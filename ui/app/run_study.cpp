@@ -76,6 +76,7 @@ private:
         start.protocol_sha256 = sha256_;
         start.ordinal = *ordinal;
         start.seed = plan_.seed;
+        start.station = options_.station.name;
         start.clock = clock;
         const simulated::DeviceParams* device = simulated::findPreset(plan_.conditions.front().device);
         LoopApparatus apparatus(*device, person::personOf(plan_.name, code, plan_.seed), options_.clock);
@@ -140,7 +141,6 @@ const std::vector<std::string>& knownMeasures() {
 }
 
 Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& options, const RunListener& listener) {
-    const std::int64_t now = unixMilliseconds();
     // A calibration that fails must leave nothing behind: neither a new database nor the protocol in an old one.
     std::vector<store::AccuracyRow> measured;
     const auto measure = [&]() -> Result<Done> {
@@ -154,8 +154,9 @@ Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& optio
     std::error_code none;
     if (calibrates && !std::filesystem::exists(options.database, none))
         if (const auto done = measure(); !done) return done.errors();
-    auto opened = store::Store::open(options.database,
-                                     {.app_version = PASSUNG_VERSION, .now_utc = store::UtcClock::wall(now).at(0)});
+    auto open = openOptionsNow();
+    open.station = options.station;
+    auto opened = store::Store::open(options.database, open);
     if (!opened.store) return opened.errors;
     if (listener.recovered && !opened.recovery.empty()) listener.recovered(opened.recovery);
     if (listener.warned && !opened.recovery.later_utc.empty())

@@ -14,7 +14,8 @@ namespace passung::app {
 struct RunOptions {
     std::string database;
     std::string participant;  // code of one participant; empty: the next free codes
-    int simulated = 1;        // how many simulated participants, one after another
+    store::Station station;
+    int simulated = 1;  // how many simulated participants, one after another
     Clock clock = Clock::Virtual;
     bool backup = true;                 // copy the database when the run ends, however it does
     std::function<bool()> interrupted;  // asked every few ticks: true ends the run; empty: never

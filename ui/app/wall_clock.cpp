@@ -10,7 +10,10 @@ std::int64_t unixMilliseconds() {
 }
 
 store::OpenOptions openOptionsNow() {
-    return {.app_version = PASSUNG_VERSION, .now_utc = store::UtcClock::wall(unixMilliseconds()).at(0)};
+    store::OpenOptions options;
+    options.app_version = PASSUNG_VERSION;
+    options.now_utc = store::UtcClock::wall(unixMilliseconds()).at(0);
+    return options;
 }
 
 }  // namespace passung::app

@@ -22,6 +22,12 @@ struct ExplainOptions {
 };
 int explain(const ExplainOptions& options);
 
+/// One of several places with a database of its own; both or neither.
+struct StationOptions {
+    std::string station;  // capital letter; empty: the only one
+    int stations = 0;
+};
+
 struct RunOptions {
     std::string protocol;
     std::string database;     // empty: the study's name with .db
@@ -29,6 +35,7 @@ struct RunOptions {
     int simulated = 1;
     bool real_time = false;
     std::optional<std::uint64_t> seed;
+    StationOptions station;
     bool no_backup = false;
     int acknowledge_fd = -1;  // open file descriptor that gets a line per durable attempt
 };
@@ -38,6 +45,7 @@ struct ParticipantOptions {
     std::string database;
     std::string code;  // empty: the first unused one
     std::string kind = "real";
+    StationOptions station;
     std::string protocol;              // study file; empty: the database has it
     std::vector<std::string> clauses;  // empty: all
     std::string decision = "yes";      // "no", "withdrawn"
@@ -59,6 +67,18 @@ struct ExportOptions {
     bool no_samples = false;
 };
 int exportData(const ExportOptions& options);
+
+struct MergeOptions {
+    std::vector<std::string> databases;
+    std::string out;
+};
+int merge(const MergeOptions& options);
+
+struct PushOptions {
+    std::string database;
+    std::string to;  // of PostgreSQL, as libpq reads it
+};
+int push(const PushOptions& options);
 
 struct ReplayOptions {
     std::string database;

@@ -132,8 +132,24 @@ private:
             ->excludes(participant);
         sub->add_flag("--real-time", run_.real_time, "at 1 kHz by the clock instead of as fast as the machine goes");
         sub->add_option("--seed", run_.seed, "instead of the protocol's")->check(wholeFrom<std::uint64_t>(0));
+        addStation(sub, run_.station);
         sub->add_flag("--no-backup", run_.no_backup, "leave out the copy DB.backup and its SHA-256 at the end");
         sub->add_option("--acknowledge-fd", run_.acknowledge_fd, "file descriptor for a line per durable attempt");
+    }
+
+    static void addStation(CLI::App* sub, StationOptions& options) {
+        auto* letter = sub->add_option("--station", options.station,
+                                       "letter of this station, where several run the study with a database each: it "
+                                       "takes places of the design and codes that no other one takes");
+        letter->check(CLI::Validator(
+            [](std::string& text) {
+                const bool good = text.size() == 1 && text[0] >= 'A' && text[0] <= 'Z';
+                return good ? std::string() : "must be a capital letter, A for the first, not \"" + text + '"';
+            },
+            ""));
+        auto* count = sub->add_option("--stations", options.stations, "how many there are, the same for each");
+        count->check(between(2.0, 26.0, "a number from 2 to 26"))->needs(letter);
+        letter->needs(count);
     }
 
     void addParticipantCommands() {
@@ -155,6 +171,8 @@ private:
         sub->add_option("--protocol", participant_.protocol,
                         "study file: stored first if the database does not have it, which is made if it is not there");
         sub->add_option("--by", participant_.by, "who does it, for the audit; default experimenter");
+
+        addStation(sub, participant_.station);
 
         action("list", "everybody, with state, place in the design and consent", listParticipants);
 
@@ -186,6 +204,14 @@ private:
         sub->add_option("DB", export_.database, "database of a study")->required();
         sub->add_option("--out", export_.out, "folder")->required();
         sub->add_flag("--no-samples", export_.no_samples, "leave out the recorded ticks");
+
+        sub = command("merge", "put the databases of several stations together", merge_, merge);
+        sub->add_option("DB", merge_.databases, "databases of one study")->required()->expected(1, -1);
+        sub->add_option("--out", merge_.out, "database that gets what it does not have yet")->required();
+
+        sub = command("push", "copy a study into PostgreSQL; again: what is new", push_, push);
+        sub->add_option("DB", push_.database, "database of a study")->required();
+        sub->add_option("--to", push_.to, "postgresql://USER@HOST/DATABASE, or as libpq reads it")->required();
 
         sub = command("replay", "run recorded inputs again and compare every bit", replay_, replay);
         sub->add_option("DB", replay_.database, "database of a study")->required();
@@ -354,6 +380,8 @@ private:
     RunOptions run_;
     ParticipantOptions participant_;
     ExportOptions export_;
+    MergeOptions merge_;
+    PushOptions push_;
     ReplayOptions replay_;
     PowerOptions power_;
     MeshOptions mesh_;

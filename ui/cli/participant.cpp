@@ -13,6 +13,7 @@
 #include "ui/app/wall_clock.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
+#include "ui/cli/station.h"
 
 namespace passung::cli {
 
@@ -28,7 +29,10 @@ protocol::ParticipantKind kindNamed(const std::string& name) {
 /// `create`.
 int atTheDesk(const ParticipantOptions& options, bool create,
               const std::function<Result<Done>(store::Store&, store::ParticipantDesk&)>& work) {
+    const auto station = stationOf(options.station);
+    if (!station) return fail(station.errors());
     auto open = app::openOptionsNow();
+    open.station = *station;
     open.create = create;
     const auto opened = store::Store::open(options.database, open);
     if (!opened.store) return fail(opened.errors);

@@ -10,6 +10,7 @@
 #include "ui/app/run_study.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
+#include "ui/cli/station.h"
 
 namespace passung::cli {
 
@@ -57,6 +58,9 @@ int run(const RunOptions& options) {
     what.database = options.database.empty() ? plan->name + ".db" : options.database;
     what.participant = options.participant;
     what.simulated = options.participant.empty() ? options.simulated : 1;
+    const auto station = stationOf(options.station);
+    if (!station) return fail(station.errors());
+    what.station = *station;
     what.backup = !options.no_backup;
     what.clock = options.real_time ? app::Clock::RealTime : app::Clock::Virtual;
 

@@ -12,7 +12,8 @@
 namespace passung::fake {
 
 /// A moment at which the file system is about to change, counted from 1.
-enum class DiskWork { Write, Sync, Truncate, Delete };
+/// Commit: a write that makes a transaction of the log count.
+enum class DiskWork { Write, Commit, Sync, Truncate, Delete };
 
 struct DiskFault {
     int result = SQLITE_OK;  // what SQLite is told instead of a success; SQLITE_OK: the work is done
@@ -62,8 +63,16 @@ private:
 
     DiskFault ask(DiskWork work) { return before_(work, ++count_); }
 
+    /// The header of a frame in the log has 24 bytes; those from the fifth on say how large the database is after a
+    /// commit, and are 0 in every other frame.
+    static bool isCommit(const void* bytes, int count) {
+        const auto* header = static_cast<const unsigned char*>(bytes);
+        return count == 24 && std::any_of(header + 4, header + 8, [](unsigned char byte) { return byte != 0; });
+    }
+
     static int write(sqlite3_file* file, const void* bytes, int count, sqlite3_int64 offset) {
-        const DiskFault fault = reinterpret_cast<File*>(file)->disk->ask(DiskWork::Write);
+        const DiskWork work = isCommit(bytes, count) ? DiskWork::Commit : DiskWork::Write;
+        const DiskFault fault = reinterpret_cast<File*>(file)->disk->ask(work);
         const int reached = static_cast<int>(fault.share * count);
         const int result = below(file)->pMethods->xWrite(below(file), bytes, reached, offset);
         return fault.result != SQLITE_OK ? fault.result : result;

@@ -17,7 +17,9 @@ TEST(ParticipantCommand, TakesPeopleFromEnrolmentToErasure) {
         EXPECT_EQ(ended.exit_code, code) << ended.out << ended.err;
         const std::string text = code == 0 ? ended.out : ended.err;
         EXPECT_NE(text.find(says), std::string::npos) << text;
-        if (code == 1) EXPECT_EQ(linesOf(ended.err).size(), 1u) << ended.err;
+        if (code == 1) {
+            EXPECT_EQ(linesOf(ended.err).size(), 1u) << ended.err;
+        }
     };
     does({"enrol", "s.db"}, 1, "s.db: error: cannot be opened");
     EXPECT_FALSE(std::filesystem::exists(folder / "s.db"));

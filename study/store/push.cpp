@@ -1,0 +1,257 @@
+#include "study/store/push.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <pqxx/pqxx>
+
+#include "study/store/hex_text.h"
+#include "study/store/open_database.h"
+#include "study/store/session_tables.h"
+
+namespace passung::store {
+namespace {
+
+using Values = std::vector<std::optional<std::string>>;
+
+/// A table as PostgreSQL gets it, and the query that reads its rows here.
+struct Copy {
+    std::string name;
+    std::vector<TableColumn> columns;
+    std::vector<std::string> keys;
+    std::string reference;  // clause of a foreign key; may be empty
+    std::string query;      // columns in their order; of a session: ?1 is its id
+};
+
+std::string typeThere(const std::string& type) {
+    if (type == "INTEGER") return "BIGINT";
+    if (type == "REAL") return "DOUBLE PRECISION";
+    return type == "BLOB" ? "BYTEA" : "TEXT";
+}
+
+template <class Items, class Text>
+std::string joined(const Items& items, Text text) {
+    std::string all;
+    for (const auto& item : items) all += (all.empty() ? "" : ", ") + text(item);
+    return all;
+}
+
+std::string nameOf(const TableColumn& column) { return column.name; }
+
+std::string hexOf(std::span<const std::byte> bytes) {
+    return hexText(std::span(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
+}
+
+Values valuesOf(const Statement& row, const std::vector<TableColumn>& columns) {
+    Values values;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        const int column = static_cast<int>(i);
+        if (row.isNull(column))
+            values.emplace_back();
+        else if (columns[i].type == "REAL")
+            values.push_back(fmt::format("{:.17g}", row.real(column)));
+        else if (columns[i].type == "BLOB")
+            values.push_back("\\x" + hexOf(row.blob(column)));
+        else
+            values.push_back(row.text(column));
+    }
+    return values;
+}
+
+/// Rows that do not belong to a session. Their numbers mean nothing outside this file and stay here.
+std::vector<Copy> studyCopies(const Database& database) {
+    const auto copyOf = [&](const std::string& name, std::vector<std::string> keys, const std::string& where = "") {
+        Table table = describeTable(database, name);
+        const TableColumn* number = table.number();
+        const std::string numbering = number != nullptr ? number->name : "";
+        std::erase_if(table.columns, [&](const TableColumn& column) { return column.name == numbering; });
+        if (keys.empty())
+            for (const TableColumn& column : table.columns)
+                if (column.key > 0) keys.push_back(column.name);
+        const bool of_person = table.find("participant_id") != nullptr && name != "participant";
+        return Copy{name, table.columns, keys, of_person ? "REFERENCES participant ON DELETE CASCADE" : "",
+                    "SELECT " + joined(table.columns, nameOf) + " FROM " + name + where};
+    };
+    std::vector<Copy> copies;
+    for (const std::string& name : tableNames(database)) {
+        const Table table = describeTable(database, name);
+        if (name == "session" || name == "design_slot" || table.find("protocol_sha256") == nullptr) continue;
+        copies.push_back(copyOf(name, name == "condition" ? std::vector<std::string>{"protocol_sha256", "condition"}
+                                                          : std::vector<std::string>{}));
+    }
+    copies.push_back(copyOf("measure", {}));
+    copies.push_back(copyOf("questionnaire", {}));
+    copies.push_back(copyOf("participant", {}));
+    copies.push_back(copyOf("consent", {"participant_id", "text_sha256", "clause", "decided_utc", "decision"}));
+    copies.push_back(copyOf("design_slot", {"participant_id"}, " WHERE participant_id IS NOT NULL"));
+    return copies;
+}
+
+std::vector<Copy> sessionCopies(const std::vector<Table>& tables) {
+    std::vector<Copy> copies;
+    for (const Table& table : tables) {
+        Copy copy{table.name, table.columns, {}, "REFERENCES session ON DELETE CASCADE", {}};
+        for (const TableColumn& column : table.columns)
+            if (column.key > 0) copy.keys.push_back(column.name);
+        std::string columns = joined(table.columns, [](const TableColumn& column) { return "t." + column.name; });
+        if (table.name == "session") copy.reference = "";
+        if (table.find("session_id") == nullptr) {
+            copy.columns.push_back({"session_id", "TEXT", 0, true, {}, {}});
+            columns += ", ?1";
+        }
+        if (table.name != "session") copy.keys.insert(copy.keys.begin(), "session_id");
+        if (table.find("condition_id") != nullptr) {
+            copy.columns.push_back({"condition", "TEXT", 0, false, {}, {}});
+            columns += ", (SELECT condition FROM condition c WHERE c.condition_id=t.condition_id)";
+        }
+        copy.query = "SELECT " + columns + " FROM " + table.name + " t WHERE t." + rowsOfSession(tables, table, "main");
+        copies.push_back(copy);
+    }
+    return copies;
+}
+
+/// The conversation with PostgreSQL.
+class Push {
+public:
+    Push(const Database& database, const std::string& to) : database_(database), there_(to) {}
+
+    PushReport run() {
+        const std::vector<Table> tables = sessionTables(database_);
+        const std::vector<Copy> study = studyCopies(database_), sessions = sessionCopies(tables);
+        const std::string name = database_.text("SELECT name FROM protocol_version LIMIT 1");
+        if (name.empty()) throw std::runtime_error("holds no study yet");
+        pushStudy(name, study, sessions);
+        PushReport report;
+        Statement running = database_.prepare(
+            "SELECT participant_id || ', session ' || ordinal FROM session WHERE end_state IS NULL ORDER BY rowid");
+        while (running.step()) report.unfinished.push_back(running.text(0));
+        Statement ended = database_.prepare(
+            "SELECT session_id FROM session WHERE end_state IS NOT NULL ORDER BY participant_id, ordinal");
+        while (ended.step()) pushSession(ended.text(0), sessions, tables, report);
+        return report;
+    }
+
+private:
+    void pushStudy(const std::string& name, const std::vector<Copy>& study, const std::vector<Copy>& sessions) {
+        pqxx::work work(there_);
+        // IF NOT EXISTS tells that something exists; nobody needs to hear it.
+        work.exec("SET client_min_messages=warning");
+        work.exec("CREATE SCHEMA IF NOT EXISTS " + work.quote_name(name));
+        work.exec("SET search_path TO " + work.quote_name(name));
+        for (const Copy& copy : study) create(work, copy);
+        for (const Copy& copy : sessions) create(work, copy);
+        work.exec(
+            "CREATE TABLE IF NOT EXISTS pushed_session(session_id TEXT PRIMARY KEY REFERENCES session ON DELETE "
+            "CASCADE, digest TEXT NOT NULL)");
+        refuseOtherPeople(work);
+        for (const Copy& copy : study) {
+            Statement rows = database_.prepare(copy.query);
+            while (rows.step())
+                insert(work, copy, valuesOf(rows, copy.columns),
+                       copy.name == "participant" || copy.name == "design_slot");
+        }
+        work.commit();
+    }
+
+    void create(pqxx::work& work, const Copy& copy) {
+        std::string columns = joined(copy.columns, [&](const TableColumn& column) {
+            const bool refers =
+                !copy.reference.empty() &&
+                column.name ==
+                    (copy.reference.find("participant") != std::string::npos ? "participant_id" : "session_id");
+            return work.quote_name(column.name) + " " + typeThere(column.type) + (refers ? " " + copy.reference : "");
+        });
+        work.exec("CREATE TABLE IF NOT EXISTS " + work.quote_name(copy.name) + "(" + columns + ", PRIMARY KEY(" +
+                  joined(copy.keys, [&](const std::string& key) { return work.quote_name(key); }) + "))");
+        for (const TableColumn& column : copy.columns)  // those of later revisions
+            work.exec("ALTER TABLE " + work.quote_name(copy.name) + " ADD COLUMN IF NOT EXISTS " +
+                      work.quote_name(column.name) + " " + typeThere(column.type));
+    }
+
+    void insert(pqxx::work& work, const Copy& copy, const Values& values, bool update) {
+        std::size_t number = 0;
+        std::string sql =
+            "INSERT INTO " + work.quote_name(copy.name) + "(" +
+            joined(copy.columns, [&](const TableColumn& column) { return work.quote_name(column.name); }) +
+            ") VALUES(" + joined(copy.columns, [&](const TableColumn&) { return "$" + std::to_string(++number); }) +
+            ") ON CONFLICT (" + joined(copy.keys, [&](const std::string& key) { return work.quote_name(key); }) +
+            ") DO ";
+        sql +=
+            !update ? "NOTHING" : "UPDATE SET " + joined(copy.columns, [&](const TableColumn& column) {
+                                      return work.quote_name(column.name) + "=EXCLUDED." + work.quote_name(column.name);
+                                  });
+        std::vector<const char*> parameters;
+        for (const auto& value : values) parameters.push_back(value ? value->c_str() : nullptr);
+        work.exec_params(sql, pqxx::prepare::make_dynamic_params(parameters));
+    }
+
+    void refuseOtherPeople(pqxx::work& work) {
+        Statement people = database_.prepare("SELECT participant_id, kind, created_utc FROM participant");
+        while (people.step()) {
+            const auto found =
+                work.exec_params("SELECT kind, created_utc FROM participant WHERE participant_id=$1", people.text(0));
+            if (!found.empty() && (found[0][0].c_str() != people.text(1) || found[0][1].c_str() != people.text(2)))
+                throw std::runtime_error("participant code " + people.text(0) + " stands for somebody else there");
+        }
+    }
+
+    void pushSession(const std::string& id, const std::vector<Copy>& copies, const std::vector<Table>& tables,
+                     PushReport& report) {
+        const std::string digest = sessionDigest(database_, tables, "main", id);
+        pqxx::work work(there_);
+        const auto found = work.exec_params("SELECT digest FROM pushed_session WHERE session_id=$1", id);
+        if (!found.empty() && found[0][0].c_str() == digest) {
+            ++report.known;
+            return;
+        }
+        if (!found.empty()) refuseOtherTrials(work, id);
+        work.exec_params("DELETE FROM session WHERE session_id=$1", id);
+        for (const Copy& copy : copies) {
+            Statement rows = database_.prepare(copy.query);
+            rows.bind(id);
+            while (rows.step()) insert(work, copy, valuesOf(rows, copy.columns), false);
+        }
+        work.exec_params("INSERT INTO pushed_session VALUES($1, $2)", id, digest);
+        work.commit();
+        ++(found.empty() ? report.sessions : report.replaced);
+    }
+
+    /// A session that has changed here still holds every trial that had ended when it was pushed.
+    void refuseOtherTrials(pqxx::work& work, const std::string& id) {
+        const auto ended = work.exec_params(
+            "SELECT t.trial_index, a.attempt_no, a.state_hash FROM attempt a JOIN trial_plan t USING(session_id, "
+            "trial_id) WHERE session_id=$1 AND a.end_ns IS NOT NULL",
+            id);
+        Statement here = database_.prepare(
+            "SELECT 1 FROM attempt a JOIN trial_plan t USING(trial_id) WHERE t.session_id=? AND t.trial_index=? "
+            "AND a.attempt_no=? AND coalesce(a.state_hash, '')=?");
+        for (const auto& row : ended)
+            if (!here.bind(id, row[0].as<std::int64_t>(), row[1].as<std::int64_t>(), std::string(row[2].c_str()))
+                     .step())
+                throw std::runtime_error("session " + id + " has other trials there: its code stands for two people");
+    }
+
+    const Database& database_;
+    pqxx::connection there_;
+};
+
+/// PostgreSQL's messages have several lines; the first says what is wrong.
+std::string firstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+}  // namespace
+
+Result<PushReport> pushDatabase(const std::string& path, const std::string& to) {
+    const auto opened = openForReading(path);
+    if (!opened) return opened.errors();
+    return guarded(path, [&] {
+        (*opened)->execute("BEGIN");
+        try {
+            return Push(**opened, to).run();
+        } catch (const pqxx::failure& error) {
+            throw std::runtime_error("PostgreSQL: " + firstLine(error.what()));
+        }
+    });
+}
+
+}  // namespace passung::store

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+
+namespace passung::store {
+
+/// What a push did.
+struct PushReport {
+    std::int64_t sessions = 0;            // added
+    std::int64_t replaced = 0;            // had changed here since an earlier push
+    std::int64_t known = 0;               // there already
+    std::vector<std::string> unfinished;  // left out: still running, or killed and not opened since
+};
+
+/// Copies the study into the PostgreSQL database `to` (a connection URI or string of libpq), into a schema with the
+/// study's name that is made if it is not there. Tables are those of the file; rows of a session carry its session_id
+/// and are numbered within it, so that files of several stations do not collide. Each session is one transaction;
+/// pushing again copies only what is new or has changed. A code that stands for somebody else there is refused.
+/// The audit and free places of the design stay here.
+Result<PushReport> pushDatabase(const std::string& path, const std::string& to);
+
+}  // namespace passung::store

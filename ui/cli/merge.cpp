@@ -1,0 +1,24 @@
+#include "study/store/merge.h"
+
+#include <fmt/format.h>
+
+#include "ui/app/wall_clock.h"
+#include "ui/cli/commands.h"
+#include "ui/cli/console.h"
+
+namespace passung::cli {
+
+int merge(const MergeOptions& options) {
+    if (const auto fine = refuseOverwriting(options.out, options.databases); !fine) return fail(fine.errors());
+    const auto report = store::mergeDatabases(options.databases, options.out, app::openOptionsNow());
+    if (!report) return fail(report.errors());
+    for (const std::string& session : report->unfinished)
+        fmt::print("{}: left out: it runs, or was killed and its database not opened since\n", session);
+    for (const std::string& person : report->moved_places)
+        fmt::print("{}: the same row of the square in a further replicate, for another one has the place\n", person);
+    fmt::print("{}: {} sessions added, {} brought up to date, {} known\n", options.out, report->sessions,
+               report->replaced, report->known);
+    return 0;
+}
+
+}  // namespace passung::cli

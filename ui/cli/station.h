@@ -1,0 +1,11 @@
+#pragma once
+
+#include "study/store/store.h"
+#include "ui/cli/commands.h"
+
+namespace passung::cli {
+
+/// The station that two options name. Errors: a letter that so many stations do not have.
+Result<store::Station> stationOf(const StationOptions& options);
+
+}  // namespace passung::cli
