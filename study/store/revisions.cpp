@@ -319,7 +319,8 @@ constexpr std::array kRevisions = {
     Revision{3, "The errors of force and torque in that calibration", kRevision3, 2},
     // As for the picks; and chunks of samples have a column more.
     Revision{4, "Stable stiffness of a protocol's devices", kRevision4, 4},
-    Revision{5, "Clauses of consent, and an audit whose details can be taken away", kRevision5, 4},
+    // Samples are packed from here on: columns-v2 of a stream's encoding.
+    Revision{5, "Clauses of consent, an audit whose details can be taken away, packed samples", kRevision5, 5},
 };
 
 bool isEmpty(const Database& database) { return database.integer("SELECT count(*) FROM sqlite_master") == 0; }

@@ -1,6 +1,7 @@
 #include "study/store/sample_codec.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 
@@ -134,16 +135,60 @@ Chunk encode(const Layout& layout, std::span<const TickRecord> records) {
     return chunk;
 }
 
+constexpr std::string_view kPacked = "columns-v2";
+constexpr std::size_t kSizeBytes = 4;  // before the deflated bytes: how many they become, little-endian
+
+/// Moves bytes between rows and planes: plane b of a column of w-byte values holds byte b of each, from the first row
+/// to the last. Neighbouring ticks share their high bytes, which deflate then finds side by side.
+template <class Move>
+void forEachPlanedByte(const Layout& layout, std::size_t columns, std::size_t rows, Move move) {
+    std::size_t start = 0;
+    for (const Field& field : std::span(layout.fields).first(columns)) {
+        for (std::size_t byte = 0; byte < field.width; ++byte)
+            for (std::size_t row = 0; row < rows; ++row)
+                move(start + row * field.width + byte, start + byte * rows + row);
+        start += rows * field.width;
+    }
+}
+
+Chunk pack(const Layout& layout, const Chunk& chunk) {
+    std::vector<std::byte> planes(chunk.data.size());
+    forEachPlanedByte(layout, layout.columnsOf(chunk), static_cast<std::size_t>(chunk.count),
+                      [&](std::size_t row, std::size_t plane) { planes[plane] = chunk.data[row]; });
+    Chunk packed{chunk.first_tick, chunk.count, 0, deflated(planes)};
+    std::array<std::byte, kSizeBytes> size;
+    for (std::size_t i = 0; i < kSizeBytes; ++i) size[i] = static_cast<std::byte>(planes.size() >> (8 * i) & 0xff);
+    packed.data.insert(packed.data.begin(), size.begin(), size.end());
+    packed.crc32 = crc32(packed.data);
+    return packed;
+}
+
+Error chunkError(const Chunk& chunk, const char* what) {
+    return {.message = "chunk of samples from tick " + std::to_string(chunk.first_tick) + ": " + what};
+}
+
+Result<Chunk> unpack(const Layout& layout, const Chunk& stored, std::string_view encoding) {
+    if (!encoding.starts_with(kPacked)) return stored;
+    if (crc32(stored.data) != stored.crc32) return chunkError(stored, "checksum does not match, the data is damaged");
+    if (stored.data.size() < kSizeBytes) return chunkError(stored, "its size does not fit its number of ticks");
+    std::size_t size = 0;
+    for (std::size_t i = 0; i < kSizeBytes; ++i) size |= std::to_integer<std::size_t>(stored.data[i]) << (8 * i);
+    Chunk chunk{stored.first_tick, stored.count, 0, {}};
+    if (size > kChunkTicks * layout.bytes_per_tick)
+        return chunkError(stored, "its size does not fit its number of ticks");
+    const auto planes = inflated(std::span(stored.data).subspan(kSizeBytes), size);
+    chunk.data.resize(size);
+    const std::size_t columns = layout.columnsOf(chunk);
+    if (planes.size() != size || columns == 0) return chunkError(stored, "its size does not fit its number of ticks");
+    forEachPlanedByte(layout, columns, static_cast<std::size_t>(chunk.count),
+                      [&](std::size_t row, std::size_t plane) { chunk.data[row] = planes[plane]; });
+    chunk.crc32 = crc32(chunk.data);
+    return chunk;
+}
+
 Result<Done> check(const Layout& layout, const Chunk& chunk) {
-    const std::string place = "chunk of samples from tick " + std::to_string(chunk.first_tick);
-    if (layout.columnsOf(chunk) == 0) {
-        return Error{
-            .message = place + ": its size does not fit its number of ticks", .file = {}, .key = {}, .value = {}};
-    }
-    if (crc32(chunk.data) != chunk.crc32) {
-        return Error{
-            .message = place + ": checksum does not match, the data is damaged", .file = {}, .key = {}, .value = {}};
-    }
+    if (layout.columnsOf(chunk) == 0) return chunkError(chunk, "its size does not fit its number of ticks");
+    if (crc32(chunk.data) != chunk.crc32) return chunkError(chunk, "checksum does not match, the data is damaged");
     return Done{};
 }
 
@@ -165,11 +210,13 @@ const std::vector<Channel>& tickChannels() { return tickLayout().channels; }
 const std::vector<Channel>& timingChannels() { return timingLayout().channels; }
 
 std::string encodingText() {
-    return "columns-v1: one blob holds n consecutive ticks, tick number of row i = first_tick + i. Time since the "
+    return "columns-v2: one blob holds n consecutive ticks, tick number of row i = first_tick + i. Time since the "
            "attempt's tick 0 = 0.001 s * sum of the column periods over the ticks after it (in virtual time: 0.001 s * "
            "tick); that of the chunk's first tick is t0_ns less the attempt's start_ns. The columns of channels_json "
            "follow one another in that order, each as "
-           "n values of its type, little-endian, without padding or compression. crc32 = CRC-32 (zlib) of the blob.";
+           "n values of its type, little-endian, without padding, and each column as planes: the first byte of all n "
+           "values, then the second of all, and so on. The blob is the length of these bytes (4 bytes, little-endian), "
+           "then the bytes as a zlib stream. crc32 = CRC-32 (zlib) of the blob.";
 }
 
 std::string channelsJson(const std::vector<Channel>& channels) {
@@ -186,6 +233,15 @@ std::string channelsJson(const std::vector<Channel>& channels) {
 
 Chunk encodeTicks(std::span<const TickRecord> records) { return encode(tickLayout(), records); }
 Chunk encodeTiming(std::span<const TickRecord> records) { return encode(timingLayout(), records); }
+
+Chunk packTicks(const Chunk& chunk) { return pack(tickLayout(), chunk); }
+Chunk packTiming(const Chunk& chunk) { return pack(timingLayout(), chunk); }
+Result<Chunk> unpackTicks(const Chunk& stored, std::string_view encoding) {
+    return unpack(tickLayout(), stored, encoding);
+}
+Result<Chunk> unpackTiming(const Chunk& stored, std::string_view encoding) {
+    return unpack(timingLayout(), stored, encoding);
+}
 
 Result<Done> decodeTicks(const Chunk& chunk, std::vector<TickRecord>& records) {
     if (const auto sound = check(tickLayout(), chunk); !sound) return sound.errors();

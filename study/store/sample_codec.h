@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/result.h"
@@ -43,6 +44,15 @@ struct Chunk {
 /// Encodes ticks without gaps. @pre records are consecutive, 1 … kChunkTicks of them.
 Chunk encodeTicks(std::span<const TickRecord> records);
 Chunk encodeTiming(std::span<const TickRecord> records);
+
+/// The chunk as it is stored: its bytes in planes and deflated, with a checksum of that.
+Chunk packTicks(const Chunk& chunk);
+Chunk packTiming(const Chunk& chunk);
+
+/// Undoes pack*(). `encoding` is that of its stream: chunks from before columns-v2 are stored as they are. Fails on a
+/// wrong checksum and on bytes that are no such chunk.
+Result<Chunk> unpackTicks(const Chunk& stored, std::string_view encoding);
+Result<Chunk> unpackTiming(const Chunk& stored, std::string_view encoding);
 
 /// Appends the chunk's ticks. Fails on a wrong checksum or size, and then appends nothing.
 Result<Done> decodeTicks(const Chunk& chunk, std::vector<TickRecord>& records);

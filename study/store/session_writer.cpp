@@ -139,9 +139,10 @@ void SessionWriter::insertChunks(const Database& database, std::int64_t attempt_
         const std::size_t count = consecutiveTicks(records);
         const auto run = records.first(count);
         const std::int64_t t0_ns = start_ns + clock.at(run.front()) * kTickNanoseconds;
-        insertChunk(database, rows_.tick_stream_id, next_chunk_, attempt_id, t0_ns, encodeTicks(run));
+        insertChunk(database, rows_.tick_stream_id, next_chunk_, attempt_id, t0_ns, packTicks(encodeTicks(run)));
         if (rows_.timing_stream_id) {
-            insertChunk(database, *rows_.timing_stream_id, next_chunk_, attempt_id, t0_ns, encodeTiming(run));
+            insertChunk(database, *rows_.timing_stream_id, next_chunk_, attempt_id, t0_ns,
+                        packTiming(encodeTiming(run)));
         }
         for (const TickRecord& record : run) clock.at(record);
         ++next_chunk_;  // a number that a rollback leaves unused does no harm

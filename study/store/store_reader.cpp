@@ -148,17 +148,24 @@ SessionRow readSession(const Statement& row) {
     return session;
 }
 
-/// The chunks of one attempt in one stream, ascending.
-std::vector<Chunk> readChunks(const Database& database, std::int64_t attempt_id, const char* stream) {
-    Statement statement = database.prepare(
-        "SELECT c.first_tick, c.n, c.crc32, c.data FROM sample_chunk c JOIN stream USING(stream_id) "
+/// The chunks of one attempt in one stream, unpacked, ascending. Throws where one is damaged.
+template <class Unpack>
+std::vector<Chunk> readChunks(const Database& database, std::int64_t attempt_id, const char* stream, Unpack unpack) {
+    Statement row = database.prepare(
+        "SELECT c.first_tick, c.n, c.crc32, c.data, stream.encoding FROM sample_chunk c JOIN stream USING(stream_id) "
         "WHERE c.attempt_id=? AND stream.stream=? ORDER BY c.first_tick");
-    statement.bind(attempt_id, stream);
-    return readAll<Chunk>(std::move(statement), [](const Statement& row) {
+    row.bind(attempt_id, stream);
+    std::vector<Chunk> chunks;
+    while (row.step()) {
         const std::span<const std::byte> data = row.blob(3);
-        return Chunk{
-            row.integer(0), row.integer(1), static_cast<std::uint32_t>(row.integer(2)), {data.begin(), data.end()}};
-    });
+        auto chunk = unpack(
+            {row.integer(0), row.integer(1), static_cast<std::uint32_t>(row.integer(2)), {data.begin(), data.end()}},
+            row.text(4));
+        if (!chunk)
+            throw std::runtime_error("attempt " + std::to_string(attempt_id) + ": " + chunk.errors()[0].message);
+        chunks.push_back(*std::move(chunk));
+    }
+    return chunks;
 }
 
 }  // namespace
@@ -350,8 +357,9 @@ Result<std::vector<TickRecord>> StoreReader::records(std::int64_t attempt_id) co
             if (!done)
                 throw std::runtime_error("attempt " + std::to_string(attempt_id) + ": " + done.errors()[0].message);
         };
-        for (const Chunk& chunk : readChunks(*database_, attempt_id, "tick")) require(decodeTicks(chunk, records));
-        for (const Chunk& chunk : readChunks(*database_, attempt_id, "tick_timing"))
+        for (const Chunk& chunk : readChunks(*database_, attempt_id, "tick", unpackTicks))
+            require(decodeTicks(chunk, records));
+        for (const Chunk& chunk : readChunks(*database_, attempt_id, "tick_timing", unpackTiming))
             require(decodeTiming(chunk, records));
         return records;
     });

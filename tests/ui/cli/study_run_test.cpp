@@ -238,27 +238,27 @@ protected:
     void falsify(const std::string& column, std::int64_t tick, bool fix_checksum) const {
         const store::Database database(folder_ / "study.db", store::OpenMode::ReadWrite);
         const auto sql =
-            "SELECT s.rowid, s.first_tick, s.n, s.data FROM sample_chunk s WHERE attempt_id=2 AND "
+            "SELECT s.rowid, s.first_tick, s.n, s.data, s.crc32 FROM sample_chunk s WHERE attempt_id=2 AND "
             "first_tick<=? AND first_tick+n>?";
         auto found = database.prepare(sql);
         ASSERT_TRUE(found.bind(tick, tick).step());
         const std::int64_t row = found.integer(0), first = found.integer(1), count = found.integer(2);
-        std::vector<std::byte> data(found.blob(3).begin(), found.blob(3).end());
+        const store::Chunk stored{
+            first, count, static_cast<std::uint32_t>(found.integer(4)), {found.blob(3).begin(), found.blob(3).end()}};
+        const auto unpacked = store::unpackTicks(stored, store::encodingText());
+        ASSERT_TRUE(unpacked) << toString(unpacked.errors().front());
+        store::Chunk changed = *unpacked;
         found.reset();
         std::int64_t offset = 0;
         for (const store::Channel& channel : store::tickChannels()) {
             const std::int64_t width = channel.type.ends_with("64") ? 8 : 4;
             if (channel.name == column) {
-                data[static_cast<std::size_t>(offset + (tick - first) * width)] ^= std::byte{1};
-                const auto crc = store::crc32(data);
-                const std::span<const std::byte> bytes(data);
-                if (fix_checksum) {
-                    database.prepare("UPDATE sample_chunk SET data=?, crc32=? WHERE rowid=?")
-                        .bind(bytes, crc, row)
-                        .run();
-                } else {
-                    database.prepare("UPDATE sample_chunk SET data=? WHERE rowid=?").bind(bytes, row).run();
-                }
+                changed.data[static_cast<std::size_t>(offset + (tick - first) * width)] ^= std::byte{1};
+                const store::Chunk packed = store::packTicks(changed);
+                const std::span<const std::byte> bytes(packed.data);
+                database.prepare("UPDATE sample_chunk SET data=?, crc32=? WHERE rowid=?")
+                    .bind(bytes, fix_checksum ? packed.crc32 : stored.crc32, row)
+                    .run();
                 return;
             }
             offset += count * width;
