@@ -113,7 +113,9 @@ void writeSamples(const store::StoreReader& reader, const StudyData& study, cons
             if (packings.size() == at_once) writeOldest();
             packings.push_back(
                 {samplesFile(study.attempts[i]),
-                 std::async(std::launch::async, [ticks = *std::move(records)] { return gzip(samplesCsv(ticks)); })});
+                 std::async(std::launch::async, [ticks = *std::move(records), cues = study.attempts[i].cues] {
+                     return gzip(samplesCsv(ticks, cues));
+                 })});
         }
         if (options.progress) {
             options.progress(static_cast<double>(i + 1) / static_cast<double>(study.attempts.size()));

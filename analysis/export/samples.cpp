@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "analysis/export/status_bits.h"
 #include "study/measures/period_clock.h"
@@ -68,6 +69,15 @@ std::vector<Column> sampleColumns() {
                            1,
                            {}});
     }
+    const auto add = [&](const char* name, const char* label, const char* formula) {
+        columns.push_back({name, label, "", "number", formula, 1, {}});
+    };
+    add("cue_visual", "Command of the visual cue, 0 to 1", "min(1, hand_depth_m / feedback.cue_full_depth_mm)");
+    add("cue_vibration", "Command of the vibrotactile cue, 0 to 1",
+        "min(1, hand_depth_m / feedback.cue_full_depth_mm)");
+    add("cue_sound", "Command of the audio cue, 0 to 1",
+        "at an impact min(1, speed of the hand / feedback.cue_full_speed_mm_per_s), falling by "
+        "exp(-t / feedback.cue_sound_decay_ms)");
     return columns;
 }
 
@@ -76,12 +86,16 @@ std::string samplesFile(const store::AttemptRow& attempt) {
            padded(attempt.trial_index) + "_a" + std::to_string(attempt.attempt_no) + ".csv.gz";
 }
 
-std::string samplesCsv(std::span<const TickRecord> records) {
+std::string samplesCsv(std::span<const TickRecord> records, const measures::CueSettings& cues) {
     constexpr std::size_t kTypicalRow = 400;
     std::string text = toCsv(Table{{}, {}, sampleColumns(), {}});
     text.reserve(text.size() + records.size() * kTypicalRow);
     RowText row(text);
     measures::PeriodClock clock;
+    measures::CueSignals signals(cues);
+    const auto orMissing = [](bool has, double command) {
+        return has ? command : std::numeric_limits<double>::quiet_NaN();
+    };
     for (const TickRecord& r : records) {
         row.add(r.tick);
         row.add(static_cast<double>(clock.at(r)) / 1000.0);
@@ -104,6 +118,10 @@ std::string samplesCsv(std::span<const TickRecord> records) {
         row.add(r.iterations);
         row.add(r.nodes_visited);
         row.add(r.hand_energy_J);
+        const measures::CueCommands commands = signals.at(r);
+        row.add(orMissing(cues.visual, commands.visual));
+        row.add(orMissing(cues.vibration, commands.vibration));
+        row.add(orMissing(cues.sound, commands.sound));
         row.endRow();
     }
     return text;

@@ -141,7 +141,9 @@ std::string seenName(const StudyData& study, const store::ConditionRow& conditio
         name += (first ? "" : "/") + label;
         first = false;
     }
-    return all || name.empty() ? condition.condition : name;
+    if (all) return condition.condition;
+    const auto own = condition.condition.rfind('@');  // of a block's own conditions
+    return name + (own == std::string::npos ? "" : condition.condition.substr(own));
 }
 
 /// Names of conditions of all protocols, in order, each with a column part of its own; catch trials have none.

@@ -57,7 +57,8 @@ struct BlockPlan {
     Order blocked_order = Order::Williams;
     std::vector<Constraint> constraints = {};  // of orders Random and Shuffled
     CatchPlan catches = {};
-    int session = 1;  // of the participant's sessions the one that has the block, from 1
+    int session = 1;                  // of the participant's sessions the one that has the block, from 1
+    std::size_t first_condition = 0;  // added to the number of every condition: the block has its own of each
 };
 
 /// A study's design: what orders, groups and slots follow from.

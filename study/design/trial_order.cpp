@@ -147,7 +147,8 @@ Result<std::vector<PlannedTrial>> planSession(const Design& design, const Sessio
             for (const std::size_t condition : pool.items)
                 trials.push_back({static_cast<std::int64_t>(trials.size()), static_cast<std::int64_t>(b), block.name,
                                   trial_in_block++, design.conditions[condition].catch_trial ? "catch" : block.phase,
-                                  condition, block.order == Order::Shuffled ? ++seen[condition] : pool.repetition});
+                                  block.first_condition + condition,
+                                  block.order == Order::Shuffled ? ++seen[condition] : pool.repetition});
         }
     }
     return trials;

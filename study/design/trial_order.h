@@ -28,7 +28,7 @@ struct PlannedTrial {
     std::string block;
     std::int64_t trial_in_block = 0;
     std::string phase;          // the block's, or "catch"
-    std::size_t condition = 0;  // index into the study's conditions
+    std::size_t condition = 0;  // index into the study's conditions, the blocks' own ones after the shared
     int repetition = 1;         // pass of the block; in a Shuffled block: how often the condition came
 
     friend bool operator==(const PlannedTrial&, const PlannedTrial&) = default;

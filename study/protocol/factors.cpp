@@ -106,10 +106,6 @@ private:
     std::set<std::string> labels_;
 };
 
-bool overlap(const std::string& a, const std::string& b) {
-    return a == b || a.starts_with(b + ".") || b.starts_with(a + ".");
-}
-
 /// Two factors that change the same key would undo one another.
 void checkOverlaps(const std::vector<FactorContent>& factors, Errors& errors) {
     for (std::size_t i = 0; i < factors.size(); ++i)
@@ -147,6 +143,10 @@ Node* findPart(Node& scene, const std::string& name) {
 }
 
 }  // namespace
+
+bool overlap(const std::string& a, const std::string& b) {
+    return a == b || a.starts_with(b + ".") || b.starts_with(a + ".");
+}
 
 std::vector<FactorContent> readFactors(const std::vector<Node>& tables, std::span<const std::string> taken_names,
                                        Errors& errors) {

@@ -37,6 +37,9 @@ std::vector<FactorContent> readFactors(const std::vector<Node>& tables, std::spa
 /// there, a path that leads through something that is no table.
 void applyOverride(const Override& change, StudyTables& tables, Errors& errors);
 
+/// True if one of the keys is the other or holds it.
+bool overlap(const std::string& a, const std::string& b);
+
 /// Every combination of level indices, the first factor varying slowest. One empty combination without factors.
 std::vector<std::vector<std::size_t>> combinations(const std::vector<FactorContent>& factors);
 

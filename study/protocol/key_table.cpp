@@ -41,6 +41,7 @@ constexpr std::array kStudyKeys{
     Key{"protocol", "feedback", Table, kAny, "", "(its defaults)", "What the participant is given to feel and see."},
     Key{"protocol", "block", Tables, kAny, "", "!", "Blocks of trials in the order in which they run."},
     Key{"protocol", "questionnaire", Tables, kAny, "", "(none)", "Questionnaires and when they are asked."},
+    Key{"protocol", "analysis", Tables, kAny, "", "(none)", "What the study means to test, fixed with the protocol."},
     Key{"protocol", "loop", Table, kAny, "", "(its defaults)", "How well the haptic loop must keep its rate."},
     Key{"protocol", "consent", Tables, kAny, "", "(none)", "What people are asked to agree to before they take part."},
     Key{"protocol", "measures", Texts, kAny, "", "(all)", "Names of the measures to store for every trial."},
@@ -50,6 +51,7 @@ constexpr std::array kStudyKeys{
     Key{"study", "title", Text, kAny, "", "(the name)", "Title for people."},
     Key{"study", "seed", Integer, atLeast(0), "", "!", "Everything random follows from it."},
     Key{"study", "participants", Integer, from(1, 100000), "", "!", "How many are planned; a multiple of the rows of the Williams square keeps orders balanced."},
+    Key{"study", "max_session_minutes", Number, aboveUpTo(0, 1440), "", "(no limit)", "A session that can take longer, every trial to its time-out and with the rests, is an error."},
     Key{"study", "allocation_blocks", Integer, from(1, 10), "", "1", "Participants are allotted to groups in permuted blocks that hold each group so often."},
 
     Key{"scene", "unit", Choice, kAny, "um|mm|cm|m|in", "mm", "Unit of lengths without one in their key: shapes, positions, meshes that do not say theirs."},
@@ -198,6 +200,10 @@ constexpr std::array kStudyKeys{
     Key{"task", "engagement_depth_mm", Number, above(0), "", "1", "Search ends and insertion begins at this depth."},
 
     Key{"feedback", "kinesthetic", Boolean, kAny, "", "true", "Forces are rendered; only true is supported."},
+    Key{"feedback", "cues", Texts, kAny, "", "(none)", "Beside the force: \"visual\", \"vibrotactile\", \"audio\". The command of each, from 0 to 1, follows from the recorded ticks and is a column of the exported samples; no transducer is driven yet."},
+    Key{"feedback", "cue_full_depth_mm", Number, above(0), "", "2", "Depth at the hand's pose at which the visual and the vibrotactile command are 1."},
+    Key{"feedback", "cue_full_speed_mm_per_s", Number, above(0), "", "100", "Speed of the hand at an impact at which the audio command is 1."},
+    Key{"feedback", "cue_sound_decay_ms", Number, aboveUpTo(0, 10000), "", "50", "Time in which the audio command falls to 37 % after an impact."},
     Key{"feedback", "shown_pose", Choice, kAny, "proxy|device", "proxy", "What is drawn of the held part: the proxy, which stays outside, or where the device is."},
 
     Key{"block", "name", Name, kAny, "", "!", "Unique."},
@@ -217,6 +223,12 @@ constexpr std::array kStudyKeys{
     Key{"consent", "clause", Name, kAny, "", "!", "Unique; decisions are stored by it."},
     Key{"consent", "required", Boolean, kAny, "", "true", "Who does not say yes to it cannot take part. Simulated participants are not asked."},
     Key{"consent", "text", Table, kAny, "", "!", "What is asked, a text per language: `{ en = \"...\", de = \"...\" }`; every clause in the same languages. Until when data can be withdrawn belongs here."},
+
+    Key{"block", "set", Table, kAny, "", "(none)", "Keys that are different in this block, as a level's `set`: { \"task.timeout_s\" = 60 }. Its conditions are its own then: \"penalty/max@NAME\". A level of a factor that sets the same key is an error."},
+
+    Key{"analysis", "outcome", Text, kAny, "", "!", "A measure that the study stores."},
+    Key{"analysis", "factors", Texts, kAny, "", "!", "Names of factors."},
+    Key{"analysis", "test", Choice, kAny, "paired_t|wilcoxon|rm_anova|friedman|welch_t|mann_whitney|mixed_anova|lmm", "!", "Test, refused where it is not for these factors: paired_t, wilcoxon: one within factor of two levels; friedman: one of three or more; rm_anova: within factors; welch_t, mann_whitney: one between factor of two levels; mixed_anova: both kinds; lmm: any."},
 
     Key{"constraint", "rule", Choice, kAny, "max_run|min_distance|no_repeat|first_not|position_window", "!", "max_run: at most `count` trials in a row have the same level of `factor`. min_distance: two such trials are at least `count` trials apart. no_repeat: no condition twice in a row. first_not: the block does not begin with `level`. position_window: trials with `level` stand at the block's positions `from` to `to`."},
     Key{"constraint", "factor", Text, kAny, "", "(not for no_repeat)", "Name of the factor."},
@@ -241,7 +253,7 @@ struct TableInfo {
     std::string_view id, heading, doc;
 };
 constexpr std::array kTables{
-    TableInfo{"protocol", "Top level of a study", "A study file starts with `passung = 1`."},
+    TableInfo{"protocol", "Top level of a study", "A study file starts with `passung = 1`. A line `include = \"FILE\"`, anywhere, stands for the lines of FILE, a file\nin the same folder: the stored protocol has them in its place."},
     TableInfo{"study", "`[study]`", ""},
     TableInfo{"scene", "Top level of a scene", "In a study below `[scene]`: `[scene.contact]`, `[[scene.part]]` and so on. A study holds its scene itself, so that\nthe stored text is all of it."},
     TableInfo{"part_file", "Top level of a part file", ""},
@@ -275,6 +287,7 @@ constexpr std::array kTables{
     TableInfo{"block", "`[[block]]`", ""},
     TableInfo{"consent", "`[[consent]]`", "Each decision is stored with the SHA-256 of the text that it answers: a changed text has to be asked anew."},
     TableInfo{"constraint", "`constraints` of a block", "An order that no shuffle and no search finds is an error that says why."},
+    TableInfo{"analysis", "`[[analysis]]`", ""},
     TableInfo{"loop", "`[loop]`", ""},
     TableInfo{"questionnaire", "`[[questionnaire]]`", "In a study: what is asked, and when. Where several are due at one moment they come as listed."},
     TableInfo{"questionnaire_file", "Top level of a questionnaire file", "See `protocols/questionnaires/`. A text for each language is a table `{ en = \"...\", de = \"...\" }`; with one language a\nstring will do."},

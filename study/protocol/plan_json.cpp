@@ -103,6 +103,17 @@ std::string effectsJson(const model::Effects& effects) {
     return json.str();
 }
 
+std::string cuesJson(const Cues& cues) {
+    return JsonObject()
+        .boolean("visual", cues.visual)
+        .boolean("vibrotactile", cues.vibrotactile)
+        .boolean("audio", cues.audio)
+        .number("full_depth_m", cues.full_depth)
+        .number("full_speed_m_per_s", cues.full_speed)
+        .number("sound_decay_s", cues.sound_decay)
+        .str();
+}
+
 std::string taskJson(const PegInHoleTask& task) {
     return JsonObject()
         .text("type", "peg_in_hole")
@@ -171,6 +182,16 @@ std::string questionnaireJson(const PlannedQuestionnaire& planned) {
         .str();
 }
 
+std::string analysisJson(const Analysis& analysis) {
+    std::vector<std::string> factors;
+    for (const auto& factor : analysis.factors) factors.push_back(jsonText(factor));
+    return JsonObject()
+        .text("outcome", analysis.outcome)
+        .json("factors", jsonList(factors))
+        .text("test", analysis.test)
+        .str();
+}
+
 template <class T, class Function>
 std::string listOf(const std::vector<T>& items, Function json) {
     std::vector<std::string> texts;
@@ -188,8 +209,8 @@ std::string levelsJson(const std::vector<Factor>& factors, const std::vector<std
 
 std::string paramsJson(const Condition& condition) {
     const auto& scene = condition.scene;
-    return JsonObject()
-        .text("device", condition.device)
+    JsonObject json;
+    json.text("device", condition.device)
         .text("shown_pose", condition.shown == ShownPose::Proxy ? "proxy" : "device")
         .json("parts", listOf(scene.parts, partJson))
         .json("contact", contactJson(condition))
@@ -205,8 +226,9 @@ std::string paramsJson(const Condition& condition) {
                                 .integer("hold_ticks", scene.start_gate.hold_ticks)
                                 .str())
         .json("effects", effectsJson(scene.effects))
-        .json("task", taskJson(condition.task))
-        .str();
+        .json("task", taskJson(condition.task));
+    if (condition.cues.any()) json.json("cues", cuesJson(condition.cues));
+    return json.str();
 }
 
 std::string expandedJson(const StudyPlan& plan) {
@@ -223,6 +245,7 @@ std::string expandedJson(const StudyPlan& plan) {
         .json("groups", listOf(groupNames(plan), [](const std::string& name) { return jsonText(name); }))
         .integer("allocation_blocks", plan.allocation_blocks)
         .integer("sessions", sessionsOf(plan))
+        .json("analyses", listOf(plan.analyses, analysisJson))
         .json("loop", JsonObject().number("max_missed_share", plan.max_missed_share).str())
         .json("stable_stiffness", listOf(plan.stable_stiffness, stableJson))
         .json("measures", listOf(plan.measures, [](const std::string& name) { return jsonText(name); }))

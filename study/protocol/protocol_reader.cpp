@@ -8,9 +8,12 @@
 #include <optional>
 #include <set>
 
+#include "study/protocol/analysis_reader.h"
 #include "study/protocol/block_reader.h"
 #include "study/protocol/consent_reader.h"
+#include "study/protocol/duration.h"
 #include "study/protocol/factors.h"
+#include "study/protocol/include.h"
 #include "study/protocol/plan_json.h"
 #include "study/protocol/planned_questionnaires.h"
 #include "study/protocol/scene_node.h"
@@ -53,7 +56,10 @@ public:
         readLoop();
         plan_.consent = readConsent(root_, errors_);
         readMeasures();
+        plan_.analyses = readAnalyses(root_.items("analysis"), plan_, errors_);
         if (errors_.empty()) checkBlocks(root_.items("block"), plan_, errors_);
+        if (errors_.empty()) readBlockConditions();
+        if (errors_.empty()) checkDuration();
         tidy(errors_);
         if (!errors_.empty()) return errors_;
         listMeshes();
@@ -73,6 +79,7 @@ private:
         plan_.title = read.has("title") ? read.text("title") : plan_.name;
         plan_.seed = static_cast<std::uint64_t>(read.integer("seed"));
         plan_.participants = static_cast<int>(read.integer("participants"));
+        plan_.max_session = 60.0 * read.number("max_session_minutes");
         plan_.allocation_blocks = static_cast<int>(read.integer("allocation_blocks"));
     }
 
@@ -92,7 +99,8 @@ private:
     void readConditions() {
         const Node* scene = findScene();
         const std::size_t before = errors_.size();
-        const auto factors = readFactors(root_.items("factor"), known_measures_, errors_);
+        factors_ = readFactors(root_.items("factor"), known_measures_, errors_);
+        const auto& factors = factors_;
         std::size_t count = 1;
         for (const auto& factor : factors) {
             plan_.factors.push_back(factor.factor);
@@ -105,25 +113,57 @@ private:
         const auto exclusions = readExclusions(root_.items("exclude"), plan_.factors, errors_);
         if (scene == nullptr || errors_.size() > before) return;
         for (auto& levels : combinations(factors))
-            if (!isExcluded(exclusions, levels)) readCondition(*scene, factors, std::move(levels));
+            if (!isExcluded(exclusions, levels)) readCondition(*scene, std::move(levels), nullptr);
         if (errors_.size() > before) return;
         if (plan_.conditions.empty()) root_.fail("exclude", "leaves no condition");
         checkDistinct();
+        plan_.shared_conditions = plan_.conditions.size();
     }
 
-    void readCondition(const Node& scene, const std::vector<FactorContent>& factors, std::vector<std::size_t> levels) {
+    /// Blocks with a `set` have conditions of their own: the shared ones with the keys that the block changes.
+    void readBlockConditions() {
+        const Node* scene = root_.node("scene");
+        const auto& tables = root_.items("block");
+        for (std::size_t b = 0; b < tables.size() && scene != nullptr; ++b) {
+            const Node* set = tables[b].find("set");
+            if (set == nullptr) continue;
+            for (const Entry& entry : set->entries)
+                for (const auto& factor : factors_)
+                    for (const auto& level : factor.overrides)
+                        for (const Override& change : level)
+                            if (overlap(change.path, entry.key))
+                                errors_.push_back(errorAt(
+                                    entry.place, "block." + plan_.blocks[b].name + ".set", entry.key,
+                                    fmt::format("is changed by factor {}, whose level would win", factor.factor.name)));
+            if (plan_.conditions.size() + plan_.shared_conditions > kMaxConditions)
+                root_.fail("block",
+                           fmt::format("more than {} conditions with those that blocks change", kMaxConditions));
+            if (!errors_.empty()) return;
+            plan_.blocks[b].first_condition = plan_.conditions.size();
+            for (std::size_t c = 0; c < plan_.shared_conditions; ++c)
+                readCondition(*scene, plan_.conditions[c].levels, &tables[b]);
+        }
+    }
+
+    /// Adds the condition of these levels; `block`: with the keys that this block sets, before the levels' own.
+    void readCondition(const Node& scene, std::vector<std::size_t> levels, const Node* block) {
+        const auto& factors = factors_;
         const auto copyOf = [&](std::string_view name) {
             const Node* table = root_.node(name);
             return table != nullptr ? *table : emptyTable(document_.place);
         };
         StudyTables tables{scene, copyOf("task"), copyOf("feedback")};
         Condition condition;
+        if (block != nullptr)
+            for (const Entry& entry : block->find("set")->entries)
+                applyOverride({entry.key, entry.place, &entry.value}, tables, errors_);
         for (std::size_t i = 0; i < factors.size(); ++i) {
             for (const Override& change : factors[i].overrides[levels[i]]) applyOverride(change, tables, errors_);
             if (i > 0) condition.name += '/';
             condition.name += factors[i].factor.levels[levels[i]].label;
         }
         if (factors.empty()) condition.name = "single";
+        if (block != nullptr) condition.name += "@" + block->find("name")->text;
 
         const std::size_t before = errors_.size();
         auto content = readSceneNode(tables.scene, {"scene"}, "scene", devices_, errors_);
@@ -139,7 +179,7 @@ private:
         condition.allow_unstable = content.allow_unstable;
         condition.device = std::move(content.device);
         if (errors_.size() == before && root_.has("task")) condition.task = readTask(tables, condition.scene, errors_);
-        condition.shown = readFeedback(tables.feedback);
+        readFeedback(tables.feedback, condition);
         if (errors_.size() == before) checkStartPose(tables.scene, "scene", condition.scene, errors_);
         if (errors_.size() > before) return;
         condition.levels_json = levelsJson(plan_.factors, levels);
@@ -167,15 +207,40 @@ private:
         }
     }
 
-    ShownPose readFeedback(const Node& table) {
+    void readFeedback(const Node& table, Condition& condition) {
         const TableReader read(table, {"feedback"}, "feedback", errors_);
         if (read.has("kinesthetic") && !read.boolean("kinesthetic")) read.fail("kinesthetic", "only true is supported");
-        return read.text("shown_pose") == "device" ? ShownPose::Device : ShownPose::Proxy;
+        condition.shown = read.text("shown_pose") == "device" ? ShownPose::Device : ShownPose::Proxy;
+        Cues& cues = condition.cues;
+        cues.full_depth = read.number("cue_full_depth_mm");
+        cues.full_speed = read.number("cue_full_speed_mm_per_s");
+        cues.sound_decay = read.number("cue_sound_decay_ms");
+        for (const Node& item : read.items("cues")) {
+            bool* cue = item.text == "visual"         ? &cues.visual
+                        : item.text == "vibrotactile" ? &cues.vibrotactile
+                        : item.text == "audio"        ? &cues.audio
+                                                      : nullptr;
+            if (cue == nullptr || *cue)
+                errors_.push_back(
+                    errorAt(item.place, "feedback.cues", valueText(item),
+                            cue == nullptr ? "must be \"visual\", \"vibrotactile\" or \"audio\"" : "is listed twice"));
+            else
+                *cue = true;
+        }
     }
 
     void readBlockTables() {
         if (root_.has("block") && root_.items("block").empty()) root_.fail("block", "needs at least one block");
         plan_.blocks = readBlocks(root_.items("block"), plan_.factors, errors_);
+    }
+
+    void checkDuration() {
+        const double seconds = longestSession(plan_);
+        if (!(plan_.max_session > 0.0 && seconds > plan_.max_session)) return;
+        const TableReader read(*root_.node("study"), {"study"}, "study", errors_);
+        read.fail("max_session_minutes",
+                  fmt::format("a session takes up to {:.1f} min: every trial to its time-out, and the rests",
+                              seconds / 60.0));
     }
 
     void readLoop() {
@@ -283,6 +348,7 @@ private:
     Errors errors_;
     TableReader root_;
     StudyPlan plan_;
+    std::vector<FactorContent> factors_;
 };
 
 }  // namespace
@@ -300,12 +366,22 @@ Result<StudyPlan> readProtocol(const std::string& path, std::span<const DeviceDe
 Result<StudyPlan> readProtocolText(const std::string& text, const std::string& path,
                                    std::span<const DeviceDescription> devices,
                                    std::span<const std::string> known_measures) {
-    const auto document = parseDocument(text, path);
-    if (!document) return document.errors();
+    const auto included = includeFiles(text, path);
+    if (!included) return included.errors();
+    auto document = parseDocument(included->text, path);
+    if (!document) {
+        Error error = document.errors().front();
+        Place place{path, error.line, error.column};
+        relocate(*included, place);
+        error.file = place.file;
+        error.line = place.line;
+        return error;
+    }
+    relocate(*included, *document);
     if (const auto other = otherKind(*document, FileKind::Study)) return errorAt(document->place, "", "", *other);
     auto plan = ProtocolReader(*document, devices, known_measures).read();
     if (!plan) return plan.errors();
-    plan->source_text = text;
+    plan->source_text = included->text;
     plan->source_path = path;
     return plan;
 }

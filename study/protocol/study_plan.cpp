@@ -56,7 +56,9 @@ design::Design designOf(const StudyPlan& plan) {
     design::Design design;
     for (const Factor& factor : plan.factors)
         design.factors.push_back({factor.name, factor.kind, factor.levels.size()});
-    for (const Condition& condition : plan.conditions) {
+    const std::size_t shared = plan.shared_conditions > 0 ? plan.shared_conditions : plan.conditions.size();
+    for (std::size_t c = 0; c < shared; ++c) {
+        const Condition& condition = plan.conditions[c];
         bool catch_trial = false;
         for (std::size_t f = 0; f < condition.levels.size(); ++f)
             catch_trial = catch_trial || plan.factors[f].levels[condition.levels[f]].catch_trial;
@@ -67,7 +69,7 @@ design::Design designOf(const StudyPlan& plan) {
     for (const Block& block : plan.blocks)
         design.blocks.push_back({block.name, phaseName(block.phase), block.repetitions, block.order,
                                  static_cast<std::size_t>(block.trials), block.blocked, block.blocked_order,
-                                 block.constraints, block.catches, block.session});
+                                 block.constraints, block.catches, block.session, block.first_condition});
     design.allocation_blocks = plan.allocation_blocks;
     return design;
 }

@@ -1,19 +1,16 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/model/scene_spec.h"
 #include "study/design/design.h"
+#include "study/protocol/block.h"
 #include "study/questionnaire/definition.h"
 
 namespace passung::protocol {
-
-enum class Phase { Practice, Main };
-const char* phaseName(Phase phase);  // "practice", "main": as stored
 
 using design::FactorKind;
 const char* factorKindName(FactorKind kind);  // "within", "between", "nuisance": as stored
@@ -46,6 +43,16 @@ struct PegInHoleTask {
 
 enum class ShownPose { Proxy, Device };  // what the display draws for the held part
 
+/// What a participant is given to feel and see beside the force; each command is a number from 0 to 1, computed from
+/// the recorded ticks by measures::CueSignals.
+struct Cues {
+    bool visual = false, vibrotactile = false, audio = false;
+    double full_depth = 0.002;  // [m] of the hand's pose at which visual and vibration are 1
+    double full_speed = 0.1;    // [m/s] of the hand at an impact at which the sound is 1
+    double sound_decay = 0.05;  // [s] in which the sound falls to 37 %
+    bool any() const { return visual || vibrotactile || audio; }
+};
+
 /// One combination of factor levels with everything it means.
 struct Condition {
     std::string name;                 // levels joined by "/", unique
@@ -59,25 +66,9 @@ struct Condition {
     bool accuracy_picked = false;                // it has
     PegInHoleTask task;
     ShownPose shown = ShownPose::Proxy;
+    Cues cues;
     std::string device;       // preset
     std::string params_json;  // every resolved number, for the attempt's row
-};
-
-using BlockOrder = design::Order;
-const char* blockOrderName(BlockOrder order);  // "williams", "permutations", "random", "shuffled", "listed"
-
-struct Block {
-    std::string name;
-    Phase phase = Phase::Main;
-    int repetitions = 1;  // passes through the order
-    BlockOrder order = BlockOrder::Williams;
-    int trials = 0;                           // 0 = every condition of the pass; else the first so many (practice)
-    std::optional<std::size_t> blocked = {};  // factor whose levels come one after the other
-    BlockOrder blocked_order = BlockOrder::Williams;
-    std::vector<design::Constraint> constraints = {};
-    design::CatchPlan catches = {};
-    int session = 1;    // of each participant's, from 1
-    double rest = 0.0;  // [s] at least so long is rested before it
 };
 
 enum class Moment { SessionStart, BeforeBlock, AfterBlock, AfterTrial, AfterCondition, SessionEnd };
@@ -92,6 +83,13 @@ struct PlannedQuestionnaire {
     int line = 0, column = 0;              // of the table in the protocol
     questionnaire::Definition definition;  // without items until loadQuestionnaires()
     std::string source_json;               // {"definition": text of `file`, "texts": text of `texts`}, byte for byte
+};
+
+/// What a study means to test, written down before the first participant.
+struct Analysis {
+    std::string outcome;               // a measure
+    std::vector<std::string> factors;  // names
+    std::string test;                  // "rm_anova" …
 };
 
 /// What a device displays stably, as the stiffnesses of a protocol were resolved against it.
@@ -125,7 +123,10 @@ struct StudyPlan {
     int allocation_blocks = 1;  // a permuted block holds each group so often
     std::vector<Factor> factors;
     std::vector<Condition> conditions;  // the first factor varies slowest; of all groups and assignments
+    std::size_t shared_conditions = 0;  // how many of these, from the first, are no block's own; 0: all
     std::vector<Block> blocks;
+    double max_session = 0.0;  // [s] that a session may take; 0: no limit
+    std::vector<Analysis> analyses;
     std::vector<PlannedQuestionnaire> questionnaires;
     double max_missed_share = 0.01;                 // of a trial's cycles: an attempt that missed more is not valid
     std::vector<std::string> measures;              // names, all known to study/measures

@@ -8,6 +8,7 @@
 #include "study/design/counted.h"
 #include "study/design/trial_order.h"
 #include "study/design/williams.h"
+#include "study/protocol/duration.h"
 #include "study/protocol/participant.h"
 #include "study/session/participant_order.h"
 
@@ -124,18 +125,6 @@ std::string orderText(const protocol::StudyPlan& plan, const std::vector<design:
     return text;
 }
 
-/// [s], if every trial runs into its time-out and no rest is longer than it must be.
-double longestSession(const protocol::StudyPlan& plan, const std::vector<design::PlannedTrial>& trials) {
-    double seconds = 0.0;
-    std::int64_t block = -1;
-    for (const auto& trial : trials) {
-        seconds += plan.conditions[trial.condition].task.timeout;
-        if (trial.block_index != block) seconds += plan.blocks[static_cast<std::size_t>(trial.block_index)].rest;
-        block = trial.block_index;
-    }
-    return seconds;
-}
-
 /// The design is one Williams square for everybody.
 bool isPlainSquare(const design::Design& design) {
     const auto wheels = design::wheelsOf(design);
@@ -201,7 +190,7 @@ Result<std::string> describePlan(const protocol::StudyPlan& plan, int participan
             text += fmt::format("  {}{}{}  {}\n", code, groups.size() > 1 ? " " + groups[places[i].group] : "",
                                 sessions > 1 ? fmt::format(", session {}", session) : "", orderText(plan, *trials));
             auto& most = longest[static_cast<std::size_t>(session - 1)];
-            most = std::max(most, longestSession(plan, *trials));
+            most = std::max(most, protocol::longestDuration(plan, *trials));
             count += trials->size();
         }
     }
@@ -214,6 +203,9 @@ Result<std::string> describePlan(const protocol::StudyPlan& plan, int participan
                         std::any_of(plan.blocks.begin(), plan.blocks.end(), [](const auto& b) { return b.rest > 0.0; })
                             ? "rests as short as they may be"
                             : "pauses not counted");
+    if (!plan.analyses.empty()) text += "\nPlanned analyses\n";
+    for (const auto& analysis : plan.analyses)
+        text += fmt::format("  {} by {}: {}\n", analysis.outcome, fmt::join(analysis.factors, ", "), analysis.test);
     for (const auto& warning : planWarnings(plan)) text += fmt::format("\nwarning: {}\n", warning);
     return text;
 }

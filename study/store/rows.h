@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "study/measures/cues.h"
+
 namespace passung::store {
 
 // What StoreReader hands out: one struct per table or join, names as in the schema. An empty optional is NULL.
@@ -181,6 +183,7 @@ struct AttemptRow {
     std::string protocol_sha256;
     std::string app_version;
     std::optional<TimingRow> timing;
+    measures::CueSettings cues;              // what the condition has beside the force
     std::map<std::string, double> measures;  // only those that are defined for this attempt
 
     /// A main-phase attempt that counts in means: it ended by its own rules and nothing spoilt it.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "study/design/allocation.h"
 #include "study/measures/measures.h"
 #include "study/protocol/document.h"
 #include "study/protocol/json.h"
@@ -18,6 +17,7 @@
 #include "study/store/questionnaire_rows.h"
 #include "study/store/revisions.h"
 #include "study/store/session_json.h"
+#include "study/store/slots.h"
 #include "study/store/stable_stiffness_rows.h"
 #include "study/store/writer_thread.h"
 
@@ -83,57 +83,6 @@ void declareMeasures(const Database& database, const std::string& sha256, const 
                                                                  definition.name) != plan.measures.end();
         if (declared) declare.bind(sha256, definition.name).run();
     }
-}
-
-/// What the stored protocol's slots are: groups and allocation as its expanded form has them. Protocols from before
-/// there were groups have one.
-struct SlotDesign {
-    std::vector<std::string> groups;
-    std::string study;
-    design::Allocation allocation;  // without `study`
-};
-
-SlotDesign slotDesignOf(const Database& database, const std::string& sha256) {
-    SlotDesign slots;
-    Statement each = database.prepare(
-        "SELECT g.value FROM protocol_version p, json_each(p.expanded_json, '$.groups') g WHERE protocol_sha256=?");
-    each.bind(sha256);
-    while (each.step()) slots.groups.push_back(each.text(0));
-    if (slots.groups.empty()) slots.groups = {"all"};
-    Statement find = database.prepare(
-        "SELECT name, sequences, coalesce(json_extract(expanded_json, '$.allocation_blocks'), 1), "
-        "json_extract(expanded_json, '$.seed') FROM protocol_version WHERE protocol_sha256=?");
-    if (!find.bind(sha256).step()) throw std::runtime_error("the protocol has not been imported");
-    slots.study = find.text(0);
-    slots.allocation.groups = slots.groups.size();
-    slots.allocation.sequences = static_cast<std::size_t>(find.integer(1));
-    slots.allocation.blocks_of = static_cast<std::size_t>(find.integer(2));
-    slots.allocation.seed = static_cast<std::uint64_t>(find.integer(3));
-    return slots;
-}
-
-/// The next round of slots of this kind of participant, in the order in which they are taken.
-void insertSlots(const Database& database, const std::string& sha256, const char* kind) {
-    SlotDesign slots = slotDesignOf(database, sha256);
-    slots.allocation.study = slots.study;
-    Statement count = database.prepare("SELECT count(*) FROM design_slot WHERE protocol_sha256=? AND kind=?");
-    count.bind(sha256, kind).step();
-    const design::Allocation& a = slots.allocation;
-    const auto round = static_cast<std::size_t>(count.integer(0)) / (a.groups * a.sequences * a.blocks_of);
-    Statement insert = database.prepare(
-        "INSERT INTO design_slot(protocol_sha256, between_group, sequence_index, replicate, state, kind) "
-        "VALUES(?, ?, ?, ?, 'free', ?)");
-    for (const design::Place& place : design::placesOf(a, kind, round))
-        insert
-            .bind(sha256, slots.groups[place.group], static_cast<std::int64_t>(place.sequence),
-                  static_cast<std::int64_t>(place.replicate), kind)
-            .run();
-}
-
-std::int64_t slotCount(const Database& database, const std::string& sha256) {
-    Statement count = database.prepare("SELECT count(*) FROM design_slot WHERE protocol_sha256=?");
-    count.bind(sha256).step();
-    return count.integer(0);
 }
 
 /// Rows of the square and everybody's order follow from the seed: one protocol has one seed in a database.

@@ -54,7 +54,10 @@ constexpr std::string_view kAttemptColumns =
     "a.valid AND pa.status<>'excluded', "
     "CASE WHEN a.valid AND pa.status='excluded' THEN 'participant excluded' ELSE a.invalid_reason END, a.params_json, "
     "a.stages_json, a.seed, a.state_hash, s.protocol_sha256, g.app_version, "
-    "m.loop, m.ticks, m.mean_us, m.sd_us, m.p99_us, m.p999_us, m.max_us, m.overruns, m.dropped_samples "
+    "m.loop, m.ticks, m.mean_us, m.sd_us, m.p99_us, m.p999_us, m.max_us, m.overruns, m.dropped_samples, "
+    "json_extract(a.params_json, '$.cues.visual'), json_extract(a.params_json, '$.cues.vibrotactile'), "
+    "json_extract(a.params_json, '$.cues.audio'), json_extract(a.params_json, '$.cues.full_depth_m'), "
+    "json_extract(a.params_json, '$.cues.full_speed_m_per_s'), json_extract(a.params_json, '$.cues.sound_decay_s') "
     "FROM attempt a JOIN trial_plan t USING(trial_id) JOIN session s USING(session_id) "
     "JOIN participant pa USING(participant_id) JOIN segment g ON g.segment_id=a.segment_id "
     "JOIN condition c USING(condition_id) LEFT JOIN timing m USING(attempt_id)";
@@ -104,6 +107,9 @@ AttemptRow readAttempt(const Database& database, const Statement& row) {
     attempt.protocol_sha256 = row.text(26);
     attempt.app_version = row.text(27);
     if (!row.isNull(28)) attempt.timing = readTiming(row, 28);
+    if (!row.isNull(37))
+        attempt.cues = {row.integer(37) != 0, row.integer(38) != 0, row.integer(39) != 0,
+                        row.real(40),         row.real(41),         row.real(42)};
     Statement values =
         database.prepare("SELECT measure, value_num FROM attempt_measure WHERE attempt_id=? AND value_num IS NOT NULL");
     values.bind(attempt.attempt_id);

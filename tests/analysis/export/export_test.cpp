@@ -371,7 +371,7 @@ TEST_F(Export, ADamagedSampleLeavesNothingHalfWritten) {
 
 TEST(ExportSamples, ColumnsAndChannelsAgree) {
     // Truth: invariant: as many cells as columns
-    const fake::CsvFile samples = fake::readCsv(samplesCsv(fake::makeRecords(1, 2)));
+    const fake::CsvFile samples = fake::readCsv(samplesCsv(fake::makeRecords(1, 2), {}));
     EXPECT_EQ(samples.header.size(), sampleColumns().size());
     EXPECT_EQ(samples.rows.size(), 2u);
 }

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <vector>
+
+#include "study/protocol/document.h"
+#include "study/protocol/study_plan.h"
+
+namespace passung::protocol {
+
+/// Reads the [[analysis]] tables: what the study means to test, fixed before the first participant. Errors: an outcome
+/// that the study does not store, factors that it does not have or that the test is not for.
+std::vector<Analysis> readAnalyses(const std::vector<Node>& tables, const StudyPlan& plan, Errors& errors);
+
+}  // namespace passung::protocol

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "study/design/design.h"
+
+namespace passung::protocol {
+
+enum class Phase { Practice, Main };
+const char* phaseName(Phase phase);  // "practice", "main": as stored
+
+using BlockOrder = design::Order;
+const char* blockOrderName(BlockOrder order);  // "williams", "permutations", "random", "shuffled", "listed"
+
+struct Block {
+    std::string name;
+    Phase phase = Phase::Main;
+    int repetitions = 1;  // passes through the order
+    BlockOrder order = BlockOrder::Williams;
+    int trials = 0;                           // 0 = every condition of the pass; else the first so many (practice)
+    std::optional<std::size_t> blocked = {};  // factor whose levels come one after the other
+    BlockOrder blocked_order = BlockOrder::Williams;
+    std::vector<design::Constraint> constraints = {};
+    design::CatchPlan catches = {};
+    int session = 1;                  // of each participant's, from 1
+    double rest = 0.0;                // [s] at least so long is rested before it
+    std::size_t first_condition = 0;  // its own conditions begin here, parallel to the shared ones; 0: it takes those
+};
+
+}  // namespace passung::protocol

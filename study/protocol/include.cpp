@@ -1,0 +1,110 @@
+#include "study/protocol/include.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <sstream>
+
+namespace passung::protocol {
+namespace {
+
+/// The file that a line includes, with the column of its name; nothing for any other line.
+struct Directive {
+    std::string file;
+    int column = 1;
+};
+
+std::optional<Directive> directiveOf(const std::string& line) {
+    constexpr std::string_view kWord = "include";
+    if (!line.starts_with(kWord)) return std::nullopt;
+    std::size_t at = line.find_first_not_of(" \t", kWord.size());
+    if (at == std::string::npos || line[at] != '=') return std::nullopt;
+    at = line.find_first_not_of(" \t", at + 1);
+    if (at == std::string::npos || line[at] != '"') return std::nullopt;
+    const std::size_t end = line.find('"', at + 1);
+    if (end == std::string::npos) return std::nullopt;
+    const std::size_t rest = line.find_first_not_of(" \t\r", end + 1);
+    if (rest != std::string::npos && line[rest] != '#') return std::nullopt;
+    return Directive{line.substr(at + 1, end - at - 1), static_cast<int>(at) + 1};
+}
+
+/// Goes through one file and the files that it includes.
+class Includer {
+public:
+    explicit Includer(IncludedText& result) : result_(result) {}
+
+    void add(const std::string& text, const std::string& path) {
+        open_.push_back(path);
+        std::istringstream lines(text);
+        std::string line;
+        for (int number = 1; std::getline(lines, line); ++number) {
+            if (const auto directive = directiveOf(line))
+                include(*directive, {path, number, directive->column});
+            else
+                put(line, {path, number, 1});
+        }
+        open_.pop_back();
+    }
+
+    bool found() const { return found_; }
+    const Errors& errors() const { return errors_; }
+
+private:
+    void put(const std::string& line, const Place& place) {
+        result_.text += line + '\n';
+        result_.lines.push_back(place);
+    }
+
+    void include(const Directive& directive, const Place& place) {
+        found_ = true;
+        const auto report = [&](std::string message) {
+            errors_.push_back(errorAt(place, "include", fmt::format("\"{}\"", directive.file), std::move(message)));
+        };
+        if (directive.file.find('/') != std::string::npos)
+            return report("must be a file in the study's folder, so that paths in it mean the same");
+        const auto path = (std::filesystem::path(place.file).parent_path() / directive.file).string();
+        if (std::find(open_.begin(), open_.end(), path) != open_.end()) return report("includes itself");
+        const auto text = readFile(path);
+        if (!text) return report(text.errors().front().message);
+        put(fmt::format("# {} begins", directive.file), place);
+        add(*text, path);
+        put(fmt::format("# {} ends", directive.file), place);
+    }
+
+    IncludedText& result_;
+    std::vector<std::string> open_;
+    bool found_ = false;
+    Errors errors_;
+};
+
+}  // namespace
+
+Result<IncludedText> includeFiles(const std::string& text, const std::string& path) {
+    IncludedText result;
+    Includer includer(result);
+    includer.add(text, path);
+    if (!includer.errors().empty()) return includer.errors();
+    if (!includer.found()) return IncludedText{text, {}};
+    return result;
+}
+
+void relocate(const IncludedText& included, Place& place) {
+    if (included.lines.empty()) return;
+    const auto line = std::min(static_cast<std::size_t>(std::max(place.line, 1)), included.lines.size());
+    place.file = included.lines[line - 1].file;
+    place.line = included.lines[line - 1].line;
+}
+
+void relocate(const IncludedText& included, Node& document) {
+    if (included.lines.empty()) return;
+    relocate(included, document.place);
+    for (Node& item : document.items) relocate(included, item);
+    for (Entry& entry : document.entries) {
+        relocate(included, entry.place);
+        relocate(included, entry.value);
+    }
+}
+
+}  // namespace passung::protocol
