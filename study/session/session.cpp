@@ -14,7 +14,6 @@
 namespace passung::session {
 namespace {
 
-constexpr int kFirstAttempt = 1;
 constexpr std::size_t kTakeAtOnce = 256;  // records
 
 /// Pose of the task's target in the world.
@@ -35,7 +34,13 @@ std::uint64_t attemptSeed(const SessionSetup& setup, const design::PlannedTrial&
 }
 
 Session::Session(SessionSetup setup, Apparatus& apparatus, TrialSink& sink, SessionListener listener)
-    : setup_(std::move(setup)), apparatus_(apparatus), sink_(sink), listener_(std::move(listener)) {}
+    : setup_(std::move(setup)),
+      apparatus_(apparatus),
+      sink_(sink),
+      listener_(std::move(listener)),
+      state_(setup_.waits ? SessionState::Ready : SessionState::BetweenTrials),
+      agenda_(setup_.trials),
+      past_(setup_.trials.size()) {}
 
 Session::~Session() {
     if (state_ == SessionState::InTrial) apparatus_.stop();
@@ -48,14 +53,9 @@ Result<Done> Session::run() {
 }
 
 void Session::interrupt(const std::string& reason) {
-    const bool complete = state_ == SessionState::BetweenTrials && finished_ == setup_.trials.size();
-    if (state_ == SessionState::InTrial) {
-        std::vector<TrialEvent> events;
-        attempt_->course.abort(attempt_->next_tick, reason, events);
-        appendEvents(events);
-        finishTrial();
-    }
-    if (state_ != SessionState::BetweenTrials) return;
+    const bool complete = state_ != SessionState::InTrial && agenda_.empty();
+    if (state_ == SessionState::InTrial) abortRunning(reason, Then::RepeatNow);
+    if (isOver()) return;
     if (complete) return finish(SessionState::Complete);
     note("session_interrupted", "reason", reason);
     finish(SessionState::Interrupted);
@@ -64,14 +64,16 @@ void Session::interrupt(const std::string& reason) {
 SessionState Session::advance() {
     switch (state_) {
         case SessionState::BetweenTrials:
-            if (finished_ < setup_.trials.size())
-                beginTrial();
-            else
+            if (agenda_.empty())
                 finish(SessionState::Complete);
+            else
+                beginTrial();
             break;
         case SessionState::InTrial:
             watchTrial();
             break;
+        case SessionState::Ready:
+        case SessionState::Paused:
         case SessionState::Complete:
         case SessionState::Failed:
         case SessionState::Interrupted:
@@ -88,7 +90,7 @@ void Session::beginTrial() {
 
     AttemptStart start;
     start.trial_index = trial().trial_index;
-    start.attempt_no = kFirstAttempt;
+    start.attempt_no = past_[agenda_.next()].attempts + 1;
     start.start_ns = session_ns_;
     start.params_json = condition.params_json;
     start.seed = attemptSeed(setup_, trial(), start.attempt_no);
@@ -98,6 +100,7 @@ void Session::beginTrial() {
 
     const auto id = sink_.startAttempt(start);
     if (!id) return fail("start attempt", id.errors());
+    ++past_[agenda_.next()].attempts;
     attempt_.emplace(Attempt{*id, condition, TrialCourse(condition.task, *X_WT), {}, {}});
     apparatus_.start();
     state_ = SessionState::InTrial;
@@ -147,27 +150,49 @@ void Session::judge(std::span<const TickRecord> records) {
     appendEvents(events);
 }
 
-void Session::finishTrial() {
+void Session::finishTrial(std::optional<Then> then) {
     LoopHealth health = apparatus_.stop();
     takeRecords();
     // From tick 0 to where a next tick would be.
     const std::int64_t periods = attempt_->clock.until(std::max(attempt_->next_tick, health.ticks));
-    const AttemptEnd end = describeEnd(std::move(health));
+    AttemptEnd end = describeEnd(std::move(health));
+    if (!then) then = afterAttempt(end);
+    // Of two attempts at one trial at most one counts.
+    if (end.valid && *then != Then::Done) {
+        end.valid = false;
+        end.invalid_reason = fmt::format("{}: the trial is repeated", measures::outcomeName(end.outcome));
+    }
     const auto finished = sink_.finishAttempt(attempt_->id, end);
     session_ns_ += periods * kTickNanoseconds;
     const Attempt attempt = *std::exchange(attempt_, std::nullopt);
     if (!finished) return fail("finish attempt", finished.errors());
+    takeEnd(attempt, end, *then);
+}
 
-    state_ = SessionState::BetweenTrials;
+/// The attempt is durable: who waits for it is told, and the agenda moves on.
+void Session::takeEnd(const Attempt& attempt, const AttemptEnd& end, Then then) {
+    state_ = std::exchange(pause_asked_, false) ? SessionState::Paused : SessionState::BetweenTrials;
     if (listener_.acknowledge) listener_.acknowledge(attempt.id, end.outcome);
-    const design::PlannedTrial& done = trial();
-    ++finished_;
+    last_ = agenda_.next();
+    past_[*last_].last = attempt.id;
+    if (end.valid) past_[*last_].counting = attempt.id;
+    agenda_.end(then);
     if (!listener_.progress) return;
     std::optional<double> trial_time_s;
     for (const measures::Value& value : end.measures)
         if (value.name == "trial_time_s") trial_time_s = value.value;
-    listener_.progress({done, attempt.condition, end.outcome, end.valid, end.invalid_reason, trial_time_s, finished_,
-                        setup_.trials.size(), session_ns_});
+    listener_.progress({agenda_.trial(*last_), attempt.condition, end.outcome, end.valid, end.invalid_reason,
+                        trial_time_s, agenda_.finished(), agenda_.planned(), session_ns_});
+}
+
+Then Session::afterAttempt(const AttemptEnd&) const { return Then::Done; }
+
+bool Session::isWhole() const {
+    for (std::size_t place = 0; place < past_.size(); ++place) {
+        const bool is_main = agenda_.trial(place).phase == protocol::phaseName(protocol::Phase::Main);
+        if (is_main && !past_[place].counting) return false;
+    }
+    return true;
 }
 
 AttemptEnd Session::describeEnd(LoopHealth health) const {
@@ -189,6 +214,7 @@ AttemptEnd Session::describeEnd(LoopHealth health) const {
     else if (static_cast<double>(course.missedCycles()) >
              setup_.plan.max_missed_share * static_cast<double>(course.length()))
         end.invalid_reason = fmt::format("loop: {} of {} cycles missed", course.missedCycles(), course.length());
+    if (end.invalid_reason.empty()) end.invalid_reason = attempt_->invalidated;
     end.valid = end.invalid_reason.empty();
     end.health = std::move(health);
     return end;

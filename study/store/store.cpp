@@ -15,6 +15,7 @@
 #include "study/store/open_database.h"
 #include "study/store/participant_rows.h"
 #include "study/store/process_lock.h"
+#include "study/store/remarks.h"
 #include "study/store/revisions.h"
 #include "study/store/session_json.h"
 #include "study/store/stable_stiffness_rows.h"
@@ -420,6 +421,24 @@ Result<std::unique_ptr<SessionWriter>> Store::createSession(const SessionStart& 
     auto rows = thread_->call([&](const Database& database) { return insertSession(database, start, plan, options_); });
     if (!rows) return rows.errors();
     return std::make_unique<SessionWriter>(*thread_, *std::move(rows), start.clock);
+}
+
+Result<Done> Store::invalidateAttempt(std::int64_t attempt_id, const std::string& reason) {
+    return thread_->call([&](const Database& database) {
+        Transaction transaction(database);
+        invalidateLater(database, attempt_id, reason);
+        transaction.commit();
+        return Done{};
+    });
+}
+
+Result<Done> Store::addNote(std::int64_t attempt_id, const std::string& text) {
+    return thread_->call([&](const Database& database) {
+        Transaction transaction(database);
+        noteLater(database, attempt_id, text, options_.now_utc);
+        transaction.commit();
+        return Done{};
+    });
 }
 
 }  // namespace passung::store

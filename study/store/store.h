@@ -118,6 +118,9 @@ public:
 
     /// Copies the database as it is now (see backupPath()).
     Result<Done> backup();
+    /// What people add when no session runs: an attempt no longer counts; a note about its session (0: the newest one).
+    Result<Done> invalidateAttempt(std::int64_t attempt_id, const std::string& reason);
+    Result<Done> addNote(std::int64_t attempt_id, const std::string& text);
 
 private:
     friend class ParticipantDesk;

@@ -12,6 +12,7 @@
 #include "study/store/identity.h"
 #include "ui/app/auto_accuracy.h"
 #include "ui/app/calibration.h"
+#include "ui/app/command_socket.h"
 #include "ui/app/disk_store.h"
 #include "ui/app/simulated_hand.h"
 #include "ui/app/wall_clock.h"
@@ -68,20 +69,34 @@ public:
         const auto trials = session::planTrials(plan_, static_cast<std::size_t>(slot->number), code);
         auto writer = store_.createSession(start, trials);
         if (!writer) return writer.errors();
-        session::Session session({plan_, trials, code, plan_.seed, measured, *ordinal}, apparatus, **writer,
-                                 {listener_.acknowledge, listener_.trial});
-        while (session.state() == session::SessionState::BetweenTrials ||
-               session.state() == session::SessionState::InTrial) {
+        session::Session session({plan_, trials, code, plan_.seed, measured, *ordinal, options_.wait}, apparatus,
+                                 **writer, {listener_.acknowledge, listener_.trial});
+        perform(session, apparatus);
+        if (session.state() == session::SessionState::Failed) return session.errors();
+        if (session.state() == session::SessionState::Interrupted) return RunEnd::Interrupted;
+        if (listener_.session_over) listener_.session_over(code, session.isWhole());
+        return RunEnd::Complete;
+    }
+
+private:
+    /// Until it is over: commands, then a step; while it waits, commands only.
+    void perform(session::Session& session, LoopApparatus& apparatus) {
+        auto commands = CommandSocket::listen(options_.database, [&apparatus] { apparatus.halt(); });
+        if (!commands && listener_.warned) listener_.warned(toString(commands.errors().front()));
+        auto told = session::SessionState::BetweenTrials;
+        while (!session.isOver()) {
+            const auto state = session.state();
+            const bool waits = state == session::SessionState::Ready || state == session::SessionState::Paused;
+            if (waits && told != state && listener_.state) listener_.state(state);
+            told = state;
+            if (commands) (*commands)->serve([&](const session::Command& c) { return session.command(c); }, waits);
             if (options_.interrupted && options_.interrupted())
                 session.interrupt("interrupted");
             else
                 session.advance();
         }
-        if (session.state() == session::SessionState::Failed) return session.errors();
-        return session.state() == session::SessionState::Interrupted ? RunEnd::Interrupted : RunEnd::Complete;
     }
 
-private:
     const protocol::StudyPlan& plan_;
     const RunOptions& options_;
     const RunListener& listener_;

@@ -17,6 +17,7 @@ struct RunOptions {
     int simulated = 1;        // how many simulated participants, one after another
     Clock clock = Clock::Virtual;
     bool backup = true;                 // copy the database when the run ends, however it does
+    bool wait = false;                  // every session begins with the command Start
     std::function<bool()> interrupted;  // asked every few ticks: true ends the run; empty: never
 };
 
@@ -31,9 +32,12 @@ struct RunListener {
     std::function<void(const std::string&)> warned;
     std::function<void(const std::string& participant, int number, int of)> session;
     std::function<void(const session::TrialProgress&)> trial;
+    std::function<void(session::SessionState)> state;                              // whenever it waits for a command
+    std::function<void(const std::string& participant, bool whole)> session_over;  // that was not interrupted
     std::function<void(session::AttemptId, measures::Outcome)> acknowledge;
 };
 
+/// While a session runs, an experimenter may command it through CommandSocket.
 /// Performs the study with simulated participants on the simulated device, each a session of all planned trials, into
 /// the database. Whatever was finished before an error stays in it. An interruption stores the running trial as aborted
 /// and closes the session as aborted, both with the reason "interrupted". What contact.accuracy = "auto" asks for is

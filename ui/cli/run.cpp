@@ -58,13 +58,13 @@ int run(const RunOptions& options) {
     what.participant = options.participant;
     what.simulated = options.participant.empty() ? options.simulated : 1;
     what.backup = !options.no_backup;
+    what.wait = options.wait;
     what.clock = options.real_time ? app::Clock::RealTime : app::Clock::Virtual;
 
     listenForSignals();
     what.interrupted = [] { return stop_asked != 0; };
     std::string code, participant;
-    std::size_t successes = 0, finished = 0, invalid = 0;
-    bool complete = true;
+    std::size_t successes = 0, finished = 0, planned = 0, invalid = 0;
     ProgressLine progress;
     app::RunListener listener;
     listener.recovered = [&](const store::RecoveryReport& report) { tellRecovery(what.database, report); };
@@ -79,21 +79,28 @@ int run(const RunOptions& options) {
         code = who;
         participant = fmt::format("{} ({} of {})", code, number, of);
         progress.show(participant + ": preparing");
-        successes = finished = invalid = 0;
-        complete = true;
+        successes = finished = planned = invalid = 0;
     };
     listener.trial = [&](const session::TrialProgress& trial) {
         finished = trial.finished;
-        successes += trial.outcome == measures::Outcome::Success ? 1 : 0;
+        planned = trial.planned;
         const bool counts = trial.valid && trial.outcome != measures::Outcome::Aborted;
+        successes += counts && trial.outcome == measures::Outcome::Success ? 1 : 0;
         invalid += counts ? 0 : 1;
-        complete = complete && (counts || trial.trial.phase != "main");
         progress.show(fmt::format("{}: trial {} of {}, {} succeeded", participant, finished, trial.planned, successes));
-        if (finished != trial.planned) return;
+    };
+    listener.state = [&](session::SessionState state) {
         progress.show("");
-        fmt::print("{}: {} trials, {} succeeded{}\n", participant, finished, successes,
+        fmt::print("{}: {}\n", participant,
+                   state == session::SessionState::Ready ? "waits for `passung session start`"
+                                                         : "paused; `passung session continue` goes on");
+        std::fflush(stdout);
+    };
+    listener.session_over = [&](const std::string&, bool whole) {
+        progress.show("");
+        fmt::print("{}: {} trials, {} succeeded{}\n", participant, planned, successes,
                    invalid == 0 ? "" : fmt::format(", {} invalid", invalid));
-        if (!complete) {
+        if (!whole) {
             fmt::print("{}: the session is not complete; its place in the design is free again\n", participant);
         }
         std::fflush(stdout);
@@ -108,8 +115,8 @@ int run(const RunOptions& options) {
     if (*end == app::RunEnd::Interrupted) {
         progress.show("");
         return fail(
-            {{.message = fmt::format("interrupted: {} trials of {} are stored, the last of them and the session "
-                                     "as aborted; its place in the design is free again, and the same command "
+            {{.message = fmt::format("interrupted: {} trials of {} are finished; the running one and the session are "
+                                     "stored as aborted; its place in the design is free again, and the same command "
                                      "with --participant {} begins a new session of all trials",
                                      finished, code, code),
               .file = what.database}});
