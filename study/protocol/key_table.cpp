@@ -40,6 +40,7 @@ constexpr std::array kStudyKeys{
     Key{"protocol", "feedback", Table, kAny, "", "(its defaults)", "What the participant is given to feel and see."},
     Key{"protocol", "block", Tables, kAny, "", "!", "Blocks of trials in the order in which they run."},
     Key{"protocol", "questionnaire", Tables, kAny, "", "(none)", "Questionnaires and when they are asked."},
+    Key{"protocol", "resume", Table, kAny, "", "(its defaults)", "How an interrupted session may go on: `passung resume`."},
     Key{"protocol", "loop", Table, kAny, "", "(its defaults)", "How well the haptic loop must keep its rate."},
     Key{"protocol", "consent", Tables, kAny, "", "(none)", "What people are asked to agree to before they take part."},
     Key{"protocol", "measures", Texts, kAny, "", "(all)", "Names of the measures to store for every trial."},
@@ -202,10 +203,18 @@ constexpr std::array kStudyKeys{
     Key{"block", "repetitions", Integer, from(1, 1000), "", "1", "Passes through the order."},
     Key{"block", "order", Choice, kAny, "williams|random|listed", "williams", "The participant's row of a Williams square, a new shuffle for every pass, or as listed."},
     Key{"block", "trials", Integer, atLeast(1), "", "(all)", "Only the first so many conditions of each pass."},
+    Key{"block", "on_failure", Choice, kAny, "never|repeat_now|repeat_at_block_end", "never", "What follows an attempt that ended by the trial's own rules without success."},
+    Key{"block", "on_timeout", Choice, kAny, "never|repeat_now|repeat_at_block_end", "(as `on_failure`)", "Likewise after a time-out. An attempt that is repeated does not count."},
+    Key{"block", "on_invalid", Choice, kAny, "never|repeat_now|repeat_at_block_end", "never", "Likewise after an attempt that does not count: aborted by itself, ticks lost, invalidated by the experimenter."},
+    Key{"block", "max_attempts", Integer, from(1, 100), "", "3", "No repetition by these rules after so many attempts at a trial."},
 
     Key{"consent", "clause", Name, kAny, "", "!", "Unique; decisions are stored by it."},
     Key{"consent", "required", Boolean, kAny, "", "true", "Who does not say yes to it cannot take part. Simulated participants are not asked."},
     Key{"consent", "text", Table, kAny, "", "!", "What is asked, a text per language: `{ en = \"...\", de = \"...\" }`; every clause in the same languages. Until when data can be withdrawn belongs here."},
+
+    Key{"resume", "max_age_h", Number, above(0), "", "24", "Hours after the interruption; later the session must not go on. Not of sessions in virtual time."},
+    Key{"resume", "practice", Choice, kAny, "keep|redo", "keep", "`redo`: practice of the blocks before is done once more."},
+    Key{"resume", "block", Choice, kAny, "continue|restart", "continue", "`restart`: the interrupted block begins anew; what it had no longer counts."},
 
     Key{"loop", "max_missed_share", Number, from(0, 1), "", "0.01", "An attempt that missed a larger part of the cycles between start and end of its trial is not valid. In virtual time no cycle is missed."},
 };
@@ -256,6 +265,7 @@ constexpr std::array kTables{
     TableInfo{"feedback", "`[feedback]`", ""},
     TableInfo{"block", "`[[block]]`", ""},
     TableInfo{"consent", "`[[consent]]`", "Each decision is stored with the SHA-256 of the text that it answers: a changed text has to be asked anew."},
+    TableInfo{"resume", "`[resume]`", ""},
     TableInfo{"loop", "`[loop]`", ""},
     TableInfo{"questionnaire", "`[[questionnaire]]`", "In a study: what is asked, and when. Where several are due at one moment they come as listed."},
     TableInfo{"questionnaire_file", "Top level of a questionnaire file", "See `protocols/questionnaires/`. A text for each language is a table `{ en = \"...\", de = \"...\" }`; with one language a\nstring will do."},
@@ -361,6 +371,7 @@ const Key* findKey(std::span<const std::string_view> tables, std::string_view na
 double unitsPerSi(std::string_view name) {
     if (name.ends_with("_um") || name.ends_with("_us")) return 1e6;
     if (name.ends_with("_mm") || name.ends_with("_mm_per_s") || name.ends_with("_ms")) return 1e3;
+    if (name.ends_with("_h")) return 1.0 / 3600.0;
     if (name.ends_with("_deg")) return 180.0 / 3.14159265358979323846;
     return 1.0;
 }

@@ -146,6 +146,18 @@ std::string stableJson(const StableStiffness& stable) {
         .str();
 }
 
+const char* repeatName(Repeat repeat) {
+    switch (repeat) {
+        case Repeat::Never:
+            return "never";
+        case Repeat::Now:
+            return "repeat_now";
+        case Repeat::AtBlockEnd:
+            return "repeat_at_block_end";
+    }
+    return "";
+}
+
 std::string blockJson(const Block& block) {
     return JsonObject()
         .text("name", block.name)
@@ -153,6 +165,18 @@ std::string blockJson(const Block& block) {
         .integer("repetitions", block.repetitions)
         .text("order", blockOrderName(block.order))
         .integer("trials", block.trials)
+        .text("on_failure", repeatName(block.on_failure))
+        .text("on_timeout", repeatName(block.on_timeout))
+        .text("on_invalid", repeatName(block.on_invalid))
+        .integer("max_attempts", block.max_attempts)
+        .str();
+}
+
+std::string resumeJson(const ResumePolicy& resume) {
+    return JsonObject()
+        .number("max_age_s", resume.max_age)
+        .text("practice", resume.redo_practice ? "redo" : "keep")
+        .text("block", resume.restart_block ? "restart" : "continue")
         .str();
 }
 
@@ -218,6 +242,7 @@ std::string expandedJson(const StudyPlan& plan) {
         .json("conditions", listOf(plan.conditions, conditionJson))
         .json("blocks", listOf(plan.blocks, blockJson))
         .json("questionnaires", listOf(plan.questionnaires, questionnaireJson))
+        .json("resume", resumeJson(plan.resume))
         .json("loop", JsonObject().number("max_missed_share", plan.max_missed_share).str())
         .json("stable_stiffness", listOf(plan.stable_stiffness, stableJson))
         .json("measures", listOf(plan.measures, [](const std::string& name) { return jsonText(name); }))

@@ -13,6 +13,7 @@
 #include "study/protocol/plan_json.h"
 #include "study/protocol/planned_questionnaires.h"
 #include "study/protocol/scene_node.h"
+#include "study/protocol/session_rules.h"
 #include "study/protocol/start_pose.h"
 #include "study/protocol/task_reader.h"
 
@@ -50,6 +51,7 @@ public:
         readBlocks();
         plan_.questionnaires = readQuestionnaires(root_.items("questionnaire"), plan_.blocks, errors_);
         readLoop();
+        plan_.resume = readResume(root_, errors_);
         plan_.consent = readConsent(root_, errors_);
         readMeasures();
         tidy(errors_);
@@ -191,6 +193,7 @@ private:
                 read.fail("trials", fmt::format("must be at most the number of conditions, {}", *conditions_));
             else
                 block.trials = static_cast<int>(read.integer("trials"));
+            readRepeats(read, block);
             plan_.blocks.push_back(std::move(block));
         }
         const auto is_main = [](const Block& block) { return block.phase == Phase::Main; };

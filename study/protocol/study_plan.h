@@ -62,12 +62,25 @@ struct Condition {
 enum class BlockOrder { Williams, Random, Listed };
 const char* blockOrderName(BlockOrder order);  // "williams", "random", "listed"
 
+enum class Repeat { Never, Now, AtBlockEnd };
+
 struct Block {
     std::string name;
     Phase phase = Phase::Main;
     int repetitions = 1;  // passes through the order
     BlockOrder order = BlockOrder::Williams;
     int trials = 0;  // 0 = every condition of the pass; else the first so many (practice)
+    Repeat on_failure = Repeat::Never;  // of a trial that ended by its own rules without success
+    Repeat on_timeout = Repeat::Never;
+    Repeat on_invalid = Repeat::Never;  // of a trial whose attempt does not count
+    int max_attempts = 3;               // of a trial, however they end
+};
+
+/// How an interrupted session may go on.
+struct ResumePolicy {
+    double max_age = 24.0 * 3600.0;  // [s] since the interruption
+    bool redo_practice = false;      // of the blocks before the one that was interrupted
+    bool restart_block = false;
 };
 
 enum class Moment { SessionStart, BeforeBlock, AfterBlock, AfterTrial, AfterCondition, SessionEnd };
@@ -116,6 +129,7 @@ struct StudyPlan {
     std::vector<Condition> conditions;  // the first factor varies slowest
     std::vector<Block> blocks;
     std::vector<PlannedQuestionnaire> questionnaires;
+    ResumePolicy resume;
     double max_missed_share = 0.01;                 // of a trial's cycles: an attempt that missed more is not valid
     std::vector<std::string> measures;              // names, all known to study/measures
     std::vector<MeshSource> meshes;                 // each once; their content is no part of the text

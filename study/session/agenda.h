@@ -15,8 +15,8 @@ enum class Then { Done, RepeatNow, RepeatAtBlockEnd };
 /// place is to do at most once. Nothing here knows of attempts: those stay in the data whatever happens to the order.
 class Agenda {
 public:
-    /// All trials are to do, in this order; with `over`, those whose place is true there are not.
-    explicit Agenda(std::vector<design::PlannedTrial> trials, const std::vector<bool>& over = {});
+    /// All trials are to do, in this order.
+    explicit Agenda(std::vector<design::PlannedTrial> trials);
 
     std::size_t planned() const { return trials_.size(); }
     std::size_t finished() const { return trials_.size() - todo_.size(); }
@@ -33,9 +33,17 @@ public:
     /// The trial that is over last. @pre canGoBack()
     std::size_t last() const { return history_.back(); }
     /// The trial that was over last is next again; called again, the one before it. @pre canGoBack()
-    void goBack();
+    void goBack() { bring(last()); }
+
+    bool isOver(std::size_t place) const;
+    /// The trial is next, whether it was over or to come later.
+    void bring(std::size_t place) { redo(place, Then::RepeatNow); }
+    /// The trial is to do again, now or at the end of its block. Done: nothing changes.
+    void redo(std::size_t place, Then then);
 
 private:
+    void insert(std::size_t place, Then then);
+
     std::vector<design::PlannedTrial> trials_;
     std::deque<std::size_t> todo_;
     std::vector<std::size_t> history_;  // done or skipped, in time

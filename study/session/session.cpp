@@ -9,22 +9,12 @@
 #include "core/base/assert.h"
 #include "core/base/random.h"
 #include "study/protocol/json.h"
-#include "study/protocol/scene_parts.h"
+#include "study/session/recompute.h"
 
 namespace passung::session {
 namespace {
 
 constexpr std::size_t kTakeAtOnce = 256;  // records
-
-/// Pose of the task's target in the world.
-Result<Pose> targetPose(const protocol::Condition& condition) {
-    if (const auto* part = protocol::partNamed(condition.scene, condition.task.target)) return part->X_WP;
-    Error error;
-    error.message = fmt::format("condition {} has no part of this name", condition.name);
-    error.key = "target";
-    error.value = condition.task.target;
-    return error;
-}
 
 }  // namespace
 
@@ -39,8 +29,9 @@ Session::Session(SessionSetup setup, Apparatus& apparatus, TrialSink& sink, Sess
       sink_(sink),
       listener_(std::move(listener)),
       state_(setup_.waits ? SessionState::Ready : SessionState::BetweenTrials),
-      agenda_(setup_.trials),
-      past_(setup_.trials.size()) {}
+      agenda_(setup_.resumed ? setup_.resumed->agenda : Agenda(setup_.trials)),
+      past_(setup_.resumed ? setup_.resumed->past : std::vector<Past>(setup_.trials.size())),
+      session_ns_(setup_.resumed ? setup_.resumed->start_ns : 0) {}
 
 Session::~Session() {
     if (state_ == SessionState::InTrial) apparatus_.stop();
@@ -156,7 +147,7 @@ void Session::finishTrial(std::optional<Then> then) {
     // From tick 0 to where a next tick would be.
     const std::int64_t periods = attempt_->clock.until(std::max(attempt_->next_tick, health.ticks));
     AttemptEnd end = describeEnd(std::move(health));
-    if (!then) then = afterAttempt(end);
+    if (!then) then = thenAfter(blockOf(agenda_.next()), end.outcome, end.valid, ++past_[agenda_.next()].judged);
     // Of two attempts at one trial at most one counts.
     if (end.valid && *then != Then::Done) {
         end.valid = false;
@@ -185,7 +176,9 @@ void Session::takeEnd(const Attempt& attempt, const AttemptEnd& end, Then then) 
                         trial_time_s, agenda_.finished(), agenda_.planned(), session_ns_});
 }
 
-Then Session::afterAttempt(const AttemptEnd&) const { return Then::Done; }
+const protocol::Block& Session::blockOf(std::size_t place) const {
+    return setup_.plan.blocks.at(static_cast<std::size_t>(agenda_.trial(place).block_index));
+}
 
 bool Session::isWhole() const {
     for (std::size_t place = 0; place < past_.size(); ++place) {

@@ -1,52 +1,19 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/base/result.h"
-#include "study/design/trial_order.h"
-#include "study/protocol/study_plan.h"
-#include "study/session/agenda.h"
 #include "study/session/apparatus.h"
 #include "study/session/command.h"
+#include "study/session/session_setup.h"
 #include "study/session/trial_course.h"
 #include "study/session/trial_sink.h"
 
 namespace passung::session {
-
-struct SessionSetup {
-    const protocol::StudyPlan& plan;           // outlives the session
-    std::vector<design::PlannedTrial> trials;  // what is to be done, in this order
-    std::string participant;                   // code
-    std::uint64_t seed = 0;                    // of the study
-    bool timing_measured = true;               // false in virtual time
-    int ordinal = 1;                           // number of the participant's session
-    bool waits = false;                        // for the command Start
-};
-
-/// A trial that is over and durable.
-struct TrialProgress {
-    const design::PlannedTrial& trial;
-    const protocol::Condition& condition;
-    measures::Outcome outcome;
-    bool valid;
-    const std::string& invalid_reason;
-    std::optional<double> trial_time_s;
-    std::size_t finished;  // trials of this session that are over; one that is to be repeated is not
-    std::size_t planned;
-    std::int64_t session_ns;  // session time after the trial
-};
-
-/// Whom the session tells; either may be empty.
-struct SessionListener {
-    /// An attempt is durable: whoever hears this may rely on finding it after a crash.
-    std::function<void(AttemptId, measures::Outcome)> acknowledge;
-    std::function<void(const TrialProgress&)> progress;
-};
 
 /// Ready → BetweenTrials → InTrial → BetweenTrials … → Complete; Paused in place of BetweenTrials when that was asked;
 /// and from all of them → Failed or Interrupted. Only Paused and Ready wait for a command.
@@ -105,13 +72,6 @@ private:
         std::string invalidated = {};  // why the experimenter does not want it to count; empty: nothing against it
     };
 
-    /// What a trial of the plan has had so far.
-    struct Past {
-        int attempts = 0;
-        std::optional<AttemptId> last;      // the newest attempt that ended here
-        std::optional<AttemptId> counting;  // the one that is valid and ended by its own rules
-    };
-
     const design::PlannedTrial& trial() const { return agenda_.trial(agenda_.next()); }
     void beginTrial();
     void watchTrial();
@@ -120,7 +80,7 @@ private:
     void finishTrial(std::optional<Then> then = {});  // none: as the protocol says
     void takeEnd(const Attempt& attempt, const AttemptEnd& end, Then then);
     AttemptEnd describeEnd(LoopHealth health) const;
-    Then afterAttempt(const AttemptEnd& end) const;
+    const protocol::Block& blockOf(std::size_t place) const;
     void appendEvents(const std::vector<TrialEvent>& events);
     void finish(SessionState state);
     void note(const char* name, const char* key, const std::string& text);  // an event with one text
@@ -152,7 +112,7 @@ private:
     Agenda agenda_;
     std::vector<Past> past_;           // by place in the plan
     std::optional<std::size_t> last_;  // place of the newest attempt that ended
-    std::int64_t session_ns_ = 0;      // at tick 0 of the running or next attempt
+    std::int64_t session_ns_;          // at tick 0 of the running or next attempt
     Errors errors_;
 };
 

@@ -153,7 +153,10 @@ Answer Session::invalidate(const Command& command) {
     const std::size_t place = command.attempt ? *placeOf(*command.attempt) : *last_;
     if (!past_[place].counting) return {false, "the attempt of " + nameOf(place) + " is not valid anyway"};
     if (const auto done = discount(place, reason); !done) return {false, toString(done.errors().front())};
-    return accepted("the attempt of " + nameOf(place) + " no longer counts");
+    const Then then = thenAfter(blockOf(place), measures::Outcome::Aborted, false, past_[place].judged);
+    if (agenda_.isOver(place)) agenda_.redo(place, then);
+    return accepted("the attempt of " + nameOf(place) + " no longer counts" +
+                    (agenda_.isOver(place) ? "" : ", it is repeated"));
 }
 
 Answer Session::goBack(const Command& command) {
