@@ -228,7 +228,20 @@ void refuseComplete(const Database& database, const std::string& sha256, const s
                              "; nobody takes part twice");
 }
 
-Slot takeSlot(const Database& database, const std::string& sha256, const std::string& participant) {
+/// The row of a free slot that fits, the lowest first; nothing if there is none.
+std::optional<std::int64_t> findFreeSlot(const Database& database, const std::string& sha256, const std::string& kind,
+                                         std::int64_t sequences, const std::function<bool(std::int64_t)>& fits) {
+    Statement free = database.prepare(
+        "SELECT slot_id, sequence_index, replicate FROM design_slot "
+        "WHERE protocol_sha256=? AND kind=? AND state='free' ORDER BY replicate, sequence_index");
+    free.bind(sha256, kind);
+    while (free.step())
+        if (!fits || fits(slotOf(free, sequences).number)) return free.integer(0);
+    return std::nullopt;
+}
+
+Slot takeSlot(const Database& database, const std::string& sha256, const std::string& participant,
+              const std::function<bool(std::int64_t)>& fits) {
     Transaction transaction(database);
     const std::int64_t sequences = sequencesOf(database, sha256);
     const std::string kind = kindOf(database, participant);
@@ -240,21 +253,22 @@ Slot takeSlot(const Database& database, const std::string& sha256, const std::st
         if (own.text(0) == sha256) return slotOf(own, sequences);
         throw std::runtime_error("participant " + participant + " already has a place in another protocol");
     }
-    Statement free = database.prepare(
-        "SELECT slot_id, sequence_index, replicate FROM design_slot "
-        "WHERE protocol_sha256=? AND kind=? AND state='free' ORDER BY replicate, sequence_index LIMIT 1");
-    if (!free.bind(sha256, kind).step()) {
+    auto slot_id = findFreeSlot(database, sha256, kind, sequences, fits);
+    if (!slot_id) {
         Statement last = database.prepare(
             "SELECT coalesce(max(replicate) + 1, 0) FROM design_slot WHERE protocol_sha256=? AND kind=?");
         last.bind(sha256, kind).step();
         insertSlots(database, sha256, kind.c_str(), last.integer(0), sequences);
-        free.bind(sha256, kind).step();
+        slot_id = findFreeSlot(database, sha256, kind, sequences, fits);
     }
+    if (!slot_id) throw std::runtime_error("no place of the design has the order of " + participant);
     database.prepare("UPDATE design_slot SET state='assigned', participant_id=? WHERE slot_id=?")
-        .bind(participant, free.integer(0))
+        .bind(participant, *slot_id)
         .run();
-    const Slot slot = slotOf(free, sequences);
-    free.reset();
+    own.reset();
+    own.bind(participant).step();
+    const Slot slot = slotOf(own, sequences);
+    own.reset();
     transaction.commit();
     return slot;
 }
@@ -287,29 +301,20 @@ std::int64_t insertStream(const Database& database, std::int64_t segment_id, con
     return database.lastRowId();
 }
 
-SessionWriter::Rows insertSession(const Database& database, const SessionStart& start,
-                                  std::span<const design::PlannedTrial> plan, const OpenOptions& options) {
-    const std::string started_utc = start.clock.at(0);
-    const auto orNull = [](const std::string& text) { return text.empty() ? std::nullopt : std::optional(text); };
-    Transaction transaction(database);
-    requireSeed(database, start.protocol_sha256, start.seed);
-    refuseComplete(database, start.protocol_sha256, start.participant);
-    requireAdmission(database, start.protocol_sha256, start.participant);
-    database.prepare("INSERT INTO session VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, NULL, NULL, ?)")
-        .bind(start.session_id, start.participant, start.protocol_sha256, start.ordinal, start.station,
-              orNull(start.experimenter), start.language, start.seed, start.random_name, started_utc,
-              start.clock.epoch() == Epoch::Virtual ? "virtual" : "wall")
-        .run();
+std::optional<std::string> orNull(const std::string& text) { return text.empty() ? std::nullopt : std::optional(text); }
+
+/// A part of a session that one run of the program makes; from session time `begin_ns` on.
+SessionWriter::Rows insertSegment(const Database& database, const SessionStart& start, const OpenOptions& options,
+                                  std::int64_t begin_ns) {
     const std::string device = deviceJson(start.device);
     database
         .prepare(
             "INSERT INTO segment(session_id, app_version, host, device_json, mono_zero_ns, utc_zero, started_utc) "
             "VALUES(?, ?, ?, ?, ?, ?, ?)")
-        .bind(start.session_id, options.app_version, orNull(start.host), device, start.mono_zero_ns, started_utc,
-              started_utc)
+        .bind(start.session_id, options.app_version, orNull(start.host), device, start.mono_zero_ns, start.clock.at(0),
+              start.clock.at(begin_ns))
         .run();
     SessionWriter::Rows rows{start.session_id, database.lastRowId(), 0, std::nullopt};
-    insertTrialPlan(database, start, plan);
     rows.tick_stream_id = insertStream(database, rows.segment_id, "tick", tickChannels());
     if (start.timing_measured) {
         rows.timing_stream_id = insertStream(database, rows.segment_id, "tick_timing", timingChannels());
@@ -320,6 +325,32 @@ SessionWriter::Rows insertSession(const Database& database, const SessionStart& 
             "WHERE participant_id=? AND status='enrolled'")
         .bind(start.participant)
         .run();
+    return rows;
+}
+
+SessionWriter::Rows insertSession(const Database& database, const SessionStart& start,
+                                  std::span<const design::PlannedTrial> plan, const OpenOptions& options) {
+    Transaction transaction(database);
+    requireSeed(database, start.protocol_sha256, start.seed);
+    refuseComplete(database, start.protocol_sha256, start.participant);
+    requireAdmission(database, start.protocol_sha256, start.participant);
+    database.prepare("INSERT INTO session VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, NULL, NULL, ?)")
+        .bind(start.session_id, start.participant, start.protocol_sha256, start.ordinal, start.station,
+              orNull(start.experimenter), start.language, start.seed, start.random_name, start.clock.at(0),
+              start.clock.epoch() == Epoch::Virtual ? "virtual" : "wall")
+        .run();
+    insertTrialPlan(database, start, plan);
+    const auto rows = insertSegment(database, start, options, 0);
+    transaction.commit();
+    return rows;
+}
+
+SessionWriter::Rows continueSession(const Database& database, const SessionStart& start, std::int64_t begin_ns,
+                                    const OpenOptions& options) {
+    Transaction transaction(database);
+    requireAdmission(database, start.protocol_sha256, start.participant);
+    reopenSession(database, start.session_id);
+    const auto rows = insertSegment(database, start, options, begin_ns);
     transaction.commit();
     return rows;
 }
@@ -397,8 +428,10 @@ Result<std::string> Store::nextCode(protocol::ParticipantKind kind) {
     });
 }
 
-Result<Slot> Store::assignSlot(const std::string& protocol_sha256, const std::string& participant) {
-    return thread_->call([&](const Database& database) { return takeSlot(database, protocol_sha256, participant); });
+Result<Slot> Store::assignSlot(const std::string& protocol_sha256, const std::string& participant,
+                               const std::function<bool(std::int64_t)>& fits) {
+    return thread_->call(
+        [&](const Database& database) { return takeSlot(database, protocol_sha256, participant, fits); });
 }
 
 Result<Done> Store::backup() {
@@ -419,6 +452,21 @@ Result<int> Store::nextOrdinal(const std::string& participant) {
 Result<std::unique_ptr<SessionWriter>> Store::createSession(const SessionStart& start,
                                                             std::span<const design::PlannedTrial> plan) {
     auto rows = thread_->call([&](const Database& database) { return insertSession(database, start, plan, options_); });
+    if (!rows) return rows.errors();
+    return std::make_unique<SessionWriter>(*thread_, *std::move(rows), start.clock);
+}
+
+Result<Unfinished> Store::unfinished(const std::string& session_id) {
+    return thread_->call([&](const Database& database) {
+        Unfinished session = readUnfinished(database, session_id, options_.now_utc);
+        requireAdmission(database, session.protocol_sha256, session.participant);
+        return session;
+    });
+}
+
+Result<std::unique_ptr<SessionWriter>> Store::resumeSession(const SessionStart& start, std::int64_t used_ns) {
+    auto rows =
+        thread_->call([&](const Database& database) { return continueSession(database, start, used_ns, options_); });
     if (!rows) return rows.errors();
     return std::make_unique<SessionWriter>(*thread_, *std::move(rows), start.clock);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -15,6 +16,7 @@
 #include "study/store/identity.h"
 #include "study/store/rows.h"
 #include "study/store/session_writer.h"
+#include "study/store/unfinished.h"
 #include "study/store/utc_clock.h"
 
 namespace passung::store {
@@ -105,7 +107,9 @@ public:
     /// a further replicate if none is free. It is theirs for good once a session completes; a session that does not
     /// gives it back. Refused to whoever has completed the protocol. Each kind of participant has slots of its own, so
     /// that simulated people never use up a place of the design.
-    Result<Slot> assignSlot(const std::string& protocol_sha256, const std::string& participant);
+    /// `fits`: which slots may be taken by their number; empty: all.
+    Result<Slot> assignSlot(const std::string& protocol_sha256, const std::string& participant,
+                            const std::function<bool(std::int64_t)>& fits = {});
 
     /// 1 for a participant's first session.
     Result<int> nextOrdinal(const std::string& participant);
@@ -115,6 +119,13 @@ public:
     /// the store.
     Result<std::unique_ptr<SessionWriter>> createSession(const SessionStart& start,
                                                          std::span<const design::PlannedTrial> plan);
+
+    /// A session that did not complete, by its id or (empty) the newest one; not one whose participant takes part no
+    /// more or has begun another one since.
+    Result<Unfinished> unfinished(const std::string& session_id);
+
+    /// Goes on with it in a segment of its own at session time `used_ns`; `start` as for createSession.
+    Result<std::unique_ptr<SessionWriter>> resumeSession(const SessionStart& start, std::int64_t used_ns);
 
     /// Copies the database as it is now (see backupPath()).
     Result<Done> backup();

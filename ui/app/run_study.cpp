@@ -1,5 +1,6 @@
 #include "ui/app/run_study.h"
 
+#include <fmt/format.h>
 #include <sys/utsname.h>
 
 #include <filesystem>
@@ -15,6 +16,7 @@
 #include "ui/app/command_socket.h"
 #include "ui/app/disk_store.h"
 #include "ui/app/simulated_hand.h"
+#include "ui/app/stored_plans.h"
 #include "ui/app/wall_clock.h"
 
 namespace passung::app {
@@ -69,18 +71,61 @@ public:
         const auto trials = session::planTrials(plan_, static_cast<std::size_t>(slot->number), code);
         auto writer = store_.createSession(start, trials);
         if (!writer) return writer.errors();
-        session::Session session({plan_, trials, code, plan_.seed, measured, *ordinal, options_.wait}, apparatus,
-                                 **writer, {listener_.acknowledge, listener_.trial});
-        perform(session, apparatus);
+        return perform({plan_, trials, code, plan_.seed, measured, *ordinal, options_.wait}, apparatus, **writer);
+    }
+
+    Result<RunEnd> resume(const store::Unfinished& session) {
+        const bool measured = options_.clock == Clock::RealTime;
+        if (session.age_s)
+            if (const auto old = session::tooOld(plan_.resume, *session.age_s))
+                return Error{.message = fmt::format("{}, session {}: {}", session.participant, session.ordinal, *old),
+                             .file = options_.database};
+        // The place that the interruption freed may have another owner by now: one with the same order will do.
+        const auto fits = [&](std::int64_t slot) {
+            return session::planTrials(plan_, static_cast<std::size_t>(slot), session.participant) == session.trials;
+        };
+        if (const auto slot = store_.assignSlot(sha256_, session.participant, fits); !slot) return slot.errors();
+        if (listener_.session) listener_.session(session.participant, 1, 1);
+
+        store::SessionStart start;
+        start.session_id = session.session_id;
+        start.participant = session.participant;
+        start.protocol_sha256 = sha256_;
+        if (measured) start.clock = store::UtcClock::wall(unixMilliseconds() - session.used_ns / 1'000'000);
+        if (measured) start.host = hostText();
+        start.timing_measured = measured;
+        const simulated::DeviceParams* device = simulated::findPreset(plan_.conditions.front().device);
+        LoopApparatus apparatus(*device, simulatedHand(plan_, session.participant), options_.clock);
+        start.device = apparatus.device();
+        auto writer = store_.resumeSession(start, session.used_ns);
+        if (!writer) return writer.errors();
+
+        auto resumed = session::resumption(plan_, session.trials, session.attempts, session.crashed);
+        resumed.start_ns = session.used_ns;
+        (*writer)->appendEvent(
+            {.attempt = {}, .t_ns = session.used_ns, .source = "session", .event = "session_resumed"});
+        for (const session::AttemptId attempt : resumed.discounted) {
+            const auto done = (*writer)->invalidateAttempt(attempt, "done again after an interruption");
+            if (!done) return done.errors();
+        }
+        return perform({plan_, session.trials, session.participant, plan_.seed, measured, session.ordinal,
+                        options_.wait, std::move(resumed)},
+                       apparatus, **writer);
+    }
+
+private:
+    Result<RunEnd> perform(session::SessionSetup setup, LoopApparatus& apparatus, session::TrialSink& sink) {
+        const std::string code = setup.participant;
+        session::Session session(std::move(setup), apparatus, sink, {listener_.acknowledge, listener_.trial});
+        conduct(session, apparatus);
         if (session.state() == session::SessionState::Failed) return session.errors();
         if (session.state() == session::SessionState::Interrupted) return RunEnd::Interrupted;
         if (listener_.session_over) listener_.session_over(code, session.isWhole());
         return RunEnd::Complete;
     }
 
-private:
     /// Until it is over: commands, then a step; while it waits, commands only.
-    void perform(session::Session& session, LoopApparatus& apparatus) {
+    void conduct(session::Session& session, LoopApparatus& apparatus) {
         auto commands = CommandSocket::listen(options_.database, [&apparatus] { apparatus.halt(); });
         if (!commands && listener_.warned) listener_.warned(toString(commands.errors().front()));
         auto told = session::SessionState::BetweenTrials;
@@ -135,8 +180,29 @@ const std::vector<std::string>& knownMeasures() {
     return names;
 }
 
+namespace {
+
+store::Store::Opened openForRun(const RunOptions& options, const RunListener& listener, bool create = true) {
+    auto with = openOptionsNow();
+    with.create = create;
+    auto opened = store::Store::open(options.database, with);
+    if (!opened.store) return opened;
+    if (listener.recovered && !opened.recovery.empty()) listener.recovered(opened.recovery);
+    if (listener.warned && !opened.recovery.later_utc.empty())
+        listener.warned("this machine's clock is behind: the database holds the time " + opened.recovery.later_utc +
+                        "; orders and durations do not depend on it, stored dates will");
+    return opened;
+}
+
+void backUp(store::Store& store, const RunOptions& options, const RunListener& listener) {
+    if (!options.backup) return;
+    if (const auto copied = store.backup(); !copied && listener.warned)
+        listener.warned("no backup copy was made: " + copied.errors().front().message);
+}
+
+}  // namespace
+
 Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& options, const RunListener& listener) {
-    const std::int64_t now = unixMilliseconds();
     // A calibration that fails must leave nothing behind: neither a new database nor the protocol in an old one.
     std::vector<store::AccuracyRow> measured;
     const auto measure = [&]() -> Result<Done> {
@@ -150,13 +216,8 @@ Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& optio
     std::error_code none;
     if (calibrates && !std::filesystem::exists(options.database, none))
         if (const auto done = measure(); !done) return done.errors();
-    auto opened = store::Store::open(options.database,
-                                     {.app_version = PASSUNG_VERSION, .now_utc = store::UtcClock::wall(now).at(0)});
+    auto opened = openForRun(options, listener);
     if (!opened.store) return opened.errors;
-    if (listener.recovered && !opened.recovery.empty()) listener.recovered(opened.recovery);
-    if (listener.warned && !opened.recovery.later_utc.empty())
-        listener.warned("this machine's clock is behind: the database holds the time " + opened.recovery.later_utc +
-                        "; orders and durations do not depend on it, stored dates will");
     if (calibrates && measured.empty()) {
         const auto known = opened.store->checkProtocol(plan);
         if (!known) return known.errors();
@@ -190,9 +251,26 @@ Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& optio
     StudyRun run(*picked, options, listener, *opened.store, *sha256);
     Result<RunEnd> end = RunEnd::Complete;
     for (int i = 0; i < options.simulated && end && *end == RunEnd::Complete; ++i) end = run.participant(i + 1);
-    if (!options.backup) return end;
-    if (const auto copied = opened.store->backup(); !copied && listener.warned)
-        listener.warned("no backup copy was made: " + copied.errors().front().message);
+    backUp(*opened.store, options, listener);
+    return end;
+}
+
+Result<RunEnd> resumeStudy(const ResumeOptions& resume, RunOptions options, const RunListener& listener) {
+    auto opened = openForRun(options, listener, false);
+    if (!opened.store) return opened.errors;
+    const auto session = opened.store->unfinished(resume.session);
+    if (!session) return session.errors();
+    const auto reader = store::StoreReader::open(options.database);
+    if (!reader) return reader.errors();
+    StoredPlans plans(*reader, resume.meshes);
+    const auto stored = plans.plan(session->protocol_sha256);
+    if (!stored) return stored.errors();
+    protocol::StudyPlan plan = **stored;
+    plan.seed = session->seed;
+    options.clock = session->virtual_time ? Clock::Virtual : Clock::RealTime;
+    StudyRun run(plan, options, listener, *opened.store, session->protocol_sha256);
+    const auto end = run.resume(*session);
+    backUp(*opened.store, options, listener);
     return end;
 }
 

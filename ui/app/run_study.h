@@ -45,6 +45,16 @@ struct RunListener {
 /// is too slow for it is warned of.
 Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& options, const RunListener& listener);
 
+struct ResumeOptions {
+    std::string session;  // id; empty: the newest one that did not complete
+    std::string meshes;   // folder that the protocol's mesh paths start from; empty: here, else beside the database
+};
+
+/// Goes on with an interrupted session of the database by its protocol's [resume], in the clock that it had. Of
+/// `options`, participant, simulated and clock do not matter. Later trials are what the uninterrupted session's would
+/// have been.
+Result<RunEnd> resumeStudy(const ResumeOptions& resume, RunOptions options, const RunListener& listener);
+
 /// Every device that a protocol may name, as its maker or its model describes it.
 const std::vector<DeviceDescription>& presetDevices();
 

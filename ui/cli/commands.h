@@ -35,6 +35,15 @@ struct RunOptions {
 };
 int run(const RunOptions& options);
 
+struct ResumeOptions {
+    std::string database;
+    std::string session;  // id; empty: the newest one that did not complete
+    std::string meshes;   // folder that the protocol's mesh paths start from; empty: here, else beside the database
+    bool no_backup = false;
+    int acknowledge_fd = -1;  // as of RunOptions
+};
+int resume(const ResumeOptions& options);
+
 struct ParticipantOptions {
     std::string database;
     std::string code;  // empty: the first unused one

@@ -185,8 +185,15 @@ private:
     }
 
     void addSessionCommands() {
-        auto* sub = command("session", "an experimenter's command to the session that runs on a database", session_,
-                            tellSession);
+        auto* sub = command("resume", "go on with an interrupted session by its protocol's [resume]", resume_, resume);
+        sub->add_option("DB", resume_.database, "database of the study")->required();
+        sub->add_option("--session", resume_.session, "session_id; default: the newest one that did not complete");
+        sub->add_option("--meshes", resume_.meshes, "as of replay")->check(CLI::ExistingDirectory);
+        sub->add_flag("--no-backup", resume_.no_backup, "as of run");
+        sub->add_option("--acknowledge-fd", resume_.acknowledge_fd, "file descriptor for a line per durable attempt");
+
+        sub = command("session", "an experimenter's command to the session that runs on a database", session_,
+                      tellSession);
         sub->add_option("ACTION", session_.action,
                         "start, pause (after the running trial), continue, repeat, skip, invalidate, back, note, abort "
                         "(ends the session), stop (emergency: motors off at once, then paused)")
@@ -317,6 +324,7 @@ private:
     ExplainOptions explain_;
     RunOptions run_;
     ParticipantOptions participant_;
+    ResumeOptions resume_;
     SessionOptions session_;
     ExportOptions export_;
     ReplayOptions replay_;

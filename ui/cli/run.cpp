@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <functional>
 
 #include "analysis/export/summary.h"
 #include "study/protocol/protocol_reader.h"
@@ -45,22 +46,10 @@ void listenForSignals() {
     for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
 }
 
-}  // namespace
+using Perform = std::function<Result<app::RunEnd>(const app::RunOptions&, const app::RunListener&)>;
 
-int run(const RunOptions& options) {
-    auto plan = protocol::readProtocol(options.protocol, app::knownDevices(), app::knownMeasures());
-    if (!plan) return fail(plan.errors());
-    warn(options.protocol, session::planWarnings(*plan));
-    if (options.seed) plan->seed = *options.seed;
-
-    app::RunOptions what;
-    what.database = options.database.empty() ? plan->name + ".db" : options.database;
-    what.participant = options.participant;
-    what.simulated = options.participant.empty() ? options.simulated : 1;
-    what.backup = !options.no_backup;
-    what.wait = options.wait;
-    what.clock = options.real_time ? app::Clock::RealTime : app::Clock::Virtual;
-
+/// Lets `go` perform sessions and tells of them; `study` is the file that warnings are about.
+int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, const Perform& go) {
     listenForSignals();
     what.interrupted = [] { return stop_asked != 0; };
     std::string code, participant;
@@ -74,7 +63,7 @@ int run(const RunOptions& options) {
         fmt::print("accuracy = \"auto\": measured on this machine, kept in {} for the whole study\n{}\n", what.database,
                    picked);
     };
-    listener.warned = [&](const std::string& warning) { warn(options.protocol, {warning}); };
+    listener.warned = [&](const std::string& warning) { warn(study, {warning}); };
     listener.session = [&](const std::string& who, int number, int of) {
         code = who;
         participant = fmt::format("{} ({} of {})", code, number, of);
@@ -105,21 +94,21 @@ int run(const RunOptions& options) {
         }
         std::fflush(stdout);
     };
-    if (options.acknowledge_fd >= 0) {
+    if (acknowledge_fd >= 0) {
         listener.acknowledge = [&](session::AttemptId attempt, measures::Outcome outcome) {
-            acknowledge(options.acknowledge_fd, attempt, outcome);
+            acknowledge(acknowledge_fd, attempt, outcome);
         };
     }
-    const auto end = app::runStudy(*plan, what, listener);
+    const auto end = go(what, listener);
     if (!end) return fail(end.errors());
     if (*end == app::RunEnd::Interrupted) {
         progress.show("");
-        return fail(
-            {{.message = fmt::format("interrupted: {} trials of {} are finished; the running one and the session are "
-                                     "stored as aborted; its place in the design is free again, and the same command "
-                                     "with --participant {} begins a new session of all trials",
-                                     finished, code, code),
-              .file = what.database}});
+        return fail({{.message = fmt::format(
+                          "interrupted: {} trials of {} are finished; the running one and the session are "
+                          "stored as aborted; `passung resume` goes on with it. Its place in the design is free "
+                          "again: `passung run` with --participant {} begins a new session of all trials",
+                          finished, planned, code),
+                      .file = what.database}});
     }
 
     const auto reader = store::StoreReader::open(what.database);
@@ -128,6 +117,35 @@ int run(const RunOptions& options) {
     if (!table) return fail(table.errors());
     fmt::print("\n{}", *table);
     return 0;
+}
+
+}  // namespace
+
+int run(const RunOptions& options) {
+    auto plan = protocol::readProtocol(options.protocol, app::knownDevices(), app::knownMeasures());
+    if (!plan) return fail(plan.errors());
+    warn(options.protocol, session::planWarnings(*plan));
+    if (options.seed) plan->seed = *options.seed;
+
+    app::RunOptions what;
+    what.database = options.database.empty() ? plan->name + ".db" : options.database;
+    what.participant = options.participant;
+    what.simulated = options.participant.empty() ? options.simulated : 1;
+    what.backup = !options.no_backup;
+    what.wait = options.wait;
+    what.clock = options.real_time ? app::Clock::RealTime : app::Clock::Virtual;
+
+    return tell(options.protocol, what, options.acknowledge_fd,
+                [&](const auto& with, const auto& listener) { return app::runStudy(*plan, with, listener); });
+}
+
+int resume(const ResumeOptions& options) {
+    app::RunOptions what;
+    what.database = options.database;
+    what.backup = !options.no_backup;
+    return tell(options.database, what, options.acknowledge_fd, [&](const auto& with, const auto& listener) {
+        return app::resumeStudy({options.session, options.meshes}, with, listener);
+    });
 }
 
 }  // namespace passung::cli
