@@ -70,14 +70,19 @@ std::string levelOf(const store::Levels& levels, const std::string& factor) {
 }
 
 std::set<std::string> countedSessions(const StudyData& study) {
-    std::map<std::pair<std::string, std::string>, const store::SessionRow*> chosen;  // participant, protocol
-    for (const store::SessionRow& session : study.sessions) {
-        const store::SessionRow*& best = chosen[{session.participant_id, session.protocol_sha256}];
-        const auto rank = [](const store::SessionRow& s) { return std::pair(s.end_state == "complete", s.ordinal); };
-        if (!best || rank(session) > rank(*best)) best = &session;
-    }
+    std::map<std::pair<std::string, std::string>, const store::SessionRow*> latest;  // participant, protocol
+    std::set<std::pair<std::string, std::string>> whole;
     std::set<std::string> ids;
-    for (const auto& [key, session] : chosen) ids.insert(session->session_id);
+    for (const store::SessionRow& session : study.sessions) {
+        const std::pair who(session.participant_id, session.protocol_sha256);
+        const store::SessionRow*& best = latest[who];
+        if (!best || session.ordinal > best->ordinal) best = &session;
+        if (session.end_state != "complete") continue;
+        whole.insert(who);
+        ids.insert(session.session_id);
+    }
+    for (const auto& [who, session] : latest)
+        if (whole.count(who) == 0) ids.insert(session->session_id);
     return ids;
 }
 
@@ -92,11 +97,20 @@ std::vector<Cell> cellsOf(const StudyData& study) {
         by_person[{attempt.participant_id, static_cast<std::size_t>(protocol - study.protocols.begin())}].push_back(
             &attempt);
     }
+    const bool all_within = std::all_of(study.factors.begin(), study.factors.end(),
+                                        [](const FactorColumn& factor) { return factor.kind == "within"; });
+    std::set<std::string> catches;
+    for (const store::AttemptRow& attempt : study.attempts)
+        if (attempt.phase == "catch") catches.insert(attempt.condition);
     std::vector<Cell> cells;
     for (const auto& [key, attempts] : by_person) {
         const store::AttemptRow& first = *attempts.front();
         for (const store::ConditionRow& condition : study.conditions) {
-            if (condition.protocol_sha256 != first.protocol_sha256) continue;
+            if (condition.protocol_sha256 != first.protocol_sha256 || catches.count(condition.condition) != 0) continue;
+            const bool met = std::any_of(attempts.begin(), attempts.end(), [&](const store::AttemptRow* attempt) {
+                return attempt->condition == condition.condition;
+            });
+            if (!met && !all_within) continue;
             Cell cell{first.participant_id, first.kind, first.group, first.protocol_sha256, &condition, {}};
             for (const store::AttemptRow* attempt : attempts) {
                 if (attempt->counts() && attempt->condition == condition.condition &&

@@ -37,7 +37,7 @@ Result<StudyData> readStudy(const store::StoreReader& reader);
 /// The label of `factor`, NA where the condition does not have it.
 std::string levelOf(const store::Levels& levels, const std::string& factor);
 
-/// Of each participant and protocol the one session that means are taken over: the complete one, else the latest.
+/// Of each participant and protocol the sessions that means are taken over: the complete ones, else the latest.
 std::set<std::string> countedSessions(const StudyData& study);
 
 /// Attempts that count in means (AttemptRow::counts()) of the counted session, of one participant under one protocol
@@ -51,8 +51,9 @@ struct Cell {
     std::vector<const store::AttemptRow*> attempts;
 };
 
-/// A cell for each condition of the protocol that a participant had at least one attempt in, empty ones too; by
-/// participant, then protocol, then condition as the protocol lists them. Refers to `study`.
+/// A cell for each condition of the protocol that a participant had at least one attempt in, empty ones too, but none
+/// for catch trials, nor for conditions of other groups or assignments than the participant's; by participant, then
+/// protocol, then condition as the protocol lists them. Refers to `study`.
 std::vector<Cell> cellsOf(const StudyData& study);
 
 /// The values of `measure` of those attempts for which it is defined.

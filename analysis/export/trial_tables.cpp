@@ -137,18 +137,40 @@ std::string columnPart(const std::string& condition) {
     return part;
 }
 
-/// Conditions of all protocols by name, in order, each with a column part of its own.
-std::vector<std::pair<std::string, std::string>> conditionParts(const StudyData& study) {
+/// What a participant's columns tell apart: the condition's name without the levels that a group or an assignment
+/// gives.
+std::string seenName(const StudyData& study, const store::ConditionRow& condition) {
+    std::string name;
+    bool all = true, first = true;
+    for (const auto& [factor, label] : condition.levels) {
+        const auto column = std::find_if(study.factors.begin(), study.factors.end(),
+                                         [&](const FactorColumn& c) { return c.factor == factor; });
+        if (column != study.factors.end() && column->kind != "within") {
+            all = false;
+            continue;
+        }
+        name += (first ? "" : "/") + label;
+        first = false;
+    }
+    return all || name.empty() ? condition.condition : name;
+}
+
+/// Names of conditions of all protocols, in order, each with a column part of its own; catch trials have none.
+std::vector<std::pair<std::string, std::string>> conditionParts(const StudyData& study,
+                                                                const std::vector<Cell>& cells) {
     std::vector<std::pair<std::string, std::string>> parts;
     const auto has = [&](const std::string& text, auto member) {
         return std::any_of(parts.begin(), parts.end(), [&](const auto& part) { return part.*member == text; });
     };
     using Part = std::pair<std::string, std::string>;
     for (const store::ConditionRow& condition : study.conditions) {
-        if (has(condition.condition, &Part::first)) continue;
-        std::string part = columnPart(condition.condition);
+        const std::string name = seenName(study, condition);
+        const bool used = cells.empty() || std::any_of(cells.begin(), cells.end(),
+                                                       [&](const Cell& cell) { return cell.condition == &condition; });
+        if (!used || has(name, &Part::first)) continue;
+        std::string part = columnPart(name);
         while (has(part, &Part::second)) part += '_';
-        parts.emplace_back(condition.condition, part);
+        parts.emplace_back(name, part);
     }
     return parts;
 }
@@ -217,7 +239,7 @@ Table makeCells(const StudyData& study) {
 
 std::vector<Table> makeWide(const StudyData& study) {
     const std::vector<Cell> cells = cellsOf(study);
-    const auto parts = conditionParts(study);
+    const auto parts = conditionParts(study, cells);
     std::vector<Table> tables;
     for (const store::MeasureRow& measure : study.measures) {
         const Column base = measureColumn(measure);
@@ -243,7 +265,7 @@ std::vector<Table> makeWide(const StudyData& study) {
                    cells[i].protocol_sha256 == person.protocol_sha256;
                  ++i) {
                 const auto place = std::find_if(parts.begin(), parts.end(), [&](const auto& part) {
-                    return part.first == cells[i].condition->condition;
+                    return part.first == seenName(study, *cells[i].condition);
                 });
                 row[4 + static_cast<std::size_t>(std::distance(parts.begin(), place))] =
                     cell(meanOf(valuesOf(cells[i].attempts, base.name)));

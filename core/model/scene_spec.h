@@ -60,7 +60,10 @@ struct OutputLimits {
     double max_speed = 20.0;          // [m/s], a faster reading is a broken one
     double max_spin = 200.0;          // [rad/s]
     bool actuates_torque = true;
-    int delay_ticks = 0;  // added between command and effect
+    // Encoder steps of the handle's pose, which the energy account has to know; 0: none or not known.
+    double quantum = 0.0;             // [m]
+    double rotational_quantum = 0.0;  // [rad]
+    int delay_ticks = 0;              // added between command and effect
 };
 
 /// Maps device space to the scene: X_WH = align · scale(X_BD) · handle.

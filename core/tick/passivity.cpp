@@ -6,20 +6,33 @@
 
 namespace passung::tick {
 
-void observeEnergy(const TickModel&, TickState& state, TickFrame& frame) noexcept {
+namespace {
+
+/// How far the handle moved for certain while its reading moved by `step`; `ahead` follows.
+Vec3 certainMotion(const Vec3& step, double quantum, Vec3& ahead) noexcept {
+    const Vec3 before = ahead;
+    ahead = (ahead + step).cwiseMax(-0.5 * quantum).cwiseMin(0.5 * quantum);
+    return step - (ahead - before);
+}
+
+}  // namespace
+
+void observeEnergy(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
     EnergyAccount& account = state.energy;
     account.sent.force += state.last_sent.force;
     account.sent.torque += state.last_sent.torque;
     ++account.ticks;
     if (!frame.input_usable) {
         account.has_sample = false;
-        account.V_BD = Twist{};
+        account.V_BD = account.ahead = Twist{};
     } else if (frame.sample_periods > 0) {
         const Pose& X = state.X_BD_good;
         if (account.has_sample) {
             const Vec3 dx = X.p - account.X_BD.p;
             const Vec3 dphi = rotationVector(X.q * account.X_BD.q.conjugate());
-            account.taken_in -= (account.sent.force.dot(dx) + account.sent.torque.dot(dphi)) / account.ticks;
+            const Vec3 moved = certainMotion(dx, model.limits.quantum, account.ahead.v);
+            const Vec3 turned = certainMotion(dphi, model.limits.rotational_quantum, account.ahead.w);
+            account.taken_in -= (account.sent.force.dot(moved) + account.sent.torque.dot(turned)) / account.ticks;
             const double elapsed = kTickSeconds * static_cast<double>(frame.sample_periods);
             account.V_BD = {dx / elapsed, dphi / elapsed};
         }

@@ -8,17 +8,21 @@ namespace passung::tick {
 /// gave too much.
 /// Source: Hannaford and Ryu (2002), time domain passivity observer and controller; here in six degrees of freedom.
 ///
-/// Symbols: Δx, Δφ how the handle moved from the good sample before to this one; F̄, T̄ the mean of the wrenches that
-/// were sent in between, each held for one tick; all about the handle's origin in the device's base frame, so that
-/// neither scale nor registration enters.
+/// Symbols: Δx, Δφ how far the handle moved for certain from the good sample before to this one (see below); F̄, T̄ the
+/// mean of the wrenches that were sent in between, each held for one tick; all about the handle's origin in the
+/// device's base frame, so that neither scale nor registration enters.
 ///   E += -(F̄ · Δx + T̄ · Δφ)   [J]
 /// That is exact where one wrench was held: what the controller has taken in since the trial began. A passive one keeps
 /// E ≥ 0; what its springs hold counts as taken in and comes back. Rotation: with T̄ constant in base axes, exact to
 /// second order in |Δφ|.
-/// The motion is known in encoder steps q only, booked when the reading changes: a spring K pressed by x and released
-/// comes out low by K q x, also where the motors did no work in all.
-/// Limit cases: no motion or no wrench → E stays. A held sample books nothing until the next new one comes. After
-/// rejected samples the way between is not known and nothing is booked for it.
+/// The motion is known in encoder steps q only: the handle is within q/2 of its reading in every coordinate. Believed
+/// is the least motion that explains all readings, y_k = the place nearest to y_{k-1} within q/2 of reading k: a
+/// reading that steps on and back crossed the same border twice, and a slow handle is where its reading steps, half a
+/// step from both. (To book whole readings instead takes each press of a spring K by x and its release for K q x given
+/// out, also where the motors did no work.) |y - true place| ≤ q, so that E is off by less than q Σ|F_k - F_{k-1}|: a
+/// fast cycle may come out high by K q x. q = 0: the readings themselves. Limit cases: no motion or no wrench → E
+/// stays. A held sample books nothing until the next new one comes. After rejected samples the way between is not known
+/// and nothing is booked for it.
 ///
 /// Stage, of every scene: reads the sample, writes E and the handle's velocity.
 void observeEnergy(const TickModel& model, TickState& state, TickFrame& frame) noexcept;

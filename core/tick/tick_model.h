@@ -91,6 +91,7 @@ struct EnergyAccount {
     double taken_in = 0.0;  // by the controller [J]
     bool has_sample = false;
     Pose X_BD;    // at the good sample before
+    Twist ahead;  // by how much that is ahead of where the handle is believed to be, as a motion [m], [rad]
     Twist V_BD;   // from the one before that
     Wrench sent;  // sum of what was sent since
     int ticks = 0;

@@ -72,7 +72,8 @@ Hand::Hand(const HandParams& params, const VisibleTask& task, const HandRegistra
       motor_(derived(seed, 2)),
       tremor_(params.tremor, params.mass, motor_),
       senses_(params),
-      pace_(params.pace * std::exp(kPaceSpread * std::clamp(motor_.normal(), -2.5, 2.5))) {
+      pace_(params.pace * std::exp(kPaceSpread * std::clamp(motor_.normal(), -2.5, 2.5))),
+      lapse_(Random(derived(seed, 3)).uniform() < params.lapse_rate ? params.lapse_duration : 0.0) {
     PASSUNG_ASSERT(params.validate().empty());
     look();
 }
@@ -154,7 +155,7 @@ void Hand::approach() noexcept {
 
 void Hand::settle(const Percept& percept) noexcept {
     if (t_ > params_.haptic_delay) removeOffset(percept);
-    if (t_ < kSettleDuration + (attempt_ > 0 ? kPuzzled / pace_ : 0.0)) return;
+    if (t_ < kSettleDuration + (attempt_ > 0 ? kPuzzled / pace_ : lapse_)) return;
     p_MP_ = X_WM_.inverse() * X_WRef_.p;
     turn_.setZero();
     enter(HandPhase::Descend);

@@ -83,7 +83,8 @@ private:
     Tremor tremor_;
     HandSenses senses_;
 
-    double pace_;  // of this trial against the habit
+    double pace_;   // of this trial against the habit
+    double lapse_;  // pause of this trial [s]
 
     HandPhase phase_ = HandPhase::ToStart;
     std::int64_t tick_ = 0;

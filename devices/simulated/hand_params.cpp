@@ -47,6 +47,8 @@ std::vector<Error> HandParams::validate() const {
     notNegative("search_tilt", search_tilt);
     positive("insert_speed", insert_speed);
     positive("insert_force", insert_force);
+    require(lapse_rate >= 0 && lapse_rate <= 1, "lapse_rate", lapse_rate, "must be 0 to 1");
+    notNegative("lapse_duration", lapse_duration);
     require(insert_force >= press_force, "insert_force", insert_force, "must be at least press_force");
     return errors;
 }

@@ -63,6 +63,8 @@ struct HandParams {
     double search_tilt = 0.008;         // wobble while searching [rad]
     double insert_speed = 0.025;        // [m/s]
     double insert_force = 7.0;          // [N], the most that is pushed
+    double lapse_rate = 0.0;            // share of trials with a lapse, 0 … 1: a pause after the first look
+    double lapse_duration = 1.5;        // [s], ≥ 0
 
     /// Everything out of range; key = field.
     std::vector<Error> validate() const;

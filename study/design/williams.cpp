@@ -21,11 +21,11 @@ CountRange rangeOf(const std::vector<int>& counts) {
     return {*low, *high};
 }
 
+}  // namespace
+
 std::string rangeText(const CountRange& range) {
     return range.even() ? fmt::format("{}", range.low) : fmt::format("{}-{}", range.low, range.high);
 }
-
-}  // namespace
 
 std::size_t williamsRows(std::size_t n) { return n % 2 == 0 ? n : 2 * n; }
 

@@ -29,6 +29,9 @@ struct CountRange {
     bool even() const { return low == high; }
 };
 
+/// "2" or "1-2".
+std::string rangeText(const CountRange& range);
+
 /// How even a set of orders is.
 struct Balance {
     CountRange positions;   // how often a condition stands in a position, over all conditions and positions

@@ -1,34 +1,62 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <string_view>
 
 namespace passung::person {
 
-/// Who a simulated participant is: the traits that stay for all of a person's trials. SI units. Each is drawn from a
-/// log-normal distribution about the median named here and kept within the range named here. Medians and spreads are
-/// plausible for healthy adults and proposed here; they describe nobody and prove nothing about people.
+/// Who a simulated participant is: the traits that stay for all of a person's trials. SI units; unit, spread and range
+/// of each: traits(). The values here are the medians. Medians and spreads are plausible for healthy adults and
+/// proposed here; they describe nobody and prove nothing about people.
 struct SimulatedPerson {
-    double visual_delay = 0.20;        // sight to reaction [s], 0.15 … 0.32
-    double haptic_delay = 0.13;        // touch to reaction [s], 0.09 … 0.20
-    double arm_mass = 0.5;             // at the handle [kg], 0.3 … 1.0
-    double arm_stiffness = 300.0;      // [N/m], 200 … 500
-    double arm_damping_ratio = 0.6;    // of the arm alone against its stiffness, 0.4 … 1.0
-    double wrist_inertia = 1.5e-3;     // [kg·m²], 0.8e-3 … 3e-3
-    double wrist_stiffness = 3.0;      // [N·m/rad], 2 … 4
-    double wrist_damping_ratio = 0.6;  // 0.4 … 1.0
-    double tremor = 4e-5;              // root mean square per axis [m], 1.5e-5 … 6e-5
-    double lateral_error = 1.0e-3;     // of seeing the bore's place, per axis [m], 0.5e-3 … 1.5e-3
-    double depth_error = 0.5e-3;       // [m], 0.25e-3 … 0.8e-3
-    double tilt_error = 0.013;         // [rad] per axis, 0.008 … 0.018
-    double pace = 1.0;                 // of all movements against the usual, 0.7 … 1.4
-    double press_force = 3.0;          // while searching [N], 2 … 4
+    double visual_delay = 0.20;
+    double haptic_delay = 0.13;
+    double arm_mass = 0.5;
+    double arm_stiffness = 300.0;
+    double arm_damping_ratio = 0.6;
+    double wrist_inertia = 1.5e-3;
+    double wrist_stiffness = 3.0;
+    double wrist_damping_ratio = 0.6;
+    double tremor = 4e-5;
+    double lateral_error = 1.0e-3;
+    double depth_error = 0.5e-3;
+    double tilt_error = 0.013;
+    double pace = 1.0;
+    double press_force = 3.0;
+    double strength = 7.0;
+    double learning = 0.25;
+    double learning_trials = 8.0;
+    double lapse_rate = 0.02;
+    double lapse_duration = 1.5;
 
     /// N·s/m and N·m·s/rad from the ratios.
     double armDamping() const;
     double wristDamping() const;
+
+    /// Pace in a trial after so many others of the session: practice makes faster, by the exponential law
+    /// pace / (1 + learning · exp(-trials_before / learning_trials)). @pre trials_before ≥ 0
+    double paceAfter(std::int64_t trials_before) const;
 };
 
-/// The person of this stream seed (core/base/random.h: streamSeed); same seed, same person.
+/// One trait: exp(spread · normal) times the median, kept in [low, high].
+struct Trait {
+    const char* name;
+    const char* unit;  // "1": none
+    const char* meaning;
+    double SimulatedPerson::*value;
+    double spread;  // standard deviation of the natural logarithm, before it is kept in the range
+    double low, high;
+};
+
+/// Every trait, in the order in which they are drawn.
+std::span<const Trait> traits();
+
+/// The person of this seed; same seed, same person.
 SimulatedPerson drawPerson(std::uint64_t seed);
+
+/// The simulated participant `code` of a study: the same in all their trials and sessions (stream "simulated" of the
+/// code, in a phase of its own, because who somebody is does not depend on what they do).
+SimulatedPerson personOf(std::string_view study, std::string_view code, std::uint64_t study_seed);
 
 }  // namespace passung::person

@@ -56,7 +56,8 @@ public:
         } else if (errors_.size() == before_) {
             report(level.place, fmt::format("\"{}\"", label), "a label must not be empty nor contain \"/\"");
         }
-        content_.factor.levels.push_back({label});
+        content_.factor.levels.push_back({label, catch_trial_});
+        catch_trial_ = false;
         content_.overrides.push_back(std::move(overrides_));
         overrides_.clear();
         before_ = errors_.size();
@@ -68,6 +69,9 @@ private:
         const Node* value = level.find("value");
         const Node* set = level.find("set");
         label = read.text("label");
+        catch_trial_ = read.boolean("catch");
+        if (catch_trial_ && content_.factor.kind != FactorKind::Within)
+            read.fail("catch", "only levels of a within factor can be catch trials");
         if ((value == nullptr) == (set == nullptr)) {
             report(level.place, "", "a level needs either a value or a set");
         } else if (value != nullptr) {
@@ -97,6 +101,7 @@ private:
     Errors& errors_;
     bool factor_has_key_ = factor_.has("key");
     std::size_t before_ = errors_.size();
+    bool catch_trial_ = false;
     std::vector<Override> overrides_;
     std::set<std::string> labels_;
 };
@@ -154,6 +159,10 @@ std::vector<FactorContent> readFactors(const std::vector<Node>& tables, std::spa
         FactorContent content;
         content.factor.name = read.text("name");
         content.factor.unit = read.text("unit");
+        const auto kind = read.text("kind");
+        content.factor.kind = kind == "between"    ? FactorKind::Between
+                              : kind == "nuisance" ? FactorKind::Nuisance
+                                                   : FactorKind::Within;
         if (named && !names.insert(name->text).second) read.fail("name", "two factors have this name");
         const auto among = [&](const auto& taken) {
             return named && std::find(taken.begin(), taken.end(), name->text) != taken.end();

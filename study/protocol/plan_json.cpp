@@ -123,7 +123,7 @@ std::string factorJson(const Factor& factor) {
     for (const auto& level : factor.levels) levels.push_back(jsonText(level.label));
     return JsonObject()
         .text("name", factor.name)
-        .text("kind", "within")
+        .text("kind", factorKindName(factor.kind))
         .text("unit", factor.unit)
         .json("levels", jsonList(levels))
         .str();
@@ -165,6 +165,8 @@ std::string blockJson(const Block& block) {
         .integer("repetitions", block.repetitions)
         .text("order", blockOrderName(block.order))
         .integer("trials", block.trials)
+        .integer("session", block.session)
+        .number("rest_s", block.rest)
         .text("on_failure", repeatName(block.on_failure))
         .text("on_timeout", repeatName(block.on_timeout))
         .text("on_invalid", repeatName(block.on_invalid))
@@ -243,6 +245,9 @@ std::string expandedJson(const StudyPlan& plan) {
         .json("blocks", listOf(plan.blocks, blockJson))
         .json("questionnaires", listOf(plan.questionnaires, questionnaireJson))
         .json("resume", resumeJson(plan.resume))
+        .json("groups", listOf(groupNames(plan), [](const std::string& name) { return jsonText(name); }))
+        .integer("allocation_blocks", plan.allocation_blocks)
+        .integer("sessions", sessionsOf(plan))
         .json("loop", JsonObject().number("max_missed_share", plan.max_missed_share).str())
         .json("stable_stiffness", listOf(plan.stable_stiffness, stableJson))
         .json("measures", listOf(plan.measures, [](const std::string& name) { return jsonText(name); }))

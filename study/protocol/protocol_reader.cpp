@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "study/protocol/block_reader.h"
 #include "study/protocol/consent_reader.h"
 #include "study/protocol/factors.h"
 #include "study/protocol/plan_json.h"
@@ -48,12 +49,13 @@ public:
     Result<StudyPlan> read() {
         readStudy();
         readConditions();
-        readBlocks();
+        readBlockTables();
         plan_.questionnaires = readQuestionnaires(root_.items("questionnaire"), plan_.blocks, errors_);
         readLoop();
         plan_.resume = readResume(root_, errors_);
         plan_.consent = readConsent(root_, errors_);
         readMeasures();
+        if (errors_.empty()) checkBlocks(root_.items("block"), plan_, errors_);
         tidy(errors_);
         if (!errors_.empty()) return errors_;
         listMeshes();
@@ -73,6 +75,7 @@ private:
         plan_.title = read.has("title") ? read.text("title") : plan_.name;
         plan_.seed = static_cast<std::uint64_t>(read.integer("seed"));
         plan_.participants = static_cast<int>(read.integer("participants"));
+        plan_.allocation_blocks = static_cast<int>(read.integer("allocation_blocks"));
     }
 
     /// nullptr if there is none that can be read.
@@ -101,11 +104,13 @@ private:
             root_.fail("factor", fmt::format("more than {} combinations of levels", kMaxConditions));
         // Levels that are wrong in themselves would be reported once more in every condition.
         if (errors_.size() > before) return;
-        conditions_ = count;
-        if (scene == nullptr) return;
-        const std::size_t sound = errors_.size();
-        for (auto& levels : combinations(factors)) readCondition(*scene, factors, std::move(levels));
-        if (errors_.size() == sound) checkDistinct();
+        const auto exclusions = readExclusions(root_.items("exclude"), plan_.factors, errors_);
+        if (scene == nullptr || errors_.size() > before) return;
+        for (auto& levels : combinations(factors))
+            if (!isExcluded(exclusions, levels)) readCondition(*scene, factors, std::move(levels));
+        if (errors_.size() > before) return;
+        if (plan_.conditions.empty()) root_.fail("exclude", "leaves no condition");
+        checkDistinct();
     }
 
     void readCondition(const Node& scene, const std::vector<FactorContent>& factors, std::vector<std::size_t> levels) {
@@ -170,36 +175,9 @@ private:
         return read.text("shown_pose") == "device" ? ShownPose::Device : ShownPose::Proxy;
     }
 
-    void readBlocks() {
-        const auto& tables = root_.items("block");
-        if (root_.has("block") && tables.empty()) root_.fail("block", "needs at least one block");
-        std::set<std::string> names;
-        for (const Node& table : tables) {
-            const Node* name = table.find("name");
-            const bool named = name != nullptr && name->kind == Node::Kind::Text && isName(name->text);
-            const TableReader read(table, {"block"}, named ? "block." + name->text : "block", errors_);
-            Block block;
-            block.name = read.text("name");
-            block.phase = read.text("phase") == "practice" ? Phase::Practice : Phase::Main;
-            block.repetitions = static_cast<int>(read.integer("repetitions"));
-            const auto order = read.text("order");
-            block.order = order == "random"   ? BlockOrder::Random
-                          : order == "listed" ? BlockOrder::Listed
-                                              : BlockOrder::Williams;
-            if (named && !names.insert(block.name).second) read.fail("name", "two blocks have this name");
-            if (block.order == BlockOrder::Williams && conditions_ == 1u)
-                read.fail("order", "a Williams square needs at least two conditions");
-            if (conditions_ && read.has("trials") && read.integer("trials") > static_cast<std::int64_t>(*conditions_))
-                read.fail("trials", fmt::format("must be at most the number of conditions, {}", *conditions_));
-            else
-                block.trials = static_cast<int>(read.integer("trials"));
-            readRepeats(read, block);
-            plan_.blocks.push_back(std::move(block));
-        }
-        const auto is_main = [](const Block& block) { return block.phase == Phase::Main; };
-        if (!tables.empty() && std::none_of(plan_.blocks.begin(), plan_.blocks.end(), is_main))
-            errors_.push_back(errorAt(tables.front().place, "block", "",
-                                      "a study needs a block with phase = \"main\": analyses leave practice out"));
+    void readBlockTables() {
+        if (root_.has("block") && root_.items("block").empty()) root_.fail("block", "needs at least one block");
+        plan_.blocks = readBlocks(root_.items("block"), plan_.factors, errors_);
     }
 
     void readLoop() {
@@ -307,7 +285,6 @@ private:
     Errors errors_;
     TableReader root_;
     StudyPlan plan_;
-    std::optional<std::size_t> conditions_;  // nothing if the factors are not sound
 };
 
 }  // namespace

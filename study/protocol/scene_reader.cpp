@@ -60,6 +60,10 @@ model::OutputLimits readLimits(const TableReader& read, const DeviceDescription*
         limits.max_speed = device->max_speed_m_per_s;
         limits.max_spin = device->max_spin_rad_per_s;
         limits.actuates_torque = device->actuated_degrees >= 6;
+        if (device->mechanism) {
+            limits.quantum = device->mechanism->quantum_m;
+            limits.rotational_quantum = device->mechanism->rotational_quantum_rad;
+        }
     }
     const auto tighten = [&](const char* key, double& limit) {
         if (!read.has(key)) return;

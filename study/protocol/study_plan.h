@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/model/scene_spec.h"
+#include "study/design/design.h"
 #include "study/questionnaire/definition.h"
 
 namespace passung::protocol {
@@ -13,11 +15,13 @@ namespace passung::protocol {
 enum class Phase { Practice, Main };
 const char* phaseName(Phase phase);  // "practice", "main": as stored
 
-enum class FactorKind { Within };
+using design::FactorKind;
+const char* factorKindName(FactorKind kind);  // "within", "between", "nuisance": as stored
 
 /// One value of a factor, as the protocol wrote it.
 struct Level {
-    std::string label;  // as it appears in tables and exports
+    std::string label;         // as it appears in tables and exports
+    bool catch_trial = false;  // conditions with it are catch trials
 };
 
 struct Factor {
@@ -59,8 +63,8 @@ struct Condition {
     std::string params_json;  // every resolved number, for the attempt's row
 };
 
-enum class BlockOrder { Williams, Random, Listed };
-const char* blockOrderName(BlockOrder order);  // "williams", "random", "listed"
+using BlockOrder = design::Order;
+const char* blockOrderName(BlockOrder order);  // "williams", "permutations", "random", "shuffled", "listed"
 
 enum class Repeat { Never, Now, AtBlockEnd };
 
@@ -69,7 +73,13 @@ struct Block {
     Phase phase = Phase::Main;
     int repetitions = 1;  // passes through the order
     BlockOrder order = BlockOrder::Williams;
-    int trials = 0;  // 0 = every condition of the pass; else the first so many (practice)
+    int trials = 0;                           // 0 = every condition of the pass; else the first so many (practice)
+    std::optional<std::size_t> blocked = {};  // factor whose levels come one after the other
+    BlockOrder blocked_order = BlockOrder::Williams;
+    std::vector<design::Constraint> constraints = {};
+    design::CatchPlan catches = {};
+    int session = 1;                    // of each participant's, from 1
+    double rest = 0.0;                  // [s] at least so long is rested before it
     Repeat on_failure = Repeat::Never;  // of a trial that ended by its own rules without success
     Repeat on_timeout = Repeat::Never;
     Repeat on_invalid = Repeat::Never;  // of a trial whose attempt does not count
@@ -124,9 +134,10 @@ struct StudyPlan {
     std::string version;
     std::string title;
     std::uint64_t seed = 0;
-    int participants = 0;  // planned N
+    int participants = 0;       // planned N
+    int allocation_blocks = 1;  // a permuted block holds each group so often
     std::vector<Factor> factors;
-    std::vector<Condition> conditions;  // the first factor varies slowest
+    std::vector<Condition> conditions;  // the first factor varies slowest; of all groups and assignments
     std::vector<Block> blocks;
     std::vector<PlannedQuestionnaire> questionnaires;
     ResumePolicy resume;
@@ -140,5 +151,14 @@ struct StudyPlan {
     std::string expanded_json;          // factors, conditions, blocks after expansion
     std::vector<std::string> warnings;  // sentences: allowed, but the experimenter should know
 };
+
+/// What orders, groups and slots follow from.
+design::Design designOf(const StudyPlan& plan);
+
+/// Names of the groups of the between factors, their levels joined by "/"; "all" if there is no such factor.
+std::vector<std::string> groupNames(const StudyPlan& plan);
+
+/// How many sessions a participant has.
+int sessionsOf(const StudyPlan& plan);
 
 }  // namespace passung::protocol

@@ -39,8 +39,13 @@ public:
     virtual const DeviceDescription& device() const = 0;
 
     /// Builds the scene of `condition` and everything that a trial needs; may take seconds. Motors stay off.
-    /// `seed` drives everything random in a simulated device and hand for this attempt.
-    virtual Result<std::vector<StageNote>> prepare(const protocol::Condition& condition, std::uint64_t seed) = 0;
+    /// `seed` drives everything random in a simulated device and hand for this attempt; a simulated person learns from
+    /// the trials that the session's plan has before this one.
+    virtual Result<std::vector<StageNote>> prepare(const protocol::Condition& condition, std::uint64_t seed,
+                                                   std::int64_t trials_before) = 0;
+
+    /// Lets so many periods pass while no loop runs: at once in virtual time.
+    virtual void wait(std::int64_t ticks) = 0;
 
     /// Starts the loop at tick 0.
     virtual void start() = 0;

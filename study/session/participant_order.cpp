@@ -1,29 +1,24 @@
 #include "study/session/participant_order.h"
 
-namespace passung::session {
-namespace {
+#include "study/design/allocation.h"
 
-design::Order orderOf(protocol::BlockOrder order) {
-    switch (order) {
-        case protocol::BlockOrder::Williams:
-            return design::Order::Williams;
-        case protocol::BlockOrder::Random:
-            return design::Order::Random;
-        case protocol::BlockOrder::Listed:
-            return design::Order::Listed;
-    }
-    return design::Order::Listed;
+namespace passung::session {
+
+Result<std::vector<design::PlannedTrial>> planTrials(const protocol::StudyPlan& plan, const DesignPlace& place,
+                                                     std::string_view participant, int session) {
+    return design::planSession(protocol::designOf(plan),
+                               {plan.name, plan.seed, participant, place.slot, place.group, session});
 }
 
-}  // namespace
-
-std::vector<design::PlannedTrial> planTrials(const protocol::StudyPlan& plan, std::size_t slot,
-                                             std::string_view participant) {
-    std::vector<design::BlockPlan> blocks;
-    for (const auto& block : plan.blocks)
-        blocks.push_back({block.name, protocol::phaseName(block.phase), block.repetitions, orderOf(block.order),
-                          static_cast<std::size_t>(block.trials)});
-    return design::planSession(plan.conditions.size(), blocks, {plan.name, plan.seed, participant, slot});
+std::vector<DesignPlace> firstPlaces(const protocol::StudyPlan& plan, std::size_t count,
+                                     protocol::ParticipantKind kind) {
+    const auto design = protocol::designOf(plan);
+    const design::Allocation allocation{design::groupsOf(design).size(), design::sequencesOf(design),
+                                        static_cast<std::size_t>(plan.allocation_blocks), plan.name, plan.seed};
+    std::vector<DesignPlace> places;
+    for (const design::Place& place : design::firstPlaces(allocation, protocol::participantKindName(kind), count))
+        places.push_back({place.replicate * allocation.sequences + place.sequence, place.group});
+    return places;
 }
 
 }  // namespace passung::session

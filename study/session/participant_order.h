@@ -4,14 +4,25 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/result.h"
 #include "study/design/trial_order.h"
+#include "study/protocol/participant.h"
 #include "study/protocol/study_plan.h"
 
 namespace passung::session {
 
-/// The trials of one participant in order: design::planSession for a protocol. `slot` is the participant's running
-/// number in the study, from 0; it decides the row of the Williams square.
-std::vector<design::PlannedTrial> planTrials(const protocol::StudyPlan& plan, std::size_t slot,
-                                             std::string_view participant);
+/// Where a participant stands in the design.
+struct DesignPlace {
+    std::size_t slot = 0;   // running number in the group, from 0: decides the rows of the squares
+    std::size_t group = 0;  // index into protocol::groupNames()
+};
+
+/// The trials of one participant's session, from 1, in order: design::planSession for a protocol.
+Result<std::vector<design::PlannedTrial>> planTrials(const protocol::StudyPlan& plan, const DesignPlace& place,
+                                                     std::string_view participant, int session = 1);
+
+/// The places of the first `count` participants of a kind, as the store allots them.
+std::vector<DesignPlace> firstPlaces(const protocol::StudyPlan& plan, std::size_t count,
+                                     protocol::ParticipantKind kind = protocol::ParticipantKind::Real);
 
 }  // namespace passung::session

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 
+#include "study/design/balance.h"
 #include "study/design/counted.h"
+#include "study/design/trial_order.h"
 #include "study/design/williams.h"
 #include "study/protocol/participant.h"
 #include "study/session/participant_order.h"
@@ -16,12 +18,15 @@ std::string factorsText(const protocol::StudyPlan& plan) {
     if (plan.factors.empty()) return "";
     std::size_t width = 0;
     for (const auto& factor : plan.factors) width = std::max(width, factor.name.size());
-    std::string text = "Factors (within participants)\n";
+    const bool within = std::all_of(plan.factors.begin(), plan.factors.end(),
+                                    [](const auto& f) { return f.kind == protocol::FactorKind::Within; });
+    std::string text = within ? "Factors (within participants)\n" : "Factors\n";
     for (const auto& factor : plan.factors) {
-        std::vector<std::string_view> labels;
-        for (const auto& level : factor.levels) labels.push_back(level.label);
-        text += fmt::format("  {:<{}}  {}{}{}\n", factor.name, width, fmt::join(labels, ", "),
-                            factor.unit.empty() ? "" : " ", factor.unit);
+        std::vector<std::string> labels;
+        for (const auto& level : factor.levels) labels.push_back(level.label + (level.catch_trial ? " (catch)" : ""));
+        text += fmt::format("  {:<{}}  {}{}{}{}\n", factor.name, width,
+                            within ? "" : fmt::format("{}: ", protocol::factorKindName(factor.kind)),
+                            fmt::join(labels, ", "), factor.unit.empty() ? "" : " ", factor.unit);
     }
     return text + "\n";
 }
@@ -35,90 +40,164 @@ std::string conditionsText(const protocol::StudyPlan& plan) {
     return text + "\n";
 }
 
-std::size_t trialsPerPass(const protocol::StudyPlan& plan, const protocol::Block& block) {
-    return block.trials > 0 ? static_cast<std::size_t>(block.trials) : plan.conditions.size();
+/// Trials of each pass of a block, as everybody has them.
+std::size_t trialsPerPass(const design::Design& design, const protocol::Block& block) {
+    const auto cells = design::cellsOf(design, 0, 0, "", 0).ordinary;
+    const auto parts = design::partedBy(design, block.blocked, cells);
+    return block.trials > 0 ? static_cast<std::size_t>(block.trials) : parts.empty() ? 0 : parts[0].size();
+}
+
+std::string blockText(const protocol::StudyPlan& plan, const design::Design& design, std::size_t b) {
+    const protocol::Block& block = plan.blocks[b];
+    std::string text =
+        fmt::format("{}, order {}, {} x {}", protocol::phaseName(block.phase), protocol::blockOrderName(block.order),
+                    design::counted(trialsPerPass(design, block), "trial"),
+                    design::counted(static_cast<std::size_t>(block.repetitions), "repetition"));
+    if (block.blocked)
+        text += fmt::format(", blocked by {} (order {})", plan.factors[*block.blocked].name,
+                            protocol::blockOrderName(block.blocked_order));
+    if (block.catches.trials > 0)
+        text += fmt::format(", {} a pass", design::counted(block.catches.trials, "catch trial"));
+    if (protocol::sessionsOf(plan) > 1) text += fmt::format(", session {}", block.session);
+    if (block.rest > 0.0) text += fmt::format(", after at least {:.6g} s of rest", block.rest);
+    if (!block.constraints.empty())
+        text += fmt::format(", {}: {:.3g} % of plain shuffles keep to them",
+                            design::counted(block.constraints.size(), "constraint"),
+                            100.0 * design::acceptanceOf(design, b));
+    return text;
 }
 
 std::string blocksText(const protocol::StudyPlan& plan) {
     std::size_t width = 0;
     for (const auto& block : plan.blocks) width = std::max(width, block.name.size());
+    const auto design = protocol::designOf(plan);
     std::string text = "Blocks\n";
-    for (const auto& block : plan.blocks) {
-        const std::size_t trials = trialsPerPass(plan, block);
-        text += fmt::format("  {:<{}}  {}, order {}, {} x {}\n", block.name, width, protocol::phaseName(block.phase),
-                            protocol::blockOrderName(block.order), design::counted(trials, "trial"),
-                            design::counted(static_cast<std::size_t>(block.repetitions), "repetition"));
-    }
+    for (std::size_t b = 0; b < plan.blocks.size(); ++b)
+        text += fmt::format("  {:<{}}  {}\n", plan.blocks[b].name, width, blockText(plan, design, b));
     return text + "\n";
 }
 
-/// One participant's blocks: the condition numbers of each pass; a pass that is repeated unchanged is written once.
+/// One participant's session: the condition numbers of each pass, blocks parted by |, catch trials marked with a star;
+/// passes that repeat the one before are counted.
 std::string orderText(const protocol::StudyPlan& plan, const std::vector<design::PlannedTrial>& trials) {
     std::string text;
-    std::size_t next = 0;
-    for (const auto& block : plan.blocks) {
-        std::vector<std::string> passes(static_cast<std::size_t>(block.repetitions));
-        for (auto& pass : passes)
-            for (std::size_t i = 0; i < trialsPerPass(plan, block); ++i)
-                pass += fmt::format("{}{}", i == 0 ? "" : " ", trials[next++].condition + 1);
-        const bool repeated = block.order != protocol::BlockOrder::Random && passes.size() > 1;
-        text += text.empty() ? "" : " | ";
-        text +=
-            repeated ? fmt::format("{} (x{})", passes[0], passes.size()) : fmt::format("{}", fmt::join(passes, ", "));
+    for (std::size_t next = 0; next < trials.size();) {
+        const auto block = trials[next].block_index;
+        const bool one_pass = plan.blocks[static_cast<std::size_t>(block)].order == protocol::BlockOrder::Shuffled;
+        std::vector<std::string> passes;
+        std::vector<int> times;
+        while (next < trials.size() && trials[next].block_index == block) {
+            const int repetition = trials[next].repetition;
+            std::string pass;
+            for (; next < trials.size() && trials[next].block_index == block &&
+                   (one_pass || trials[next].repetition == repetition);
+                 ++next)
+                pass += fmt::format("{}{}{}", pass.empty() ? "" : " ", trials[next].condition + 1,
+                                    trials[next].phase == "catch" ? "*" : "");
+            if (!passes.empty() && passes.back() == pass) {
+                ++times.back();
+                continue;
+            }
+            passes.push_back(std::move(pass));
+            times.push_back(1);
+        }
+        for (std::size_t i = 0; i < passes.size(); ++i)
+            if (times[i] > 1) passes[i] += fmt::format(" (x{})", times[i]);
+        text += fmt::format("{}{}", text.empty() ? "" : " | ", fmt::join(passes, ", "));
     }
     return text;
 }
 
-/// [s], if every trial runs into its time-out.
+/// [s], if every trial runs into its time-out and no rest is longer than it must be.
 double longestSession(const protocol::StudyPlan& plan, const std::vector<design::PlannedTrial>& trials) {
     double seconds = 0.0;
-    for (const auto& trial : trials) seconds += plan.conditions[trial.condition].task.timeout;
+    std::int64_t block = -1;
+    for (const auto& trial : trials) {
+        seconds += plan.conditions[trial.condition].task.timeout;
+        if (trial.block_index != block) seconds += plan.blocks[static_cast<std::size_t>(trial.block_index)].rest;
+        block = trial.block_index;
+    }
     return seconds;
 }
 
-bool hasWilliams(const protocol::StudyPlan& plan) {
-    return std::any_of(plan.blocks.begin(), plan.blocks.end(),
-                       [](const auto& block) { return block.order == protocol::BlockOrder::Williams; });
+/// The design is one Williams square for everybody.
+bool isPlainSquare(const design::Design& design) {
+    const auto wheels = design::wheelsOf(design);
+    return wheels.size() == 1 && wheels[0].what == design::Wheel::What::Conditions && !wheels[0].factor &&
+           wheels[0].order == design::Order::Williams && design::groupsOf(design).size() == 1;
+}
+
+/// How many participants make the design even.
+std::size_t wholeNumber(const design::Design& design) {
+    return design::sequencesOf(design) * design::groupsOf(design).size();
+}
+
+std::string balanceText(const design::Design& design, const std::vector<std::string>& groups,
+                        const std::vector<DesignPlace>& places) {
+    if (places.empty() || wholeNumber(design) < 2) return "";
+    if (isPlainSquare(design)) return design::balanceSentence(places.size(), design::wheelsOf(design)[0].items) + ".\n";
+    std::string text = fmt::format("{}; all rows and groups meet equally often with multiples of {}.\n",
+                                   design::counted(places.size(), "participant"), wholeNumber(design));
+    for (std::size_t group = 0; group < groups.size(); ++group) {
+        std::vector<std::size_t> slots;
+        for (const DesignPlace& place : places)
+            if (place.group == group) slots.push_back(place.slot);
+        if (groups.size() > 1)
+            text += fmt::format("  group {}: {}\n", groups[group], design::counted(slots.size(), "participant"));
+        for (const auto& line : design::balanceLines(design, slots)) text += fmt::format("  {}\n", line);
+    }
+    return text;
 }
 
 }  // namespace
 
 std::vector<std::string> planWarnings(const protocol::StudyPlan& plan) {
     std::vector<std::string> warnings = plan.warnings;
-    if (!hasWilliams(plan) || plan.conditions.empty()) return warnings;
-    const std::size_t rows = design::williamsRows(plan.conditions.size());
-    if (static_cast<std::size_t>(plan.participants) % rows != 0)
-        warnings.push_back(
-            fmt::format("study.participants = {} is not a multiple of the {} rows of the Williams square: orders will "
-                        "not be balanced",
-                        plan.participants, rows));
+    if (plan.conditions.empty()) return warnings;
+    const auto design = protocol::designOf(plan);
+    const std::size_t whole = wholeNumber(design);
+    if (static_cast<std::size_t>(plan.participants) % whole != 0)
+        warnings.push_back(fmt::format(
+            "study.participants = {} is not a multiple of the {}: orders will not be balanced", plan.participants,
+            isPlainSquare(design) ? fmt::format("{} rows of the Williams square", whole)
+                                  : fmt::format("{} rows of all squares and groups together", whole)));
     return warnings;
 }
 
-std::string describePlan(const protocol::StudyPlan& plan, int participants) {
+Result<std::string> describePlan(const protocol::StudyPlan& plan, int participants) {
     std::string text =
         fmt::format("{}\nstudy {}, version {}, seed {}, {} planned\n\n", plan.title, plan.name, plan.version, plan.seed,
                     design::counted(static_cast<std::size_t>(plan.participants), "participant"));
     text += factorsText(plan) + conditionsText(plan) + blocksText(plan);
 
     text += "Orders (numbers of conditions; blocks parted by |)\n";
-    double longest = 0.0;
+    const auto groups = protocol::groupNames(plan);
+    const auto places = firstPlaces(plan, static_cast<std::size_t>(std::max(participants, 0)));
+    const int sessions = protocol::sessionsOf(plan);
+    std::vector<double> longest(static_cast<std::size_t>(sessions));
     std::size_t count = 0;
-    for (int number = 1; number <= participants; ++number) {
-        const auto code = protocol::participantCode(protocol::ParticipantKind::Real, number);
-        const auto trials = planTrials(plan, static_cast<std::size_t>(number - 1), code);
-        text += fmt::format("  {}  {}\n", code, orderText(plan, trials));
-        longest = std::max(longest, longestSession(plan, trials));
-        count = trials.size();
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const auto code = protocol::participantCode(protocol::ParticipantKind::Real, static_cast<std::int64_t>(i) + 1);
+        count = 0;
+        for (int session = 1; session <= sessions; ++session) {
+            const auto trials = planTrials(plan, places[i], code, session);
+            if (!trials) return trials.errors();
+            text += fmt::format("  {}{}{}  {}\n", code, groups.size() > 1 ? " " + groups[places[i].group] : "",
+                                sessions > 1 ? fmt::format(", session {}", session) : "", orderText(plan, *trials));
+            auto& most = longest[static_cast<std::size_t>(session - 1)];
+            most = std::max(most, longestSession(plan, *trials));
+            count += trials->size();
+        }
     }
-    if (hasWilliams(plan) && participants > 0)
-        text += fmt::format("{}.\n",
-                            design::balanceSentence(static_cast<std::size_t>(participants), plan.conditions.size()));
+    text += balanceText(protocol::designOf(plan), groups, places);
 
-    text += fmt::format(
-        "\nDuration\n  {} a participant, at most {:.1f} min (every trial to its time-out, pauses not "
-        "counted)\n",
-        design::counted(count, "trial"), longest / 60.0);
+    text += fmt::format("\nDuration\n  {} a participant, at most", design::counted(count, "trial"));
+    for (const double& seconds : longest)
+        text += fmt::format("{} {:.1f} min", &seconds == &longest[0] ? "" : " +", seconds / 60.0);
+    text += fmt::format(" (every trial to its time-out, {})\n",
+                        std::any_of(plan.blocks.begin(), plan.blocks.end(), [](const auto& b) { return b.rest > 0.0; })
+                            ? "rests as short as they may be"
+                            : "pauses not counted");
     for (const auto& warning : planWarnings(plan)) text += fmt::format("\nwarning: {}\n", warning);
     return text;
 }

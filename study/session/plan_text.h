@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/result.h"
 #include "study/protocol/study_plan.h"
 
 namespace passung::session {
@@ -10,7 +11,8 @@ namespace passung::session {
 /// What a study consists of, for an experimenter to read before the first participant: factors, conditions, blocks,
 /// everyone's order, how even the orders are, how long a session takes at most, and planWarnings(). `participants`
 /// > 0 get the codes P001, P002 … (orders of random blocks depend on the code).
-std::string describePlan(const protocol::StudyPlan& plan, int participants);
+/// Errors: constraints that no order keeps to.
+Result<std::string> describePlan(const protocol::StudyPlan& plan, int participants);
 
 /// What is allowed, but the experimenter should know: the reader's warnings, and numbers that leave orders unbalanced.
 std::vector<std::string> planWarnings(const protocol::StudyPlan& plan);

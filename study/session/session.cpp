@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "core/base/assert.h"
@@ -57,7 +58,7 @@ SessionState Session::advance() {
         case SessionState::BetweenTrials:
             if (agenda_.empty())
                 finish(SessionState::Complete);
-            else
+            else if (!rest())
                 beginTrial();
             break;
         case SessionState::InTrial:
@@ -73,19 +74,39 @@ SessionState Session::advance() {
     return state_;
 }
 
+/// A piece of the rest before the next trial's block; false if there is nothing to rest any more.
+bool Session::rest() {
+    if (rested_for_ != agenda_.next()) {
+        rested_for_ = agenda_.next();
+        const auto block = static_cast<std::size_t>(trial().block_index);
+        const bool first = trial().trial_in_block == 0 && block < setup_.plan.blocks.size();
+        rest_left_ = first ? std::llround(setup_.plan.blocks[block].rest / kTickSeconds) : 0;
+        if (rest_left_ > 0) note("rest_started", "block", trial().block);
+    }
+    if (rest_left_ == 0) return false;
+    const std::int64_t step = std::min(rest_left_, kTicksPerRest);
+    apparatus_.wait(step);
+    session_ns_ += step * kTickNanoseconds;
+    rest_left_ -= step;
+    if (rest_left_ == 0) note("rest_ended", "block", trial().block);
+    return true;
+}
+
 void Session::beginTrial() {
     PASSUNG_ASSERT(trial().condition < setup_.plan.conditions.size());
     const protocol::Condition& condition = setup_.plan.conditions[trial().condition];
     const auto X_WT = targetPose(condition);
     if (!X_WT) return fail("prepare", X_WT.errors());
 
+    if (!device_in_use_.empty() && device_in_use_ != condition.device) note("swap_device", "to", condition.device);
+    device_in_use_ = condition.device;
     AttemptStart start;
     start.trial_index = trial().trial_index;
     start.attempt_no = past_[agenda_.next()].attempts + 1;
     start.start_ns = session_ns_;
     start.params_json = condition.params_json;
     start.seed = attemptSeed(setup_, trial(), start.attempt_no);
-    auto stages = apparatus_.prepare(condition, start.seed);
+    auto stages = apparatus_.prepare(condition, start.seed, start.trial_index);
     if (!stages) return fail("prepare", stages.errors());
     start.stages = *std::move(stages);
 

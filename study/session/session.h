@@ -27,15 +27,19 @@ enum class SessionState { Ready, BetweenTrials, InTrial, Paused, Complete, Faile
 class Session {
 public:
     static constexpr std::int64_t kTicksPerLook = 20;
-    static constexpr int kSilentLooks = 50;  // looks without any record after which the loop counts as dead
+    static constexpr std::int64_t kTicksPerRest = 100;  // of a rest at a time
+    static constexpr int kSilentLooks = 50;             // looks without any record after which the loop counts as dead
 
     Session(SessionSetup setup, Apparatus& apparatus, TrialSink& sink, SessionListener listener);
     ~Session();  // stops the apparatus if a trial is running
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
-    /// One bounded piece of work: begin the next trial, watch the running one for kTicksPerLook, or close the session.
-    /// Nothing in Ready and Paused. Whatever is to be done to a session from outside is done between two calls.
+    /// One bounded piece of work: rest for kTicksPerRest before a block that asks for it (events rest_started,
+    /// rest_ended), begin the next trial (event swap_device if it is on another device than the one before), watch the
+    /// running one for kTicksPerLook, or close the session.
+    /// Nothing in Ready and Paused.
+    /// Whatever is to be done to a session from outside is done between two calls.
     SessionState advance();
 
     /// What an experimenter wants, between two calls of advance(). Every command is logged as an event "command_…",
@@ -73,6 +77,7 @@ private:
     };
 
     const design::PlannedTrial& trial() const { return agenda_.trial(agenda_.next()); }
+    bool rest();
     void beginTrial();
     void watchTrial();
     std::size_t takeRecords();
@@ -110,9 +115,12 @@ private:
     bool pause_asked_ = false;
     std::optional<Attempt> attempt_;
     Agenda agenda_;
-    std::vector<Past> past_;           // by place in the plan
-    std::optional<std::size_t> last_;  // place of the newest attempt that ended
-    std::int64_t session_ns_;          // at tick 0 of the running or next attempt
+    std::vector<Past> past_;                 // by place in the plan
+    std::optional<std::size_t> last_;        // place of the newest attempt that ended
+    std::optional<std::size_t> rested_for_;  // place of the trial that a rest was last looked for
+    std::int64_t rest_left_ = 0;             // [periods] of the running rest
+    std::string device_in_use_;              // of the last trial
+    std::int64_t session_ns_;                // at tick 0 of the running or next attempt
     Errors errors_;
 };
 

@@ -45,14 +45,21 @@ bool isWhole(const Database& database, const std::string& session_id) {
     return !lacking.bind(session_id).step();
 }
 
-/// After a whole session participant and slot are complete; otherwise the slot is free for the next participant.
+/// After a whole session the slot is the participant's for good, and with the last of the protocol's sessions the
+/// participant is complete. After another one a slot that is not theirs for good is free for the next participant.
 void settleParticipant(const Database& database, const std::string& session_id, bool whole) {
     database
-        .prepare(whole ? "UPDATE participant SET status='complete' WHERE status='active' AND "
-                         "participant_id=(SELECT participant_id FROM session WHERE session_id=?)"
-                       : "UPDATE participant SET status='enrolled', status_reason=(SELECT 'session ' || ordinal || "
-                         "' did not complete' FROM session WHERE session_id=?1) WHERE status='active' AND "
-                         "participant_id=(SELECT participant_id FROM session WHERE session_id=?1)")
+        .prepare(
+            whole ? "WITH part(participant, done, wanted) AS (SELECT s.participant_id, (SELECT count(*) FROM session "
+                    "c WHERE c.participant_id=s.participant_id AND c.protocol_sha256=s.protocol_sha256 AND "
+                    "c.end_state='complete'), (SELECT coalesce(json_extract(expanded_json, '$.sessions'), 1) FROM "
+                    "protocol_version p WHERE p.protocol_sha256=s.protocol_sha256) FROM session s WHERE "
+                    "s.session_id=?) UPDATE participant SET status=iif(done<wanted, 'enrolled', 'complete'), "
+                    "status_reason=iif(done<wanted, 'completed ' || done || ' of ' || wanted || ' sessions', "
+                    "status_reason) FROM part WHERE participant_id=participant AND status='active'"
+                  : "UPDATE participant SET status='enrolled', status_reason=(SELECT 'session ' || ordinal || "
+                    "' did not complete' FROM session WHERE session_id=?1) WHERE status='active' AND "
+                    "participant_id=(SELECT participant_id FROM session WHERE session_id=?1)")
         .bind(session_id)
         .run();
     database

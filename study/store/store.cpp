@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "study/design/williams.h"
+#include "study/design/allocation.h"
 #include "study/measures/measures.h"
 #include "study/protocol/document.h"
 #include "study/protocol/json.h"
@@ -24,29 +24,15 @@
 namespace passung::store {
 namespace {
 
-constexpr const char* kOneGroup = "all";  // no between factor
-
 std::string levelsJson(const protocol::Factor& factor) {
     std::vector<std::string> labels;
     for (const protocol::Level& level : factor.levels) labels.push_back(protocol::jsonText(level.label));
     return protocol::jsonList(labels);
 }
 
-const char* factorKindName(protocol::FactorKind kind) {
-    switch (kind) {
-        case protocol::FactorKind::Within:
-            break;
-    }
-    return "within";
-}
-
-/// Rows of the counterbalancing square that the plan's orders take turns with.
+/// Rows of the counterbalancing that the plan's orders take turns with.
 std::int64_t sequenceCount(const protocol::StudyPlan& plan) {
-    const bool square = std::any_of(plan.blocks.begin(), plan.blocks.end(), [](const protocol::Block& block) {
-        return block.order == protocol::BlockOrder::Williams;
-    });
-    if (!square || plan.conditions.size() < 2) return 1;
-    return static_cast<std::int64_t>(design::williamsRows(plan.conditions.size()));
+    return static_cast<std::int64_t>(design::sequencesOf(protocol::designOf(plan)));
 }
 
 void insertFactors(const Database& database, const std::string& sha256, const protocol::StudyPlan& plan) {
@@ -55,7 +41,8 @@ void insertFactors(const Database& database, const std::string& sha256, const pr
     for (const protocol::Factor& factor : plan.factors) {
         const auto unit = factor.unit.empty() ? std::nullopt : std::optional(factor.unit);
         const std::string levels = levelsJson(factor);
-        insert.bind(sha256, factor.name, factorKindName(factor.kind), unit, factor.name, position++, levels).run();
+        insert.bind(sha256, factor.name, protocol::factorKindName(factor.kind), unit, factor.name, position++, levels)
+            .run();
     }
 }
 
@@ -98,12 +85,55 @@ void declareMeasures(const Database& database, const std::string& sha256, const 
     }
 }
 
-void insertSlots(const Database& database, const std::string& sha256, const char* kind, std::int64_t replicate,
-                 std::int64_t sequences) {
+/// What the stored protocol's slots are: groups and allocation as its expanded form has them. Protocols from before
+/// there were groups have one.
+struct SlotDesign {
+    std::vector<std::string> groups;
+    std::string study;
+    design::Allocation allocation;  // without `study`
+};
+
+SlotDesign slotDesignOf(const Database& database, const std::string& sha256) {
+    SlotDesign slots;
+    Statement each = database.prepare(
+        "SELECT g.value FROM protocol_version p, json_each(p.expanded_json, '$.groups') g WHERE protocol_sha256=?");
+    each.bind(sha256);
+    while (each.step()) slots.groups.push_back(each.text(0));
+    if (slots.groups.empty()) slots.groups = {"all"};
+    Statement find = database.prepare(
+        "SELECT name, sequences, coalesce(json_extract(expanded_json, '$.allocation_blocks'), 1), "
+        "json_extract(expanded_json, '$.seed') FROM protocol_version WHERE protocol_sha256=?");
+    if (!find.bind(sha256).step()) throw std::runtime_error("the protocol has not been imported");
+    slots.study = find.text(0);
+    slots.allocation.groups = slots.groups.size();
+    slots.allocation.sequences = static_cast<std::size_t>(find.integer(1));
+    slots.allocation.blocks_of = static_cast<std::size_t>(find.integer(2));
+    slots.allocation.seed = static_cast<std::uint64_t>(find.integer(3));
+    return slots;
+}
+
+/// The next round of slots of this kind of participant, in the order in which they are taken.
+void insertSlots(const Database& database, const std::string& sha256, const char* kind) {
+    SlotDesign slots = slotDesignOf(database, sha256);
+    slots.allocation.study = slots.study;
+    Statement count = database.prepare("SELECT count(*) FROM design_slot WHERE protocol_sha256=? AND kind=?");
+    count.bind(sha256, kind).step();
+    const design::Allocation& a = slots.allocation;
+    const auto round = static_cast<std::size_t>(count.integer(0)) / (a.groups * a.sequences * a.blocks_of);
     Statement insert = database.prepare(
         "INSERT INTO design_slot(protocol_sha256, between_group, sequence_index, replicate, state, kind) "
         "VALUES(?, ?, ?, ?, 'free', ?)");
-    for (std::int64_t i = 0; i < sequences; ++i) insert.bind(sha256, kOneGroup, i, replicate, kind).run();
+    for (const design::Place& place : design::placesOf(a, kind, round))
+        insert
+            .bind(sha256, slots.groups[place.group], static_cast<std::int64_t>(place.sequence),
+                  static_cast<std::int64_t>(place.replicate), kind)
+            .run();
+}
+
+std::int64_t slotCount(const Database& database, const std::string& sha256) {
+    Statement count = database.prepare("SELECT count(*) FROM design_slot WHERE protocol_sha256=?");
+    count.bind(sha256).step();
+    return count.integer(0);
 }
 
 /// Rows of the square and everybody's order follow from the seed: one protocol has one seed in a database.
@@ -193,25 +223,18 @@ std::string importPlan(const Database& database, const protocol::StudyPlan& plan
     for (const protocol::StableStiffness& stable : plan.stable_stiffness)
         insert_stable.bind(sha256, stable.device, stable.linear, stable.rotational, stable.origin).run();
     insertConsentClauses(database, sha256, plan.consent);
-    const std::int64_t sequences = sequenceCount(plan);
-    for (std::int64_t first = 0; first < plan.participants; first += sequences) {
-        insertSlots(database, sha256, protocol::participantKindName(protocol::ParticipantKind::Real), first / sequences,
-                    sequences);
-    }
+    while (slotCount(database, sha256) < plan.participants)
+        insertSlots(database, sha256, protocol::participantKindName(protocol::ParticipantKind::Real));
     if (keep) transaction.commit();
     return sha256;
 }
 
-std::int64_t sequencesOf(const Database& database, const std::string& sha256) {
-    Statement find = database.prepare("SELECT sequences FROM protocol_version WHERE protocol_sha256=?");
-    if (!find.bind(sha256).step()) throw std::runtime_error("the protocol has not been imported");
-    return find.integer(0);
-}
-
-Slot slotOf(const Statement& row, std::int64_t sequences) {
+Slot slotOf(const Statement& row, const SlotDesign& design) {
     const std::int64_t index = row.integer(1);
     const std::int64_t replicate = row.integer(2);
-    return {index, replicate, replicate * sequences + index};
+    const auto group = std::find(design.groups.begin(), design.groups.end(), row.text(3)) - design.groups.begin();
+    return {index, replicate, replicate * static_cast<std::int64_t>(design.allocation.sequences) + index,
+            static_cast<std::size_t>(group)};
 }
 
 std::string kindOf(const Database& database, const std::string& participant) {
@@ -222,55 +245,51 @@ std::string kindOf(const Database& database, const std::string& participant) {
 
 void refuseComplete(const Database& database, const std::string& sha256, const std::string& participant) {
     Statement find = database.prepare(
-        "SELECT ordinal FROM session WHERE protocol_sha256=? AND participant_id=? AND end_state='complete'");
+        "SELECT max(ordinal) FROM session WHERE protocol_sha256=?1 AND participant_id=?2 AND end_state='complete' "
+        "HAVING count(*) >= (SELECT coalesce(json_extract(expanded_json, '$.sessions'), 1) FROM protocol_version "
+        "WHERE protocol_sha256=?1)");
     if (!find.bind(sha256, participant).step()) return;
     throw std::runtime_error("participant " + participant + " has completed this protocol in session " + find.text(0) +
                              "; nobody takes part twice");
 }
 
-/// The row of a free slot that fits, the lowest first; nothing if there is none.
-std::optional<std::int64_t> findFreeSlot(const Database& database, const std::string& sha256, const std::string& kind,
-                                         std::int64_t sequences, const std::function<bool(std::int64_t)>& fits) {
+/// The first free slot that fits and its row; nothing if there is none.
+std::optional<std::pair<std::int64_t, Slot>> findFreeSlot(const Database& database, const std::string& sha256,
+                                                          const std::string& kind, const SlotDesign& slots,
+                                                          const std::function<bool(const Slot&)>& fits) {
     Statement free = database.prepare(
-        "SELECT slot_id, sequence_index, replicate FROM design_slot "
-        "WHERE protocol_sha256=? AND kind=? AND state='free' ORDER BY replicate, sequence_index");
+        "SELECT slot_id, sequence_index, replicate, between_group FROM design_slot "
+        "WHERE protocol_sha256=? AND kind=? AND state='free' ORDER BY slot_id");
     free.bind(sha256, kind);
     while (free.step())
-        if (!fits || fits(slotOf(free, sequences).number)) return free.integer(0);
+        if (const Slot slot = slotOf(free, slots); !fits || fits(slot)) return std::pair(free.integer(0), slot);
     return std::nullopt;
 }
 
 Slot takeSlot(const Database& database, const std::string& sha256, const std::string& participant,
-              const std::function<bool(std::int64_t)>& fits) {
+              const std::function<bool(const Slot&)>& fits) {
     Transaction transaction(database);
-    const std::int64_t sequences = sequencesOf(database, sha256);
+    const SlotDesign slots = slotDesignOf(database, sha256);
     const std::string kind = kindOf(database, participant);
     refuseComplete(database, sha256, participant);
     requireAdmission(database, sha256, participant);
-    Statement own =
-        database.prepare("SELECT protocol_sha256, sequence_index, replicate FROM design_slot WHERE participant_id=?");
+    Statement own = database.prepare(
+        "SELECT protocol_sha256, sequence_index, replicate, between_group FROM design_slot WHERE participant_id=?");
     if (own.bind(participant).step()) {
-        if (own.text(0) == sha256) return slotOf(own, sequences);
+        if (own.text(0) == sha256) return slotOf(own, slots);
         throw std::runtime_error("participant " + participant + " already has a place in another protocol");
     }
-    auto slot_id = findFreeSlot(database, sha256, kind, sequences, fits);
-    if (!slot_id) {
-        Statement last = database.prepare(
-            "SELECT coalesce(max(replicate) + 1, 0) FROM design_slot WHERE protocol_sha256=? AND kind=?");
-        last.bind(sha256, kind).step();
-        insertSlots(database, sha256, kind.c_str(), last.integer(0), sequences);
-        slot_id = findFreeSlot(database, sha256, kind, sequences, fits);
+    auto slot = findFreeSlot(database, sha256, kind, slots, fits);
+    if (!slot) {
+        insertSlots(database, sha256, kind.c_str());
+        slot = findFreeSlot(database, sha256, kind, slots, fits);
     }
-    if (!slot_id) throw std::runtime_error("no place of the design has the order of " + participant);
+    if (!slot) throw std::runtime_error("no place of the design has the order of " + participant);
     database.prepare("UPDATE design_slot SET state='assigned', participant_id=? WHERE slot_id=?")
-        .bind(participant, *slot_id)
+        .bind(participant, slot->first)
         .run();
-    own.reset();
-    own.bind(participant).step();
-    const Slot slot = slotOf(own, sequences);
-    own.reset();
     transaction.commit();
-    return slot;
+    return slot->second;
 }
 
 void insertTrialPlan(const Database& database, const SessionStart& start, std::span<const design::PlannedTrial> plan) {
@@ -429,7 +448,7 @@ Result<std::string> Store::nextCode(protocol::ParticipantKind kind) {
 }
 
 Result<Slot> Store::assignSlot(const std::string& protocol_sha256, const std::string& participant,
-                               const std::function<bool(std::int64_t)>& fits) {
+                               const std::function<bool(const Slot&)>& fits) {
     return thread_->call(
         [&](const Database& database) { return takeSlot(database, protocol_sha256, participant, fits); });
 }
@@ -438,6 +457,15 @@ Result<Done> Store::backup() {
     return thread_->call([&](const Database& database) {
         writeBackup(database, thread_->path());
         return Done{};
+    });
+}
+
+Result<int> Store::nextPart(const std::string& protocol_sha256, const std::string& participant) {
+    return thread_->call([&](const Database& database) {
+        Statement find = database.prepare(
+            "SELECT count(*) + 1 FROM session WHERE protocol_sha256=? AND participant_id=? AND end_state='complete'");
+        find.bind(protocol_sha256, participant).step();
+        return static_cast<int>(find.integer(0));
     });
 }
 

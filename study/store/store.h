@@ -47,6 +47,7 @@ struct Slot {
     std::int64_t sequence_index = 0;  // row of the square
     std::int64_t replicate = 0;
     std::int64_t number = 0;  // replicate · rows + sequence_index: the slot of design::SessionKey
+    std::size_t group = 0;    // of protocol::groupNames()
 };
 
 struct SessionStart {
@@ -103,16 +104,20 @@ public:
     /// The first unused code of the kind: P001, P002 … for real participants.
     Result<std::string> nextCode(protocol::ParticipantKind kind);
 
-    /// The participant's slot: the one they have, else the free one with the lowest replicate, then sequence_index;
-    /// a further replicate if none is free. It is theirs for good once a session completes; a session that does not
-    /// gives it back. Refused to whoever has completed the protocol. Each kind of participant has slots of its own, so
-    /// that simulated people never use up a place of the design.
-    /// `fits`: which slots may be taken by their number; empty: all.
+    /// The participant's slot: the one they have, else the first free one in the order of design::placesOf(), its
+    /// stratum the kind of participant; a further round of it if none is free. It is theirs for good once a session
+    /// completes; as long as none does, a session that does not complete gives it back. Refused to whoever has
+    /// completed the protocol. Each kind of participant has slots of its own, so that simulated people never use up a
+    /// place of the design.
+    /// `fits`: which free slots may be taken; empty: all.
     Result<Slot> assignSlot(const std::string& protocol_sha256, const std::string& participant,
-                            const std::function<bool(std::int64_t)>& fits = {});
+                            const std::function<bool(const Slot&)>& fits = {});
 
     /// 1 for a participant's first session.
     Result<int> nextOrdinal(const std::string& participant);
+
+    /// The session of the protocol that the participant is to do next, from 1: one more than they completed.
+    Result<int> nextPart(const std::string& protocol_sha256, const std::string& participant);
 
     /// Writes session, segment and the complete plan of trials in one transaction. Refused to a participant who has
     /// completed this protocol, and with another seed than the protocol's earlier sessions. The writer must not outlive

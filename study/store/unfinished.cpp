@@ -40,9 +40,10 @@ void readTrials(const Database& database, Unfinished& session) {
         "WHERE session_id=? ORDER BY attempt_id");
     attempts.bind(session.session_id);
     while (attempts.step()) {
-        session.attempts.push_back(
-            {session::AttemptId{attempts.integer(0)}, static_cast<std::size_t>(attempts.integer(1)),
-             static_cast<int>(attempts.integer(2)), measures::outcomeNamed(attempts.text(3)), attempts.integer(4) != 0});
+        session.attempts.push_back({session::AttemptId{attempts.integer(0)},
+                                    static_cast<std::size_t>(attempts.integer(1)),
+                                    static_cast<int>(attempts.integer(2)), measures::outcomeNamed(attempts.text(3)),
+                                    attempts.integer(4) != 0});
     }
 }
 

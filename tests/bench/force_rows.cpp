@@ -9,12 +9,12 @@
 #include "core/tick/obstacle_query.h"
 #include "core/tick/proxy.h"
 #include "core/tick/step.h"
+#include "study/person/simulated_person.h"
 #include "study/protocol/protocol_reader.h"
 #include "tests/bench/stopwatch.h"
 #include "ui/app/disk_store.h"
 #include "ui/app/loop_apparatus.h"
 #include "ui/app/run_study.h"
-#include "ui/app/simulated_hand.h"
 
 namespace {
 
@@ -55,14 +55,15 @@ constexpr std::int64_t kTicks = 12'000, kFewTicks = 3'000;
 constexpr std::size_t kMostContacts = 200;
 constexpr const char* kParticipant = "P01";
 constexpr std::uint64_t kSeed = 20260302;
+constexpr std::int64_t kTrialsBefore = 26;  // practised
 
 /// The device's readings while the simulated participant does a trial.
 Result<std::vector<TickRecord>> perform(const protocol::StudyPlan& plan, const protocol::Condition& condition,
                                         std::int64_t ticks) {
     const simulated::DeviceParams* device = simulated::findPreset(condition.device);
     if (device == nullptr) return Error{.message = "no such device preset", .value = condition.device};
-    app::LoopApparatus apparatus(*device, app::simulatedHand(plan, kParticipant), app::Clock::Virtual);
-    const auto prepared = apparatus.prepare(condition, kSeed);
+    app::LoopApparatus apparatus(*device, person::personOf(plan.name, kParticipant, plan.seed), app::Clock::Virtual);
+    const auto prepared = apparatus.prepare(condition, kSeed, kTrialsBefore);
     if (!prepared) return prepared.errors();
     std::vector<TickRecord> records(static_cast<std::size_t>(ticks));
     apparatus.start();

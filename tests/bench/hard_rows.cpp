@@ -6,7 +6,6 @@
 #include <fstream>
 #include <limits>
 
-#include "tests/bench/convergence_rows.h"
 #include "tests/hard/case.h"
 
 namespace passung::bench {
@@ -23,26 +22,7 @@ Row rowOf(const hard::Case& c, const char* method, const hard::Measured& m) {
     if (!found.broken.empty()) row.settings += fmt::format(" ({:.4g} {}); {}", found.value, c.unit, found.broken);
     row.settings += fmt::format("; tick p99.9 {:.0f} us, at most {} nodes, {} points, {} iterations", m.p999_us(),
                                 m.nodes, m.points, m.iterations);
-    row.time_us = summarise(m.us);
-    return row;
-}
-
-/// By how much the worst order of convergence falls short of what convergence_rows.h derives less a quarter (A12).
-Result<Row> a12() {
-    Extent all;
-    all.wanted = [](const std::string&, const std::string&) { return true; };
-    const auto rows = convergenceRows(all);
-    if (!rows) return rows.errors();
-    Row row{.group = kHardGroup, .method = "a12_convergence", .settings = "order short of the derived one"};
-    row.ours = true;
-    row.figure = -std::numeric_limits<double>::infinity();
-    row.figure_mark = 0.25;
-    for (const Row& one : *rows) {
-        const bool smooth = one.method == kCellOnSmooth || one.method == kSpacingOnSmooth;
-        const double derived = smooth ? 2.0 : one.method == kCellAtEdges ? 1.0 : 4.0 / 3.0;
-        row.figure = std::max(row.figure, derived - one.order);
-        row.samples += one.samples;
-    }
+    if (!m.us.empty()) row.time_us = summarise(m.us);
     return row;
 }
 
@@ -54,23 +34,19 @@ Result<std::vector<Row>> hardRows(const Extent& extent) {
     for (const hard::Case& c : hard::cases()) {
         for (const auto& [method, name] : hard::methods()) {
             if (!applies(c, method) || !extent.wanted(kHardGroup, std::string(c.name) + " " + name)) continue;
-            if (extent.few_settings && c.seconds * c.seeds > 1.0) continue;
+            if (extent.few_settings && (c.compute != nullptr || c.seconds * c.seeds > 1.0)) continue;
             if (extent.few_settings && few++ > 2) continue;
             const auto measured = hard::measure(c, method, hard::fullSize());
             if (!measured) return measured.errors();
             rows.push_back(rowOf(c, name, *measured));
         }
     }
-    if (!extent.few_settings && extent.wanted(kHardGroup, "a12_convergence")) {
-        auto row = a12();
-        if (!row) return row.errors();
-        rows.push_back(std::move(*row));
-    }
     return rows;
 }
 
 Result<bool> writeHardPaths(const std::string& folder) {
     for (const hard::Case& c : hard::cases()) {
+        if (c.compute != nullptr) continue;
         const auto run = hard::runCase(c, model::ContactMethod::GodObjectHeuristic, 0, false);
         if (!run) return run.errors();
         const std::string path = folder + "/" + c.name + ".csv";

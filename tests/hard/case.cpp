@@ -11,6 +11,7 @@
 #include "core/tick/god_object_heuristic.h"
 #include "core/tick/proxy.h"
 #include "core/tick/tick_model.h"
+#include "tests/hard/follow.h"
 
 namespace passung::hard {
 
@@ -32,12 +33,14 @@ Caps capsOf(model::ContactMethod method) {
 /// What holds in every case.
 std::string commonFaults(const Run& run) {
     const Caps caps = capsOf(run.spec.contact.method);
+    const model::OutputLimits& limits = run.spec.limits;
+    const double most_torque = limits.actuates_torque ? limits.max_torque : 0.0;
     for (std::size_t i = 0; i < run.ticks.size(); ++i) {
         const Tick& t = run.ticks[i];
         const auto fault = [&](const char* what) { return fmt::format("{} at tick {}", what, i); };
         if (!isFinite(t.sent) || !isFinite(t.proxy)) return fault("not finite");
-        const double force = t.sent.force.norm(), limit = run.spec.limits.max_force;
-        if (!(force <= limit * (1.0 + 1e-9))) return fault("above the force limit");
+        if (!(t.commanded.force.norm() <= limits.max_force)) return fault("above the force limit");
+        if (!(t.commanded.torque.norm() <= most_torque)) return fault("above the torque limit");
         if (t.status & kNonFiniteLatched) return fault("a computed wrench was not finite");
         if (t.status & kContactCap) return fault("the manifold was full");
         if (t.contacts > run.most_points) return fault("more points than the cap");
@@ -55,6 +58,8 @@ std::span<const std::pair<model::ContactMethod, const char*>> methods() {
                                          std::pair{model::ContactMethod::GodObject, "god_object"}};
     return kMethods;
 }
+
+bool Measured::met(const Case& c) const { return judgement.value <= c.mark && judgement.broken.empty(); }
 
 double Measured::p999_us() const {
     if (us.empty()) return 0.0;
@@ -77,22 +82,34 @@ Result<Run> runCase(const Case& c, model::ContactMethod method, std::uint64_t se
     if (!spec) return spec.errors();
     spec->contact.method = method;
     if (c.vary != nullptr && seed > 0) c.vary(*spec, seed);
-    return runScene(*spec, c.drive(*spec, seed), std::llround((full ? c.full_seconds : c.seconds) / kTickSeconds));
+    auto run = runScene(*spec, c.drive(*spec, seed), std::llround((full ? c.full_seconds : c.seconds) / kTickSeconds));
+    if (run && c.solids != nullptr) run->solids = c.solids(*spec);
+    return run;
+}
+
+Judgement judgeRun(const Case& c, const Run& run) {
+    Judgement found = c.judge(run);
+    if (!std::isfinite(found.value) && found.broken.empty()) found.broken = "not a number";
+    if (found.broken.empty()) found.broken = commonFaults(run);
+    if (found.broken.empty()) found.broken = followFault(run);
+    return found;
 }
 
 Result<Measured> measure(const Case& c, model::ContactMethod method, bool full) {
+    if (c.compute != nullptr) return c.compute();
     Measured result;
     result.judgement.value = c.adds ? 0.0 : -1e300;
     for (int seed = 0; seed < (full ? c.full_seeds : c.seeds); ++seed) {
         const auto run = runCase(c, method, static_cast<std::uint64_t>(seed), full);
         if (!run) return run.errors();
-        Judgement found = c.judge(*run);
-        if (!std::isfinite(found.value) && found.broken.empty()) found.broken = "not a number";
+        const Judgement found = judgeRun(c, *run);
         result.judgement.value =
             c.adds ? result.judgement.value + found.value : std::max(result.judgement.value, found.value);
-        if (found.broken.empty()) found.broken = commonFaults(*run);
         if (result.judgement.broken.empty() && !found.broken.empty())
             result.judgement.broken = fmt::format("seed {}: {}", seed, found.broken);
+        if (full) {  // hours: what is done is told
+            fmt::print(stderr, "{} seed {}: {:.4g} {} {}\n", c.name, seed, found.value, c.unit, found.broken);
+        }
         for (const Tick& t : run->ticks) {
             result.us.push_back(static_cast<double>(t.us));
             result.nodes = std::max(result.nodes, t.nodes);

@@ -17,6 +17,17 @@ struct Judgement {
     std::string broken = {};  // what else had to hold and did not; empty: nothing
 };
 
+struct Case;
+
+/// Over all seeds.
+struct Measured {
+    Judgement judgement;
+    std::vector<double> us;  // processor time of every tick
+    std::uint32_t nodes = 0, points = 0, iterations = 0;
+    double p999_us() const;
+    bool met(const Case& c) const;
+};
+
 /// A scene file, a device path and one number to hold. `passung simulate` runs the same scene and path.
 struct Case {
     const char* name;
@@ -30,28 +41,24 @@ struct Case {
     Judgement (*judge)(const Run&);
     void (*vary)(model::SceneSpec&, std::uint64_t seed) = nullptr;  // seed 0 leaves the scene as its file says
     unsigned methods = 0b110;                                       // by ContactMethod: who has to hold the mark
-    bool adds = false;  // the seeds' numbers are summed up; else the worst counts
+    bool adds = false;                                       // the seeds' numbers are summed up; else the worst counts
+    model::SceneSpec (*solids)(model::SceneSpec) = nullptr;  // Run::solids, of a scene with meshes
+    // Of a case that is no run of a scene: gives its number; what has to do with scenes is then left out.
+    Result<Measured> (*compute)() = nullptr;
 };
 
 /// The whole table; the order is that of the printed one.
 std::span<const Case> cases();
 const Case* findCase(const std::string& name);
 
-/// Over all seeds.
-struct Measured {
-    Judgement judgement;
-    std::vector<double> us;  // processor time of every tick
-    std::uint32_t nodes = 0, points = 0, iterations = 0;
-    double p999_us() const;
-    bool met(const Case& c) const { return judgement.value <= c.mark && judgement.broken.empty(); }
-};
-
-/// Runs a case with `method`, by default in a reduced size. Besides the case's own number every tick must be finite,
-/// within the device's limits and below the hard caps of nodes, points and iterations. Errors: the scene cannot be
-/// read or built.
+/// Runs a case with `method`, by default in a reduced size, and judges it. Errors: the scene cannot be read or built.
 Result<Measured> measure(const Case& c, model::ContactMethod method, bool full);
 
-/// The same for one seed, with the run.
+/// The case's own number; besides, every tick must be finite, within the device's limits of force and torque and below
+/// the hard caps of nodes, points and iterations, and the proxy has to follow the device (follow.h).
+Judgement judgeRun(const Case& c, const Run& run);
+
+/// One seed. @pre the case runs a scene.
 Result<Run> runCase(const Case& c, model::ContactMethod method, std::uint64_t seed, bool full);
 
 /// True if PASSUNG_HARD_FULL is in the environment.

@@ -103,7 +103,7 @@ Drive pegPush(const SceneSpec& spec, std::uint64_t seed, double yaw) {
 }
 
 /// The shapes that the meshes of peg and plate approximate, in their place.
-SceneSpec withShapes(SceneSpec spec) {
+SceneSpec roundSolids(SceneSpec spec) {
     for (model::PartSpec& part : spec.parts) {
         if (part.held)
             part.geometry = model::Shape(model::Peg{20e-3, 24e-3, 0.5e-3});
@@ -113,8 +113,28 @@ SceneSpec withShapes(SceneSpec spec) {
     return spec;
 }
 
+/// The cube that the mesh was before it was damaged.
+SceneSpec cubeSolid(SceneSpec spec) {
+    for (model::PartSpec& part : spec.parts)
+        if (!part.held) part.geometry = model::Shape(model::Box{0.02, 0.02, 0.02});
+    return spec;
+}
+
+/// The pins of the mesh, each a part.
+SceneSpec pinSolids(SceneSpec spec) {
+    const model::PartSpec mesh = fixedPart(spec);
+    std::erase_if(spec.parts, [](const model::PartSpec& part) { return !part.held; });
+    for (int i = 0; i < 10; ++i)
+        for (int k = 0; k < 10; ++k) {
+            spec.parts.push_back(mesh);
+            spec.parts.back().geometry = model::Shape(model::Box{1.5e-3, 1.5e-3, 0.01});
+            spec.parts.back().X_WP = mesh.X_WP * at(-22.5 + 5 * i, -22.5 + 5 * k, -5);
+        }
+    return spec;
+}
+
 Drive roundPeg(const SceneSpec& spec, std::uint64_t seed) { return pegPush(spec, seed, 20 * kDegree); }
-Drive meshPeg(const SceneSpec& spec, std::uint64_t seed) { return roundPeg(withShapes(spec), seed); }
+Drive meshPeg(const SceneSpec& spec, std::uint64_t seed) { return roundPeg(roundSolids(spec), seed); }
 Drive shapedPeg(const SceneSpec& spec, std::uint64_t seed) { return pegPush(spec, seed, 1 * kDegree); }
 
 /// Pushes the held part from its start by (0, 0, -depth), there in every direction.
@@ -143,18 +163,23 @@ Drive turnOn(const SceneSpec&, std::uint64_t) {
     return walk.drive(Pose{});
 }
 
-/// A ball is pressed by 1 mm and drawn over a cube's faces, edges and corners.
-Drive rubCube(const SceneSpec&, std::uint64_t seed) {
+/// A ball of 8 mm is pressed by 1 mm into a cube of 20 mm, straight against the nearest point of it, and drawn over its
+/// faces, edges and corners.
+Drive rubCube(const SceneSpec& spec, std::uint64_t seed) {
     Random random(streamSeed("hard", "", "", "rub", seed));
     std::vector<Wander> wander;
     for (int i = 0; i < 3; ++i) wander.emplace_back(random, 0.1, 0.5);
-    return [=](std::int64_t tick, const tick::TickOutput*) {
+    return [=, start = heldPart(spec).X_WP.p](std::int64_t tick, const tick::TickOutput*) {
         const double t = static_cast<double>(tick) * kTickSeconds;
         const Vec3 d(wander[0].at(t), wander[1].at(t), wander[2].at(t));
-        const Vec3 there = 13e-3 / std::max(1e-3, d.cwiseAbs().maxCoeff()) * d;
-        const double ramp = std::min(1.0, t / 0.3);  // from above, at the start's place, outside
-        const Vec3 from = d.normalized() * 25e-3;
-        return DeviceReading{{Quat::Identity(), ramp < 1.0 ? Vec3(from + ramp * (there - from)) : there}};
+        const Vec3 outside = 13e-3 / std::max(1e-3, d.cwiseAbs().maxCoeff()) * d;
+        const Vec3 nearest = outside.cwiseMax(-10e-3).cwiseMin(10e-3);
+        const Vec3 there = nearest + 3e-3 * (outside - nearest).normalized();
+        // from the start round the cube, then towards it
+        const double round = std::min(1.0, t / 0.3), in = std::clamp(t / 0.3 - 1.0, 0.0, 1.0);
+        const Quat q = Quat::Identity().slerp(round, Quat::FromTwoVectors(start, d));
+        const Vec3 from = q * start;
+        return DeviceReading{{Quat::Identity(), from + in * (there - from)}};
     };
 }
 
@@ -325,39 +350,12 @@ Judgement forceOfLies(const Run& run) {
     return result;
 }
 
-const model::Shape kCube = model::Box{0.02, 0.02, 0.02};
-
-/// Against the cube that the mesh was before it was damaged.
-Judgement overlapOfCube(const Run& run) {
-    std::vector<std::pair<DenseBody, Pose>> cube;
-    cube.emplace_back(denseBody(kCube, 1e-3), fixedPart(run.spec).X_WP);
-    return {kUm *
-            deepestOverlap(run, denseBody(std::get<model::Shape>(heldPart(run.spec).geometry), 1e-3), std::move(cube))};
-}
-
-Judgement overlapOfPins(const Run& run) {
-    std::vector<std::pair<DenseBody, Pose>> pins;
-    for (int i = 0; i < 10; ++i)
-        for (int k = 0; k < 10; ++k)
-            pins.emplace_back(denseBody(model::Box{1.5e-3, 1.5e-3, 0.01}, 0.5e-3),
-                              fixedPart(run.spec).X_WP * at(-22.5 + 5 * i, -22.5 + 5 * k, -5));
-    Judgement result{kUm * deepestOverlap(run, denseBody(std::get<model::Shape>(heldPart(run.spec).geometry), 1e-3),
-                                          std::move(pins))};
-    return result;
-}
-
 Judgement overlapOfMany(const Run& run) {
     Judgement result = overlapUm(run);
     const auto most = std::max_element(run.ticks.begin(), run.ticks.end(),
                                        [](const Tick& a, const Tick& b) { return a.contacts < b.contacts; });
     if (most->contacts < 1000) result.broken = fmt::format("only {} contacts", most->contacts);
     return result;
-}
-
-Judgement insertedOfMesh(const Run& run) {
-    Run round = run;
-    round.spec = withShapes(run.spec);
-    return insertedUm(round);
 }
 
 /// Overlap per 20 mm of diameter [µm].
@@ -392,7 +390,8 @@ std::span<const Case> cases() {
             {"peg_50um", "peg_50um", kOverlap, "um", kPegMark, 1, 20, 1.5, 60, roundPeg, insertedUm, anywhere},
             {"peg_10um", "peg_10um", kOverlap, "um", kPegMark, 1, 20, 1.5, 60, roundPeg, insertedUm, anywhere},
             {"peg_4mm", "peg_4mm", kOverlap, "um", kPegMark, 1, 20, 1.5, 60, roundPeg, insertedUm, anywhere},
-            {"peg_mesh", "peg_mesh", kOverlap, "um", kMeshMark, 1, 20, 1.5, 60, meshPeg, insertedOfMesh, anywhere},
+            {"peg_mesh", "peg_mesh", kOverlap, "um", kMeshMark, 1, 20, 1.5, 60, meshPeg, insertedUm, anywhere, kGods,
+             false, roundSolids},
             {"keyed_peg", "keyed_peg", kOverlap, "um", kPegMark, 1, 20, 1.5, 60, shapedPeg, insertedUm, anywhere},
             {"square_peg", "square_peg", kOverlap, "um", kPegMark, 1, 20, 1.5, 60, shapedPeg, insertedUm, anywhere},
             {"wedge", "wedge", kOverlap, "um", kFieldMark, 1, 10, 2, 20, push<20, 4, 20>, overlapUm, anywhere},
@@ -409,10 +408,14 @@ std::span<const Case> cases() {
              insertedOfTiny},
             {"peg_huge", "peg_huge", "overlap per 20 mm of diameter", "um", kPegMark, 1, 5, 1.5, 60, roundPeg,
              insertedOfHuge},
-            {"mesh_holed", "mesh_holed", kOverlap, "um", kFieldMark, 1, 5, 2, 10, rubCube, overlapOfCube},
-            {"mesh_flipped", "mesh_flipped", kOverlap, "um", kFieldMark, 1, 5, 2, 10, rubCube, overlapOfCube},
-            {"mesh_degenerate", "mesh_degenerate", kOverlap, "um", kFieldMark, 1, 5, 2, 10, rubCube, overlapOfCube},
-            {"mesh_crossing", "mesh_crossing", kOverlap, "um", kFieldMark, 1, 5, 2, 10, rubCube, overlapOfCube},
+            {"mesh_holed", "mesh_holed", kOverlap, "um", kFieldMark, 1, 5, 2, 10, rubCube, overlapUm, nullptr, kGods,
+             false, cubeSolid},
+            {"mesh_flipped", "mesh_flipped", kOverlap, "um", kFieldMark, 1, 5, 2, 10, rubCube, overlapUm, nullptr,
+             kGods, false, cubeSolid},
+            {"mesh_degenerate", "mesh_degenerate", kOverlap, "um", kFieldMark, 1, 5, 2, 10, rubCube, overlapUm, nullptr,
+             kGods, false, cubeSolid},
+            {"mesh_crossing", "mesh_crossing", kOverlap, "um", kFieldMark, 1, 5, 2, 10, rubCube, overlapUm, nullptr,
+             kGods, false, cubeSolid},
             {"border_stiffness", "ball_sigma7", "growth of the handle's swing at 0.95 of the border, delay 0-3", "um",
              0, 25, 25, 3, 8, pressedHandle, swingGrowth, atTheBorder, 0b111},
             {"missed_ticks", "table", kOverlap, "um", kFieldMark, 1, 1, 2, 20, missTicks, overlapUm},
@@ -421,8 +424,8 @@ std::span<const Case> cases() {
             {"rest", "table", "drift of the proxy", "um", 1e-3, 1, 1, 10, 1000, press, drift},
             {"thousand_contacts", "thousand_contacts", kOverlap, "um", kFieldMark, 1, 1, 0.6, 10, push<3, 2, 2>,
              overlapOfMany},
-            {"hundred_patches", "hundred_patches", kOverlap, "um", kFieldMark, 1, 1, 0.6, 10, push<3, 2, 2>,
-             overlapOfPins},
+            {"hundred_patches", "hundred_patches", kOverlap, "um", kFieldMark, 1, 1, 0.6, 10, push<3, 2, 2>, overlapUm,
+             nullptr, kGods, false, pinSolids},
         };
         const auto truth = truthCases();
         all.insert(all.end(), truth.begin(), truth.end());

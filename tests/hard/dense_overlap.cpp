@@ -96,56 +96,37 @@ DenseBody denseBody(const model::Shape& shape, double spacing) {
     return body;
 }
 
-DenseBody denseUnion(const std::vector<std::pair<model::Shape, Pose>>& shapes, double spacing) {
-    DenseBody body;
-    for (const auto& [shape, X] : shapes)
-        for (const Vec3& p : denseBody(shape, spacing).points) body.points.push_back(X * p);
-    body.distance = [shapes](const Vec3& p) {
-        double least = std::numeric_limits<double>::infinity();
-        for (const auto& [shape, X] : shapes) least = std::min(least, model::signedDistance(shape, X.inverse() * p));
-        return least;
-    };
-    return body;
-}
-
-DenseOverlap::DenseOverlap(DenseBody moving, std::vector<std::pair<DenseBody, Pose>> fixed)
+DenseDistance::DenseDistance(DenseBody moving, std::vector<std::pair<DenseBody, Pose>> fixed)
     : moving_(std::move(moving)), fixed_(std::move(fixed)) {
     for (const Vec3& p : moving_.points) reach_ = std::max(reach_, p.norm());
-    const auto blocks = [](const std::vector<Vec3>& points) { return (points.size() + kBlock - 1) / kBlock; };
+    const auto unknown = [](const std::vector<Vec3>& points) {
+        return std::vector<double>((points.size() + kBlock - 1) / kBlock, -std::numeric_limits<double>::infinity());
+    };
     for (std::size_t i = 0; i < fixed_.size(); ++i) {
         const DenseBody& other = fixed_[i].first;
-        sides_.push_back({&moving_.points, &other.distance, i, true, std::vector<double>(blocks(moving_.points), 0.0)});
-        sides_.push_back({&other.points, &moving_.distance, i, false, std::vector<double>(blocks(other.points), 0.0)});
+        sides_.push_back({&moving_.points, &other.distance, i, true, unknown(moving_.points)});
+        sides_.push_back({&other.points, &moving_.distance, i, false, unknown(other.points)});
     }
 }
 
-void DenseOverlap::look(const Pose& X_WM) {
-    if (poses_++ > 0) path_ += (X_WM.p - last_.p).norm() + reach_ * rotationVector(X_WM.q * last_.q.conjugate()).norm();
+double DenseDistance::least(const Pose& X_WM, double enough) {
+    if (placed_) path_ += (X_WM.p - last_.p).norm() + reach_ * rotationVector(X_WM.q * last_.q.conjugate()).norm();
     last_ = X_WM;
+    placed_ = true;
     for (Side& side : sides_) {
         const Pose X_FM = fixed_[side.fixed].second.inverse() * X_WM;
         const Pose X = side.moving ? X_FM : X_FM.inverse();
         const Mat3 R = X.q.toRotationMatrix();
-        for (std::size_t b = 0; b < side.wake.size(); ++b) {
-            if (side.wake[b] > path_) continue;
+        for (std::size_t b = 0; b < side.bound.size(); ++b) {
+            if (side.bound[b] - path_ >= enough) continue;
             double least = std::numeric_limits<double>::infinity();
             for (std::size_t i = kBlock * b; i < std::min(kBlock * (b + 1), side.points->size()); ++i)
                 least = std::min(least, (*side.distance)(R * (*side.points)[i] + X.p));
-            deepest_ = std::max(deepest_, -least);
-            side.wake[b] = path_ + least + deepest_;
+            side.bound[b] = path_ + least;
+            enough = std::min(enough, least);
         }
     }
-}
-
-void DenseOverlap::see(const Pose& X_WM, int between) {
-    if (poses_ > 0) {
-        const Pose from = last_;
-        for (int i = 1; i <= between; ++i) {
-            const double share = static_cast<double>(i) / (between + 1);
-            look({from.q.slerp(share, X_WM.q), from.p + share * (X_WM.p - from.p)});
-        }
-    }
-    look(X_WM);
+    return enough;
 }
 
 }  // namespace passung::hard

@@ -19,23 +19,32 @@ const model::PartSpec& fixedPart(const model::SceneSpec& spec) {
     return *std::find_if(spec.parts.begin(), spec.parts.end(), [](const auto& part) { return !part.held; });
 }
 
-double deepestOverlap(const Run& run, DenseBody held, std::vector<std::pair<DenseBody, Pose>> obstacles) {
-    DenseOverlap overlap(std::move(held), std::move(obstacles));
-    for (const Tick& t : run.ticks) overlap.see(t.proxy);
-    return overlap.deepest();
-}
-
-double deepestOverlap(const Run& run, double spacing) {
+DenseDistance denseDistance(const Run& run, double spacing) {
     std::vector<std::pair<DenseBody, Pose>> obstacles;
     DenseBody held;
-    for (const model::PartSpec& part : run.spec.parts) {
+    for (const model::PartSpec& part : run.solids.parts) {
         DenseBody body = denseBody(std::get<model::Shape>(part.geometry), spacing);
         if (part.held)
             held = std::move(body);
         else
             obstacles.emplace_back(std::move(body), part.X_WP);
     }
-    return deepestOverlap(run, std::move(held), std::move(obstacles));
+    return {std::move(held), std::move(obstacles)};
+}
+
+double deepestOverlap(const Run& run, double spacing) {
+    DenseDistance distance = denseDistance(run, spacing);
+    double deepest = 0.0;
+    for (std::size_t i = 0; i < run.ticks.size(); ++i) {
+        const Pose& here = run.ticks[i].proxy;
+        if (i > 0) {
+            const Pose& from = run.ticks[i - 1].proxy;
+            const Pose between{from.q.slerp(0.5, here.q), 0.5 * (from.p + here.p)};
+            deepest = -distance.least(between, -deepest);
+        }
+        deepest = -distance.least(here, -deepest);
+    }
+    return deepest;
 }
 
 namespace {
@@ -114,7 +123,7 @@ Judgement overlapUm(const Run& run) { return {kUm * deepestOverlap(run)}; }
 Judgement crossingCount(const Run& run) { return {crossings(run)}; }
 
 Judgement insertedUm(const Run& run) {
-    const model::Shape& plate = std::get<model::Shape>(fixedPart(run.spec).geometry);
+    const model::Shape& plate = std::get<model::Shape>(fixedPart(run.solids).geometry);
     double depth = 0.0;
     for (const model::Dimension& d : model::namedDimensions(plate))
         if (std::string(d.key) == "bore_depth") depth = d.value;

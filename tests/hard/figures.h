@@ -13,10 +13,11 @@ const model::PartSpec& heldPart(const model::SceneSpec& spec);
 /// The first other one: its frame is that of the paths.
 const model::PartSpec& fixedPart(const model::SceneSpec& spec);
 
-/// Deepest overlap of the proxy with the obstacles, at all ticks and between them [m]; spacing of the samples on faces
-/// [m].
+/// Between the held part and the others, as shapes (Run::solids); spacing of the samples on faces [m].
+DenseDistance denseDistance(const Run& run, double spacing = 1e-3);
+
+/// Deepest overlap of the proxy with the obstacles, at all ticks and half way between them [m].
 double deepestOverlap(const Run& run, double spacing = 1e-3);
-double deepestOverlap(const Run& run, DenseBody held, std::vector<std::pair<DenseBody, Pose>> obstacles);
 
 /// Poses (at ticks and between them) at which FCL finds the thin obstacle in the held part shrunk by the field's
 /// tolerance on every side.

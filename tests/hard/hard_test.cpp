@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
+#include <vector>
 
 #include "tests/hard/case.h"
+#include "tests/hard/figures.h"
 #include "tests/hard/known_misses.h"
 
 namespace passung::hard {
@@ -65,6 +68,67 @@ TEST(HardCases, PenaltyFallsThroughSheetAndThinPlate) {
         ASSERT_TRUE(measured);
         std::printf("%s", describe(some, "penalty", *measured).c_str());
         EXPECT_GT(measured->judgement.value, 50.0);
+    }
+}
+
+using Spec = model::SceneSpec;
+
+Vec3 within(const Vec3& v, double limit) { return v.norm() > limit ? Vec3(limit * v.normalized()) : v; }
+
+/// The spring's wrench for a proxy at `X_WG` [m].
+void pullTo(const Spec& spec, Tick& t, const Pose& X_WG) {
+    t.proxy = X_WG;
+    t.sent.force = within(spec.contact.stiffness * (X_WG.p - t.device.p), spec.limits.max_force);
+    t.sent.torque = within(spec.contact.rotational_stiffness * rotationVector(X_WG.q * t.device.q.conjugate()),
+                           spec.limits.max_torque);
+}
+
+void neverMoves(const Spec& spec, std::vector<Tick>& ticks) {
+    for (Tick& t : ticks) pullTo(spec, t, heldPart(spec).X_WP);
+}
+
+void feelsNothing(const Spec&, std::vector<Tick>& ticks) {
+    for (Tick& t : ticks) t.sent = t.commanded = Wrench{};
+}
+
+void isTheDevice(const Spec&, std::vector<Tick>& ticks) {
+    for (Tick& t : ticks) t.proxy = t.device, t.sent = t.commanded = Wrench{};
+}
+
+void turnsTooHard(const Spec& spec, std::vector<Tick>& ticks) {
+    for (Tick& t : ticks) t.commanded.torque = Vec3(0, 0, 1.01 * spec.limits.max_torque);
+}
+
+struct Fault {
+    const char* name;
+    void (*plant)(const Spec&, std::vector<Tick>&);
+};
+
+TEST(HardCases, NoMarkIsHeldByAProxyThatDoesNotFollowOrByWhatIsNotFelt) {
+    // Truth: invariant. Runs of the god object with a planted fault: most overlap nothing and cross nothing.
+    constexpr std::array kFaults{Fault{"never moves", neverMoves}, Fault{"feels nothing", feelsNothing},
+                                 Fault{"is the device", isTheDevice}, Fault{"turns too hard", turnsTooHard}};
+    for (const Case& c : cases()) {
+        if (c.compute != nullptr || !applies(c, model::ContactMethod::GodObject)) continue;
+        std::array<Judgement, kFaults.size()> found;
+        std::array<bool, kFaults.size()> seen{};
+        for (int seed = 0; seed < c.seeds; ++seed) {
+            if (std::all_of(seen.begin(), seen.end(), [](bool one) { return one; })) break;
+            const auto run = runCase(c, model::ContactMethod::GodObject, static_cast<std::uint64_t>(seed), false);
+            ASSERT_TRUE(run);
+            for (std::size_t i = 0; i < kFaults.size(); ++i) {
+                if (seen[i]) continue;
+                auto spoilt = *run;
+                kFaults[i].plant(run->spec, spoilt.ticks);
+                found[i] = judgeRun(c, spoilt);
+                seen[i] = !found[i].broken.empty() || !(found[i].value <= c.mark);
+            }
+        }
+        for (std::size_t i = 0; i < kFaults.size(); ++i) {
+            std::printf("%-20s %-22s %10.4g %-4s %s\n", c.name, kFaults[i].name, found[i].value, c.unit,
+                        found[i].broken.c_str());
+            EXPECT_TRUE(seen[i]) << c.name << ": a proxy that " << kFaults[i].name;
+        }
     }
 }
 

@@ -30,7 +30,7 @@ Result<Run> runScene(const model::SceneSpec& spec, const Drive& drive, std::int6
     const tick::TickModel model = tick::makeModel(*scene);
     tick::TickState state = tick::makeState(model);
     Run run;
-    run.spec = spec;
+    run.spec = run.solids = spec;
     for (const auto& part : scene->parts)
         if (part->shell) {
             run.most_points += part->shell->points().size() + 2 * part->shell->nodes().size();
@@ -50,6 +50,7 @@ Result<Run> runScene(const model::SceneSpec& spec, const Drive& drive, std::int6
         run.ticks.push_back({.device = f.X_WH,
                              .proxy = output.X_WG,
                              .sent = f.F_H_W,
+                             .commanded = output.F_D_B,
                              .energy = f.energy,
                              .proxy_depth = f.proxy_depth,
                              .status = f.status,

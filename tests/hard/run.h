@@ -15,6 +15,7 @@ namespace passung::hard {
 struct Tick {
     Pose device, proxy;  // of the held part: X_WH, X_WG
     Wrench sent;         // on the hand, about the held part's origin, world axes, after the output stage
+    Wrench commanded;    // the same to the device, about its handle's origin, in its base's axes
     double energy = 0.0;
     double proxy_depth = 0.0;  // as the program says [m]
     std::uint32_t status = 0, contacts = 0, iterations = 0, nodes = 0;
@@ -24,6 +25,7 @@ struct Tick {
 /// What a case's scene did on its device path.
 struct Run {
     model::SceneSpec spec;
+    model::SceneSpec solids;  // the same, with the closed shapes that its meshes stand for
     std::vector<DeviceReading> readings;
     std::vector<Tick> ticks;
     std::size_t most_points = 0;  // that a manifold holds

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "devices/simulated/presets.h"
@@ -20,6 +21,7 @@ using model::SceneSpec;
 
 constexpr double kPi = std::numbers::pi, kDegree = kPi / 180.0;
 constexpr double kMostTurn = 0.5 * kDegree;  // of a force against its truth
+constexpr double kFloor = 0.05;              // of the largest force: below, errors count against that
 
 template <class T>
 const T& shapeOf(const model::PartSpec& part) {
@@ -46,7 +48,7 @@ Drive visit(const SceneSpec& spec, const std::vector<Pose>& poses, const Vec3& c
 }
 
 /// The wrenches of all resting ticks against their truth: largest error of the magnitude [%], direction and torque
-/// (per `lever`) besides.
+/// (per `lever`) besides; each per its own truth, or per kFloor of the run's largest where that is more.
 template <class Truth>
 Judgement againstTruth(const Run& run, double lever, const Truth& truth) {
     double most = 0.0, magnitude = 0.0, turn = 0.0, torque = 0.0;
@@ -62,10 +64,11 @@ Judgement againstTruth(const Run& run, double lever, const Truth& truth) {
         ++poses;
     }
     for (const auto& [found, expected] : pairs) {
-        magnitude = std::max(magnitude, std::abs(found.force.norm() - expected.force.norm()) / most);
+        const double size = std::max(expected.force.norm(), kFloor * most);
+        magnitude = std::max(magnitude, std::abs(found.force.norm() - expected.force.norm()) / size);
         const double cosine = found.force.normalized().dot(expected.force.normalized());
         turn = std::max(turn, std::acos(std::clamp(cosine, -1.0, 1.0)));
-        torque = std::max(torque, (found.torque - expected.torque).norm() / (most * lever));
+        torque = std::max(torque, (found.torque - expected.torque).norm() / (size * lever));
     }
     Judgement result{100.0 * magnitude};
     if (turn > kMostTurn) result.broken = fmt::format("direction {:.3g} deg", turn / kDegree);
@@ -294,15 +297,18 @@ Judgement a8(const Run& run) {
     const double R = 0.5 * shapeOf<model::Sphere>(heldPart(run.spec)).diameter;
     Judgement result;
     double off = 0.0;
+    int poses = 0;
     for (std::size_t i = 1; i < run.ticks.size(); ++i) {
         const Tick& t = run.ticks[i];
         if (t.device.p != run.ticks[i - 1].device.p || !(t.sent.force.norm() > 0.0)) continue;
+        ++poses;
         const double cosine = std::min(1.0, t.sent.force.normalized().dot(bisector));
         result.value = std::max(result.value, std::acos(cosine) / kDegree);
         const Vec3 p = X_WO.inverse() * t.proxy.p;
         off = std::max(off, std::hypot(p.x() - R, p.z() - R));
     }
     if (off > 0.1 * run.spec.contact.cell) result.broken = fmt::format("proxy {:.3g} um off the corner", kUm * off);
+    if (poses < 50) result.broken = "no force in the corner";
     return result;
 }
 
@@ -370,7 +376,9 @@ Judgement noiseOverFloor(const Run& run) {
         found.push_back(run.ticks[i].sent.force.norm());
         floor.push_back(std::max(0.0, c.stiffness * (rest - z) - c.damping * (z - before) / kTickSeconds));
     }
-    return {rmsAbove(found, 50.0) / std::max(1e-9, rmsAbove(floor, 50.0))};
+    Judgement result{rmsAbove(found, 50.0) / std::max(1e-9, rmsAbove(floor, 50.0))};
+    if (!(*std::min_element(found.begin(), found.end()) > 0.0)) result.broken = "not always in contact";
+    return result;
 }
 
 /// Pressed by 1 mm, then drawn by 1 µm a tick.
@@ -454,6 +462,22 @@ Judgement a13(const Run& run) {
     return result;
 }
 
+/// A12: by how much the worst order of convergence falls short of what convergence_rows.h derives.
+Result<Measured> a12() {
+    bench::Extent all;
+    all.wanted = [](const std::string&, const std::string&) { return true; };
+    const auto rows = bench::convergenceRows(all);
+    if (!rows) return rows.errors();
+    Measured result;
+    result.judgement.value = -std::numeric_limits<double>::infinity();
+    for (const bench::Row& row : *rows) {
+        const bool smooth = row.method == bench::kCellOnSmooth || row.method == bench::kSpacingOnSmooth;
+        const double derived = smooth ? 2.0 : row.method == bench::kCellAtEdges ? 1.0 : 4.0 / 3.0;
+        result.judgement.value = std::max(result.judgement.value, derived - row.order);
+    }
+    return result;
+}
+
 }  // namespace
 
 std::vector<Case> truthCases() {
@@ -477,6 +501,9 @@ std::vector<Case> truthCases() {
         {"a10_torsion", "a10_disc", "torque against 2/3 mu F R", "%", 5, 2, 5, 0.8, 0.8, a10TurnDrive, a10Turn, turned},
         {"a11_thin_plate", "a11", "poses in which FCL finds the plate in the ball", "", 0, 1, 10, 8, 500, a11Drive,
          crossingCount},
+        // Of fields and points alone, whatever method they serve: once.
+        {"a12_convergence", "", "order of convergence short of the derived one", "", 0.25, 1, 1, 0, 0, nullptr, nullptr,
+         nullptr, kPenalty, false, nullptr, a12},
         {"a13_cycle", "ball_on_table", "work of a closed cycle per stored energy", "%", 0.1, 1, 1, 1.2, 1.2, a13Drive,
          a13, nullptr, kAll},
         {"a13_cycle_aside", "ball_on_table", "work of a closed cycle per stored energy", "%", 0.1, 1, 1, 1.2, 1.2,

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "study/protocol/scene_parts.h"
+#include "ui/app/simulated_hand.h"
 
 namespace passung::app {
 
@@ -37,13 +38,13 @@ LoopApparatus::Run::Run(model::Scene built, std::unique_ptr<simulated::Simulated
       ring(kRingRecords),
       cycle(model, *device, ring, show_proxy) {}
 
-LoopApparatus::LoopApparatus(const simulated::DeviceParams& device, const simulated::HandParams& hand, Clock clock)
-    : description_(simulated::describe(device)), hand_(hand), clock_(clock) {}
+LoopApparatus::LoopApparatus(const simulated::DeviceParams& device, const person::SimulatedPerson& person, Clock clock)
+    : description_(simulated::describe(device)), person_(person), clock_(clock) {}
 
 LoopApparatus::~LoopApparatus() = default;
 
-Result<std::vector<session::StageNote>> LoopApparatus::prepare(const protocol::Condition& condition,
-                                                               std::uint64_t seed) {
+Result<std::vector<session::StageNote>> LoopApparatus::prepare(const protocol::Condition& condition, std::uint64_t seed,
+                                                               std::int64_t trials_before) {
     const simulated::DeviceParams* preset = simulated::findPreset(condition.device);
     if (preset == nullptr)
         return Error{.message = "no such device preset", .key = "device.preset", .value = condition.device};
@@ -51,7 +52,8 @@ Result<std::vector<session::StageNote>> LoopApparatus::prepare(const protocol::C
     if (!scene) return scene.errors();
     const model::Registration& r = condition.scene.registration;
     auto device = std::make_unique<simulated::SimulatedDevice>(
-        *preset, hand_, visibleTask(condition), simulated::HandRegistration{r.X_WB, r.scale, r.X_DH}, seed);
+        *preset, simulatedHand(person_, trials_before), visibleTask(condition),
+        simulated::HandRegistration{r.X_WB, r.scale, r.X_DH}, seed);
     description_ = device->description();
     auto run =
         std::make_unique<Run>(std::move(*scene), std::move(device), condition.shown == protocol::ShownPose::Proxy);
@@ -60,6 +62,10 @@ Result<std::vector<session::StageNote>> LoopApparatus::prepare(const protocol::C
         run_.swap(run);
     }
     return stageNotes(run_->model);
+}
+
+void LoopApparatus::wait(std::int64_t ticks) {
+    if (clock_ == Clock::RealTime) std::this_thread::sleep_for(std::chrono::nanoseconds(ticks * kTickNanoseconds));
 }
 
 void LoopApparatus::start() {

@@ -7,6 +7,7 @@
 #include "core/model/scene.h"
 #include "devices/simulated/presets.h"
 #include "devices/simulated/simulated_device.h"
+#include "study/person/simulated_person.h"
 #include "study/session/apparatus.h"
 #include "ui/app/disk_store.h"
 
@@ -17,12 +18,13 @@ enum class Clock { Virtual, RealTime };
 /// The session's apparatus: the haptic loop on a simulated device with a simulated hand, in either clock.
 class LoopApparatus final : public session::Apparatus {
 public:
-    /// @pre `hand.validate()` is empty.
-    LoopApparatus(const simulated::DeviceParams& device, const simulated::HandParams& hand, Clock clock);
+    LoopApparatus(const simulated::DeviceParams& device, const person::SimulatedPerson& person, Clock clock);
     ~LoopApparatus() override;
 
     const DeviceDescription& device() const override { return description_; }
-    Result<std::vector<session::StageNote>> prepare(const protocol::Condition& condition, std::uint64_t seed) override;
+    Result<std::vector<session::StageNote>> prepare(const protocol::Condition& condition, std::uint64_t seed,
+                                                    std::int64_t trials_before) override;
+    void wait(std::int64_t ticks) override;
     void start() override;
     void advance(std::int64_t ticks) override;
     std::size_t takeRecords(std::span<TickRecord> into) override;
@@ -44,7 +46,7 @@ private:
     };
 
     DeviceDescription description_;
-    simulated::HandParams hand_;
+    person::SimulatedPerson person_;
     Clock clock_;
     std::unique_ptr<DiskStore> store_ = openDiskStore();
     model::PartCache parts_{store_.get()};

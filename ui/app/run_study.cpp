@@ -8,6 +8,7 @@
 
 #include "devices/simulated/presets.h"
 #include "study/measures/measures.h"
+#include "study/person/simulated_person.h"
 #include "study/session/participant_order.h"
 #include "study/store/digest.h"
 #include "study/store/identity.h"
@@ -15,7 +16,6 @@
 #include "ui/app/calibration.h"
 #include "ui/app/command_socket.h"
 #include "ui/app/disk_store.h"
-#include "ui/app/simulated_hand.h"
 #include "ui/app/stored_plans.h"
 #include "ui/app/wall_clock.h"
 
@@ -36,10 +36,9 @@ public:
              store::Store& store, std::string protocol_sha256)
         : plan_(plan), options_(options), listener_(listener), store_(store), sha256_(std::move(protocol_sha256)) {}
 
+    /// All sessions that are left to do; of a participant named by code the next one.
     Result<RunEnd> participant(int number) {
-        const bool measured = options_.clock == Clock::RealTime;
-        const store::UtcClock clock =
-            measured ? store::UtcClock::wall(unixMilliseconds()) : store::UtcClock::virtualEpoch();
+        const store::UtcClock clock = clockNow();
         std::string code = options_.participant;
         if (code.empty()) {
             auto next = store_.nextCode(protocol::ParticipantKind::Simulated);
@@ -51,27 +50,15 @@ public:
         }
         auto slot = store_.assignSlot(sha256_, code);
         if (!slot) return slot.errors();
-        auto ordinal = store_.nextOrdinal(code);
-        if (!ordinal) return ordinal.errors();
+        auto part = store_.nextPart(sha256_, code);
+        if (!part) return part.errors();
+        const int last = options_.participant.empty() ? protocol::sessionsOf(plan_) : *part;
         if (listener_.session) listener_.session(code, number, options_.simulated);
-
-        store::SessionStart start;
-        start.session_id = store::sessionId(plan_.name, code, *ordinal, plan_.seed);
-        start.participant = code;
-        start.protocol_sha256 = sha256_;
-        start.ordinal = *ordinal;
-        start.seed = plan_.seed;
-        start.clock = clock;
-        const simulated::DeviceParams* device = simulated::findPreset(plan_.conditions.front().device);
-        LoopApparatus apparatus(*device, simulatedHand(plan_, code), options_.clock);
-        start.device = apparatus.device();
-        if (measured) start.host = hostText();
-        start.timing_measured = measured;
-
-        const auto trials = session::planTrials(plan_, static_cast<std::size_t>(slot->number), code);
-        auto writer = store_.createSession(start, trials);
-        if (!writer) return writer.errors();
-        return perform({plan_, trials, code, plan_.seed, measured, *ordinal, options_.wait}, apparatus, **writer);
+        for (int p = *part; p <= last; ++p)
+            if (auto end = session(code, {static_cast<std::size_t>(slot->number), slot->group}, p, clock);
+                !end || *end == RunEnd::Interrupted)
+                return end;
+        return RunEnd::Complete;
     }
 
     Result<RunEnd> resume(const store::Unfinished& session) {
@@ -81,8 +68,12 @@ public:
                 return Error{.message = fmt::format("{}, session {}: {}", session.participant, session.ordinal, *old),
                              .file = options_.database};
         // The place that the interruption freed may have another owner by now: one with the same order will do.
-        const auto fits = [&](std::int64_t slot) {
-            return session::planTrials(plan_, static_cast<std::size_t>(slot), session.participant) == session.trials;
+        const auto part = store_.nextPart(sha256_, session.participant);
+        if (!part) return part.errors();
+        const auto fits = [&](const store::Slot& slot) {
+            const session::DesignPlace place{static_cast<std::size_t>(slot.number), slot.group};
+            const auto trials = session::planTrials(plan_, place, session.participant, *part);
+            return trials && *trials == session.trials;
         };
         if (const auto slot = store_.assignSlot(sha256_, session.participant, fits); !slot) return slot.errors();
         if (listener_.session) listener_.session(session.participant, 1, 1);
@@ -95,7 +86,7 @@ public:
         if (measured) start.host = hostText();
         start.timing_measured = measured;
         const simulated::DeviceParams* device = simulated::findPreset(plan_.conditions.front().device);
-        LoopApparatus apparatus(*device, simulatedHand(plan_, session.participant), options_.clock);
+        LoopApparatus apparatus(*device, person::personOf(plan_.name, session.participant, plan_.seed), options_.clock);
         start.device = apparatus.device();
         auto writer = store_.resumeSession(start, session.used_ns);
         if (!writer) return writer.errors();
@@ -114,6 +105,36 @@ public:
     }
 
 private:
+    store::UtcClock clockNow() const {
+        return options_.clock == Clock::RealTime ? store::UtcClock::wall(unixMilliseconds())
+                                                 : store::UtcClock::virtualEpoch();
+    }
+
+    Result<RunEnd> session(const std::string& code, const session::DesignPlace& place, int part,
+                           const store::UtcClock& clock) {
+        const bool measured = options_.clock == Clock::RealTime;
+        auto ordinal = store_.nextOrdinal(code);
+        if (!ordinal) return ordinal.errors();
+        store::SessionStart start;
+        start.session_id = store::sessionId(plan_.name, code, *ordinal, plan_.seed);
+        start.participant = code;
+        start.protocol_sha256 = sha256_;
+        start.ordinal = *ordinal;
+        start.seed = plan_.seed;
+        start.clock = clock;
+        const simulated::DeviceParams* device = simulated::findPreset(plan_.conditions.front().device);
+        LoopApparatus apparatus(*device, person::personOf(plan_.name, code, plan_.seed), options_.clock);
+        start.device = apparatus.device();
+        if (measured) start.host = hostText();
+        start.timing_measured = measured;
+
+        const auto trials = session::planTrials(plan_, place, code, part);
+        if (!trials) return trials.errors();
+        auto writer = store_.createSession(start, *trials);
+        if (!writer) return writer.errors();
+        return perform({plan_, *trials, code, plan_.seed, measured, *ordinal, options_.wait}, apparatus, **writer);
+    }
+
     Result<RunEnd> perform(session::SessionSetup setup, LoopApparatus& apparatus, session::TrialSink& sink) {
         const std::string code = setup.participant;
         session::Session session(std::move(setup), apparatus, sink, {listener_.acknowledge, listener_.trial});

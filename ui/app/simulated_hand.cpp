@@ -1,14 +1,9 @@
 #include "ui/app/simulated_hand.h"
 
-#include "core/base/random.h"
-#include "study/person/simulated_person.h"
-
 namespace passung::app {
 
-simulated::HandParams simulatedHand(const protocol::StudyPlan& plan, const std::string& code) {
-    // "person" is a phase of its own: who somebody is does not depend on what they do.
-    const std::uint64_t seed = streamSeed(plan.name, code, "person", "simulated", plan.seed);
-    const person::SimulatedPerson person = person::drawPerson(seed);
+simulated::HandParams simulatedHand(const person::SimulatedPerson& person, std::int64_t trials_before) {
+    const double pace = person.paceAfter(trials_before);
     simulated::HandParams hand;
     hand.mass = person.arm_mass;
     hand.inertia = person.wrist_inertia;
@@ -22,11 +17,14 @@ simulated::HandParams simulatedHand(const protocol::StudyPlan& plan, const std::
     hand.lateral_error = person.lateral_error;
     hand.depth_error = person.depth_error;
     hand.tilt_error = person.tilt_error;
-    hand.approach_duration /= person.pace;
-    hand.descend_speed *= person.pace;
-    hand.search_speed *= person.pace;
-    hand.insert_speed *= person.pace;
+    hand.approach_duration /= pace;
+    hand.descend_speed *= pace;
+    hand.search_speed *= pace;
+    hand.insert_speed *= pace;
     hand.press_force = person.press_force;
+    hand.insert_force = person.strength;
+    hand.lapse_rate = person.lapse_rate;
+    hand.lapse_duration = person.lapse_duration;
     return hand;
 }
 

@@ -1,13 +1,13 @@
 #pragma once
 
-#include <string>
+#include <cstdint>
 
 #include "devices/simulated/hand_params.h"
-#include "study/protocol/study_plan.h"
+#include "study/person/simulated_person.h"
 
 namespace passung::app {
 
-/// The arm, senses and habits of the simulated participant `code`: the same in every trial and session of the study.
-simulated::HandParams simulatedHand(const protocol::StudyPlan& plan, const std::string& code);
+/// The person's arm, senses and habits in a trial after so many others of the session.
+simulated::HandParams simulatedHand(const person::SimulatedPerson& person, std::int64_t trials_before);
 
 }  // namespace passung::app

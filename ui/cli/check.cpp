@@ -45,7 +45,12 @@ int check(const CheckOptions& options) {
     if (!plan) return fail(plan.errors());
     if (const auto meshes = checkMeshes(*plan); !meshes) return fail(meshes.errors());
     warn(options.protocol, session::planWarnings(*plan));
-    const std::size_t trials = session::planTrials(*plan, 0, "S001").size();
+    std::size_t trials = 0;
+    for (int session = 1; session <= protocol::sessionsOf(*plan); ++session) {
+        const auto planned = session::planTrials(*plan, {}, "S001", session);
+        if (!planned) return fail(planned.errors());
+        trials += planned->size();
+    }
     fmt::print("{}: ok: {} {}, {} conditions, {} trials for each of {} participants\n", options.protocol, plan->name,
                plan->version, plan->conditions.size(), trials, plan->participants);
     return 0;

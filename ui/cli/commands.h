@@ -85,6 +85,22 @@ struct ReplayOptions {
 };
 int replay(const ReplayOptions& options);
 
+struct PowerOptions {
+    std::string protocol;  // empty with merge
+    std::string effect;    // FACTOR:LEVEL=DELTA
+    std::string against;   // level; empty: the factor's first other one
+    std::string measure = "completion_time_s";
+    std::string simulation = "haptic";  // or "model"
+    int participants = 0;               // 0: as many as the protocol plans
+    int repeats = 200;
+    double alpha = 0.05;
+    int shard = 1, shards = 1;
+    std::optional<std::uint64_t> seed;
+    std::string out;                 // file of results; empty: printed only
+    std::vector<std::string> merge;  // files of results to put together instead
+};
+int power(const PowerOptions& options);
+
 struct MeshOptions {
     std::string file;
     std::string unit = "mm";

@@ -200,8 +200,10 @@ int explain(const ExplainOptions& options) {
         if (!plan) return fail(plan.errors());
         devices = app::devicesAsKept(*stable);
     }
-    fmt::print("{}",
-               session::describePlan(*plan, options.participants > 0 ? options.participants : plan->participants));
+    const auto described =
+        session::describePlan(*plan, options.participants > 0 ? options.participants : plan->participants);
+    if (!described) return fail(described.errors());
+    fmt::print("{}", *described);
     explainStability(*plan, devices);
     if (const auto picked = explainAccuracy(options.database, *plan, store.get()); !picked)
         return fail(picked.errors());

@@ -69,6 +69,7 @@ public:
         addParticipantCommands();
         addSessionCommands();
         addDataCommands();
+        addPowerCommand();
         addCoreCommands();
     }
 
@@ -221,6 +222,61 @@ private:
             ->check(CLI::ExistingDirectory);
     }
 
+    void addPowerCommand() {
+        auto* sub = command("power", "how often a study like this one finds an effect that is really there", power_,
+                            passung::cli::power);
+        auto* protocol = sub->add_option("PROTOCOL", power_.protocol, "study file (.toml)");
+        auto* effect = sub->add_option(
+            "--effect", power_.effect,
+            "FACTOR:LEVEL=DELTA: what is planted in every virtual study at one level of a factor; DELTA "
+            "is +0.3 or -0.3 (added, in the measure's unit) or x1.2 (multiplied); +0 gives the rate "
+            "of false positives");
+        sub->add_option("--against", power_.against, "level to compare with; default: the factor's first other one");
+        sub->add_option("--measure", power_.measure, "default completion_time_s");
+        sub->add_option("--participants", power_.participants, "of a virtual study; default: the protocol's")
+            ->check(wholeFrom<int>(2));
+        sub->add_option("--repeats", power_.repeats, "virtual studies; default 200")->check(wholeFrom<int>(1));
+        sub->add_option("--simulation", power_.simulation,
+                        "haptic (default): every trial, tick by tick, through database and means of the export; model: "
+                        "times drawn for the same people, orders and means, thousands of studies in seconds")
+            ->check(CLI::IsMember({"haptic", "model"}));
+        sub->add_option("--alpha", power_.alpha, "level of significance; default 0.05")
+            ->check(numberThat<double>([](double value) { return value > 0.0 && value < 0.8; },
+                                       "a number above 0 and below 0.8"));
+        sub->add_option("--seed", power_.seed, "instead of the protocol's")->check(wholeFrom<std::uint64_t>(0));
+        auto* out = sub->add_option("--out", power_.out,
+                                    "file of results, a row per virtual study; appears when all are done, and what is "
+                                    "there already is not run again");
+        sub->add_option_function<std::string>(
+               "--shard", [this](const std::string& text) { readShard(text); },
+               "i/n: only every n-th virtual study, the i-th first; shards run anywhere, in any order")
+            ->needs(out);
+        auto* merge = sub->add_option("--merge", power_.merge,
+                                      "files of all shards: the result is, byte for byte, that of one run without "
+                                      "--shard; with --out it is written")
+                          ->excludes(protocol);
+        sub->callback([this, protocol, effect, merge, sub] {
+            if (merge->empty() && (protocol->empty() || effect->empty()))
+                throw CLI::RequiredError("PROTOCOL and --effect, or --merge");
+            if (!merge->empty() && sub->count_all() > merge->count() + sub->get_option("--out")->count() + 1)
+                throw CLI::ExcludesError("--merge", "anything but --out");
+            chosen_ = [this] { return passung::cli::power(power_); };
+        });
+    }
+
+    /// "2/8"
+    void readShard(const std::string& text) {
+        const std::size_t slash = text.find('/');
+        const auto number = [](const std::string& digits, int& value) {
+            const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+            return problem == std::errc() && end == digits.data() + digits.size();
+        };
+        const bool read = slash != std::string::npos && number(text.substr(0, slash), power_.shard) &&
+                          number(text.substr(slash + 1), power_.shards);
+        if (!read || power_.shard < 1 || power_.shard > power_.shards)
+            throw CLI::ValidationError("--shard", "must be i/n with 1 ≤ i ≤ n, not \"" + text + '"');
+    }
+
     void addCoreCommands() {
         const CLI::IsMember units({"m", "cm", "mm", "um", "in"});
         auto* sub = command("mesh", "report what a mesh file, or the mesh of a shape, is like", mesh_, mesh);
@@ -328,6 +384,7 @@ private:
     SessionOptions session_;
     ExportOptions export_;
     ReplayOptions replay_;
+    PowerOptions power_;
     MeshOptions mesh_;
     QueryOptions query_;
     SimulateOptions simulate_;

@@ -93,6 +93,7 @@ int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, con
             fmt::print("{}: the session is not complete; its place in the design is free again\n", participant);
         }
         std::fflush(stdout);
+        successes = finished = planned = invalid = 0;  // of the participant's next session
     };
     if (acknowledge_fd >= 0) {
         listener.acknowledge = [&](session::AttemptId attempt, measures::Outcome outcome) {

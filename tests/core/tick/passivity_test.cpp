@@ -78,6 +78,63 @@ TEST(EnergyAccount, HeldSamplesBookNothingUntilTheNextAndLostOnesNever) {
     }
 }
 
+/// The account after a slow press into a spring by `steps` encoder steps `q` and back, `ticks` a step.
+double slowPress(double q, double known, int steps, int ticks) {
+    auto spec = ballOverPlate(0.0);
+    spec.limits.quantum = known;
+    test::Bench bench(spec);
+    double energy = 0.0;
+    for (int k = 0; k <= 2 * steps * ticks; ++k) {
+        const double depth = q / ticks * (k <= steps * ticks ? k : 2 * steps * ticks - k);
+        Pose X = spec.parts[0].X_WP;
+        X.p.z() -= q * std::round(depth / q);
+        energy = bench.step(X).frame.energy;
+    }
+    return energy;
+}
+
+TEST(EnergyAccount, TakesNoEncoderStepForEnergyGivenOut) {
+    // Truth: closed form. A spring that is read in steps q pushes alike on the way in and on the way out, so that the
+    // motors do no work in all; who books whole readings finds -K q² n. A step that comes and goes moves nothing.
+    constexpr int n = 20;
+    constexpr double q = 64e-6;
+    const double whole = -kStiffness * q * q * n;
+    EXPECT_NEAR(slowPress(q, 0.0, n, 10), whole, 0.03 * std::abs(whole));
+    EXPECT_NEAR(slowPress(q, q, n, 10), 0.0, 1e-3 * std::abs(whole));
+    auto spec = ballOverPlate(-1e-3);
+    spec.limits.quantum = q;
+    test::Bench bench(spec);
+    double first = 0.0, last = 0.0;
+    for (int k = 0; k < 1000; ++k) {
+        Pose X = spec.parts[0].X_WP;
+        X.p.z() += k % 2 == 0 ? q : 0.0;
+        last = bench.step(X).frame.energy;
+        if (k == 2) first = last;
+    }
+    EXPECT_NEAR(last, first, 1e-3 * std::abs(whole));
+}
+
+TEST(EnergyAccount, OfAFastMotionIsOffByLessThanItsBound) {
+    // Truth: invariant. Work on the true motion against that on its readings: q times what the force changed by.
+    constexpr double q = 64e-6, K = kStiffness;
+    auto spec = ballOverPlate(0.0);
+    spec.limits.quantum = q;
+    test::Bench bench(spec);
+    double exact = 0.0, changed = 0.0, force = 0.0, z_before = 0.0;
+    for (int k = 0; k < 400; ++k) {
+        const double z = -1e-3 * (1.0 - std::cos(0.05 * k));
+        exact -= force * (z - z_before);
+        z_before = z;
+        Pose X = spec.parts[0].X_WP;
+        X.p.z() += q * std::round(z / q);
+        const auto output = bench.step(X);
+        EXPECT_NEAR(output.frame.energy, exact, q * (changed + force) + 1e-9);
+        changed += std::abs(output.F_D_B.force.z() - force);
+        force = output.F_D_B.force.z();
+    }
+    EXPECT_GT(changed, K * 4e-3);
+}
+
 TEST(PassivityController, TakesBackWhatWasGivenOut) {
     // Truth: closed form. After the cycle above E = -K δ² n; with the handle moving on at v upwards the damper's force
     // is E / (τ v), downwards, and a tick later E is zero again.

@@ -43,6 +43,19 @@ std::vector<Pose> freeRun(std::uint64_t seed, int ticks, int go_at) {
     return readings;
 }
 
+/// How long a hand in free space, whose handle is where it wants it, stops and looks before it lowers the part.
+int settleTicks(const HandParams& params, std::uint64_t seed) {
+    Hand hand(params, task(), registration(), seed);
+    Pose X_BD = registration().handleFromPart(task().X_WHeldStart);
+    int ticks = 0;
+    for (int k = 0; k < 10'000 && hand.phase() < HandPhase::Descend; ++k) {
+        if (k % 16 == 0) hand.see({.tick = k, .X_WShown = registration().partFromHandle(X_BD), .running = k >= 1000});
+        X_BD = hand.act(X_BD, {}).X_BSet;
+        ticks += hand.phase() == HandPhase::Settle ? 1 : 0;
+    }
+    return ticks;
+}
+
 bool sameBits(const std::vector<Pose>& a, const std::vector<Pose>& b) {
     for (std::size_t i = 0; i < a.size(); ++i)
         if (std::memcmp(a[i].p.data(), b[i].p.data(), 3 * sizeof(double)) != 0 ||
@@ -180,6 +193,24 @@ TEST(Hand, SurvivesABrokenDisplayAndWrench) {
     }
 }
 
+TEST(Hand, ALapseIsAPauseOfItsLengthAtTheFirstLook) {
+    // Truth: closed form; nothing else differs.
+    HandParams absent;
+    absent.lapse_rate = 1.0;
+    absent.lapse_duration = 0.8;
+    EXPECT_EQ(settleTicks(absent, 4), settleTicks({}, 4) + 800);
+}
+
+TEST(Hand, LapsesInItsShareOfTrials) {
+    // Truth: closed form, binomial: 100 trials at 0.3 have a standard deviation of 4.6, of which 4 are allowed.
+    HandParams params;
+    params.lapse_rate = 0.3;
+    const int without = settleTicks({}, 0);
+    int lapses = 0;
+    for (std::uint64_t seed = 0; seed < 100; ++seed) lapses += settleTicks(params, seed) > without ? 1 : 0;
+    EXPECT_NEAR(lapses, 30, 4 * 4.6);
+}
+
 TEST(Hand, NonsenseParametersAreNamed) {
     // Truth: invariant; one issue per planted fault, with its key.
     EXPECT_TRUE(HandParams{}.validate().empty());
@@ -189,7 +220,8 @@ TEST(Hand, NonsenseParametersAreNamed) {
     EXPECT_EQ(p.validate()[0].key, "visual_delay");
     p.stiffness = std::nan("");
     p.last_search_radius = 1e-3;
-    EXPECT_EQ(p.validate().size(), 3u);
+    p.lapse_rate = 1.1;
+    EXPECT_EQ(p.validate().size(), 4u);
 }
 
 TEST(SimulatedDevice, ReadCommandAndShowAreRealTimeSafe) {

@@ -106,6 +106,8 @@ Accounts searchOnAPlate(const simulated::DeviceParams& preset, model::ContactMet
     spec.limits.max_torque = rated.max_torque_Nm;
     spec.limits.max_force_rate = rated.max_force_rate_N_per_s;
     spec.limits.actuates_torque = rated.actuated_degrees == 6;
+    spec.limits.quantum = preset.quantum.value;
+    spec.limits.rotational_quantum = preset.rotational_quantum.value;
     spec.effects.passivity_damping = passivity_damping;
     test::Bench bench(spec);
     simulated::SimulatedDevice device(preset, {}, task, {spec.registration.X_WB, 1.0, spec.registration.X_DH}, 7);
@@ -133,9 +135,8 @@ Accounts searchOnAPlate(const simulated::DeviceParams& preset, model::ContactMet
 
 TEST(HandsPort, GivesOutNoEnergyInAMinuteOfContactAtTheRatedStiffness) {
     // Truth: invariant. Net energy at the hand's port at least -1 mJ with the passivity controller off, and at the
-    // controller's port, that is of the motors on the handle's true motion, at least -1 mJ with it on. Printed beside:
-    // the controller's own account, which knows the motion in encoder steps q only and so comes out low, by K q x for
-    // every press by x and release.
+    // controller's port at least -1 mJ with it on: that of the motors on the handle's true motion, and by the
+    // controller's own account, which knows the motion in encoder steps only.
     using Method = model::ContactMethod;
     for (const simulated::DeviceParams& preset : simulated::presets()) {
         const bool longest = preset.name == "sigma7" || preset.name == "falcon";
@@ -150,6 +151,7 @@ TEST(HandsPort, GivesOutNoEnergyInAMinuteOfContactAtTheRatedStiffness) {
                 100 * off.contact, off.hand, off.last_hand, on.motors, on.controller);
             EXPECT_GE(off.hand, -1e-3) << preset.name;
             EXPECT_GE(on.motors, -1e-3) << preset.name;
+            EXPECT_GE(on.controller, -1e-3) << preset.name;
             EXPECT_GT(off.contact, 0.4) << preset.name;
             EXPECT_GT(off.last_hand, 1e-3) << preset.name;
         }

@@ -176,6 +176,70 @@ TEST(StabilityBorder, AtNineteenTwentiethsOfItAPressedHandleComesToRest) {
     }
 }
 
+/// As press(), for rotation: a bar is turned by a constant torque onto two posts beside its ends.
+Press turnOntoPosts(const DeviceParams& preset, double stiffness) {
+    model::SceneSpec spec = test::scene(model::Box{0.04, 0.004, 0.004}, Pose{}, model::Cylinder{0.006, 0.02},
+                                        Pose{Quat::Identity(), {0.015, 0.0052, 0}}, model::ContactMethod::GodObject);
+    spec.parts.push_back({.name = "other",
+                          .geometry = model::Shape(model::Cylinder{0.006, 0.02}),
+                          .X_WP = {Quat::Identity(), {-0.015, -0.0052, 0}}});
+    spec.contact.two_way = true;
+    spec.contact.stiffness = 200.0;
+    spec.contact.rotational_stiffness = stiffness;
+    spec.contact.rotational_damping = preset.recommended_rotational_damping.value;
+    spec.limits.max_force = preset.max_force.value;
+    spec.limits.max_torque = preset.max_torque.value;
+    spec.limits.max_force_rate = preset.max_force_rate.value;
+    test::Bench bench(spec);
+    DeviceDynamics dynamics(preset, Pose{});
+    dynamics.place(Pose{}, {Vec3::Zero(), {0, 0, 0.5}});
+    simulated::HandCoupling hand;
+    hand.attached = true;
+    hand.F_D_B.torque = Vec3(0, 0, 0.3 * preset.max_torque.value);
+    Press result;
+    const auto swing = [&](int ticks) {
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (int i = 0; i < ticks; ++i) {
+            const auto output = bench.step(dynamics.readPose());
+            dynamics.command(output.F_D_B);
+            dynamics.advance(hand);
+            const double angle = rotationVector(dynamics.truePose().q).z();
+            low = std::min(low, angle);
+            high = std::max(high, angle);
+            result.touches = output.F_D_B.torque.z() < 0.0;
+            EXPECT_LE(output.F_D_B.torque.norm(), preset.max_torque.value);
+        }
+        return high - low;
+    };
+    swing(500);
+    result.early = swing(500);
+    swing(5000);
+    result.late = swing(500);
+    return result;
+}
+
+TEST(StabilityBorder, AtNineteenTwentiethsOfItABarTurnedOntoPostsComesToRest) {
+    // Truth: closed form (the border), as above, for rotation in contact: of every preset that has torque.
+    int tried = 0;
+    for (DeviceParams preset : simulated::presets()) {
+        if (preset.actuated_degrees < 6) continue;
+        for (int delay = 0; delay <= 3; ++delay) {
+            preset.delay_ticks = delay;
+            SampledWall wall = wallOf(preset, Axis::Rotation);
+            wall.delay_ticks = delay;
+            const double border = stableStiffnessBorder(wall);
+            if (!(border > 0.0)) continue;
+            const Press found = turnOntoPosts(preset, 0.95 * border);
+            std::printf("%-11s %d ms K %7.3f N m/rad: swing %8.3f mrad, later %8.3f mrad\n",
+                        std::string(preset.name).c_str(), delay, 0.95 * border, 1e3 * found.early, 1e3 * found.late);
+            ++tried;
+            EXPECT_TRUE(found.touches) << preset.name << delay;
+            EXPECT_LE(found.late, 0.1 * found.early + 3.0 * preset.rotational_quantum.value) << preset.name << delay;
+        }
+    }
+    EXPECT_GE(tried, 8);
+}
+
 TEST(StabilityBorder, AtNineteenTwentiethsOfItTheWholePresetStopsSwinging) {
     // Truth: as above, on a spring that also pulls, translation and rotation, with dry friction, encoder steps and the
     // motors' limits: at most some encoder steps of swing are left.

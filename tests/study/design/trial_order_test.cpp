@@ -16,14 +16,24 @@ Row conditionsOf(const std::vector<PlannedTrial>& trials, std::int64_t block, in
     return row;
 }
 
+/// One within factor with a level for each condition.
+std::vector<PlannedTrial> planSession(std::size_t conditions, const std::vector<BlockPlan>& blocks,
+                                      const SessionKey& key) {
+    Design design;
+    design.factors = {{"factor", FactorKind::Within, conditions}};
+    for (std::size_t level = 0; level < conditions; ++level) design.conditions.push_back({{level}, false});
+    design.blocks = blocks;
+    return *design::planSession(design, key);
+}
+
 std::vector<BlockPlan> practiceAndMain() {
     return {{"practice", "practice", 1, Order::Random, 2}, {"main", "main", 3, Order::Williams, 0}};
 }
 
 TEST(TrialOrder, RelabelsByTheStudysStream) {
     // Truth: independent program (integer arithmetic in Python 3.11 from the definition of the stream).
-    EXPECT_EQ(conditionLabels(4, "demo", 42), (Row{1, 2, 0, 3}));
-    EXPECT_EQ(conditionLabels(8, "peg_in_hole", 20240501), (Row{2, 7, 4, 1, 3, 5, 6, 0}));
+    EXPECT_EQ(relabelling(4, "demo", "", 42), (Row{1, 2, 0, 3}));
+    EXPECT_EQ(relabelling(8, "peg_in_hole", "", 20240501), (Row{2, 7, 4, 1, 3, 5, 6, 0}));
 }
 
 TEST(TrialOrder, GivesEachSlotItsRelabelledRow) {
@@ -101,7 +111,7 @@ TEST(TrialOrder, DependsOnTheSeed) {
     // Truth: invariant: of 40 seeds, the chance that all relabel 8 conditions alike is nil.
     int different = 0;
     for (std::uint64_t seed = 1; seed <= 40; ++seed)
-        different += conditionLabels(8, "demo", seed) != conditionLabels(8, "demo", 0);
+        different += relabelling(8, "demo", "", seed) != relabelling(8, "demo", "", 0);
     EXPECT_GE(different, 38);
 }
 

@@ -157,8 +157,8 @@ TEST(ProtocolReader, RefusesFactorsThatCannotBe) {
     EXPECT_EQ(with("name = \"m\"\nkey = \"contact.spacing_mm\"\nlevels = [1, 2]\n[[factor]]\nname = \"n\"\nlevels = "
                    "[{ label = \"x\", set = { contact = {} } }, { label = \"y\", set = { \"unit\" = \"mm\" } }]\n"),
               "p.toml:25:34: error: factor.n: contact: is also changed by factor m");
-    EXPECT_EQ(with("name = \"m\"\nkey = \"contact.spacing_mm\"\nlevels = [1, 2]\nkind = \"between\"\n"),
-              "p.toml:23:8: error: factor.m.kind: \"between\": must be \"within\"");
+    EXPECT_EQ(with("name = \"m\"\nkey = \"contact.spacing_mm\"\nlevels = [1, 2]\nkind = \"outside\"\n"),
+              "p.toml:23:8: error: factor.m.kind: \"outside\": must be \"within\", \"between\" or \"nuisance\"");
 }
 
 TEST(ProtocolReader, RefusesATaskThatCannotBeDone) {

@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "devices/simulated/presets.h"
+#include "study/design/trial_order.h"
 #include "study/measures/measures.h"
 #include "study/protocol/protocol_reader.h"
 
@@ -55,6 +58,35 @@ TEST(ShippedFiles, PegInHoleHasItsTwelveConditions) {
     EXPECT_EQ(plan->blocks[0].trials, 2);
     EXPECT_EQ(plan->blocks[1].repetitions, 2);
     EXPECT_EQ(plan->measures.size(), measures::definitions().size());
+}
+
+TEST(ShippedFiles, DesignsGivesEveryCombinationEquallyOften) {
+    // Truth: closed form: 8 rows x 2 groups; of 32 conditions everybody meets 4, catch trials apart, in the main block,
+    // each half of the chamfers; over all, each of the 16 without catch stands there 16 x 4 / 16 = 4 times.
+    const auto plan = readShipped("designs/study.toml");
+    ASSERT_TRUE(plan) << toString(plan.errors()[0]);
+    EXPECT_TRUE(plan->warnings.empty());
+    EXPECT_EQ(plan->conditions.size(), 32u);
+    EXPECT_EQ(groupNames(*plan), (std::vector<std::string>{"proxy", "device"}));
+    EXPECT_EQ(sessionsOf(*plan), 2);
+    const auto design = designOf(*plan);
+    ASSERT_EQ(design::sequencesOf(design), 8u);
+    std::map<std::size_t, int> seen;
+    for (std::size_t group = 0; group < 2; ++group)
+        for (std::size_t slot = 0; slot < 8; ++slot) {
+            const auto first = *design::planSession(design, {plan->name, plan->seed, "P001", slot, group, 1});
+            const auto second = *design::planSession(design, {plan->name, plan->seed, "P001", slot, group, 2});
+            ASSERT_EQ(first.size(), 1u + 4u + 2u);
+            ASSERT_EQ(second.size(), 8u);
+            for (std::size_t i = 0; i < first.size(); ++i) {
+                EXPECT_EQ(plan->conditions[first[i].condition].levels[2], group);
+                EXPECT_EQ(first[i].phase == "catch", plan->conditions[first[i].condition].levels[4] == 1);
+                if (first[i].phase == "main") ++seen[first[i].condition];
+            }
+            for (std::size_t i = 1; i < second.size(); ++i) EXPECT_NE(second[i].condition, second[i - 1].condition);
+        }
+    EXPECT_EQ(seen.size(), 16u);
+    for (const auto& [condition, count] : seen) EXPECT_EQ(count, 4) << plan->conditions[condition].name;
 }
 
 TEST(ShippedFiles, HiddenOffsetMovesOnlyTheTouchedPlate) {

@@ -18,6 +18,7 @@ protocol::StudyPlan smallPlan() {
     for (const char* label : {"a", "b", "c", "d"}) {
         protocol::Condition condition;
         condition.name = label;
+        condition.levels = {plan.conditions.size()};
         condition.device = "arm";
         condition.task.timeout = 30.0;
         plan.conditions.push_back(condition);
@@ -30,7 +31,7 @@ protocol::StudyPlan smallPlan() {
 TEST(PlanText, ShowsTheWholeDesign) {
     // Truth: independent program (Python 3.11, the streams and squares from their definitions) for the orders;
     // 14 trials of at most 30 s are 7 min.
-    EXPECT_EQ(describePlan(smallPlan(), 2), R"(A demonstration
+    EXPECT_EQ(*describePlan(smallPlan(), 2), R"(A demonstration
 study demo, version 1, seed 42, 4 participants planned
 
 Factors (within participants)
@@ -60,7 +61,7 @@ TEST(PlanText, RepeatsTheWarnings) {
     // Truth: invariant: what the reader warned of must not get lost.
     auto plan = smallPlan();
     plan.warnings = {"too few"};
-    EXPECT_NE(describePlan(plan, 1).find("\nwarning: too few\n"), std::string::npos);
+    EXPECT_NE(describePlan(plan, 1)->find("\nwarning: too few\n"), std::string::npos);
 }
 
 TEST(PlanText, WarnsOfUnbalancedNumbers) {
@@ -77,7 +78,7 @@ TEST(PlanText, WarnsOfUnbalancedNumbers) {
 
 TEST(ParticipantOrder, FollowsTheBlocksOfTheProtocol) {
     // Truth: closed form: block 0 has 2 practice trials, block 1 three passes of four.
-    const auto trials = planTrials(smallPlan(), 0, "P001");
+    const auto trials = *planTrials(smallPlan(), {}, "P001");
     ASSERT_EQ(trials.size(), 14u);
     EXPECT_EQ(trials[1].phase, "practice");
     EXPECT_EQ(trials[2].phase, "main");

@@ -31,14 +31,18 @@ public:
     std::int64_t ticks_after_stop = 0;       // the loop's last ticks, still in the ring when stop() returns
     std::size_t fail_prepare_at = SIZE_MAX;  // index of the trial
     std::vector<std::uint64_t> seeds;
+    std::vector<std::int64_t> trials_before;
     std::int64_t most_ticks_at_once = 0;
+    std::int64_t waited_ticks = 0;
 
     const DeviceDescription& device() const override { return device_; }
 
-    Result<std::vector<StageNote>> prepare(const protocol::Condition& condition, std::uint64_t seed) override {
+    Result<std::vector<StageNote>> prepare(const protocol::Condition& condition, std::uint64_t seed,
+                                           std::int64_t before) override {
         log_.push_back("prepare " + condition.name);
         if (seeds.size() == fail_prepare_at) return Error{"the mesh is gone", {}, 0, 0, {}, {}};
         seeds.push_back(seed);
+        trials_before.push_back(before);
         return std::vector<StageNote>{{"query", "parts can touch"}};
     }
     void start() override {
@@ -47,6 +51,10 @@ public:
         scripts.pop_front();
         taken_ = 0;
         tick_ = 0;
+    }
+    void wait(std::int64_t ticks) override {
+        waited_ticks += ticks;
+        most_ticks_at_once = std::max(most_ticks_at_once, ticks);
     }
     void halt() override { log_.push_back("halt"); }
     void rearm() override { log_.push_back("rearm"); }

@@ -38,6 +38,29 @@ TEST_F(SessionTest, CallsComeInTheOrderThatKeepsDataSafe) {
     EXPECT_EQ(apparatus_.most_ticks_at_once, Session::kTicksPerLook);
 }
 
+TEST_F(SessionTest, RestsBeforeABlockAndSaysWhenTheDeviceIsSwapped) {
+    // Truth: closed form: the second block asks for 2.05 s before its first trial, nothing before its second.
+    planTrials({successScript(), successScript(), successScript()});
+    plan_.blocks.resize(2);
+    plan_.blocks[1].rest = 2.05;
+    for (std::size_t i = 1; i < 3; ++i) {
+        trials_[i].block_index = 1;
+        trials_[i].block = "late";
+        trials_[i].trial_in_block = static_cast<std::int64_t>(i) - 1;
+    }
+    plan_.conditions[0].device = "arm";
+    plan_.conditions[1].device = "stick";
+    ASSERT_TRUE(runSession());
+    EXPECT_EQ(apparatus_.waited_ticks, 2050);
+    EXPECT_EQ(apparatus_.most_ticks_at_once, Session::kTicksPerRest);
+    std::vector<std::string> notes;
+    for (const Event& event : sink_.events)
+        if (!event.attempt) notes.push_back(event.event + " " + event.payload_json);
+    EXPECT_EQ(notes, (std::vector<std::string>{R"(rest_started {"block":"late"})", R"(rest_ended {"block":"late"})",
+                                               R"(swap_device {"to":"stick"})", R"(swap_device {"to":"arm"})"}));
+    EXPECT_EQ(sink_.starts[1].start_ns, sink_.starts[0].start_ns + 1560 * kMs + 2050 * kMs);
+}
+
 TEST_F(SessionTest, EveryTickThatTheLoopMadeIsStoredBeforeTheAttemptIsFinished) {
     // Truth: invariant. The decision falls in tick 1550, in the look up to tick 1559; 30 more come while stopping.
     apparatus_.ticks_after_stop = 30;
@@ -77,6 +100,7 @@ TEST_F(SessionTest, SeedBelongsToParticipantTrialAndAttemptAndNotToWhatRanBefore
     planTrials({successScript(), successScript()});
     ASSERT_TRUE(runSession());
     ASSERT_EQ(apparatus_.seeds.size(), 2u);
+    EXPECT_EQ(apparatus_.trials_before, (std::vector<std::int64_t>{0, 1}));
     EXPECT_NE(apparatus_.seeds[0], apparatus_.seeds[1]);
     EXPECT_EQ(sink_.starts[1].seed, apparatus_.seeds[1]);
     const SessionSetup resumed{plan_, {trials_[1]}, "P001", 7, false};

@@ -28,7 +28,7 @@ LoopApparatus makeApparatus() { return {*simulated::findPreset("sigma7"), {}, Cl
 
 Names stagesOf(const protocol::Condition& c) {
     LoopApparatus apparatus = makeApparatus();
-    const auto stages = apparatus.prepare(c, 1);
+    const auto stages = apparatus.prepare(c, 1, 0);
     Names names;
     for (const session::StageNote& stage : *stages) {
         EXPECT_FALSE(stage.reason.empty()) << stage.name;
@@ -41,7 +41,7 @@ Names stagesOf(const protocol::Condition& c) {
 std::pair<std::vector<TickRecord>, session::LoopHealth> runTicks(const protocol::Condition& c, std::uint64_t seed,
                                                                  std::int64_t ticks) {
     LoopApparatus apparatus = makeApparatus();
-    EXPECT_TRUE(apparatus.prepare(c, seed));
+    EXPECT_TRUE(apparatus.prepare(c, seed, 0));
     apparatus.start();
     std::vector<TickRecord> records;
     std::array<TickRecord, 64> buffer;
@@ -76,7 +76,7 @@ TEST(LoopApparatus, RefusesADeviceThatItDoesNotKnow) {
     protocol::Condition other = condition("fair");
     other.device = "sigma8";
     LoopApparatus apparatus = makeApparatus();
-    const auto stages = apparatus.prepare(other, 1);
+    const auto stages = apparatus.prepare(other, 1, 0);
     ASSERT_FALSE(stages);
     EXPECT_EQ(stages.errors().front().key, "device.preset");
     EXPECT_EQ(stages.errors().front().value, "sigma8");
@@ -95,12 +95,26 @@ TEST(LoopApparatus, GivesARecordForEveryTickAndTheSameHashForTheSameSeed) {
     EXPECT_NE(runTicks(condition("fair"), 6, 800).second.state_hash, health.state_hash);
 }
 
+TEST(LoopApparatus, APersonMovesOtherwiseInALaterTrial) {
+    // Truth: invariant; reaching for the start is alike, the way to the bore is practised.
+    LoopApparatus apparatus = makeApparatus();
+    std::vector<std::uint64_t> hashes;
+    for (const std::int64_t trials_before : {0, 40, 0}) {
+        ASSERT_TRUE(apparatus.prepare(condition("fair"), 9, trials_before));
+        apparatus.start();
+        apparatus.advance(3000);
+        hashes.push_back(apparatus.stop().state_hash);
+    }
+    EXPECT_EQ(hashes[0], hashes[2]);
+    EXPECT_NE(hashes[0], hashes[1]);
+}
+
 TEST(LoopApparatus, BeginsEveryTrialAnew) {
     // Truth: invariant (a trial does not depend on what the same apparatus did before)
     LoopApparatus apparatus = makeApparatus();
     std::vector<std::uint64_t> hashes;
     for (const char* name : {"fair", "none", "fair"}) {
-        ASSERT_TRUE(apparatus.prepare(condition(name), 9));
+        ASSERT_TRUE(apparatus.prepare(condition(name), 9, 0));
         apparatus.start();
         apparatus.advance(500);
         hashes.push_back(apparatus.stop().state_hash);
@@ -113,18 +127,18 @@ TEST(LoopApparatus, AHaltEndsTheTicksUntilItIsRearmed) {
     // Truth: invariant: motors stay off however often an attempt is started; the attempt after rearm() is a whole one.
     const std::uint64_t undisturbed = runTicks(condition("fair"), 5, 100).second.state_hash;
     LoopApparatus apparatus = makeApparatus();
-    ASSERT_TRUE(apparatus.prepare(condition("fair"), 5));
+    ASSERT_TRUE(apparatus.prepare(condition("fair"), 5, 0));
     apparatus.start();
     apparatus.advance(20);
     apparatus.halt();
     apparatus.advance(20);
     EXPECT_EQ(apparatus.stop().ticks, 20);
-    ASSERT_TRUE(apparatus.prepare(condition("fair"), 5));
+    ASSERT_TRUE(apparatus.prepare(condition("fair"), 5, 0));
     apparatus.start();
     apparatus.advance(20);
     EXPECT_EQ(apparatus.stop().ticks, 0);
     apparatus.rearm();
-    ASSERT_TRUE(apparatus.prepare(condition("fair"), 5));
+    ASSERT_TRUE(apparatus.prepare(condition("fair"), 5, 0));
     apparatus.start();
     apparatus.advance(100);
     EXPECT_EQ(apparatus.stop().state_hash, undisturbed);
@@ -133,7 +147,7 @@ TEST(LoopApparatus, AHaltEndsTheTicksUntilItIsRearmed) {
 TEST(LoopApparatus, AHaltInRealTimeEndsTheLoopAfterItsRunningTick) {
     // Truth: invariant. A halt before the start lets no tick happen; one from another thread ends what runs.
     LoopApparatus apparatus(*simulated::findPreset("sigma7"), {}, Clock::RealTime);
-    ASSERT_TRUE(apparatus.prepare(condition("none"), 5));
+    ASSERT_TRUE(apparatus.prepare(condition("none"), 5, 0));
     apparatus.start();
     apparatus.advance(20);
     std::thread([&] { apparatus.halt(); }).join();
@@ -141,7 +155,7 @@ TEST(LoopApparatus, AHaltInRealTimeEndsTheLoopAfterItsRunningTick) {
     EXPECT_GT(ticks, 0);
     std::array<TickRecord, 256> buffer;
     EXPECT_EQ(static_cast<std::int64_t>(apparatus.takeRecords(buffer)), ticks);
-    ASSERT_TRUE(apparatus.prepare(condition("none"), 5));
+    ASSERT_TRUE(apparatus.prepare(condition("none"), 5, 0));
     apparatus.start();
     apparatus.advance(20);
     EXPECT_EQ(apparatus.stop().ticks, 0);

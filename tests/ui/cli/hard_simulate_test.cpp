@@ -12,9 +12,8 @@ namespace {
 constexpr double kRounding = 1e-9;  // of a path with rotations, and what a spring makes of it
 
 TEST(HardSimulate, TheProgramGivesWhatTheHardCasesJudge) {
-    // Truth: independent program (the same scene file and path through `passung simulate`, read
-    // back exactly but for quaternions, whose length is made 1 once more). Among the paths: a sensor that lies, a
-    // device in the loop, an open sheet.
+    // Truth: invariant. The same scene file and path through `passung simulate`, read back exactly but for quaternions,
+    // whose length is made 1 once more. Among the paths: a sensor that lies, a device in the loop, an open sheet.
     const TempFolder folder;
     for (const char* name : {"sheet_edge", "lying_device", "border_stiffness", "a10_cone", "mesh_flipped"}) {
         SCOPED_TRACE(name);
@@ -44,6 +43,30 @@ TEST(HardSimulate, TheProgramGivesWhatTheHardCasesJudge) {
         }
         EXPECT_EQ(different, 0);
     }
+}
+
+TEST(HardSimulate, ThePressOfABallIsTheSpringOfItsDepth) {
+    // Truth: closed form. A ball of 20 mm rests 1 mm too low over a table at z = 0: its proxy lies on the table within
+    // the tolerance of 20 um, and the spring of 1000 N/m pushes with 1 N up and with nothing aside.
+    const TempFolder folder;
+    const hard::Case some = *hard::findCase("a13_cycle");
+    const auto run = hard::runCase(some, model::ContactMethod::GodObjectHeuristic, 0, false);
+    ASSERT_TRUE(run);
+    writeText(folder / "path.csv", hard::trajectoryCsv(*run));
+    const Ended ended = runProgram(
+        folder.path(), {"simulate", hard::hardScenePath(some.scene), "--trajectory", "path.csv", "--out", "out.csv"});
+    ASSERT_EQ(ended.exit_code, 0) << ended.err;
+    const fake::CsvFile t = fake::readCsv(readText(folder / "out.csv"));
+    int pressed = 0;
+    for (std::size_t i = 1; i < t.rows.size(); ++i) {
+        const auto number = [&](const char* column) { return std::stod(t.at(i, column)); };
+        if (std::abs(number("device_z_m") - 9e-3) > 1e-12) continue;
+        ++pressed;
+        EXPECT_NEAR(number("proxy_z_m"), 10e-3, 20e-6);
+        EXPECT_NEAR(number("force_z_N"), 1.0, 0.02);
+        EXPECT_NEAR(number("force_x_N"), 0.0, 1e-9);
+    }
+    EXPECT_GE(pressed, 20);
 }
 
 }  // namespace

@@ -60,4 +60,11 @@ repetitions = 3
 )";
 }
 
+/// The same with a chance in both conditions.
+inline std::string fairStudy() {
+    std::string text = smallStudy();
+    const std::string hopeless = "\"task.timeout_s\" = 0.4";
+    return text.replace(text.find(hopeless), hopeless.size(), "\"task.timeout_s\" = 20");
+}
+
 }  // namespace passung::test

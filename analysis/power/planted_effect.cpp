@@ -1,0 +1,114 @@
+#include "analysis/power/planted_effect.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <string_view>
+
+namespace passung::power {
+namespace {
+
+Error wrong(const char* key, const std::string& value, const std::string& requirement) {
+    return {.message = requirement, .key = key, .value = value};
+}
+
+std::optional<double> numberIn(std::string_view text) {
+    if (text.starts_with('+')) text.remove_prefix(1);
+    double number = 0.0;
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (problem != std::errc() || end != text.data() + text.size() || !std::isfinite(number)) return std::nullopt;
+    return number;
+}
+
+template <class Items, class Name>
+std::string listed(const Items& items, Name name) {
+    std::string text;
+    for (const auto& item : items) text += (text.empty() ? "" : ", ") + name(item);
+    return text;
+}
+
+bool hasLevel(const protocol::Factor& factor, const std::string& label) {
+    return std::any_of(factor.levels.begin(), factor.levels.end(),
+                       [&](const protocol::Level& level) { return level.label == label; });
+}
+
+/// Sets scale or shift.
+bool readDelta(std::string_view text, PlantedEffect& effect) {
+    if (text.starts_with('x')) {
+        const auto scale = numberIn(text.substr(1));
+        effect.scale = scale.value_or(0.0);
+        return scale && *scale > 0.0;
+    }
+    const auto shift = numberIn(text);
+    effect.shift = shift.value_or(0.0);
+    return shift && (text.starts_with('+') || text.starts_with('-'));
+}
+
+}  // namespace
+
+Result<PlantedEffect> readEffect(const std::string& text, const std::string& against, const std::string& measure,
+                                 const protocol::StudyPlan& plan) {
+    const std::size_t colon = text.find(':'), equals = text.rfind('=');
+    if (colon == std::string::npos || equals == std::string::npos || equals < colon)
+        return wrong("--effect", text, "must be FACTOR:LEVEL=DELTA");
+    PlantedEffect effect;
+    effect.factor = text.substr(0, colon);
+    effect.level = text.substr(colon + 1, equals - colon - 1);
+    effect.measure = measure;
+    if (!readDelta(std::string_view(text).substr(equals + 1), effect))
+        return wrong("--effect", text, "DELTA must be +NUMBER or -NUMBER, added, or xNUMBER > 0, multiplied");
+    const auto factor = std::find_if(plan.factors.begin(), plan.factors.end(),
+                                     [&](const protocol::Factor& f) { return f.name == effect.factor; });
+    if (factor == plan.factors.end())
+        return wrong("--effect", effect.factor,
+                     "must be a factor: " + listed(plan.factors, [](const auto& f) { return f.name; }));
+    if (factor->kind != protocol::FactorKind::Within)
+        return wrong("--effect", effect.factor, "must vary within participants: the test is paired");
+    const std::string levels = "must be a level of " + factor->name + ": " +
+                               listed(factor->levels, [](const auto& level) { return level.label; });
+    if (!hasLevel(*factor, effect.level)) return wrong("--effect", effect.level, levels);
+    effect.against = against;
+    if (against.empty()) effect.against = factor->levels[factor->levels[0].label == effect.level ? 1 : 0].label;
+    if (!hasLevel(*factor, effect.against)) return wrong("--against", against, levels);
+    if (effect.against == effect.level) return wrong("--against", against, "must be another level than the effect's");
+    if (std::find(plan.measures.begin(), plan.measures.end(), measure) == plan.measures.end())
+        return wrong("--measure", measure,
+                     "must be a measure of the protocol: " + listed(plan.measures, [](const auto& m) { return m; }));
+    return effect;
+}
+
+std::optional<double> addedBy(const std::string& text) {
+    const std::string delta = text.substr(text.rfind('=') + 1);
+    return delta.starts_with('x') ? std::nullopt : numberIn(delta);
+}
+
+void plant(const PlantedEffect& effect, exporter::StudyData& study) {
+    for (store::AttemptRow& attempt : study.attempts) {
+        if (exporter::levelOf(attempt.levels, effect.factor) != effect.level) continue;
+        if (const auto found = attempt.measures.find(effect.measure); found != attempt.measures.end())
+            found->second = effect.scale * found->second + effect.shift;
+    }
+}
+
+stats::PairedT testEffect(const PlantedEffect& effect, const exporter::StudyData& study) {
+    struct Means {
+        std::vector<double> at_level, at_other;
+    };
+    std::map<std::string, Means> people;
+    for (const exporter::Cell& cell : exporter::cellsOf(study)) {
+        const std::string level = exporter::levelOf(cell.condition->levels, effect.factor);
+        Means& means = people[cell.participant_id];
+        const double mean = exporter::meanOf(exporter::valuesOf(cell.attempts, effect.measure));
+        if (level == effect.level) means.at_level.push_back(mean);
+        if (level == effect.against) means.at_other.push_back(mean);
+    }
+    std::vector<double> differences;
+    for (const auto& [code, means] : people) {
+        const double difference = exporter::meanOf(means.at_level) - exporter::meanOf(means.at_other);
+        if (std::isfinite(difference)) differences.push_back(difference);
+    }
+    return stats::pairedT(differences);
+}
+
+}  // namespace passung::power

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "analysis/export/study_data.h"
+#include "analysis/stats/paired_t.h"
+#include "core/base/result.h"
+#include "study/protocol/study_plan.h"
+
+namespace passung::power {
+
+/// What every virtual study is given on top of its own data: in all attempts of one level of a factor the measure is
+/// multiplied, then shifted. The test compares that level with another one.
+struct PlantedEffect {
+    std::string factor;
+    std::string level;
+    std::string against;  // the other level
+    std::string measure;
+    double scale = 1.0;
+    double shift = 0.0;  // in the measure's unit
+};
+
+/// From "FACTOR:LEVEL=DELTA": DELTA is "+0.3" or "-0.3", added, or "x1.2", multiplied. Without `against` the level is
+/// compared with the factor's first other one. An error names what the plan does not have.
+Result<PlantedEffect> readEffect(const std::string& text, const std::string& against, const std::string& measure,
+                                 const protocol::StudyPlan& plan);
+
+/// Of an effect that is only added, what it adds; from the text that readEffect takes.
+std::optional<double> addedBy(const std::string& text);
+
+void plant(const PlantedEffect& effect, exporter::StudyData& study);
+
+/// The paired t test of a virtual study: a participant's difference is the mean of their cells' means at the level less
+/// that at the other. Cells and means are those of the exports. Whoever has no value in a cell of either is left out.
+stats::PairedT testEffect(const PlantedEffect& effect, const exporter::StudyData& study);
+
+}  // namespace passung::power

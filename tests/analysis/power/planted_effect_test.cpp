@@ -1,0 +1,128 @@
+#include "analysis/power/planted_effect.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "analysis/power/model_study.h"
+#include "tests/analysis/power/small_plan.h"
+
+namespace passung::power {
+namespace {
+
+using test::smallPlan;
+
+constexpr const char* kTime = "completion_time_s";
+
+PlantedEffect effectOf(const std::string& text, const std::string& against = "") {
+    const auto effect = readEffect(text, against, kTime, smallPlan());
+    if (!effect) throw std::runtime_error(toString(effect.errors().front()));
+    return *effect;
+}
+
+TEST(PlantedEffect, IsReadAsWritten) {
+    // Truth: invariant
+    const PlantedEffect added = effectOf("method:b=c=-0.25");
+    EXPECT_EQ(added.factor, "method");
+    EXPECT_EQ(added.level, "b=c");
+    EXPECT_EQ(added.against, "a");
+    EXPECT_EQ(added.scale, 1.0);
+    EXPECT_EQ(added.shift, -0.25);
+    const PlantedEffect scaled = effectOf("size:1=x1.5");
+    EXPECT_EQ(scaled.against, "2");
+    EXPECT_EQ(scaled.scale, 1.5);
+    EXPECT_EQ(scaled.shift, 0.0);
+    EXPECT_EQ(effectOf("method:a=+0", "d").against, "d");
+    EXPECT_EQ(addedBy("method:b=c=-0.25"), -0.25);
+    EXPECT_EQ(addedBy("method:a=+0"), 0.0);
+    EXPECT_FALSE(addedBy("method:a=x1.5"));
+}
+
+TEST(PlantedEffect, NamesWhatThePlanDoesNotHave) {
+    // Truth: invariant: key, value and requirement of each planted fault
+    const auto message = [](const std::string& text, const std::string& against = "",
+                            const std::string& measure = kTime) {
+        const auto effect = readEffect(text, against, measure, smallPlan());
+        return effect ? std::string("accepted") : toString(effect.errors().front());
+    };
+    EXPECT_EQ(message("method"), "error: --effect: method: must be FACTOR:LEVEL=DELTA");
+    EXPECT_EQ(message("speed:a=+1"), "error: --effect: speed: must be a factor: method, size");
+    EXPECT_EQ(message("method:e=+1"), "error: --effect: e: must be a level of method: a, b=c, d");
+    EXPECT_EQ(message("method:a=+1", "e"), "error: --against: e: must be a level of method: a, b=c, d");
+    EXPECT_EQ(message("method:a=+1", "a"), "error: --against: a: must be another level than the effect's");
+    EXPECT_EQ(message("method:a=+1", "", "tip"),
+              "error: --measure: tip: must be a measure of the protocol: completion_time_s, peak_force_N");
+    for (const char* delta : {"1", "x0", "x-2", "+", "x", "+inf", "+1s", ""})
+        EXPECT_NE(message(std::string("method:a=") + delta).find("DELTA must be"), std::string::npos) << delta;
+}
+
+TEST(PlantedEffect, ChangesTheMeasureAtItsLevelOnly) {
+    // Truth: closed form
+    const exporter::StudyData before = modelStudy(smallPlan(), 2);
+    exporter::StudyData after = before;
+    PlantedEffect effect = effectOf("method:d=x2");
+    effect.shift = 0.5;
+    plant(effect, after);
+    ASSERT_EQ(after.attempts.size(), 2u * 13u);
+    int changed = 0;
+    for (std::size_t i = 0; i < after.attempts.size(); ++i) {
+        const double was = before.attempts[i].measures.at(kTime), is = after.attempts[i].measures.at(kTime);
+        const bool there = after.attempts[i].condition.starts_with("d/");
+        EXPECT_DOUBLE_EQ(is, there ? 2.0 * was + 0.5 : was);
+        changed += there ? 1 : 0;
+    }
+    EXPECT_GE(changed, 8);
+}
+
+/// One participant's values in the conditions of the small plan, twice each.
+void append(exporter::StudyData& study, const std::string& code, const std::vector<double>& values) {
+    for (std::size_t c = 0; c < values.size(); ++c) {
+        for (const double deviation : {-0.5, 0.5}) {
+            store::AttemptRow row;
+            row.participant_id = row.session_id = code;
+            row.phase = "main";
+            row.valid = true;
+            row.outcome = "success";
+            row.condition = study.conditions[c].condition;
+            row.levels = study.conditions[c].levels;
+            if (std::isfinite(values[c])) row.measures[kTime] = values[c] + deviation;
+            study.attempts.push_back(row);
+        }
+    }
+    store::SessionRow session;
+    session.participant_id = session.session_id = code;
+    study.sessions.push_back(session);
+}
+
+TEST(TestEffect, ComparesMeansOfCellMeans) {
+    // Truth: closed form. Levels a and d of three people: means over the sizes 1 and 2; the fourth lacks a cell.
+    exporter::StudyData study = modelStudy(smallPlan(), 0);
+    append(study, "S001", {1, 3, 9, 9, 4, 4});  // a 2, d 4
+    append(study, "S002", {1, 1, 9, 9, 1, 5});  // a 1, d 3
+    append(study, "S003", {2, 4, 9, 9, 6, 8});  // a 3, d 7
+    append(study, "S004", {2, 4, 9, 9, std::nan(""), 8});
+    const stats::PairedT test = testEffect(effectOf("method:d=+0"), study);
+    EXPECT_EQ(test.n, 3u);
+    EXPECT_NEAR(test.mean, 8.0 / 3.0, 1e-12);
+    EXPECT_NEAR(test.sd, std::sqrt(4.0 / 3.0), 1e-12);
+    EXPECT_NEAR(test.t, 4.0, 1e-12);
+    EXPECT_NEAR(testEffect(effectOf("method:a=+0", "d"), study).mean, -8.0 / 3.0, 1e-12);
+}
+
+TEST(ModelStudy, IsTheSameForTheSamePlanAndDiffersBetweenPeople) {
+    // Truth: invariant
+    const auto timesOf = [](const exporter::StudyData& study) {
+        std::vector<double> times;
+        for (const auto& attempt : study.attempts) times.push_back(attempt.measures.at(kModelMeasure));
+        return times;
+    };
+    const std::vector<double> times = timesOf(modelStudy(smallPlan(), 3));
+    EXPECT_EQ(times, timesOf(modelStudy(smallPlan(), 3)));
+    protocol::StudyPlan other = smallPlan();
+    other.seed = 12;
+    EXPECT_NE(times, timesOf(modelStudy(other, 3)));
+    for (std::size_t i = 0; i < 13; ++i) EXPECT_NE(times[i], times[13 + i]);
+}
+
+}  // namespace
+}  // namespace passung::power

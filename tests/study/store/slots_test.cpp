@@ -1,0 +1,98 @@
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "core/base/random.h"
+#include "study/store/store_reader.h"
+#include "tests/study/store/fake_study.h"
+
+namespace passung::store {
+namespace {
+
+using fake::require;
+
+/// 4 orders of method × clearance for each of two groups.
+protocol::StudyPlan twoGroups(int participants) {
+    protocol::StudyPlan plan = fake::makePlan();
+    plan.participants = participants;
+    plan.factors.push_back({"training", protocol::FactorKind::Between, "", {{"none"}, {"long"}}});
+    const auto half = plan.conditions;
+    plan.conditions.clear();
+    for (std::size_t i = 0; i < half.size(); ++i)
+        for (std::size_t training = 0; training < 2; ++training) {
+            plan.conditions.push_back(half[i]);
+            plan.conditions.back().name += training == 0 ? "/none" : "/long";
+            plan.conditions.back().levels = {i / 2, i % 2, training};
+        }
+    plan.expanded_json = R"({"name": "fake", "seed": )" + std::to_string(plan.seed) +
+                         R"(, "groups": ["none", "long"], "allocation_blocks": 1, "sessions": 2})";
+    return plan;
+}
+
+/// One session of the participant without trials; false: it does not complete.
+void hold(Store& store, const protocol::StudyPlan& plan, const std::string& sha, const std::string& code,
+          bool complete) {
+    SessionStart start;
+    start.protocol_sha256 = sha;
+    start.participant = code;
+    start.ordinal = require(store.nextOrdinal(code));
+    start.seed = plan.seed;
+    start.session_id = sessionId(plan.name, code, start.ordinal, start.seed);
+    start.device.name = "sigma7";
+    const auto writer = require(store.createSession(start, {}));
+    require(writer->finishSession(complete, 1000));
+}
+
+TEST(Slots, StayBalancedWhenThreeInTenDropOut) {
+    // Truth: invariant: 32 people who complete fill 2 groups × 4 rows 4 times each, whoever left in between.
+    const fake::TempFolder folder;
+    const auto store = fake::openStore(folder / "s.db");
+    const protocol::StudyPlan plan = twoGroups(32);
+    const std::string sha = require(store->importProtocol(plan));
+    Random random(5);
+    std::map<std::pair<std::size_t, std::int64_t>, int> completed;
+    int done = 0, left = 0;
+    for (std::int64_t number = 1; done < 32; ++number) {
+        const std::string code = protocol::participantCode(protocol::ParticipantKind::Real, number);
+        require(store->enrol(code, protocol::ParticipantKind::Real, "2001-01-01T00:00:00.000Z"));
+        const Slot slot = require(store->assignSlot(sha, code));
+        const bool stays = random.uniform() >= 0.3;
+        hold(*store, plan, sha, code, stays);
+        if (stays) ++completed[{slot.group, slot.sequence_index}], ++done;
+        left += stays ? 0 : 1;
+    }
+    EXPECT_GE(left, 5) << "else nothing was tested";
+    EXPECT_EQ(completed.size(), 8u);
+    for (const auto& [place, count] : completed) EXPECT_EQ(count, 4);
+}
+
+TEST(Slots, AreKeptOverAParticipantsSessions) {
+    // Truth: invariant: two sessions, one person, one row; the second may fail and be done again.
+    const fake::TempFolder folder;
+    const protocol::StudyPlan plan = twoGroups(8);
+    const std::string code = "P001";
+    Slot slot;
+    std::string sha;
+    {
+        const auto store = fake::openStore(folder / "s.db");
+        sha = require(store->importProtocol(plan));
+        require(store->enrol(code, protocol::ParticipantKind::Real, "2001-01-01T00:00:00.000Z"));
+        slot = require(store->assignSlot(sha, code));
+        EXPECT_EQ(require(store->nextPart(sha, code)), 1);
+        hold(*store, plan, sha, code, true);
+        EXPECT_EQ(require(store->nextPart(sha, code)), 2);
+        hold(*store, plan, sha, code, false);
+    }
+    const auto store = fake::openStore(folder / "s.db");
+    const Slot again = require(store->assignSlot(sha, code));
+    EXPECT_EQ(again.number, slot.number);
+    EXPECT_EQ(again.group, slot.group);
+    EXPECT_EQ(require(store->nextPart(sha, code)), 2);
+    EXPECT_EQ(require(require(StoreReader::open(folder / "s.db")).participants())[0].status, "enrolled");
+    hold(*store, plan, sha, code, true);
+    EXPECT_EQ(require(require(StoreReader::open(folder / "s.db")).participants())[0].status, "complete");
+    EXPECT_FALSE(store->assignSlot(sha, code)) << "nobody takes part twice";
+}
+
+}  // namespace
+}  // namespace passung::store

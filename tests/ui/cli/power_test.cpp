@@ -1,0 +1,124 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "analysis/power/power_file.h"
+#include "analysis/power/power_runs.h"
+#include "tests/analysis/export/csv_reader.h"
+#include "tests/ui/cli/program.h"
+#include "tests/ui/cli/small_study.h"
+
+namespace passung::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Words = std::vector<std::string>;
+
+class Power : public testing::Test {
+protected:
+    Power() { writeText(folder_ / "fair.toml", fairStudy()); }
+
+    Ended power(Words more) const {
+        more.insert(more.begin(), "power");
+        return runProgram(folder_.path(), more);
+    }
+    Ended model(Words more) const {
+        const Words job = {"fair.toml", "--effect", "chance:fair=+0.5", "--simulation", "model", "--repeats", "40"};
+        more.insert(more.begin(), job.begin(), job.end());
+        return power(more);
+    }
+
+    TempFolder folder_;
+};
+
+TEST_F(Power, ShardsMergeToTheBytesOfTheUnshardedRun) {
+    // Truth: invariant, byte for byte
+    const Ended whole = model({"--out", "whole.csv"});
+    ASSERT_EQ(whole.exit_code, 0) << whole.err;
+    EXPECT_NE(whole.out.find("95 % interval"), std::string::npos) << whole.out;
+    Words merge = {"--merge"};
+    for (const std::string i : {"3", "1", "2"}) {
+        ASSERT_EQ(model({"--shard", i + "/3", "--out", "s" + i + ".csv"}).exit_code, 0);
+        merge.push_back("s" + i + ".csv");
+    }
+    merge.insert(merge.end(), {"--out", "merged.csv"});
+    const Ended merged = power(merge);
+    ASSERT_EQ(merged.exit_code, 0) << merged.err;
+    EXPECT_EQ(readText(folder_ / "merged.csv"), readText(folder_ / "whole.csv"));
+    EXPECT_EQ(merged.out, whole.out);
+}
+
+TEST_F(Power, AFinishedShardIsNotRunAgain) {
+    // Truth: invariant: a row that only this test can have written survives.
+    ASSERT_EQ(model({"--shard", "2/2", "--out", "s.csv"}).exit_code, 0);
+    std::string text = readText(folder_ / "s.csv");
+    const std::size_t row = text.find("\n1,4,") + 5;
+    text.replace(row, text.find(',', row) - row, "123.5");
+    writeText(folder_ / "s.csv", text);
+    const Ended again = model({"--shard", "2/2", "--out", "s.csv"});
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_NE(again.out.find("nothing was run"), std::string::npos) << again.out;
+    EXPECT_EQ(readText(folder_ / "s.csv"), text);
+}
+
+TEST_F(Power, AFileOfAnotherJobOrATornOneIsRefusedAndKept) {
+    // Truth: invariant
+    ASSERT_EQ(model({"--out", "s.csv"}).exit_code, 0);
+    const std::string text = readText(folder_ / "s.csv");
+    const Ended other = model({"--seed", "8", "--out", "s.csv"});
+    EXPECT_EQ(other.exit_code, 1);
+    EXPECT_EQ(other.err, "s.csv: error: --out: holds another job or shard; name another file\n");
+    EXPECT_EQ(model({"--shard", "1/2", "--out", "s.csv"}).exit_code, 1);
+    EXPECT_EQ(readText(folder_ / "s.csv"), text);
+    writeText(folder_ / "s.csv", text.substr(0, text.size() / 2));
+    EXPECT_EQ(model({"--out", "s.csv"}).exit_code, 1);
+    EXPECT_EQ(power({"--merge", "s.csv"}).exit_code, 1);
+    EXPECT_EQ(power({"--merge", "absent.csv"}).err, "absent.csv: error: cannot be read\n");
+}
+
+TEST_F(Power, WrongUsageIsTwoAndWhatTheStudyLacksIsOne) {
+    // Truth: invariant
+    EXPECT_EQ(power({}).exit_code, 2);
+    EXPECT_EQ(power({"fair.toml"}).exit_code, 2);
+    EXPECT_EQ(model({"--shard", "1/2"}).exit_code, 2);
+    for (const char* shard : {"0/2", "3/2", "1", "1/2x", "/"})
+        EXPECT_EQ(model({"--shard", shard, "--out", "s.csv"}).exit_code, 2) << shard;
+    EXPECT_EQ(power({"--merge", "s.csv", "--alpha", "0.1"}).exit_code, 2);
+    EXPECT_EQ(model({"--merge", "s.csv"}).exit_code, 2);
+    const Ended level = power({"fair.toml", "--effect", "chance:good=+1"});
+    EXPECT_EQ(level.exit_code, 1);
+    EXPECT_EQ(level.err, "error: --effect: good: must be a level of chance: none, fair\n");
+    const Ended measure = model({"--measure", "peak_force_N"});
+    EXPECT_EQ(measure.exit_code, 1);
+    EXPECT_EQ(measure.err, "error: --measure: peak_force_N: the model has completion_time_s only\n");
+    EXPECT_FALSE(fs::exists(folder_ / "s.csv"));
+}
+
+TEST_F(Power, AVirtualStudyIsARunAndItsExportWithTheEffectOnTop) {
+    // Truth: independent path: the same seed through `run` and `export`; the means of cells_long.csv.
+    const Ended planted = power(
+        {"fair.toml", "--effect", "chance:fair=+0.25", "--participants", "2", "--repeats", "1", "--out", "p.csv"});
+    ASSERT_EQ(planted.exit_code, 0) << planted.err;
+    const auto result = power::readPowerText(readText(folder_ / "p.csv"), "p.csv");
+    ASSERT_TRUE(result);
+
+    protocol::StudyPlan plan;
+    plan.name = "small";
+    plan.seed = 7;
+    const std::string seed = std::to_string(power::runSeed(plan, 0));
+    const Ended run =
+        runProgram(folder_.path(), {"run", "fair.toml", "--simulated", "2", "--seed", seed, "--db", "s.db"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    ASSERT_EQ(runProgram(folder_.path(), {"export", "s.db", "--out", "e", "--no-samples"}).exit_code, 0);
+    std::map<std::string, double> sums;  // level: sum over both participants
+    const fake::CsvFile cells = fake::readCsv(readText(folder_.path() / "e" / "cells_long.csv"));
+    for (std::size_t row = 0; row < cells.rows.size(); ++row)
+        sums[cells.at(row, "chance")] += std::stod(cells.at(row, "completion_time_s.mean"));
+    EXPECT_EQ(result->tests.front().test.n, 2u);
+    EXPECT_NEAR(result->tests.front().test.mean, (sums.at("fair") - sums.at("none")) / 2.0 + 0.25, 1e-12);
+}
+
+}  // namespace
+}  // namespace passung::test
