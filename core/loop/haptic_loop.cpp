@@ -62,7 +62,7 @@ RealTimeThread::RealTimeThread(HapticCycle& cycle) : cycle_(cycle), thread_([thi
 RealTimeThread::~RealTimeThread() { stop(); }
 
 void RealTimeThread::stop() {
-    running_.store(false);
+    askToStop();
     if (thread_.joinable()) thread_.join();
 }
 

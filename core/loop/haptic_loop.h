@@ -58,6 +58,9 @@ public:
     /// Ends after the running cycle and releases the device.
     void stop();
 
+    /// As stop(), without waiting for it. From any thread.
+    void askToStop() noexcept { running_.store(false); }
+
     std::int64_t ticks() const noexcept { return ticks_.load(std::memory_order_acquire); }
     /// Cycles missed between the first tick and the last: the records' periods less one each, summed up.
     std::int64_t overruns() const noexcept { return overruns_.load(std::memory_order_relaxed); }

@@ -349,6 +349,12 @@ const char* outcomeName(Outcome outcome) {
     return "aborted";
 }
 
+std::optional<Outcome> outcomeNamed(std::string_view name) {
+    for (const Outcome outcome : {Outcome::Success, Outcome::Failure, Outcome::Timeout, Outcome::Aborted})
+        if (name == outcomeName(outcome)) return outcome;
+    return std::nullopt;
+}
+
 const std::vector<Definition>& definitions() {
     static const std::vector<Definition> all = [] {
         std::vector<Definition> result;

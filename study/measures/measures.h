@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/tick_record.h"
@@ -13,6 +14,7 @@ namespace passung::measures {
 /// What a trial ended with.
 enum class Outcome { Success, Failure, Timeout, Aborted };
 const char* outcomeName(Outcome outcome);  // as stored
+std::optional<Outcome> outcomeNamed(std::string_view name);
 
 /// What the measures need to know of a trial beside its records.
 struct TrialContext {

@@ -15,6 +15,8 @@ const char* phaseName(Phase phase);  // "practice", "main": as stored
 using BlockOrder = design::Order;
 const char* blockOrderName(BlockOrder order);  // "williams", "permutations", "random", "shuffled", "listed"
 
+enum class Repeat { Never, Now, AtBlockEnd };
+
 struct Block {
     std::string name;
     Phase phase = Phase::Main;
@@ -25,9 +27,13 @@ struct Block {
     BlockOrder blocked_order = BlockOrder::Williams;
     std::vector<design::Constraint> constraints = {};
     design::CatchPlan catches = {};
-    int session = 1;                  // of each participant's, from 1
-    double rest = 0.0;                // [s] at least so long is rested before it
-    std::size_t first_condition = 0;  // its own conditions begin here, parallel to the shared ones; 0: it takes those
+    int session = 1;                    // of each participant's, from 1
+    double rest = 0.0;                  // [s] at least so long is rested before it
+    std::size_t first_condition = 0;    // its own conditions begin here, parallel to the shared ones; 0: it takes those
+    Repeat on_failure = Repeat::Never;  // of a trial that ended by its own rules without success
+    Repeat on_timeout = Repeat::Never;
+    Repeat on_invalid = Repeat::Never;  // of a trial whose attempt does not count
+    int max_attempts = 3;               // of a trial, however they end
 };
 
 }  // namespace passung::protocol

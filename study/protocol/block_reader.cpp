@@ -6,6 +6,7 @@
 #include <set>
 
 #include "study/design/trial_order.h"
+#include "study/protocol/session_rules.h"
 #include "study/protocol/table_reader.h"
 
 namespace passung::protocol {
@@ -154,6 +155,7 @@ std::vector<Block> readBlocks(const std::vector<Node>& tables, const std::vector
             read.fail("session", blocks.empty()
                                      ? "the first block belongs to session 1"
                                      : fmt::format("must be {} or {}: sessions follow one another", last, last + 1));
+        readRepeats(read, block);
         blocks.push_back(std::move(block));
     }
     const auto is_main = [](const Block& block) { return block.phase == Phase::Main; };

@@ -42,6 +42,7 @@ constexpr std::array kStudyKeys{
     Key{"protocol", "block", Tables, kAny, "", "!", "Blocks of trials in the order in which they run."},
     Key{"protocol", "questionnaire", Tables, kAny, "", "(none)", "Questionnaires and when they are asked."},
     Key{"protocol", "analysis", Tables, kAny, "", "(none)", "What the study means to test, fixed with the protocol."},
+    Key{"protocol", "resume", Table, kAny, "", "(its defaults)", "How an interrupted session may go on: `passung resume`."},
     Key{"protocol", "loop", Table, kAny, "", "(its defaults)", "How well the haptic loop must keep its rate."},
     Key{"protocol", "consent", Tables, kAny, "", "(none)", "What people are asked to agree to before they take part."},
     Key{"protocol", "measures", Texts, kAny, "", "(all)", "Names of the measures to store for every trial."},
@@ -219,6 +220,10 @@ constexpr std::array kStudyKeys{
     Key{"block", "session", Integer, from(1, 100), "", "1", "Which of a participant's sessions has the block; all blocks of one before those of the next."},
     Key{"block", "rest_s", Number, from(0, 86400), "", "0", "At least so long is rested before the block."},
     Key{"block", "trials", Integer, atLeast(1), "", "(all)", "Only the first so many conditions of each pass."},
+    Key{"block", "on_failure", Choice, kAny, "never|repeat_now|repeat_at_block_end", "never", "What follows an attempt that ended by the trial's own rules without success."},
+    Key{"block", "on_timeout", Choice, kAny, "never|repeat_now|repeat_at_block_end", "(as `on_failure`)", "Likewise after a time-out. An attempt that is repeated does not count."},
+    Key{"block", "on_invalid", Choice, kAny, "never|repeat_now|repeat_at_block_end", "never", "Likewise after an attempt that does not count: aborted by itself, ticks lost, invalidated by the experimenter."},
+    Key{"block", "max_attempts", Integer, from(1, 100), "", "3", "No repetition by these rules after so many attempts at a trial."},
 
     Key{"consent", "clause", Name, kAny, "", "!", "Unique; decisions are stored by it."},
     Key{"consent", "required", Boolean, kAny, "", "true", "Who does not say yes to it cannot take part. Simulated participants are not asked."},
@@ -229,6 +234,9 @@ constexpr std::array kStudyKeys{
     Key{"analysis", "outcome", Text, kAny, "", "!", "A measure that the study stores."},
     Key{"analysis", "factors", Texts, kAny, "", "!", "Names of factors."},
     Key{"analysis", "test", Choice, kAny, "paired_t|wilcoxon|rm_anova|friedman|welch_t|mann_whitney|mixed_anova|lmm", "!", "Test, refused where it is not for these factors: paired_t, wilcoxon: one within factor of two levels; friedman: one of three or more; rm_anova: within factors; welch_t, mann_whitney: one between factor of two levels; mixed_anova: both kinds; lmm: any."},
+    Key{"resume", "max_age_h", Number, above(0), "", "24", "Hours after the interruption; later the session must not go on. Not of sessions in virtual time."},
+    Key{"resume", "practice", Choice, kAny, "keep|redo", "keep", "`redo`: practice of the blocks before is done once more."},
+    Key{"resume", "block", Choice, kAny, "continue|restart", "continue", "`restart`: the interrupted block begins anew; what it had no longer counts."},
 
     Key{"constraint", "rule", Choice, kAny, "max_run|min_distance|no_repeat|first_not|position_window", "!", "max_run: at most `count` trials in a row have the same level of `factor`. min_distance: two such trials are at least `count` trials apart. no_repeat: no condition twice in a row. first_not: the block does not begin with `level`. position_window: trials with `level` stand at the block's positions `from` to `to`."},
     Key{"constraint", "factor", Text, kAny, "", "(not for no_repeat)", "Name of the factor."},
@@ -286,6 +294,7 @@ constexpr std::array kTables{
     TableInfo{"feedback", "`[feedback]`", ""},
     TableInfo{"block", "`[[block]]`", ""},
     TableInfo{"consent", "`[[consent]]`", "Each decision is stored with the SHA-256 of the text that it answers: a changed text has to be asked anew."},
+    TableInfo{"resume", "`[resume]`", ""},
     TableInfo{"constraint", "`constraints` of a block", "An order that no shuffle and no search finds is an error that says why."},
     TableInfo{"analysis", "`[[analysis]]`", ""},
     TableInfo{"loop", "`[loop]`", ""},
@@ -393,6 +402,7 @@ const Key* findKey(std::span<const std::string_view> tables, std::string_view na
 double unitsPerSi(std::string_view name) {
     if (name.ends_with("_um") || name.ends_with("_us")) return 1e6;
     if (name.ends_with("_mm") || name.ends_with("_mm_per_s") || name.ends_with("_ms")) return 1e3;
+    if (name.ends_with("_h")) return 1.0 / 3600.0;
     if (name.ends_with("_deg")) return 180.0 / 3.14159265358979323846;
     return 1.0;
 }

@@ -157,6 +157,18 @@ std::string stableJson(const StableStiffness& stable) {
         .str();
 }
 
+const char* repeatName(Repeat repeat) {
+    switch (repeat) {
+        case Repeat::Never:
+            return "never";
+        case Repeat::Now:
+            return "repeat_now";
+        case Repeat::AtBlockEnd:
+            return "repeat_at_block_end";
+    }
+    return "";
+}
+
 std::string blockJson(const Block& block) {
     return JsonObject()
         .text("name", block.name)
@@ -166,6 +178,18 @@ std::string blockJson(const Block& block) {
         .integer("trials", block.trials)
         .integer("session", block.session)
         .number("rest_s", block.rest)
+        .text("on_failure", repeatName(block.on_failure))
+        .text("on_timeout", repeatName(block.on_timeout))
+        .text("on_invalid", repeatName(block.on_invalid))
+        .integer("max_attempts", block.max_attempts)
+        .str();
+}
+
+std::string resumeJson(const ResumePolicy& resume) {
+    return JsonObject()
+        .number("max_age_s", resume.max_age)
+        .text("practice", resume.redo_practice ? "redo" : "keep")
+        .text("block", resume.restart_block ? "restart" : "continue")
         .str();
 }
 
@@ -242,6 +266,7 @@ std::string expandedJson(const StudyPlan& plan) {
         .json("conditions", listOf(plan.conditions, conditionJson))
         .json("blocks", listOf(plan.blocks, blockJson))
         .json("questionnaires", listOf(plan.questionnaires, questionnaireJson))
+        .json("resume", resumeJson(plan.resume))
         .json("groups", listOf(groupNames(plan), [](const std::string& name) { return jsonText(name); }))
         .integer("allocation_blocks", plan.allocation_blocks)
         .integer("sessions", sessionsOf(plan))

@@ -17,6 +17,7 @@
 #include "study/protocol/plan_json.h"
 #include "study/protocol/planned_questionnaires.h"
 #include "study/protocol/scene_node.h"
+#include "study/protocol/session_rules.h"
 #include "study/protocol/start_pose.h"
 #include "study/protocol/task_reader.h"
 
@@ -54,6 +55,7 @@ public:
         readBlockTables();
         plan_.questionnaires = readQuestionnaires(root_.items("questionnaire"), plan_.blocks, errors_);
         readLoop();
+        plan_.resume = readResume(root_, errors_);
         plan_.consent = readConsent(root_, errors_);
         readMeasures();
         plan_.analyses = readAnalyses(root_.items("analysis"), plan_, errors_);

@@ -71,6 +71,13 @@ struct Condition {
     std::string params_json;  // every resolved number, for the attempt's row
 };
 
+/// How an interrupted session may go on.
+struct ResumePolicy {
+    double max_age = 24.0 * 3600.0;  // [s] since the interruption
+    bool redo_practice = false;      // of the blocks before the one that was interrupted
+    bool restart_block = false;
+};
+
 enum class Moment { SessionStart, BeforeBlock, AfterBlock, AfterTrial, AfterCondition, SessionEnd };
 const char* momentName(Moment moment);  // "session_start", …: as stored
 
@@ -128,6 +135,7 @@ struct StudyPlan {
     double max_session = 0.0;  // [s] that a session may take; 0: no limit
     std::vector<Analysis> analyses;
     std::vector<PlannedQuestionnaire> questionnaires;
+    ResumePolicy resume;
     double max_missed_share = 0.01;                 // of a trial's cycles: an attempt that missed more is not valid
     std::vector<std::string> measures;              // names, all known to study/measures
     std::vector<MeshSource> meshes;                 // each once; their content is no part of the text

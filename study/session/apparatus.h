@@ -58,6 +58,11 @@ public:
 
     /// Stops the loop with a zero wrench and says how it went.
     virtual LoopHealth stop() = 0;
+
+    /// Emergency: a zero wrench after the running tick, and no tick more until rearm(), not even of an attempt that is
+    /// started meanwhile. From any thread.
+    virtual void halt() = 0;
+    virtual void rearm() = 0;
 };
 
 }  // namespace passung::session

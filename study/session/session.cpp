@@ -10,23 +10,12 @@
 #include "core/base/assert.h"
 #include "core/base/random.h"
 #include "study/protocol/json.h"
-#include "study/protocol/scene_parts.h"
+#include "study/session/recompute.h"
 
 namespace passung::session {
 namespace {
 
-constexpr int kFirstAttempt = 1;
 constexpr std::size_t kTakeAtOnce = 256;  // records
-
-/// Pose of the task's target in the world.
-Result<Pose> targetPose(const protocol::Condition& condition) {
-    if (const auto* part = protocol::partNamed(condition.scene, condition.task.target)) return part->X_WP;
-    Error error;
-    error.message = fmt::format("condition {} has no part of this name", condition.name);
-    error.key = "target";
-    error.value = condition.task.target;
-    return error;
-}
 
 }  // namespace
 
@@ -40,7 +29,11 @@ Session::Session(SessionSetup setup, Apparatus& apparatus, TrialSink& sink, Sess
       apparatus_(apparatus),
       sink_(sink),
       listener_(std::move(listener)),
-      desk_(setup_.plan, {setup_.participant, setup_.seed, setup_.ordinal}, setup_.answers, sink) {}
+      desk_(setup_.plan, {setup_.participant, setup_.seed, setup_.ordinal}, setup_.answers, sink),
+      state_(setup_.waits ? SessionState::Ready : SessionState::BetweenTrials),
+      agenda_(setup_.resumed ? setup_.resumed->agenda : Agenda(setup_.trials)),
+      past_(setup_.resumed ? setup_.resumed->past : std::vector<Past>(setup_.trials.size())),
+      session_ns_(setup_.resumed ? setup_.resumed->start_ns : 0) {}
 
 Session::~Session() {
     if (state_ == SessionState::InTrial) apparatus_.stop();
@@ -53,14 +46,9 @@ Result<Done> Session::run() {
 }
 
 void Session::interrupt(const std::string& reason) {
-    const bool complete = state_ == SessionState::BetweenTrials && finished_ == setup_.trials.size();
-    if (state_ == SessionState::InTrial) {
-        std::vector<TrialEvent> events;
-        attempt_->course.abort(attempt_->next_tick, reason, events);
-        appendEvents(events);
-        finishTrial();
-    }
-    if (state_ != SessionState::BetweenTrials) return;
+    const bool complete = state_ != SessionState::InTrial && agenda_.empty();
+    if (state_ == SessionState::InTrial) abortRunning(reason, Then::RepeatNow);
+    if (isOver()) return;
     if (complete) return finish(SessionState::Complete);
     note("session_interrupted", "reason", reason);
     finish(SessionState::Interrupted);
@@ -70,15 +58,16 @@ SessionState Session::advance() {
     switch (state_) {
         case SessionState::BetweenTrials:
             if (asksQuestionnaire()) break;
-            if (finished_ < setup_.trials.size()) {
-                if (!rest()) beginTrial();
-            } else {
+            if (agenda_.empty())
                 finish(SessionState::Complete);
-            }
+            else if (!rest())
+                beginTrial();
             break;
         case SessionState::InTrial:
             watchTrial();
             break;
+        case SessionState::Ready:
+        case SessionState::Paused:
         case SessionState::Complete:
         case SessionState::Failed:
         case SessionState::Interrupted:
@@ -89,15 +78,15 @@ SessionState Session::advance() {
 
 /// True while a questionnaire is open, or after it failed.
 bool Session::asksQuestionnaire() {
-    const auto open = desk_.ask(std::span(setup_.trials).subspan(finished_), session_ns_);
+    const auto open = desk_.ask(agenda_.toDo(), session_ns_);
     if (!open) fail("questionnaire", open.errors());
     return !open || *open;
 }
 
 /// A piece of the rest before the next trial's block; false if there is nothing to rest any more.
 bool Session::rest() {
-    if (rested_for_ != finished_) {
-        rested_for_ = finished_;
+    if (rested_for_ != agenda_.next()) {
+        rested_for_ = agenda_.next();
         const auto block = static_cast<std::size_t>(trial().block_index);
         const bool first = trial().trial_in_block == 0 && block < setup_.plan.blocks.size();
         rest_left_ = first ? std::llround(setup_.plan.blocks[block].rest / kTickSeconds) : 0;
@@ -122,7 +111,7 @@ void Session::beginTrial() {
     device_in_use_ = condition.device;
     AttemptStart start;
     start.trial_index = trial().trial_index;
-    start.attempt_no = kFirstAttempt;
+    start.attempt_no = past_[agenda_.next()].attempts + 1;
     start.start_ns = session_ns_;
     start.params_json = condition.params_json;
     start.seed = attemptSeed(setup_, trial(), start.attempt_no);
@@ -132,6 +121,7 @@ void Session::beginTrial() {
 
     const auto id = sink_.startAttempt(start);
     if (!id) return fail("start attempt", id.errors());
+    ++past_[agenda_.next()].attempts;
     attempt_.emplace(Attempt{*id, condition, TrialCourse(condition.task, *X_WT), {}, {}});
     apparatus_.start();
     state_ = SessionState::InTrial;
@@ -181,28 +171,52 @@ void Session::judge(std::span<const TickRecord> records) {
     appendEvents(events);
 }
 
-void Session::finishTrial() {
+void Session::finishTrial(std::optional<Then> then) {
     LoopHealth health = apparatus_.stop();
     takeRecords();
     // From tick 0 to where a next tick would be.
     const std::int64_t periods = attempt_->clock.until(std::max(attempt_->next_tick, health.ticks));
-    const AttemptEnd end = describeEnd(std::move(health));
+    AttemptEnd end = describeEnd(std::move(health));
+    if (!then) then = thenAfter(blockOf(agenda_.next()), end.outcome, end.valid, ++past_[agenda_.next()].judged);
+    // Of two attempts at one trial at most one counts.
+    if (end.valid && *then != Then::Done) {
+        end.valid = false;
+        end.invalid_reason = fmt::format("{}: the trial is repeated", measures::outcomeName(end.outcome));
+    }
     const auto finished = sink_.finishAttempt(attempt_->id, end);
     session_ns_ += periods * kTickNanoseconds;
     const Attempt attempt = *std::exchange(attempt_, std::nullopt);
     if (!finished) return fail("finish attempt", finished.errors());
+    takeEnd(attempt, end, *then);
+}
 
-    state_ = SessionState::BetweenTrials;
+/// The attempt is durable: who waits for it is told, and the agenda moves on.
+void Session::takeEnd(const Attempt& attempt, const AttemptEnd& end, Then then) {
+    state_ = std::exchange(pause_asked_, false) ? SessionState::Paused : SessionState::BetweenTrials;
     if (listener_.acknowledge) listener_.acknowledge(attempt.id, end.outcome);
-    const design::PlannedTrial& done = trial();
-    desk_.remember({done, end.measures});
-    ++finished_;
+    last_ = agenda_.next();
+    past_[*last_].last = attempt.id;
+    if (end.valid) past_[*last_].counting = attempt.id;
+    if (then == Then::Done) desk_.remember({agenda_.trial(*last_), end.measures});
+    agenda_.end(then);
     if (!listener_.progress) return;
     std::optional<double> trial_time_s;
     for (const measures::Value& value : end.measures)
         if (value.name == "trial_time_s") trial_time_s = value.value;
-    listener_.progress({done, attempt.condition, end.outcome, end.valid, end.invalid_reason, trial_time_s, finished_,
-                        setup_.trials.size(), session_ns_});
+    listener_.progress({agenda_.trial(*last_), attempt.condition, end.outcome, end.valid, end.invalid_reason,
+                        trial_time_s, agenda_.finished(), agenda_.planned(), session_ns_});
+}
+
+const protocol::Block& Session::blockOf(std::size_t place) const {
+    return setup_.plan.blocks.at(static_cast<std::size_t>(agenda_.trial(place).block_index));
+}
+
+bool Session::isWhole() const {
+    for (std::size_t place = 0; place < past_.size(); ++place) {
+        const bool is_main = agenda_.trial(place).phase == protocol::phaseName(protocol::Phase::Main);
+        if (is_main && !past_[place].counting) return false;
+    }
+    return true;
 }
 
 AttemptEnd Session::describeEnd(LoopHealth health) const {
@@ -224,6 +238,7 @@ AttemptEnd Session::describeEnd(LoopHealth health) const {
     else if (static_cast<double>(course.missedCycles()) >
              setup_.plan.max_missed_share * static_cast<double>(course.length()))
         end.invalid_reason = fmt::format("loop: {} of {} cycles missed", course.missedCycles(), course.length());
+    if (end.invalid_reason.empty()) end.invalid_reason = attempt_->invalidated;
     end.valid = end.invalid_reason.empty();
     end.health = std::move(health);
     return end;

@@ -1,59 +1,30 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/base/result.h"
-#include "study/design/trial_order.h"
-#include "study/protocol/study_plan.h"
 #include "study/session/apparatus.h"
+#include "study/session/command.h"
 #include "study/session/questionnaire_desk.h"
+#include "study/session/session_setup.h"
 #include "study/session/trial_course.h"
 #include "study/session/trial_sink.h"
 
 namespace passung::session {
 
-struct SessionSetup {
-    const protocol::StudyPlan& plan;           // outlives the session
-    std::vector<design::PlannedTrial> trials;  // what is to be done, in this order
-    std::string participant;                   // code
-    std::uint64_t seed = 0;                    // of the study
-    bool timing_measured = true;               // false in virtual time
-    int ordinal = 1;                           // number of the participant's session
-    QuestionnaireSource* answers = nullptr;    // who answers; may stay null if the plan has no questionnaire
-};
-
-/// A trial that is over and durable.
-struct TrialProgress {
-    const design::PlannedTrial& trial;
-    const protocol::Condition& condition;
-    measures::Outcome outcome;
-    bool valid;
-    const std::string& invalid_reason;
-    std::optional<double> trial_time_s;
-    std::size_t finished;  // trials of this session so far
-    std::size_t planned;
-    std::int64_t session_ns;  // session time after the trial
-};
-
-/// Whom the session tells; either may be empty.
-struct SessionListener {
-    /// An attempt is durable: whoever hears this may rely on finding it after a crash.
-    std::function<void(AttemptId, measures::Outcome)> acknowledge;
-    std::function<void(const TrialProgress&)> progress;
-};
-
-/// BetweenTrials → InTrial → BetweenTrials … → Complete, and from the first two → Failed or Interrupted.
-enum class SessionState { BetweenTrials, InTrial, Complete, Failed, Interrupted };
+/// Ready → BetweenTrials → InTrial → BetweenTrials … → Complete; Paused in place of BetweenTrials when that was asked;
+/// and from all of them → Failed or Interrupted. Only Paused and Ready wait for a command.
+enum class SessionState { Ready, BetweenTrials, InTrial, Paused, Complete, Failed, Interrupted };
 
 /// Runs the planned trials one after another: prepares the apparatus, records every tick into the sink, lets
-/// TrialCourse decide, computes the measures and finishes the attempt durably. It has no clock: session time is the
-/// haptic periods that the apparatus' records tell of, ticks and missed cycles, laid end to end over the attempts. The
-/// first error of apparatus or sink ends the session as incomplete; attempts finished before it stay as they are.
+/// TrialCourse decide, computes the measures and finishes the attempt durably; between, it does what an experimenter
+/// commands. It has no clock: session time is the haptic periods that the apparatus' records tell of, ticks and missed
+/// cycles, laid end to end over the attempts. The first error of apparatus or sink ends the session as incomplete;
+/// attempts finished before it stay as they are.
 class Session {
 public:
     static constexpr std::int64_t kTicksPerLook = 20;
@@ -67,19 +38,27 @@ public:
 
     /// One bounded piece of work: look whether a due questionnaire is filled, rest for kTicksPerRest before a block
     /// that asks for it (events rest_started, rest_ended), begin the next trial (event swap_device if it is on another
-    /// device than the one before), watch the running one for kTicksPerLook, or close the session. Whatever is to be
-    /// done to a session from outside is done between two calls.
+    /// device than the one before), watch the running one for kTicksPerLook, or close the session; nothing in Ready and
+    /// Paused. Whatever is to be done to a session from outside is done between two calls.
     SessionState advance();
+
+    /// What an experimenter wants, between two calls of advance(). Every command is logged as an event "command_…",
+    /// accepted or not; whoever wants motors off at once calls the apparatus' halt() first.
+    Answer command(const Command& command);
 
     /// Ends the session from outside, between two calls of advance(): a running trial is stored as aborted for
     /// `reason`, the session as not complete. A session without a trial left is complete all the
     /// same; nothing happens to one that is over.
     void interrupt(const std::string& reason);
 
-    /// Advances until the session is Complete or Failed.
+    /// Advances until the session waits or is over.
     Result<Done> run();
 
     SessionState state() const { return state_; }
+    bool isOver() const { return state_ >= SessionState::Complete; }
+
+    /// Has every main trial an attempt that counts?
+    bool isWhole() const;
 
     /// Why the session failed; empty unless state() is Failed.
     const Errors& errors() const { return errors_; }
@@ -94,21 +73,40 @@ private:
         std::int64_t next_tick = 0;
         std::int64_t missing_ticks = 0;
         int silent_looks = 0;
+        std::string invalidated = {};  // why the experimenter does not want it to count; empty: nothing against it
     };
 
-    const design::PlannedTrial& trial() const { return setup_.trials[finished_]; }
+    const design::PlannedTrial& trial() const { return agenda_.trial(agenda_.next()); }
     bool rest();
     void beginTrial();
     void watchTrial();
     bool asksQuestionnaire();
     std::size_t takeRecords();
     void judge(std::span<const TickRecord> records);
-    void finishTrial();
+    void finishTrial(std::optional<Then> then = {});  // none: as the protocol says
+    void takeEnd(const Attempt& attempt, const AttemptEnd& end, Then then);
     AttemptEnd describeEnd(LoopHealth health) const;
+    const protocol::Block& blockOf(std::size_t place) const;
     void appendEvents(const std::vector<TrialEvent>& events);
     void finish(SessionState state);
     void note(const char* name, const char* key, const std::string& text);  // an event with one text
     void fail(const char* stage, const Errors& errors);
+
+    // session_commands.cpp
+    std::optional<std::string> refusal(const Command& command) const;
+    std::optional<std::string> refusalByState(CommandKind kind) const;
+    void logCommand(const Command& command, const std::optional<std::string>& refused);
+    Answer execute(const Command& command);
+    Answer repeat(const Command& command);
+    Answer skip(const Command& command);
+    Answer invalidate(const Command& command);
+    Answer goBack(const Command& command);
+    Answer halt(const Command& command);
+    Result<Done> discount(std::size_t place, const std::string& reason);
+    void abortRunning(const std::string& reason, Then then);
+    std::optional<std::size_t> placeOf(AttemptId attempt) const;
+    std::string nameOf(std::size_t place) const;
+    std::int64_t now() const;  // session time [ns]
 
     SessionSetup setup_;
     Apparatus& apparatus_;
@@ -116,12 +114,15 @@ private:
     SessionListener listener_;
     QuestionnaireDesk desk_;
     SessionState state_ = SessionState::BetweenTrials;
+    bool pause_asked_ = false;
     std::optional<Attempt> attempt_;
-    std::size_t finished_ = 0;
-    std::optional<std::size_t> rested_for_;  // number of finished trials when a rest was last looked for
+    Agenda agenda_;
+    std::vector<Past> past_;                 // by place in the plan
+    std::optional<std::size_t> last_;        // place of the newest attempt that ended
+    std::optional<std::size_t> rested_for_;  // place of the trial that a rest was last looked for
     std::int64_t rest_left_ = 0;             // [periods] of the running rest
     std::string device_in_use_;              // of the last trial
-    std::int64_t session_ns_ = 0;            // at tick 0 of the running or next attempt
+    std::int64_t session_ns_;                // at tick 0 of the running or next attempt
     Errors errors_;
 };
 

@@ -45,6 +45,8 @@ struct Event {
 
 /// Where a session's data goes. Calls return quickly; finishAttempt, storeQuestionnaire and finishSession return when
 /// the data is durable.
+/// Where a session's data goes. Calls return quickly; those that give a Result<Done> return when the
+/// data is durable.
 class TrialSink {
 public:
     virtual ~TrialSink() = default;
@@ -53,6 +55,9 @@ public:
     virtual void appendEvent(const Event& event) = 0;
     virtual Result<Done> finishAttempt(AttemptId attempt, const AttemptEnd& end) = 0;
     virtual Result<Done> storeQuestionnaire(const QuestionnaireRun& run) = 0;
+    /// A finished attempt of this session no longer counts; what was recorded of it stays.
+    virtual Result<Done> invalidateAttempt(AttemptId attempt, const std::string& reason) = 0;
+    virtual Result<Done> addNote(const std::string& author, const std::string& text, std::int64_t t_ns) = 0;
     virtual Result<Done> finishSession(bool complete, std::int64_t end_ns) = 0;
 };
 

@@ -2,6 +2,7 @@
 
 #include "study/store/hex_text.h"
 #include "study/store/questionnaire_rows.h"
+#include "study/store/remarks.h"
 #include "study/store/session_json.h"
 #include "study/store/sqlite.h"
 #include "study/store/writer_thread.h"
@@ -227,6 +228,24 @@ Result<Done> SessionWriter::storeQuestionnaire(const session::QuestionnaireRun& 
         throwFailure();
         Transaction transaction(database, Durability::Full);
         insertQuestionnaireRun(database, rows_.session_id, rows_.segment_id, run, clock_);
+        transaction.commit();
+        return Done{};
+    });
+}
+
+Result<Done> SessionWriter::invalidateAttempt(session::AttemptId attempt, const std::string& reason) {
+    return thread_.call([&](const Database& database) {
+        Transaction transaction(database, Durability::Full);
+        markInvalid(database, static_cast<std::int64_t>(attempt), reason);
+        transaction.commit();
+        return Done{};
+    });
+}
+
+Result<Done> SessionWriter::addNote(const std::string& author, const std::string& text, std::int64_t t_ns) {
+    return thread_.call([&](const Database& database) {
+        Transaction transaction(database, Durability::Full);
+        insertNote(database, {rows_.session_id, clock_.at(t_ns), author, text});
         transaction.commit();
         return Done{};
     });

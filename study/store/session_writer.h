@@ -37,6 +37,8 @@ public:
     void appendEvent(const session::Event& event) override;
     Result<Done> finishAttempt(session::AttemptId attempt, const session::AttemptEnd& end) override;
     Result<Done> storeQuestionnaire(const session::QuestionnaireRun& run) override;
+    Result<Done> invalidateAttempt(session::AttemptId attempt, const std::string& reason) override;
+    Result<Done> addNote(const std::string& author, const std::string& text, std::int64_t t_ns) override;
     /// A session is stored as complete only if also every planned main trial has a valid attempt that ended by its own
     /// rules; else it is aborted and its slot free again.
     Result<Done> finishSession(bool complete, std::int64_t end_ns) override;

@@ -15,6 +15,7 @@
 #include "study/store/participant_rows.h"
 #include "study/store/process_lock.h"
 #include "study/store/questionnaire_rows.h"
+#include "study/store/remarks.h"
 #include "study/store/revisions.h"
 #include "study/store/session_json.h"
 #include "study/store/slots.h"
@@ -204,8 +205,22 @@ void refuseComplete(const Database& database, const std::string& sha256, const s
                              "; nobody takes part twice");
 }
 
+/// The first free slot of the station that fits and its row; nothing if there is none.
+std::optional<std::pair<std::int64_t, Slot>> findFreeSlot(const Database& database, const std::string& sha256,
+                                                          const std::string& kind, const SlotDesign& slots,
+                                                          const Station& station,
+                                                          const std::function<bool(const Slot&)>& fits) {
+    Statement free = database.prepare(
+        "SELECT slot_id, sequence_index, replicate, between_group FROM design_slot "
+        "WHERE protocol_sha256=? AND kind=? AND state='free' AND replicate % ?=? ORDER BY slot_id");
+    free.bind(sha256, kind, station.count, station.index);
+    while (free.step())
+        if (const Slot slot = slotOf(free, slots); !fits || fits(slot)) return std::pair(free.integer(0), slot);
+    return std::nullopt;
+}
+
 Slot takeSlot(const Database& database, const std::string& sha256, const std::string& participant,
-              const Station& station) {
+              const Station& station, const std::function<bool(const Slot&)>& fits) {
     Transaction transaction(database);
     const SlotDesign slots = slotDesignOf(database, sha256);
     const std::string kind = kindOf(database, participant);
@@ -217,19 +232,17 @@ Slot takeSlot(const Database& database, const std::string& sha256, const std::st
         if (own.text(0) == sha256) return slotOf(own, slots);
         throw std::runtime_error("participant " + participant + " already has a place in another protocol");
     }
-    Statement free = database.prepare(
-        "SELECT slot_id, sequence_index, replicate, between_group FROM design_slot "
-        "WHERE protocol_sha256=? AND kind=? AND state='free' AND replicate % ?=? ORDER BY slot_id LIMIT 1");
-    while (!free.bind(sha256, kind, station.count, station.index).step()) {
+    auto slot = findFreeSlot(database, sha256, kind, slots, station, fits);
+    for (int round = 0; !slot && round < station.count; ++round) {
         insertSlots(database, sha256, kind.c_str());
+        slot = findFreeSlot(database, sha256, kind, slots, station, fits);
     }
+    if (!slot) throw std::runtime_error("no place of the design has the order of " + participant);
     database.prepare("UPDATE design_slot SET state='assigned', participant_id=?, station=? WHERE slot_id=?")
-        .bind(participant, station.name, free.integer(0))
+        .bind(participant, station.name, slot->first)
         .run();
-    const Slot slot = slotOf(free, slots);
-    free.reset();
     transaction.commit();
-    return slot;
+    return slot->second;
 }
 
 void insertTrialPlan(const Database& database, const SessionStart& start, std::span<const design::PlannedTrial> plan) {
@@ -260,29 +273,20 @@ std::int64_t insertStream(const Database& database, std::int64_t segment_id, con
     return database.lastRowId();
 }
 
-SessionWriter::Rows insertSession(const Database& database, const SessionStart& start,
-                                  std::span<const design::PlannedTrial> plan, const OpenOptions& options) {
-    const std::string started_utc = start.clock.at(0);
-    const auto orNull = [](const std::string& text) { return text.empty() ? std::nullopt : std::optional(text); };
-    Transaction transaction(database);
-    requireSeed(database, start.protocol_sha256, start.seed);
-    refuseComplete(database, start.protocol_sha256, start.participant);
-    requireAdmission(database, start.protocol_sha256, start.participant);
-    database.prepare("INSERT INTO session VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, NULL, NULL, ?)")
-        .bind(start.session_id, start.participant, start.protocol_sha256, start.ordinal, start.station,
-              orNull(start.experimenter), start.language, start.seed, start.random_name, started_utc,
-              start.clock.epoch() == Epoch::Virtual ? "virtual" : "wall")
-        .run();
+std::optional<std::string> orNull(const std::string& text) { return text.empty() ? std::nullopt : std::optional(text); }
+
+/// A part of a session that one run of the program makes; from session time `begin_ns` on.
+SessionWriter::Rows insertSegment(const Database& database, const SessionStart& start, const OpenOptions& options,
+                                  std::int64_t begin_ns) {
     const std::string device = deviceJson(start.device);
     database
         .prepare(
             "INSERT INTO segment(session_id, app_version, host, device_json, mono_zero_ns, utc_zero, started_utc) "
             "VALUES(?, ?, ?, ?, ?, ?, ?)")
-        .bind(start.session_id, options.app_version, orNull(start.host), device, start.mono_zero_ns, started_utc,
-              started_utc)
+        .bind(start.session_id, options.app_version, orNull(start.host), device, start.mono_zero_ns, start.clock.at(0),
+              start.clock.at(begin_ns))
         .run();
     SessionWriter::Rows rows{start.session_id, database.lastRowId(), 0, std::nullopt};
-    insertTrialPlan(database, start, plan);
     rows.tick_stream_id = insertStream(database, rows.segment_id, "tick", tickChannels());
     if (start.timing_measured) {
         rows.timing_stream_id = insertStream(database, rows.segment_id, "tick_timing", timingChannels());
@@ -293,6 +297,32 @@ SessionWriter::Rows insertSession(const Database& database, const SessionStart& 
             "WHERE participant_id=? AND status='enrolled'")
         .bind(start.participant)
         .run();
+    return rows;
+}
+
+SessionWriter::Rows insertSession(const Database& database, const SessionStart& start,
+                                  std::span<const design::PlannedTrial> plan, const OpenOptions& options) {
+    Transaction transaction(database);
+    requireSeed(database, start.protocol_sha256, start.seed);
+    refuseComplete(database, start.protocol_sha256, start.participant);
+    requireAdmission(database, start.protocol_sha256, start.participant);
+    database.prepare("INSERT INTO session VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, NULL, NULL, ?)")
+        .bind(start.session_id, start.participant, start.protocol_sha256, start.ordinal, start.station,
+              orNull(start.experimenter), start.language, start.seed, start.random_name, start.clock.at(0),
+              start.clock.epoch() == Epoch::Virtual ? "virtual" : "wall")
+        .run();
+    insertTrialPlan(database, start, plan);
+    const auto rows = insertSegment(database, start, options, 0);
+    transaction.commit();
+    return rows;
+}
+
+SessionWriter::Rows continueSession(const Database& database, const SessionStart& start, std::int64_t begin_ns,
+                                    const OpenOptions& options) {
+    Transaction transaction(database);
+    requireAdmission(database, start.protocol_sha256, start.participant);
+    reopenSession(database, start.session_id);
+    const auto rows = insertSegment(database, start, options, begin_ns);
     transaction.commit();
     return rows;
 }
@@ -374,9 +404,11 @@ Result<std::string> Store::nextCode(protocol::ParticipantKind kind) {
     });
 }
 
-Result<Slot> Store::assignSlot(const std::string& protocol_sha256, const std::string& participant) {
-    return thread_->call(
-        [&](const Database& database) { return takeSlot(database, protocol_sha256, participant, options_.station); });
+Result<Slot> Store::assignSlot(const std::string& protocol_sha256, const std::string& participant,
+                               const std::function<bool(const Slot&)>& fits) {
+    return thread_->call([&](const Database& database) {
+        return takeSlot(database, protocol_sha256, participant, options_.station, fits);
+    });
 }
 
 Result<Done> Store::backup() {
@@ -408,6 +440,39 @@ Result<std::unique_ptr<SessionWriter>> Store::createSession(const SessionStart& 
     auto rows = thread_->call([&](const Database& database) { return insertSession(database, start, plan, options_); });
     if (!rows) return rows.errors();
     return std::make_unique<SessionWriter>(*thread_, *std::move(rows), start.clock);
+}
+
+Result<Unfinished> Store::unfinished(const std::string& session_id) {
+    return thread_->call([&](const Database& database) {
+        Unfinished session = readUnfinished(database, session_id, options_.now_utc);
+        requireAdmission(database, session.protocol_sha256, session.participant);
+        return session;
+    });
+}
+
+Result<std::unique_ptr<SessionWriter>> Store::resumeSession(const SessionStart& start, std::int64_t used_ns) {
+    auto rows =
+        thread_->call([&](const Database& database) { return continueSession(database, start, used_ns, options_); });
+    if (!rows) return rows.errors();
+    return std::make_unique<SessionWriter>(*thread_, *std::move(rows), start.clock);
+}
+
+Result<Done> Store::invalidateAttempt(std::int64_t attempt_id, const std::string& reason) {
+    return thread_->call([&](const Database& database) {
+        Transaction transaction(database);
+        invalidateLater(database, attempt_id, reason);
+        transaction.commit();
+        return Done{};
+    });
+}
+
+Result<Done> Store::addNote(std::int64_t attempt_id, const std::string& text) {
+    return thread_->call([&](const Database& database) {
+        Transaction transaction(database);
+        noteLater(database, attempt_id, text, options_.now_utc);
+        transaction.commit();
+        return Done{};
+    });
 }
 
 }  // namespace passung::store

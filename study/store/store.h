@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -15,6 +16,7 @@
 #include "study/store/identity.h"
 #include "study/store/rows.h"
 #include "study/store/session_writer.h"
+#include "study/store/unfinished.h"
 #include "study/store/utc_clock.h"
 
 namespace passung::store {
@@ -116,7 +118,9 @@ public:
     /// completes; as long as none does, a session that does not complete gives it back. Refused to whoever has
     /// completed the protocol. Each kind of participant has slots of its own, so that simulated people never use up a
     /// place of the design.
-    Result<Slot> assignSlot(const std::string& protocol_sha256, const std::string& participant);
+    /// `fits`: which free slots may be taken; empty: all.
+    Result<Slot> assignSlot(const std::string& protocol_sha256, const std::string& participant,
+                            const std::function<bool(const Slot&)>& fits = {});
 
     /// 1 for a participant's first session.
     Result<int> nextOrdinal(const std::string& participant);
@@ -130,8 +134,18 @@ public:
     Result<std::unique_ptr<SessionWriter>> createSession(const SessionStart& start,
                                                          std::span<const design::PlannedTrial> plan);
 
+    /// A session that did not complete, by its id or (empty) the newest one; not one whose participant takes part no
+    /// more or has begun another one since.
+    Result<Unfinished> unfinished(const std::string& session_id);
+
+    /// Goes on with it in a segment of its own at session time `used_ns`; `start` as for createSession.
+    Result<std::unique_ptr<SessionWriter>> resumeSession(const SessionStart& start, std::int64_t used_ns);
+
     /// Copies the database as it is now (see backupPath()).
     Result<Done> backup();
+    /// What people add when no session runs: an attempt no longer counts; a note about its session (0: the newest one).
+    Result<Done> invalidateAttempt(std::int64_t attempt_id, const std::string& reason);
+    Result<Done> addNote(std::int64_t attempt_id, const std::string& text);
 
 private:
     friend class ParticipantDesk;

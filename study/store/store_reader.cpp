@@ -225,6 +225,22 @@ Result<std::vector<protocol::StableStiffness>> StoreReader::stableStiffness(cons
     return guarded(path_, [&] { return readStableStiffness(*database_, protocol_sha256); });
 }
 
+Result<std::map<std::string, std::string>> StoreReader::questionnaireTexts(const std::string& protocol_sha256) const {
+    return guarded(path_, [&] {
+        std::map<std::string, std::string> texts;
+        Statement rows = database_->prepare(
+            "SELECT json_extract(value, '$.file'), json_extract(value, '$.source.definition'), "
+            "json_extract(value, '$.texts'), json_extract(value, '$.source.texts') "
+            "FROM protocol_version, json_each(expanded_json, '$.questionnaires') WHERE protocol_sha256=?");
+        rows.bind(protocol_sha256);
+        while (rows.step()) {
+            texts[rows.text(0)] = rows.text(1);
+            if (!rows.text(2).empty()) texts[rows.text(2)] = rows.text(3);
+        }
+        return texts;
+    });
+}
+
 Result<std::vector<FactorRow>> StoreReader::factors() const {
     return guarded(path_, [&] {
         return readAll<FactorRow>(

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,6 +29,8 @@ public:
     Result<std::vector<MeshRow>> meshes() const;         // protocols as above, meshes by name
     Result<std::vector<AccuracyRow>> accuracy() const;   // by protocol hash, then candidate
     Result<std::vector<protocol::StableStiffness>> stableStiffness(const std::string& protocol_sha256) const;
+    /// Text of each questionnaire file that the protocol names, by that name.
+    Result<std::map<std::string, std::string>> questionnaireTexts(const std::string& protocol_sha256) const;
     Result<std::vector<FactorRow>> factors() const;        // protocols as above, factors as the protocol lists them
     Result<std::vector<ConditionRow>> conditions() const;  // likewise
     Result<std::vector<MeasureRow>> measures() const;

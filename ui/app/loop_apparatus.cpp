@@ -55,7 +55,12 @@ Result<std::vector<session::StageNote>> LoopApparatus::prepare(const protocol::C
         *preset, simulatedHand(person_, trials_before), visibleTask(condition),
         simulated::HandRegistration{r.X_WB, r.scale, r.X_DH}, seed);
     description_ = device->description();
-    run_ = std::make_unique<Run>(std::move(*scene), std::move(device), condition.shown == protocol::ShownPose::Proxy);
+    auto run =
+        std::make_unique<Run>(std::move(*scene), std::move(device), condition.shown == protocol::ShownPose::Proxy);
+    {
+        const std::lock_guard lock(halt_mutex_);
+        run_.swap(run);
+    }
     return stageNotes(run_->model);
 }
 
@@ -64,18 +69,31 @@ void LoopApparatus::wait(std::int64_t ticks) {
 }
 
 void LoopApparatus::start() {
-    if (clock_ == Clock::RealTime) run_->thread = std::make_unique<loop::RealTimeThread>(run_->cycle);
+    const std::lock_guard lock(halt_mutex_);
+    if (clock_ == Clock::RealTime && !halted_) run_->thread = std::make_unique<loop::RealTimeThread>(run_->cycle);
 }
 
 void LoopApparatus::advance(std::int64_t ticks) {
     if (clock_ == Clock::Virtual) {
-        for (std::int64_t i = 0; i < ticks; ++i) run_->cycle.run();
+        const std::lock_guard lock(halt_mutex_);
+        for (std::int64_t i = 0; i < ticks && !halted_; ++i) run_->cycle.run();
         return;
     }
     std::this_thread::sleep_for(std::chrono::nanoseconds(ticks * kTickNanoseconds));
 }
 
 std::size_t LoopApparatus::takeRecords(std::span<TickRecord> into) { return run_->ring.take(into); }
+
+void LoopApparatus::halt() {
+    const std::lock_guard lock(halt_mutex_);
+    halted_ = true;
+    if (run_ && run_->thread) run_->thread->askToStop();
+}
+
+void LoopApparatus::rearm() {
+    const std::lock_guard lock(halt_mutex_);
+    halted_ = false;
+}
 
 session::LoopHealth LoopApparatus::stop() {
     session::LoopHealth health;
@@ -85,7 +103,7 @@ session::LoopHealth LoopApparatus::stop() {
         health.overruns = run_->thread->overruns();
     } else {
         run_->cycle.release();
-        health.loop = "virtual";
+        health.loop = clock_ == Clock::Virtual ? "virtual" : "real-time normal";  // halted before it began
     }
     const loop::TimingHistogram& timing = run_->cycle.timing();
     health.ticks = run_->cycle.ticks();

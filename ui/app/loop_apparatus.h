@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 
 #include "core/loop/haptic_loop.h"
 #include "core/model/scene.h"
@@ -28,6 +29,8 @@ public:
     void advance(std::int64_t ticks) override;
     std::size_t takeRecords(std::span<TickRecord> into) override;
     session::LoopHealth stop() override;
+    void halt() override;
+    void rearm() override;
 
 private:
     /// Everything of one attempt; members are destroyed in reverse order, the thread first.
@@ -47,6 +50,8 @@ private:
     Clock clock_;
     std::unique_ptr<DiskStore> store_ = openDiskStore();
     model::PartCache parts_{store_.get()};
+    std::mutex halt_mutex_;  // run_ and its thread come and go, halted_ changes
+    bool halted_ = false;
     std::unique_ptr<Run> run_;
 };
 

@@ -1,5 +1,6 @@
 #include "ui/app/run_study.h"
 
+#include <fmt/format.h>
 #include <sys/utsname.h>
 
 #include <filesystem>
@@ -8,13 +9,16 @@
 #include "devices/simulated/presets.h"
 #include "study/measures/measures.h"
 #include "study/person/simulated_person.h"
+#include "study/protocol/planned_questionnaires.h"
 #include "study/session/participant_order.h"
 #include "study/store/digest.h"
 #include "study/store/identity.h"
 #include "ui/app/auto_accuracy.h"
 #include "ui/app/calibration.h"
+#include "ui/app/command_socket.h"
 #include "ui/app/disk_store.h"
 #include "ui/app/simulated_answers.h"
+#include "ui/app/stored_plans.h"
 #include "ui/app/wall_clock.h"
 
 namespace passung::app {
@@ -59,6 +63,49 @@ public:
         return RunEnd::Complete;
     }
 
+    Result<RunEnd> resume(const store::Unfinished& session) {
+        const bool measured = options_.clock == Clock::RealTime;
+        if (session.age_s)
+            if (const auto old = session::tooOld(plan_.resume, *session.age_s))
+                return Error{.message = fmt::format("{}, session {}: {}", session.participant, session.ordinal, *old),
+                             .file = options_.database};
+        // The place that the interruption freed may have another owner by now: one with the same order will do.
+        const auto part = store_.nextPart(sha256_, session.participant);
+        if (!part) return part.errors();
+        const auto fits = [&](const store::Slot& slot) {
+            const session::DesignPlace place{static_cast<std::size_t>(slot.number), slot.group};
+            const auto trials = session::planTrials(plan_, place, session.participant, *part);
+            return trials && *trials == session.trials;
+        };
+        if (const auto slot = store_.assignSlot(sha256_, session.participant, fits); !slot) return slot.errors();
+        if (listener_.session) listener_.session(session.participant, 1, 1);
+
+        store::SessionStart start;
+        start.session_id = session.session_id;
+        start.participant = session.participant;
+        start.protocol_sha256 = sha256_;
+        if (measured) start.clock = store::UtcClock::wall(unixMilliseconds() - session.used_ns / 1'000'000);
+        if (measured) start.host = hostText();
+        start.timing_measured = measured;
+        const simulated::DeviceParams* device = simulated::findPreset(plan_.conditions.front().device);
+        LoopApparatus apparatus(*device, person::personOf(plan_.name, session.participant, plan_.seed), options_.clock);
+        start.device = apparatus.device();
+        auto writer = store_.resumeSession(start, session.used_ns);
+        if (!writer) return writer.errors();
+
+        auto resumed = session::resumption(plan_, session.trials, session.attempts, session.crashed);
+        resumed.start_ns = session.used_ns;
+        (*writer)->appendEvent(
+            {.attempt = {}, .t_ns = session.used_ns, .source = "session", .event = "session_resumed"});
+        for (const session::AttemptId attempt : resumed.discounted) {
+            const auto done = (*writer)->invalidateAttempt(attempt, "done again after an interruption");
+            if (!done) return done.errors();
+        }
+        return perform({plan_, session.trials, session.participant, plan_.seed, measured, session.ordinal,
+                        options_.wait, std::move(resumed)},
+                       apparatus, **writer);
+    }
+
 private:
     store::UtcClock clockNow() const {
         return options_.clock == Clock::RealTime ? store::UtcClock::wall(unixMilliseconds())
@@ -88,18 +135,37 @@ private:
         if (!trials) return trials.errors();
         auto writer = store_.createSession(start, *trials);
         if (!writer) return writer.errors();
+        return perform({plan_, *trials, code, plan_.seed, measured, *ordinal, options_.wait}, apparatus, **writer);
+    }
+
+    Result<RunEnd> perform(session::SessionSetup setup, LoopApparatus& apparatus, session::TrialSink& sink) {
+        const std::string code = setup.participant;
         SimulatedAnswers answers(plan_, code);
-        session::Session session({plan_, *trials, code, plan_.seed, measured, *ordinal, &answers}, apparatus, **writer,
-                                 {listener_.acknowledge, listener_.trial});
-        while (session.state() == session::SessionState::BetweenTrials ||
-               session.state() == session::SessionState::InTrial) {
+        setup.answers = &answers;
+        session::Session session(std::move(setup), apparatus, sink, {listener_.acknowledge, listener_.trial});
+        conduct(session, apparatus);
+        if (session.state() == session::SessionState::Failed) return session.errors();
+        if (session.state() == session::SessionState::Interrupted) return RunEnd::Interrupted;
+        if (listener_.session_over) listener_.session_over(code, session.isWhole());
+        return RunEnd::Complete;
+    }
+
+    /// Until it is over: commands, then a step; while it waits, commands only.
+    void conduct(session::Session& session, LoopApparatus& apparatus) {
+        auto commands = CommandSocket::listen(options_.database, [&apparatus] { apparatus.halt(); });
+        if (!commands && listener_.warned) listener_.warned(toString(commands.errors().front()));
+        auto told = session::SessionState::BetweenTrials;
+        while (!session.isOver()) {
+            const auto state = session.state();
+            const bool waits = state == session::SessionState::Ready || state == session::SessionState::Paused;
+            if (waits && told != state && listener_.state) listener_.state(state);
+            told = state;
+            if (commands) (*commands)->serve([&](const session::Command& c) { return session.command(c); }, waits);
             if (options_.interrupted && options_.interrupted())
                 session.interrupt("interrupted");
             else
                 session.advance();
         }
-        if (session.state() == session::SessionState::Failed) return session.errors();
-        return session.state() == session::SessionState::Interrupted ? RunEnd::Interrupted : RunEnd::Complete;
     }
 
     const protocol::StudyPlan& plan_;
@@ -140,6 +206,42 @@ const std::vector<std::string>& knownMeasures() {
     return names;
 }
 
+namespace {
+
+store::Store::Opened openForRun(const RunOptions& options, const RunListener& listener, bool create = true) {
+    auto with = openOptionsNow();
+    with.create = create;
+    with.station = options.station;
+    auto opened = store::Store::open(options.database, with);
+    if (!opened.store) return opened;
+    if (listener.recovered && !opened.recovery.empty()) listener.recovered(opened.recovery);
+    if (listener.warned && !opened.recovery.later_utc.empty())
+        listener.warned("this machine's clock is behind: the database holds the time " + opened.recovery.later_utc +
+                        "; orders and durations do not depend on it, stored dates will");
+    return opened;
+}
+
+/// The questionnaires as the protocol was imported with them, whatever became of their files.
+Result<Done> loadStoredQuestionnaires(const store::StoreReader& reader, const std::string& sha256,
+                                      protocol::StudyPlan& plan) {
+    const auto texts = reader.questionnaireTexts(sha256);
+    if (!texts) return texts.errors();
+    const auto folder = std::filesystem::path(plan.source_path).parent_path();
+    return protocol::loadQuestionnaires(plan, [&](const std::string& path) -> Result<std::string> {
+        for (const auto& [file, text] : *texts)
+            if ((folder / file).string() == path) return text;
+        return Error{.message = "is not stored with the protocol"};
+    });
+}
+
+void backUp(store::Store& store, const RunOptions& options, const RunListener& listener) {
+    if (!options.backup) return;
+    if (const auto copied = store.backup(); !copied && listener.warned)
+        listener.warned("no backup copy was made: " + copied.errors().front().message);
+}
+
+}  // namespace
+
 Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& options, const RunListener& listener) {
     // A calibration that fails must leave nothing behind: neither a new database nor the protocol in an old one.
     std::vector<store::AccuracyRow> measured;
@@ -154,14 +256,8 @@ Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& optio
     std::error_code none;
     if (calibrates && !std::filesystem::exists(options.database, none))
         if (const auto done = measure(); !done) return done.errors();
-    auto open = openOptionsNow();
-    open.station = options.station;
-    auto opened = store::Store::open(options.database, open);
+    auto opened = openForRun(options, listener);
     if (!opened.store) return opened.errors;
-    if (listener.recovered && !opened.recovery.empty()) listener.recovered(opened.recovery);
-    if (listener.warned && !opened.recovery.later_utc.empty())
-        listener.warned("this machine's clock is behind: the database holds the time " + opened.recovery.later_utc +
-                        "; orders and durations do not depend on it, stored dates will");
     if (calibrates && measured.empty()) {
         const auto known = opened.store->checkProtocol(plan);
         if (!known) return known.errors();
@@ -195,9 +291,28 @@ Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& optio
     StudyRun run(*picked, options, listener, *opened.store, *sha256);
     Result<RunEnd> end = RunEnd::Complete;
     for (int i = 0; i < options.simulated && end && *end == RunEnd::Complete; ++i) end = run.participant(i + 1);
-    if (!options.backup) return end;
-    if (const auto copied = opened.store->backup(); !copied && listener.warned)
-        listener.warned("no backup copy was made: " + copied.errors().front().message);
+    backUp(*opened.store, options, listener);
+    return end;
+}
+
+Result<RunEnd> resumeStudy(const ResumeOptions& resume, RunOptions options, const RunListener& listener) {
+    auto opened = openForRun(options, listener, false);
+    if (!opened.store) return opened.errors;
+    const auto session = opened.store->unfinished(resume.session);
+    if (!session) return session.errors();
+    const auto reader = store::StoreReader::open(options.database);
+    if (!reader) return reader.errors();
+    StoredPlans plans(*reader, resume.meshes);
+    const auto stored = plans.plan(session->protocol_sha256);
+    if (!stored) return stored.errors();
+    protocol::StudyPlan plan = **stored;
+    if (const auto done = loadStoredQuestionnaires(*reader, session->protocol_sha256, plan); !done)
+        return done.errors();
+    plan.seed = session->seed;
+    options.clock = session->virtual_time ? Clock::Virtual : Clock::RealTime;
+    StudyRun run(plan, options, listener, *opened.store, session->protocol_sha256);
+    const auto end = run.resume(*session);
+    backUp(*opened.store, options, listener);
     return end;
 }
 

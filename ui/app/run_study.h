@@ -18,6 +18,7 @@ struct RunOptions {
     int simulated = 1;  // how many simulated participants, one after another
     Clock clock = Clock::Virtual;
     bool backup = true;                 // copy the database when the run ends, however it does
+    bool wait = false;                  // every session begins with the command Start
     std::function<bool()> interrupted;  // asked every few ticks: true ends the run; empty: never
 };
 
@@ -32,15 +33,28 @@ struct RunListener {
     std::function<void(const std::string&)> warned;
     std::function<void(const std::string& participant, int number, int of)> session;
     std::function<void(const session::TrialProgress&)> trial;
+    std::function<void(session::SessionState)> state;                              // whenever it waits for a command
+    std::function<void(const std::string& participant, bool whole)> session_over;  // that was not interrupted
     std::function<void(session::AttemptId, measures::Outcome)> acknowledge;
 };
 
+/// While a session runs, an experimenter may command it through CommandSocket.
 /// Performs the study with simulated participants on the simulated device, each a session of all planned trials, into
 /// the database. Whatever was finished before an error stays in it. An interruption stores the running trial as aborted
 /// and closes the session as aborted, both with the reason "interrupted". What contact.accuracy = "auto" asks for is
 /// picked when the protocol first runs in this database, and kept there; before later runs in real time a machine that
 /// is too slow for it is warned of.
 Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& options, const RunListener& listener);
+
+struct ResumeOptions {
+    std::string session;  // id; empty: the newest one that did not complete
+    std::string meshes;   // folder that the protocol's mesh paths start from; empty: here, else beside the database
+};
+
+/// Goes on with an interrupted session of the database by its protocol's [resume], in the clock that it had. Of
+/// `options`, participant, simulated and clock do not matter. Later trials are what the uninterrupted session's would
+/// have been.
+Result<RunEnd> resumeStudy(const ResumeOptions& resume, RunOptions options, const RunListener& listener);
 
 /// Every device that a protocol may name, as its maker or its model describes it.
 const std::vector<DeviceDescription>& presetDevices();

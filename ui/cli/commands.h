@@ -34,12 +34,22 @@ struct RunOptions {
     std::string participant;  // empty: the next free codes
     int simulated = 1;
     bool real_time = false;
+    bool wait = false;  // for `passung session start`
     std::optional<std::uint64_t> seed;
     StationOptions station;
     bool no_backup = false;
     int acknowledge_fd = -1;  // open file descriptor that gets a line per durable attempt
 };
 int run(const RunOptions& options);
+
+struct ResumeOptions {
+    std::string database;
+    std::string session;  // id; empty: the newest one that did not complete
+    std::string meshes;   // folder that the protocol's mesh paths start from; empty: here, else beside the database
+    bool no_backup = false;
+    int acknowledge_fd = -1;  // as of RunOptions
+};
+int resume(const ResumeOptions& options);
 
 struct ParticipantOptions {
     std::string database;
@@ -60,6 +70,14 @@ int decideConsent(const ParticipantOptions& options);
 int withdrawParticipant(const ParticipantOptions& options);
 int excludeParticipant(const ParticipantOptions& options);
 int auditParticipants(const ParticipantOptions& options);
+struct SessionOptions {
+    std::string action;  // one of session::kCommandNames
+    std::string database;
+    std::string text;          // the reason, or the note
+    std::int64_t attempt = 0;  // 0: the running or the last one
+};
+/// An experimenter's command to the session that runs on the database.
+int tellSession(const SessionOptions& options);
 
 struct ExportOptions {
     std::string database;

@@ -6,10 +6,12 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <iterator>
 
 #include "core/model/field_mode.h"
 #include "study/protocol/key_table.h"
 #include "study/protocol/participant.h"
+#include "study/session/command.h"
 #include "ui/cli/commands.h"
 
 // The command line: names, options and their help. What a command does is in its own file.
@@ -65,6 +67,7 @@ public:
         app_.require_subcommand(1);
         addStudyCommands();
         addParticipantCommands();
+        addSessionCommands();
         addDataCommands();
         addPowerCommand();
         addCoreCommands();
@@ -134,6 +137,7 @@ private:
         sub->add_option("--seed", run_.seed, "instead of the protocol's")->check(wholeFrom<std::uint64_t>(0));
         addStation(sub, run_.station);
         sub->add_flag("--no-backup", run_.no_backup, "leave out the copy DB.backup and its SHA-256 at the end");
+        sub->add_flag("--wait", run_.wait, "begin every session only when `passung session start DB` says so");
         sub->add_option("--acknowledge-fd", run_.acknowledge_fd, "file descriptor for a line per durable attempt");
     }
 
@@ -197,6 +201,29 @@ private:
         sub->add_option("--reason", participant_.reason, "stored with the status")->required();
 
         action("audit", "check the chain of what was done to participants", auditParticipants);
+    }
+
+    void addSessionCommands() {
+        auto* sub = command("resume", "go on with an interrupted session by its protocol's [resume]", resume_, resume);
+        sub->add_option("DB", resume_.database, "database of the study")->required();
+        sub->add_option("--session", resume_.session, "session_id; default: the newest one that did not complete");
+        sub->add_option("--meshes", resume_.meshes, "as of replay")->check(CLI::ExistingDirectory);
+        sub->add_flag("--no-backup", resume_.no_backup, "as of run");
+        sub->add_option("--acknowledge-fd", resume_.acknowledge_fd, "file descriptor for a line per durable attempt");
+
+        sub = command("session", "an experimenter's command to the session that runs on a database", session_,
+                      tellSession);
+        sub->add_option("ACTION", session_.action,
+                        "start, pause (after the running trial), continue, repeat, skip, invalidate, back, note, abort "
+                        "(ends the session), stop (emergency: motors off at once, then paused)")
+            ->required()
+            ->check(CLI::IsMember(std::vector<std::string>(std::begin(passung::session::kCommandNames),
+                                                           std::end(passung::session::kCommandNames))));
+        sub->add_option("DB", session_.database, "database of the study")->required();
+        sub->add_option("--text,--reason", session_.text, "the note, or why; note and invalidate need it");
+        sub->add_option("--attempt", session_.attempt,
+                        "attempt_id, for invalidate and note; default: the running attempt, else the last one")
+            ->check(wholeFrom(1));
     }
 
     void addDataCommands() {
@@ -379,6 +406,8 @@ private:
     ExplainOptions explain_;
     RunOptions run_;
     ParticipantOptions participant_;
+    ResumeOptions resume_;
+    SessionOptions session_;
     ExportOptions export_;
     MergeOptions merge_;
     PushOptions push_;

@@ -1,19 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <map>
+#include <bit>
 
 #include "core/replay/replayer.h"
-#include "study/protocol/document.h"
-#include "study/protocol/protocol_reader.h"
-#include "study/store/digest.h"
+#include "study/session/recompute.h"
 #include "study/store/hex_text.h"
 #include "study/store/store_reader.h"
-#include "ui/app/auto_accuracy.h"
-#include "ui/app/calibration.h"
 #include "ui/app/disk_store.h"
-#include "ui/app/run_study.h"
+#include "ui/app/stored_plans.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 
@@ -26,14 +21,7 @@ enum class Verdict { Same, Differs, NotProven };
 /// Replays attempts of one database; parts and protocols are built once.
 class Replays {
 public:
-    Replays(const store::StoreReader& reader, const std::string& meshes) : reader_(reader) {
-        // Where the protocol's file was is not stored: a path of one machine means nothing on another.
-        if (!meshes.empty()) {
-            folders_ = {meshes};
-        } else {
-            folders_ = {"", std::filesystem::path(reader.path()).parent_path()};
-        }
-    }
+    Replays(const store::StoreReader& reader, const std::string& meshes) : reader_(reader), plans_(reader, meshes) {}
 
     /// Prints one line per attempt.
     Result<Verdict> replay(const store::AttemptRow& attempt) {
@@ -43,7 +31,7 @@ public:
             fmt::print("{}: NOT PROVEN: no tick of it is recorded ({})\n", nameOf(attempt), attempt.outcome);
             return Verdict::NotProven;
         }
-        auto plan = planOf(attempt.protocol_sha256);
+        auto plan = plans_.plan(attempt.protocol_sha256);
         if (!plan) return plan.errors();
         const auto& conditions = (*plan)->conditions;
         const auto condition = std::find_if(conditions.begin(), conditions.end(),
@@ -54,7 +42,9 @@ public:
         }
         auto scene = model::buildScene(condition->scene, parts_);
         if (!scene) return scene.errors();
-        return tell(attempt, replay::replay(*scene, *records));
+        const auto difference = measureDifference(attempt, *condition, *records);
+        if (!difference) return difference.errors();
+        return tell(attempt, replay::replay(*scene, *records), *difference);
     }
 
 private:
@@ -63,12 +53,44 @@ private:
                            attempt.session_ordinal, attempt.trial_index + 1, attempt.condition);
     }
 
-    static Verdict tell(const store::AttemptRow& attempt, const replay::ReplayReport& report) {
+    /// The first measure, or the outcome, that the recorded ticks do not give again; empty if they give all. Bits
+    /// count: the formulas are exact functions of what is stored.
+    static Result<std::string> measureDifference(const store::AttemptRow& attempt, const protocol::Condition& condition,
+                                                 const std::vector<TickRecord>& records) {
+        const auto outcome = measures::outcomeNamed(attempt.outcome);
+        if (!outcome || !attempt.end_ns) return std::string();  // it did not end: nothing was measured
+        const auto again =
+            session::judgeAgain(condition, records, *outcome, (*attempt.end_ns - attempt.start_ns) / kTickNanoseconds);
+        if (!again) return again.errors();
+        if (again->outcome != *outcome)
+            return fmt::format("outcome: stored {}, from the ticks {}", attempt.outcome,
+                               measures::outcomeName(again->outcome));
+        const auto text = [](const std::optional<double>& value) {
+            return value ? fmt::format("{}", *value) : std::string("none");
+        };
+        for (const measures::Value& value : again->measures) {
+            const auto found = attempt.measures.find(value.name);
+            const auto stored = found == attempt.measures.end() ? std::nullopt : std::optional(found->second);
+            const bool same = stored && value.value
+                                  ? std::bit_cast<std::uint64_t>(*stored) == std::bit_cast<std::uint64_t>(*value.value)
+                                  : !stored && !value.value;
+            if (!same)
+                return fmt::format("{}: stored {}, from the ticks {}", value.name, text(stored), text(value.value));
+        }
+        return std::string();
+    }
+
+    static Verdict tell(const store::AttemptRow& attempt, const replay::ReplayReport& report,
+                        const std::string& measure_difference) {
         const std::string name = nameOf(attempt);
         if (report.first_difference) {
             const auto& d = *report.first_difference;
             fmt::print("{}: DIFFERS at tick {} in {}: recorded {}, replayed {}\n", name, d.tick, d.column, d.recorded,
                        d.replayed);
+            return Verdict::Differs;
+        }
+        if (!measure_difference.empty()) {
+            fmt::print("{}: DIFFERS in {}\n", name, measure_difference);
             return Verdict::Differs;
         }
         const std::string hash = store::hexText(report.state_hash);
@@ -83,80 +105,15 @@ private:
             fmt::print("{}: DIFFERS in the state hash: recorded {}, replayed {}\n", name, attempt.state_hash, hash);
             return Verdict::Differs;
         }
-        fmt::print("{}: {} ticks, every recorded bit the same, state hash {}\n", name, report.ticks, hash);
+        fmt::print("{}: {} ticks, every recorded bit and every measure the same, state hash {}\n", name, report.ticks,
+                   hash);
         return Verdict::Same;
     }
 
-    Result<const protocol::StudyPlan*> planOf(const std::string& sha256) {
-        if (const auto known = plans_.find(sha256); known != plans_.end()) return &known->second;
-        const auto rows = reader_.protocols();
-        if (!rows) return rows.errors();
-        for (const auto& row : *rows) {
-            if (row.sha256 != sha256) continue;
-            auto plan = readPlan(row);
-            if (!plan) return plan.errors();
-            return &plans_.emplace(sha256, std::move(*plan)).first->second;
-        }
-        return Error{.message = "is not in the database", .key = "protocol", .value = sha256};
-    }
-
-    /// The stored protocol with the mesh files of the first folder that has them all.
-    Result<protocol::StudyPlan> readPlan(const store::ProtocolRow& row) {
-        const auto stable = reader_.stableStiffness(row.sha256);
-        if (!stable) return stable.errors();
-        const auto devices = app::devicesAsKept(*stable);
-        Errors errors;
-        for (const std::filesystem::path& folder : folders_) {
-            auto plan = protocol::readProtocolText(row.source_text, (folder / (row.name + ".toml")).string(), devices,
-                                                   app::knownMeasures());
-            if (!plan) {
-                if (errors.empty()) errors = plan.errors();
-                continue;
-            }
-            if (const auto same = compareMeshes(row.sha256, *plan); !same) return same.errors();
-            const auto accuracy = reader_.accuracy();
-            if (!accuracy) return accuracy.errors();
-            if (const auto applied = app::applyAccuracy(row.sha256, *accuracy, *plan); !applied)
-                return applied.errors();
-            return plan;
-        }
-        errors.push_back({.message =
-                              "the stored protocol cannot be read here; its mesh paths start from this folder or "
-                              "the database's: --meshes names another",
-                          .file = reader_.path()});
-        return errors;
-    }
-
-    /// A replay with another geometry would prove nothing.
-    Result<Done> compareMeshes(const std::string& sha256, const protocol::StudyPlan& plan) const {
-        const auto rows = reader_.meshes();
-        if (!rows) return rows.errors();
-        Errors errors;
-        for (const protocol::MeshSource& mesh : plan.meshes) {
-            const auto stored = std::find_if(rows->begin(), rows->end(), [&](const store::MeshRow& row) {
-                return row.protocol_sha256 == sha256 && row.mesh == mesh.name;
-            });
-            const auto bytes = protocol::readFile(mesh.path);
-            if (!bytes) return bytes.errors();
-            if (stored == rows->end()) {
-                errors.push_back({.message = "the database does not know this mesh file", .file = mesh.path});
-            } else if (const std::string found = store::sha256Hex(*bytes); found != stored->sha256) {
-                errors.push_back(
-                    {.message = "is not the mesh file of the recorded trials, whose SHA-256 is " + stored->sha256,
-                     .file = mesh.path,
-                     .key = "SHA-256",
-                     .value = found});
-            }
-        }
-        if (!errors.empty()) return errors;
-        return Done{};
-    }
-
     const store::StoreReader& reader_;
-    std::vector<std::filesystem::path> folders_;
     std::unique_ptr<app::DiskStore> store_ = app::openDiskStore();
     model::PartCache parts_{store_.get()};
-    std::map<std::string, protocol::StudyPlan> plans_;
+    app::StoredPlans plans_;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <functional>
 
 #include "analysis/export/summary.h"
 #include "study/protocol/protocol_reader.h"
@@ -46,6 +47,80 @@ void listenForSignals() {
     for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
 }
 
+using Perform = std::function<Result<app::RunEnd>(const app::RunOptions&, const app::RunListener&)>;
+
+/// Lets `go` perform sessions and tells of them; `study` is the file that warnings are about.
+int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, const Perform& go) {
+    listenForSignals();
+    what.interrupted = [] { return stop_asked != 0; };
+    std::string code, participant;
+    std::size_t successes = 0, finished = 0, planned = 0, invalid = 0;
+    ProgressLine progress;
+    app::RunListener listener;
+    listener.recovered = [&](const store::RecoveryReport& report) { tellRecovery(what.database, report); };
+    listener.calibrating = [&](const std::string& step, double share) { progress.show(progressBar(step, share)); };
+    listener.calibrated = [&](const std::string& picked) {
+        progress.show("");
+        fmt::print("accuracy = \"auto\": measured on this machine, kept in {} for the whole study\n{}\n", what.database,
+                   picked);
+    };
+    listener.warned = [&](const std::string& warning) { warn(study, {warning}); };
+    listener.session = [&](const std::string& who, int number, int of) {
+        code = who;
+        participant = fmt::format("{} ({} of {})", code, number, of);
+        progress.show(participant + ": preparing");
+        successes = finished = planned = invalid = 0;
+    };
+    listener.trial = [&](const session::TrialProgress& trial) {
+        finished = trial.finished;
+        planned = trial.planned;
+        const bool counts = trial.valid && trial.outcome != measures::Outcome::Aborted;
+        successes += counts && trial.outcome == measures::Outcome::Success ? 1 : 0;
+        invalid += counts ? 0 : 1;
+        progress.show(fmt::format("{}: trial {} of {}, {} succeeded", participant, finished, trial.planned, successes));
+    };
+    listener.state = [&](session::SessionState state) {
+        progress.show("");
+        fmt::print("{}: {}\n", participant,
+                   state == session::SessionState::Ready ? "waits for `passung session start`"
+                                                         : "paused; `passung session continue` goes on");
+        std::fflush(stdout);
+    };
+    listener.session_over = [&](const std::string&, bool whole) {
+        progress.show("");
+        fmt::print("{}: {} trials, {} succeeded{}\n", participant, planned, successes,
+                   invalid == 0 ? "" : fmt::format(", {} invalid", invalid));
+        if (!whole) {
+            fmt::print("{}: the session is not complete; its place in the design is free again\n", participant);
+        }
+        std::fflush(stdout);
+        successes = finished = planned = invalid = 0;  // of the participant's next session
+    };
+    if (acknowledge_fd >= 0) {
+        listener.acknowledge = [&](session::AttemptId attempt, measures::Outcome outcome) {
+            acknowledge(acknowledge_fd, attempt, outcome);
+        };
+    }
+    const auto end = go(what, listener);
+    if (!end) return fail(end.errors());
+    if (*end == app::RunEnd::Interrupted) {
+        progress.show("");
+        return fail({{.message = fmt::format(
+                          "interrupted: {} trials of {} are finished; the running one and the session are "
+                          "stored as aborted; `passung resume` goes on with it. Its place in the design is free "
+                          "again: `passung run` with --participant {} begins a new session of all trials",
+                          finished, planned, code),
+                      .file = what.database}});
+    }
+
+    const auto reader = store::StoreReader::open(what.database);
+    if (!reader) return fail(reader.errors());
+    const auto table = exporter::summaryTable(*reader);
+    if (!table) return fail(table.errors());
+    fmt::print("\n{}", *table);
+    return 0;
+}
+
 }  // namespace
 
 int run(const RunOptions& options) {
@@ -62,69 +137,20 @@ int run(const RunOptions& options) {
     if (!station) return fail(station.errors());
     what.station = *station;
     what.backup = !options.no_backup;
+    what.wait = options.wait;
     what.clock = options.real_time ? app::Clock::RealTime : app::Clock::Virtual;
 
-    listenForSignals();
-    what.interrupted = [] { return stop_asked != 0; };
-    std::string code, participant;
-    std::size_t successes = 0, finished = 0, invalid = 0;
-    bool complete = true;
-    ProgressLine progress;
-    app::RunListener listener;
-    listener.recovered = [&](const store::RecoveryReport& report) { tellRecovery(what.database, report); };
-    listener.calibrating = [&](const std::string& step, double share) { progress.show(progressBar(step, share)); };
-    listener.calibrated = [&](const std::string& picked) {
-        progress.show("");
-        fmt::print("accuracy = \"auto\": measured on this machine, kept in {} for the whole study\n{}\n", what.database,
-                   picked);
-    };
-    listener.warned = [&](const std::string& warning) { warn(options.protocol, {warning}); };
-    listener.session = [&](const std::string& who, int number, int of) {
-        code = who;
-        participant = fmt::format("{} ({} of {})", code, number, of);
-        progress.show(participant + ": preparing");
-        successes = finished = invalid = 0;
-        complete = true;
-    };
-    listener.trial = [&](const session::TrialProgress& trial) {
-        finished = trial.finished;
-        successes += trial.outcome == measures::Outcome::Success ? 1 : 0;
-        const bool counts = trial.valid && trial.outcome != measures::Outcome::Aborted;
-        invalid += counts ? 0 : 1;
-        complete = complete && (counts || trial.trial.phase != "main");
-        progress.show(fmt::format("{}: trial {} of {}, {} succeeded", participant, finished, trial.planned, successes));
-        if (finished != trial.planned) return;
-        progress.show("");
-        fmt::print("{}: {} trials, {} succeeded{}\n", participant, finished, successes,
-                   invalid == 0 ? "" : fmt::format(", {} invalid", invalid));
-        if (!complete) {
-            fmt::print("{}: the session is not complete; its place in the design is free again\n", participant);
-        }
-        std::fflush(stdout);
-    };
-    if (options.acknowledge_fd >= 0) {
-        listener.acknowledge = [&](session::AttemptId attempt, measures::Outcome outcome) {
-            acknowledge(options.acknowledge_fd, attempt, outcome);
-        };
-    }
-    const auto end = app::runStudy(*plan, what, listener);
-    if (!end) return fail(end.errors());
-    if (*end == app::RunEnd::Interrupted) {
-        progress.show("");
-        return fail(
-            {{.message = fmt::format("interrupted: {} trials of {} are stored, the last of them and the session "
-                                     "as aborted; its place in the design is free again, and the same command "
-                                     "with --participant {} begins a new session of all trials",
-                                     finished, code, code),
-              .file = what.database}});
-    }
+    return tell(options.protocol, what, options.acknowledge_fd,
+                [&](const auto& with, const auto& listener) { return app::runStudy(*plan, with, listener); });
+}
 
-    const auto reader = store::StoreReader::open(what.database);
-    if (!reader) return fail(reader.errors());
-    const auto table = exporter::summaryTable(*reader);
-    if (!table) return fail(table.errors());
-    fmt::print("\n{}", *table);
-    return 0;
+int resume(const ResumeOptions& options) {
+    app::RunOptions what;
+    what.database = options.database;
+    what.backup = !options.no_backup;
+    return tell(options.database, what, options.acknowledge_fd, [&](const auto& with, const auto& listener) {
+        return app::resumeStudy({options.session, options.meshes}, with, listener);
+    });
 }
 
 }  // namespace passung::cli

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <thread>
 
 #include "study/protocol/protocol_reader.h"
 #include "tests/ui/cli/small_study.h"
@@ -120,6 +121,44 @@ TEST(LoopApparatus, BeginsEveryTrialAnew) {
     }
     EXPECT_EQ(hashes[0], hashes[2]);
     EXPECT_NE(hashes[0], hashes[1]);
+}
+
+TEST(LoopApparatus, AHaltEndsTheTicksUntilItIsRearmed) {
+    // Truth: invariant: motors stay off however often an attempt is started; the attempt after rearm() is a whole one.
+    const std::uint64_t undisturbed = runTicks(condition("fair"), 5, 100).second.state_hash;
+    LoopApparatus apparatus = makeApparatus();
+    ASSERT_TRUE(apparatus.prepare(condition("fair"), 5, 0));
+    apparatus.start();
+    apparatus.advance(20);
+    apparatus.halt();
+    apparatus.advance(20);
+    EXPECT_EQ(apparatus.stop().ticks, 20);
+    ASSERT_TRUE(apparatus.prepare(condition("fair"), 5, 0));
+    apparatus.start();
+    apparatus.advance(20);
+    EXPECT_EQ(apparatus.stop().ticks, 0);
+    apparatus.rearm();
+    ASSERT_TRUE(apparatus.prepare(condition("fair"), 5, 0));
+    apparatus.start();
+    apparatus.advance(100);
+    EXPECT_EQ(apparatus.stop().state_hash, undisturbed);
+}
+
+TEST(LoopApparatus, AHaltInRealTimeEndsTheLoopAfterItsRunningTick) {
+    // Truth: invariant. A halt before the start lets no tick happen; one from another thread ends what runs.
+    LoopApparatus apparatus(*simulated::findPreset("sigma7"), {}, Clock::RealTime);
+    ASSERT_TRUE(apparatus.prepare(condition("none"), 5, 0));
+    apparatus.start();
+    apparatus.advance(20);
+    std::thread([&] { apparatus.halt(); }).join();
+    const std::int64_t ticks = apparatus.stop().ticks;
+    EXPECT_GT(ticks, 0);
+    std::array<TickRecord, 256> buffer;
+    EXPECT_EQ(static_cast<std::int64_t>(apparatus.takeRecords(buffer)), ticks);
+    ASSERT_TRUE(apparatus.prepare(condition("none"), 5, 0));
+    apparatus.start();
+    apparatus.advance(20);
+    EXPECT_EQ(apparatus.stop().ticks, 0);
 }
 
 }  // namespace

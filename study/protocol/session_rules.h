@@ -1,0 +1,14 @@
+#pragma once
+
+#include "study/protocol/study_plan.h"
+#include "study/protocol/table_reader.h"
+
+namespace passung::protocol {
+
+/// What a [[block]] says of trials that are repeated, into `block`.
+void readRepeats(const TableReader& read, Block& block);
+
+/// [resume] of the study `root`.
+ResumePolicy readResume(const TableReader& root, Errors& errors);
+
+}  // namespace passung::protocol

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <iterator>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "study/session/trial_sink.h"
+
+namespace passung::session {
+
+/// What an experimenter may tell a session.
+enum class CommandKind {
+    Start,       // a session that waits for it begins
+    Pause,       // after the running trial
+    Continue,    // after a pause or an emergency stop
+    Repeat,      // the running trial from its beginning, else the last one; its attempt no longer counts
+    Skip,        // the running trial, else the next one, is left out
+    Invalidate,  // an attempt does not count, for a reason; the protocol says whether its trial is repeated
+    Back,        // one trial back; what it had no longer counts
+    Note,        // a remark in the data
+    Abort,       // ends the session
+    Stop,        // emergency: motors off at once, the running attempt is aborted, the session pauses
+};
+
+inline constexpr std::string_view kCommandNames[] = {"start",      "pause", "continue", "repeat", "skip",
+                                                     "invalidate", "back",  "note",     "abort",  "stop"};
+constexpr std::string_view commandName(CommandKind kind) { return kCommandNames[static_cast<std::size_t>(kind)]; }
+constexpr std::optional<CommandKind> commandNamed(std::string_view name) {
+    for (std::size_t i = 0; i < std::size(kCommandNames); ++i)
+        if (kCommandNames[i] == name) return static_cast<CommandKind>(i);
+    return std::nullopt;
+}
+
+struct Command {
+    CommandKind kind = CommandKind::Pause;
+    std::string text = {};                  // the reason, or the note
+    std::optional<AttemptId> attempt = {};  // of Invalidate; none: the running one, else the last
+    std::string source = "experimenter";    // who says so, for the log
+};
+
+/// What came of a command; for people. What was accepted is in the data when the answer is given.
+struct Answer {
+    bool accepted = false;
+    std::string text;  // what happens now, or why not
+};
+
+}  // namespace passung::session

@@ -1,0 +1,78 @@
+#include "study/session/resume.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace passung::session {
+namespace {
+
+using measures::Outcome;
+
+/// Trials that are over and to be done again, in the plan's order.
+std::vector<std::size_t> toRedo(const protocol::ResumePolicy& policy, const Agenda& agenda) {
+    std::vector<std::size_t> places;
+    if (agenda.empty()) return places;
+    const std::int64_t block = agenda.trial(agenda.next()).block_index;
+    for (std::size_t place = 0; place < agenda.planned(); ++place) {
+        const design::PlannedTrial& trial = agenda.trial(place);
+        const bool practice = policy.redo_practice && trial.block_index < block &&
+                              trial.phase == protocol::phaseName(protocol::Phase::Practice);
+        const bool restarted = policy.restart_block && trial.block_index == block;
+        if ((practice || restarted) && agenda.isOver(place)) places.push_back(place);
+    }
+    return places;
+}
+
+}  // namespace
+
+Then thenAfter(const protocol::Block& block, Outcome outcome, bool valid, int judged) {
+    using protocol::Repeat;
+    if (judged >= block.max_attempts) return Then::Done;
+    Repeat repeat = outcome == Outcome::Timeout   ? block.on_timeout
+                    : outcome == Outcome::Failure ? block.on_failure
+                                                  : Repeat::Never;
+    if (repeat == Repeat::Never && !valid) repeat = block.on_invalid;
+    switch (repeat) {
+        case Repeat::Never:
+            break;
+        case Repeat::Now:
+            return Then::RepeatNow;
+        case Repeat::AtBlockEnd:
+            return Then::RepeatAtBlockEnd;
+    }
+    return Then::Done;
+}
+
+Resumption resumption(const protocol::StudyPlan& plan, std::vector<design::PlannedTrial> trials,
+                      const std::vector<StoredAttempt>& attempts, bool crashed) {
+    const std::size_t planned = trials.size();
+    Resumption result{Agenda(std::move(trials)), std::vector<Past>(planned), {}, 0};
+    Agenda& agenda = result.agenda;
+    for (const StoredAttempt& attempt : attempts) {
+        Past& past = result.past.at(attempt.place);
+        past.attempts = std::max(past.attempts, attempt.attempt_no);
+        past.last = attempt.id;
+        if (attempt.valid) past.counting = attempt.id;
+        agenda.bring(attempt.place);
+        const bool newest = &attempt == &attempts.back();
+        const bool cut_off = !attempt.outcome || (newest && !crashed && *attempt.outcome == Outcome::Aborted);
+        const auto block = static_cast<std::size_t>(agenda.trial(attempt.place).block_index);
+        agenda.end(cut_off ? Then::RepeatNow
+                           : thenAfter(plan.blocks.at(block), *attempt.outcome, attempt.valid, ++past.judged));
+    }
+    const auto redo = toRedo(plan.resume, agenda);
+    for (auto place = redo.rbegin(); place != redo.rend(); ++place) {
+        agenda.bring(*place);
+        if (auto& counting = result.past[*place].counting) result.discounted.push_back(*counting), counting.reset();
+    }
+    return result;
+}
+
+std::optional<std::string> tooOld(const protocol::ResumePolicy& policy, double age_s) {
+    if (!(age_s > policy.max_age)) return std::nullopt;
+    return fmt::format("was interrupted {:.1f} h ago, and the protocol lets it go on for {:g} h", age_s / 3600.0,
+                       policy.max_age / 3600.0);
+}
+
+}  // namespace passung::session

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "study/protocol/study_plan.h"
+#include "study/session/agenda.h"
+#include "study/session/trial_sink.h"
+
+namespace passung::session {
+
+/// What a trial of the plan has had so far.
+struct Past {
+    int attempts = 0;                   // begun
+    int judged = 0;                     // of them ended by themselves: these count for the protocol's max_attempts
+    std::optional<AttemptId> last;      // the newest attempt that ended
+    std::optional<AttemptId> counting;  // the one that is valid and ended by its own rules
+};
+
+/// An attempt of an earlier part of the session, as it is stored.
+struct StoredAttempt {
+    AttemptId id;
+    std::size_t place;  // of its trial in the plan
+    int attempt_no;
+    std::optional<measures::Outcome> outcome;  // none: it crashed
+    bool valid;
+};
+
+/// Where an interrupted session goes on.
+struct Resumption {
+    Agenda agenda;
+    std::vector<Past> past;             // by place in the plan
+    std::vector<AttemptId> discounted;  // valid ones whose trials are done again by the protocol's [resume]
+    std::int64_t start_ns = 0;          // session time that the earlier parts took
+};
+
+/// What the protocol says of a trial whose newest attempt ended so; it is number `judged` of those that did.
+Then thenAfter(const protocol::Block& block, measures::Outcome outcome, bool valid, int judged);
+
+/// The session's state after `attempts`, ascending by time: trials come in the order that the uninterrupted session
+/// would have had, the interrupted one again, and then the protocol's [resume] adds what is to be done anew. A trial
+/// that the experimenter left out is offered again. `crashed`: the program was killed; else the session was ended by
+/// somebody, in the middle of the newest attempt if that is aborted.
+Resumption resumption(const protocol::StudyPlan& plan, std::vector<design::PlannedTrial> trials,
+                      const std::vector<StoredAttempt>& attempts, bool crashed);
+
+/// Why a session that was interrupted so long ago must not go on; nothing if it may.
+std::optional<std::string> tooOld(const protocol::ResumePolicy& policy, double age_s);
+
+}  // namespace passung::session

@@ -1,0 +1,210 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/base/assert.h"
+#include "study/protocol/json.h"
+#include "study/session/session.h"
+
+// What Session does for an experimenter: may the command be obeyed now, the log, and the deed.
+
+namespace passung::session {
+namespace {
+
+std::string withReason(std::string what, const std::string& reason) {
+    return reason.empty() ? what : what + ": " + reason;
+}
+
+Answer accepted(std::string text) { return {true, std::move(text)}; }
+
+}  // namespace
+
+Answer Session::command(const Command& command) {
+    const auto refused = refusal(command);
+    logCommand(command, refused);
+    if (refused) return {false, *refused};
+    Answer answer = execute(command);
+    if (state_ == SessionState::Failed && !errors_.empty()) return {false, toString(errors_.front())};
+    return answer;
+}
+
+std::optional<std::string> Session::refusalByState(CommandKind kind) const {
+    switch (kind) {
+        case CommandKind::Start:
+            if (state_ != SessionState::Ready) return "the session has begun already";
+            break;
+        case CommandKind::Continue:
+            if (state_ != SessionState::Paused) return "the session is not paused";
+            break;
+        case CommandKind::Pause:
+            if (state_ == SessionState::Ready) return "the session has not begun";
+            if (state_ == SessionState::Paused) return "the session is paused already";
+            if (pause_asked_) return "the session pauses after this trial already";
+            break;
+        case CommandKind::Repeat:
+            if (state_ == SessionState::InTrial) break;
+            if (!last_) return "no trial has ended yet";
+            if (!agenda_.canGoBack() || agenda_.last() != *last_) return nameOf(*last_) + " is to be repeated already";
+            break;
+        case CommandKind::Skip:
+            if (agenda_.empty()) return "no trial is left";
+            break;
+        case CommandKind::Back:
+            if (!agenda_.canGoBack()) return "there is no earlier trial";
+            break;
+        case CommandKind::Invalidate:
+        case CommandKind::Note:
+        case CommandKind::Abort:
+        case CommandKind::Stop:
+            break;
+    }
+    return std::nullopt;
+}
+
+std::optional<std::string> Session::refusal(const Command& command) const {
+    if (isOver()) return "the session is over";
+    if (command.kind == CommandKind::Note && command.text.empty()) return "a note needs a text";
+    if (command.kind != CommandKind::Invalidate) return refusalByState(command.kind);
+    if (command.text.empty()) return "to invalidate an attempt needs a reason";
+    if (command.attempt && attempt_ && *command.attempt == attempt_->id) return std::nullopt;
+    if (!command.attempt && (attempt_ || last_)) return std::nullopt;
+    if (!command.attempt) return "no attempt has ended yet";
+    if (!placeOf(*command.attempt))
+        return fmt::format("attempt {} is not the newest one of a trial of this session",
+                           static_cast<std::int64_t>(*command.attempt));
+    return std::nullopt;
+}
+
+void Session::logCommand(const Command& command, const std::optional<std::string>& refused) {
+    if (isOver()) return;  // its part of the data is closed
+    Event event;
+    if (attempt_) event.attempt = attempt_->id;
+    event.t_ns = now();
+    event.source = command.source;
+    event.event = fmt::format("command_{}", commandName(command.kind));
+    protocol::JsonObject payload;
+    payload.boolean("accepted", !refused);
+    if (refused) payload.text("refusal", *refused);
+    if (!command.text.empty()) payload.text("text", command.text);
+    if (command.attempt) payload.integer("attempt_id", static_cast<std::int64_t>(*command.attempt));
+    event.payload_json = payload.str();
+    sink_.appendEvent(event);
+}
+
+Answer Session::execute(const Command& command) {
+    switch (command.kind) {
+        case CommandKind::Start:
+            state_ = SessionState::BetweenTrials;
+            return accepted("the session begins");
+        case CommandKind::Continue:
+            apparatus_.rearm();
+            state_ = SessionState::BetweenTrials;
+            return accepted(agenda_.empty() ? "the session ends" : "goes on with " + nameOf(agenda_.next()));
+        case CommandKind::Pause:
+            pause_asked_ = state_ == SessionState::InTrial;
+            if (!pause_asked_) state_ = SessionState::Paused;
+            return accepted(pause_asked_ ? "pauses after " + nameOf(agenda_.next()) : "paused");
+        case CommandKind::Repeat:
+            return repeat(command);
+        case CommandKind::Skip:
+            return skip(command);
+        case CommandKind::Invalidate:
+            return invalidate(command);
+        case CommandKind::Back:
+            return goBack(command);
+        case CommandKind::Note:
+            if (const auto kept = sink_.addNote(command.source, command.text, now()); !kept)
+                return {false, toString(kept.errors().front())};
+            return accepted("noted");
+        case CommandKind::Abort:
+            interrupt(withReason("aborted by the experimenter", command.text));
+            return accepted("the session is aborted");
+        case CommandKind::Stop:
+            return halt(command);
+    }
+    return {};
+}
+
+Answer Session::repeat(const Command& command) {
+    const std::string reason = withReason("repeated by the experimenter", command.text);
+    if (state_ == SessionState::InTrial) {
+        abortRunning(reason, Then::RepeatNow);
+        return accepted(nameOf(*last_) + " begins anew");
+    }
+    return goBack(command);
+}
+
+Answer Session::skip(const Command& command) {
+    const std::size_t place = agenda_.next();
+    if (state_ == SessionState::InTrial)
+        abortRunning(withReason("skipped by the experimenter", command.text), Then::Done);
+    else
+        agenda_.end(Then::Done);
+    return accepted(nameOf(place) + " is left out");
+}
+
+Answer Session::invalidate(const Command& command) {
+    const std::string reason = withReason("invalidated by the experimenter", command.text);
+    if (attempt_ && (!command.attempt || *command.attempt == attempt_->id)) {
+        const std::size_t place = agenda_.next();
+        attempt_->invalidated = reason;
+        return accepted("the running attempt of " + nameOf(place) + " will not count");
+    }
+    const std::size_t place = command.attempt ? *placeOf(*command.attempt) : *last_;
+    if (!past_[place].counting) return {false, "the attempt of " + nameOf(place) + " is not valid anyway"};
+    if (const auto done = discount(place, reason); !done) return {false, toString(done.errors().front())};
+    const Then then = thenAfter(blockOf(place), measures::Outcome::Aborted, false, past_[place].judged);
+    if (agenda_.isOver(place)) agenda_.redo(place, then);
+    return accepted("the attempt of " + nameOf(place) + " no longer counts" +
+                    (agenda_.isOver(place) ? "" : ", it is repeated"));
+}
+
+Answer Session::goBack(const Command& command) {
+    if (state_ == SessionState::InTrial)
+        abortRunning(withReason("went back by the experimenter", command.text), Then::RepeatNow);
+    if (isOver()) return {};
+    const std::size_t place = agenda_.last();
+    const std::string reason = withReason("repeated by the experimenter", command.text);
+    if (const auto done = discount(place, reason); !done) return {false, toString(done.errors().front())};
+    agenda_.goBack();
+    return accepted(nameOf(place) + " is next");
+}
+
+Answer Session::halt(const Command& command) {
+    apparatus_.halt();
+    if (state_ == SessionState::InTrial) abortRunning(withReason("emergency stop", command.text), Then::RepeatNow);
+    if (!isOver()) state_ = SessionState::Paused;
+    return accepted("motors are off, the session is paused");
+}
+
+/// What counts of the trial at `place` no longer does.
+Result<Done> Session::discount(std::size_t place, const std::string& reason) {
+    if (!past_[place].counting) return Done{};
+    const auto done = sink_.invalidateAttempt(*past_[place].counting, reason);
+    if (done) past_[place].counting.reset();
+    return done;
+}
+
+void Session::abortRunning(const std::string& reason, Then then) {
+    PASSUNG_ASSERT(state_ == SessionState::InTrial);
+    std::vector<TrialEvent> events;
+    if (!attempt_->course.ended()) attempt_->course.abort(attempt_->next_tick, reason, events);
+    appendEvents(events);
+    finishTrial(then);
+}
+
+std::optional<std::size_t> Session::placeOf(AttemptId attempt) const {
+    const auto found = std::find_if(past_.begin(), past_.end(), [&](const Past& past) { return past.last == attempt; });
+    if (found == past_.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - past_.begin());
+}
+
+std::string Session::nameOf(std::size_t place) const {
+    return fmt::format("trial {}", agenda_.trial(place).trial_index + 1);
+}
+
+std::int64_t Session::now() const {
+    return session_ns_ + (attempt_ ? attempt_->clock.periods() * kTickNanoseconds : 0);
+}
+
+}  // namespace passung::session

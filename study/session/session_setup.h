@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "study/design/trial_order.h"
+#include "study/protocol/study_plan.h"
+#include "study/session/questionnaire_source.h"
+#include "study/session/resume.h"
+#include "study/session/trial_sink.h"
+
+namespace passung::session {
+
+struct SessionSetup {
+    const protocol::StudyPlan& plan;           // outlives the session
+    std::vector<design::PlannedTrial> trials;  // what is to be done, in this order
+    std::string participant;                   // code
+    std::uint64_t seed = 0;                    // of the study
+    bool timing_measured = true;               // false in virtual time
+    int ordinal = 1;                           // number of the participant's session
+    bool waits = false;                        // for the command Start
+    std::optional<Resumption> resumed = {};    // goes on from there; none: begins
+    QuestionnaireSource* answers = nullptr;    // who answers; may stay null if the plan has no questionnaire
+};
+
+/// A trial that is over and durable.
+struct TrialProgress {
+    const design::PlannedTrial& trial;
+    const protocol::Condition& condition;
+    measures::Outcome outcome;
+    bool valid;
+    const std::string& invalid_reason;
+    std::optional<double> trial_time_s;
+    std::size_t finished;  // trials of this session that are over; one that is to be repeated is not
+    std::size_t planned;
+    std::int64_t session_ns;  // session time after the trial
+};
+
+/// Whom the session tells; either may be empty.
+struct SessionListener {
+    /// An attempt is durable: whoever hears this may rely on finding it after a crash.
+    std::function<void(AttemptId, measures::Outcome)> acknowledge;
+    std::function<void(const TrialProgress&)> progress;
+};
+
+}  // namespace passung::session

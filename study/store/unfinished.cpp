@@ -1,0 +1,89 @@
+#include "study/store/unfinished.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "core/base/tick_record.h"
+#include "study/store/sqlite.h"
+
+namespace passung::store {
+namespace {
+
+std::string findSession(const Database& database, const std::string& wanted) {
+    Statement find = database.prepare(
+        "SELECT session_id, coalesce(end_state, ''), participant_id, ordinal, (SELECT max(o.ordinal) FROM session o "
+        "WHERE o.participant_id=s.participant_id) FROM session s WHERE CASE ?1 WHEN '' THEN end_state<>'complete' "
+        "ELSE session_id=?1 END ORDER BY rowid DESC LIMIT 1");
+    if (!find.bind(wanted).step())
+        throw std::runtime_error(wanted.empty() ? "holds no session that did not complete"
+                                                : "there is no session " + wanted);
+    const std::string name = find.text(2) + ", session " + find.text(3);
+    if (find.text(1) == "complete") throw std::runtime_error(name + " is complete");
+    if (find.integer(3) < find.integer(4))
+        throw std::runtime_error(name + ": session " + find.text(4) + " has begun since");
+    return find.text(0);
+}
+
+void readTrials(const Database& database, Unfinished& session) {
+    Statement trials = database.prepare(
+        "SELECT trial_index, block_index, block, trial_in_block, phase, c.position, repetition FROM trial_plan "
+        "JOIN condition c USING(condition_id) WHERE session_id=? ORDER BY trial_index");
+    trials.bind(session.session_id);
+    while (trials.step()) {
+        session.trials.push_back({trials.integer(0), trials.integer(1), trials.text(2), trials.integer(3),
+                                  trials.text(4), static_cast<std::size_t>(trials.integer(5)),
+                                  static_cast<int>(trials.integer(6))});
+    }
+    Statement attempts = database.prepare(
+        "SELECT attempt_id, (SELECT count(*) FROM trial_plan b WHERE b.session_id=t.session_id AND "
+        "b.trial_index<t.trial_index), attempt_no, outcome, valid FROM attempt JOIN trial_plan t USING(trial_id) "
+        "WHERE session_id=? ORDER BY attempt_id");
+    attempts.bind(session.session_id);
+    while (attempts.step()) {
+        session.attempts.push_back({session::AttemptId{attempts.integer(0)},
+                                    static_cast<std::size_t>(attempts.integer(1)),
+                                    static_cast<int>(attempts.integer(2)), measures::outcomeNamed(attempts.text(3)),
+                                    attempts.integer(4) != 0});
+    }
+}
+
+/// The latest time of anything in the session.
+std::int64_t usedTime(const Database& database, const std::string& session_id) {
+    Statement find = database.prepare(
+        "SELECT max(coalesce((SELECT max(a.end_ns) FROM attempt a JOIN segment g USING(segment_id) "
+        "WHERE g.session_id=?1), 0), coalesce((SELECT max(e.t_ns) FROM event e JOIN segment g USING(segment_id) "
+        "WHERE g.session_id=?1), 0), coalesce((SELECT max(c.t0_ns + c.n * ?2) FROM sample_chunk c JOIN stream "
+        "USING(stream_id) JOIN segment g USING(segment_id) WHERE g.session_id=?1), 0))");
+    find.bind(session_id, kTickNanoseconds).step();
+    return find.integer(0);
+}
+
+}  // namespace
+
+Unfinished readUnfinished(const Database& database, const std::string& session_id, const std::string& now_utc) {
+    Unfinished session;
+    session.session_id = findSession(database, session_id);
+    session.used_ns = usedTime(database, session.session_id);
+    Statement find = database.prepare(
+        "SELECT s.participant_id, s.protocol_sha256, s.language, s.ordinal, s.seed, s.epoch='virtual', "
+        "s.end_state='crashed', (julianday(?2) - julianday(g.utc_zero)) * 86400.0 FROM session s "
+        "JOIN segment g USING(session_id) WHERE s.session_id=?1 ORDER BY g.segment_id DESC LIMIT 1");
+    find.bind(session.session_id, now_utc).step();
+    session.participant = find.text(0);
+    session.protocol_sha256 = find.text(1);
+    session.language = find.text(2);
+    session.ordinal = static_cast<int>(find.integer(3));
+    session.seed = static_cast<std::uint64_t>(find.integer(4));
+    session.virtual_time = find.integer(5) != 0;
+    session.crashed = find.integer(6) != 0;
+    if (!session.virtual_time) session.age_s = find.real(7) - static_cast<double>(session.used_ns) * 1e-9;
+    find.reset();
+    readTrials(database, session);
+    return session;
+}
+
+void reopenSession(const Database& database, const std::string& session_id) {
+    database.prepare("UPDATE session SET end_state=NULL, ended_utc=NULL WHERE session_id=?").bind(session_id).run();
+}
+
+}  // namespace passung::store
