@@ -54,7 +54,7 @@ int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, con
     listenForSignals();
     what.interrupted = [] { return stop_asked != 0; };
     std::string code, participant;
-    std::size_t successes = 0, finished = 0, planned = 0, invalid = 0;
+    std::size_t successes = 0, finished = 0, planned = 0, earlier = 0, invalid = 0;
     ProgressLine progress;
     app::RunListener listener;
     listener.recovered = [&](const store::RecoveryReport& report) { tellRecovery(what.database, report); };
@@ -69,9 +69,10 @@ int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, con
         code = who;
         participant = fmt::format("{} ({} of {})", code, number, of);
         progress.show(participant + ": preparing");
-        successes = finished = planned = invalid = 0;
+        successes = finished = planned = earlier = invalid = 0;
     };
     listener.trial = [&](const session::TrialProgress& trial) {
+        if (finished == 0 && trial.finished > 0) earlier = trial.finished - 1;  // of a session that is resumed
         finished = trial.finished;
         planned = trial.planned;
         const bool counts = trial.valid && trial.outcome != measures::Outcome::Aborted;
@@ -88,13 +89,14 @@ int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, con
     };
     listener.session_over = [&](const std::string&, bool whole) {
         progress.show("");
-        fmt::print("{}: {} trials, {} succeeded{}\n", participant, planned, successes,
+        fmt::print("{}: {} trials{}, {} succeeded{}\n", participant, planned,
+                   earlier == 0 ? "" : fmt::format(", {} of them earlier", earlier), successes,
                    invalid == 0 ? "" : fmt::format(", {} invalid", invalid));
         if (!whole) {
             fmt::print("{}: the session is not complete; its place in the design is free again\n", participant);
         }
         std::fflush(stdout);
-        successes = finished = planned = invalid = 0;  // of the participant's next session
+        successes = finished = planned = earlier = invalid = 0;  // of the participant's next session
     };
     if (acknowledge_fd >= 0) {
         listener.acknowledge = [&](session::AttemptId attempt, measures::Outcome outcome) {

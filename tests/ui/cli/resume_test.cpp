@@ -121,6 +121,21 @@ TEST_F(Resume, AfterEveryKillTheSessionGoesOnAsIfNothingHadHappened) {
     EXPECT_EQ(run({"resume", kDatabase}).err, std::string("study.db: error: holds no session that did not complete\n"));
 }
 
+TEST_F(Resume, AsksWhatTheProtocolWasImportedWithEvenIfItsFileIsGone) {
+    // Truth: closed form: one questionnaire at the end of the session, in the words that were stored.
+    const auto asked = folder_.path() / "asked.toml";
+    std::filesystem::copy_file(PASSUNG_SOURCE_DIR "/protocols/questionnaires/nasa_tlx_raw.toml", asked);
+    writeText(folder_.path() / "study.toml",
+              study(4, "\n[[questionnaire]]\nfile = \"asked.toml\"\nmoment = \"session_end\"\n"));
+    ASSERT_FALSE(runKilled({"run", "study.toml", "--db", kDatabase}, 2, std::chrono::nanoseconds(0)));
+    std::filesystem::remove(asked);
+    const Ended resumed = run({"resume", kDatabase});
+    EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+    EXPECT_NE(resumed.out.find(" of them earlier, "), std::string::npos) << resumed.out;
+    const store::Database database(folder_ / kDatabase, store::OpenMode::ReadOnly);
+    EXPECT_EQ(database.integer("SELECT count(*) FROM questionnaire_run WHERE moment='session_end'"), 1);
+}
+
 TEST_F(Resume, TheProtocolMayWantItsBlockAnew) {
     // Truth: closed form: what the block had no longer counts, and every trial has one attempt that does.
     writeText(folder_.path() / "study.toml", study(12, "\n[resume]\nblock = \"restart\"\n"));
