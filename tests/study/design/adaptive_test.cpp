@@ -184,20 +184,20 @@ TEST(Adaptive, TracksTakeTurnsByTheSeedAndCatchTrialsTellThemNothing) {
         params.max_trials = 30;
         InterleavedTracks tracks({params, params}, seed, catch_share, 20.0);
         std::map<int, int> counts;
-        std::string order;
+        std::string turns;
         while (const auto step = tracks.next()) {
             const int track = step->track ? static_cast<int>(*step->track) : -1;
             if (track < 0) {
                 EXPECT_EQ(step->level, 20.0);
             }
             ++counts[track];
-            order += track < 0 ? 'c' : track == 0 ? 'a' : 'b';
+            turns += track < 0 ? 'c' : track == 0 ? 'a' : 'b';
             tracks.answer(step->level, true);
         }
         EXPECT_EQ(counts[0], 30);
         EXPECT_EQ(counts[1], 30);
         EXPECT_EQ(counts[-1] > 0, catch_share > 0.0);
-        return order;
+        return turns;
     };
     EXPECT_EQ(order(1, 0.2), order(1, 0.2));
     EXPECT_NE(order(1, 0.0), order(2, 0.0));

@@ -89,7 +89,7 @@ TEST(ParticipantOrder, FollowsTheBlocksOfTheProtocol) {
 TEST(PlanText, ListsWhatIsAskedAndWhen) {
     // Truth: closed form; the words are a regression
     auto plan = smallPlan();
-    EXPECT_EQ(describePlan(plan, 1).find("Questionnaires"), std::string::npos);
+    EXPECT_EQ(describePlan(plan, 1)->find("Questionnaires"), std::string::npos);
     for (const auto moment :
          {protocol::Moment::SessionEnd, protocol::Moment::AfterBlock, protocol::Moment::AfterTrial}) {
         protocol::PlannedQuestionnaire planned;
@@ -101,10 +101,10 @@ TEST(PlanText, ListsWhatIsAskedAndWhen) {
         if (moment == protocol::Moment::AfterTrial) planned.block = "practice";
         plan.questionnaires.push_back(planned);
     }
-    EXPECT_NE(describePlan(plan, 1).find("\nQuestionnaires\n"
-                                         "  ssq 1.0  session_end, de, 16 items\n"
-                                         "  ssq 1.0  after_block of every main block, de, 16 items\n"
-                                         "  ssq 1.0  after_trial of block practice, de, 16 items\n"),
+    EXPECT_NE(describePlan(plan, 1)->find("\nQuestionnaires\n"
+                                          "  ssq 1.0  session_end, de, 16 items\n"
+                                          "  ssq 1.0  after_block of every main block, de, 16 items\n"
+                                          "  ssq 1.0  after_trial of block practice, de, 16 items\n"),
               std::string::npos);
 }
 
