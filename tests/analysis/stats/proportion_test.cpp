@@ -15,7 +15,7 @@ double binomial(int n, int k, double p) {
 TEST(ClopperPearson, CutsTheTailsOfTheBinomialItself) {
     // Truth: closed form, the definition: as many successes or more have a probability of 2.5 % at the lower end, as
     // many or fewer at the upper end.
-    for (const auto [k, n] : {std::pair{7, 20}, std::pair{1, 8}, std::pair{90, 100}}) {
+    for (const auto& [k, n] : {std::pair{7, 20}, std::pair{1, 8}, std::pair{90, 100}}) {
         const Interval interval = clopperPearson(static_cast<std::size_t>(k), static_cast<std::size_t>(n), 0.95);
         double at_least = 0.0, at_most = 0.0;
         for (int i = k; i <= n; ++i) at_least += binomial(n, i, interval.low);

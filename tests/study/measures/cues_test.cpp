@@ -37,7 +37,9 @@ TEST(Cues, NeverPassOne) {
         const CueCommands commands = signals.at(tickAt(tick, 2.0, 10));
         EXPECT_LE(commands.visual, 1.0);
         EXPECT_LE(commands.sound, 1.0);
-        if (tick == 10) EXPECT_EQ(commands.sound, 1.0);
+        if (tick == 10) {
+            EXPECT_EQ(commands.sound, 1.0);
+        }
     }
 }
 

@@ -63,6 +63,8 @@ public:
         times.push_back(run.completed_ns);
         return Done{};
     }
+    Result<Done> invalidateAttempt(AttemptId, const std::string&) override { return Done{}; }
+    Result<Done> addNote(const std::string&, const std::string&, std::int64_t) override { return Done{}; }
     Result<Done> finishSession(bool, std::int64_t) override { return Done{}; }
 };
 

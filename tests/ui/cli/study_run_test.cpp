@@ -117,7 +117,9 @@ TEST_P(ShippedStudy, RunsToItsDataFileAndEveryRowSaysWhatHappened) {
     for (const store::AttemptRow& attempt : *attempts) {
         SCOPED_TRACE("trial " + std::to_string(attempt.trial_index + 1) + ", " + attempt.condition);
         EXPECT_EQ(attempt.kind, "simulated");
-        if (attempt.counts()) EXPECT_NE(run.out.find("\n" + attempt.condition + " "), std::string::npos) << run.out;
+        if (attempt.counts()) {
+            EXPECT_NE(run.out.find("\n" + attempt.condition + " "), std::string::npos) << run.out;
+        }
         EXPECT_TRUE(attempt.valid) << attempt.invalid_reason.value_or("");
         ++outcomes[attempt.outcome];
         const auto happened = eventsOf(attempt, *events);
