@@ -133,7 +133,7 @@ std::string seenName(const StudyData& study, const store::ConditionRow& conditio
     bool all = true, first = true;
     for (const auto& [factor, label] : condition.levels) {
         const auto column = std::find_if(study.factors.begin(), study.factors.end(),
-                                         [&](const FactorColumn& c) { return c.factor == factor; });
+                                         [&name = factor](const FactorColumn& c) { return c.factor == name; });
         if (column != study.factors.end() && column->kind != "within") {
             all = false;
             continue;
