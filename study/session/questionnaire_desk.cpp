@@ -37,7 +37,6 @@ void QuestionnaireDesk::remember(FinishedTrial trial) {
 }
 
 Result<bool> QuestionnaireDesk::ask(std::span<const design::PlannedTrial> to_do, std::int64_t session_ns) {
-    if (plan_.questionnaires.empty()) return false;
     const auto due = occasionsBetween(plan_, finished_.empty() ? nullptr : &finished_.back().trial, to_do);
     if (asked_ >= due.size()) return false;
     const Form form = formOf(due[asked_]);

@@ -19,11 +19,6 @@ std::string histogramJson(const std::vector<std::int64_t>& histogram) {
     return json + "]";
 }
 
-std::optional<std::string> nullIfEmpty(const std::string& text) {
-    if (text.empty()) return std::nullopt;
-    return text;
-}
-
 void insertMeasures(const Database& database, std::int64_t attempt_id, const std::vector<measures::Value>& values) {
     Statement insert = database.prepare("INSERT INTO attempt_measure(attempt_id, measure, value_num) VALUES(?, ?, ?)");
     for (const measures::Value& value : values) insert.bind(attempt_id, value.name, value.value).run();

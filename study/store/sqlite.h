@@ -22,6 +22,11 @@ public:
     int code;  // extended result code of SQLite
 };
 
+/// A text to bind, NULL for an empty one.
+inline std::optional<std::string> nullIfEmpty(const std::string& text) {
+    return text.empty() ? std::nullopt : std::optional(text);
+}
+
 /// One prepared statement. Parameters are numbered from 1, columns from 0.
 class Statement {
 public:

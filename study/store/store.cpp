@@ -273,8 +273,6 @@ std::int64_t insertStream(const Database& database, std::int64_t segment_id, con
     return database.lastRowId();
 }
 
-std::optional<std::string> orNull(const std::string& text) { return text.empty() ? std::nullopt : std::optional(text); }
-
 /// A part of a session that one run of the program makes; from session time `begin_ns` on.
 SessionWriter::Rows insertSegment(const Database& database, const SessionStart& start, const OpenOptions& options,
                                   std::int64_t begin_ns) {
@@ -283,8 +281,8 @@ SessionWriter::Rows insertSegment(const Database& database, const SessionStart& 
         .prepare(
             "INSERT INTO segment(session_id, app_version, host, device_json, mono_zero_ns, utc_zero, started_utc) "
             "VALUES(?, ?, ?, ?, ?, ?, ?)")
-        .bind(start.session_id, options.app_version, orNull(start.host), device, start.mono_zero_ns, start.clock.at(0),
-              start.clock.at(begin_ns))
+        .bind(start.session_id, options.app_version, nullIfEmpty(start.host), device, start.mono_zero_ns,
+              start.clock.at(0), start.clock.at(begin_ns))
         .run();
     SessionWriter::Rows rows{start.session_id, database.lastRowId(), 0, std::nullopt};
     rows.tick_stream_id = insertStream(database, rows.segment_id, "tick", tickChannels());
@@ -308,7 +306,7 @@ SessionWriter::Rows insertSession(const Database& database, const SessionStart& 
     requireAdmission(database, start.protocol_sha256, start.participant);
     database.prepare("INSERT INTO session VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, NULL, NULL, ?)")
         .bind(start.session_id, start.participant, start.protocol_sha256, start.ordinal, start.station,
-              orNull(start.experimenter), start.language, start.seed, start.random_name, start.clock.at(0),
+              nullIfEmpty(start.experimenter), start.language, start.seed, start.random_name, start.clock.at(0),
               start.clock.epoch() == Epoch::Virtual ? "virtual" : "wall")
         .run();
     insertTrialPlan(database, start, plan);

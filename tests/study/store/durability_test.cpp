@@ -14,6 +14,7 @@
 #include "study/store/sqlite.h"
 #include "tests/study/store/fake_study.h"
 #include "tests/study/store/faulty_disk.h"
+#include "tests/study/store/first_revision.h"
 
 // What a disk, another program or a kill can do to a database, each with one clear message and nothing finished lost.
 // PASSUNG_KILLS: how many of the moments at which a process can die are tried; default 40, "all" for every one.
@@ -322,13 +323,7 @@ TEST(Durability, AnUpgradeIsDoneAsAWholeOrNotAtAll) {
     // Truth: invariant. A table in the way stops the last revision; the file stays of the first.
     const fake::TempFolder folder;
     const std::string path = folder / "s.db";
-    {
-        const Database old(path, OpenMode::Create);
-        old.execute("PRAGMA application_id=" + std::to_string(kApplicationId));
-        old.execute(revisions().front().sql);
-        old.prepare("INSERT INTO schema_revision VALUES(1, 'first', 1, '')").run();
-        old.execute("CREATE TABLE consent_clause(x)");
-    }
+    fake::makeFirstRevision(path, "CREATE TABLE consent_clause(x)");
     const auto opened = Store::open(path, fake::options());
     EXPECT_EQ(opened.outcome, OpenOutcome::Failed);
     ASSERT_EQ(opened.errors.size(), 1u);

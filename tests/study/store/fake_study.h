@@ -10,25 +10,12 @@
 #include "core/base/random.h"
 #include "study/store/store.h"
 #include "study/store/store_reader.h"
+#include "tests/support/temp_folder.h"
 
 /// A small study whose every number is known from its seeds, for tests of store and export.
 namespace passung::fake {
 
-/// A fresh folder that disappears with the object.
-class TempFolder {
-public:
-    TempFolder() {
-        std::string pattern = (std::filesystem::temp_directory_path() / "passung_test_XXXXXX").string();
-        path_ = mkdtemp(pattern.data());
-    }
-    ~TempFolder() { std::filesystem::remove_all(path_); }
-    TempFolder(const TempFolder&) = delete;
-    TempFolder& operator=(const TempFolder&) = delete;
-    std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-
-private:
-    std::filesystem::path path_;
-};
+using test::TempFolder;
 
 /// Texts with everything that CSV and JSON find hard.
 inline constexpr const char* kHardText = "it's \"hard\",\nreally; Größe 1/2 \\ end";

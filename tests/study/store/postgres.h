@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/temp_folder.h"
+
 namespace passung::fake {
 
 /// A PostgreSQL server of its own: in a temporary folder, reached by a socket in it, gone with the object. A server
@@ -22,28 +24,24 @@ public:
     static bool installed() { return !programs().empty() && (geteuid() != 0 || getpwnam("postgres") != nullptr); }
 
     Postgres() {
-        std::string pattern = (std::filesystem::temp_directory_path() / "passung_pg_XXXXXX").string();
-        folder_ = mkdtemp(pattern.data());
         if (geteuid() == 0) {
             const passwd* user = getpwnam("postgres");
-            if (chown(folder_.c_str(), user->pw_uid, user->pw_gid) != 0) throw std::runtime_error("chown");
+            if (chown(folder_.path().c_str(), user->pw_uid, user->pw_gid) != 0) throw std::runtime_error("chown");
         }
         run({"initdb", "-D", data(), "-A", "trust", "-U", "passung", "-E", "UTF8", "--no-locale", "--no-sync"});
-        run({"pg_ctl", "-D", data(), "-w", "-t", "120", "-l", folder_ + "/log", "-o",
-             "-F -k " + folder_ + " -c listen_addresses=''", "start"});
+        run({"pg_ctl", "-D", data(), "-w", "-t", "120", "-l", folder_ / "log", "-o",
+             "-F -k " + folder_.path().string() + " -c listen_addresses=''", "start"});
     }
     ~Postgres() {
         try {
             run({"pg_ctl", "-D", data(), "-m", "immediate", "-w", "stop"});
         } catch (const std::exception&) {
         }
-        std::error_code ignored;
-        std::filesystem::remove_all(folder_, ignored);
     }
     Postgres(const Postgres&) = delete;
     Postgres& operator=(const Postgres&) = delete;
 
-    std::string uri() const { return "postgresql:///postgres?host=" + folder_ + "&user=passung"; }
+    std::string uri() const { return "postgresql:///postgres?host=" + folder_.path().string() + "&user=passung"; }
 
 private:
     /// Folder of the newest server's programs; empty if there is none.
@@ -56,7 +54,7 @@ private:
         return newest;
     }
 
-    std::string data() const { return folder_ + "/data"; }
+    std::string data() const { return folder_ / "data"; }
 
     void run(std::vector<std::string> arguments) const {
         const std::string name = arguments[0];
@@ -65,7 +63,7 @@ private:
         if (child == 0) become(arguments);
         int status = 0;
         waitpid(child, &status, 0);
-        if (status != 0) throw std::runtime_error(name + " failed: see " + folder_);
+        if (status != 0) throw std::runtime_error(name + " failed: see " + folder_.path().string());
     }
 
     [[noreturn]] void become(const std::vector<std::string>& arguments) const {
@@ -74,7 +72,7 @@ private:
             if (initgroups("postgres", user->pw_gid) != 0 || setgid(user->pw_gid) != 0 || setuid(user->pw_uid) != 0)
                 _exit(125);
         }
-        if (chdir(folder_.c_str()) != 0 || freopen("/dev/null", "w", stdout) == nullptr) _exit(126);
+        if (chdir(folder_.path().c_str()) != 0 || freopen("/dev/null", "w", stdout) == nullptr) _exit(126);
         std::vector<char*> argv;
         for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
         argv.push_back(nullptr);
@@ -82,7 +80,7 @@ private:
         _exit(127);
     }
 
-    std::string folder_;
+    test::TempFolder folder_;
 };
 
 }  // namespace passung::fake

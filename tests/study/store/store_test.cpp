@@ -10,6 +10,7 @@
 #include "study/store/revisions.h"
 #include "study/store/sqlite.h"
 #include "tests/study/store/fake_study.h"
+#include "tests/study/store/first_revision.h"
 
 namespace passung::store {
 namespace {
@@ -378,12 +379,7 @@ TEST(Store, AFileOfTheFirstRevisionIsUpgradedAndKeepsPicksThen) {
     // Truth: invariant. The first revision's own statement makes the file.
     const fake::TempFolder folder;
     const std::string path = folder / "s.db";
-    {
-        const Database old(path, OpenMode::Create);
-        old.execute("PRAGMA application_id=" + std::to_string(kApplicationId));
-        old.execute(revisions().front().sql);
-        old.prepare("INSERT INTO schema_revision VALUES(1, 'first', 1, '')").run();
-    }
+    fake::makeFirstRevision(path);
     auto opened = Store::open(path, fake::options());
     ASSERT_EQ(opened.outcome, OpenOutcome::Upgraded);
     const std::string sha256 = require(opened.store->importProtocol(fake::makePlan()));
