@@ -116,6 +116,31 @@ struct Press {
     bool touches = false;
 };
 
+/// Moves the handle under the contact's wrench and the hand's until it should rest. `coordinate` of its true pose
+/// swings; `touched` says of a wrench whether the contact pushes back. Waits so many ticks between the two looks.
+Press settle(test::Bench& bench, DeviceDynamics& dynamics, const simulated::HandCoupling& hand, int wait,
+             const auto& coordinate, const auto& touched) {
+    Press result;
+    const auto swing = [&](int ticks) {
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (int i = 0; i < ticks; ++i) {
+            const auto output = bench.step(dynamics.readPose());
+            dynamics.command(output.F_D_B);
+            dynamics.advance(hand);
+            const double at = coordinate(dynamics.truePose());
+            low = std::min(low, at);
+            high = std::max(high, at);
+            result.touches = touched(output.F_D_B);
+        }
+        return high - low;
+    };
+    swing(500);
+    result.early = swing(500);
+    swing(wait);
+    result.late = swing(500);
+    return result;
+}
+
 Press press(const DeviceParams& preset, model::ContactMethod method, double stiffness) {
     model::SceneSpec spec = test::scene(model::Sphere{0.02}, Pose{Quat::Identity(), {0, 0, 0.0101}},
                                         model::Box{0.05, 0.05, 0.02}, Pose{Quat::Identity(), {0, 0, -0.01}}, method);
@@ -132,24 +157,9 @@ Press press(const DeviceParams& preset, model::ContactMethod method, double stif
     simulated::HandCoupling hand;
     hand.attached = true;
     hand.F_D_B.force = Vec3(0, 0, -0.3 * preset.max_force.value);
-    Press result;
-    const auto swing = [&](int ticks) {
-        double low = std::numeric_limits<double>::infinity(), high = -low;
-        for (int i = 0; i < ticks; ++i) {
-            const auto output = bench.step(dynamics.readPose());
-            dynamics.command(output.F_D_B);
-            dynamics.advance(hand);
-            low = std::min(low, dynamics.truePose().p.z());
-            high = std::max(high, dynamics.truePose().p.z());
-            result.touches = output.F_D_B.force.z() > 0.0;
-        }
-        return high - low;
-    };
-    swing(500);
-    result.early = swing(500);
-    swing(1000);
-    result.late = swing(500);
-    return result;
+    return settle(
+        bench, dynamics, hand, 1000, [](const Pose& X_BD) { return X_BD.p.z(); },
+        [](const Wrench& F_D_B) { return F_D_B.force.z() > 0.0; });
 }
 
 TEST(StabilityBorder, AtNineteenTwentiethsOfItAPressedHandleComesToRest) {
@@ -196,26 +206,12 @@ Press turnOntoPosts(const DeviceParams& preset, double stiffness) {
     simulated::HandCoupling hand;
     hand.attached = true;
     hand.F_D_B.torque = Vec3(0, 0, 0.3 * preset.max_torque.value);
-    Press result;
-    const auto swing = [&](int ticks) {
-        double low = std::numeric_limits<double>::infinity(), high = -low;
-        for (int i = 0; i < ticks; ++i) {
-            const auto output = bench.step(dynamics.readPose());
-            dynamics.command(output.F_D_B);
-            dynamics.advance(hand);
-            const double angle = rotationVector(dynamics.truePose().q).z();
-            low = std::min(low, angle);
-            high = std::max(high, angle);
-            result.touches = output.F_D_B.torque.z() < 0.0;
-            EXPECT_LE(output.F_D_B.torque.norm(), preset.max_torque.value);
-        }
-        return high - low;
-    };
-    swing(500);
-    result.early = swing(500);
-    swing(5000);
-    result.late = swing(500);
-    return result;
+    return settle(
+        bench, dynamics, hand, 5000, [](const Pose& X_BD) { return rotationVector(X_BD.q).z(); },
+        [&](const Wrench& F_D_B) {
+            EXPECT_LE(F_D_B.torque.norm(), preset.max_torque.value);
+            return F_D_B.torque.z() < 0.0;
+        });
 }
 
 TEST(StabilityBorder, AtNineteenTwentiethsOfItABarTurnedOntoPostsComesToRest) {
