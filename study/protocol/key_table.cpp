@@ -8,27 +8,14 @@
 #include <cmath>
 #include <utility>
 
-#include "core/model/scene_spec.h"
 #include "study/protocol/questionnaire_keys.h"
+#include "study/protocol/scene_keys.h"
 
 namespace passung::protocol {
 namespace {
 
-constexpr Range kAny{};
-
-constexpr Range above(double low) {
-    return {.low = low, .high = std::numeric_limits<double>::infinity(), .low_excluded = true};
-}
-
-constexpr Range atLeast(double low) {
-    return {.low = low, .high = std::numeric_limits<double>::infinity(), .low_excluded = false};
-}
-
-constexpr Range from(double low, double high) { return {.low = low, .high = high, .low_excluded = false}; }
-
-constexpr Range aboveUpTo(double low, double high) { return {.low = low, .high = high, .low_excluded = true}; }
-
 using enum KeyType;
+using namespace ranges;
 
 // clang-format off
 constexpr std::array kStudyKeys{
@@ -54,130 +41,6 @@ constexpr std::array kStudyKeys{
     Key{"study", "participants", Integer, from(1, 100000), "", "!", "How many are planned; a multiple of the rows of the Williams square keeps orders balanced."},
     Key{"study", "max_session_minutes", Number, aboveUpTo(0, 1440), "", "(no limit)", "A session that can take longer, every trial to its time-out and with the rests, is an error."},
     Key{"study", "allocation_blocks", Integer, from(1, 10), "", "1", "Participants are allotted to groups in permuted blocks that hold each group so often."},
-
-    Key{"scene", "unit", Choice, kAny, "um|mm|cm|m|in", "mm", "Unit of lengths without one in their key: shapes, positions, meshes that do not say theirs."},
-    Key{"scene", "part", Tables, kAny, "", "!", "The parts; exactly one is held."},
-    Key{"scene", "contact", Table, kAny, "", "(its defaults)", "How contact is computed and rendered."},
-    Key{"scene", "device", Table, kAny, "", "(no preset)", "The haptic device and its limits; a study needs a preset."},
-    Key{"scene", "registration", Table, kAny, "", "(its defaults)", "How the device's space lies in the scene."},
-    Key{"scene", "start_gate", Table, kAny, "", "(no gate)", "When a trial starts: the hand holds the start pose first."},
-    Key{"scene", "effects", Table, kAny, "", "(none)", "Further effects, a table each."},
-
-    Key{"part_file", "unit", Choice, kAny, "um|mm|cm|m|in", "(the caller's)", "Unit of lengths without one in their key."},
-    Key{"part_file", "part", Tables, kAny, "", "!", "Exactly one part."},
-
-    Key{"calibration", "device", Text, kAny, "", "!", "Name of the device."},
-    Key{"calibration", "stable_stiffness_N_per_m", Number, atLeast(0), "", "!", "That \"max\" stands for."},
-    Key{"calibration", "stable_rotational_stiffness_Nm_per_rad", Number, atLeast(0), "", "!", "Likewise; 0 = torque is not actuated."},
-    Key{"calibration", "calm_stiffness_N_per_m", Number, atLeast(0), "", "!", "Largest at which the device came to rest."},
-    Key{"calibration", "calm_rotational_stiffness_Nm_per_rad", Number, atLeast(0), "", "!", "Likewise."},
-    Key{"calibration", "damping_Ns_per_m", Number, atLeast(0), "", "!", "Of the wall, with which it was found; the recommended one."},
-    Key{"calibration", "rotational_damping_Nms_per_rad", Number, atLeast(0), "", "!", "Likewise."},
-
-    Key{"part", "name", Name, kAny, "", "!", "Unique; factors address the part by it."},
-    Key{"part", "mesh", Text, kAny, "", "(a shape)", "Mesh file, relative to the file that names it. Not its content is stored with the data but the SHA-256 of this one file: keep it beside the study; a replay refuses another."},
-    Key{"part", "shape", Table, kAny, "", "(a mesh)", "Parametric shape."},
-    Key{"part", "pose", Table, kAny, "", "(identity)", "Part to world at the start."},
-    Key{"part", "held", Boolean, kAny, "", "false", "The part in the hand."},
-    Key{"part", "friction", Number, from(0, 10), "", "0", "Coefficient at rest. Two parts rub with the geometric mean of theirs: 0 on either side is none. God objects only."},
-    Key{"part", "sliding_friction", Number, from(0, 10), "", "(as `friction`)", "Coefficient while sliding; at most `friction`."},
-    Key{"part", "shown_offset", LengthVector, kAny, "", "(zero)", "The part is drawn this far from where it is touched, along the world's axes; not for the held part."},
-    Key{"part", "unit", Choice, kAny, "um|mm|cm|m|in", "(the scene's)", "Unit of this part's lengths."},
-
-    Key{"pose", "position", LengthVector, kAny, "", "(zero)", "Origin of the part in the world."},
-    Key{"pose", "rotation_deg", Vector, kAny, "", "(zero)", "Angles about the world's x, then y, then z axis: R = Rz Ry Rx."},
-
-    Key{"shape", "kind", Choice, kAny, "sphere|box|cylinder|torus|sheet|peg|square_peg|keyed_peg|bore_plate|square_bore_plate|keyed_bore_plate", "!", "Which shape; its own keys follow."},
-    Key{"shape.sphere", "diameter", Length, above(0), "", "!", "Origin at the centre."},
-    Key{"shape.box", "width", Length, above(0), "", "!", "Along x; origin at the centre."},
-    Key{"shape.box", "depth", Length, above(0), "", "!", "Along y."},
-    Key{"shape.box", "height", Length, above(0), "", "!", "Along z."},
-    Key{"shape.cylinder", "diameter", Length, above(0), "", "!", "Axis z; origin at the centre."},
-    Key{"shape.cylinder", "length", Length, above(0), "", "!", "Along z."},
-    Key{"shape.torus", "diameter", Length, above(0), "", "!", "Of the ring's circle, the middle of the tube; axis z, origin at the centre."},
-    Key{"shape.torus", "tube_diameter", Length, above(0), "", "!", "Less than the diameter."},
-    Key{"shape.sheet", "width", Length, above(0), "", "!", "Along x; zero thickness in the plane z = 0, open."},
-    Key{"shape.sheet", "depth", Length, above(0), "", "!", "Along y."},
-    Key{"shape.peg", "diameter", Length, above(0), "", "(by the fit)", "Axis z; origin at the centre of the tip face, body along +z."},
-    Key{"shape.peg", "length", Length, above(0), "", "!", "Along z."},
-    Key{"shape.peg", "chamfer", Length, atLeast(0), "", "0", "45 degree chamfer at the tip; 0 = sharp."},
-    Key{"shape.square_peg", "width", Length, above(0), "", "!", "Along x; origin at the centre of the tip face, body along +z."},
-    Key{"shape.square_peg", "depth", Length, above(0), "", "!", "Along y."},
-    Key{"shape.square_peg", "length", Length, above(0), "", "!", "Along z."},
-    Key{"shape.square_peg", "chamfer", Length, atLeast(0), "", "0", "45 degree chamfer along the tip's edges; 0 = sharp."},
-    Key{"shape.keyed_peg", "diameter", Length, above(0), "", "(by the fit)", "Of the round body; axis z, origin at its centre in the tip face, body along +z."},
-    Key{"shape.keyed_peg", "length", Length, above(0), "", "!", "Along z."},
-    Key{"shape.keyed_peg", "key_width", Length, above(0), "", "!", "Of the key, along y; less than the diameter. The key is as long as the peg."},
-    Key{"shape.keyed_peg", "key_height", Length, above(0), "", "!", "How far the key, on the side of +x, stands out: its top is at x = diameter / 2 + key_height."},
-    Key{"shape.keyed_peg", "chamfer", Length, atLeast(0), "", "0", "45 degree chamfer at the tip of body and key; 0 = sharp."},
-    Key{"shape.bore_plate", "width", Length, above(0), "", "!", "Along x; origin at the centre of the bore's mouth, body below z = 0."},
-    Key{"shape.bore_plate", "depth", Length, above(0), "", "!", "Along y."},
-    Key{"shape.bore_plate", "height", Length, above(0), "", "!", "Along z."},
-    Key{"shape.bore_plate", "bore_diameter", Length, above(0), "", "(by the fit)", "Of the bore."},
-    Key{"shape.bore_plate", "bore_depth", Depth, above(0), "", "!", "Of the bore: a length or \"through\"; the plate's height or more goes through."},
-    Key{"shape.bore_plate", "chamfer", Length, atLeast(0), "", "0", "45 degree chamfer at the mouth; 0 = sharp."},
-    Key{"shape.square_bore_plate", "width", Length, above(0), "", "!", "Along x; origin at the centre of the pocket's mouth, body below z = 0."},
-    Key{"shape.square_bore_plate", "depth", Length, above(0), "", "!", "Along y."},
-    Key{"shape.square_bore_plate", "height", Length, above(0), "", "!", "Along z."},
-    Key{"shape.square_bore_plate", "pocket_width", Length, above(0), "", "!", "Of the pocket, along x; to fit the peg's `width`."},
-    Key{"shape.square_bore_plate", "pocket_depth", Length, above(0), "", "!", "Of the pocket, along y; to fit the peg's `depth`."},
-    Key{"shape.square_bore_plate", "bore_depth", Depth, above(0), "", "!", "Of the pocket, along z: a length or \"through\"; the plate's height or more goes through."},
-    Key{"shape.square_bore_plate", "chamfer", Length, atLeast(0), "", "0", "45 degree chamfer along the mouth's edges; 0 = sharp."},
-    Key{"shape.keyed_bore_plate", "width", Length, above(0), "", "!", "Along x; origin at the centre of the bore's mouth, body below z = 0."},
-    Key{"shape.keyed_bore_plate", "depth", Length, above(0), "", "!", "Along y."},
-    Key{"shape.keyed_bore_plate", "height", Length, above(0), "", "!", "Along z."},
-    Key{"shape.keyed_bore_plate", "bore_diameter", Length, above(0), "", "(by the fit)", "Of the bore."},
-    Key{"shape.keyed_bore_plate", "key_width", Length, above(0), "", "!", "Of the keyway, along y; less than the bore's diameter."},
-    Key{"shape.keyed_bore_plate", "key_height", Length, above(0), "", "!", "Of the keyway, on the side of +x: its bottom is at x = bore_diameter / 2 + key_height."},
-    Key{"shape.keyed_bore_plate", "bore_depth", Depth, above(0), "", "!", "Of bore and keyway: a length or \"through\"; the plate's height or more goes through."},
-    Key{"shape.keyed_bore_plate", "chamfer", Length, atLeast(0), "", "0", "45 degree chamfer at the mouth of bore and keyway; 0 = sharp."},
-    Key{"shape.fit", "fit", Text, kAny, "", "(none: the diameter is given)", "Hole and shaft by ISO 286, such as \"H7/g6\": a peg takes the shaft, a plate the hole. Holes D, E, F, G, H, JS, K, M, N, P; shafts d, e, f, g, h, js, k, m, n, p, r, s; grades 01, 0, 1 to 18."},
-    Key{"shape.fit", "nominal_diameter", Length, above(0), "", "(none)", "At most 500 mm; needed by the fit."},
-    Key{"shape.fit", "deviation", Choice, kAny, "mean|min|max", "mean", "Which of the pairs that the fit allows: mean, least or most clearance."},
-
-    Key{"contact", "method", Choice, kAny, "penalty|god_object_heuristic|god_object", "god_object_heuristic", "How penetration becomes force: springs in every contact, or a proxy that stays outside and is coupled to the hand; god_object keeps it farther out, by the constraints alone."},
-    Key{"contact", "variant", Choice, kAny, "max_normalised|area_weighted|raw", "max_normalised", "Weighting of the penalty; unused by other methods. Only max_normalised keeps to the stiffness: raw adds it up over all points, area_weighted has area_stiffness_N_per_m3 instead; neither is held below the device's stable maximum, and `check` warns of them."},
-    Key{"contact", "stiffness_N_per_m", Stiffness, above(0), "", "(\"max\"; without a device preset 1000)", "Number, or fraction of the device's stable maximum: \"max\", \"0.5 max\"; never above it, unless `allow_unstable`. The maximum is what was found on this machine's device (`passung doctor --device NAME --find-stiffness`), else the preset's below; a study keeps the one with which it began. The maximum is known only for the recommended damping, no added delay and scale 1."},
-    Key{"contact", "rotational_stiffness_Nm_per_rad", Stiffness, atLeast(0), "", "(the same fraction of the device's maximum as the stiffness; without a device preset 1)", "As the stiffness, for rotations."},
-    Key{"contact", "allow_unstable", Boolean, kAny, "", "false", "Lifts the rules that keep a stiffness where the device is known to be stable: the stable maximum as an upper limit, the recommended damping, no added delay, scale 1."},
-    Key{"contact", "damping_Ns_per_m", Number, atLeast(0), "", "(1 times the device's recommended damping; without a device preset 0)", "Damping of the coupling between hand and scene; with a device preset only what it recommends."},
-    Key{"contact", "rotational_damping_Nms_per_rad", Number, atLeast(0), "", "(1 times the device's recommended damping; without a device preset 0)", "As the damping, for rotations."},
-    Key{"contact", "area_stiffness_N_per_m3", Number, above(0), "", "1e9", "Pressure per depth of the area-weighted penalty."},
-    Key{"contact", "accuracy", Choice, kAny, "chosen|auto", "chosen", "chosen: tolerance_um, cell_mm, spacing_mm, mode and budget_nodes say it. auto (studies only): in their place the program measures, when the study first runs, what tolerances, spacings and node budgets cost and how much they err, and takes the most accurate whose query fits accuracy_budget_us; kept in the database for the whole study."},
-    Key{"contact", "accuracy_budget_us", Number, above(0), "", "(only with accuracy = \"auto\", and needed there)", "Most time that a query of the held part against all others may take, 99th percentile over poses along contact paths."},
-    Key{"contact", "tolerance_um", Number, from(0.0001, 100000), "", "20", "Asked accuracy of the distance fields near surfaces."},
-    Key{"contact", "cell_mm", Number, from(0.00001, 10000), "", "(from the tolerance)", "Edge of a distance field's cells near surfaces, the same everywhere; tolerance_um has no say then."},
-    Key{"contact", "spacing_mm", Number, from(0.00001, 10000), "", "1", "Distance between the points of the point shells; the held part may have about two million."},
-    Key{"contact", "mode", Choice, kAny, "layered|surface_point|linear|trilinear|cubic", "trilinear",
-        "Interpolation in the distance field, from coarse to smooth."},
-    Key{"contact", "budget_nodes", Integer, from(0, 1000000), "", "0", "Most tree nodes that a query visits; 0 = no budget."},
-    Key{"contact", "two_way", Boolean, kAny, "", "false", "Points of the obstacles are held against the held part as well: finds edges that poke between its points, and takes about twice as long."},
-    Key{"contact", "proxy_filter_hz", Number, from(0, 500), "", "0", "Corner of the proxy's low-pass while in contact; 0 = no filter."},
-
-    Key{"device", "preset", Text, kAny, "", "(none)", "Name of a known device."},
-    Key{"device", "max_force_N", Number, above(0), "", "(the device's)", "Tightens the device's limit."},
-    Key{"device", "max_torque_Nm", Number, atLeast(0), "", "(the device's)", "Tightens the device's limit."},
-    Key{"device", "max_force_rate_N_per_s", Number, above(0), "", "(the device's)", "Tightens the device's limit of rising force."},
-    Key{"device", "delay_ticks", Integer, from(0, model::kMaxDelayTicks), "", "0", "Milliseconds added between command and effect, beside the device's own delay; with a device preset only 0."},
-
-    Key{"registration", "position", LengthVector, kAny, "", "(zero)", "Origin of the device's base in the world."},
-    Key{"registration", "rotation_deg", Vector, kAny, "", "(zero)", "Rotation of the device's base, as in a pose."},
-    Key{"registration", "scale", Number, from(0.001, 1000), "", "1", "Metres in the scene per metre of the device; with a device preset only 1."},
-    Key{"registration", "handle_position", LengthVector, kAny, "", "(zero)", "Origin of the held part in the device's handle."},
-    Key{"registration", "handle_rotation_deg", Vector, kAny, "", "(zero)", "Rotation of the held part in the handle."},
-
-    Key{"start_gate", "position_tolerance_mm", Number, from(0, 1000), "", "0", "How close the hand comes to the held part's start; 0 = not asked."},
-    Key{"start_gate", "angle_tolerance_deg", Number, from(0, 180), "", "0", "How well it is aligned; 0 = not asked."},
-    Key{"start_gate", "hold_ms", Number, from(0, 10000), "", "0", "How long it stays there."},
-
-    Key{"effects", "passivity_controller", Table, kAny, "", "(none)", "A damper that takes energy back where the controller gave more than it took in; the account itself is always recorded."},
-    Key{"effects", "transients", Table, kAny, "", "(none)", "Event-based transients: a decaying vibration in proportion to the speed, added at every impact, as a tap on something hard gives."},
-
-    Key{"effects.passivity_controller", "max_damping_Ns_per_m", Number, above(0), "", "!", "Most that it damps; a mass m cannot bear more than about m / (1 ms)."},
-
-    Key{"effects.transients", "amplitude_Ns_per_m", Number, above(0), "", "!", "Force of the vibration per speed of the impact. The device's limits hold for contact and vibration together."},
-    Key{"effects.transients", "frequency_hz", Number, aboveUpTo(0, 400), "", "!", "Of the vibration."},
-    Key{"effects.transients", "decay_ms", Number, aboveUpTo(0, 1000), "", "!", "Time in which it falls to 37 %."},
 
     Key{"factor", "name", Name, kAny, "", "!", "A column in every export."},
     Key{"factor", "key", Text, kAny, "", "(every level has its `set`)", "Key of the scene that varies, such as contact.method or part.plate.shape.bore_diameter; also task.* and feedback.*."},
@@ -254,7 +117,7 @@ constexpr std::array<Key, n + m> joined(const std::array<Key, n>& first, const s
         return std::array<Key, n + m>{first[i]..., second[j]...};
     }(std::make_index_sequence<n>{}, std::make_index_sequence<m>{});
 }
-constexpr auto kKeys = joined(kStudyKeys, kQuestionnaireKeys);
+constexpr auto kKeys = joined(joined(kStudyKeys, scene_rows::kSceneKeys), kQuestionnaireKeys);
 
 /// Tables in the order of the documentation: id, heading, sentence.
 struct TableInfo {
