@@ -62,12 +62,10 @@ AdaptiveTrack::AdaptiveTrack(AdaptiveParams params) : params_(std::move(params))
     if (candidates_.empty()) candidates_ = alphas_;
     posterior_.assign(n * kSigmas, 1.0 / static_cast<double>(n * kSigmas));
     for (const double x : candidates_) {
-        for (std::size_t a = 0; a < n; ++a) {
-            for (std::size_t s = 0; s < kSigmas; ++s) {
-                right_.push_back(chance(x, a, s));
-                log_right_.push_back(std::log(std::max(right_.back(), 1e-300)));
-                log_wrong_.push_back(std::log(std::max(1.0 - right_.back(), 1e-300)));
-            }
+        for (std::size_t i = 0; i < n * kSigmas; ++i) {
+            const double right = chance(x, i / kSigmas, i % kSigmas), wrong = 1.0 - right;
+            right_.push_back(right);
+            told_.push_back(right * std::log(std::max(right, 1e-300)) + wrong * std::log(std::max(wrong, 1e-300)));
         }
     }
     level_ = candidates_[leastEntropy()];
@@ -76,9 +74,14 @@ AdaptiveTrack::AdaptiveTrack(AdaptiveParams params) : params_(std::move(params))
 double AdaptiveTrack::onAxis(double level) const { return params_.logarithmic ? std::log10(level) : level; }
 double AdaptiveTrack::fromAxis(double x) const { return params_.logarithmic ? std::pow(10.0, x) : x; }
 
+double AdaptiveTrack::wantedLevel() const {
+    PASSUNG_ASSERT(!finished());
+    return std::clamp(fromAxis(level_), params_.low, params_.high);
+}
+
 double AdaptiveTrack::nextLevel() const {
     PASSUNG_ASSERT(!finished());
-    if (params_.levels.empty()) return std::clamp(fromAxis(level_), params_.low, params_.high);
+    if (params_.levels.empty()) return wantedLevel();
     const auto nearest = std::min_element(candidates_.begin(), candidates_.end(), [&](double a, double b) {
         return std::abs(a - level_) < std::abs(b - level_);
     });
@@ -115,9 +118,11 @@ double AdaptiveTrack::chance(double x, std::size_t alpha, std::size_t sigma) con
 }
 
 void AdaptiveTrack::answerByPosterior(double x, bool right) {
+    const auto known = std::find(candidates_.begin(), candidates_.end(), x) - candidates_.begin();
+    const std::size_t row = static_cast<std::size_t>(known) * posterior_.size();
     double sum = 0.0;
     for (std::size_t i = 0; i < posterior_.size(); ++i) {
-        const double p = chance(x, i / kSigmas, i % kSigmas);
+        const double p = row < right_.size() ? right_[row + i] : chance(x, i / kSigmas, i % kSigmas);
         posterior_[i] *= right ? p : 1.0 - p;
         sum += posterior_[i];
     }
@@ -125,26 +130,24 @@ void AdaptiveTrack::answerByPosterior(double x, bool right) {
     level_ = candidates_[leastEntropy()];
 }
 
-/// The candidate whose answer leaves the least entropy on average. With q = posterior times chance of the answer and
-/// its sum n, the entropy after it is ln n - (sum of q ln q) / n, weighted by n.
+/// The candidate whose answer leaves the least entropy on average. With the posterior q, the chance p of a right answer
+/// and n = sum of q p, that entropy is
+///   n ln n + (1 - n) ln(1 - n) - sum of q (p ln p + (1 - p) ln(1 - p)) - sum of q ln q,
+/// of which the last is the same for all.
 std::size_t AdaptiveTrack::leastEntropy() const {
-    std::vector<double> log_posterior(posterior_.size());
-    for (std::size_t i = 0; i < posterior_.size(); ++i) log_posterior[i] = std::log(std::max(posterior_[i], 1e-300));
+    const double* q = posterior_.data();
     std::size_t best = 0;
     double least = 0.0;
     for (std::size_t c = 0; c < candidates_.size(); ++c) {
-        const std::size_t row = c * posterior_.size();
-        double n_right = 0.0, s_right = 0.0, n_wrong = 0.0, s_wrong = 0.0;
+        const double* right = right_.data() + c * posterior_.size();
+        const double* told_at = told_.data() + c * posterior_.size();
+        double n = 0.0, told = 0.0;
         for (std::size_t i = 0; i < posterior_.size(); ++i) {
-            const double q = posterior_[i] * right_[row + i];
-            const double r = posterior_[i] - q;
-            n_right += q;
-            n_wrong += r;
-            s_right += q * (log_posterior[i] + log_right_[row + i]);
-            s_wrong += r * (log_posterior[i] + log_wrong_[row + i]);
+            n += q[i] * right[i];
+            told += q[i] * told_at[i];
         }
-        const double entropy = n_right * std::log(std::max(n_right, 1e-300)) - s_right +
-                               n_wrong * std::log(std::max(n_wrong, 1e-300)) - s_wrong;
+        const double entropy =
+            n * std::log(std::max(n, 1e-300)) + (1.0 - n) * std::log(std::max(1.0 - n, 1e-300)) - told;
         if (c > 0 && !(entropy < least)) continue;
         best = c;
         least = entropy;
@@ -156,14 +159,25 @@ bool AdaptiveTrack::finished() const {
     return trials_ >= params_.max_trials || (params_.max_reversals > 0 && reversals() >= params_.max_reversals);
 }
 
-double AdaptiveTrack::posteriorMean() const {
-    double mean = 0.0;
-    for (std::size_t i = 0; i < posterior_.size(); ++i) mean += posterior_[i] * alphas_[i / kSigmas];
-    return mean;
+std::vector<double> AdaptiveTrack::thresholdPosterior() const {
+    std::vector<double> shares(alphas_.size());
+    for (std::size_t i = 0; i < posterior_.size(); ++i) shares[i / kSigmas] += posterior_[i];
+    return shares;
+}
+
+/// The top of the parabola through the highest point of the grid and its neighbours.
+double AdaptiveTrack::posteriorMode() const {
+    const auto shares = thresholdPosterior();
+    const auto top = static_cast<std::size_t>(std::max_element(shares.begin(), shares.end()) - shares.begin());
+    if (top == 0 || top + 1 == shares.size()) return alphas_[top];
+    const double before = shares[top - 1], after = shares[top + 1];
+    const double curvature = before - 2.0 * shares[top] + after;
+    const double aside = curvature < 0.0 ? 0.5 * (before - after) / curvature : 0.0;
+    return alphas_[top] + aside * (alphas_[top + 1] - alphas_[top]);
 }
 
 std::optional<double> AdaptiveTrack::estimate() const {
-    if (params_.method == AdaptiveMethod::Psi) return fromAxis(posteriorMean());
+    if (params_.method == AdaptiveMethod::Psi) return fromAxis(posteriorMode());
     const auto skipped = static_cast<std::size_t>(std::max(0, params_.skip_reversals));
     if (reversal_levels_.size() <= skipped) return std::nullopt;
     // An even number: tops and bottoms in equal parts.
@@ -174,41 +188,13 @@ std::optional<double> AdaptiveTrack::estimate() const {
     return fromAxis(sum / static_cast<double>(count));
 }
 
-double AdaptiveTrack::uncertainty() const {
-    const double mean = posteriorMean();
+std::optional<double> AdaptiveTrack::uncertainty() const {
+    if (params_.method != AdaptiveMethod::Psi) return std::nullopt;
+    const auto shares = thresholdPosterior();
+    const double mean = std::inner_product(shares.begin(), shares.end(), alphas_.begin(), 0.0);
     double variance = 0.0;
-    for (std::size_t i = 0; i < posterior_.size(); ++i) {
-        const double d = alphas_[i / kSigmas] - mean;
-        variance += posterior_[i] * d * d;
-    }
+    for (std::size_t i = 0; i < shares.size(); ++i) variance += shares[i] * (alphas_[i] - mean) * (alphas_[i] - mean);
     return std::sqrt(variance);
-}
-
-InterleavedTracks::InterleavedTracks(std::vector<AdaptiveParams> tracks, std::uint64_t seed, double catch_share,
-                                     double catch_level)
-    : tracks_(tracks.begin(), tracks.end()), random_(seed), catch_share_(catch_share), catch_level_(catch_level) {
-    draw();
-}
-
-void InterleavedTracks::draw() {
-    std::vector<std::size_t> open;
-    for (std::size_t i = 0; i < tracks_.size(); ++i)
-        if (!tracks_[i].finished()) open.push_back(i);
-    step_.reset();
-    if (open.empty()) return;
-    // Both draws in every step: a share of catch trials does not move the order of the tracks.
-    const std::size_t track = open[random_.below(open.size())];
-    if (random_.uniform() < catch_share_)
-        step_ = Step{std::nullopt, catch_level_};
-    else
-        step_ = Step{track, tracks_[track].nextLevel()};
-}
-
-bool InterleavedTracks::answer(double presented, bool right) {
-    PASSUNG_ASSERT(step_.has_value());
-    const bool turned = step_->track && tracks_[*step_->track].answer(presented, right);
-    draw();
-    return turned;
 }
 
 }  // namespace passung::design
