@@ -25,6 +25,9 @@ struct FrictionPatch {
     bool slides = false;
 };
 
+/// `rub` along the surface, as a vector of the world [m]; its third part, the torsion, apart. rt-safe.
+Vec3 rubAlong(const FrictionPatch& patch) noexcept;
+
 /// Patches of one motion. At most six, since no more contacts hold it.
 struct FrictionPatches {
     std::array<FrictionPatch, 6> patch;

@@ -28,9 +28,8 @@ std::pair<Vec3, Vec3> tangentsOf(const Vec3& n) noexcept {
 
 /// The friction of `patch` in the tangents of a normal that differs a little.
 Vec3 turned(const FrictionPatch& patch, const Vec3& normal) noexcept {
-    const auto [t1, t2] = tangentsOf(patch.normal);
     const auto [s1, s2] = tangentsOf(normal);
-    const Vec3 along = patch.rub.x() * t1 + patch.rub.y() * t2;
+    const Vec3 along = rubAlong(patch);
     return {along.dot(s1), along.dot(s2), patch.rub.z()};
 }
 
@@ -41,6 +40,11 @@ std::size_t binOf(const Vec3& gradient, const Vec3& lever) noexcept {
 }
 
 }  // namespace
+
+Vec3 rubAlong(const FrictionPatch& patch) noexcept {
+    const auto [t1, t2] = tangentsOf(patch.normal);
+    return patch.rub.x() * t1 + patch.rub.y() * t2;
+}
 
 double effectiveRadius(const Surroundings& around, const FrictionPatch& patch, const Motion& u) noexcept {
     const auto [t1, t2] = tangentsOf(patch.normal);

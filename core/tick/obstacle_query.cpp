@@ -43,7 +43,7 @@ void merge(const QueryAnswer& answer, QueryAnswer& all) noexcept {
 }  // namespace
 
 QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, QueryRequest request, QueryWorkspace& workspace,
-                           ContactManifold& manifold) noexcept {
+                           ContactManifold& manifold, std::span<PairAccount> pairs) noexcept {
     request.mode = model.contact.mode;
     request.max_nodes = model.contact.budget_nodes;
     QueryAnswer all;
@@ -53,14 +53,17 @@ QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, QueryReques
         if (!request.refine) request.search_below = all.phi;
     };
     std::uint32_t place = 0;
+    const auto take = [&](const QueryAnswer& answer) {
+        merge(answer, all);
+        narrow();
+        if (pairs.empty()) return;
+        pairs[place].push.force += answer.load.force;
+        pairs[place].push.torque += answer.load.torque;
+    };
     for (const Obstacle& obstacle : model.obstacles) {
         const std::size_t first = manifold.size();
-        merge(queryContacts(*obstacle.field, obstacle.X_WF, *model.shell, X_WS, request, workspace, manifold), all);
-        narrow();
-        if (obstacle.shell != nullptr) {
-            merge(queryBack(model, obstacle, X_WS, request, workspace, manifold), all);
-            narrow();
-        }
+        take(queryContacts(*obstacle.field, obstacle.X_WF, *model.shell, X_WS, request, workspace, manifold));
+        if (obstacle.shell != nullptr) take(queryBack(model, obstacle, X_WS, request, workspace, manifold));
         manifold.assign(first, place++);
     }
     return all;

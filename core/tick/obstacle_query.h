@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "core/tick/tick_model.h"
 
 namespace passung::tick {
@@ -8,9 +10,10 @@ namespace passung::tick {
 /// obstacles' points against the held part's field: what pokes between the held part's points is found by its own. All
 /// contacts are told as the held part's: gradients away from the obstacle, normals out of the held part. The model's
 /// mode and budget (per obstacle and way) replace those of `request`. Appends to `manifold`; returns the deepest or
-/// closest answer, with nodes added up and the least quality. rt-safe.
+/// closest answer, with nodes added up and the least quality. Each obstacle's own load is added to its push in `pairs`,
+/// if these are given. rt-safe.
 QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, QueryRequest request, QueryWorkspace& workspace,
-                           ContactManifold& manifold) noexcept;
+                           ContactManifold& manifold, std::span<PairAccount> pairs = {}) noexcept;
 
 /// Books a query's cost and completeness in the frame. rt-safe.
 void account(const QueryAnswer& answer, TickFrame& frame) noexcept;

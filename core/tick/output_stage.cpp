@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/tick/contact_energy.h"
+
 namespace passung::tick {
 
 namespace {
@@ -35,6 +37,19 @@ Wrench wrenchOnDevice(const TickModel& model, const TickFrame& frame, const Wren
     return {R_BW * F_H_W.force, R_BW * (F_H_W.torque + p_DH_W.cross(F_H_W.force))};
 }
 
+/// The pairs' shares of what was sent, of whose force and torque the limits left so much.
+void splitSent(const TickModel& model, TickState& state, const TickFrame& frame, double force_left,
+               double torque_left) noexcept {
+    Wrench rest = state.last_sent;
+    for (PairAccount& pair : state.pairs) {
+        const Wrench push = wrenchOnDevice(model, frame, pair.push);
+        pair.last_sent = {force_left * push.force, torque_left * push.torque};
+        rest.force -= pair.last_sent.force;
+        rest.torque -= pair.last_sent.torque;
+    }
+    state.pairs.back().last_sent = rest;  // that has no push of its own
+}
+
 }  // namespace
 
 Wrench wrenchOnHeldPart(const TickModel& model, const TickFrame& frame, const Wrench& F_D_B) noexcept {
@@ -47,6 +62,7 @@ void delayOutput(const TickModel& model, TickState& state, TickFrame& frame) noe
     const auto length = static_cast<std::int64_t>(model.limits.delay_ticks) + 1;
     state.delay_line[static_cast<std::size_t>(state.tick % length)] = frame.input_usable ? frame.F_H_W : Wrench{};
     frame.F_H_W = state.delay_line[static_cast<std::size_t>((state.tick + 1) % length)];
+    delayPushes(model, state);
 }
 
 void limitOutput(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
@@ -58,9 +74,11 @@ void limitOutput(const TickModel& model, TickState& state, TickFrame& frame) noe
         frame.F_D_B = Wrench{};
         frame.F_H_W = Wrench{};
         state.last_sent = state.sent_at_sample = Wrench{};
+        for (PairAccount& pair : state.pairs) pair.last_sent = Wrench{};
         return;
     }
-    if (!limits.actuates_torque || limits.max_torque == 0.0) wrench.torque.setZero();
+    const bool turns = limits.actuates_torque && limits.max_torque != 0.0;
+    if (!turns) wrench.torque.setZero();
     const double within =
         std::min(factorWithin(wrench.force, limits.max_force), factorWithin(wrench.torque, limits.max_torque));
     if (within < 1.0) frame.status |= kForceLimited;
@@ -78,6 +96,7 @@ void limitOutput(const TickModel& model, TickState& state, TickFrame& frame) noe
     frame.F_H_W = wrenchOnHeldPart(model, frame, wrench);
     state.last_sent = wrench;
     if (frame.sample_periods > 0) state.sent_at_sample = wrench;
+    splitSent(model, state, frame, within * force_rising, turns ? within * torque_rising : 0.0);
 }
 
 }  // namespace passung::tick

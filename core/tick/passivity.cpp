@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/tick/contact_energy.h"
 #include "core/tick/output_stage.h"
 
 namespace passung::tick {
@@ -22,6 +23,10 @@ void observeEnergy(const TickModel& model, TickState& state, TickFrame& frame) n
     account.sent.force += state.last_sent.force;
     account.sent.torque += state.last_sent.torque;
     ++account.ticks;
+    for (PairAccount& pair : state.pairs) {
+        pair.sent.force += pair.last_sent.force;
+        pair.sent.torque += pair.last_sent.torque;
+    }
     if (!frame.input_usable) {
         account.has_sample = false;
         account.V_BD = account.ahead = Twist{};
@@ -33,12 +38,14 @@ void observeEnergy(const TickModel& model, TickState& state, TickFrame& frame) n
             const Vec3 moved = certainMotion(dx, model.limits.quantum, account.ahead.v);
             const Vec3 turned = certainMotion(dphi, model.limits.rotational_quantum, account.ahead.w);
             account.taken_in -= (account.sent.force.dot(moved) + account.sent.torque.dot(turned)) / account.ticks;
+            bookPairs(state, moved, turned, account.ticks);
             const double elapsed = kTickSeconds * static_cast<double>(frame.sample_periods);
             account.V_BD = {dx / elapsed, dphi / elapsed};
         }
         account.X_BD = X;
         account.has_sample = true;
         account.sent = Wrench{};
+        for (PairAccount& pair : state.pairs) pair.sent = Wrench{};
         account.ticks = 0;
     }
     frame.energy = account.taken_in;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/tick/contact_energy.h"
 #include "core/tick/obstacle_query.h"
 #include "core/tick/twist_between.h"
 
@@ -18,6 +19,14 @@ Vec3 dampingAlong(const Vec3& load, const Vec3& velocity, double damping) noexce
     const Vec3 direction = load / size;
     const double along = -damping * velocity.dot(direction);
     return std::max(along, -size) * direction;
+}
+
+/// `pairs`, so far with sums over their contacts.
+void scalePushes(std::span<PairAccount> pairs, double scale) noexcept {
+    for (PairAccount& pair : pairs) {
+        pair.push = {scale * pair.push.force, scale * pair.push.torque};
+        pair.pressure = pair.push.force.norm();
+    }
 }
 
 /// From sample to sample: see renderPenalty.
@@ -42,20 +51,23 @@ QueryRequest penaltyRequest(model::PenaltyVariant variant) noexcept {
 void findContactsAtHand(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
     state.X_WG = frame.X_WH;
     state.manifold.clear();
-    const QueryAnswer answer =
-        queryObstacles(model, frame.X_WH, penaltyRequest(model.contact.variant), state.workspace, state.manifold);
+    clearPushes(state);
+    const QueryAnswer answer = queryObstacles(model, frame.X_WH, penaltyRequest(model.contact.variant), state.workspace,
+                                              state.manifold, state.pairs);
     account(answer, frame);
     frame.load = answer.load;
     frame.contacts = static_cast<std::uint32_t>(answer.contacts);
     frame.hand_depth = frame.proxy_depth = std::max(0.0, -answer.phi);
 }
 
-Wrench weightedWrench(const model::ContactSpec& contact, const Wrench& load) noexcept {
+Wrench weightedWrench(const model::ContactSpec& contact, const Wrench& load, std::span<PairAccount> pairs) noexcept {
     const double scale = (contact.two_way ? 0.5 : 1.0) * contact.area_stiffness;
+    scalePushes(pairs, scale);
     return {scale * load.force, scale * load.torque};
 }
 
-Wrench penaltyWrench(const model::ContactSpec& contact, const ContactManifold& manifold, const Vec3& p_WO) noexcept {
+Wrench penaltyWrench(const model::ContactSpec& contact, const ContactManifold& manifold, const Vec3& p_WO,
+                     std::span<PairAccount> pairs) noexcept {
     const bool weighted = isWeighted(contact.variant);
     Wrench sum;
     double depth_sum = 0.0, deepest = 0.0;
@@ -63,24 +75,30 @@ Wrench penaltyWrench(const model::ContactSpec& contact, const ContactManifold& m
         if (!(c.phi < 0.0)) continue;
         const double depth = -c.phi;
         const Vec3 f = (weighted ? c.area * depth : depth) * -c.normal;
+        const Vec3 moment = (c.position - p_WO).cross(f);
         sum.force += f;
-        sum.torque += (c.position - p_WO).cross(f);
+        sum.torque += moment;
+        if (!pairs.empty()) {
+            pairs[c.obstacle].push.force += f;
+            pairs[c.obstacle].push.torque += moment;
+        }
         depth_sum += depth;
         deepest = std::max(deepest, depth);
     }
-    if (weighted) return weightedWrench(contact, sum);
-    double scale = (contact.two_way ? 0.5 : 1.0) * contact.stiffness;
+    double scale = (contact.two_way ? 0.5 : 1.0) * (weighted ? contact.area_stiffness : contact.stiffness);
     if (contact.variant == model::PenaltyVariant::MaxNormalised) {
         const double coherent = std::max(sum.force.norm(), kLeastCoherence * depth_sum);
         scale = coherent > 0.0 ? contact.stiffness * deepest / coherent : 0.0;
     }
+    scalePushes(pairs, scale);
     return {scale * sum.force, scale * sum.torque};
 }
 
 void renderPenalty(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
     measureHandVelocity(state, frame);
-    Wrench wrench = isWeighted(model.contact.variant) ? weightedWrench(model.contact, frame.load)
-                                                      : penaltyWrench(model.contact, state.manifold, frame.X_WH.p);
+    Wrench wrench = isWeighted(model.contact.variant)
+                        ? weightedWrench(model.contact, frame.load, state.pairs)
+                        : penaltyWrench(model.contact, state.manifold, frame.X_WH.p, state.pairs);
     const Vec3 force_damping = dampingAlong(wrench.force, state.V_H_last.v, model.contact.damping);
     const Vec3 torque_damping = dampingAlong(wrench.torque, state.V_H_last.w, model.contact.rotational_damping);
     wrench.force += force_damping;

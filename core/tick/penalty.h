@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "core/tick/tick_model.h"
 
 namespace passung::tick {
@@ -26,9 +28,12 @@ void findContactsAtHand(const TickModel& model, TickState& state, TickFrame& fra
 /// Limit cases: no depth → zero wrench. Opposite contacts (a peg squeezed in a bore): Σ p_i n_i → 0 while p_max stays,
 /// and the scale of max_normalised would grow without bound; it is therefore held at Σ p_i n_i ≥ kLeastCoherence · Σ
 /// p_i (our addition), which lets the force fade to zero there.
-Wrench penaltyWrench(const model::ContactSpec& contact, const ContactManifold& manifold, const Vec3& p_WO) noexcept;
-/// The same for area_weighted, of QueryAnswer::load. rt-safe.
-Wrench weightedWrench(const model::ContactSpec& contact, const Wrench& load) noexcept;
+/// `pairs`, if given, without pushes so far, get each obstacle's part of it.
+Wrench penaltyWrench(const model::ContactSpec& contact, const ContactManifold& manifold, const Vec3& p_WO,
+                     std::span<PairAccount> pairs = {}) noexcept;
+/// The same for area_weighted, of QueryAnswer::load; `pairs`: each obstacle's load so far. rt-safe.
+Wrench weightedWrench(const model::ContactSpec& contact, const Wrench& load,
+                      std::span<PairAccount> pairs = {}) noexcept;
 inline constexpr double kLeastCoherence = 0.2;
 
 /// Stage: the wrench of the manifold on the hand, with viscous damping along the force while in contact:

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/tick/contact_energy.h"
 #include "core/tick/obstacle_query.h"
 
 namespace passung::tick {
@@ -103,6 +104,7 @@ void startProxy(const TickModel& model, TickState& state, TickFrame& frame) noex
         state.rubbing = {};
     }
     if (state.manifold_reach < 0.0) lookAround(model, state, frame, state.X_WG);
+    clearPushes(state);
 }
 
 double nextReach(const TickModel& model, const TickState& state) noexcept {
@@ -116,6 +118,7 @@ bool arriveFreely(const TickModel& model, TickState& state, TickFrame& frame, do
     look(model, state, frame, frame.X_WH, reach, std::max(reach, 2.0 * path));
     if (overlap(state) <= accepted) {
         state.rubbing = {};  // free
+        clearPushes(state);
         return true;
     }
     frame.status |= kStepRejected;
@@ -137,11 +140,13 @@ AllowedMotion allowedMotion(const TickModel& model, TickState& state, TickFrame&
         if (!constrained.converged) frame.status |= kIterationLimit;
         allowed.u = constrained.u;
         noteHeld(constrained, state);
+        notePushes(model, state, constrained, allowed.rubbing);
     } else {
         const RubbedMotion rubbed = constrainWithFriction(wanted, around, model.friction, state.rubbing, likely);
         if (!rubbed.converged || !rubbed.motion.converged) frame.status |= kIterationLimit;
         allowed = {rubbed.motion.u, rubbed.patches};
         noteHeld(rubbed.motion, state);
+        notePushes(model, state, rubbed.motion, rubbed.patches);
     }
     return allowed;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/tick/contact_energy.h"
 #include "core/tick/god_object.h"
 #include "core/tick/god_object_heuristic.h"
 #include "core/tick/input_guard.h"
@@ -141,6 +142,10 @@ TickModel makeModel(const model::Scene& scene) {
                                 "effects.transients is set: a decaying vibration is added at every impact", false,
                                 renderTransients});
     }
+    if (!model.obstacles.empty()) {
+        model.stages.push_back(
+            {"contact shares", "always: the energy account is kept for each obstacle too", false, sharePushes});
+    }
     if (spec.limits.delay_ticks > 0) {
         model.stages.push_back({"output delay", "device.delay_ticks is set", true, delayOutput});
     }
@@ -158,6 +163,8 @@ TickState makeState(const TickModel& model) {
     TickState state;
     state.engaged = model.start_gate.hold_ticks <= 0;
     state.X_WG = model.X_WG_start;
+    state.pairs.resize(model.obstacles.size() + 1);
+    state.push_line.resize(state.pairs.size() * (static_cast<std::size_t>(model.limits.delay_ticks) + 1));
     // When a budget ends a node stands in by a point and a sphere, and every obstacle may touch every point.
     const auto most = [](const model::SphereTree& shell) { return shell.points().size() + 2 * shell.nodes().size(); };
     std::size_t capacity = most(*model.shell) * model.obstacles.size();

@@ -7,6 +7,7 @@
 #include "core/base/tick_record.h"
 #include "core/base/types.h"
 #include "core/model/scene.h"
+#include "core/tick/energy_account.h"
 #include "core/tick/friction.h"
 
 namespace passung::tick {
@@ -86,17 +87,6 @@ struct HeldPoints {
     int count = 0;
 };
 
-/// What went through the handle: passivity.h.
-struct EnergyAccount {
-    double taken_in = 0.0;  // by the controller [J]
-    bool has_sample = false;
-    Pose X_BD;    // at the good sample before
-    Twist ahead;  // by how much that is ahead of where the handle is believed to be, as a motion [m], [rad]
-    Twist V_BD;   // from the one before that
-    Wrench sent;  // sum of what was sent since
-    int ticks = 0;
-};
-
 /// Vibration after impacts: transients.h.
 struct Ringing {
     Wrench now, next;  // of this tick and of the coming one, without a further impact
@@ -117,6 +107,7 @@ struct TickState {
     int other_samples = 0;  // that led to it, each following from the one before
     std::int64_t periods_since_other = 0;
     EnergyAccount energy;
+    std::vector<PairAccount> pairs = std::vector<PairAccount>(1);  // of each obstacle, and of what none pushes: last
     // start gate
     bool engaged = false;
     int held_ticks = 0;
@@ -145,6 +136,7 @@ struct TickState {
     Wrench sent_at_sample;  // F_D_B of the last tick with a new sample
     bool latched = false;   // a computed wrench was not finite
     std::array<Wrench, model::kMaxDelayTicks + 1> delay_line{};
+    std::vector<Wrench> push_line;             // the same of the pairs' pushes, tick by tick
     std::uint64_t hash = 0xcbf29ce484222325u;  // of all outputs so far, exact bits
     // scratch memory
     QueryWorkspace workspace;

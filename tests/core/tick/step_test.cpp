@@ -123,23 +123,23 @@ TEST(Step, BuildsOnlyTheStagesThatTheSceneNames) {
     };
     using Names = std::vector<std::string>;
     auto spec = pegAndPlate(model::ContactMethod::Penalty);
-    EXPECT_EQ(names(spec),
-              (Names{"input guard", "energy account", "contacts at the hand", "penalty wrench", "output limits"}));
+    EXPECT_EQ(names(spec), (Names{"input guard", "energy account", "contacts at the hand", "penalty wrench",
+                                  "contact shares", "output limits"}));
     spec.contact.method = model::ContactMethod::GodObjectHeuristic;
     spec.record_hand_depth = false;
     EXPECT_EQ(names(spec), (Names{"input guard", "energy account", "proxy correction", "proxy motion", "proxy record",
-                                  "virtual coupling", "output limits"}));
+                                  "virtual coupling", "contact shares", "output limits"}));
     spec.contact.method = model::ContactMethod::GodObject;
     EXPECT_EQ(names(spec), (Names{"input guard", "energy account", "proxy sweep", "proxy record", "virtual coupling",
-                                  "output limits"}));
+                                  "contact shares", "output limits"}));
     spec.contact.method = model::ContactMethod::GodObjectHeuristic;
     spec.start_gate = {0.003, 0.1, 100};
     spec.limits.delay_ticks = 1;
     spec.contact.proxy_filter = 100;
     spec.record_hand_depth = true;
-    EXPECT_EQ(names(spec),
-              (Names{"input guard", "energy account", "start gate", "proxy correction", "proxy motion", "proxy filter",
-                     "proxy record", "hand depth", "virtual coupling", "output delay", "output limits"}));
+    EXPECT_EQ(names(spec), (Names{"input guard", "energy account", "start gate", "proxy correction", "proxy motion",
+                                  "proxy filter", "proxy record", "hand depth", "virtual coupling", "contact shares",
+                                  "output delay", "output limits"}));
     spec = pegAndPlate(model::ContactMethod::Penalty);
     spec.parts.pop_back();
     EXPECT_EQ(names(spec), (Names{"input guard", "energy account", "free hand", "output limits"}));

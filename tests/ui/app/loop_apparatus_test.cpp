@@ -57,10 +57,10 @@ std::pair<std::vector<TickRecord>, session::LoopHealth> runTicks(const protocol:
 TEST(LoopApparatus, NamesTheStagesThatTheConditionCallsForAndNoOthers) {
     // Truth: invariant (what a scene does not name does not run)
     EXPECT_EQ(stagesOf(condition("none")), (Names{"input guard", "energy account", "start gate", "contacts at the hand",
-                                                  "penalty wrench", "output limits"}));
+                                                  "penalty wrench", "contact shares", "output limits"}));
     EXPECT_EQ(stagesOf(condition("fair")),
               (Names{"input guard", "energy account", "start gate", "proxy correction", "proxy motion", "proxy record",
-                     "hand depth", "virtual coupling", "output limits"}));
+                     "hand depth", "virtual coupling", "contact shares", "output limits"}));
     protocol::Condition bare = condition("fair");
     bare.scene.start_gate = {};
     bare.scene.record_hand_depth = false;
@@ -68,7 +68,7 @@ TEST(LoopApparatus, NamesTheStagesThatTheConditionCallsForAndNoOthers) {
     bare.scene.limits.delay_ticks = 3;
     EXPECT_EQ(stagesOf(bare),
               (Names{"input guard", "energy account", "proxy correction", "proxy motion", "proxy filter",
-                     "proxy record", "virtual coupling", "output delay", "output limits"}));
+                     "proxy record", "virtual coupling", "contact shares", "output delay", "output limits"}));
 }
 
 TEST(LoopApparatus, RefusesADeviceThatItDoesNotKnow) {

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "core/tick/tick_model.h"
+
+namespace passung::tick {
+
+/// Energy per contact: the account of passivity.h, split over the pairs of the held part with each obstacle.
+///
+/// Symbols: o an obstacle, W_o = (F_o, T_o) the forces of its contacts on the held part about the held part's origin,
+/// p_o ≥ 0 the sum of their sizes, W the wrench of the tick, K, K_φ the coupling's stiffness, ρ = metric_radius.
+///   penalty       W_o is the obstacle's part of the sum that makes W (penalty.h).
+///   god objects   W = K (w - u) = -K (Σ λ_i a_i + Σ_p B_pᵀ x_p) is held by the multipliers of the proxy's last motion
+///                 (constrained_motion.h, friction.h), so that of its contacts i and patches p
+///                 F_o = K Σ (λ_i g_i + x_p along the patch),
+///                 T_o = K_φ/ρ² Σ (r_i × λ_i g_i + r_p × x_p + torsion).
+/// What is more in W (dampers, vibration, what the linearisation misses) belongs to who presses:
+///   W_o += p_o / Σ p · (W - Σ W_o).
+/// What is sent differs from W by two factors, of force and torque (output_stage.h), and so do the shares; what is left
+/// then (the passivity controller's damper, a coupling that lags in the air) belongs to no obstacle: the last account.
+/// Each share is booked with the motion that the whole is booked with.
+/// Invariant: the accounts add up to the whole, whatever method and effects there are. Limit cases: one obstacle in
+/// contact has all; none: nobody has.
+
+/// Forgets the pushes of the tick before. rt-safe.
+void clearPushes(TickState& state) noexcept;
+/// Adds a force and torque of `obstacle`, about the held part's origin, in world axes; `pressure`: PairAccount.
+/// rt-safe.
+void addPush(TickState& state, std::uint32_t obstacle, const Wrench& push, double pressure) noexcept;
+/// In place of the pushes so far: those of the contacts and patches that hold `motion` of the proxy. rt-safe.
+void notePushes(const TickModel& model, TickState& state, const ConstrainedMotion& motion,
+                const FrictionPatches& rubbing) noexcept;
+
+/// Stage, of scenes with obstacles: shares out what else is in F_H_W. After the wrench, before its delay.
+void sharePushes(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+
+/// The pushes of `delay_ticks` ago in place of those of now. rt-safe.
+void delayPushes(const TickModel& model, TickState& state) noexcept;
+/// Books what was sent since the good sample before over the handle's motion since then. rt-safe.
+void bookPairs(TickState& state, const Vec3& moved, const Vec3& turned, int ticks) noexcept;
+
+}  // namespace passung::tick
