@@ -66,7 +66,7 @@ Unfinished readUnfinished(const Database& database, const std::string& session_i
     session.used_ns = usedTime(database, session.session_id);
     Statement find = database.prepare(
         "SELECT s.participant_id, s.protocol_sha256, s.language, s.ordinal, s.seed, s.epoch='virtual', "
-        "s.end_state='crashed', (julianday(?2) - julianday(g.utc_zero)) * 86400.0 FROM session s "
+        "s.end_state='crashed', (julianday(?2) - julianday(g.utc_zero)) * 86400.0, s.station FROM session s "
         "JOIN segment g USING(session_id) WHERE s.session_id=?1 ORDER BY g.segment_id DESC LIMIT 1");
     find.bind(session.session_id, now_utc).step();
     session.participant = find.text(0);
@@ -77,6 +77,7 @@ Unfinished readUnfinished(const Database& database, const std::string& session_i
     session.virtual_time = find.integer(5) != 0;
     session.crashed = find.integer(6) != 0;
     if (!session.virtual_time) session.age_s = find.real(7) - static_cast<double>(session.used_ns) * 1e-9;
+    session.station = find.text(8);
     find.reset();
     readTrials(database, session);
     return session;

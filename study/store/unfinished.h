@@ -14,7 +14,7 @@ class Database;
 
 /// A session that did not complete, with all that is needed to go on with it.
 struct Unfinished {
-    std::string session_id, participant, protocol_sha256, language;
+    std::string session_id, participant, protocol_sha256, language, station;
     int ordinal = 1;
     std::uint64_t seed = 0;
     bool virtual_time = true;

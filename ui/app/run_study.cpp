@@ -64,7 +64,6 @@ public:
     }
 
     Result<RunEnd> resume(const store::Unfinished& session) {
-        const bool measured = options_.clock == Clock::RealTime;
         if (session.age_s)
             if (const auto old = session::tooOld(plan_.resume, *session.age_s))
                 return Error{.message = fmt::format("{}, session {}: {}", session.participant, session.ordinal, *old),
@@ -80,16 +79,11 @@ public:
         if (const auto slot = store_.assignSlot(sha256_, session.participant, fits); !slot) return slot.errors();
         if (listener_.session) listener_.session(session.participant, 1, 1);
 
-        store::SessionStart start;
-        start.session_id = session.session_id;
-        start.participant = session.participant;
-        start.protocol_sha256 = sha256_;
-        if (measured) start.clock = store::UtcClock::wall(unixMilliseconds() - session.used_ns / 1'000'000);
-        if (measured) start.host = hostText();
-        start.timing_measured = measured;
-        const simulated::DeviceParams* device = simulated::findPreset(plan_.conditions.front().device);
-        LoopApparatus apparatus(*device, person::personOf(plan_.name, session.participant, plan_.seed), options_.clock);
-        start.device = apparatus.device();
+        LoopApparatus apparatus = apparatusOf(session.participant);
+        const store::UtcClock clock = measured()
+                                          ? store::UtcClock::wall(unixMilliseconds() - session.used_ns / 1'000'000)
+                                          : store::UtcClock::virtualEpoch();
+        const auto start = startOf(session.session_id, session.participant, session.ordinal, clock, apparatus);
         auto writer = store_.resumeSession(start, session.used_ns);
         if (!writer) return writer.errors();
 
@@ -101,41 +95,51 @@ public:
             const auto done = (*writer)->invalidateAttempt(attempt, "done again after an interruption");
             if (!done) return done.errors();
         }
-        return perform({plan_, session.trials, session.participant, plan_.seed, measured, session.ordinal,
+        return perform({plan_, session.trials, session.participant, plan_.seed, measured(), session.ordinal,
                         options_.wait, std::move(resumed)},
                        apparatus, **writer);
     }
 
 private:
+    bool measured() const { return options_.clock == Clock::RealTime; }
+
     store::UtcClock clockNow() const {
-        return options_.clock == Clock::RealTime ? store::UtcClock::wall(unixMilliseconds())
-                                                 : store::UtcClock::virtualEpoch();
+        return measured() ? store::UtcClock::wall(unixMilliseconds()) : store::UtcClock::virtualEpoch();
+    }
+
+    LoopApparatus apparatusOf(const std::string& code) const {
+        const simulated::DeviceParams* device = simulated::findPreset(plan_.conditions.front().device);
+        return LoopApparatus(*device, person::personOf(plan_.name, code, plan_.seed), options_.clock);
+    }
+
+    store::SessionStart startOf(std::string session_id, std::string code, int ordinal, const store::UtcClock& clock,
+                                const LoopApparatus& apparatus) const {
+        store::SessionStart start;
+        start.session_id = std::move(session_id);
+        start.participant = std::move(code);
+        start.protocol_sha256 = sha256_;
+        start.ordinal = ordinal;
+        start.station = options_.station.name;
+        start.seed = plan_.seed;
+        start.clock = clock;
+        start.device = apparatus.device();
+        if (measured()) start.host = hostText();
+        start.timing_measured = measured();
+        return start;
     }
 
     Result<RunEnd> session(const std::string& code, const session::DesignPlace& place, int part,
                            const store::UtcClock& clock) {
-        const bool measured = options_.clock == Clock::RealTime;
         auto ordinal = store_.nextOrdinal(code);
         if (!ordinal) return ordinal.errors();
-        store::SessionStart start;
-        start.session_id = store::sessionId(plan_.name, code, *ordinal, plan_.seed);
-        start.participant = code;
-        start.protocol_sha256 = sha256_;
-        start.ordinal = *ordinal;
-        start.seed = plan_.seed;
-        start.station = options_.station.name;
-        start.clock = clock;
-        const simulated::DeviceParams* device = simulated::findPreset(plan_.conditions.front().device);
-        LoopApparatus apparatus(*device, person::personOf(plan_.name, code, plan_.seed), options_.clock);
-        start.device = apparatus.device();
-        if (measured) start.host = hostText();
-        start.timing_measured = measured;
-
+        LoopApparatus apparatus = apparatusOf(code);
+        const auto start =
+            startOf(store::sessionId(plan_.name, code, *ordinal, plan_.seed), code, *ordinal, clock, apparatus);
         const auto trials = session::planTrials(plan_, place, code, part);
         if (!trials) return trials.errors();
         auto writer = store_.createSession(start, *trials);
         if (!writer) return writer.errors();
-        return perform({plan_, *trials, code, plan_.seed, measured, *ordinal, options_.wait}, apparatus, **writer);
+        return perform({plan_, *trials, code, plan_.seed, measured(), *ordinal, options_.wait}, apparatus, **writer);
     }
 
     Result<RunEnd> perform(session::SessionSetup setup, LoopApparatus& apparatus, session::TrialSink& sink) {
@@ -240,6 +244,16 @@ void backUp(store::Store& store, const RunOptions& options, const RunListener& l
         listener.warned("no backup copy was made: " + copied.errors().front().message);
 }
 
+/// Elsewhere the session would take a place of the design that is not its station's.
+Error otherStation(const store::Unfinished& session, const RunOptions& options) {
+    const bool only = session.station == store::Station{}.name;
+    return Error{.message = fmt::format("{}, session {}: {}", session.participant, session.ordinal,
+                                        only ? "ran without --station: resume it without"
+                                             : "ran at station " + session.station + ": name --station " +
+                                                   session.station + " and --stations, as for run"),
+                 .file = options.database};
+}
+
 }  // namespace
 
 Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& options, const RunListener& listener) {
@@ -300,6 +314,7 @@ Result<RunEnd> resumeStudy(const ResumeOptions& resume, RunOptions options, cons
     if (!opened.store) return opened.errors;
     const auto session = opened.store->unfinished(resume.session);
     if (!session) return session.errors();
+    if (session->station != options.station.name) return otherStation(*session, options);
     const auto reader = store::StoreReader::open(options.database);
     if (!reader) return reader.errors();
     StoredPlans plans(*reader, resume.meshes);

@@ -46,6 +46,7 @@ struct ResumeOptions {
     std::string database;
     std::string session;  // id; empty: the newest one that did not complete
     std::string meshes;   // folder that the protocol's mesh paths start from; empty: here, else beside the database
+    StationOptions station;
     bool no_backup = false;
     int acknowledge_fd = -1;  // as of RunOptions
 };

@@ -208,6 +208,7 @@ private:
         sub->add_option("DB", resume_.database, "database of the study")->required();
         sub->add_option("--session", resume_.session, "session_id; default: the newest one that did not complete");
         sub->add_option("--meshes", resume_.meshes, "as of replay")->check(CLI::ExistingDirectory);
+        addStation(sub, resume_.station);
         sub->add_flag("--no-backup", resume_.no_backup, "as of run");
         sub->add_option("--acknowledge-fd", resume_.acknowledge_fd, "file descriptor for a line per durable attempt");
 

@@ -149,6 +149,9 @@ int run(const RunOptions& options) {
 int resume(const ResumeOptions& options) {
     app::RunOptions what;
     what.database = options.database;
+    const auto station = stationOf(options.station);
+    if (!station) return fail(station.errors());
+    what.station = *station;
     what.backup = !options.no_backup;
     return tell(options.database, what, options.acknowledge_fd, [&](const auto& with, const auto& listener) {
         return app::resumeStudy({options.session, options.meshes}, with, listener);

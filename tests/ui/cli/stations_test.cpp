@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <thread>
+
+#include "study/store/sqlite.h"
 #include "tests/ui/cli/program.h"
 #include "tests/ui/cli/small_study.h"
 
@@ -26,6 +29,34 @@ TEST(Stations, RunApartAndAreMergedIntoOneDatabase) {
     EXPECT_NE(list[1].find("SA001        simulated  complete     1.1"), std::string::npos) << list[1];
     EXPECT_NE(list[2].find("SB001        simulated  complete     2.1"), std::string::npos) << list[2];
     EXPECT_EQ(runProgram(folder.path(), {"replay", "ALL.db"}).exit_code, 0);
+}
+
+TEST(Stations, AResumedSessionKeepsToItsStationsPlaces) {
+    // Truth: invariant: of two stations the second has the odd replicates, before an interruption and after it.
+    const TempFolder folder;
+    writeText(folder / "study.toml", smallStudy());
+    const std::vector<std::string> station = {"--station", "B", "--stations", "2"};
+    {
+        std::vector<std::string> run = {"run", "study.toml", "--db", "B.db", "--wait"};
+        run.insert(run.end(), station.begin(), station.end());
+        Program program(folder.path(), run, true);
+        const auto waits = [&] {
+            return std::filesystem::exists(folder / ".out") && program.out().find("waits for") != std::string::npos;
+        };
+        while (!waits()) std::this_thread::yield();
+        program.killNow();
+        ASSERT_EQ(program.wait(), -SIGKILL);
+    }
+    const Ended elsewhere = runProgram(folder.path(), {"resume", "B.db"});
+    EXPECT_EQ(elsewhere.exit_code, 1);
+    EXPECT_EQ(elsewhere.err,
+              "B.db: error: SB001, session 1: ran at station B: name --station B and --stations, as for run\n");
+    std::vector<std::string> resume = {"resume", "B.db"};
+    resume.insert(resume.end(), station.begin(), station.end());
+    const Ended resumed = runProgram(folder.path(), resume);
+    EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+    const store::Database database(folder / "B.db", store::OpenMode::ReadOnly);
+    EXPECT_EQ(database.text("SELECT (replicate % 2) || station FROM design_slot WHERE participant_id='SB001'"), "1B");
 }
 
 TEST(Stations, WrongUsageAndWrongInputAreToldApart) {
