@@ -34,8 +34,14 @@ void sleepUntil(std::int64_t nanoseconds) noexcept {
 
 }  // namespace
 
-HapticCycle::HapticCycle(const tick::TickModel& model, HapticDevice& device, RecordRing& ring, bool show_proxy)
-    : model_(model), state_(tick::makeState(model)), device_(device), ring_(ring), show_proxy_(show_proxy) {}
+HapticCycle::HapticCycle(const tick::TickModel& model, HapticDevice& device, RecordRing& ring, bool show_proxy,
+                         RecordRing* screen)
+    : model_(model),
+      state_(tick::makeState(model)),
+      device_(device),
+      ring_(ring),
+      show_proxy_(show_proxy),
+      screen_(screen) {}
 
 void HapticCycle::run(std::uint32_t missed) noexcept {
     const std::int64_t tick = state_.tick;
@@ -50,6 +56,7 @@ void HapticCycle::run(std::uint32_t missed) noexcept {
     TickRecord record = tick::makeRecord(tick, reading, output);
     record.duration_ns = duration;
     ring_.tryPush(record);
+    if (screen_ != nullptr) screen_->tryPush(record);
 
     if (tick == 0 || tick * kDisplayHz / 1000 != (tick - 1) * kDisplayHz / 1000) {
         const bool running = (output.frame.status & kEngaged) != 0;

@@ -1,0 +1,37 @@
+#include "devices/mouse/pointer.h"
+
+namespace passung::mouse {
+
+namespace {
+
+Vec3 shortened(const Vec3& v, double longest) {
+    const double length = v.norm();
+    return length > longest ? Vec3((longest / length) * v) : v;
+}
+
+}  // namespace
+
+void Pointer::place(const Pose& X_W) {
+    const std::lock_guard lock(mutex_);
+    X_W_ = X_W;
+    box_.put(X_W_);
+}
+
+void Pointer::move(const Vec3& way, const Vec3& turn) {
+    const std::lock_guard lock(mutex_);
+    X_W_.p += way;
+    X_W_.q = (rotationFromVector(turn) * X_W_.q).normalized();
+    box_.put(X_W_);
+}
+
+void Pointer::keepNear(const Pose& X_W, double reach, double swing) {
+    const std::lock_guard lock(mutex_);
+    const Vec3 away = X_W_.p - X_W.p;
+    const Vec3 turned = rotationVector(X_W_.q * X_W.q.conjugate());
+    if (away.norm() <= reach && turned.norm() <= swing) return;
+    X_W_.p = X_W.p + shortened(away, reach);
+    X_W_.q = (rotationFromVector(shortened(turned, swing)) * X_W.q).normalized();
+    box_.put(X_W_);
+}
+
+}  // namespace passung::mouse

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+
+#include "core/base/types.h"
+#include "core/loop/mailbox.h"
+
+namespace passung::mouse {
+
+/// Where somebody with mouse and keyboard wants the held part to be, and what keys act as the handle's buttons. Windows
+/// move it, a device follows it.
+class Pointer {
+public:
+    /// The held part shall be here. Any thread but the loop's.
+    void place(const Pose& X_W);
+    /// By so much farther, world axes [m], and turned about its own origin by a rotation vector in world axes [rad].
+    /// Any thread but the loop's.
+    void move(const Vec3& way, const Vec3& turn);
+    /// Pulls it back to at most `reach` [m] and `swing` [rad] away from `X_W`, where the part is: what the hand cannot
+    /// follow is not saved up. Any thread but the loop's.
+    void keepNear(const Pose& X_W, double reach, double swing);
+    /// Bit per button. Any thread.
+    void press(std::uint32_t buttons) noexcept { buttons_.store(buttons, std::memory_order_relaxed); }
+
+    /// The loop's thread only; rt-safe.
+    const Pose& latest() noexcept { return box_.latest(); }
+    std::uint32_t buttons() const noexcept { return buttons_.load(std::memory_order_relaxed); }
+
+private:
+    std::mutex mutex_;  // of those who move it
+    Pose X_W_;
+    loop::Mailbox<Pose> box_{Pose{}};
+    std::atomic<std::uint32_t> buttons_{0};
+};
+
+}  // namespace passung::mouse
