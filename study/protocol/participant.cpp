@@ -40,6 +40,12 @@ char codeLetter(ParticipantKind kind) {
     return 'S';
 }
 
+std::optional<ParticipantKind> kindOfCode(std::string_view code) {
+    for (const auto kind : {ParticipantKind::Real, ParticipantKind::Pilot, ParticipantKind::Simulated})
+        if (code.starts_with(codeLetter(kind))) return kind;
+    return std::nullopt;
+}
+
 std::string participantCode(ParticipantKind kind, std::int64_t number) {
     return fmt::format("{}{:03}", codeLetter(kind), number);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,9 @@ const std::vector<std::string>& participantKindNames();
 
 /// Letter that begins the codes of a kind: P for real, T for pilot, S for simulated participants.
 char codeLetter(ParticipantKind kind);
+
+/// The kind whose codes begin as this one does.
+std::optional<ParticipantKind> kindOfCode(std::string_view code);
 
 /// "P001" for number 1; grows beyond three digits.
 std::string participantCode(ParticipantKind kind, std::int64_t number);

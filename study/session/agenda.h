@@ -37,6 +37,8 @@ public:
     /// The trial that was over last is next again; called again, the one before it. @pre canGoBack()
     void goBack() { bring(last()); }
 
+    /// All that are over, in time.
+    const std::vector<std::size_t>& over() const { return history_; }
     bool isOver(std::size_t place) const;
     /// The trial is next, whether it was over or to come later.
     void bring(std::size_t place) { redo(place, Then::RepeatNow); }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "core/base/random.h"
@@ -33,19 +34,34 @@ QuestionnaireDesk::QuestionnaireDesk(const protocol::StudyPlan& plan, DeskKey ke
 
 void QuestionnaireDesk::remember(FinishedTrial trial) {
     finished_.push_back(std::move(trial));
-    asked_ = 0;
+    answered_.clear();
+}
+
+void QuestionnaireDesk::resume(std::vector<FinishedTrial> finished, std::vector<std::string> answered) {
+    finished_ = std::move(finished);
+    answered_ = std::move(answered);
+}
+
+std::optional<Form> QuestionnaireDesk::nextDue(std::span<const design::PlannedTrial> to_do) const {
+    for (const Occasion& due : occasionsBetween(plan_, finished_.empty() ? nullptr : &finished_.back().trial, to_do)) {
+        Form form = formOf(due);
+        if (std::find(answered_.begin(), answered_.end(), form.id()) == answered_.end()) return form;
+    }
+    return std::nullopt;
 }
 
 Result<bool> QuestionnaireDesk::ask(std::span<const design::PlannedTrial> to_do, std::int64_t session_ns) {
-    const auto due = occasionsBetween(plan_, finished_.empty() ? nullptr : &finished_.back().trial, to_do);
-    if (asked_ >= due.size()) return false;
-    const Form form = formOf(due[asked_]);
-    if (source_ == nullptr || form.planned.definition.items.empty())
-        return faultOf(form, source_ == nullptr ? "nobody is there to answer it" : "its file has not been read");
-    const auto filled = source_->fill(form);
+    const auto form = nextDue(to_do);
+    if (!form) return false;
+    if (source_ == nullptr || form->planned.definition.items.empty())
+        return faultOf(*form, source_ == nullptr ? "nobody is there to answer it" : "its file has not been read");
+    auto filled = source_->fill(*form);
     if (!filled) return true;
-    if (const auto stored = store(form, *filled, session_ns); !stored) return stored.errors();
-    return ++asked_ < due.size();
+    if (!key_.timing_measured)
+        for (ItemAnswer& answer : filled->answers) answer.response_ms.reset();
+    if (const auto stored = store(*form, *filled, session_ns); !stored) return stored.errors();
+    answered_.push_back(form->id());
+    return isDue(to_do);
 }
 
 Form QuestionnaireDesk::formOf(const Occasion& occasion) const {

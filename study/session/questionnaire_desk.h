@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@ struct DeskKey {
     std::string participant;
     std::uint64_t seed = 0;  // of the study
     int ordinal = 1;
+    bool timing_measured = true;  // false in virtual time: response times are not kept
 };
 
 /// Asks a session's questionnaires between its trials: shows a form to the source until it is filled, scores and stores
@@ -30,10 +32,18 @@ public:
     /// refuses.
     Result<bool> ask(std::span<const design::PlannedTrial> to_do, std::int64_t session_ns);
 
+    /// Is anything due? Nothing is shown.
+    bool isDue(std::span<const design::PlannedTrial> to_do) const { return nextDue(to_do).has_value(); }
+
     /// A trial is over; forms may ask about it from now on.
     void remember(FinishedTrial trial);
 
+    /// Goes on where an earlier run of the session was cut off: its trials that are over, and the ids of the forms that
+    /// were filled since the last of them.
+    void resume(std::vector<FinishedTrial> finished, std::vector<std::string> answered);
+
 private:
+    std::optional<Form> nextDue(std::span<const design::PlannedTrial> to_do) const;
     Form formOf(const Occasion& occasion) const;
     Result<Done> store(const Form& form, const FilledForm& filled, std::int64_t session_ns);
 
@@ -42,7 +52,7 @@ private:
     QuestionnaireSource* source_;
     TrialSink& sink_;
     std::vector<FinishedTrial> finished_;
-    std::size_t asked_ = 0;  // forms that are stored since
+    std::vector<std::string> answered_;  // ids of the forms that are stored since
 };
 
 }  // namespace passung::session

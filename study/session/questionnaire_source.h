@@ -36,6 +36,9 @@ struct Form {
     std::string occasion_text;                 // unique in the study for a participant; part of random streams
     std::vector<std::size_t> order;            // items as presented
     std::vector<const FinishedTrial*> trials;  // that it is about: of the trial, condition, block or session before it
+
+    /// What tells it from every other form of the session, in this run of the program and later ones.
+    std::string id() const { return std::to_string(occasion.questionnaire) + "|" + occasion_text; }
 };
 
 struct ItemAnswer {

@@ -45,18 +45,20 @@ Then thenAfter(const protocol::Block& block, Outcome outcome, bool valid, int ju
 }
 
 Resumption resumption(const protocol::StudyPlan& plan, std::vector<design::PlannedTrial> trials,
-                      const std::vector<StoredAttempt>& attempts, bool crashed) {
+                      const std::vector<StoredAttempt>& attempts, bool crashed, const std::vector<StoredForm>& forms) {
     const std::size_t planned = trials.size();
     Resumption result{Agenda(std::move(trials)), std::vector<Past>(planned), {}, 0};
     Agenda& agenda = result.agenda;
+    std::vector<const StoredAttempt*> newest(planned);
     for (const StoredAttempt& attempt : attempts) {
         Past& past = result.past.at(attempt.place);
         past.attempts = std::max(past.attempts, attempt.attempt_no);
         past.last = attempt.id;
         if (attempt.valid) past.counting = attempt.id;
+        newest[attempt.place] = &attempt;
         agenda.bring(attempt.place);
-        const bool newest = &attempt == &attempts.back();
-        const bool cut_off = !attempt.outcome || (newest && !crashed && *attempt.outcome == Outcome::Aborted);
+        const bool last = &attempt == &attempts.back();
+        const bool cut_off = !attempt.outcome || (last && !crashed && *attempt.outcome == Outcome::Aborted);
         const auto block = static_cast<std::size_t>(agenda.trial(attempt.place).block_index);
         agenda.end(cut_off ? Then::RepeatNow
                            : thenAfter(plan.blocks.at(block), *attempt.outcome, attempt.valid, ++past.judged));
@@ -66,6 +68,11 @@ Resumption resumption(const protocol::StudyPlan& plan, std::vector<design::Plann
         agenda.bring(*place);
         if (auto& counting = result.past[*place].counting) result.discounted.push_back(*counting), counting.reset();
     }
+    for (const std::size_t place : agenda.over())
+        result.finished.push_back({agenda.trial(place), newest[place]->measures});
+    const std::int64_t since = agenda.canGoBack() ? newest[agenda.last()]->start_ns : -1;
+    for (const StoredForm& form : forms)
+        if (form.t_ns > since) result.answered.push_back(form.id);
     return result;
 }
 

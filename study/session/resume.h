@@ -27,14 +27,24 @@ struct StoredAttempt {
     int attempt_no;
     std::optional<measures::Outcome> outcome;  // none: it crashed
     bool valid;
+    std::int64_t start_ns = 0;  // session time
+    std::vector<measures::Value> measures = {};
+};
+
+/// A questionnaire that an earlier part of the session stored.
+struct StoredForm {
+    std::string id;         // Form::id()
+    std::int64_t t_ns = 0;  // session time
 };
 
 /// Where an interrupted session goes on.
 struct Resumption {
     Agenda agenda;
-    std::vector<Past> past;             // by place in the plan
-    std::vector<AttemptId> discounted;  // valid ones whose trials are done again by the protocol's [resume]
-    std::int64_t start_ns = 0;          // session time that the earlier parts took
+    std::vector<Past> past;                    // by place in the plan
+    std::vector<AttemptId> discounted;         // valid ones whose trials are done again by the protocol's [resume]
+    std::int64_t start_ns = 0;                 // session time that the earlier parts took
+    std::vector<FinishedTrial> finished = {};  // trials that are over and stay so, in time
+    std::vector<std::string> answered = {};    // ids of the forms that were stored since the last of them
 };
 
 /// What the protocol says of a trial whose newest attempt ended so; it is number `judged` of those that did.
@@ -43,9 +53,11 @@ Then thenAfter(const protocol::Block& block, measures::Outcome outcome, bool val
 /// The session's state after `attempts`, ascending by time: trials come in the order that the uninterrupted session
 /// would have had, the interrupted one again, and then the protocol's [resume] adds what is to be done anew. A trial
 /// that the experimenter left out is offered again. `crashed`: the program was killed; else the session was ended by
-/// somebody, in the middle of the newest attempt if that is aborted.
+/// somebody, in the middle of the newest attempt if that is aborted. A questionnaire is asked again unless it is among
+/// `forms` and the trial before it stays over.
 Resumption resumption(const protocol::StudyPlan& plan, std::vector<design::PlannedTrial> trials,
-                      const std::vector<StoredAttempt>& attempts, bool crashed);
+                      const std::vector<StoredAttempt>& attempts, bool crashed,
+                      const std::vector<StoredForm>& forms = {});
 
 /// Why a session that was interrupted so long ago must not go on; nothing if it may.
 std::optional<std::string> tooOld(const protocol::ResumePolicy& policy, double age_s);

@@ -29,11 +29,14 @@ Session::Session(SessionSetup setup, Apparatus& apparatus, TrialSink& sink, Sess
       apparatus_(apparatus),
       sink_(sink),
       listener_(std::move(listener)),
-      desk_(setup_.plan, {setup_.participant, setup_.seed, setup_.ordinal}, setup_.answers, sink),
+      desk_(setup_.plan, {setup_.participant, setup_.seed, setup_.ordinal, setup_.timing_measured}, setup_.answers,
+            sink),
       state_(setup_.waits ? SessionState::Ready : SessionState::BetweenTrials),
       agenda_(setup_.resumed ? setup_.resumed->agenda : Agenda(setup_.trials)),
       past_(setup_.resumed ? setup_.resumed->past : std::vector<Past>(setup_.trials.size())),
-      session_ns_(setup_.resumed ? setup_.resumed->start_ns : 0) {}
+      session_ns_(setup_.resumed ? setup_.resumed->start_ns : 0) {
+    if (setup_.resumed) desk_.resume(setup_.resumed->finished, setup_.resumed->answered);
+}
 
 Session::~Session() {
     if (state_ == SessionState::InTrial) apparatus_.stop();
@@ -46,7 +49,7 @@ Result<Done> Session::run() {
 }
 
 void Session::interrupt(const std::string& reason) {
-    const bool complete = state_ != SessionState::InTrial && agenda_.empty();
+    const bool complete = state_ != SessionState::InTrial && agenda_.empty() && !desk_.isDue({});
     if (state_ == SessionState::InTrial) abortRunning(reason, Then::RepeatNow);
     if (isOver()) return;
     if (complete) return finish(SessionState::Complete);

@@ -47,7 +47,7 @@ public:
     Answer command(const Command& command);
 
     /// Ends the session from outside, between two calls of advance(): a running trial is stored as aborted for
-    /// `reason`, the session as not complete. A session without a trial left is complete all the
+    /// `reason`, the session as not complete. A session without a trial or questionnaire left is complete all the
     /// same; nothing happens to one that is over.
     void interrupt(const std::string& reason);
 

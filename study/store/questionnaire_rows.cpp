@@ -117,6 +117,7 @@ void insertQuestionnaireRun(const Database& database, const std::string& session
     const std::string payload = protocol::JsonObject()
                                     .text("questionnaire", planned.definition.key)
                                     .text("moment", moment)
+                                    .text("form", run.form.id())
                                     .text("answered_by", run.filled.answered_by)
                                     .str();
     database

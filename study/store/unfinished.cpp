@@ -24,6 +24,12 @@ std::string findSession(const Database& database, const std::string& wanted) {
     return find.text(0);
 }
 
+void readMeasures(const Database& database, session::StoredAttempt& attempt) {
+    Statement values = database.prepare("SELECT measure, value_num FROM attempt_measure WHERE attempt_id=?");
+    values.bind(static_cast<std::int64_t>(attempt.id));
+    while (values.step()) attempt.measures.push_back({values.text(0), values.optionalReal(1)});
+}
+
 void readTrials(const Database& database, Unfinished& session) {
     Statement trials = database.prepare(
         "SELECT trial_index, block_index, block, trial_in_block, phase, c.position, repetition FROM trial_plan "
@@ -36,15 +42,30 @@ void readTrials(const Database& database, Unfinished& session) {
     }
     Statement attempts = database.prepare(
         "SELECT attempt_id, (SELECT count(*) FROM trial_plan b WHERE b.session_id=t.session_id AND "
-        "b.trial_index<t.trial_index), attempt_no, outcome, valid FROM attempt JOIN trial_plan t USING(trial_id) "
+        "b.trial_index<t.trial_index), attempt_no, outcome, valid, start_ns FROM attempt JOIN trial_plan t "
+        "USING(trial_id) "
         "WHERE session_id=? ORDER BY attempt_id");
     attempts.bind(session.session_id);
     while (attempts.step()) {
         session.attempts.push_back({session::AttemptId{attempts.integer(0)},
                                     static_cast<std::size_t>(attempts.integer(1)),
-                                    static_cast<int>(attempts.integer(2)), measures::outcomeNamed(attempts.text(3)),
-                                    attempts.integer(4) != 0});
+                                    static_cast<int>(attempts.integer(2)),
+                                    measures::outcomeNamed(attempts.text(3)),
+                                    attempts.integer(4) != 0,
+                                    attempts.integer(5),
+                                    {}});
+        readMeasures(database, session.attempts.back());
     }
+}
+
+/// Those from before forms had an id are asked again.
+void readForms(const Database& database, Unfinished& session) {
+    Statement forms = database.prepare(
+        "SELECT json_extract(payload_json, '$.form'), t_ns FROM event JOIN segment USING(segment_id) "
+        "WHERE session_id=? AND event='questionnaire_answered' AND json_extract(payload_json, '$.form') IS NOT NULL "
+        "ORDER BY event_id");
+    forms.bind(session.session_id);
+    while (forms.step()) session.forms.push_back({forms.text(0), forms.integer(1)});
 }
 
 /// The latest time of anything in the session.
@@ -80,6 +101,7 @@ Unfinished readUnfinished(const Database& database, const std::string& session_i
     session.station = find.text(8);
     find.reset();
     readTrials(database, session);
+    readForms(database, session);
     return session;
 }
 

@@ -23,6 +23,7 @@ struct Unfinished {
     std::int64_t used_ns = 0;     // session time up to there
     std::vector<design::PlannedTrial> trials;
     std::vector<session::StoredAttempt> attempts;  // ascending by time
+    std::vector<session::StoredForm> forms;        // the same
 };
 
 /// The session of this id, or the newest one that is not complete. Throws if there is none, if it is complete, or if

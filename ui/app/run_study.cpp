@@ -50,6 +50,11 @@ public:
         if (auto enrolled = store_.enrol(code, protocol::ParticipantKind::Simulated, clock.at(0)); !enrolled) {
             return enrolled.errors();
         }
+        if (options_.ask_consent) {
+            const auto asked = askForConsent(store_, options_.database, plan_, code, options_.language, clock.at(0),
+                                             options_.ask_consent);
+            if (!asked) return asked.errors();
+        }
         auto slot = store_.assignSlot(sha256_, code);
         if (!slot) return slot.errors();
         auto part = store_.nextPart(sha256_, code);
@@ -87,7 +92,7 @@ public:
         auto writer = store_.resumeSession(start, session.used_ns);
         if (!writer) return writer.errors();
 
-        auto resumed = session::resumption(plan_, session.trials, session.attempts, session.crashed);
+        auto resumed = session::resumption(plan_, session.trials, session.attempts, session.crashed, session.forms);
         resumed.start_ns = session.used_ns;
         (*writer)->appendEvent(
             {.attempt = {}, .t_ns = session.used_ns, .source = "session", .event = "session_resumed"});
@@ -120,6 +125,7 @@ private:
         start.protocol_sha256 = sha256_;
         start.ordinal = ordinal;
         start.station = options_.station.name;
+        start.language = options_.language;
         start.seed = plan_.seed;
         start.clock = clock;
         start.device = apparatus.device();
@@ -144,8 +150,8 @@ private:
 
     Result<RunEnd> perform(session::SessionSetup setup, LoopApparatus& apparatus, session::TrialSink& sink) {
         const std::string code = setup.participant;
-        SimulatedAnswers answers(plan_, code);
-        setup.answers = &answers;
+        SimulatedAnswers simulated(plan_, code);
+        setup.answers = options_.answers != nullptr ? options_.answers : &simulated;
         session::Session session(std::move(setup), apparatus, sink, {listener_.acknowledge, listener_.trial});
         conduct(session, apparatus);
         if (session.state() == session::SessionState::Failed) return session.errors();
@@ -244,6 +250,11 @@ void backUp(store::Store& store, const RunOptions& options, const RunListener& l
         listener.warned("no backup copy was made: " + copied.errors().front().message);
 }
 
+bool isPerson(const std::string& code) {
+    const auto kind = protocol::kindOfCode(code);
+    return kind && *kind != protocol::ParticipantKind::Simulated;
+}
+
 /// Elsewhere the session would take a place of the design that is not its station's.
 Error otherStation(const store::Unfinished& session, const RunOptions& options) {
     const bool only = session.station == store::Station{}.name;
@@ -257,6 +268,7 @@ Error otherStation(const store::Unfinished& session, const RunOptions& options) 
 }  // namespace
 
 Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& options, const RunListener& listener) {
+    if (isPerson(options.participant)) return missingDevices(plan, options.participant);
     // A calibration that fails must leave nothing behind: neither a new database nor the protocol in an old one.
     std::vector<store::AccuracyRow> measured;
     const auto measure = [&]() -> Result<Done> {

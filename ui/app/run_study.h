@@ -8,18 +8,22 @@
 #include "study/session/session.h"
 #include "study/store/store.h"
 #include "ui/app/loop_apparatus.h"
+#include "ui/app/person_at_desk.h"
 
 namespace passung::app {
 
 struct RunOptions {
     std::string database;
-    std::string participant;  // code of one participant; empty: the next free codes
+    std::string participant;  // code of one participant; empty: the next free codes of simulated ones
     store::Station station;
     int simulated = 1;  // how many simulated participants, one after another
     Clock clock = Clock::Virtual;
-    bool backup = true;                 // copy the database when the run ends, however it does
-    bool wait = false;                  // every session begins with the command Start
-    std::function<bool()> interrupted;  // asked every few ticks: true ends the run; empty: never
+    bool backup = true;                               // copy the database when the run ends, however it does
+    bool wait = false;                                // every session begins with the command Start
+    std::function<bool()> interrupted;                // asked every few ticks: true ends the run; empty: never
+    std::string language = "en";                      // that participants are spoken to in
+    session::QuestionnaireSource* answers = nullptr;  // who answers questionnaires; nullptr: a simulated person
+    AskConsent ask_consent;                           // empty: nobody is asked here
 };
 
 /// How a run ended that met no error.
@@ -40,10 +44,11 @@ struct RunListener {
 
 /// While a session runs, an experimenter may command it through CommandSocket.
 /// Performs the study with simulated participants on the simulated device, each a session of all planned trials, into
-/// the database. Whatever was finished before an error stays in it. An interruption stores the running trial as aborted
-/// and closes the session as aborted, both with the reason "interrupted". What contact.accuracy = "auto" asks for is
-/// picked when the protocol first runs in this database, and kept there; before later runs in real time a machine that
-/// is too slow for it is warned of.
+/// the database; a participant whose code is that of a person is refused, for want of a device. Questionnaires may be
+/// answered by somebody all the same: that is a rehearsal, and its data is marked simulated. Whatever was finished
+/// before an error stays in it. An interruption stores the running trial as aborted and closes the session as aborted,
+/// both with the reason "interrupted". What contact.accuracy = "auto" asks for is picked when the protocol first runs
+/// in this database, and kept there; before later runs in real time a machine that is too slow for it is warned of.
 Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& options, const RunListener& listener);
 
 struct ResumeOptions {

@@ -38,7 +38,9 @@ struct RunOptions {
     std::optional<std::uint64_t> seed;
     StationOptions station;
     bool no_backup = false;
-    int acknowledge_fd = -1;  // open file descriptor that gets a line per durable attempt
+    int acknowledge_fd = -1;            // open file descriptor that gets a line per durable attempt
+    std::string answers = "simulated";  // or "participant", "experimenter": asked in this terminal
+    std::string language = "en";        // of consent
 };
 int run(const RunOptions& options);
 
@@ -49,6 +51,7 @@ struct ResumeOptions {
     StationOptions station;
     bool no_backup = false;
     int acknowledge_fd = -1;  // as of RunOptions
+    std::string answers = "simulated";
 };
 int resume(const ResumeOptions& options);
 

@@ -137,8 +137,17 @@ private:
         sub->add_option("--seed", run_.seed, "instead of the protocol's")->check(wholeFrom<std::uint64_t>(0));
         addStation(sub, run_.station);
         sub->add_flag("--no-backup", run_.no_backup, "leave out the copy DB.backup and its SHA-256 at the end");
+        addAnswers(sub, run_.answers);
+        sub->add_option("--language", run_.language, "that consent is asked in with --answers; default en");
         sub->add_flag("--wait", run_.wait, "begin every session only when `passung session start DB` says so");
         sub->add_option("--acknowledge-fd", run_.acknowledge_fd, "file descriptor for a line per durable attempt");
+    }
+
+    static void addAnswers(CLI::App* sub, std::string& answers) {
+        sub->add_option("--answers", answers,
+                        "who answers questionnaires and consent: simulated (default), or, asked in this terminal, "
+                        "participant or experimenter (who reads them out); trials stay those of a simulated hand")
+            ->check(CLI::IsMember({"simulated", "participant", "experimenter"}));
     }
 
     static void addStation(CLI::App* sub, StationOptions& options) {
@@ -209,6 +218,7 @@ private:
         sub->add_option("--session", resume_.session, "session_id; default: the newest one that did not complete");
         sub->add_option("--meshes", resume_.meshes, "as of replay")->check(CLI::ExistingDirectory);
         addStation(sub, resume_.station);
+        addAnswers(sub, resume_.answers);
         sub->add_flag("--no-backup", resume_.no_backup, "as of run");
         sub->add_option("--acknowledge-fd", resume_.acknowledge_fd, "file descriptor for a line per durable attempt");
 

@@ -12,6 +12,7 @@
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 #include "ui/cli/station.h"
+#include "ui/cli/terminal.h"
 
 namespace passung::cli {
 
@@ -49,10 +50,20 @@ void listenForSignals() {
 
 using Perform = std::function<Result<app::RunEnd>(const app::RunOptions&, const app::RunListener&)>;
 
-/// Lets `go` perform sessions and tells of them; `study` is the file that warnings are about.
-int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, const Perform& go) {
+/// Lets `go` perform sessions and tells of them; `study` is the file that warnings are about, `answers` who answers
+/// questionnaires.
+int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, const std::string& answers,
+         const Perform& go) {
     listenForSignals();
-    what.interrupted = [] { return stop_asked != 0; };
+    Terminal terminal;
+    TerminalAnswers at_terminal(terminal, answers);
+    what.interrupted = [&terminal] { return stop_asked != 0 || terminal.ended(); };
+    if (answers != "simulated") {
+        what.answers = &at_terminal;
+        what.ask_consent = [&](const protocol::ConsentClause& clause, const std::string& text) {
+            return askConsent(terminal, what.interrupted, clause, text);
+        };
+    }
     std::string code, participant;
     std::size_t successes = 0, finished = 0, planned = 0, earlier = 0, invalid = 0;
     ProgressLine progress;
@@ -142,7 +153,8 @@ int run(const RunOptions& options) {
     what.wait = options.wait;
     what.clock = options.real_time ? app::Clock::RealTime : app::Clock::Virtual;
 
-    return tell(options.protocol, what, options.acknowledge_fd,
+    what.language = options.language;
+    return tell(options.protocol, what, options.acknowledge_fd, options.answers,
                 [&](const auto& with, const auto& listener) { return app::runStudy(*plan, with, listener); });
 }
 
@@ -153,9 +165,10 @@ int resume(const ResumeOptions& options) {
     if (!station) return fail(station.errors());
     what.station = *station;
     what.backup = !options.no_backup;
-    return tell(options.database, what, options.acknowledge_fd, [&](const auto& with, const auto& listener) {
-        return app::resumeStudy({options.session, options.meshes}, with, listener);
-    });
+    return tell(options.database, what, options.acknowledge_fd, options.answers,
+                [&](const auto& with, const auto& listener) {
+                    return app::resumeStudy({options.session, options.meshes}, with, listener);
+                });
 }
 
 }  // namespace passung::cli

@@ -52,6 +52,8 @@ class StoringSink : public TrialSink {
 public:
     std::vector<double> scores;
     std::vector<std::int64_t> times;
+    std::optional<std::int64_t> response_ms;
+    std::vector<std::string> forms;
     bool full = false;
     Result<AttemptId> startAttempt(const AttemptStart&) override { return AttemptId{1}; }
     void appendRecords(AttemptId, std::span<const TickRecord>) override {}
@@ -61,6 +63,8 @@ public:
         if (full) return Error{"the disk is full"};
         scores.push_back(run.scores.at(0).value.value());
         times.push_back(run.completed_ns);
+        response_ms = run.filled.answers.at(0).response_ms;
+        forms.push_back(run.form.id());
         return Done{};
     }
     Result<Done> invalidateAttempt(AttemptId, const std::string&) override { return Done{}; }
@@ -120,6 +124,38 @@ TEST_F(QuestionnaireDeskTest, TheOrderOfItemsFollowsFromTheOccasionAlone) {
     EXPECT_EQ(person_.occasions[3], person_.occasions[1]);
     EXPECT_EQ(person_.orders[3], person_.orders[1]);
     EXPECT_NE(person_.orders[0], person_.orders[1]) << "another occasion, another order";
+}
+
+TEST_F(QuestionnaireDeskTest, AsksAgainWhatWasNotStoredBeforeAnInterruption) {
+    // Truth: closed form: after trial 1 two forms are due; the first of them was stored.
+    auto whole = desk(&person_);
+    whole.remember({trials_[0], {}});
+    EXPECT_FALSE(*whole.ask(from(1), 0));
+    whole.remember({trials_[1], {}});
+    EXPECT_TRUE(*whole.ask(from(2), 0));
+    auto resumed = desk(&person_);
+    resumed.resume({{trials_[0], {}}, {trials_[1], {}}}, {sink_.forms[1]});
+    EXPECT_TRUE(resumed.isDue(from(2)));
+    EXPECT_FALSE(*resumed.ask(from(2), 0));
+    EXPECT_FALSE(resumed.isDue(from(2)));
+    EXPECT_EQ(sink_.forms.size(), 3u);
+    EXPECT_EQ(person_.occasions.back(), "second 1|after_block|0||");
+    EXPECT_EQ(person_.trials.back(), 2u) << "about the trials before the interruption too";
+    auto not_stored = desk(&person_);
+    not_stored.resume({{trials_[0], {}}, {trials_[1], {}}}, {});
+    EXPECT_TRUE(*not_stored.ask(from(2), 0)) << "both";
+}
+
+TEST_F(QuestionnaireDeskTest, NoResponseTimeIsKeptInVirtualTime) {
+    // Truth: invariant: no measured duration reaches an export of virtual time.
+    auto real = desk(&person_);
+    real.remember({trials_[0], {}});
+    static_cast<void>(real.ask(from(1), 0));
+    EXPECT_EQ(sink_.response_ms, 800);
+    QuestionnaireDesk virtual_time(plan_, {"S001", 7, 1, false}, &person_, sink_);
+    virtual_time.remember({trials_[0], {}});
+    static_cast<void>(virtual_time.ask(from(1), 0));
+    EXPECT_FALSE(sink_.response_ms);
 }
 
 TEST_F(QuestionnaireDeskTest, RefusesAnswersThatAreNotOnOffer) {

@@ -82,8 +82,8 @@ TEST_F(QuestionnaireRows, KeepTheInstrumentAsItWasAndSayWhoAnswered) {
     ASSERT_EQ(events.size(), 2u);
     EXPECT_EQ(events[0].event, "questionnaire_answered");
     EXPECT_EQ(events[0].t_ns, 3 * kSecond);
-    EXPECT_EQ(events[0].payload_json,
-              R"({"questionnaire":"contact_perception","moment":"after_condition","answered_by":"participant"})");
+    EXPECT_EQ(events[0].payload_json, R"({"questionnaire":"contact_perception","moment":"after_condition","form":"0|",)"
+                                      R"("answered_by":"participant"})");
 }
 
 TEST_F(QuestionnaireRows, AChangedFileNeedsANewVersionOfTheProtocol) {

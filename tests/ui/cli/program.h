@@ -45,7 +45,7 @@ inline std::vector<std::string> linesOf(const std::string& text) {
 }
 
 /// The running program: working directory is `folder`, its output goes to the files `<folder>/.out` and `.err`, where
-/// it outlives a kill.
+/// it outlives a kill; a file `<folder>/.in`, if there is one, is what it reads.
 class Program {
 public:
     /// With `acknowledged` the option --acknowledge-fd is added and the lines can be read.
@@ -109,6 +109,8 @@ private:
             const int file = open((folder_ / name).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
             if (file < 0 || dup2(file, to) < 0) _exit(126);
         };
+        // What is typed: read and write, so that a pipe with that name neither waits for a writer nor ends.
+        if (const int in = open((folder_ / ".in").c_str(), O_RDWR | O_CLOEXEC); in >= 0) dup2(in, STDIN_FILENO);
         redirect(".out", STDOUT_FILENO);
         redirect(".err", STDERR_FILENO);
         if (acknowledgements >= 0) fcntl(acknowledgements, F_SETFD, 0);

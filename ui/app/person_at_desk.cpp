@@ -1,0 +1,71 @@
+#include "ui/app/person_at_desk.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "study/store/digest.h"
+#include "study/store/participant_desk.h"
+#include "study/store/store_reader.h"
+
+namespace passung::app {
+
+namespace {
+
+/// Whoever said no to what may be refused is not asked again; a changed text is.
+bool isDecided(const protocol::ConsentClause& clause, const std::vector<store::ConsentRow>& decisions,
+               const std::string& participant) {
+    return std::any_of(decisions.begin(), decisions.end(), [&](const store::ConsentRow& row) {
+        const bool about = row.participant_id == participant && row.clause == clause.clause &&
+                           std::any_of(clause.texts.begin(), clause.texts.end(), [&](const auto& text) {
+                               return store::sha256Hex(text.second) == row.text_sha256;
+                           });
+        return about && (row.decision == "yes" || !clause.required);
+    });
+}
+
+}  // namespace
+
+Result<Done> askForConsent(store::Store& store, const std::string& database, const protocol::StudyPlan& plan,
+                           const std::string& participant, const std::string& language, const std::string& now_utc,
+                           const AskConsent& ask) {
+    const auto fault = [&](const std::string& what) {
+        return Error{.message = participant + ": " + what, .file = database, .key = "consent"};
+    };
+    const auto reader = store::StoreReader::open(database);
+    if (!reader) return reader.errors();
+    const auto decisions = reader->consents();
+    if (!decisions) return decisions.errors();
+    store::ParticipantDesk desk(store, {"participant", now_utc});
+    for (const protocol::ConsentClause& clause : plan.consent) {
+        if (isDecided(clause, *decisions, participant)) continue;
+        const auto text = std::find_if(clause.texts.begin(), clause.texts.end(),
+                                       [&](const auto& each) { return each.first == language; });
+        if (text == clause.texts.end()) return fault("the protocol has no text in \"" + language + "\"");
+        const auto agreed = ask(clause, text->second);
+        if (!agreed) return fault("nobody decided on the clause " + clause.clause);
+        const auto stored =
+            desk.decide(participant, {clause.clause}, language, *agreed ? store::Consent::Yes : store::Consent::No);
+        if (!stored) return stored.errors();
+        if (!*agreed && clause.required) return fault("no consent to the clause " + clause.clause + ", no session");
+    }
+    return Done{};
+}
+
+Errors missingDevices(const protocol::StudyPlan& plan, const std::string& participant) {
+    std::set<std::string> devices;
+    for (const protocol::Condition& condition : plan.conditions) devices.insert(condition.device);
+    Errors missing;
+    for (const std::string& device : devices)
+        missing.push_back({.message = fmt::format("has no driver in this program, only a model, which a simulated hand "
+                                                  "moves: {} cannot take part here; rehearse with a simulated "
+                                                  "participant and --answers experimenter",
+                                                  participant),
+                           .file = plan.source_path,
+                           .key = "device.preset",
+                           .value = device});
+    return missing;
+}
+
+}  // namespace passung::app
