@@ -6,6 +6,7 @@
 #include <time.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 
 #include "core/loop/cadence.h"
@@ -36,19 +37,18 @@ void sleepUntil(std::int64_t nanoseconds) noexcept {
 
 HapticCycle::HapticCycle(const tick::TickModel& model, HapticDevice& device, RecordRing& ring, bool show_proxy,
                          RecordRing* screen)
-    : model_(model),
-      state_(tick::makeState(model)),
-      device_(device),
-      ring_(ring),
-      show_proxy_(show_proxy),
-      screen_(screen) {}
+    : HapticCycle(std::array{tick::SceneTurn{&model}}, device, ring, show_proxy, screen) {}
+
+HapticCycle::HapticCycle(std::span<const tick::SceneTurn> turns, HapticDevice& device, RecordRing& ring,
+                         bool show_proxy, RecordRing* screen)
+    : scenes_(turns), device_(device), ring_(ring), show_proxy_(show_proxy), screen_(screen) {}
 
 void HapticCycle::run(std::uint32_t missed) noexcept {
-    const std::int64_t tick = state_.tick;
+    const std::int64_t tick = scenes_.tick();
     DeviceReading reading = device_.read();
     reading.periods = 1 + missed;
     const std::int64_t begin = now();
-    const tick::TickOutput output = tick::step(model_, state_, reading);
+    const tick::TickOutput output = scenes_.step(reading);
     const std::int64_t duration = now() - begin;
     device_.command(output.F_D_B);
     timing_.add(duration);

@@ -2,13 +2,14 @@
 
 #include <atomic>
 #include <cstdint>
+#include <span>
 #include <thread>
 
 #include "core/base/tick_record.h"
 #include "core/loop/haptic_device.h"
 #include "core/loop/record_ring.h"
 #include "core/loop/timing.h"
-#include "core/tick/step.h"
+#include "core/tick/scene_sequence.h"
 
 namespace passung::loop {
 
@@ -21,6 +22,9 @@ public:
     /// drops matters to nobody. Borrows everything.
     HapticCycle(const tick::TickModel& model, HapticDevice& device, RecordRing& ring, bool show_proxy,
                 RecordRing* screen = nullptr);
+    /// The same for scenes that are rendered one after the other.
+    HapticCycle(std::span<const tick::SceneTurn> turns, HapticDevice& device, RecordRing& ring, bool show_proxy,
+                RecordRing* screen = nullptr);
 
     /// One cycle. `missed`: cycles that were missed since the previous one, because it ended after its deadline; for
     /// the record, which else could not tell how much time lies between two ticks. rt-safe.
@@ -29,13 +33,12 @@ public:
     /// Commands a zero wrench. rt-safe.
     void release() noexcept { device_.command(Wrench{}); }
 
-    std::int64_t ticks() const { return state_.tick; }
-    std::uint64_t stateHash() const { return state_.hash; }
+    std::int64_t ticks() const { return scenes_.tick(); }
+    std::uint64_t stateHash() const { return scenes_.hash(); }
     const TimingHistogram& timing() const { return timing_; }
 
 private:
-    const tick::TickModel& model_;
-    tick::TickState state_;
+    tick::SceneSequence scenes_;
     HapticDevice& device_;
     RecordRing& ring_;
     bool show_proxy_;

@@ -1,8 +1,7 @@
 #include "core/replay/replayer.h"
 
+#include <array>
 #include <bit>
-
-#include "core/tick/step.h"
 
 namespace passung::replay {
 
@@ -63,16 +62,20 @@ std::optional<Difference> compare(const TickRecord& recorded, const TickRecord& 
 
 ReplayReport replay(const model::Scene& scene, std::span<const TickRecord> records) {
     const tick::TickModel model = tick::makeModel(scene);
-    tick::TickState state = tick::makeState(model);
+    return replay(std::array{tick::SceneTurn{&model}}, records);
+}
+
+ReplayReport replay(std::span<const tick::SceneTurn> turns, std::span<const TickRecord> records) {
+    tick::SceneSequence scenes(turns);
     ReplayReport report;
     for (const TickRecord& recorded : records) {
-        const std::int64_t tick = state.tick;
+        const std::int64_t tick = scenes.tick();
         const DeviceReading reading = tick::readingOf(recorded);
-        const TickRecord replayed = tick::makeRecord(tick, reading, tick::step(model, state, reading));
+        const TickRecord replayed = tick::makeRecord(tick, reading, scenes.step(reading));
         if (!report.first_difference) report.first_difference = compare(recorded, replayed);
         ++report.ticks;
     }
-    report.state_hash = state.hash;
+    report.state_hash = scenes.hash();
     return report;
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/base/tick_record.h"
 #include "core/model/scene.h"
+#include "core/tick/scene_sequence.h"
 
 namespace passung::replay {
 
@@ -27,5 +28,7 @@ struct ReplayReport {
 /// output bit for bit; durations are measurements of the recorded run and not compared.
 /// @pre `records` are the attempt's ticks from tick 0 without gaps (gap: reported as a difference in "tick").
 ReplayReport replay(const model::Scene& scene, std::span<const TickRecord> records);
+/// The same for scenes that were rendered one after the other.
+ReplayReport replay(std::span<const tick::SceneTurn> turns, std::span<const TickRecord> records);
 
 }  // namespace passung::replay
