@@ -11,7 +11,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/base/assert.h"
 #include "core/base/tick_record.h"
 
 namespace passung::simulated {
@@ -20,11 +19,9 @@ namespace {
 constexpr double kDt = kTickSeconds;
 
 // Thresholds of judgement; proposed here.
-constexpr double kStartDuration = 0.9;     // [s] reach for the start pose
 constexpr double kSettleDuration = 0.45;   // [s]
 constexpr double kPuzzled = 0.8;           // [s] longer look after a try that failed
 constexpr double kLiftDuration = 0.7;      // [s]
-constexpr double kContactForce = 0.7;      // [N] a touch is noticed
 constexpr double kClearlyInside = 4e-3;    // [m] seen below the mouth: no wall gives way that far
 constexpr double kDrop = 1e-3;             // [m] seen below the pressed level: it goes in
 constexpr double kCaughtForce = 0.8;       // [N] sideways: the tip is held by something
@@ -38,23 +35,11 @@ constexpr double kWiggle = 0.6e-3;         // [m]
 constexpr double kWiggleTurn = 0.01;       // [rad]
 constexpr int kMostStalls = 2;             // pushes without depth before searching on
 constexpr double kBeside = 3.0;            // standard deviations of seeing next to the hole: doubt
-constexpr double kPaceSpread = 0.1;        // of the natural logarithm of a trial's pace
 constexpr double kExtraDepth = 1e-3;       // [m] beyond the asked depth, to be sure
 constexpr double kBottomShare = 0.88;      // of the asked depth: a stop there is taken for the end
 constexpr double kEndGain = 2.5;           // [1/s] slows down before the asked depth
 constexpr double kEndSpeed = 2e-3;         // [m/s]
 constexpr double kGiveWay = 0.25;          // [s] time constant of yielding to the sides and in tilt
-constexpr double kOffsetGain = 2.5;        // [1/s] against friction; × delay < 1/2 keeps it stable
-constexpr double kPressGain = 2.5;         // [1/s]
-constexpr double kMostOffset = 15e-3;      // [m]
-constexpr double kMostTurnOffset = 0.1;    // [rad]
-
-std::uint64_t derived(std::uint64_t seed, std::uint64_t purpose) {
-    std::uint64_t state = seed ^ (0x9e3779b97f4a7c15u * purpose);
-    return splitmix64(state);
-}
-
-Vec3 clamped(const Vec3& v, double limit) noexcept { return v.cwiseMax(-limit).cwiseMin(limit); }
 
 }  // namespace
 
@@ -65,16 +50,7 @@ const char* phaseName(HandPhase phase) noexcept {
 }
 
 Hand::Hand(const HandParams& params, const VisibleTask& task, const HandRegistration& registration, std::uint64_t seed)
-    : params_(params),
-      task_(task),
-      registration_(registration),
-      perception_(derived(seed, 1)),
-      motor_(derived(seed, 2)),
-      tremor_(params.tremor, params.mass, motor_),
-      senses_(params),
-      pace_(params.pace * std::exp(kPaceSpread * std::clamp(motor_.normal(), -2.5, 2.5))),
-      lapse_(Random(derived(seed, 3)).uniform() < params.lapse_rate ? params.lapse_duration : 0.0) {
-    PASSUNG_ASSERT(params.validate().empty());
+    : Arm(params, task, registration, seed) {
     look();
 }
 
@@ -106,13 +82,12 @@ Vec3 Hand::feltTurn(const Percept& percept) const noexcept {
 
 void Hand::enter(HandPhase phase) noexcept {
     phase_ = phase;
-    phase_start_ = tick_;
-    t_ = 0.0;
+    restartClock();
 }
 
 void Hand::startReach(HandPhase phase, const Pose& to, double duration) noexcept {
-    reach_ = {X_WRef_, to, duration};
-    enter(phase);
+    Arm::startReach(to, duration);
+    phase_ = phase;
 }
 
 Pose Hand::aboveMouth() const noexcept { return {q_goal_, X_WM_ * Vec3(0.0, 0.0, params_.approach_height)}; }
@@ -121,19 +96,8 @@ void Hand::placeReference(const Vec3& p_MP, const Vec3& turn) noexcept {
     X_WRef_ = {(rotationFromVector(turn) * q_goal_).normalized(), X_WM_ * p_MP};
 }
 
-// In free space the arm sees that friction keeps it short of where it wants to be, and asks for a little more.
-void Hand::removeOffset(const Percept& percept) noexcept {
-    offset_ = clamped(offset_ + kOffsetGain * kDt * (X_WRef_.p - percept.X_WFelt.p), kMostOffset);
-    const Vec3 turn = rotationVector(X_WRef_.q * percept.X_WFelt.q.conjugate());
-    turn_offset_ = clamped(turn_offset_ + kOffsetGain * kDt * turn, kMostTurnOffset);
-}
-
 void Hand::pressWith(double force, const Percept& percept) noexcept {
-    const double missing = force - feltForce(percept).z();
-    const double speed = std::min(kPressGain * missing / params_.stiffness, params_.insert_speed);
-    // Never lead by more than twice the force: a wall that vanishes must not be followed by a fall.
-    const double lowest = feltPosition(percept).z() - 2.0 * force / params_.stiffness;
-    p_MP_.z() = std::max(p_MP_.z() - speed * kDt, std::min(lowest, p_MP_.z()));
+    p_MP_.z() = pressedHeight(p_MP_.z(), force, feltPosition(percept).z(), feltForce(percept).z());
 }
 
 // ---- phases -----------------------------------------------------------------------------------------------------
@@ -311,8 +275,6 @@ void Hand::hold(const Percept& percept) noexcept {
     enter(HandPhase::Insert);
 }
 
-// ---- one tick ---------------------------------------------------------------------------------------------------
-
 void Hand::choose(const Percept& percept) noexcept {
     switch (phase_) {
         case HandPhase::ToStart:
@@ -338,32 +300,6 @@ void Hand::choose(const Percept& percept) noexcept {
         case HandPhase::Hold:
             return hold(percept);
     }
-}
-
-HandCoupling Hand::act(const Pose& X_BD, const Wrench& F_D_B) noexcept {
-    const Pose X_WH = registration_.partFromHandle(X_BD);
-    const Quat& q_WB = registration_.X_WB.q;
-    senses_.feel(X_WH, {q_WB * F_D_B.force, q_WB * F_D_B.torque});
-    if (tick_ == 0) {
-        X_WRef_ = X_WH;
-        startReach(HandPhase::ToStart, task_.X_WHeldStart, kStartDuration);
-    }
-    t_ = static_cast<double>(tick_ - phase_start_) * kDt;
-    choose(senses_.percept());
-
-    HandCoupling coupling;
-    coupling.attached = true;
-    coupling.mass = params_.mass;
-    coupling.inertia = params_.inertia;
-    coupling.stiffness = params_.stiffness;
-    coupling.damping = params_.damping;
-    coupling.rotational_stiffness = params_.rotational_stiffness;
-    coupling.rotational_damping = params_.rotational_damping;
-    coupling.X_BSet = registration_.handleFromPart(
-        {(rotationFromVector(turn_offset_) * X_WRef_.q).normalized(), X_WRef_.p + offset_});
-    coupling.F_D_B.force = tremor_.force(static_cast<double>(tick_) * kDt);
-    ++tick_;
-    return coupling;
 }
 
 }  // namespace passung::simulated

@@ -2,14 +2,8 @@
 
 #include <cstdint>
 
-#include "core/base/random.h"
 #include "core/base/types.h"
-#include "core/loop/haptic_device.h"
-#include "devices/simulated/device_dynamics.h"
-#include "devices/simulated/hand_params.h"
-#include "devices/simulated/hand_senses.h"
-#include "devices/simulated/minimum_jerk.h"
-#include "devices/simulated/tremor.h"
+#include "devices/simulated/arm.h"
 
 namespace passung::simulated {
 
@@ -32,26 +26,21 @@ const char* phaseName(HandPhase phase) noexcept;
 /// A simulated person's hand doing peg-in-hole. It knows its posture, the displayed force and the displayed image, each
 /// late and the bore's place seen with an error; where parts are touched it must find out.
 /// All but the constructor rt-safe; the same seed gives the same movements bit for bit.
-class Hand {
+class Hand final : public Arm {
 public:
     /// @pre params.validate() is empty.
     Hand(const HandParams& params, const VisibleTask& task, const HandRegistration& registration, std::uint64_t seed);
 
-    /// A frame on the display.
-    void see(const loop::DisplayedImage& image) noexcept { senses_.see(image); }
-
-    /// One tick: posture and force in, what the arm does out. `F_D_B` as the motors give it.
-    HandCoupling act(const Pose& X_BD, const Wrench& F_D_B) noexcept;
-
     HandPhase phase() const noexcept { return phase_; }
 
 private:
+    void begin() noexcept override { phase_ = HandPhase::ToStart; }
+    void choose(const Percept& percept) noexcept override;
     void enter(HandPhase phase) noexcept;
     void startReach(HandPhase phase, const Pose& to, double duration) noexcept;
     void look() noexcept;
     Pose aboveMouth() const noexcept;
 
-    void choose(const Percept& percept) noexcept;
     void toStart() noexcept;
     void holdStart(const Percept& percept) noexcept;
     void approach() noexcept;
@@ -64,7 +53,6 @@ private:
     void lift() noexcept;
     void hold(const Percept& percept) noexcept;
 
-    void removeOffset(const Percept& percept) noexcept;
     void pressWith(double force, const Percept& percept) noexcept;
     void startSearch() noexcept;
     void resumeSearch() noexcept;
@@ -75,27 +63,7 @@ private:
     Vec3 feltForce(const Percept& percept) const noexcept;
     Vec3 feltTurn(const Percept& percept) const noexcept;
 
-    HandParams params_;
-    VisibleTask task_;
-    HandRegistration registration_;
-    Random perception_;  // errors of looking
-    Random motor_;       // choices of movement
-    Tremor tremor_;
-    HandSenses senses_;
-
-    double pace_;   // of this trial against the habit
-    double lapse_;  // pause of this trial [s]
-
     HandPhase phase_ = HandPhase::ToStart;
-    std::int64_t tick_ = 0;
-    std::int64_t phase_start_ = 0;
-    double t_ = 0.0;  // in the phase [s]
-
-    // intention: where the part shall be
-    Reach reach_;
-    Pose X_WRef_;
-    Vec3 offset_ = Vec3::Zero();  // added to it against friction, world axes [m]
-    Vec3 turn_offset_ = Vec3::Zero();
 
     // belief about the mouth M and movement relative to it
     Pose X_WM_;

@@ -49,6 +49,7 @@ std::vector<Error> HandParams::validate() const {
     positive("insert_force", insert_force);
     require(lapse_rate >= 0 && lapse_rate <= 1, "lapse_rate", lapse_rate, "must be 0 to 1");
     notNegative("lapse_duration", lapse_duration);
+    notNegative("feeling_error", feeling_error);
     require(insert_force >= press_force, "insert_force", insert_force, "must be at least press_force");
     return errors;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+#include <variant>
 #include <vector>
 
 #include "core/base/result.h"
@@ -7,12 +9,32 @@
 
 namespace passung::simulated {
 
+/// Two intervals are to be felt and compared.
+struct CompareGoal {
+    bool roughness = false;               // else stiffness
+    std::optional<int> told_answer = {};  // 1 or 2: what is answered whatever was felt
+};
+
+/// The held part is to be put to a pose that is drawn.
+struct PlaceGoal {
+    Pose X_WGoal;
+    bool round = false;  // turning about its z axis does not matter
+};
+
+/// A drawn line is to be followed with the held part's origin.
+struct FollowGoal {
+    std::vector<Vec3> points;  // in the target's frame, whose +z points out of it
+    double force = 2.0;        // [N] with which to press
+};
+
 /// What the display shows of the task and does not change during a trial: where things are drawn, which need not be
-/// where they are touched. Poses of the held part and of the bore's mouth (its axis +z points out of the bore).
+/// where they are touched. Poses of the held part and of the target: a bore's mouth (its axis +z points out of it), or
+/// what is to be felt. Without a goal the held part is to be inserted.
 struct VisibleTask {
     Pose X_WHeldStart;
     Pose X_WTarget;
     double insertion_depth = 0.020;  // [m], > 0
+    std::variant<std::monostate, CompareGoal, PlaceGoal, FollowGoal> goal = {};
 };
 
 /// How the handle maps to the held part: X_WH = X_WB · scale(X_BD) · X_DH, the scale acting on the position.
@@ -65,6 +87,9 @@ struct HandParams {
     double insert_force = 7.0;          // [N], the most that is pushed
     double lapse_rate = 0.0;            // share of trials with a lapse, 0 … 1: a pause after the first look
     double lapse_duration = 1.5;        // [s], ≥ 0
+
+    // how wrongly something felt is compared: standard deviation of the natural logarithm of what an interval felt like
+    double feeling_error = 0.15;  // ≥ 0
 
     /// Everything out of range; key = field.
     std::vector<Error> validate() const;

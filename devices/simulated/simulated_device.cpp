@@ -29,12 +29,15 @@ SimulatedDevice::SimulatedDevice(const DeviceParams& device, const HandParams& h
                                  const HandRegistration& registration, std::uint64_t seed)
     : description_(describe(device)),
       dynamics_(device, homePose(device, task, registration, seed)),
-      hand_(hand, task, registration, seed) {}
+      hand_(makeHand(hand, task, registration, seed)) {}
 
 DeviceReading SimulatedDevice::read() noexcept {
     // The hand feels the handle itself and what the motors gave, not the encoders.
-    dynamics_.advance(hand_.act(dynamics_.truePose(), dynamics_.actingWrench()));
-    return {.X_BD = dynamics_.readPose(), .fresh = true, .buttons = 0, .hand_energy_J = dynamics_.handEnergy()};
+    dynamics_.advance(hand_->act(dynamics_.truePose(), dynamics_.actingWrench()));
+    return {.X_BD = dynamics_.readPose(),
+            .fresh = true,
+            .buttons = hand_->buttons(),
+            .hand_energy_J = dynamics_.handEnergy()};
 }
 
 }  // namespace passung::simulated

@@ -4,7 +4,7 @@
 
 #include "core/loop/haptic_device.h"
 #include "devices/simulated/device_dynamics.h"
-#include "devices/simulated/hand.h"
+#include "devices/simulated/task_hand.h"
 
 namespace passung::simulated {
 
@@ -19,15 +19,15 @@ public:
     const DeviceDescription& description() const override { return description_; }
     DeviceReading read() noexcept override;
     void command(const Wrench& F_D_B) noexcept override { dynamics_.command(F_D_B); }
-    void show(const loop::DisplayedImage& image) noexcept override { hand_.see(image); }
+    void show(const loop::DisplayedImage& image) noexcept override { hand_->see(image); }
 
-    HandPhase handPhase() const noexcept { return hand_.phase(); }
+    const TaskHand& hand() const noexcept { return *hand_; }
     const DeviceDynamics& dynamics() const noexcept { return dynamics_; }
 
 private:
     DeviceDescription description_;
     DeviceDynamics dynamics_;
-    Hand hand_;
+    std::unique_ptr<TaskHand> hand_;
 };
 
 }  // namespace passung::simulated

@@ -8,37 +8,15 @@
 
 #include "study/measures/period_clock.h"
 #include "study/measures/tick_facts.h"
+#include "study/measures/trial.h"
+#include "study/measures/type_measures.h"
 
 namespace passung::measures {
 namespace {
 
-using Optional = std::optional<double>;
-
 constexpr const char* kDepthOfSamples =
     "; depth is that of the held part's sample points, which lie about contact.spacing_mm apart: an obstacle's edge "
     "between two of them reaches deeper than it says";
-
-constexpr double kPeriodsPerSecond =
-    1000.0;  // exact, unlike a period's length: 4028 of them are 4.028 s to the last digit
-
-/// A trial cut to its ticks. Each tick stands for the time that begins with it and ends with the next one, so the
-/// record at end_tick only closes the last step. Times are haptic periods after the start tick.
-struct Trial {
-    const TrialContext& context;
-    std::span<const TickRecord> ticks;   // start_tick ≤ tick < end_tick: the formulas' "trial ticks"
-    std::span<const TickRecord> points;  // the same and the record at end_tick
-    std::int64_t end = 0;                // time of the end tick
-    std::optional<std::int64_t> leave;
-    std::optional<std::int64_t> touch;       // first contact tick
-    std::optional<std::int64_t> engagement;  // first tick with the tip deep enough in the bore
-
-    bool succeeded() const { return context.outcome == Outcome::Success; }
-    /// Periods that tick `i` stands for; 1 where the next tick was not recorded.
-    double lengthOf(std::size_t i) const {
-        const bool followed = i + 1 < points.size() && points[i + 1].tick == points[i].tick + 1;
-        return followed ? points[i + 1].periods : 1.0;
-    }
-};
 
 double magnitude(const std::array<float, 3>& vector) { return Vec3(vector[0], vector[1], vector[2]).norm(); }
 
@@ -60,8 +38,6 @@ Vec3 handRotation(const TickRecord& from, const TickRecord& to) {
     return step.vec() * ((step.w() < 0.0 ? -angle : angle) / sine);
 }
 
-double seconds(std::int64_t from, std::int64_t to) { return static_cast<double>(to - from) / kPeriodsPerSecond; }
-
 Trial cutTrial(std::span<const TickRecord> records, const TrialContext& context) {
     const auto firstFrom = [records](std::int64_t tick) {
         return std::partition_point(records.begin(), records.end(),
@@ -73,12 +49,13 @@ Trial cutTrial(std::span<const TickRecord> records, const TrialContext& context)
     Trial trial{context, {begin, end}, {begin, point_end}, 0, {}, {}, {}};
     PeriodClock clock(context.start_tick);
     const Pose X_TW = context.X_WT.inverse();
+    const bool bore = std::holds_alternative<std::monostate>(context.form);
     for (const TickRecord& record : trial.ticks) {
         const std::int64_t time = clock.at(record);
         const double way = (handPosition(record) - handPosition(trial.ticks.front())).norm();
         if (!trial.leave && way > context.leave_radius) trial.leave = time;
         if (!trial.touch && isContact(record)) trial.touch = time;
-        if (!trial.engagement && tipDepthInBore(record, X_TW, context.clearance) >= context.engagement_depth)
+        if (bore && !trial.engagement && tipDepthInBore(record, X_TW, context.clearance) >= context.engagement_depth)
             trial.engagement = time;
     }
     for (const TickRecord& record : trial.points.subspan(trial.ticks.size())) clock.at(record);
@@ -158,7 +135,7 @@ Optional insertionTime(const Trial& trial) {
 }
 
 Optional insertionDepth(const Trial& trial) {
-    if (trial.points.empty()) return std::nullopt;
+    if (trial.points.empty() || !std::holds_alternative<std::monostate>(trial.context.form)) return std::nullopt;
     const Pose X_TW = trial.context.X_WT.inverse();
     return tipDepthInBore(trial.points.back(), X_TW, trial.context.clearance).value_or(0.0);
 }
@@ -224,11 +201,6 @@ Optional ticksWith(const Trial& trial) {
     return sumOverTicks(trial, [](const TickRecord& record) { return (record.status & bit) != 0 ? 1.0 : 0.0; });
 }
 
-struct Measure {
-    Definition definition;
-    Optional (*compute)(const Trial&);
-};
-
 template <TickStatus bit>
 Measure countOf(std::string name, std::string label) {
     return {{std::move(name), std::move(label), "1",
@@ -239,8 +211,8 @@ Measure countOf(std::string name, std::string label) {
 // Words shared by the formulas: a trial tick is a recorded tick with start tick ≤ tick < end tick. A contact tick is a
 // trial tick with |force| > 1e-6 N or |torque| > 1e-9 N·m or contacts > 0. The tip is the origin of the held part's
 // proxy; it is in the bore below the mouth and within the clearance + 0.2 mm (kWallGive) of the axis.
-const std::vector<Measure>& measures() {
-    static const std::vector<Measure> all = {
+std::vector<Measure> commonMeasures() {
+    return {
         {{"success", "Success", "1",
           "1 if the outcome is success, else 0; success: in every tick of the hold time the tip depth is >= success "
           "fraction x insertion depth, the proxy's speed over the last 50 ticks is < the task's largest, and "
@@ -330,6 +302,16 @@ const std::vector<Measure>& measures() {
         countOf<kRateLimited>("rate_limited_ticks", "Ticks at the limit of rising force"),
         countOf<kPassivityActed>("passivity_ticks", "Ticks in which the passivity controller acted"),
     };
+}
+
+/// Those of all trials and of pegs in holes, then those of the other types.
+const std::vector<Measure>& measures() {
+    static const std::vector<Measure> all = [] {
+        std::vector<Measure> list = commonMeasures();
+        for (const auto& more : {passageMeasures(), contourMeasures(), placementMeasures(), pairMeasures()})
+            list.insert(list.end(), more.begin(), more.end());
+        return list;
+    }();
     return all;
 }
 

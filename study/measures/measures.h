@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "core/base/tick_record.h"
@@ -16,6 +17,23 @@ enum class Outcome { Success, Failure, Timeout, Aborted };
 const char* outcomeName(Outcome outcome);  // as stored
 std::optional<Outcome> outcomeNamed(std::string_view name);
 
+/// What measures of one type of trial need to know; poses and lengths in the frame of TrialContext::X_WT.
+struct PassageFacts {
+    double length = 0.0;  // [m] from z = 0 along -z
+    double width = 0.0;   // [m]
+};
+struct ContourFacts {
+    std::vector<Vec3> points;  // corners of the line [m]
+    double reach = 0.0;        // [m]
+    double force = 0.0;        // asked for [N]
+};
+struct PlacementFacts {
+    bool round = false;  // turning about z is no error; X_WT is the goal
+};
+struct PairFacts {
+    int comparison_interval = 1;  // 1 or 2
+};
+
 /// What the measures need to know of a trial beside its records.
 struct TrialContext {
     std::int64_t start_tick = 0;  // the hand held the start pose: contact on, "go" shown
@@ -25,6 +43,7 @@ struct TrialContext {
     double leave_radius = 0.020;      // [m]
     double engagement_depth = 0.001;  // [m]
     double clearance = 0.0;           // [m] radial, of the held peg in the target's bore
+    std::variant<std::monostate, PassageFacts, ContourFacts, PlacementFacts, PairFacts> form;  // first: peg in hole
 };
 
 /// A measure's definition: name (the column; its unit is the suffix), label, unit, formula.

@@ -10,6 +10,7 @@
 
 #include "study/protocol/questionnaire_keys.h"
 #include "study/protocol/scene_keys.h"
+#include "study/protocol/task_keys.h"
 
 namespace passung::protocol {
 namespace {
@@ -52,16 +53,6 @@ constexpr std::array kStudyKeys{
     Key{"level", "value", Any, kAny, "", "(its `set`)", "What the factor's key becomes."},
     Key{"level", "catch", Boolean, kAny, "", "false", "Conditions with this level are catch trials: in no pass, only where a block has `catch_trials`."},
     Key{"level", "set", Table, kAny, "", "(its `value`)", "Several keys at once: { \"contact.method\" = \"penalty\", ... }."},
-
-    Key{"task", "type", Choice, kAny, "peg_in_hole", "!", "Kind of trial."},
-    Key{"task", "target", Text, kAny, "", "!", "Name of the bore_plate part to insert into."},
-    Key{"task", "insertion_depth_mm", Number, above(0), "", "20", "Depth of the tip below the mouth that counts as fully inserted."},
-    Key{"task", "success_fraction", Number, aboveUpTo(0, 1), "", "0.95", "Part of that depth that is success."},
-    Key{"task", "max_speed_mm_per_s", Number, above(0), "", "5", "Slower than this while the depth is held."},
-    Key{"task", "hold_s", Number, from(0, 60), "", "0.5", "How long the depth is held."},
-    Key{"task", "timeout_s", Number, aboveUpTo(0, 3600), "", "30", "From the start of the trial."},
-    Key{"task", "leave_radius_mm", Number, atLeast(0), "", "20", "The trial's clock starts when the part leaves this sphere about its start; less than the way to full depth."},
-    Key{"task", "engagement_depth_mm", Number, above(0), "", "1", "Search ends and insertion begins at this depth."},
 
     Key{"feedback", "kinesthetic", Boolean, kAny, "", "true", "Forces are rendered; only true is supported."},
     Key{"feedback", "cues", Texts, kAny, "", "(none)", "Beside the force: \"visual\", \"vibrotactile\", \"audio\". The command of each, from 0 to 1, follows from the recorded ticks and is a column of the exported samples; no transducer is driven yet."},
@@ -117,7 +108,7 @@ constexpr std::array<Key, n + m> joined(const std::array<Key, n>& first, const s
         return std::array<Key, n + m>{first[i]..., second[j]...};
     }(std::make_index_sequence<n>{}, std::make_index_sequence<m>{});
 }
-constexpr auto kKeys = joined(joined(kStudyKeys, scene_rows::kSceneKeys), kQuestionnaireKeys);
+constexpr auto kKeys = joined(joined(joined(kStudyKeys, kTaskKeys), scene_rows::kSceneKeys), kQuestionnaireKeys);
 
 /// Tables in the order of the documentation: id, heading, sentence.
 struct TableInfo {
@@ -154,6 +145,11 @@ constexpr std::array kTables{
     TableInfo{"factor", "`[[factor]]`", ""},
     TableInfo{"level", "Levels written as tables", "A level has either a `value` or a `set`."},
     TableInfo{"task", "`[task]`", ""},
+    TableInfo{"task.peg_in_hole", "`[task]` of type `peg_in_hole`", ""},
+    TableInfo{"task.narrow_passage", "`[task]` of type `narrow_passage`", ""},
+    TableInfo{"task.contour_following", "`[task]` of type `contour_following`", ""},
+    TableInfo{"task.free_placement", "`[task]` of type `free_placement`", ""},
+    TableInfo{"task.discrimination_pair", "`[task]` of type `discrimination_pair`", ""},
     TableInfo{"feedback", "`[feedback]`", ""},
     TableInfo{"block", "`[[block]]`", ""},
     TableInfo{"consent", "`[[consent]]`", "Each decision is stored with the SHA-256 of the text that it answers: a changed text has to be asked anew."},

@@ -1,4 +1,4 @@
-#include "study/protocol/task_reader.h"
+#include "study/protocol/peg_in_hole_reader.h"
 
 #include <fmt/format.h>
 
@@ -31,20 +31,11 @@ const model::Peg* findPeg(const StudyTables& tables, const model::SceneSpec& sce
 }
 
 /// The target's bore; nullptr after reporting why there is none.
-const model::BorePlate* findBore(const TableReader& read, const model::SceneSpec& scene) {
-    const auto name = read.text("target");
-    if (const model::PartSpec* part = partNamed(scene, name)) {
-        const auto* plate = shapeOf<model::BorePlate>(*part);
-        if (part->held)
-            read.fail("target", "must not be the held part");
-        else if (plate == nullptr)
-            read.fail("target", "must be a part with the shape bore_plate");
-        return part->held ? nullptr : plate;
-    }
-    std::vector<std::string_view> names;
-    for (const auto& part : scene.parts) names.push_back(part.name);
-    read.fail("target", fmt::format("the scene has no part of this name; parts: {}", fmt::join(names, ", ")));
-    return nullptr;
+const model::BorePlate* findBore(const TableReader& read, const model::PartSpec* target) {
+    if (target == nullptr) return nullptr;
+    const auto* plate = shapeOf<model::BorePlate>(*target);
+    if (plate == nullptr) read.fail("target", "must be a part with the shape bore_plate");
+    return plate;
 }
 
 /// Reports a bore that is too narrow for the peg where the bore's diameter, or its fit, is written.
@@ -65,8 +56,8 @@ void checkFit(const StudyTables& tables, const std::string& target, const model:
 }
 
 /// A part that is fully inserted before it leaves the sphere about its start would never start the clock.
-void checkWay(const TableReader& read, const model::SceneSpec& scene, const PegInHoleTask& task) {
-    const Vec3 end = partNamed(scene, task.target)->X_WP * Vec3(0, 0, -task.insertion_depth);
+void checkWay(const TableReader& read, const model::SceneSpec& scene, const Task& task, const PegInHoleTask& peg) {
+    const Vec3 end = partNamed(scene, task.target)->X_WP * Vec3(0, 0, -peg.insertion_depth);
     const double way = (end - heldPart(scene)->X_WP.p).norm();
     if (!(task.leave_radius < way))
         read.fail("leave_radius_mm",
@@ -75,37 +66,31 @@ void checkWay(const TableReader& read, const model::SceneSpec& scene, const PegI
 
 }  // namespace
 
-PegInHoleTask readTask(const StudyTables& tables, const model::SceneSpec& scene, Errors& errors) {
-    const std::size_t before = errors.size();
-    const TableReader read(tables.task, {"task"}, "task", errors);
-    PegInHoleTask task;
-    task.target = read.text("target");
-    task.insertion_depth = read.number("insertion_depth_mm");
-    task.success_fraction = read.number("success_fraction");
-    task.max_speed = read.number("max_speed_mm_per_s");
-    task.hold = read.number("hold_s");
-    task.timeout = read.number("timeout_s");
-    task.leave_radius = read.number("leave_radius_mm");
-    task.engagement_depth = read.number("engagement_depth_mm");
-    if (errors.size() > before) return task;
-
-    const double success_depth = task.success_fraction * task.insertion_depth;
-    if (!(task.engagement_depth < success_depth))
+PegInHoleTask readPegInHole(const TableReader& read, const StudyTables& tables, const model::SceneSpec& scene,
+                            const model::PartSpec* target, const Task& task, Errors& errors) {
+    PegInHoleTask peg;
+    peg.insertion_depth = read.number("insertion_depth_mm");
+    peg.success_fraction = read.number("success_fraction");
+    peg.max_speed = read.number("max_speed_mm_per_s");
+    peg.hold = read.number("hold_s");
+    peg.engagement_depth = read.number("engagement_depth_mm");
+    const double success_depth = peg.success_fraction * peg.insertion_depth;
+    if (!(peg.engagement_depth < success_depth))
         read.fail("engagement_depth_mm",
                   fmt::format("must be less than the depth of success, {:.6g} mm", 1e3 * success_depth));
-    if (!(task.hold < task.timeout)) read.fail("hold_s", "must be less than timeout_s");
-    const auto* plate = findBore(read, scene);
-    if (plate == nullptr) return task;
-    if (task.insertion_depth > plate->bore_depth)
+    if (!(peg.hold < task.timeout)) read.fail("hold_s", "must be less than timeout_s");
+    const auto* plate = findBore(read, target);
+    if (plate == nullptr) return peg;
+    if (peg.insertion_depth > plate->bore_depth)
         read.fail("insertion_depth_mm", fmt::format("the bore is only {:.6g} mm deep", 1e3 * plate->bore_depth));
-    const auto* peg = findPeg(tables, scene, errors);
-    if (peg == nullptr) return task;
-    checkWay(read, scene, task);
-    task.clearance = 0.5 * (plate->bore_diameter - peg->diameter);
-    if (task.insertion_depth > peg->length)
-        read.fail("insertion_depth_mm", fmt::format("the peg is only {:.6g} mm long", 1e3 * peg->length));
-    checkFit(tables, task.target, *peg, *plate, errors);
-    return task;
+    const auto* held = findPeg(tables, scene, errors);
+    if (held == nullptr) return peg;
+    checkWay(read, scene, task, peg);
+    peg.clearance = 0.5 * (plate->bore_diameter - held->diameter);
+    if (peg.insertion_depth > held->length)
+        read.fail("insertion_depth_mm", fmt::format("the peg is only {:.6g} mm long", 1e3 * held->length));
+    checkFit(tables, task.target, *held, *plate, errors);
+    return peg;
 }
 
 }  // namespace passung::protocol

@@ -1,14 +1,15 @@
 #pragma once
 
-#include <string>
-
+#include "core/model/scene_spec.h"
 #include "study/protocol/factors.h"
-#include "study/protocol/study_plan.h"
+#include "study/protocol/table_reader.h"
+#include "study/protocol/task.h"
 
 namespace passung::protocol {
 
-/// Reads [task] and checks that it can be done in `condition.scene`, which must be sound. `tables` are those of the
-/// condition: what does not fit is reported where it is written.
-PegInHoleTask readTask(const StudyTables& tables, const model::SceneSpec& scene, Errors& errors);
+/// Reads the keys of a peg_in_hole task: the scene has to have the peg and the bore. `target`: the part that it names,
+/// nullptr if that was reported already. @pre what one key alone can have wrong was not found
+PegInHoleTask readPegInHole(const TableReader& read, const StudyTables& tables, const model::SceneSpec& scene,
+                            const model::PartSpec* target, const Task& task, Errors& errors);
 
 }  // namespace passung::protocol

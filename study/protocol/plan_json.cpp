@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "study/protocol/json.h"
+#include "study/protocol/task_json.h"
 
 namespace passung::protocol {
 namespace {
@@ -111,21 +112,6 @@ std::string cuesJson(const Cues& cues) {
         .number("full_depth_m", cues.full_depth)
         .number("full_speed_m_per_s", cues.full_speed)
         .number("sound_decay_s", cues.sound_decay)
-        .str();
-}
-
-std::string taskJson(const PegInHoleTask& task) {
-    return JsonObject()
-        .text("type", "peg_in_hole")
-        .text("target", task.target)
-        .number("clearance_m", task.clearance)
-        .number("insertion_depth_m", task.insertion_depth)
-        .number("success_fraction", task.success_fraction)
-        .number("max_speed_m_per_s", task.max_speed)
-        .number("hold_s", task.hold)
-        .number("timeout_s", task.timeout)
-        .number("leave_radius_m", task.leave_radius)
-        .number("engagement_depth_m", task.engagement_depth)
         .str();
 }
 
@@ -252,6 +238,15 @@ std::string paramsJson(const Condition& condition) {
         .json("effects", effectsJson(scene.effects))
         .json("task", taskJson(condition.task));
     if (condition.cues.any()) json.json("cues", cuesJson(condition.cues));
+    if (condition.comparison) {
+        Condition other = condition;
+        other.scene = *condition.comparison;
+        json.json("comparison", JsonObject()
+                                    .json("parts", listOf(other.scene.parts, partJson))
+                                    .json("contact", contactJson(other))
+                                    .json("effects", effectsJson(other.scene.effects))
+                                    .str());
+    }
     return json.str();
 }
 

@@ -14,6 +14,7 @@
 #include "study/protocol/duration.h"
 #include "study/protocol/factors.h"
 #include "study/protocol/include.h"
+#include "study/protocol/measures_reader.h"
 #include "study/protocol/plan_json.h"
 #include "study/protocol/planned_questionnaires.h"
 #include "study/protocol/scene_node.h"
@@ -29,6 +30,9 @@ constexpr std::size_t kMaxConditions = 1000;
 /// Everything of a condition that can be felt or seen, as text; names of parts are none of it.
 std::string fingerprint(Condition condition) {
     std::string meshes;
+    if (condition.comparison)
+        for (auto& part : condition.comparison->parts)
+            if (const auto* mesh = std::get_if<model::MeshFile>(&part.geometry)) meshes += mesh->path + '\n';
     for (std::size_t i = 0; i < condition.scene.parts.size(); ++i) {
         auto& part = condition.scene.parts[i];
         if (part.name == condition.task.target) condition.task.target = std::to_string(i);
@@ -57,7 +61,7 @@ public:
         readLoop();
         plan_.resume = readResume(root_, errors_);
         plan_.consent = readConsent(root_, errors_);
-        readMeasures();
+        plan_.measures = readMeasures(root_, plan_, known_measures_, errors_);
         plan_.analyses = readAnalyses(root_.items("analysis"), plan_, errors_);
         if (errors_.empty()) checkBlocks(root_.items("block"), plan_, errors_);
         if (errors_.empty()) readBlockConditions();
@@ -182,7 +186,11 @@ private:
         condition.device = std::move(content.device);
         if (errors_.size() == before && root_.has("task")) condition.task = readTask(tables, condition.scene, errors_);
         readFeedback(tables.feedback, condition);
+        const bool pair = std::holds_alternative<DiscriminationPairTask>(condition.task.form);
+        if (errors_.size() == before && pair)
+            condition.comparison = readComparison(tables, condition, devices_, errors_);
         if (errors_.size() == before) checkStartPose(tables.scene, "scene", condition.scene, errors_);
+        if (errors_.size() == before && pair) checkStartPose(tables.scene, "scene", *condition.comparison, errors_);
         if (errors_.size() > before) return;
         condition.levels_json = levelsJson(plan_.factors, levels);
         condition.levels = std::move(levels);
@@ -252,27 +260,6 @@ private:
         plan_.max_missed_share = read.number("max_missed_share");
     }
 
-    void readMeasures() {
-        if (!root_.has("measures")) {
-            plan_.measures.assign(known_measures_.begin(), known_measures_.end());
-            return;
-        }
-        const std::vector<std::string_view> known(known_measures_.begin(), known_measures_.end());
-        for (const Node& item : root_.items("measures")) {
-            const auto report = [&](std::string message) {
-                errors_.push_back(errorAt(item.place, "measures", valueText(item), std::move(message)));
-            };
-            if (std::find(known.begin(), known.end(), item.text) == known.end()) {
-                const auto close = closestWord(item.text, known);
-                report(close ? fmt::format("unknown measure; did you mean \"{}\"?", *close)
-                             : fmt::format("unknown measure; known measures: {}", fmt::join(known, ", ")));
-            } else if (std::find(plan_.measures.begin(), plan_.measures.end(), item.text) != plan_.measures.end()) {
-                report("is listed twice");
-            }
-            plan_.measures.push_back(item.text);
-        }
-    }
-
     void listDevices() {
         std::set<std::string> named;
         for (const Condition& condition : plan_.conditions) named.insert(condition.device);
@@ -288,14 +275,19 @@ private:
     void listMeshes() {
         const auto folder = std::filesystem::path(document_.place.file).parent_path();
         std::map<std::string, std::string> names;  // by path
-        for (const Condition& condition : plan_.conditions)
-            for (const model::PartSpec& part : condition.scene.parts)
+        const auto list = [&](const model::SceneSpec& scene) {
+            for (const model::PartSpec& part : scene.parts)
                 if (const auto* mesh = std::get_if<model::MeshFile>(&part.geometry)) {
                     const std::filesystem::path path(mesh->path);
                     const bool below = path.is_relative() == folder.is_relative() && !folder.empty();
                     names[mesh->path] =
                         below ? path.lexically_relative(folder).generic_string() : path.generic_string();
                 }
+        };
+        for (const Condition& condition : plan_.conditions) {
+            list(condition.scene);
+            if (condition.comparison) list(*condition.comparison);
+        }
         for (const auto& [path, name] : names) plan_.meshes.push_back({name, path});
     }
 

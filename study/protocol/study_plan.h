@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "core/model/scene_spec.h"
 #include "study/design/design.h"
 #include "study/protocol/block.h"
+#include "study/protocol/task.h"
 #include "study/questionnaire/definition.h"
 
 namespace passung::protocol {
@@ -26,19 +28,6 @@ struct Factor {
     FactorKind kind = FactorKind::Within;
     std::string unit;  // of the labels, if they are numbers; may be empty
     std::vector<Level> levels;
-};
-
-/// How a peg-in-hole trial is judged. Poses are of the held part in the target's frame (its bore's mouth, axis -z).
-struct PegInHoleTask {
-    std::string target;               // name of the part with the bore
-    double clearance = 0.0;           // [m] radial, of the peg in that bore: what their diameters leave
-    double insertion_depth = 0.020;   // [m] of the tip below the mouth that counts as fully inserted
-    double success_fraction = 0.95;   // of that depth
-    double max_speed = 0.005;         // [m/s] while the depth is held
-    double hold = 0.5;                // [s]
-    double timeout = 30.0;            // [s] from the start
-    double leave_radius = 0.020;      // [m] the trial's clock starts when the part leaves this sphere about its start
-    double engagement_depth = 0.001;  // [m] search ends at this depth
 };
 
 enum class ShownPose { Proxy, Device };  // what the display draws for the held part
@@ -64,7 +53,8 @@ struct Condition {
                                    // tolerance, cell, spacing, mode and nodes
     int accuracy_line = 0, accuracy_column = 0;  // where the protocol writes that budget, from 1
     bool accuracy_picked = false;                // it has
-    PegInHoleTask task;
+    Task task;
+    std::optional<model::SceneSpec> comparison;  // of a discrimination_pair: the other interval's scene
     ShownPose shown = ShownPose::Proxy;
     Cues cues;
     std::string device;       // preset

@@ -1,28 +1,17 @@
 #include "study/session/recompute.h"
 
-#include <fmt/format.h>
-
-#include "study/protocol/scene_parts.h"
+#include "study/session/rendered_scenes.h"
 #include "study/session/trial_course.h"
 
 namespace passung::session {
 
 using measures::Outcome;
 
-Result<Pose> targetPose(const protocol::Condition& condition) {
-    if (const auto* part = protocol::partNamed(condition.scene, condition.task.target)) return part->X_WP;
-    Error error;
-    error.message = fmt::format("condition {} has no part of this name", condition.name);
-    error.key = "target";
-    error.value = condition.task.target;
-    return error;
-}
-
 Result<Judgement> judgeAgain(const protocol::Condition& condition, std::span<const TickRecord> records, Outcome outcome,
-                             std::int64_t end_time) {
+                             std::int64_t end_time, std::uint64_t attempt_seed) {
     const auto X_WT = targetPose(condition);
     if (!X_WT) return X_WT.errors();
-    TrialCourse course(condition.task, *X_WT);
+    TrialCourse course(condition.task, *X_WT, attempt_seed);
     measures::PeriodClock clock;
     std::vector<TrialEvent> events;
     std::vector<TickRecord> of_trial;

@@ -11,9 +11,6 @@
 
 namespace passung::session {
 
-/// Pose of the task's target in the world.
-Result<Pose> targetPose(const protocol::Condition& condition);
-
 /// What a session makes of an attempt's ticks.
 struct Judgement {
     measures::Outcome outcome = measures::Outcome::Aborted;
@@ -21,8 +18,8 @@ struct Judgement {
 };
 
 /// Judges recorded ticks once more, as the session did while they came. `outcome` and `end_time` [periods after tick 0]
-/// are what was stored: they say when somebody aborted the attempt, which is in no record.
+/// are what was stored: they say when somebody aborted the attempt, which is in no record. `attempt_seed`: likewise.
 Result<Judgement> judgeAgain(const protocol::Condition& condition, std::span<const TickRecord> records,
-                             measures::Outcome outcome, std::int64_t end_time);
+                             measures::Outcome outcome, std::int64_t end_time, std::uint64_t attempt_seed);
 
 }  // namespace passung::session

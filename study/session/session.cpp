@@ -10,7 +10,7 @@
 #include "core/base/assert.h"
 #include "core/base/random.h"
 #include "study/protocol/json.h"
-#include "study/session/recompute.h"
+#include "study/session/rendered_scenes.h"
 
 namespace passung::session {
 namespace {
@@ -126,7 +126,7 @@ void Session::beginTrial() {
     const auto id = sink_.startAttempt(start);
     if (!id) return fail("start attempt", id.errors());
     ++past_[agenda_.next()].attempts;
-    attempt_.emplace(Attempt{*id, condition, TrialCourse(condition.task, *X_WT), {}, {}});
+    attempt_.emplace(Attempt{*id, condition, TrialCourse(condition.task, *X_WT, start.seed), {}, {}});
     apparatus_.start();
     state_ = SessionState::InTrial;
 }

@@ -8,8 +8,28 @@
 
 namespace passung::session {
 
-TrialCourse::TrialCourse(const protocol::PegInHoleTask& task, const Pose& X_WT)
-    : task_(task), X_WT_(X_WT), success_rule_(task, X_WT), timeout_(std::llround(task.timeout / kTickSeconds)) {}
+namespace {
+
+const char* eventName(TrialState state) {
+    switch (state) {
+        case TrialState::Succeeded:
+            return "success";
+        case TrialState::Failed:
+            return "failure";
+        case TrialState::TimedOut:
+            return "timeout";
+        default:
+            return "aborted";
+    }
+}
+
+}  // namespace
+
+TrialCourse::TrialCourse(const protocol::Task& task, const Pose& X_WT, std::uint64_t attempt_seed)
+    : X_WT_(X_WT),
+      leave_radius_(task.leave_radius),
+      rule_(task, X_WT, attempt_seed),
+      timeout_(std::llround(task.timeout / kTickSeconds)) {}
 
 void TrialCourse::follow(const TickRecord& record, std::vector<TrialEvent>& events) {
     PASSUNG_ASSERT(!ended());
@@ -18,16 +38,23 @@ void TrialCourse::follow(const TickRecord& record, std::vector<TrialEvent>& even
     if (state_ == TrialState::AwaitingStart) awaitStart(record, events);
     if (state_ != TrialState::Running) return;
 
-    noteMilestones(record, events);
+    if (!touched_ && measures::isContact(record)) {
+        touched_ = true;
+        events.push_back({clock_.periods(), "first_contact"});
+    }
     if (record.status & kInputRejected) ++rejected_ticks_;
-    if (success_rule_.fulfilledAt(record)) return end(TrialState::Succeeded, record.tick, "success", events);
-    if (clock_.periods() - *start_time_ >= timeout_) end(TrialState::TimedOut, record.tick, "timeout", events);
+    if (const auto verdict = rule_.follow(record, clock_.periods(), events)) {
+        if (*verdict == TrialState::Aborted) return abort(record.tick, "start pose not reached", events);
+        return end(*verdict, record.tick, eventName(*verdict), events);
+    }
+    if (!rule_.timesItself() && clock_.periods() - *start_time_ >= timeout_)
+        end(TrialState::TimedOut, record.tick, eventName(TrialState::TimedOut), events);
 }
 
 void TrialCourse::abort(std::int64_t tick, std::string reason, std::vector<TrialEvent>& events) {
     PASSUNG_ASSERT(!ended());
     abort_reason_ = std::move(reason);
-    end(TrialState::Aborted, tick, "aborted", events);
+    end(TrialState::Aborted, tick, eventName(TrialState::Aborted), events);
 }
 
 measures::TrialContext TrialCourse::context() const {
@@ -37,12 +64,12 @@ measures::TrialContext TrialCourse::context() const {
     context.start_tick = start_tick_.value_or(end_tick_ + 1);
     context.end_tick = end_tick_;
     context.outcome = state_ == TrialState::Succeeded  ? Outcome::Success
+                      : state_ == TrialState::Failed   ? Outcome::Failure
                       : state_ == TrialState::TimedOut ? Outcome::Timeout
                                                        : Outcome::Aborted;
     context.X_WT = X_WT_;
-    context.leave_radius = task_.leave_radius;
-    context.engagement_depth = task_.engagement_depth;
-    context.clearance = task_.clearance;
+    context.leave_radius = leave_radius_;
+    rule_.describe(context);
     return context;
 }
 
@@ -55,17 +82,6 @@ void TrialCourse::awaitStart(const TickRecord& record, std::vector<TrialEvent>& 
         events.push_back({clock_.periods(), "trial_started"});
     } else if (clock_.periods() >= kStartLimit) {
         abort(record.tick, "start pose not reached", events);
-    }
-}
-
-void TrialCourse::noteMilestones(const TickRecord& record, std::vector<TrialEvent>& events) {
-    if (!touched_ && measures::isContact(record)) {
-        touched_ = true;
-        events.push_back({clock_.periods(), "first_contact"});
-    }
-    if (!engaged_ && measures::tipDepthInBore(record, X_WT_.inverse(), task_.clearance) >= task_.engagement_depth) {
-        engaged_ = true;
-        events.push_back({clock_.periods(), "engaged"});
     }
 }
 

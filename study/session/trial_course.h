@@ -7,21 +7,12 @@
 
 #include "study/measures/measures.h"
 #include "study/measures/period_clock.h"
-#include "study/session/success_rule.h"
+#include "study/session/trial_rule.h"
 
 namespace passung::session {
 
-enum class TrialState { AwaitingStart, Running, Succeeded, TimedOut, Aborted };
-
-/// Something that happened in a trial: trial_started, first_contact, engaged (the tip is in the bore), success,
-/// timeout, aborted.
-struct TrialEvent {
-    std::int64_t time = 0;  // haptic periods since the attempt's tick 0: ticks and missed cycles
-    const char* name = "";
-};
-
-/// One attempt, decided record by record: AwaitingStart → Running → Succeeded | TimedOut, and from the first two →
-/// Aborted. The trial starts at the first tick with kEngaged. A fulfilled success rule wins over a time-out in the same
+/// One attempt, decided record by record: AwaitingStart → Running → Succeeded | Failed | TimedOut, and from the first
+/// two → Aborted. The trial starts at the first tick with kEngaged. Its type's rule wins over a time-out in the same
 /// tick. Time counts missed cycles as well as ticks. Aborted by itself if the start pose is not reached within
 /// kStartLimit, or if a wrench was not finite (the
 /// output is then zero, so whatever followed would not be the condition's contact).
@@ -29,7 +20,7 @@ class TrialCourse {
 public:
     static constexpr std::int64_t kStartLimit = 60'000;  // [periods]
 
-    TrialCourse(const protocol::PegInHoleTask& task, const Pose& X_WT);
+    TrialCourse(const protocol::Task& task, const Pose& X_WT, std::uint64_t attempt_seed);
 
     /// Takes the next record and appends what happened in it. @pre not ended()
     void follow(const TickRecord& record, std::vector<TrialEvent>& events);
@@ -58,12 +49,11 @@ public:
 
 private:
     void awaitStart(const TickRecord& record, std::vector<TrialEvent>& events);
-    void noteMilestones(const TickRecord& record, std::vector<TrialEvent>& events);
     void end(TrialState state, std::int64_t tick, const char* event, std::vector<TrialEvent>& events);
 
-    protocol::PegInHoleTask task_;
     Pose X_WT_;
-    SuccessRule success_rule_;
+    double leave_radius_;
+    TrialRule rule_;
     std::int64_t timeout_;  // [periods]
     measures::PeriodClock clock_;
     TrialState state_ = TrialState::AwaitingStart;
@@ -75,7 +65,6 @@ private:
     std::string abort_reason_;
     std::int64_t rejected_ticks_ = 0;
     bool touched_ = false;
-    bool engaged_ = false;
 };
 
 }  // namespace passung::session

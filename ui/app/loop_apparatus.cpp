@@ -1,27 +1,17 @@
 #include "ui/app/loop_apparatus.h"
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
-#include "study/protocol/scene_parts.h"
 #include "ui/app/simulated_hand.h"
+#include "ui/app/visible_task.h"
 
 namespace passung::app {
 
 namespace {
 
 constexpr std::size_t kRingRecords = 8192;  // eight seconds: a writer that stalls for longer shows in the data
-
-/// What the display shows of the task: parts where they are drawn.
-simulated::VisibleTask visibleTask(const protocol::Condition& condition) {
-    const auto shown = [](const model::PartSpec& part) { return Pose{part.X_WP.q, part.X_WP.p + part.shown_offset}; };
-    simulated::VisibleTask task;
-    if (const auto* held = protocol::heldPart(condition.scene)) task.X_WHeldStart = shown(*held);
-    task.insertion_depth = condition.task.insertion_depth;
-    if (const auto* target = protocol::partNamed(condition.scene, condition.task.target))
-        task.X_WTarget = shown(*target);
-    return task;
-}
 
 }  // namespace
 
@@ -31,12 +21,11 @@ std::vector<session::StageNote> stageNotes(const tick::TickModel& model) {
     return notes;
 }
 
-LoopApparatus::Run::Run(model::Scene built, std::unique_ptr<simulated::SimulatedDevice> held, bool show_proxy)
-    : scene(std::move(built)),
-      model(tick::makeModel(scene)),
+LoopApparatus::Run::Run(BuiltScenes built, std::unique_ptr<simulated::SimulatedDevice> held, bool show_proxy)
+    : scenes(std::move(built)),
       device(std::move(held)),
       ring(kRingRecords),
-      cycle(model, *device, ring, show_proxy) {}
+      cycle(scenes.turns, *device, ring, show_proxy) {}
 
 LoopApparatus::LoopApparatus(const simulated::DeviceParams& device, const person::SimulatedPerson& person, Clock clock)
     : description_(simulated::describe(device)), person_(person), clock_(clock) {}
@@ -48,20 +37,25 @@ Result<std::vector<session::StageNote>> LoopApparatus::prepare(const protocol::C
     const simulated::DeviceParams* preset = simulated::findPreset(condition.device);
     if (preset == nullptr)
         return Error{.message = "no such device preset", .key = "device.preset", .value = condition.device};
-    auto scene = model::buildScene(condition.scene, parts_);
-    if (!scene) return scene.errors();
+    auto scenes = buildScenes(session::renderedScenes(condition, seed), parts_);
+    if (!scenes) return scenes.errors();
     const model::Registration& r = condition.scene.registration;
     auto device = std::make_unique<simulated::SimulatedDevice>(
         *preset, simulatedHand(person_, trials_before), visibleTask(condition),
         simulated::HandRegistration{r.X_WB, r.scale, r.X_DH}, seed);
     description_ = device->description();
     auto run =
-        std::make_unique<Run>(std::move(*scene), std::move(device), condition.shown == protocol::ShownPose::Proxy);
+        std::make_unique<Run>(std::move(*scenes), std::move(device), condition.shown == protocol::ShownPose::Proxy);
     {
         const std::lock_guard lock(halt_mutex_);
         run_.swap(run);
     }
-    return stageNotes(run_->model);
+    std::vector<session::StageNote> notes;  // of a pair the stages of both intervals, each once
+    for (const tick::TickModel& model : run_->scenes.models)
+        for (session::StageNote& note : stageNotes(model))
+            if (std::none_of(notes.begin(), notes.end(), [&](const auto& known) { return known.name == note.name; }))
+                notes.push_back(std::move(note));
+    return notes;
 }
 
 void LoopApparatus::wait(std::int64_t ticks) {

@@ -4,11 +4,11 @@
 #include <mutex>
 
 #include "core/loop/haptic_loop.h"
-#include "core/model/scene.h"
 #include "devices/simulated/presets.h"
 #include "devices/simulated/simulated_device.h"
 #include "study/person/simulated_person.h"
 #include "study/session/apparatus.h"
+#include "ui/app/built_scenes.h"
 #include "ui/app/disk_store.h"
 
 namespace passung::app {
@@ -35,14 +35,13 @@ public:
 private:
     /// Everything of one attempt; members are destroyed in reverse order, the thread first.
     struct Run {
-        model::Scene scene;
-        tick::TickModel model;
+        BuiltScenes scenes;
         std::unique_ptr<simulated::SimulatedDevice> device;
         loop::RecordRing ring;
         loop::HapticCycle cycle;
         std::unique_ptr<loop::RealTimeThread> thread;
 
-        Run(model::Scene built, std::unique_ptr<simulated::SimulatedDevice> held, bool show_proxy);
+        Run(BuiltScenes built, std::unique_ptr<simulated::SimulatedDevice> held, bool show_proxy);
     };
 
     DeviceDescription description_;

@@ -7,6 +7,7 @@
 #include "study/session/recompute.h"
 #include "study/store/hex_text.h"
 #include "study/store/store_reader.h"
+#include "ui/app/built_scenes.h"
 #include "ui/app/disk_store.h"
 #include "ui/app/stored_plans.h"
 #include "ui/cli/commands.h"
@@ -40,11 +41,11 @@ public:
             return Error{
                 .message = "the stored protocol has no such condition", .key = "condition", .value = attempt.condition};
         }
-        auto scene = model::buildScene(condition->scene, parts_);
-        if (!scene) return scene.errors();
+        const auto scenes = app::buildScenes(session::renderedScenes(*condition, attempt.seed), parts_);
+        if (!scenes) return scenes.errors();
         const auto difference = measureDifference(attempt, *condition, *records);
         if (!difference) return difference.errors();
-        return tell(attempt, replay::replay(*scene, *records), *difference);
+        return tell(attempt, replay::replay(scenes->turns, *records), *difference);
     }
 
 private:
@@ -59,8 +60,8 @@ private:
                                                  const std::vector<TickRecord>& records) {
         const auto outcome = measures::outcomeNamed(attempt.outcome);
         if (!outcome || !attempt.end_ns) return std::string();  // it did not end: nothing was measured
-        const auto again =
-            session::judgeAgain(condition, records, *outcome, (*attempt.end_ns - attempt.start_ns) / kTickNanoseconds);
+        const auto again = session::judgeAgain(condition, records, *outcome,
+                                               (*attempt.end_ns - attempt.start_ns) / kTickNanoseconds, attempt.seed);
         if (!again) return again.errors();
         if (again->outcome != *outcome)
             return fmt::format("outcome: stored {}, from the ticks {}", attempt.outcome,

@@ -68,7 +68,7 @@ inline PegOutcome runPegTrial(PegTrial trial) {
         outcome.last = X_BD;
         if (go < 0) continue;
         if (environment.touching() && environment.depth(shown) < 0.019) outcome.touched_before = true;
-        const HandPhase phase = device.handPhase();
+        const HandPhase phase = dynamic_cast<const Hand&>(device.hand()).phase();
         if (phase == HandPhase::Press || phase == HandPhase::Search) outcome.search_time += 1e-3;
         held = environment.depth(shown) >= 0.019 && speed < 5e-3 ? held + 1 : 0;
         if (held >= 500) {

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/base/random.h"
+#include "devices/simulated/hand_senses.h"
+#include "devices/simulated/minimum_jerk.h"
+#include "devices/simulated/task_hand.h"
+#include "devices/simulated/tremor.h"
+
+namespace passung::simulated {
+
+/// What every hand has: senses, arm and tremor, an intended pose and the means to bring the held part there. Who
+/// derives from it decides in choose() what is intended.
+class Arm : public TaskHand {
+public:
+    /// @pre params.validate() is empty.
+    Arm(const HandParams& params, const VisibleTask& task, const HandRegistration& registration, std::uint64_t seed);
+
+    void see(const loop::DisplayedImage& image) noexcept override { senses_.see(image); }
+    HandCoupling act(const Pose& X_BD, const Wrench& F_D_B) noexcept override;
+    std::uint32_t buttons() const noexcept override { return buttons_; }
+
+protected:
+    static constexpr double kStartDuration = 0.9;  // [s] reach for the start pose
+    static constexpr double kContactForce = 0.7;   // [N] a touch is noticed
+
+    /// The first reach, to the start pose, is under way.
+    virtual void begin() noexcept = 0;
+    /// One tick: sets X_WRef_.
+    virtual void choose(const Percept& percept) noexcept = 0;
+
+    /// What is done from now on has begun now.
+    void restartClock() noexcept;
+    void startReach(const Pose& to, double duration) noexcept;
+    /// In free space the arm sees that friction keeps it short of where it wants to be, and asks for a little more.
+    void removeOffset(const Percept& percept) noexcept;
+    /// Height of the set-point over a surface for the next tick, so that `force` comes to be felt on it; `felt_z`,
+    /// `felt_force`: height of the held part and force along the same axis.
+    double pressedHeight(double z, double force, double felt_z, double felt_force) const noexcept;
+
+    HandParams params_;
+    VisibleTask task_;
+    HandRegistration registration_;
+    Random perception_;  // errors of looking
+    Random motor_;       // choices of movement
+    Tremor tremor_;
+    HandSenses senses_;
+
+    double pace_;   // of this trial against the habit
+    double lapse_;  // pause of this trial [s]
+
+    std::int64_t tick_ = 0;
+    std::int64_t phase_start_ = 0;
+    double t_ = 0.0;  // in the phase [s]
+
+    // intention: where the part shall be
+    Reach reach_;
+    Pose X_WRef_;
+    Vec3 offset_ = Vec3::Zero();  // added to it against friction, world axes [m]
+    Vec3 turn_offset_ = Vec3::Zero();
+    std::uint32_t buttons_ = 0;
+};
+
+}  // namespace passung::simulated

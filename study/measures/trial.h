@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "study/measures/measures.h"
+
+namespace passung::measures {
+
+using Optional = std::optional<double>;
+
+inline constexpr double kPeriodsPerSecond =
+    1000.0;  // exact, unlike a period's length: 4028 of them are 4.028 s to the last digit
+
+/// A trial cut to its ticks. Each tick stands for the time that begins with it and ends with the next one, so the
+/// record at end_tick only closes the last step. Times are haptic periods after the start tick.
+struct Trial {
+    const TrialContext& context;
+    std::span<const TickRecord> ticks;   // start_tick ≤ tick < end_tick: the formulas' "trial ticks"
+    std::span<const TickRecord> points;  // the same and the record at end_tick
+    std::int64_t end = 0;                // time of the end tick
+    std::optional<std::int64_t> leave;
+    std::optional<std::int64_t> touch;       // first contact tick
+    std::optional<std::int64_t> engagement;  // first tick with the tip deep enough in the bore
+
+    bool succeeded() const { return context.outcome == Outcome::Success; }
+    /// Periods that tick `i` stands for; 1 where the next tick was not recorded.
+    double lengthOf(std::size_t i) const {
+        const bool followed = i + 1 < points.size() && points[i + 1].tick == points[i].tick + 1;
+        return followed ? points[i + 1].periods : 1.0;
+    }
+};
+
+inline double seconds(std::int64_t from, std::int64_t to) { return static_cast<double>(to - from) / kPeriodsPerSecond; }
+
+struct Measure {
+    Definition definition;
+    Optional (*compute)(const Trial&);
+};
+
+}  // namespace passung::measures

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "study/protocol/study_plan.h"
+#include "study/protocol/table_reader.h"
+
+namespace passung::protocol {
+
+/// The study's `measures`; without it all that trials of its types can have. @pre the plan has its conditions
+std::vector<std::string> readMeasures(const TableReader& root, const StudyPlan& plan,
+                                      std::span<const std::string> known_measures, Errors& errors);
+
+}  // namespace passung::protocol

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/base/types.h"
+
+namespace passung::protocol {
+
+/// A peg goes into the bore of the target, whose frame has its origin at the bore's mouth and the bore along -z.
+struct PegInHoleTask {
+    double clearance = 0.0;           // [m] radial, of the peg in that bore: what their diameters leave
+    double insertion_depth = 0.020;   // [m] of the tip below the mouth that counts as fully inserted
+    double success_fraction = 0.95;   // of that depth
+    double max_speed = 0.005;         // [m/s] while the depth is held
+    double hold = 0.5;                // [s]
+    double engagement_depth = 0.001;  // [m] search ends at this depth
+};
+
+/// The held part's origin goes through a passage of the target, from its mouth in the plane z = 0 along -z.
+struct NarrowPassageTask {
+    double length = 0.0;  // [m], > 0
+    double width = 0.0;   // [m], > 0: the origin is in the passage up to half of it from the axis
+};
+
+/// The held part's origin follows a line on the target.
+struct ContourFollowingTask {
+    std::vector<Vec3> points;  // corners of the line in the target's frame [m], at least two
+    double reach = 0.005;      // [m] from the line: farther away nothing is followed
+    double coverage = 0.95;    // share of the line's length that is success
+    double force = 2.0;        // [N] with which to press
+};
+
+/// The held part is put to a pose, and the person says when it is there.
+struct FreePlacementTask {
+    Pose X_WGoal;
+    double position_tolerance = 0.005;  // [m] within both it is a success
+    double angle_tolerance = 0.1;       // [rad]
+    bool round = false;                 // turning about the part's z axis is no error
+};
+
+/// What a simulated person compares in the intervals of a pair.
+enum class Judged { Stiffness, Roughness };
+
+/// Two intervals feel different, and the person says in which there was more of something.
+struct DiscriminationPairTask {
+    double interval = 3.0;  // [s] each, from the moment the hand holds the start pose
+    double answer = 10.0;   // [s] time for the answer
+    std::string question;
+    Judged judged = Judged::Stiffness;
+};
+
+/// What a trial asks for; `form` says the type of the trial.
+struct Task {
+    std::string target;           // name of the part that it is about; empty for free_placement
+    double timeout = 30.0;        // [s] from the start; of a pair: how long it takes at most
+    double leave_radius = 0.020;  // [m] the trial's clock starts when the part leaves this sphere about its start
+    std::variant<PegInHoleTask, NarrowPassageTask, ContourFollowingTask, FreePlacementTask, DiscriminationPairTask>
+        form;
+};
+
+}  // namespace passung::protocol

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "study/protocol/task.h"
+
+namespace passung::protocol {
+
+/// Every number of a task, for the attempt's row.
+std::string taskJson(const Task& task);
+
+}  // namespace passung::protocol

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+
+#include "study/protocol/key_table.h"
+
+namespace passung::protocol {
+
+// Rows of the key table for [task]: a table of its own for every type of trial, see trial_types.h.
+// clang-format off
+inline constexpr Range kPositive{.low = 0, .low_excluded = true};
+inline constexpr Range kTimeout{.low = 0, .high = 3600, .low_excluded = true};
+inline constexpr std::array kTaskKeys{
+    Key{"task", "type", KeyType::Choice, {}, "peg_in_hole|narrow_passage|contour_following|free_placement|discrimination_pair", "!", "Kind of trial; its own keys follow."},
+
+    Key{"task.peg_in_hole", "target", KeyType::Text, {}, "", "!", "Name of the bore_plate part to insert into."},
+    Key{"task.peg_in_hole", "insertion_depth_mm", KeyType::Number, kPositive, "", "20", "Depth of the tip below the mouth that counts as fully inserted."},
+    Key{"task.peg_in_hole", "success_fraction", KeyType::Number, {.low = 0, .high = 1, .low_excluded = true}, "", "0.95", "Part of that depth that is success."},
+    Key{"task.peg_in_hole", "max_speed_mm_per_s", KeyType::Number, kPositive, "", "5", "Slower than this while the depth is held."},
+    Key{"task.peg_in_hole", "hold_s", KeyType::Number, {0, 60}, "", "0.5", "How long the depth is held."},
+    Key{"task.peg_in_hole", "timeout_s", KeyType::Number, kTimeout, "", "30", "From the start of the trial."},
+    Key{"task.peg_in_hole", "leave_radius_mm", KeyType::Number, {.low = 0}, "", "20", "The trial's clock starts when the part leaves this sphere about its start; less than the way to full depth."},
+    Key{"task.peg_in_hole", "engagement_depth_mm", KeyType::Number, kPositive, "", "1", "Search ends and insertion begins at this depth."},
+
+    Key{"task.narrow_passage", "target", KeyType::Text, {}, "", "!", "Name of the part with the passage. The passage begins in the plane z = 0 of that part's frame and runs along -z about the z axis, as the bore of a bore_plate does."},
+    Key{"task.narrow_passage", "passage_length_mm", KeyType::Number, kPositive, "", "!", "From the plane z = 0 to where the held part's origin has come through."},
+    Key{"task.narrow_passage", "passage_width_mm", KeyType::Number, kPositive, "", "!", "Across: the held part's origin is in the passage up to half of this from the axis. Whoever goes round has not come through."},
+    Key{"task.narrow_passage", "timeout_s", KeyType::Number, kTimeout, "", "30", "From the start of the trial."},
+    Key{"task.narrow_passage", "leave_radius_mm", KeyType::Number, {.low = 0}, "", "20", "The completion time starts when the part leaves this sphere about its start."},
+
+    Key{"task.contour_following", "target", KeyType::Text, {}, "", "!", "Name of the part that the line lies on; +z of its frame points out of it."},
+    Key{"task.contour_following", "points", KeyType::Levels, {}, "", "!", "Corners of the line, `[[x, y, z], ...]`, lengths in the target's frame, at least two. The held part's origin is to follow it from the first to the last."},
+    Key{"task.contour_following", "reach_mm", KeyType::Number, kPositive, "", "5", "Farther from the line than this nothing is followed."},
+    Key{"task.contour_following", "coverage", KeyType::Number, {.low = 0, .high = 1, .low_excluded = true}, "", "0.95", "Part of the line's length that is success."},
+    Key{"task.contour_following", "force_N", KeyType::Number, kPositive, "", "2", "With which to press while following."},
+    Key{"task.contour_following", "timeout_s", KeyType::Number, kTimeout, "", "60", "From the start of the trial."},
+    Key{"task.contour_following", "leave_radius_mm", KeyType::Number, {.low = 0}, "", "0", "The completion time starts when the part leaves this sphere about its start."},
+
+    Key{"task.free_placement", "position", KeyType::LengthVector, {}, "", "!", "Where the held part's origin is to be put, in the world."},
+    Key{"task.free_placement", "rotation_deg", KeyType::Vector, {}, "", "(zero)", "And how it is to be turned, as in a pose."},
+    Key{"task.free_placement", "symmetric_about_z", KeyType::Boolean, {}, "", "false", "Turning the held part about its z axis is no error."},
+    Key{"task.free_placement", "position_tolerance_mm", KeyType::Number, kPositive, "", "5", "Nearer than this, and ..."},
+    Key{"task.free_placement", "angle_tolerance_deg", KeyType::Number, {.low = 0, .high = 180, .low_excluded = true}, "", "5", "... turned less than this away, it is a success when it is confirmed; else a failure. A button confirms."},
+    Key{"task.free_placement", "timeout_s", KeyType::Number, kTimeout, "", "30", "From the start of the trial to the confirmation."},
+    Key{"task.free_placement", "leave_radius_mm", KeyType::Number, {.low = 0}, "", "20", "The completion time starts when the part leaves this sphere about its start."},
+
+    Key{"task.discrimination_pair", "target", KeyType::Text, {}, "", "!", "Name of the part that is felt; +z of its frame points out of it."},
+    Key{"task.discrimination_pair", "comparison", KeyType::Table, {}, "", "!", "What is different in one of the two intervals: keys of the scene as in a level's `set`, such as `{ \"contact.stiffness_N_per_m\" = 800 }`. A factor varies them as task.comparison.contact.stiffness_N_per_m. Device, registration, start gate and the held part's form and start are those of both intervals."},
+    Key{"task.discrimination_pair", "interval_s", KeyType::Number, {.low = 0, .high = 600, .low_excluded = true}, "", "3", "Length of an interval, from the moment the hand holds the start pose: a pair needs a start_gate. Which interval has the comparison is drawn for every attempt."},
+    Key{"task.discrimination_pair", "answer_s", KeyType::Number, {.low = 0, .high = 600, .low_excluded = true}, "", "10", "Time for the answer after the second interval, while nothing is felt: the first button says the first interval, the second button the second."},
+    Key{"task.discrimination_pair", "question", KeyType::Text, {}, "", "!", "What is asked, such as \"Which was stiffer?\"."},
+    Key{"task.discrimination_pair", "judged", KeyType::Choice, {}, "stiffness|roughness", "stiffness", "What a simulated person compares; people are asked the question."},
+};
+// clang-format on
+
+}  // namespace passung::protocol

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <span>
+
+#include "core/base/device_description.h"
+#include "study/protocol/factors.h"
+#include "study/protocol/study_plan.h"
+
+namespace passung::protocol {
+
+/// Reads [task] as its type declares it (trial_types.h). Sentences of errors name keys as the user wrote them.
+Task readTask(const StudyTables& tables, const model::SceneSpec& scene, Errors& errors);
+
+/// The scene of the other interval of a discrimination_pair: the condition's with the keys of task.comparison.
+model::SceneSpec readComparison(const StudyTables& tables, const Condition& condition,
+                                std::span<const DeviceDescription> devices, Errors& errors);
+
+}  // namespace passung::protocol

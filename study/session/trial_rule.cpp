@@ -1,0 +1,104 @@
+#include "study/session/trial_rule.h"
+
+#include <cmath>
+
+#include "study/measures/placement.h"
+#include "study/measures/tick_facts.h"
+#include "study/session/rendered_scenes.h"
+
+namespace passung::session {
+namespace {
+
+constexpr std::int64_t kWayBackLimit = 60'000;  // [periods]
+
+}  // namespace
+
+TrialRule::TrialRule(const protocol::Task& task, const Pose& X_WT, std::uint64_t attempt_seed)
+    : X_WT_(X_WT), form_(makeForm(task, X_WT, attempt_seed)) {}
+
+TrialRule::Form TrialRule::makeForm(const protocol::Task& task, const Pose& X_WT, std::uint64_t attempt_seed) {
+    if (const auto* peg = std::get_if<protocol::PegInHoleTask>(&task.form))
+        return Insertion{*peg, SuccessRule(*peg, X_WT)};
+    if (const auto* passage = std::get_if<protocol::NarrowPassageTask>(&task.form)) {
+        const measures::PassageFacts facts{passage->length, passage->width};
+        return Passage{facts, {facts, X_WT}};
+    }
+    if (const auto* contour = std::get_if<protocol::ContourFollowingTask>(&task.form)) {
+        const measures::ContourFacts facts{contour->points, contour->reach, contour->force};
+        return Contour{facts, contour->coverage, {facts, X_WT}};
+    }
+    if (const auto* placement = std::get_if<protocol::FreePlacementTask>(&task.form)) return Placement{*placement, {}};
+    const auto& pair = std::get<protocol::DiscriminationPairTask>(task.form);
+    return Pair{std::llround(pair.answer / kTickSeconds), comparisonInterval(attempt_seed), {}};
+}
+
+std::optional<TrialState> TrialRule::follow(const TickRecord& record, std::int64_t time,
+                                            std::vector<TrialEvent>& events) {
+    return std::visit([&](auto& form) { return judge(form, record, time, events); }, form_);
+}
+
+TrialRule::Verdict TrialRule::judge(Insertion& form, const TickRecord& record, std::int64_t time,
+                                    std::vector<TrialEvent>& events) const {
+    if (!form.engaged &&
+        measures::tipDepthInBore(record, X_WT_.inverse(), form.task.clearance) >= form.task.engagement_depth) {
+        form.engaged = true;
+        events.push_back({time, "engaged"});
+    }
+    return form.rule.fulfilledAt(record) ? Verdict(TrialState::Succeeded) : std::nullopt;
+}
+
+TrialRule::Verdict TrialRule::judge(Passage& form, const TickRecord& record, std::int64_t time,
+                                    std::vector<TrialEvent>& events) const {
+    const std::int64_t entries = form.watch.entries();
+    form.watch.follow(record);
+    if (form.watch.entries() > entries) events.push_back({time, "passage_entered"});
+    return form.watch.through() ? Verdict(TrialState::Succeeded) : std::nullopt;
+}
+
+TrialRule::Verdict TrialRule::judge(Contour& form, const TickRecord& record, std::int64_t,
+                                    std::vector<TrialEvent>&) const {
+    form.watch.follow(record);
+    return form.watch.progress() >= form.coverage ? Verdict(TrialState::Succeeded) : std::nullopt;
+}
+
+TrialRule::Verdict TrialRule::judge(Placement& form, const TickRecord& record, std::int64_t,
+                                    std::vector<TrialEvent>&) const {
+    if (form.buttons.pressedIn(record) == 0) return std::nullopt;
+    const auto error = measures::placementError(record, X_WT_, form.task.round);
+    const bool there = error.position <= form.task.position_tolerance && error.angle <= form.task.angle_tolerance;
+    return there ? TrialState::Succeeded : TrialState::Failed;
+}
+
+TrialRule::Verdict TrialRule::judge(Pair& form, const TickRecord& record, std::int64_t time,
+                                    std::vector<TrialEvent>& events) const {
+    using Phase = measures::PairWatch::Phase;
+    const Phase before = form.watch.phase();
+    form.watch.follow(record, time);
+    const Phase now = form.watch.phase();
+    if (now != before) {
+        if (now == Phase::Between || now == Phase::Question) events.push_back({time, "interval_ended"});
+        if (now == Phase::Second) events.push_back({time, "interval_started"});
+        if (now == Phase::Answered) return TrialState::Succeeded;
+    }
+    const std::int64_t waited = time - form.watch.since();
+    if (now == Phase::Between && waited >= kWayBackLimit) return TrialState::Aborted;
+    if (now == Phase::Question && waited >= form.answer_periods) return TrialState::TimedOut;
+    return std::nullopt;
+}
+
+void TrialRule::describe(measures::TrialContext& context) const {
+    if (const auto* insertion = std::get_if<Insertion>(&form_)) {
+        context.engagement_depth = insertion->task.engagement_depth;
+        context.clearance = insertion->task.clearance;
+    } else if (const auto* passage = std::get_if<Passage>(&form_)) {
+        context.form = passage->facts;
+    } else if (const auto* contour = std::get_if<Contour>(&form_)) {
+        context.form = contour->facts;
+    } else if (const auto* placement = std::get_if<Placement>(&form_)) {
+        context.form = measures::PlacementFacts{placement->task.round};
+    } else {
+        context.form = measures::PairFacts{std::get<Pair>(form_).comparison_interval};
+    }
+}
+
+}  // namespace passung::session

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "core/model/scene.h"
+#include "core/tick/scene_sequence.h"
+#include "study/session/rendered_scenes.h"
+
+namespace passung::app {
+
+/// The scenes of an attempt, built, with their tick models. Models borrow from scenes, turns from models: moving it is
+/// fine, copying is not.
+struct BuiltScenes {
+    std::vector<model::Scene> scenes;
+    std::vector<tick::TickModel> models;
+    std::vector<tick::SceneTurn> turns;
+
+    BuiltScenes() = default;
+    BuiltScenes(BuiltScenes&&) = default;
+    BuiltScenes& operator=(BuiltScenes&&) = default;
+};
+
+Result<BuiltScenes> buildScenes(const std::vector<session::RenderedScene>& rendered, model::PartCache& parts);
+
+}  // namespace passung::app

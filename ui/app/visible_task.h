@@ -1,0 +1,11 @@
+#pragma once
+
+#include "devices/simulated/hand_params.h"
+#include "study/protocol/study_plan.h"
+
+namespace passung::app {
+
+/// What the display shows of a condition's task: parts where they are drawn, and what is asked for.
+simulated::VisibleTask visibleTask(const protocol::Condition& condition);
+
+}  // namespace passung::app
