@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "analysis/export/codebook.h"
+#include "analysis/export/contact_energy_table.h"
 #include "analysis/export/export_folder.h"
 #include "analysis/export/gzip.h"
 #include "analysis/export/questionnaire_tables.h"
@@ -26,6 +27,7 @@ std::vector<Table> makeTables(const StudyData& study) {
     tables.push_back(makeSessions(study));
     tables.push_back(makeParticipants(study));
     tables.push_back(makeTiming(study));
+    tables.push_back(makeContactEnergy(study));
     if (!study.questionnaires.empty()) {
         tables.push_back(makeQuestionnaireItems(study));
         tables.push_back(makeQuestionnaireScores(study));

@@ -35,6 +35,8 @@ public:
 
     std::int64_t ticks() const { return scenes_.tick(); }
     std::uint64_t stateHash() const { return scenes_.hash(); }
+    /// As tick::SceneSequence says.
+    std::vector<tick::PairAccount> pairs() const { return scenes_.pairs(); }
     const TimingHistogram& timing() const { return timing_; }
 
 private:

@@ -76,6 +76,7 @@ ReplayReport replay(std::span<const tick::SceneTurn> turns, std::span<const Tick
         ++report.ticks;
     }
     report.state_hash = scenes.hash();
+    report.pairs = scenes.pairs();
     return report;
 }
 

@@ -4,9 +4,11 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/base/tick_record.h"
 #include "core/model/scene.h"
+#include "core/tick/energy_account.h"
 #include "core/tick/scene_sequence.h"
 
 namespace passung::replay {
@@ -22,6 +24,7 @@ struct ReplayReport {
     std::int64_t ticks = 0;
     std::optional<Difference> first_difference;  // in a recorded output
     std::uint64_t state_hash = 0;                // over the exact outputs of all ticks
+    std::vector<tick::PairAccount> pairs;        // energy of each obstacle, and of what none pushed, at the end
 };
 
 /// Runs the recorded inputs of one attempt (missed periods included) through the tick again and compares every recorded

@@ -7,6 +7,12 @@ SceneSequence::SceneSequence(std::span<const SceneTurn> turns) : turns_(turns.be
     for (const SceneTurn& turn : turns_) states_.push_back(makeState(*turn.model));
 }
 
+std::vector<PairAccount> SceneSequence::pairs() const {
+    std::vector<PairAccount> all;
+    for (const TickState& state : states_) all.insert(all.end(), state.pairs.begin(), state.pairs.end());
+    return all;
+}
+
 TickOutput SceneSequence::step(const DeviceReading& reading) noexcept {
     if (engaged_) rendered_ += reading.periods;
     if (engaged_ && rendered_ >= turns_[current_].periods && current_ + 1 < turns_.size()) {

@@ -32,6 +32,8 @@ public:
     /// Number of the next tick.
     std::int64_t tick() const noexcept { return states_[current_].tick; }
     std::uint64_t hash() const noexcept { return states_[current_].hash; }
+    /// Of each scene in turn: energy of its obstacles in the order of the scene, and of what none pushed.
+    std::vector<PairAccount> pairs() const;
 
 private:
     std::vector<SceneTurn> turns_;

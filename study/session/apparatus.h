@@ -14,6 +14,13 @@
 
 namespace passung::session {
 
+/// What the controller took in through one pair of the held part and an obstacle during an attempt.
+struct ContactEnergy {
+    std::string obstacle;     // its part's name; empty: what no obstacle pushed
+    double taken_in_J = 0.0;  // at the end
+    double least_J = 0.0;     // at any tick, ≤ 0
+};
+
 /// How well the loop kept its rate during one attempt.
 struct LoopHealth {
     std::string loop;  // "virtual", "real-time fifo", "real-time normal"
@@ -21,8 +28,9 @@ struct LoopHealth {
     double mean_us = 0, sd_us = 0, p99_us = 0, p999_us = 0, max_us = 0;  // computing time of a tick
     std::int64_t overruns = 0;  // cycles missed because an earlier one ended after its deadline; 0 in virtual time
     std::int64_t dropped_records = 0;
-    std::vector<std::int64_t> histogram;  // ticks per bucket, bucket i: [2^i, 2^(i+1)) × 0.1 µs
-    std::uint64_t state_hash = 0;         // over every exact output of the attempt; equal on replay
+    std::vector<std::int64_t> histogram;        // ticks per bucket, bucket i: [2^i, 2^(i+1)) × 0.1 µs
+    std::uint64_t state_hash = 0;               // over every exact output of the attempt; equal on replay
+    std::vector<ContactEnergy> contact_energy;  // of each obstacle in the order of the scene, then of none
 };
 
 /// One stage of the tick and why it runs.

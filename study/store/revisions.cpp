@@ -312,6 +312,17 @@ ALTER TABLE audit ADD COLUMN detail_sha256 TEXT NOT NULL DEFAULT '';
 CREATE INDEX consent_of_participant ON consent(participant_id);
 )sql";
 
+constexpr const char* kRevision6 = R"sql(
+-- what the controller took in through each obstacle; NULL: what no obstacle pushed
+CREATE TABLE contact_energy(
+    attempt_id INTEGER NOT NULL REFERENCES attempt ON DELETE CASCADE,
+    place INTEGER NOT NULL CHECK(place >= 0),
+    obstacle TEXT,
+    taken_in_J REAL NOT NULL,
+    least_J REAL NOT NULL CHECK(least_J <= 0),
+    PRIMARY KEY(attempt_id, place)) STRICT, WITHOUT ROWID;
+)sql";
+
 constexpr std::array kRevisions = {
     Revision{1, "Protocols, participants, sessions, trials, samples, timing and questionnaires", kRevision1, 1},
     // A reader that does not know what was picked would replay another scene.
@@ -321,6 +332,7 @@ constexpr std::array kRevisions = {
     Revision{4, "Stable stiffness of a protocol's devices", kRevision4, 4},
     // Samples are packed from here on: columns-v2 of a stream's encoding.
     Revision{5, "Clauses of consent, an audit whose details can be taken away, packed samples", kRevision5, 5},
+    Revision{6, "Energy of each attempt by obstacle", kRevision6, 5},
 };
 
 bool isEmpty(const Database& database) { return database.integer("SELECT count(*) FROM sqlite_master") == 0; }

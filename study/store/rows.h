@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "study/measures/cues.h"
+#include "study/session/apparatus.h"
 
 namespace passung::store {
 
@@ -183,8 +184,9 @@ struct AttemptRow {
     std::string protocol_sha256;
     std::string app_version;
     std::optional<TimingRow> timing;
-    measures::CueSettings cues;              // what the condition has beside the force
-    std::map<std::string, double> measures;  // only those that are defined for this attempt
+    measures::CueSettings cues;                          // what the condition has beside the force
+    std::map<std::string, double> measures;              // only those that are defined for this attempt
+    std::vector<session::ContactEnergy> contact_energy;  // none of attempts from before schema revision 6
 
     /// A main-phase attempt that counts in means: it ended by its own rules and nothing spoilt it.
     bool counts() const {

@@ -1,5 +1,6 @@
 #include "study/store/session_writer.h"
 
+#include "study/store/contact_energy_rows.h"
 #include "study/store/hex_text.h"
 #include "study/store/questionnaire_rows.h"
 #include "study/store/remarks.h"
@@ -201,6 +202,7 @@ void SessionWriter::storeEnd(const Database& database, const OpenAttempt& attemp
         .run();
     insertMeasures(database, attempt_id, end.measures);
     insertTiming(database, attempt_id, end.health, end.timing_measured);
+    insertContactEnergy(database, attempt_id, end.health.contact_energy);
     transaction.commit();
 }
 

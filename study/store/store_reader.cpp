@@ -3,6 +3,7 @@
 #include "study/store/accuracy_rows.h"
 #include "study/store/audit.h"
 #include "study/store/consent_rows.h"
+#include "study/store/contact_energy_rows.h"
 #include "study/store/open_database.h"
 #include "study/store/questionnaire_rows.h"
 #include "study/store/sample_codec.h"
@@ -114,6 +115,7 @@ AttemptRow readAttempt(const Database& database, const Statement& row) {
         database.prepare("SELECT measure, value_num FROM attempt_measure WHERE attempt_id=? AND value_num IS NOT NULL");
     values.bind(attempt.attempt_id);
     while (values.step()) attempt.measures.emplace(values.text(0), values.real(1));
+    attempt.contact_energy = readContactEnergy(database, attempt.attempt_id);
     return attempt;
 }
 

@@ -13,6 +13,22 @@ namespace {
 
 constexpr std::size_t kRingRecords = 8192;  // eight seconds: a writer that stalls for longer shows in the data
 
+/// Of each scene in turn: its obstacles, then what none pushed.
+std::vector<session::ContactEnergy> contactEnergy(std::span<const model::Scene> scenes,
+                                                  std::span<const tick::PairAccount> pairs) {
+    std::vector<session::ContactEnergy> energy;
+    for (const model::Scene& scene : scenes) {
+        for (std::size_t i = 0; i < scene.spec.parts.size(); ++i)
+            if (i != scene.held) energy.push_back({.obstacle = scene.spec.parts[i].name});
+        energy.emplace_back();
+    }
+    for (std::size_t i = 0; i < energy.size(); ++i) {
+        energy[i].taken_in_J = pairs[i].taken_in;
+        energy[i].least_J = pairs[i].least;
+    }
+    return energy;
+}
+
 }  // namespace
 
 std::vector<session::StageNote> stageNotes(const tick::TickModel& model) {
@@ -109,6 +125,7 @@ session::LoopHealth LoopApparatus::stop() {
     health.dropped_records = run_->ring.dropped();
     health.histogram = timing.octaves();
     health.state_hash = run_->cycle.stateHash();
+    health.contact_energy = contactEnergy(run_->scenes.scenes, run_->cycle.pairs());
     return health;
 }
 

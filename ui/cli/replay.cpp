@@ -94,6 +94,15 @@ private:
             fmt::print("{}: DIFFERS in {}\n", name, measure_difference);
             return Verdict::Differs;
         }
+        const auto& stored = attempt.contact_energy;  // none in older databases
+        for (std::size_t i = 0; i < stored.size(); ++i) {
+            if (stored.size() == report.pairs.size() && stored[i].taken_in_J == report.pairs[i].taken_in &&
+                stored[i].least_J == report.pairs[i].least)
+                continue;
+            fmt::print("{}: DIFFERS in the energy of {}\n", name,
+                       stored[i].obstacle.empty() ? "no obstacle" : stored[i].obstacle);
+            return Verdict::Differs;
+        }
         const std::string hash = store::hexText(report.state_hash);
         if (attempt.state_hash.empty()) {
             fmt::print(

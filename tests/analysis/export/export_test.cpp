@@ -182,6 +182,17 @@ TEST_F(Export, SamplesUnpackToTheRecordedTicks) {
     EXPECT_EQ(samples.at(17, "t_s"), "0.019");
 }
 
+TEST_F(Export, EnergyIsToldOfEachAttemptAndObstacle) {
+    // Truth: invariant: what the fake study hands over, two rows an attempt that ended.
+    const fake::CsvFile energy = csv("contact_energy.csv");
+    ASSERT_EQ(energy.rows.size(), 2 * csv("timing.csv").rows.size());
+    EXPECT_EQ(energy.at(0, "obstacle"), "plate");
+    EXPECT_EQ(std::stod(energy.at(0, "taken_in_J")), 1.0 / 3.0);
+    EXPECT_EQ(energy.at(0, "least_J"), "-0.25");
+    EXPECT_EQ(energy.at(1, "obstacle"), "NA");
+    EXPECT_EQ(energy.at(3, "taken_in_J"), energy.at(3, "trial_index"));
+}
+
 TEST_F(Export, NoMeasuredTimeReachesAnExportOfVirtualTime) {
     // Truth: invariant (the fake study hands over durations, means of 4711.25 µs and a wall clock of 2001)
     std::string all;
@@ -218,7 +229,7 @@ TEST_F(Export, EveryColumnOfEveryTableIsInTheCodebook) {
         EXPECT_EQ(described[file], fake::readCsv(bytes).header) << file;
         ++tables;
     }
-    EXPECT_EQ(tables, 9);
+    EXPECT_EQ(tables, 10);
     EXPECT_TRUE(described.count("samples/*.csv.gz"));
     const store::Database sqlite(folder_ / "json.db", store::OpenMode::Create);
     store::Statement valid = sqlite.prepare("SELECT json_valid(?)");

@@ -178,6 +178,7 @@ inline session::AttemptEnd attemptEnd(std::int64_t trial_index, std::size_t tick
     end.health.max_us = 4711.75;
     end.health.histogram = {1, 2, 3};
     end.health.state_hash = 0x0123456789abcdefu;
+    end.health.contact_energy = {{"plate", 1.0 / 3.0, -0.25}, {"", static_cast<double>(trial_index), 0.0}};
     return end;
 }
 

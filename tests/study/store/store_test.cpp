@@ -135,6 +135,12 @@ TEST(Store, AWholeSessionReadsBackAsItWasWritten) {
         EXPECT_EQ(attempt.kind, "simulated");
         EXPECT_EQ(attempt.seed, fake::attemptStart(index).seed);
         EXPECT_EQ(attempt.state_hash, "0123456789abcdef");
+        ASSERT_EQ(attempt.contact_energy.size(), 2u);
+        EXPECT_EQ(attempt.contact_energy[0].obstacle, "plate");
+        EXPECT_EQ(attempt.contact_energy[0].taken_in_J, 1.0 / 3.0);
+        EXPECT_EQ(attempt.contact_energy[0].least_J, -0.25);
+        EXPECT_EQ(attempt.contact_energy[1].obstacle, "");
+        EXPECT_EQ(attempt.contact_energy[1].taken_in_J, static_cast<double>(i));
         EXPECT_EQ(attempt.measures,
                   (std::map<std::string, double>{{"completion_time_s", 1.0 + 0.1 * static_cast<double>(i)},
                                                  {"peak_force_N", 1.0 / 3.0}}));

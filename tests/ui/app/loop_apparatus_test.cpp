@@ -95,6 +95,17 @@ TEST(LoopApparatus, GivesARecordForEveryTickAndTheSameHashForTheSameSeed) {
     EXPECT_NE(runTicks(condition("fair"), 6, 800).second.state_hash, health.state_hash);
 }
 
+TEST(LoopApparatus, TellsTheEnergyOfEachObstacleByName) {
+    // Truth: invariant: the pairs add up to the account of the last tick, but for that one's 32 bits.
+    const auto [records, health] = runTicks(condition("fair"), 5, 8000);
+    ASSERT_EQ(health.contact_energy.size(), 2u);
+    EXPECT_EQ(health.contact_energy[0].obstacle, "plate");
+    EXPECT_EQ(health.contact_energy[1].obstacle, "");
+    const double sum = health.contact_energy[0].taken_in_J + health.contact_energy[1].taken_in_J;
+    EXPECT_NE(health.contact_energy[0].taken_in_J, 0.0);
+    EXPECT_NEAR(sum, records.back().energy_J, 1e-6 * std::abs(sum));
+}
+
 TEST(LoopApparatus, APersonMovesOtherwiseInALaterTrial) {
     // Truth: invariant; reaching for the start is alike, the way to the bore is practised.
     LoopApparatus apparatus = makeApparatus();

@@ -310,6 +310,18 @@ TEST_F(Replay, FindsTheLastBitOfAChangedInput) {
     EXPECT_NE(changed.out.find("DIFFERS"), std::string::npos) << changed.out;
 }
 
+TEST_F(Replay, FindsAChangedEnergyOfAnObstacle) {
+    // Truth: invariant (bits count).
+    {
+        const store::Database database(folder_ / "study.db", store::OpenMode::ReadWrite);
+        database.execute("UPDATE contact_energy SET taken_in_J=taken_in_J+1e-15 WHERE attempt_id=2 AND place=0");
+    }
+    const Ended changed = replay({"--attempt", "2"});
+    EXPECT_EQ(changed.exit_code, 1);
+    EXPECT_NE(changed.out.find("DIFFERS in the energy of"), std::string::npos) << changed.out;
+    EXPECT_EQ(replay({"--attempt", "1"}).exit_code, 0);
+}
+
 TEST_F(Replay, ProvesNothingWithoutTicksOrWithoutAHash) {
     // Truth: invariant (an attempt that was not compared is not the same)
     {
