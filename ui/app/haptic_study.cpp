@@ -2,7 +2,9 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 
+#include "study/store/folder_lock.h"
 #include "study/store/store_reader.h"
 #include "ui/app/auto_accuracy.h"
 #include "ui/app/run_study.h"
@@ -13,12 +15,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Gone with everything in it at the end.
+constexpr const char* kPrefix = "passung_power_";
+
+/// Those of programs that were killed: full, and nobody holds them. An empty one may be one that is just being made.
+void removeLeftFolders() {
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(fs::temp_directory_path(), none)) {
+        if (!entry.path().filename().string().starts_with(kPrefix) || fs::is_empty(entry.path(), none)) continue;
+        if (const auto lock = store::FolderLock::take(entry.path())) fs::remove_all(entry.path(), none);
+    }
+}
+
+/// Gone with everything in it at the end, or with the next one if the program is killed.
 class TemporaryFolder {
 public:
     TemporaryFolder() {
-        std::string name = (fs::temp_directory_path() / "passung_power_XXXXXX").string();
-        if (mkdtemp(name.data()) != nullptr) path_ = name;
+        removeLeftFolders();
+        std::string name = (fs::temp_directory_path() / kPrefix).string() + "XXXXXX";
+        if (mkdtemp(name.data()) == nullptr) return;
+        if (auto lock = store::FolderLock::take(name)) lock_.emplace(*std::move(lock));
+        path_ = name;
     }
     ~TemporaryFolder() {
         std::error_code ignored;
@@ -31,6 +47,7 @@ public:
 
 private:
     fs::path path_;
+    std::optional<store::FolderLock> lock_;
 };
 
 }  // namespace

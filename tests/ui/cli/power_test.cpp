@@ -2,9 +2,11 @@
 
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "analysis/power/power_file.h"
 #include "analysis/power/power_runs.h"
+#include "study/store/folder_lock.h"
 #include "tests/analysis/export/csv_reader.h"
 #include "tests/ui/cli/program.h"
 #include "tests/ui/cli/small_study.h"
@@ -48,6 +50,24 @@ TEST_F(Power, ShardsMergeToTheBytesOfTheUnshardedRun) {
     ASSERT_EQ(merged.exit_code, 0) << merged.err;
     EXPECT_EQ(readText(folder_ / "merged.csv"), readText(folder_ / "whole.csv"));
     EXPECT_EQ(merged.out, whole.out);
+}
+
+TEST_F(Power, RemovesWhatAKilledRunLeftAndNothingThatIsInUse) {
+    // Truth: invariant: of three folders one is held by this test, one is empty as at its making.
+    const fs::path temporary = folder_ / "tmp";
+    for (const char* name : {"dead", "alive", "fresh"})
+        fs::create_directories(temporary / (std::string("passung_power_") + name));
+    for (const char* name : {"dead", "alive"})
+        writeText(temporary / (std::string("passung_power_") + name) / "study.db", "left");
+    const auto alive = store::FolderLock::take(temporary / "passung_power_alive");
+    ASSERT_TRUE(alive);
+    ASSERT_EQ(setenv("TMPDIR", temporary.c_str(), 1), 0);
+    const Ended ended = power({"fair.toml", "--effect", "chance:fair=+0.5", "--repeats", "1", "--participants", "2"});
+    ASSERT_EQ(unsetenv("TMPDIR"), 0);
+    EXPECT_EQ(ended.exit_code, 0) << ended.err;
+    std::set<std::string> left;
+    for (const auto& entry : fs::directory_iterator(temporary)) left.insert(entry.path().filename());
+    EXPECT_EQ(left, (std::set<std::string>{"passung_power_alive", "passung_power_fresh"}));
 }
 
 TEST_F(Power, AFinishedShardIsNotRunAgain) {
