@@ -266,7 +266,7 @@ void Session::finish(SessionState state) {
     const auto finished = sink_.finishSession(state == SessionState::Complete, session_ns_);
     if (finished) return;
     state_ = SessionState::Failed;
-    errors_.insert(errors_.end(), finished.errors().begin(), finished.errors().end());
+    if (errors_.empty()) errors_ = finished.errors();  // else most likely the same once more
 }
 
 void Session::note(const char* name, const char* key, const std::string& text) {

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
@@ -435,6 +436,7 @@ private:
 }  // namespace
 
 int main(int argc, char** argv) {
+    std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the user's limit of a file's size is an error like any other
     try {
         return CommandLine().run(argc, argv);
     } catch (const std::exception& error) {
