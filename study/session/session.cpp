@@ -105,14 +105,37 @@ bool Session::rest() {
     return true;
 }
 
+/// Notes that another device comes into use, with the stable stiffness that the study keeps for it; true if that is
+/// waited for.
+bool Session::swapsDevice(const std::string& device) {
+    const bool other = !device_in_use_.empty() && device_in_use_ != device;
+    device_in_use_ = device;
+    if (other) {
+        protocol::JsonObject payload;
+        payload.text("to", device);
+        for (const protocol::StableStiffness& stable : setup_.plan.stable_stiffness)
+            if (stable.device == device)
+                payload.number("stable_stiffness_N_per_m", stable.linear)
+                    .number("stable_rotational_stiffness_Nm_per_rad", stable.rotational)
+                    .text("origin", stable.origin);
+        note("swap_device", payload.str());
+        swapping_ = true;
+        if (setup_.waits) {
+            state_ = SessionState::Paused;
+            return true;
+        }
+    }
+    if (std::exchange(swapping_, false)) note("device_swapped", protocol::JsonObject().text("to", device).str());
+    return false;
+}
+
 void Session::beginTrial() {
     PASSUNG_ASSERT(trial().condition < setup_.plan.conditions.size());
     const protocol::Condition& condition = setup_.plan.conditions[trial().condition];
     const auto X_WT = targetPose(condition);
     if (!X_WT) return fail("prepare", X_WT.errors());
 
-    if (!device_in_use_.empty() && device_in_use_ != condition.device) note("swap_device", "to", condition.device);
-    device_in_use_ = condition.device;
+    if (swapsDevice(condition.device)) return;
     AttemptStart start;
     start.trial_index = trial().trial_index;
     start.attempt_no = past_[agenda_.next()].attempts + 1;
@@ -269,13 +292,17 @@ void Session::finish(SessionState state) {
     if (errors_.empty()) errors_ = finished.errors();  // else most likely the same once more
 }
 
-void Session::note(const char* name, const char* key, const std::string& text) {
+void Session::note(const char* name, const std::string& payload_json) {
     Event event;
     event.t_ns = session_ns_;
     event.source = "session";
     event.event = name;
-    event.payload_json = protocol::JsonObject().text(key, text).str();
+    event.payload_json = payload_json;
     sink_.appendEvent(event);
+}
+
+void Session::note(const char* name, const char* key, const std::string& text) {
+    note(name, protocol::JsonObject().text(key, text).str());
 }
 
 void Session::fail(const char* stage, const Errors& errors) {

@@ -37,9 +37,10 @@ public:
     Session& operator=(const Session&) = delete;
 
     /// One bounded piece of work: look whether a due questionnaire is filled, rest for kTicksPerRest before a block
-    /// that asks for it (events rest_started, rest_ended), begin the next trial (event swap_device if it is on another
-    /// device than the one before), watch the running one for kTicksPerLook, or close the session; nothing in Ready and
-    /// Paused. Whatever is to be done to a session from outside is done between two calls.
+    /// that asks for it (events rest_started, rest_ended), begin the next trial (if it is on another device than
+    /// the one before: events swap_device and device_swapped; between them a session whose setup waits for commands is
+    /// Paused until the experimenter says Continue), watch the running one for kTicksPerLook, or close the session;
+    /// nothing in Ready and Paused. Whatever is to be done to a session from outside is done between two calls.
     SessionState advance();
 
     /// What an experimenter wants, between two calls of advance(). Every command is logged as an event "command_…",
@@ -78,6 +79,7 @@ private:
 
     const design::PlannedTrial& trial() const { return agenda_.trial(agenda_.next()); }
     bool rest();
+    bool swapsDevice(const std::string& device);
     void beginTrial();
     void watchTrial();
     bool asksQuestionnaire();
@@ -90,6 +92,7 @@ private:
     void appendEvents(const std::vector<TrialEvent>& events);
     void finish(SessionState state);
     void note(const char* name, const char* key, const std::string& text);  // an event with one text
+    void note(const char* name, const std::string& payload_json);
     void fail(const char* stage, const Errors& errors);
 
     // session_commands.cpp
@@ -121,7 +124,8 @@ private:
     std::optional<std::size_t> last_;        // place of the newest attempt that ended
     std::optional<std::size_t> rested_for_;  // place of the trial that a rest was last looked for
     std::int64_t rest_left_ = 0;             // [periods] of the running rest
-    std::string device_in_use_;              // of the last trial
+    std::string device_in_use_;              // of the last trial, or being swapped to
+    bool swapping_ = false;                  // until the first trial on it begins
     std::int64_t session_ns_;                // at tick 0 of the running or next attempt
     Errors errors_;
 };

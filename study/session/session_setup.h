@@ -21,7 +21,7 @@ struct SessionSetup {
     std::uint64_t seed = 0;                    // of the study
     bool timing_measured = true;               // false in virtual time
     int ordinal = 1;                           // number of the participant's session
-    bool waits = false;                        // for the command Start
+    bool waits = false;                        // for the command Start, and for Continue when a device is swapped
     std::optional<Resumption> resumed = {};    // goes on from there; none: begins
     QuestionnaireSource* answers = nullptr;    // who answers; may stay null if the plan has no questionnaire
 };

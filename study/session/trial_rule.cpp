@@ -1,6 +1,7 @@
 #include "study/session/trial_rule.h"
 
 #include <cmath>
+#include <limits>
 
 #include "study/measures/placement.h"
 #include "study/measures/tick_facts.h"
@@ -98,6 +99,7 @@ void TrialRule::describe(measures::TrialContext& context) const {
         context.form = measures::PlacementFacts{placement->task.round};
     } else {
         context.form = measures::PairFacts{std::get<Pair>(form_).comparison_interval};
+        context.leave_radius = std::numeric_limits<double>::infinity();  // nothing is carried anywhere
     }
 }
 

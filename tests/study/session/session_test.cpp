@@ -57,8 +57,35 @@ TEST_F(SessionTest, RestsBeforeABlockAndSaysWhenTheDeviceIsSwapped) {
     for (const Event& event : sink_.events)
         if (!event.attempt) notes.push_back(event.event + " " + event.payload_json);
     EXPECT_EQ(notes, (std::vector<std::string>{R"(rest_started {"block":"late"})", R"(rest_ended {"block":"late"})",
-                                               R"(swap_device {"to":"stick"})", R"(swap_device {"to":"arm"})"}));
+                                               R"(swap_device {"to":"stick"})", R"(device_swapped {"to":"stick"})",
+                                               R"(swap_device {"to":"arm"})", R"(device_swapped {"to":"arm"})"}));
     EXPECT_EQ(sink_.starts[1].start_ns, sink_.starts[0].start_ns + 1560 * kMs + 2050 * kMs);
+}
+
+TEST_F(SessionTest, WaitsForTheExperimenterWhenADeviceIsSwapped) {
+    // Truth: invariant: nothing of the next trial happens before Continue; the event holds the stable stiffness in
+    // force; a session without an experimenter goes on by itself (above).
+    planTrials({successScript(), successScript()});
+    plan_.conditions[0].device = "arm";
+    plan_.conditions[1].device = "stick";
+    plan_.stable_stiffness = {{"arm", 4000.0, 8.0, "model"}, {"stick", 1000.0, 0.0, "calibrated"}};
+    SessionSetup setup{plan_, trials_, "P001", 7, false};
+    setup.waits = true;
+    Session session(std::move(setup), apparatus_, sink_, {});
+    ASSERT_TRUE(session.command({CommandKind::Start}).accepted);
+    ASSERT_TRUE(session.run());
+    EXPECT_EQ(session.state(), SessionState::Paused);
+    EXPECT_EQ(sink_.starts.size(), 1u);
+    EXPECT_EQ(sink_.events.back().event, "swap_device");
+    EXPECT_EQ(sink_.events.back().payload_json, R"({"to":"stick","stable_stiffness_N_per_m":1000,)"
+                                                R"("stable_rotational_stiffness_Nm_per_rad":0,"origin":"calibrated"})");
+    ASSERT_TRUE(session.command({CommandKind::Continue}).accepted);
+    ASSERT_TRUE(session.run());
+    EXPECT_EQ(session.state(), SessionState::Complete);
+    EXPECT_EQ(sink_.starts.size(), 2u);
+    const auto swapped = std::count_if(sink_.events.begin(), sink_.events.end(),
+                                       [](const Event& event) { return event.event == "device_swapped"; });
+    EXPECT_EQ(swapped, 1);
 }
 
 /// Answers 1 to the only item of every form, at the second look.
