@@ -39,6 +39,8 @@ const char* statusBitMeaning(TickStatus bit) {
             return "the passivity controller added a damper";
         case kEngaged:
             return "engaged: the hand has reached the start pose and contact is rendered (nothing to worry about)";
+        case kWrenchWithheld:
+            return "the condition displays no force (nothing to worry about)";
     }
     return nullptr;
 }

@@ -28,6 +28,7 @@ enum TickStatus : std::uint32_t {
     kInputRelocated = 1u << 13,   // jumps that agreed were believed: the device is elsewhere than it can have come from
     kPassivityActed = 1u << 14,   // the passivity controller added a damper
     kEngaged = 1u << 16,          // the hand has reached the start pose: contact is rendered
+    kWrenchWithheld = 1u << 17,   // the scene displays no wrench: zero, whatever contact asks for
 };
 
 /// What a device reports for one tick.

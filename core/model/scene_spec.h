@@ -101,6 +101,7 @@ struct SceneSpec {
     StartGate start_gate;
     Effects effects;
     bool record_hand_depth = true;  // an extra query at the device pose for god objects
+    bool display_wrench = true;     // false: contact is computed and recorded, but the device commands nothing
 
     /// Everything wrong with the values, cross-field rules included. Finite first.
     std::vector<Error> validate() const;

@@ -65,6 +65,11 @@ void delayOutput(const TickModel& model, TickState& state, TickFrame& frame) noe
     delayPushes(model, state);
 }
 
+void withholdWrench(const TickModel&, TickState&, TickFrame& frame) noexcept {
+    frame.status |= kWrenchWithheld;
+    if (isFinite(frame.F_H_W)) frame.F_H_W = Wrench{};
+}
+
 void limitOutput(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
     const model::OutputLimits& limits = model.limits;
     Wrench wrench = wrenchOnDevice(model, frame, frame.F_H_W);

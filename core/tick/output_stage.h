@@ -12,6 +12,10 @@ Wrench wrenchOnHeldPart(const TickModel& model, const TickFrame& frame, const Wr
 /// usable input takes effect as zero.
 void delayOutput(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
 
+/// Stage, only if the scene displays no wrench: what was computed goes nowhere; one that is not finite is left for
+/// limitOutput to tell.
+void withholdWrench(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+
 /// Stage, the last of every scene: the one place that a wrench leaves through.
 ///   Reads F_H_W (about the held part's origin), writes F_D_B (what is sent) and F_H_W (what the hand then feels).
 ///   In this order:

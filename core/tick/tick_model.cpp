@@ -154,6 +154,10 @@ TickModel makeModel(const model::Scene& scene) {
                                 "effects.passivity_controller is set: a damper takes back energy that was given out",
                                 false, dampActivity});
     }
+    if (!spec.display_wrench) {
+        model.stages.push_back({"no wrench", "feedback.kinesthetic is false: contact is computed, nothing is displayed",
+                                true, withholdWrench});
+    }
     model.stages.push_back(
         {"output limits", "always, last: finite, within the device's limits, rising slowly enough", true, limitOutput});
     return model;
