@@ -22,6 +22,8 @@ constexpr double kDt = kTickSeconds;
 constexpr double kSettleDuration = 0.45;   // [s]
 constexpr double kPuzzled = 0.8;           // [s] longer look after a try that failed
 constexpr double kLiftDuration = 0.7;      // [s]
+constexpr double kLeftBehind = 10e-3;      // [m] the drawn part stays so far behind the hand ...
+constexpr double kNothingFelt = 0.2;       // [N] ... while so little is felt: it is seen to be held
 constexpr double kClearlyInside = 4e-3;    // [m] seen below the mouth: no wall gives way that far
 constexpr double kDrop = 1e-3;             // [m] seen below the pressed level: it goes in
 constexpr double kCaughtForce = 0.8;       // [N] sideways: the tip is held by something
@@ -70,6 +72,13 @@ double Hand::seenDepth(const Percept& percept) const noexcept {
     return percept.sees ? -(X_WM_.inverse() * percept.X_WSeen.p).z() : -1.0;
 }
 
+// Where no force is displayed the eyes alone tell of contact. A force lets the part lag behind the hand as well, but is
+// felt then.
+bool Hand::seenHeld(const Percept& percept) const noexcept {
+    return percept.sees && percept.F_felt.force.norm() < kNothingFelt &&
+           -seenDepth(percept) - feltPosition(percept).z() > kLeftBehind;
+}
+
 Vec3 Hand::feltPosition(const Percept& percept) const noexcept { return X_WM_.inverse() * percept.X_WFelt.p; }
 
 Vec3 Hand::feltForce(const Percept& percept) const noexcept { return X_WM_.q.conjugate() * percept.F_felt.force; }
@@ -97,7 +106,8 @@ void Hand::placeReference(const Vec3& p_MP, const Vec3& turn) noexcept {
 }
 
 void Hand::pressWith(double force, const Percept& percept) noexcept {
-    p_MP_.z() = pressedHeight(p_MP_.z(), force, feltPosition(percept).z(), feltForce(percept).z());
+    if (!seenHeld(percept))
+        p_MP_.z() = pressedHeight(p_MP_.z(), force, feltPosition(percept).z(), feltForce(percept).z());
 }
 
 // ---- phases -----------------------------------------------------------------------------------------------------
@@ -131,7 +141,7 @@ void Hand::descend(const Percept& percept) noexcept {
     best_depth_ = -1.0;
     stalled_ = 0.0;
     stalls_ = 0;
-    if (feltForce(percept).norm() > kContactForce) enter(HandPhase::Press);
+    if (feltForce(percept).norm() > kContactForce || seenHeld(percept)) enter(HandPhase::Press);
     if (seenDepth(percept) > kClearlyInside) enter(HandPhase::Insert);
 }
 
@@ -214,7 +224,7 @@ void Hand::insert(const Percept& percept) noexcept {
     const double speed = std::clamp(kEndGain * remaining, kEndSpeed, pace_ * params_.insert_speed);
     const Vec3 felt = feltPosition(percept);
     const double lowest = felt.z() - params_.insert_force / params_.stiffness;
-    p_MP_.z() = std::max(p_MP_.z() - speed * kDt, std::min(lowest, p_MP_.z()));
+    if (!seenHeld(percept)) p_MP_.z() = std::max(p_MP_.z() - speed * kDt, std::min(lowest, p_MP_.z()));
     // Giving way: the intention drifts to where the walls have put the part, which takes the side force away.
     p_MP_.head<2>() += (kDt / kGiveWay) * (felt - p_MP_).head<2>();
     turn_ += (kDt / kGiveWay) * (feltTurn(percept) - turn_);

@@ -59,6 +59,7 @@ private:
     void giveUp() noexcept;
     void placeReference(const Vec3& p_MP, const Vec3& turn) noexcept;
     double seenDepth(const Percept& percept) const noexcept;
+    bool seenHeld(const Percept& percept) const noexcept;
     Vec3 feltPosition(const Percept& percept) const noexcept;
     Vec3 feltForce(const Percept& percept) const noexcept;
     Vec3 feltTurn(const Percept& percept) const noexcept;
