@@ -100,4 +100,8 @@ ConstrainedMotion constrainMotion(const Motion& wanted, const Surroundings& arou
 
 inline constexpr double kLeastGradient = 0.1;
 
+/// Which of 64 bins a row falls into, by the signs of its six numbers; `lever`: r × gradient. rt-safe.
+std::size_t binOf(const Vec3& gradient, const Vec3& lever) noexcept;
+inline constexpr std::size_t kBins = 64;
+
 }  // namespace passung::tick

@@ -3,83 +3,21 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 namespace passung::tick {
 
 namespace {
 
-constexpr double kSameWay = 0.985;       // cosine of 10 degrees: contacts that face so much alike rub as one
-constexpr double kTurnTolerance = 5e-9;  // of σ, relative to the wanted motion
+constexpr double kTurnTolerance = 5e-9;  // of σ, relative to the wanted motion: what rests creeps less in a tick
 constexpr double kSettled = 1e-4;        // of σ, after the last turn
 constexpr double kUnsettled = 20.0;      // what is left to change, per last change
 constexpr double kAtRest = 1e-6;         // slip relative to the wanted motion
 constexpr double kInner = 0.05;          // what cuts may leave, per last change of σ
 constexpr double kFarthestMix = 20.0;
 constexpr double kLongestGradient = 1.2;  // of an interpolated φ
-constexpr std::size_t kBins = 64;
 constexpr int kMostRounds = 200, kMostSteps = 1000;
 
-/// Two unit vectors along the plane across `n`.
-std::pair<Vec3, Vec3> tangentsOf(const Vec3& n) noexcept {
-    const Vec3 t1 = n.cross(std::abs(n.x()) < 0.6 ? Vec3::UnitX() : Vec3::UnitY()).normalized();
-    return {t1, n.cross(t1)};
-}
-
-/// The friction of `patch` in the tangents of a normal that differs a little.
-Vec3 turned(const FrictionPatch& patch, const Vec3& normal) noexcept {
-    const auto [s1, s2] = tangentsOf(normal);
-    const Vec3 along = rubAlong(patch);
-    return {along.dot(s1), along.dot(s2), patch.rub.z()};
-}
-
-std::size_t binOf(const Vec3& gradient, const Vec3& lever) noexcept {
-    std::size_t bin = 0;
-    for (int i = 0; i < 3; ++i) bin = bin << 2 | (gradient[i] < 0.0 ? 2u : 0u) | (lever[i] < 0.0 ? 1u : 0u);
-    return bin;
-}
-
 }  // namespace
-
-Vec3 rubAlong(const FrictionPatch& patch) noexcept {
-    const auto [t1, t2] = tangentsOf(patch.normal);
-    return patch.rub.x() * t1 + patch.rub.y() * t2;
-}
-
-double effectiveRadius(const Surroundings& around, const FrictionPatch& patch, const Motion& u) noexcept {
-    const auto [t1, t2] = tangentsOf(patch.normal);
-    const auto forTouching = [&, t1 = t1, t2 = t2](auto use) {
-        for (const ContactPoint& c : around.contacts) {
-            const double phi = c.phi + c.gradient.dot(around.wayOf(c.position, u));
-            if (c.obstacle != patch.obstacle || !(phi < around.keep_out + std::abs(around.keep_out)) ||
-                !(c.gradient.dot(patch.normal) > kSameWay * c.gradient.norm()))
-                continue;
-            const Vec3 r = c.position - patch.centre;
-            use(c.area, Eigen::Vector2d(r.dot(t1), r.dot(t2)));
-        }
-    };
-    double area = 0.0;
-    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-    Eigen::Matrix2d second = Eigen::Matrix2d::Zero();
-    forTouching([&](double a, const Eigen::Vector2d& x) {
-        area += a;
-        mean += a * x;
-        second += a * x * x.transpose();
-    });
-    if (!(area > 0.0)) return 0.0;
-    mean /= area;
-    second = second / area - mean * mean.transpose();
-    // Pressure 1 + k · (x - mean) has its centre at 0 if second · k = -mean; a line of points has no k across.
-    const double across = 1e-9 * second.trace() + std::numeric_limits<double>::min();
-    const Eigen::Vector2d k = (second + across * Eigen::Matrix2d::Identity()).inverse() * -mean;
-    double weight = 0.0, sum = 0.0;
-    forTouching([&](double a, const Eigen::Vector2d& x) {
-        const double w = std::max(0.0, a * (1.0 + k.dot(x - mean)));
-        weight += w;
-        sum += w * x.norm();
-    });
-    return weight > 0.0 ? sum / weight : 0.0;
-}
 
 FrictionBalance::FrictionBalance(const Motion& wanted, const Surroundings& around, std::span<const Friction> friction,
                                  const ConstrainedMotion& plain, const FrictionPatches& before) noexcept
@@ -127,6 +65,7 @@ FrictionBalance::FrictionBalance(const Motion& wanted, const Surroundings& aroun
         addCut(plain.held[static_cast<std::size_t>(i)].contact, at,
                along.norm() > kAtRest * size_ ? Vec3(along.normalized()) : Vec3(Vec3::Zero()));
         active_.tryAdd(rows_[static_cast<std::size_t>(i)], 0.0);
+        watch({plain.held[static_cast<std::size_t>(i)].contact, at, Vec3::Zero()});
     }
     u_ = active_.start(wanted_);
 }
@@ -199,16 +138,20 @@ double FrictionBalance::violationOf(const ContactPoint& contact, const Patch& pa
            coefficientOf(patch) * contact.gradient.norm() * (patch.slip.norm() - patch.given);
 }
 
-/// Adds the tangents that the motion of now violates most: of the contacts that hold, and when these are content, of
-/// all. False if it violates none by more than `enough`.
-bool FrictionBalance::cutOff(double enough) noexcept {
-    if (cut_count_ + static_cast<int>(kBins) > kMostCuts) restart();
-    double lift = 0.0;
-    for (int p = 0; p < patch_count_; ++p) {
-        Patch& patch = patches_[static_cast<std::size_t>(p)];
-        patch.slip = patch.B * u_;
-        lift = std::max(lift, coefficientOf(patch) * (patch.slip.norm() - patch.given));
+/// Remembers a contact that a motion has violated; when too many are, those that do not hold are forgotten.
+void FrictionBalance::watch(const Cut& contact) noexcept {
+    const auto end = watched_.begin() + static_cast<std::ptrdiff_t>(watched_count_);
+    if (std::any_of(watched_.begin(), end, [&](const Cut& w) { return w.contact == contact.contact; })) return;
+    if (watched_count_ == kMostWatched) {
+        watched_count_ = 0;
+        for (; static_cast<int>(watched_count_) < active_.size(); ++watched_count_)
+            watched_[watched_count_] = cuts_[active_.row(static_cast<int>(watched_count_)).contact];
     }
+    watched_[watched_count_++] = contact;
+}
+
+/// Adds tangents of the contacts that hold, where the motion of now violates these by more than `enough`.
+bool FrictionBalance::cutHeld(double enough) noexcept {
     const int before = cut_count_;
     for (int i = 0; i < active_.size(); ++i) {
         const Cut cut = cuts_[active_.row(i).contact];
@@ -217,17 +160,27 @@ bool FrictionBalance::cutOff(double enough) noexcept {
         if (slip > 0.0 && violationOf(around_.contacts[cut.contact], patch) > std::max(fine_, enough))
             addCut(cut.contact, cut.patch, patch.slip / slip);
     }
-    if (cut_count_ > before) return true;
+    return cut_count_ > before;
+}
+
+/// Adds the tangents that the motion of now violates most, of the contacts that are watched or of all.
+bool FrictionBalance::cutAmong(bool all, double enough) noexcept {
+    const double least_violation = std::max(tolerance_, enough);
+    double lift = 0.0;
+    for (const Patch& patch : std::span(patches_).first(static_cast<std::size_t>(patch_count_)))
+        lift = std::max(lift, coefficientOf(patch) * (patch.slip.norm() - patch.given));
     const Vec3 dphi = u_.tail<3>() / around_.metric_radius;
     const Vec3 at_origin = u_.head<3>() - dphi.cross(around_.p_WO);
     std::array<double, kBins> worst;
     std::array<Cut, kBins> which;
-    worst.fill(std::max(tolerance_, enough));
-    for (const ContactPoint& contact : around_.contacts) {
+    worst.fill(least_violation);
+    const std::size_t count = all ? around_.contacts.size() : watched_count_;
+    for (std::size_t i = 0; i < count; ++i) {
+        const ContactPoint& contact = around_.contacts[all ? i : watched_[i].contact];
         const double missing = least(contact) - contact.gradient.dot(at_origin + dphi.cross(contact.position));
-        if (!(missing + kLongestGradient * lift > std::max(tolerance_, enough))) continue;
+        if (!(missing + kLongestGradient * lift > least_violation)) continue;
         if (!(contact.gradient.squaredNorm() > kLeastGradient * kLeastGradient)) continue;
-        const int at = patchFor(contact);
+        const int at = all ? patchFor(contact) : watched_[i].patch;
         const Patch& patch = patches_[static_cast<std::size_t>(at)];
         const double slip = patch.slip.norm(), violation = violationOf(contact, patch);
         const std::size_t bin = binOf(contact.gradient, (contact.position - around_.p_WO).cross(contact.gradient));
@@ -236,10 +189,21 @@ bool FrictionBalance::cutOff(double enough) noexcept {
         which[bin] = {static_cast<std::uint32_t>(&contact - around_.contacts.begin()), at,
                       slip > 0.0 ? Vec3(patch.slip / slip) : Vec3(Vec3::Zero())};
     }
-    for (std::size_t bin = 0; bin < kBins; ++bin)
-        if (worst[bin] > std::max(tolerance_, enough))
-            addCut(which[bin].contact, which[bin].patch, which[bin].direction);
+    const int before = cut_count_;
+    for (std::size_t bin = 0; bin < kBins; ++bin) {
+        if (!(worst[bin] > least_violation)) continue;
+        addCut(which[bin].contact, which[bin].patch, which[bin].direction);
+        watch(which[bin]);
+    }
     return cut_count_ > before;
+}
+
+/// Adds tangents of the contacts that hold, when these are content of those that are watched, and then (`all`) of all.
+/// False if the motion of now violates none by more than `enough`.
+bool FrictionBalance::cutOff(double enough, bool all) noexcept {
+    if (cut_count_ + static_cast<int>(kBins) > kMostCuts) restart();
+    for (Patch& patch : std::span(patches_).first(static_cast<std::size_t>(patch_count_))) patch.slip = patch.B * u_;
+    return cutHeld(enough) || cutAmong(false, enough) || (all && cutAmong(true, enough));
 }
 
 /// Forgets what does not hold, and finds anew what the rows that do leave of the motion.
@@ -272,8 +236,9 @@ int FrictionBalance::mostViolated() const noexcept {
     return worst;
 }
 
-/// The convex problem, up to cuts of `enough`. False if its rows have no common solution.
-bool FrictionBalance::solveCuts(double enough) noexcept {
+/// The convex problem, up to cuts of `enough`, of the watched contacts or of all. False if its rows have no common
+/// solution.
+bool FrictionBalance::solveCuts(double enough, bool all) noexcept {
     for (; rounds_ < kMostRounds; ++rounds_) {
         for (int worst = mostViolated(); worst >= 0; worst = mostViolated()) {
             const MotionRow row = rows_[static_cast<std::size_t>(worst)];
@@ -292,7 +257,7 @@ bool FrictionBalance::solveCuts(double enough) noexcept {
                 return true;
             }
         }
-        if (!cutOff(enough)) return true;
+        if (!cutOff(enough, all)) return true;
     }
     converged_ = false;
     return true;
@@ -387,30 +352,34 @@ void FrictionBalance::tell(RubbedMotion& result) const noexcept {
 
 RubbedMotion FrictionBalance::find() noexcept {
     RubbedMotion result;
-    bool settled = false;
+    bool settled = false, all = true;
     for (int sweep = 0; sweep < kRubSweeps && !settled; ++sweep) {
         // What cuts leave is quadratic in what is off.
-        bool found = solveCuts(last_change_ * std::min(kInner, last_change_ / size_));
+        const double enough = last_change_ * std::min(kInner, last_change_ / size_);
+        bool found = solveCuts(enough, all);
         if (!found && !relaxed_) {
             relaxed_ = true;
             active_ = ActiveSet();
             cut_count_ = 0;
             u_ = wanted_;
-            found = solveCuts(0.0);
+            found = solveCuts(0.0, true);
         }
         converged_ = converged_ && found;
         measure();
         result.sweeps = sweep + 1;
         const double change = turn(sweep < kRubSweeps / 2);
         result.change = change / size_;
-        settled = change <= kTurnTolerance * size_;
-        if (!settled) restart();
+        const bool still = change <= kTurnTolerance * size_;
+        if (!still) restart();
+        all = still && cutAmong(true, 0.0);  // some more are not content
+        settled = still && !all;
     }
     result.converged = settled || result.change <= kSettled;
-    if (!result.converged) {
-        for (Patch& patch : patches_) patch.given = 0.0;
+    if (!settled) {
+        if (!result.converged)
+            for (Patch& patch : patches_) patch.given = 0.0;
         restart();
-        converged_ = solveCuts(0.0) && converged_;
+        converged_ = solveCuts(0.0, true) && converged_;
         measure();
     }
     result.converged = result.converged && converged_;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/tick/friction.h"
+#include "core/tick/friction_patch.h"
 
 namespace passung::tick {
 
@@ -20,8 +20,9 @@ namespace passung::tick {
 /// angle between two directions. Rest is the tip of the cone, where tangents meet: no slip is left.
 ///
 /// Turns of σ are mixed with the turn before (Anderson 1965), the cuts of a turn found only as well as σ is known, and
-/// contacts that do not hold looked at when those that do are content. Where overlap is to be removed and the rows have
-/// no common solution it is only kept from growing, as in constrained_motion.h.
+/// contacts that do not hold looked at when those that do are content: in the first turn all, then only those that some
+/// motion has violated (they are watched), and once σ has settled among these all again. Where overlap is to be removed
+/// and the rows have no common solution it is only kept from growing, as in constrained_motion.h.
 /// Limit cases: u = 0 is allowed, hence |u| ≤ |w|: nothing is thrown out of a groove. A groove that locks itself: at
 /// σ = 0 already u = 0. σ that does not settle in kRubSweeps turns: σ = 0, which obeys contacts and cone but lets what
 /// slips rise by up to μ |s|. Bounded by kMostRounds sets of cuts and kMostSteps rows taken up. rt-safe.
@@ -51,6 +52,7 @@ private:
         Vec3 direction;  // d, or zero
     };
     static constexpr int kMostPatches = 12, kMostCuts = 192;
+    static constexpr std::size_t kMostWatched = 192;
 
     double coefficientOf(const Patch& patch) const noexcept;
     int patchFor(const ContactPoint& contact) noexcept;
@@ -60,8 +62,11 @@ private:
     void buildRow(int cut) noexcept;
     double violationOf(const ContactPoint& contact, const Patch& patch) const noexcept;
     int mostViolated() const noexcept;
-    bool cutOff(double enough) noexcept;
-    bool solveCuts(double enough) noexcept;
+    bool cutHeld(double enough) noexcept;
+    bool cutAmong(bool all, double enough) noexcept;
+    bool cutOff(double enough, bool all) noexcept;
+    void watch(const Cut& contact) noexcept;
+    bool solveCuts(double enough, bool all) noexcept;
     void restart() noexcept;
     void measure() noexcept;
     double turn(bool centres) noexcept;
@@ -77,13 +82,12 @@ private:
     std::array<Cut, kMostCuts> cuts_;
     std::array<MotionRow, kMostCuts> rows_;
     int cut_count_ = 0;
+    std::array<Cut, kMostWatched> watched_;  // whatever their directions
+    std::size_t watched_count_ = 0;
     ActiveSet active_;
     Motion u_ = Motion::Zero();
     double last_change_ = 0.0;
     int iterations_ = 0, rounds_ = 0;
 };
-
-/// Mean distance from the centre of pressure of the points that `patch` touches after `u`, under their pressure.
-double effectiveRadius(const Surroundings& around, const FrictionPatch& patch, const Motion& u) noexcept;
 
 }  // namespace passung::tick
