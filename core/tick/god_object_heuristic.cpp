@@ -40,12 +40,24 @@ Motion correctionOf(const TickModel& model, const TickState& state, double depth
     return u;
 }
 
+/// What a stage leaves of the overlap that it begins with.
+double leftOf(const TickModel& model, double overlap) noexcept {
+    return std::max(kKeep * model.finest_cell, overlap - kLeave * model.finest_cell);
+}
+
+/// What is around the proxy, with no more asked of what is deeper than `left`.
+Surroundings around(const TickModel& model, const TickState& state, double left) noexcept {
+    Surroundings result = surroundings(model, state);
+    result.sunk_out = -left;
+    return result;
+}
+
 /// Pushes the proxy out of the overlap that a step's linearisation missed, around a rim for instance: the least motion
 /// that obeys the contacts found there.
-void relieve(const TickModel& model, TickState& state, TickFrame& frame, double reach) noexcept {
+void relieve(const TickModel& model, TickState& state, TickFrame& frame, double reach, double left) noexcept {
     const double s = model.finest_cell;
-    for (int i = 0; i < kReliefs && overlap(state) > kRelieve * s; ++i) {
-        const ConstrainedMotion out = constrainMotion(Motion::Zero(), surroundings(model, state));
+    for (int i = 0; i < kReliefs && overlap(state) > std::max(kRelieve * s, left); ++i) {
+        const ConstrainedMotion out = constrainMotion(Motion::Zero(), around(model, state, left));
         if (longestPath(model, out.u) > kLongestStep * s) return;
         look(model, state, frame, moved(model, state.X_WG, out.u), reach, reach);
     }
@@ -56,10 +68,11 @@ void relieve(const TickModel& model, TickState& state, TickFrame& frame, double 
 void correctProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
     const double s = model.finest_cell;
     startProxy(model, state, frame);
-    for (int i = 0; i < kCorrections && overlap(state) > kAccept * s; ++i) {
+    const double left = leftOf(model, overlap(state));
+    for (int i = 0; i < kCorrections && overlap(state) > std::max(kAccept * s, left); ++i) {
         const Pose X_before = state.X_WG;
         const double depth = overlap(state);
-        Motion u = correctionOf(model, state, depth - kKeep * s);
+        Motion u = correctionOf(model, state, depth - left);
         bool better = false;
         for (int half = 0; half <= kHalvings && !better; ++half, u *= 0.5) {
             lookAround(model, state, frame, moved(model, X_before, u));
@@ -76,6 +89,7 @@ void correctProxy(const TickModel& model, TickState& state, TickFrame& frame) no
 void moveProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
     const double s = model.finest_cell;
     const Pose X_before = state.X_WG;
+    const double left = leftOf(model, overlap(state));
     double reach = nextReach(model, state);
     bool arrived = false;
     for (int sub_step = 0; sub_step < kSubSteps; ++sub_step) {
@@ -91,7 +105,7 @@ void moveProxy(const TickModel& model, TickState& state, TickFrame& frame) noexc
         if (arrived) break;
         // Step as far as the contacts are known, farther only where there is proven room.
         const double known = std::max(state.manifold_reach, state.room);
-        const AllowedMotion allowed = allowedMotion(model, state, frame, wanted, surroundings(model, state));
+        const AllowedMotion allowed = allowedMotion(model, state, frame, wanted, around(model, state, left));
         Motion u = allowed.u;
         const double step_path = longestPath(model, u);
         arrived = step_path < kStill;
@@ -102,7 +116,7 @@ void moveProxy(const TickModel& model, TickState& state, TickFrame& frame) noexc
         bool good = false, whole = step_path <= known;
         for (int half = 0; half <= kHalvings; ++half, u *= 0.5) {
             look(model, state, frame, moved(model, X_here, u), next_reach, std::max(next_reach, path));
-            relieve(model, state, frame, next_reach);
+            relieve(model, state, frame, next_reach, left);
             good = overlap(state) <= accepted;
             if (good && half == 0) state.rubbing = allowed.rubbing;
             if (good) break;

@@ -20,7 +20,8 @@ namespace passung::tick {
 ///    Rotation by θ about the penalty torque, the least squares of  θ h_i = p_i  over the contacts with a lever
 ///    h_i = n_i · (T̂ × r_i), and translation along the penalty force, shared by  λ = ‖F‖ / (‖F‖ + ‖T‖/ρ):
 ///    Δx = λ p_max F̂,  Δφ = (1 - λ) θ T̂.  Accepted only if the query at the corrected pose finds less overlap, else
-///    halved; at most kCorrections times.
+///    halved; at most kCorrections times. No more than kLeave · s of the overlap is removed in a tick, here and again
+///    in #4, so that a proxy that starts deep inside leaves without a kick.
 ///
 /// #3 unconstrained motion  u = (x_H - x_G, ρ log(R_H R_Gᵀ)).
 ///
@@ -52,6 +53,7 @@ namespace passung::tick {
 inline constexpr double kKeep = 0.01;     // overlap kept, per cell
 inline constexpr double kAccept = 0.05;   // overlap accepted by the test, per cell
 inline constexpr double kRelieve = 0.02;  // overlap after a step that is pushed out again, per cell
+inline constexpr double kLeave = 0.2;     // of a deeper overlap that a stage removes in a tick, per cell
 inline constexpr int kReliefs = 2;
 inline constexpr int kSubSteps = 12;
 inline constexpr int kCorrections = 3;

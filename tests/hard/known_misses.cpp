@@ -12,9 +12,6 @@ std::span<const KnownMiss> knownMisses() {
         KnownMiss{"square_peg", "god_object_heuristic"},
         KnownMiss{"peg_tiny", "god_object_heuristic"},
         KnownMiss{"a6_peg_tilt", "god_object_heuristic"},
-        // Its step #2 leaves the whole overlap within one tick.
-        KnownMiss{"deep_start", "god_object_heuristic"},
-        KnownMiss{"deep_start_two_way", "god_object_heuristic"},
         // Corners of the tip between the cells of a field that is not refined there.
         KnownMiss{"keyed_peg", "god_object"},
         KnownMiss{"square_peg", "god_object"},
