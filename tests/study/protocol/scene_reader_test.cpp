@@ -187,6 +187,19 @@ TEST(SceneReader, TakesWhatIsLeftOutFromTheDevice) {
     EXPECT_EQ(stick->contact.rotational_stiffness, 0.0);
 }
 
+TEST(SceneReader, TakesEncoderStepsFromTheDeviceIfTheyAreKnown) {
+    // Truth: closed form: the numbers of a mechanism; of a device without one, as every real one, none are known.
+    std::vector<DeviceDescription> devices = fakeDevices();
+    devices[0].mechanism = DeviceMechanism{.quantum_m = 16e-6, .rotational_quantum_rad = 3e-4};
+    const auto arm = readSceneText(kParts + "[device]\npreset = \"arm\"\n", "s.toml", devices);
+    const auto stick = readSceneText(kParts + "[device]\npreset = \"stick\"\n", "s.toml", devices);
+    ASSERT_TRUE(arm && stick);
+    EXPECT_EQ(arm->limits.quantum, 16e-6);
+    EXPECT_EQ(arm->limits.rotational_quantum, 3e-4);
+    EXPECT_EQ(stick->limits.quantum, 0.0);
+    EXPECT_EQ(stick->limits.rotational_quantum, 0.0);
+}
+
 TEST(SceneReader, ResolvesStiffnessAgainstTheStableMaximum) {
     // Truth: closed form: fractions of 4000 N/m and 8 N·m/rad.
     const auto with = [](const std::string& contact) {
