@@ -29,6 +29,18 @@ void forEachEdge(const std::vector<HalfEdge>& edges, Use use) {
     }
 }
 
+inline constexpr double kSharpCosine = 0.9;  // an edge is sharp if its faces turn by more than 26°
+
+struct SharpEdge {
+    HalfEdge edge;  // of its first triangle
+    Vec3 normal;    // sum of its triangles' unit normals
+    bool inner;     // of a groove: both triangles rise above each other
+};
+
+/// Edges where the surface turns by more than 26° or ends, or where more than two triangles meet. Triangles without
+/// area do not count.
+std::vector<SharpEdge> sharpEdges(const TriangleMesh& mesh);
+
 /// Union-find over 0 … n-1.
 class Groups {
 public:

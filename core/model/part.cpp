@@ -257,7 +257,10 @@ Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs, BuildStore*
             part.report.notes.push_back("The sheet is felt " + inMillimetres(part.field->sheetOffset()) +
                                         " in front of its surface, on both sides.");
     }
-    if (needs.shell) part.shell.emplace(shellOf(part, needs, store), part.mesh);
+    if (needs.shell) {
+        part.shell.emplace(shellOf(part, needs, store), part.mesh);
+        part.edges.emplace(part.mesh, kEdgeShare * needs.spacing);
+    }
     return part;
 }
 

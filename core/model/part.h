@@ -7,6 +7,7 @@
 #include "core/base/result.h"
 #include "core/model/build_store.h"
 #include "core/model/distance_field.h"
+#include "core/model/edge_curves.h"
 #include "core/model/mesh.h"
 #include "core/model/mesh_import.h"
 #include "core/model/scene_spec.h"
@@ -37,6 +38,7 @@ struct Part {
     double chord_error = 0.0;  // of the mesh against the shape, as reached [m]
     std::optional<DistanceField> field;
     std::optional<SphereTree> shell;
+    std::optional<EdgeCurves> edges;  // with the shell
 };
 
 /// Most points of a point shell, roughly: more take gigabytes and minutes to sample and do not fit a tick.

@@ -21,8 +21,6 @@ namespace {
 
 constexpr double kDiskShare = 0.72;  // disk radius per spacing: then neighbours are about one spacing apart
 constexpr double kCandidateShare = 0.7;
-constexpr double kEdgeShare = 0.5;    // spacing of edge samples per spacing
-constexpr double kSharpCosine = 0.9;  // an edge is sharp if its faces turn by more than 26°
 constexpr int kRelaxations = 2;
 constexpr std::uint64_t kSeed = 20260101;  // of the order in which candidates are tried; any value serves
 // Candidates are tried in a random order among so many that lie next to each other, so that memory is used in order.
@@ -257,24 +255,7 @@ private:
 class EdgeSampler {
 public:
     explicit EdgeSampler(const TriangleMesh& mesh) : mesh_(mesh) {
-        std::vector<bool> flat;
-        for (const Triangle& t : mesh.triangles) {
-            normals_.push_back(areaVector(mesh, t).stableNormalized());
-            flat.push_back(!(areaVector(mesh, t).norm() > 0.0));
-        }
-        forEachEdge(halfEdges(mesh.triangles), [&](const HalfEdge* use, std::size_t count) {
-            Vec3 sum = Vec3::Zero();
-            const HalfEdge* at = nullptr;
-            std::vector<Vec3> faces;
-            for (std::size_t i = 0; i < count; ++i) {
-                if (flat[use[i].triangle]) continue;
-                if (at == nullptr) at = &use[i];
-                faces.push_back(normals_[use[i].triangle]);
-                sum += faces.back();
-            }
-            const bool smooth = faces.size() == 2 && faces[0].dot(faces[1]) > kSharpCosine;
-            if (at != nullptr && !smooth) addSharp(*at, sum);
-        });
+        for (const SharpEdge& sharp : sharpEdges(mesh)) addSharp(sharp.edge, sharp.normal);
     }
 
     void append(double spacing, PointShell& shell) {
@@ -318,7 +299,6 @@ private:
     }
 
     const TriangleMesh& mesh_;
-    std::vector<Vec3> normals_;  // of the triangles
     std::vector<std::pair<HalfEdge, Vec3>> sharp_;
     std::map<std::uint32_t, Corner> corners_;
     std::vector<Vec3> points_, facing_;

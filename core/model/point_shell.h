@@ -26,6 +26,8 @@ struct PointShell {
     double rounding = 0.0;      // no sample is farther than this from the surface: positions are rounded to floats [m]
 };
 
+inline constexpr double kEdgeShare = 0.5;  // spacing of samples on edges, per spacing
+
 /// Samples `mesh` about `spacing` [m] apart; the same mesh and spacing give the same points.
 ///   Candidates: the triangles, cut until no edge is longer than 0.7 spacings; each candidate is a cut triangle's
 ///   centroid with its area. A Poisson-disk subset of them, relaxed by Lloyd's iteration, becomes the samples; a
