@@ -86,6 +86,7 @@ struct QueryRequest {
                           // own samples are then asked too (two_way); with gradients; not of open sheets
     bool load = false;    // instead of contacts in the manifold QueryAnswer::load; where many points are in contact,
                           // neighbours may then be taken as one
+    bool edges = false;   // what lies on edges between their samples is searched too (queryObstacles: edge_search.h)
     bool refine = false;  // the deepest point is searched on the surface between the samples too
 };
 

@@ -49,6 +49,12 @@ double makeStep(const TickModel& model, TickState& state, TickFrame& frame, cons
     return 0.0;
 }
 
+/// True if the straight line from where the tick began to `X_to` overlaps, of which the way there knows nothing.
+bool cutsCorner(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_from, const Pose& X_to,
+                double bend, double accepted) noexcept {
+    return bend > model.margins.relieve && overlapHalfway(model, state, frame, X_from, X_to) > accepted;
+}
+
 }  // namespace
 
 void sweepProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
@@ -59,6 +65,7 @@ void sweepProxy(const TickModel& model, TickState& state, TickFrame& frame) noex
     double reach = nextReach(model, state);
     double repair = kRepair * model.finest_cell;
     Way way(model);
+    const double between = std::max(margins.relieve, overlap(state));
     bool arrived = false, whole = false;  // whole: the last step was all that was allowed
     for (int sweep = 0; sweep <= kSweeps; ++sweep) {
         const Motion wanted = unconstrainedMotion(model, state.X_WG, frame.X_WH);
@@ -68,7 +75,9 @@ void sweepProxy(const TickModel& model, TickState& state, TickFrame& frame) noex
         if (arrived) break;
         const double accepted = std::max(margins.accept, before + 0.1 * margins.keep);
         if (sweep < kSweeps && state.room > path) {
-            if (way.bentBy(wanted) > bent) break;
+            if (way.bentBy(wanted) > bent ||
+                cutsCorner(model, state, frame, X_before, frame.X_WH, way.bentBy(wanted), between))
+                break;
             frame.iterations = static_cast<std::uint32_t>(sweep + 1);
             arrived = arriveFreely(model, state, frame, path, reach, accepted);
             if (arrived) break;
@@ -90,10 +99,15 @@ void sweepProxy(const TickModel& model, TickState& state, TickFrame& frame) noex
         if (arrived || way.bentBy(share * allowed.u) > bent) break;
         if (sweep == kSweeps) break;
         frame.iterations = static_cast<std::uint32_t>(sweep + 1);
+        const Pose X_here = state.X_WG;
         const double made =
             makeStep(model, state, frame, share * allowed.u, next_reach, std::max(next_reach, path), accepted);
         if (made == 0.0) break;
         way.add(made * share * allowed.u);
+        if (cutsCorner(model, state, frame, X_before, state.X_WG, way.bentBy(Motion::Zero()), between)) {
+            look(model, state, frame, X_here, reach, reach);
+            break;
+        }
         if (made == 1.0) state.rubbing = allowed.rubbing;
         repair = std::max(0.0, repair - std::max(0.0, before - overlap(state)));
         whole = made * share == 1.0;

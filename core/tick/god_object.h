@@ -24,8 +24,8 @@ namespace passung::tick {
 /// nothing is left that is allowed: at most kSweeps times. A step that ends with more overlap than kAccepted is halved;
 /// one with more than kRelieved is followed by another, whose rows ask for it (b_i > 0).
 ///
-/// A tick's way that bends by more than kBent ends early, so that the straight line between two ticks' poses, which is
-/// what others see of it, is as free as the way itself.
+/// A tick's way that bends by more than kBent ends early, and before a step that would leave overlap halfway on the
+/// straight line between two ticks' poses, which is what others see of it: that is as free as the way itself.
 ///
 /// Repair. A start in overlap is no special case: what is in overlap has to come to φ ≥ -max(keep, d - kRepair · s), d
 /// the deepest overlap when the tick begins. The deepest points come out first, at kRepair · s a tick, so that the
@@ -38,7 +38,9 @@ namespace passung::tick {
 /// that is near ends at φ ≥ -accept, or the step is taken back; for it to have come to the other side of an open sheet
 /// (φ ≥ 0 again 2 cells farther on) it would have had to go farther than half a cell. Without friction the wrench is
 /// Σ λ_i a_i, λ_i ≥ 0: nothing holds along a surface.
-/// What is not seen: an edge between two samples; `two_way` asks the other part's points for it. Between the samples
+/// The three margins of overlap are less where kAccepted · s would be more than half the scene's tolerance.
+/// What is not seen: on fields of cells of one size, an edge between two samples (elsewhere edge_search.h finds it);
+/// `two_way` asks the other part's points and edges for it. Between the samples
 /// an open sheet is still not passed if their cover radius is less than its offset, one cell.
 inline constexpr double kKept = 0.002;      // overlap kept, per cell
 inline constexpr double kRelieved = 0.006;  // overlap after a step that another one follows, per cell

@@ -42,7 +42,7 @@ Motion correctionOf(const TickModel& model, const TickState& state, double depth
 
 /// What a stage leaves of the overlap that it begins with.
 double leftOf(const TickModel& model, double overlap) noexcept {
-    return std::max(kKeep * model.finest_cell, overlap - kLeave * model.finest_cell);
+    return std::max(model.margins.keep, overlap - kLeave * model.finest_cell);
 }
 
 /// What is around the proxy, with no more asked of what is deeper than `left`.
@@ -56,7 +56,7 @@ Surroundings around(const TickModel& model, const TickState& state, double left)
 /// that obeys the contacts found there.
 void relieve(const TickModel& model, TickState& state, TickFrame& frame, double reach, double left) noexcept {
     const double s = model.finest_cell;
-    for (int i = 0; i < kReliefs && overlap(state) > std::max(kRelieve * s, left); ++i) {
+    for (int i = 0; i < kReliefs && overlap(state) > std::max(model.margins.relieve, left); ++i) {
         const ConstrainedMotion out = constrainMotion(Motion::Zero(), around(model, state, left));
         if (longestPath(model, out.u) > kLongestStep * s) return;
         look(model, state, frame, moved(model, state.X_WG, out.u), reach, reach);
@@ -66,10 +66,9 @@ void relieve(const TickModel& model, TickState& state, TickFrame& frame, double 
 }  // namespace
 
 void correctProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
-    const double s = model.finest_cell;
     startProxy(model, state, frame);
     const double left = leftOf(model, overlap(state));
-    for (int i = 0; i < kCorrections && overlap(state) > std::max(kAccept * s, left); ++i) {
+    for (int i = 0; i < kCorrections && overlap(state) > std::max(model.margins.accept, left); ++i) {
         const Pose X_before = state.X_WG;
         const double depth = overlap(state);
         Motion u = correctionOf(model, state, depth - left);
@@ -99,7 +98,7 @@ void moveProxy(const TickModel& model, TickState& state, TickFrame& frame) noexc
         if (arrived) break;
         frame.iterations = static_cast<std::uint32_t>(sub_step + 1);
         const Pose X_here = state.X_WG;
-        const double accepted = std::max(kAccept * s, overlap(state));
+        const double accepted = std::max(model.margins.accept, overlap(state));
         // Nothing in the way: arrive.
         arrived = state.room > path && arriveFreely(model, state, frame, path, reach, accepted);
         if (arrived) break;

@@ -50,6 +50,7 @@ namespace passung::tick {
 /// overlap instead of none lets the record tell contact from nearness. Overlap is that of the shell's points with φ as
 /// interpolated: at an obstacle's edges the field itself errs by more (DistanceField::errorBound), and an edge or
 /// corner may stand between the points (point_shell.h, cover radius).
+///   All three are less where kAccept · s would be more than the scene's tolerance.
 inline constexpr double kKeep = 0.01;     // overlap kept, per cell
 inline constexpr double kAccept = 0.05;   // overlap accepted by the test, per cell
 inline constexpr double kRelieve = 0.02;  // overlap after a step that is pushed out again, per cell

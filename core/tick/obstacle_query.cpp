@@ -2,24 +2,11 @@
 
 #include <algorithm>
 
+#include "core/tick/edge_search.h"
+
 namespace passung::tick {
 
 namespace {
-
-/// The obstacle's points against the held part's field. If the held part moves by u, φ at a fixed point changes by
-/// -g · u, g the gradient of its field: told with normal and gradient reversed such a point is a contact like any
-/// other.
-QueryAnswer queryBack(const TickModel& model, const Obstacle& obstacle, const Pose& X_WS, const QueryRequest& request,
-                      QueryWorkspace& workspace, ContactManifold& manifold) noexcept {
-    const std::size_t first = manifold.size();
-    QueryAnswer answer =
-        queryContacts(*model.held_field, X_WS, *obstacle.shell, obstacle.X_WF, request, workspace, manifold);
-    manifold.reverseFrom(first);
-    answer.load.force = -answer.load.force;
-    answer.load.torque = (obstacle.X_WF.p - X_WS.p).cross(answer.load.force) - answer.load.torque;
-    answer.normal_W = -answer.normal_W;
-    return answer;
-}
 
 void merge(const QueryAnswer& answer, QueryAnswer& all) noexcept {
     if (answer.found && answer.phi < all.phi) {
@@ -38,6 +25,32 @@ void merge(const QueryAnswer& answer, QueryAnswer& all) noexcept {
     all.load.torque += answer.load.torque;
     all.budget_reached = all.budget_reached || answer.budget_reached;
     all.manifold_full = all.manifold_full || answer.manifold_full;
+}
+
+/// The points of a shell, and its edges if asked for.
+QueryAnswer query(const model::DistanceField& field, const Pose& X_WF, const model::SphereTree& shell,
+                  const model::EdgeCurves& edges, const Pose& X_WS, QueryRequest request, QueryWorkspace& workspace,
+                  ContactManifold& manifold) noexcept {
+    QueryAnswer answer = queryContacts(field, X_WF, shell, X_WS, request, workspace, manifold);
+    if (!request.edges) return answer;
+    if (!request.refine) request.search_below = answer.phi;
+    merge(searchEdges(field, X_WF, edges, X_WS, request, manifold), answer);
+    return answer;
+}
+
+/// The obstacle's points against the held part's field. If the held part moves by u, φ at a fixed point changes by
+/// -g · u, g the gradient of its field: told with normal and gradient reversed such a point is a contact like any
+/// other.
+QueryAnswer queryBack(const TickModel& model, const Obstacle& obstacle, const Pose& X_WS, const QueryRequest& request,
+                      QueryWorkspace& workspace, ContactManifold& manifold) noexcept {
+    const std::size_t first = manifold.size();
+    QueryAnswer answer =
+        query(*model.held_field, X_WS, *obstacle.shell, *obstacle.edges, obstacle.X_WF, request, workspace, manifold);
+    manifold.reverseFrom(first);
+    answer.load.force = -answer.load.force;
+    answer.load.torque = (obstacle.X_WF.p - X_WS.p).cross(answer.load.force) - answer.load.torque;
+    answer.normal_W = -answer.normal_W;
+    return answer;
 }
 
 }  // namespace
@@ -62,7 +75,7 @@ QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, QueryReques
     };
     for (const Obstacle& obstacle : model.obstacles) {
         const std::size_t first = manifold.size();
-        take(queryContacts(*obstacle.field, obstacle.X_WF, *model.shell, X_WS, request, workspace, manifold));
+        take(query(*obstacle.field, obstacle.X_WF, *model.shell, *model.edges, X_WS, request, workspace, manifold));
         if (obstacle.shell != nullptr) take(queryBack(model, obstacle, X_WS, request, workspace, manifold));
         manifold.assign(first, place++);
     }

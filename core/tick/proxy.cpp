@@ -74,8 +74,11 @@ bool isInside(const ContactPoint& contact) noexcept { return contact.phi < 0.0 &
 void look(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_WG, double reach,
           double search) noexcept {
     state.scratch.clear();
-    QueryRequest request{
-        .collect_below = reach, .search_below = search, .spheres = true, .facing = model.contact.two_way};
+    QueryRequest request{.collect_below = reach,
+                         .search_below = search,
+                         .spheres = true,
+                         .facing = model.contact.two_way,
+                         .edges = true};
     QueryAnswer answer = queryObstacles(model, X_WG, request, state.workspace, state.scratch);
     account(answer, frame);
     std::swap(state.manifold, state.scratch);
@@ -89,6 +92,16 @@ void look(const TickModel& model, TickState& state, TickFrame& frame, const Pose
     answer = queryObstacles(model, X_WG, request, state.workspace, state.scratch);
     account(answer, frame);
     state.room = std::max(reach, answer.lower_bound);
+}
+
+double overlapHalfway(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_from,
+                      const Pose& X_to) noexcept {
+    const Pose X{X_from.q.slerp(0.5, X_to.q), 0.5 * (X_from.p + X_to.p)};
+    state.scratch.clear();
+    const QueryRequest request{.collect_below = -1e300, .facing = model.contact.two_way, .edges = true};
+    const QueryAnswer answer = queryObstacles(model, X, request, state.workspace, state.scratch);
+    account(answer, frame);
+    return std::max(0.0, -answer.phi);
 }
 
 void lookAround(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_WG) noexcept {

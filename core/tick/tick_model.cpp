@@ -33,9 +33,14 @@ void addPenalty(TickModel& model) {
         {"penalty wrench", "turns the overlap into force and torque by contact.variant", false, renderPenalty});
 }
 
+/// Shares of a cell, or less, so that no more overlap than `most` is accepted [m].
+ProxyMargins marginsOf(const TickModel& model, const ProxyMargins& share, double most) {
+    const double s = std::min(model.finest_cell, most / share.accept);
+    return {share.keep * s, share.relieve * s, share.accept * s};
+}
+
 void addGodObjectHeuristic(TickModel& model) {
-    const double s = model.finest_cell;
-    model.margins = {kKeep * s, kRelieve * s, kAccept * s};
+    model.margins = marginsOf(model, {kKeep, kRelieve, kAccept}, model.contact.tolerance);
     model.stages.push_back({"proxy correction",
                             model.contact.two_way
                                 ? "contact.method is god_object_heuristic: steps #1 and #2, contacts at the last proxy "
@@ -49,8 +54,7 @@ void addGodObjectHeuristic(TickModel& model) {
 }
 
 void addGodObject(TickModel& model) {
-    const double s = model.finest_cell;
-    model.margins = {kKept * s, kRelieved * s, kAccepted * s};
+    model.margins = marginsOf(model, {kKept, kRelieved, kAccepted}, 0.5 * model.contact.tolerance);
     model.stages.push_back({"proxy sweep",
                             model.contact.two_way
                                 ? "contact.method is god_object: the proxy follows the hand as far as all contacts "
@@ -103,13 +107,15 @@ TickModel makeModel(const model::Scene& scene) {
     model.transients = spec.effects.transients;
     model.X_WG_start = spec.parts[scene.held].X_WP;
     model.shell = &*scene.parts[scene.held]->shell;
+    model.edges = &*scene.parts[scene.held]->edges;
     const bool two_way = spec.contact.two_way;
     if (two_way) model.held_field = &*scene.parts[scene.held]->field;
     for (std::size_t i = 0; i < scene.parts.size(); ++i) {
         const bool held = i == scene.held;
         if (!held)
-            model.obstacles.push_back(
-                {&*scene.parts[i]->field, spec.parts[i].X_WP, two_way ? &*scene.parts[i]->shell : nullptr});
+            model.obstacles.push_back({&*scene.parts[i]->field, spec.parts[i].X_WP,
+                                       two_way ? &*scene.parts[i]->shell : nullptr,
+                                       two_way ? &*scene.parts[i]->edges : nullptr});
         if (held && !two_way) continue;
         const double cell = scene.parts[i]->field->cell();
         model.finest_cell = model.finest_cell > 0.0 ? std::min(model.finest_cell, cell) : cell;
@@ -169,13 +175,16 @@ TickState makeState(const TickModel& model) {
     state.X_WG = model.X_WG_start;
     state.pairs.resize(model.obstacles.size() + 1);
     state.push_line.resize(state.pairs.size() * (static_cast<std::size_t>(model.limits.delay_ticks) + 1));
-    // When a budget ends a node stands in by a point and a sphere, and every obstacle may touch every point.
-    const auto most = [](const model::SphereTree& shell) { return shell.points().size() + 2 * shell.nodes().size(); };
-    std::size_t capacity = most(*model.shell) * model.obstacles.size();
+    // When a budget ends a node stands in by a point and a sphere, and every obstacle may touch every point and every
+    // edge around every station.
+    const auto most = [](const model::SphereTree& shell, const model::EdgeCurves& edges) {
+        return shell.points().size() + 2 * shell.nodes().size() + edges.stations().size();
+    };
+    std::size_t capacity = most(*model.shell, *model.edges) * model.obstacles.size();
     std::size_t nodes = model.shell->nodes().size();
     for (const Obstacle& obstacle : model.obstacles) {
         if (obstacle.shell == nullptr) continue;
-        capacity += most(*obstacle.shell);
+        capacity += most(*obstacle.shell, *obstacle.edges);
         nodes = std::max(nodes, obstacle.shell->nodes().size());
     }
     state.manifold = ContactManifold(capacity);

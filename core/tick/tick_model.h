@@ -50,6 +50,7 @@ struct Obstacle {
     const model::DistanceField* field;
     Pose X_WF;
     const model::SphereTree* shell = nullptr;  // two-way contact only
+    const model::EdgeCurves* edges = nullptr;  // with the shell
 };
 
 /// Overlap of a proxy [m].
@@ -62,6 +63,7 @@ struct ProxyMargins {
 /// Everything that does not change while a trial runs. Borrows the scene's parts.
 struct TickModel {
     const model::SphereTree* shell = nullptr;
+    const model::EdgeCurves* edges = nullptr;
     const model::DistanceField* held_field = nullptr;  // two-way contact only
     std::vector<Obstacle> obstacles;
     std::vector<Friction> friction;  // of each obstacle with the held part; empty: the scene names none
