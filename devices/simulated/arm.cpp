@@ -54,6 +54,12 @@ void Arm::removeOffset(const Percept& percept) noexcept {
     turn_offset_ = clamped(turn_offset_ + kOffsetGain * kDt * turn, kMostTurnOffset);
 }
 
+void Arm::pushAcross(const Percept& percept, const Vec3& axis, double patience) noexcept {
+    Vec3 behind = X_WRef_.p - percept.X_WFelt.p;
+    behind -= axis * axis.dot(behind);
+    if (behind.norm() > patience) offset_ = clamped(offset_ + kOffsetGain * kDt * behind, kMostOffset);
+}
+
 double Arm::pressedHeight(double z, double force, double felt_z, double felt_force) const noexcept {
     const double missing = force - felt_force;
     const double speed = std::min(kPressGain * missing / params_.stiffness, params_.insert_speed);

@@ -35,6 +35,9 @@ protected:
     void startReach(const Pose& to, double duration) noexcept;
     /// In free space the arm sees that friction keeps it short of where it wants to be, and asks for a little more.
     void removeOffset(const Percept& percept) noexcept;
+    /// Likewise while something is touched: only across `axis` (a unit vector), and only if the part stays back by more
+    /// than `patience` [m].
+    void pushAcross(const Percept& percept, const Vec3& axis, double patience) noexcept;
     /// Height of the set-point over a surface for the next tick, so that `force` comes to be felt on it; `felt_z`,
     /// `felt_force`: height of the held part and force along the same axis.
     double pressedHeight(double z, double force, double felt_z, double felt_force) const noexcept;

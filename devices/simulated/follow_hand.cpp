@@ -86,6 +86,7 @@ void FollowHand::follow(const Percept& percept) noexcept {
     Vec3 p = pointAt(way_);
     p.z() = height_;
     X_WRef_.p = X_WT * p;
+    if (phase_ != Phase::Down) pushAcross(percept, X_WT.q * Vec3::UnitZ(), 0.0);
 }
 
 }  // namespace passung::simulated

@@ -27,6 +27,7 @@ constexpr double kNothingFelt = 0.2;       // [N] ... while so little is felt: i
 constexpr double kClearlyInside = 4e-3;    // [m] seen below the mouth: no wall gives way that far
 constexpr double kDrop = 1e-3;             // [m] seen below the pressed level: it goes in
 constexpr double kCaughtForce = 0.8;       // [N] sideways: the tip is held by something
+constexpr double kStaysBack = 3e-3;        // [m] behind the spiral: a device with much friction is pushed harder
 constexpr double kCaughtTime = 0.12;       // [s] for so long
 constexpr double kCaughtPause = 0.6;       // [s] of searching before being caught counts (again)
 constexpr double kProgress = 0.4e-3;       // [m] seen progress that counts
@@ -191,6 +192,7 @@ void Hand::search(const Percept& percept) noexcept {
     const double tau = 2.0 * std::numbers::pi * search_time_;
     const Vec3 wobble = params_.search_tilt * Vec3(std::sin(1.3 * tau), std::sin(1.7 * tau), 0.0);
     placeReference(p_MP_, turn_ + wobble);
+    pushAcross(percept, X_WM_.q * Vec3::UnitZ(), kStaysBack);
 
     const double depth = seenDepth(percept);
     const bool held = search_time_ > kCaughtPause && feltForce(percept).head<2>().norm() > kCaughtForce;
