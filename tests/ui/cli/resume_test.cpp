@@ -136,6 +136,22 @@ TEST_F(Resume, AsksWhatTheProtocolWasImportedWithEvenIfItsFileIsGone) {
     EXPECT_EQ(database.integer("SELECT count(*) FROM questionnaire_run WHERE moment='session_end'"), 1);
 }
 
+TEST_F(Resume, ASessionOfAProgramThatKnewFewerMeasuresGoesOn) {
+    // Truth: invariant: the measures that the file lacks are added before the first attempt has to be stored. No trial
+    // of this study has response_time_s, so that taking it away is all that an older program would have left out.
+    writeText(folder_.path() / "study.toml", study());
+    runKilled({"run", "study.toml", "--db", kDatabase, "--no-backup"}, 2, {});
+    {
+        const store::Database database(folder_ / kDatabase, store::OpenMode::ReadWrite);
+        database.execute("DELETE FROM attempt_measure WHERE measure='response_time_s'");
+        database.execute("DELETE FROM measure WHERE measure='response_time_s'");
+    }
+    const Ended resumed = run({"resume", kDatabase});
+    EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+    const store::Database database(folder_ / kDatabase, store::OpenMode::ReadOnly);
+    EXPECT_EQ(database.integer("SELECT count(*) FROM measure WHERE measure='response_time_s'"), 1);
+}
+
 TEST_F(Resume, TheProtocolMayWantItsBlockAnew) {
     // Truth: closed form: what the block had no longer counts, and every trial has one attempt that does.
     writeText(folder_.path() / "study.toml", study(12, "\n[resume]\nblock = \"restart\"\n"));
