@@ -11,6 +11,7 @@
 #include "analysis/export/gzip.h"
 #include "analysis/export/questionnaire_tables.h"
 #include "analysis/export/samples.h"
+#include "analysis/export/secondary_table.h"
 #include "analysis/export/session_tables.h"
 #include "analysis/export/study_data.h"
 #include "analysis/export/trial_tables.h"
@@ -28,6 +29,7 @@ std::vector<Table> makeTables(const StudyData& study) {
     tables.push_back(makeParticipants(study));
     tables.push_back(makeTiming(study));
     tables.push_back(makeContactEnergy(study));
+    if (!study.detections.empty()) tables.push_back(makeSecondary(study));
     if (!study.questionnaires.empty()) {
         tables.push_back(makeQuestionnaireItems(study));
         tables.push_back(makeQuestionnaireScores(study));
@@ -113,11 +115,11 @@ void writeSamples(const store::StoreReader& reader, const StudyData& study, cons
         }
         if (!records->empty()) {
             if (packings.size() == at_once) writeOldest();
-            packings.push_back(
-                {samplesFile(study.attempts[i]),
-                 std::async(std::launch::async, [ticks = *std::move(records), cues = study.attempts[i].cues] {
-                     return gzip(samplesCsv(ticks, cues));
-                 })});
+            packings.push_back({samplesFile(study.attempts[i]),
+                                std::async(std::launch::async, [ticks = *std::move(records),
+                                                                signals = sampleSignals(study, study.attempts[i])] {
+                                    return gzip(samplesCsv(ticks, signals));
+                                })});
         }
         if (options.progress) {
             options.progress(static_cast<double>(i + 1) / static_cast<double>(study.attempts.size()));

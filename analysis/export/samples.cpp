@@ -78,6 +78,9 @@ std::vector<Column> sampleColumns() {
     add("cue_sound", "Command of the audio cue, 0 to 1",
         "at an impact min(1, speed of the hand / feedback.cue_full_speed_mm_per_s), falling by "
         "exp(-t / feedback.cue_sound_decay_ms)");
+    add("cue_masking", "Command of the masking noise: 1", "1 where feedback.masking_noise = true");
+    add("secondary_stimulus", "Command of the secondary task's stimulus, 0 or 1",
+        "1 from onset_s to before off_s of a row of secondary.csv");
     return columns;
 }
 
@@ -86,7 +89,16 @@ std::string samplesFile(const store::AttemptRow& attempt) {
            padded(attempt.trial_index) + "_a" + std::to_string(attempt.attempt_no) + ".csv.gz";
 }
 
-std::string samplesCsv(std::span<const TickRecord> records, const measures::CueSettings& cues) {
+SampleSignals sampleSignals(const StudyData& study, const store::AttemptRow& attempt) {
+    SampleSignals signals{attempt.cues, attempt.stimulus != "none", {}};
+    for (const store::DetectionRow& row : study.detections)
+        if (row.attempt_id == attempt.attempt_id && row.detection.stimulus)
+            signals.stimuli.emplace_back(*row.detection.stimulus, row.detection.off.value_or(*row.detection.stimulus));
+    return signals;
+}
+
+std::string samplesCsv(std::span<const TickRecord> records, const SampleSignals& commanded) {
+    const measures::CueSettings& cues = commanded.cues;
     constexpr std::size_t kTypicalRow = 400;
     std::string text = toCsv(Table{{}, {}, sampleColumns(), {}});
     text.reserve(text.size() + records.size() * kTypicalRow);
@@ -96,9 +108,11 @@ std::string samplesCsv(std::span<const TickRecord> records, const measures::CueS
     const auto orMissing = [](bool has, double command) {
         return has ? command : std::numeric_limits<double>::quiet_NaN();
     };
+    std::size_t shown = 0;  // stimuli that are over
     for (const TickRecord& r : records) {
+        const std::int64_t time = clock.at(r);
         row.add(r.tick);
-        row.add(static_cast<double>(clock.at(r)) / 1000.0);
+        row.add(static_cast<double>(time) / 1000.0);
         row.add(r.device_position_m);
         row.add(r.device_quaternion);
         row.add(r.input_flags);
@@ -122,6 +136,10 @@ std::string samplesCsv(std::span<const TickRecord> records, const measures::CueS
         row.add(orMissing(cues.visual, commands.visual));
         row.add(orMissing(cues.vibration, commands.vibration));
         row.add(orMissing(cues.sound, commands.sound));
+        row.add(orMissing(cues.masking, 1.0));
+        while (shown < commanded.stimuli.size() && commanded.stimuli[shown].second <= time) ++shown;
+        const bool lit = shown < commanded.stimuli.size() && commanded.stimuli[shown].first <= time;
+        row.add(orMissing(commanded.secondary, lit ? 1.0 : 0.0));
         row.endRow();
     }
     return text;

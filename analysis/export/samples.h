@@ -1,9 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "analysis/export/study_data.h"
 #include "analysis/export/table.h"
 #include "core/base/tick_record.h"
 #include "study/measures/cues.h"
@@ -18,7 +21,15 @@ std::vector<Column> sampleColumns();
 /// `samples/<participant>_<session>_t<trial>_a<attempt>.csv.gz`
 std::string samplesFile(const store::AttemptRow& attempt);
 
-/// The recorded ticks as CSV, with the commands of `cues`; NA for cues that the condition does not have.
-std::string samplesCsv(std::span<const TickRecord> records, const measures::CueSettings& cues);
+/// What was commanded beside the force while an attempt's ticks were recorded.
+struct SampleSignals {
+    measures::CueSettings cues;
+    bool secondary = false;                                      // there is a secondary task
+    std::vector<std::pair<std::int64_t, std::int64_t>> stimuli;  // of it: on, off [periods after tick 0], by time
+};
+SampleSignals sampleSignals(const StudyData& study, const store::AttemptRow& attempt);
+
+/// The recorded ticks as CSV, with these commands; NA for what the condition does not have.
+std::string samplesCsv(std::span<const TickRecord> records, const SampleSignals& commanded);
 
 }  // namespace passung::exporter

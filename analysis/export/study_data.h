@@ -29,6 +29,7 @@ struct StudyData {
     std::vector<store::SessionRow> sessions;
     std::vector<store::AttemptRow> attempts;
     std::vector<store::EventRow> events;
+    std::vector<store::DetectionRow> detections;  // of the attempts, in their order
     std::vector<store::QuestionnaireRunRow> questionnaires;
     std::vector<store::AccuracyRow> accuracy;  // of protocols with contact.accuracy = "auto"
 };

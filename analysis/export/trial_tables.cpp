@@ -58,6 +58,23 @@ std::vector<Column> resultColumns() {
 /// Columns of trials.csv after the measures.
 std::vector<Column> closingColumns() {
     return {
+        {"feedback_given",
+         "What the participant was given to feel, see and hear of contact, joined by +: kinesthetic (force), visual, "
+         "vibrotactile, audio, masking_noise; none",
+         "",
+         "text",
+         "",
+         1,
+         {}},
+        {"timed_by",
+         "Who said when the trial began and ended; simulated participants have their part of the experimenter "
+         "simulated "
+         "too",
+         "",
+         "text",
+         "",
+         1,
+         {"program", "experimenter", "clock"}},
         {"n_ticks", "Ticks that the haptic loop computed", "", "integer", "", 1, {}},
         {"overruns",
          "Cycles that were missed because an earlier one took too long; 0 in virtual time",
@@ -93,6 +110,19 @@ Column measureColumn(const store::MeasureRow& measure) {
             {}};
 }
 
+std::string feedbackOf(const store::AttemptRow& a) {
+    std::string text;
+    const auto add = [&](bool given, const char* name) {
+        if (given) text += (text.empty() ? "" : "+") + std::string(name);
+    };
+    add(a.kinesthetic, "kinesthetic");
+    add(a.cues.visual, "visual");
+    add(a.cues.vibration, "vibrotactile");
+    add(a.cues.sound, "audio");
+    add(a.cues.masking, "masking_noise");
+    return text.empty() ? "none" : text;
+}
+
 std::vector<std::string> trialRow(const StudyData& study, const store::AttemptRow& a) {
     std::vector<std::string> row = {a.participant_id,
                                     a.kind,
@@ -117,6 +147,7 @@ std::vector<std::string> trialRow(const StudyData& study, const store::AttemptRo
         const auto found = a.measures.find(measure.measure);
         row.push_back(found == a.measures.end() ? kMissing : cell(found->second));
     }
+    row.insert(row.end(), {feedbackOf(a), a.timed_by});
     if (a.timing) {
         row.insert(row.end(), {cell(a.timing->ticks), cell(a.timing->overruns), cell(a.timing->dropped_samples)});
     } else {

@@ -11,6 +11,7 @@ struct CueSettings {
     double full_depth = 0.002;  // [m], > 0
     double full_speed = 0.1;    // [m/s], > 0
     double sound_decay = 0.05;  // [s], > 0
+    bool masking = false;       // noise all the time
 };
 
 /// Commands of the cues in one tick, each from 0 to 1; 0 for what the condition does not have.

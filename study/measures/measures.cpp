@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "study/measures/detection.h"
 #include "study/measures/period_clock.h"
 #include "study/measures/tick_facts.h"
 #include "study/measures/trial.h"
@@ -231,7 +232,8 @@ std::vector<Measure> commonMeasures() {
          trialTime},
         {{"approach_time_s", "Approach time", "s",
           "from the start tick to the first contact tick, or to the engagement tick if that is earlier; contact tick: "
-          "trial tick with |force| > 1e-6 N or |torque| > 1e-9 N m or contacts > 0; engagement tick: first trial tick "
+          "trial tick with |force| > 1e-6 N or |torque| > 1e-9 N m or contacts > 0, or with hand_depth_m > 0 where the "
+          "condition displays no force; engagement tick: first trial tick "
           "with a tip depth >= the engagement depth; tip depth: -z of the proxy's origin in the target's frame, "
           "counted only below the mouth and within the radial clearance + 0.2 mm of the bore's axis; time: as for the "
           "trial time",
@@ -341,6 +343,7 @@ const std::vector<Definition>& definitions() {
     static const std::vector<Definition> all = [] {
         std::vector<Definition> result;
         for (const Measure& measure : measures()) result.push_back(measure.definition);
+        for (const Definition& definition : detectionDefinitions()) result.push_back(definition);
         return result;
     }();
     return all;
@@ -349,12 +352,15 @@ const std::vector<Definition>& definitions() {
 std::vector<Value> computeMeasures(std::span<const TickRecord> records, const TrialContext& context) {
     const Trial trial = cutTrial(records, context);
     std::vector<Value> values;
-    values.reserve(measures().size());
+    values.reserve(definitions().size());
     for (const Measure& measure : measures()) {
-        Optional value = measure.compute(trial);
+        const bool known = context.watched || measure.compute == success || measure.compute == trialTime;
+        Optional value = known ? measure.compute(trial) : std::nullopt;
         if (value && !std::isfinite(*value)) value.reset();
         values.push_back({measure.definition.name, value});
     }
+    for (Value& value : detectionValues(context.detections ? &*context.detections : nullptr))
+        values.push_back(std::move(value));
     return values;
 }
 

@@ -34,6 +34,19 @@ struct PairFacts {
     int comparison_interval = 1;  // 1 or 2
 };
 
+/// What became of a stimulus of a secondary task, or of a press without one.
+enum class DetectionResult { Hit, Miss, FalseAlarm, NotScored };
+const char* detectionResultName(DetectionResult result);  // as stored
+std::optional<DetectionResult> detectionResultNamed(std::string_view name);
+
+/// A stimulus with its response, or a press that answers none. Haptic periods after the attempt's tick 0.
+struct Detection {
+    DetectionResult result = DetectionResult::NotScored;
+    std::optional<std::int64_t> stimulus = {}, off = {};  // its command goes to 1, and back to 0
+    std::optional<std::int64_t> response = {};            // the press
+    friend bool operator==(const Detection&, const Detection&) = default;
+};
+
 /// What the measures need to know of a trial beside its records.
 struct TrialContext {
     std::int64_t start_tick = 0;  // the hand held the start pose: contact on, "go" shown
@@ -44,6 +57,8 @@ struct TrialContext {
     double engagement_depth = 0.001;  // [m]
     double clearance = 0.0;           // [m] radial, of the held peg in the target's bore
     std::variant<std::monostate, PassageFacts, ContourFacts, PlacementFacts, PairFacts> form;  // first: peg in hole
+    bool watched = true;  // false: real parts, which no device feels; only times and outcome are known
+    std::optional<std::vector<Detection>> detections = {};  // of the secondary task, where there is one
 };
 
 /// A measure's definition: name (the column; its unit is the suffix), label, unit, formula.
@@ -66,7 +81,8 @@ struct Value {
 /// Every measure of one trial from its recorded ticks, in the order of definitions().
 /// `records` are in order of their ticks; those outside [start_tick, end_tick] are ignored. The formulas take them as
 /// consecutive: where records are missing, a step spans the gap; times count a missing tick as one period, sums over
-/// ticks leave it out. Only stored values enter, so every measure can be computed again from an export of the samples.
+/// ticks leave it out. Of a trial that is not watched all but success, trial time and the secondary task's are empty.
+/// Only stored values enter, so every measure can be computed again from an export of the samples.
 std::vector<Value> computeMeasures(std::span<const TickRecord> records, const TrialContext& context);
 
 }  // namespace passung::measures

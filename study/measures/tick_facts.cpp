@@ -14,7 +14,8 @@ Vec3 toVec3(const std::array<float, 3>& values) { return {values[0], values[1], 
 
 bool isContact(const TickRecord& record) {
     return record.contacts > 0 || toVec3(record.force_N).norm() > kNoForce ||
-           toVec3(record.torque_Nm).norm() > kNoTorque;
+           toVec3(record.torque_Nm).norm() > kNoTorque ||
+           ((record.status & kWrenchWithheld) != 0 && record.hand_depth_m > 0.0f);
 }
 
 std::optional<double> tipDepthInBore(const TickRecord& record, const Pose& X_TW, double clearance) {

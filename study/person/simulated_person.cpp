@@ -13,7 +13,7 @@ namespace {
 using P = SimulatedPerson;
 
 // The order is part of the definition: a new trait goes to the end, so that known persons stay who they are.
-constexpr std::array<Trait, 19> kTraits = {{
+constexpr std::array<Trait, 22> kTraits = {{
     {"visual_delay", "s", "sight to reaction", &P::visual_delay, 0.15, 0.15, 0.32},
     {"haptic_delay", "s", "touch to reaction", &P::haptic_delay, 0.15, 0.09, 0.20},
     {"arm_mass", "kg", "at the handle", &P::arm_mass, 0.25, 0.3, 1.0},
@@ -35,6 +35,10 @@ constexpr std::array<Trait, 19> kTraits = {{
     {"lapse_rate", "1", "share of trials with a lapse: lost in thought before the part is lowered", &P::lapse_rate, 0.6,
      0.004, 0.1},
     {"lapse_duration", "s", "of a lapse", &P::lapse_duration, 0.3, 0.7, 3.5},
+    {"reaction_time", "s", "to a stimulus of a secondary task, with nothing else to do", &P::reaction_time, 0.15, 0.25,
+     0.7},
+    {"reaction_load", "1", "how much longer that takes while a part touches", &P::reaction_load, 0.4, 0.05, 0.9},
+    {"miss_rate", "1", "share of stimuli that go unnoticed, with nothing else to do", &P::miss_rate, 0.6, 0.005, 0.25},
 }};
 
 }  // namespace

@@ -29,6 +29,9 @@ struct SimulatedPerson {
     double learning_trials = 8.0;
     double lapse_rate = 0.02;
     double lapse_duration = 1.5;
+    double reaction_time = 0.38;
+    double reaction_load = 0.3;
+    double miss_rate = 0.04;
 
     /// N·s/m and N·m·s/rad from the ratios.
     double armDamping() const;

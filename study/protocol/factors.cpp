@@ -187,8 +187,8 @@ void applyOverride(const Override& change, StudyTables& tables, Errors& errors) 
         return report("is no path of keys such as contact.method");
     std::size_t next = 0;
     Node* table = &tables.scene;
-    if (segments[0] == "task" || segments[0] == "feedback") {
-        table = segments[0] == "task" ? &tables.task : &tables.feedback;
+    if (segments[0] == "task" || segments[0] == "feedback" || segments[0] == "secondary") {
+        table = segments[0] == "task" ? &tables.task : segments[0] == "feedback" ? &tables.feedback : &tables.secondary;
         next = 1;
     } else if (segments[0] == "part") {
         table = segments.size() > 1 ? findPart(tables.scene, segments[1]) : nullptr;

@@ -27,6 +27,7 @@ struct StudyTables {
     Node scene;
     Node task;
     Node feedback;
+    Node secondary;
 };
 
 /// Reads the [[factor]] tables. The result borrows from `tables`. `taken_names` are columns that exports have anyway.

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "study/protocol/condition_keys.h"
 #include "study/protocol/questionnaire_keys.h"
 #include "study/protocol/scene_keys.h"
 #include "study/protocol/task_keys.h"
@@ -54,7 +55,7 @@ constexpr std::array kStudyKeys{
     Key{"level", "catch", Boolean, kAny, "", "false", "Conditions with this level are catch trials: in no pass, only where a block has `catch_trials`."},
     Key{"level", "set", Table, kAny, "", "(its `value`)", "Several keys at once: { \"contact.method\" = \"penalty\", ... }."},
 
-    Key{"feedback", "kinesthetic", Boolean, kAny, "", "true", "Forces are rendered; only true is supported."},
+    Key{"feedback", "kinesthetic", Boolean, kAny, "", "true", "Forces are displayed. false: contact is computed and recorded as ever, but the device commands none."},
     Key{"feedback", "cues", Texts, kAny, "", "(none)", "Beside the force: \"visual\", \"vibrotactile\", \"audio\". The command of each, from 0 to 1, follows from the recorded ticks and is a column of the exported samples; no transducer is driven yet."},
     Key{"feedback", "cue_full_depth_mm", Number, above(0), "", "2", "Depth at the hand's pose at which the visual and the vibrotactile command are 1."},
     Key{"feedback", "cue_full_speed_mm_per_s", Number, above(0), "", "100", "Speed of the hand at an impact at which the audio command is 1."},
@@ -108,7 +109,8 @@ constexpr std::array<Key, n + m> joined(const std::array<Key, n>& first, const s
         return std::array<Key, n + m>{first[i]..., second[j]...};
     }(std::make_index_sequence<n>{}, std::make_index_sequence<m>{});
 }
-constexpr auto kKeys = joined(joined(joined(kStudyKeys, kTaskKeys), scene_rows::kSceneKeys), kQuestionnaireKeys);
+constexpr auto kKeys =
+    joined(joined(joined(joined(kStudyKeys, kTaskKeys), scene_rows::kSceneKeys), kConditionKeys), kQuestionnaireKeys);
 
 /// Tables in the order of the documentation: id, heading, sentence.
 struct TableInfo {
@@ -151,6 +153,9 @@ constexpr std::array kTables{
     TableInfo{"task.free_placement", "`[task]` of type `free_placement`", ""},
     TableInfo{"task.discrimination_pair", "`[task]` of type `discrimination_pair`", ""},
     TableInfo{"feedback", "`[feedback]`", ""},
+    TableInfo{"secondary", "`[secondary]`", "In the manner of ISO 17488: onsets 3 to 5 s apart, responses from 100 to 2500 ms. Ours: intervals are uniform\nbetween the bounds and go on from an attempt's first tick; other presses are false alarms."},
+    TableInfo{"text", "`[text.LANGUAGE]`", "A text for each name; a text that one language has, every one must have, and the clauses of consent too."},
+    TableInfo{"instruction", "`[[instruction]]`", ""},
     TableInfo{"block", "`[[block]]`", ""},
     TableInfo{"consent", "`[[consent]]`", "Each decision is stored with the SHA-256 of the text that it answers: a changed text has to be asked anew."},
     TableInfo{"resume", "`[resume]`", ""},

@@ -109,9 +109,38 @@ std::string cuesJson(const Cues& cues) {
         .boolean("visual", cues.visual)
         .boolean("vibrotactile", cues.vibrotactile)
         .boolean("audio", cues.audio)
+        .boolean("masking_noise", cues.masking_noise)
         .number("full_depth_m", cues.full_depth)
         .number("full_speed_m_per_s", cues.full_speed)
         .number("sound_decay_s", cues.sound_decay)
+        .str();
+}
+
+std::string secondaryJson(const SecondaryTask& task) {
+    return JsonObject()
+        .text("stimulus", stimulusName(task.stimulus))
+        .number("interval_min_s", task.least_interval)
+        .number("interval_max_s", task.most_interval)
+        .number("stimulus_s", task.duration)
+        .number("response_min_s", task.earliest)
+        .number("response_max_s", task.latest)
+        .integer("button", task.button)
+        .str();
+}
+
+std::string textJson(const StudyText& text) {
+    JsonObject json;
+    json.text("name", text.name);
+    for (const auto& [language, words] : text.languages) json.text(language, words);
+    return json.str();
+}
+
+std::string instructionJson(const Instruction& page) {
+    return JsonObject()
+        .text("moment", showAtName(page.moment))
+        .text("block", page.block)
+        .text("text", page.text)
+        .text("picture", page.picture)
         .str();
 }
 
@@ -247,6 +276,9 @@ std::string paramsJson(const Condition& condition) {
                                     .json("effects", effectsJson(other.scene.effects))
                                     .str());
     }
+    if (!scene.display_wrench) json.boolean("kinesthetic", false);
+    if (condition.timed_by != TimedBy::Program) json.text("timed_by", timedByName(condition.timed_by));
+    if (condition.secondary.any()) json.json("secondary", secondaryJson(condition.secondary));
     return json.str();
 }
 
@@ -266,6 +298,8 @@ std::string expandedJson(const StudyPlan& plan) {
         .integer("allocation_blocks", plan.allocation_blocks)
         .integer("sessions", sessionsOf(plan))
         .json("analyses", listOf(plan.analyses, analysisJson))
+        .json("texts", listOf(plan.texts, textJson))
+        .json("instructions", listOf(plan.instructions, instructionJson))
         .json("loop", JsonObject().number("max_missed_share", plan.max_missed_share).str())
         .json("stable_stiffness", listOf(plan.stable_stiffness, stableJson))
         .json("measures", listOf(plan.measures, [](const std::string& name) { return jsonText(name); }))

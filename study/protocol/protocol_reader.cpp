@@ -10,6 +10,7 @@
 
 #include "study/protocol/analysis_reader.h"
 #include "study/protocol/block_reader.h"
+#include "study/protocol/condition_extras.h"
 #include "study/protocol/consent_reader.h"
 #include "study/protocol/duration.h"
 #include "study/protocol/factors.h"
@@ -21,6 +22,7 @@
 #include "study/protocol/session_rules.h"
 #include "study/protocol/start_pose.h"
 #include "study/protocol/task_reader.h"
+#include "study/protocol/texts_reader.h"
 
 namespace passung::protocol {
 namespace {
@@ -61,11 +63,13 @@ public:
         readLoop();
         plan_.resume = readResume(root_, errors_);
         plan_.consent = readConsent(root_, errors_);
+        readTexts(root_, plan_, errors_);
         plan_.measures = readMeasures(root_, plan_, known_measures_, errors_);
         plan_.analyses = readAnalyses(root_.items("analysis"), plan_, errors_);
         if (errors_.empty()) checkBlocks(root_.items("block"), plan_, errors_);
         if (errors_.empty()) readBlockConditions();
         if (errors_.empty()) checkDuration();
+        if (!root_.has("measures")) dropUnused();
         tidy(errors_);
         if (!errors_.empty()) return errors_;
         listMeshes();
@@ -158,7 +162,7 @@ private:
             const Node* table = root_.node(name);
             return table != nullptr ? *table : emptyTable(document_.place);
         };
-        StudyTables tables{scene, copyOf("task"), copyOf("feedback")};
+        StudyTables tables{scene, copyOf("task"), copyOf("feedback"), copyOf("secondary")};
         Condition condition;
         if (block != nullptr)
             for (const Entry& entry : block->find("set")->entries)
@@ -185,7 +189,7 @@ private:
         condition.allow_unstable = content.allow_unstable;
         condition.device = std::move(content.device);
         if (errors_.size() == before && root_.has("task")) condition.task = readTask(tables, condition.scene, errors_);
-        readFeedback(tables.feedback, condition);
+        readConditionExtras(tables, condition, errors_);
         const bool pair = std::holds_alternative<DiscriminationPairTask>(condition.task.form);
         if (errors_.size() == before && pair)
             condition.comparison = readComparison(tables, condition, devices_, errors_);
@@ -217,28 +221,6 @@ private:
         }
     }
 
-    void readFeedback(const Node& table, Condition& condition) {
-        const TableReader read(table, {"feedback"}, "feedback", errors_);
-        if (read.has("kinesthetic") && !read.boolean("kinesthetic")) read.fail("kinesthetic", "only true is supported");
-        condition.shown = read.text("shown_pose") == "device" ? ShownPose::Device : ShownPose::Proxy;
-        Cues& cues = condition.cues;
-        cues.full_depth = read.number("cue_full_depth_mm");
-        cues.full_speed = read.number("cue_full_speed_mm_per_s");
-        cues.sound_decay = read.number("cue_sound_decay_ms");
-        for (const Node& item : read.items("cues")) {
-            bool* cue = item.text == "visual"         ? &cues.visual
-                        : item.text == "vibrotactile" ? &cues.vibrotactile
-                        : item.text == "audio"        ? &cues.audio
-                                                      : nullptr;
-            if (cue == nullptr || *cue)
-                errors_.push_back(
-                    errorAt(item.place, "feedback.cues", valueText(item),
-                            cue == nullptr ? "must be \"visual\", \"vibrotactile\" or \"audio\"" : "is listed twice"));
-            else
-                *cue = true;
-        }
-    }
-
     void readBlockTables() {
         if (root_.has("block") && root_.items("block").empty()) root_.fail("block", "needs at least one block");
         plan_.blocks = readBlocks(root_.items("block"), plan_.factors, errors_);
@@ -258,6 +240,17 @@ private:
         const Node absent = emptyTable(document_.place);
         const TableReader read(table != nullptr ? *table : absent, {"loop"}, "loop", errors_);
         plan_.max_missed_share = read.number("max_missed_share");
+    }
+
+    /// Without a list a study stores every measure that it can have.
+    void dropUnused() {
+        const auto& conditions = plan_.conditions;
+        if (std::any_of(conditions.begin(), conditions.end(), [](const auto& c) { return c.secondary.any(); })) return;
+        std::erase_if(plan_.measures, [&](const std::string& name) {
+            return name.starts_with("secondary_") &&
+                   std::none_of(plan_.analyses.begin(), plan_.analyses.end(),
+                                [&](const Analysis& analysis) { return analysis.outcome == name; });
+        });
     }
 
     void listDevices() {
@@ -334,6 +327,13 @@ private:
              });
         warn("friction of one side only has no effect: the held part rubs with another if neither has 0",
              [&](const Condition& condition) { return rubs(condition, true) != rubs(condition, false); });
+        warn("feedback.masking_noise = true covers the audio cue",
+             [](const Condition& condition) { return condition.cues.masking_noise && condition.cues.audio; });
+        warn("secondary.stimulus is a cue of the contact too: who answers one may mean the other", [](const auto& c) {
+            return (c.cues.vibrotactile && c.secondary.stimulus == Stimulus::Vibrotactile) ||
+                   (c.cues.visual && c.secondary.stimulus == Stimulus::Visual) ||
+                   (c.cues.audio && c.secondary.stimulus == Stimulus::Audio);
+        });
     }
 
     const Node& document_;
@@ -352,8 +352,12 @@ Result<StudyPlan> readProtocol(const std::string& path, std::span<const DeviceDe
     const auto text = readFile(path);
     if (!text) return text.errors();
     auto plan = readProtocolText(*text, path, devices, known_measures);
-    if (!plan || plan->questionnaires.empty()) return plan;
-    if (const auto done = loadQuestionnaires(*plan, readFile); !done) return done.errors();
+    if (!plan) return plan;
+    Errors errors = checkPictures(*plan, readFile);
+    if (!plan->questionnaires.empty())
+        if (const auto done = loadQuestionnaires(*plan, readFile); !done)
+            errors.insert(errors.end(), done.errors().begin(), done.errors().end());
+    if (!errors.empty()) return errors;
     return plan;
 }
 

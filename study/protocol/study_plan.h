@@ -9,6 +9,8 @@
 #include "core/model/scene_spec.h"
 #include "study/design/design.h"
 #include "study/protocol/block.h"
+#include "study/protocol/secondary_task.h"
+#include "study/protocol/study_texts.h"
 #include "study/protocol/task.h"
 #include "study/questionnaire/definition.h"
 
@@ -36,10 +38,11 @@ enum class ShownPose { Proxy, Device };  // what the display draws for the held 
 /// the recorded ticks by measures::CueSignals.
 struct Cues {
     bool visual = false, vibrotactile = false, audio = false;
-    double full_depth = 0.002;  // [m] of the hand's pose at which visual and vibration are 1
-    double full_speed = 0.1;    // [m/s] of the hand at an impact at which the sound is 1
-    double sound_decay = 0.05;  // [s] in which the sound falls to 37 %
-    bool any() const { return visual || vibrotactile || audio; }
+    bool masking_noise = false;  // over the headphones, so that nothing else is heard: 1 all the time
+    double full_depth = 0.002;   // [m] of the hand's pose at which visual and vibration are 1
+    double full_speed = 0.1;     // [m/s] of the hand at an impact at which the sound is 1
+    double sound_decay = 0.05;   // [s] in which the sound falls to 37 %
+    bool any() const { return visual || vibrotactile || audio || masking_noise; }
 };
 
 /// One combination of factor levels with everything it means.
@@ -57,6 +60,8 @@ struct Condition {
     std::optional<model::SceneSpec> comparison;  // of a discrimination_pair: the other interval's scene
     ShownPose shown = ShownPose::Proxy;
     Cues cues;
+    TimedBy timed_by = TimedBy::Program;
+    SecondaryTask secondary;
     std::string device;       // preset
     std::string params_json;  // every resolved number, for the attempt's row
 };
@@ -129,6 +134,10 @@ struct StudyPlan {
     double max_missed_share = 0.01;                 // of a trial's cycles: an attempt that missed more is not valid
     std::vector<std::string> measures;              // names, all known to study/measures
     std::vector<MeshSource> meshes;                 // each once; their content is no part of the text
+    std::vector<std::string> languages;             // of the texts, in the order of the file
+    std::vector<StudyText> texts;                   // every one in all of these languages
+    std::vector<Instruction> instructions;          // in the order in which they are shown
+    std::vector<PictureSource> pictures;            // each once; their content is no part of the text
     std::vector<ConsentClause> consent;             // in the order in which they are asked
     std::vector<StableStiffness> stable_stiffness;  // of each device that a condition names, by name
     std::string source_text;                        // the file, byte for byte

@@ -11,7 +11,7 @@ namespace passung::session {
 
 /// What an experimenter may tell a session.
 enum class CommandKind {
-    Start,       // a session that waits for it begins
+    Start,       // a session that waits for it begins; or the clock of a trial that the experimenter times
     Pause,       // after the running trial
     Continue,    // after a pause or an emergency stop
     Repeat,      // the running trial from its beginning, else the last one; its attempt no longer counts
@@ -21,10 +21,12 @@ enum class CommandKind {
     Note,        // a remark in the data
     Abort,       // ends the session
     Stop,        // emergency: motors off at once, the running attempt is aborted, the session pauses
+    Done,        // a trial that the experimenter times has succeeded
+    Failed,      // or not
 };
 
-inline constexpr std::string_view kCommandNames[] = {"start",      "pause", "continue", "repeat", "skip",
-                                                     "invalidate", "back",  "note",     "abort",  "stop"};
+inline constexpr std::string_view kCommandNames[] = {"start", "pause", "continue", "repeat", "skip", "invalidate",
+                                                     "back",  "note",  "abort",    "stop",   "done", "failed"};
 constexpr std::string_view commandName(CommandKind kind) { return kCommandNames[static_cast<std::size_t>(kind)]; }
 constexpr std::optional<CommandKind> commandNamed(std::string_view name) {
     for (std::size_t i = 0; i < std::size(kCommandNames); ++i)

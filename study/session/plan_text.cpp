@@ -34,10 +34,17 @@ std::string factorsText(const protocol::StudyPlan& plan) {
 
 std::string conditionsText(const protocol::StudyPlan& plan) {
     std::string text = "Conditions\n";
-    for (std::size_t i = 0; i < plan.conditions.size(); ++i)
-        text += fmt::format("  {:>3}  {}  (device {}, {:.6g} N/m, {:.6g} Nm/rad)\n", i + 1, plan.conditions[i].name,
-                            plan.conditions[i].device, plan.conditions[i].scene.contact.stiffness,
-                            plan.conditions[i].scene.contact.rotational_stiffness);
+    for (std::size_t i = 0; i < plan.conditions.size(); ++i) {
+        const protocol::Condition& condition = plan.conditions[i];
+        const model::ContactSpec& contact = condition.scene.contact;
+        text += fmt::format("  {:>3}  {}  (device {}", i + 1, condition.name, condition.device);
+        if (condition.timed_by != protocol::TimedBy::Program)
+            text += fmt::format(" rests, timed by the {})\n", protocol::timedByName(condition.timed_by));
+        else if (!condition.scene.display_wrench)
+            text += ", no force is displayed)\n";
+        else
+            text += fmt::format(", {:.6g} N/m, {:.6g} Nm/rad)\n", contact.stiffness, contact.rotational_stiffness);
+    }
     return text + "\n";
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,11 +16,19 @@ namespace passung::session {
 struct Judgement {
     measures::Outcome outcome = measures::Outcome::Aborted;
     std::vector<measures::Value> measures;
+    std::vector<measures::Detection> detections;
 };
 
-/// Judges recorded ticks once more, as the session did while they came. `outcome` and `end_time` [periods after tick 0]
-/// are what was stored: they say when somebody aborted the attempt, which is in no record. `attempt_seed`: likewise.
+/// What is stored of an attempt and in none of its records: what came from outside, and its seed.
+struct StoredEnd {
+    measures::Outcome outcome = measures::Outcome::Aborted;
+    std::int64_t end_time = 0;                    // [periods after tick 0]
+    std::optional<std::int64_t> start_time = {};  // likewise; of a trial that the experimenter timed
+    std::uint64_t seed = 0;                       // of the attempt
+};
+
+/// Judges recorded ticks once more, as the session did while they came.
 Result<Judgement> judgeAgain(const protocol::Condition& condition, std::span<const TickRecord> records,
-                             measures::Outcome outcome, std::int64_t end_time, std::uint64_t attempt_seed);
+                             const StoredEnd& stored);
 
 }  // namespace passung::session

@@ -11,6 +11,7 @@
 #include "core/base/random.h"
 #include "study/protocol/json.h"
 #include "study/session/rendered_scenes.h"
+#include "study/session/secondary.h"
 
 namespace passung::session {
 namespace {
@@ -136,6 +137,9 @@ void Session::beginTrial() {
     if (!X_WT) return fail("prepare", X_WT.errors());
 
     if (swapsDevice(condition.device)) return;
+    if (!instructed_block_) instruct(protocol::ShowAt::SessionStart);
+    if (instructed_block_ != trial().block_index) instruct(protocol::ShowAt::BeforeBlock);
+    instructed_block_ = trial().block_index;
     AttemptStart start;
     start.trial_index = trial().trial_index;
     start.attempt_no = past_[agenda_.next()].attempts + 1;
@@ -149,12 +153,18 @@ void Session::beginTrial() {
     const auto id = sink_.startAttempt(start);
     if (!id) return fail("start attempt", id.errors());
     ++past_[agenda_.next()].attempts;
-    attempt_.emplace(Attempt{*id, condition, TrialCourse(condition.task, *X_WT, start.seed), {}, {}});
+    attempt_.emplace(
+        Attempt{*id, condition, TrialCourse(condition.task, *X_WT, start.seed, condition.timed_by), {}, {}});
+    if (condition.secondary.any()) attempt_->secondary.emplace(detectionSettings(condition.secondary), start.seed);
+    if (setup_.timer != nullptr && condition.timed_by == protocol::TimedBy::Experimenter)
+        setup_.timer->begin(condition, start.seed, start.trial_index);
     apparatus_.start();
     state_ = SessionState::InTrial;
 }
 
 void Session::watchTrial() {
+    if (setup_.timer != nullptr && attempt_->condition.timed_by == protocol::TimedBy::Experimenter)
+        if (const auto said = setup_.timer->commandAt(attempt_->clock.periods())) static_cast<void>(command(*said));
     apparatus_.advance(kTicksPerLook);
     attempt_->silent_looks = takeRecords() > 0 ? 0 : attempt_->silent_looks + 1;
     const bool silent = attempt_->silent_looks >= kSilentLooks && !attempt_->course.ended();
@@ -191,6 +201,7 @@ void Session::judge(std::span<const TickRecord> records) {
         attempt_->missing_ticks += record.tick - attempt_->next_tick;
         attempt_->clock.at(record);
         attempt_->next_tick = record.tick + 1;
+        if (attempt_->secondary) attempt_->secondary->follow(record);
         if (attempt_->course.ended()) continue;
         attempt_->course.follow(record, events);
         if (attempt_->course.started()) attempt_->records.push_back(record);
@@ -248,8 +259,12 @@ bool Session::isWhole() const {
 
 AttemptEnd Session::describeEnd(LoopHealth health) const {
     const TrialCourse& course = attempt_->course;
-    const measures::TrialContext context = course.context();
+    measures::TrialContext context = course.context();
     AttemptEnd end;
+    if (attempt_->secondary) {
+        context.detections = attempt_->secondary->detections(course.startTime(), course.endTime());
+        end.detections = *context.detections;
+    }
     end.end_ns = session_ns_ + course.endTime() * kTickNanoseconds;
     end.outcome = context.outcome;
     end.measures = measures::computeMeasures(attempt_->records, context);
@@ -284,8 +299,26 @@ void Session::appendEvents(const std::vector<TrialEvent>& events) {
     }
 }
 
+/// Logs the pages of the moment as shown; before a block: the next trial's.
+void Session::instruct(protocol::ShowAt moment) {
+    for (const protocol::Instruction& page : setup_.plan.instructions) {
+        if (page.moment != moment || (!page.block.empty() && page.block != trial().block)) continue;
+        Event event;
+        event.t_ns = session_ns_;
+        event.source = "session";
+        event.event = "instruction";
+        event.payload_json = protocol::JsonObject()
+                                 .text("moment", protocol::showAtName(moment))
+                                 .text("text", page.text)
+                                 .text("picture", page.picture)
+                                 .str();
+        sink_.appendEvent(event);
+    }
+}
+
 void Session::finish(SessionState state) {
     state_ = state;
+    if (state == SessionState::Complete) instruct(protocol::ShowAt::SessionEnd);
     const auto finished = sink_.finishSession(state == SessionState::Complete, session_ns_);
     if (finished) return;
     state_ = SessionState::Failed;

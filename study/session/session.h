@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "study/measures/detection.h"
 #include "study/session/apparatus.h"
 #include "study/session/command.h"
 #include "study/session/questionnaire_desk.h"
@@ -75,6 +76,7 @@ private:
         std::int64_t missing_ticks = 0;
         int silent_looks = 0;
         std::string invalidated = {};  // why the experimenter does not want it to count; empty: nothing against it
+        std::optional<measures::DetectionTask> secondary = {};
     };
 
     const design::PlannedTrial& trial() const { return agenda_.trial(agenda_.next()); }
@@ -88,6 +90,7 @@ private:
     void finishTrial(std::optional<Then> then = {});  // none: as the protocol says
     void takeEnd(const Attempt& attempt, const AttemptEnd& end, Then then);
     AttemptEnd describeEnd(LoopHealth health) const;
+    void instruct(protocol::ShowAt moment);
     const protocol::Block& blockOf(std::size_t place) const;
     void appendEvents(const std::vector<TrialEvent>& events);
     void finish(SessionState state);
@@ -105,6 +108,7 @@ private:
     Answer invalidate(const Command& command);
     Answer goBack(const Command& command);
     Answer halt(const Command& command);
+    Answer time(const Command& command);
     Result<Done> discount(std::size_t place, const std::string& reason);
     void abortRunning(const std::string& reason, Then then);
     std::optional<std::size_t> placeOf(AttemptId attempt) const;
@@ -120,13 +124,14 @@ private:
     bool pause_asked_ = false;
     std::optional<Attempt> attempt_;
     Agenda agenda_;
-    std::vector<Past> past_;                 // by place in the plan
-    std::optional<std::size_t> last_;        // place of the newest attempt that ended
-    std::optional<std::size_t> rested_for_;  // place of the trial that a rest was last looked for
-    std::int64_t rest_left_ = 0;             // [periods] of the running rest
-    std::string device_in_use_;              // of the last trial, or being swapped to
-    bool swapping_ = false;                  // until the first trial on it begins
-    std::int64_t session_ns_;                // at tick 0 of the running or next attempt
+    std::vector<Past> past_;                        // by place in the plan
+    std::optional<std::size_t> last_;               // place of the newest attempt that ended
+    std::optional<std::size_t> rested_for_;         // place of the trial that a rest was last looked for
+    std::int64_t rest_left_ = 0;                    // [periods] of the running rest
+    std::string device_in_use_;                     // of the last trial, or being swapped to
+    bool swapping_ = false;                         // until the first trial on it begins
+    std::optional<std::int64_t> instructed_block_;  // the last one whose instructions this run has shown
+    std::int64_t session_ns_;                       // at tick 0 of the running or next attempt
     Errors errors_;
 };
 

@@ -31,8 +31,14 @@ Answer Session::command(const Command& command) {
 std::optional<std::string> Session::refusalByState(CommandKind kind) const {
     switch (kind) {
         case CommandKind::Start:
+            if (attempt_ && attempt_->course.awaitsExperimenter()) break;
             if (state_ != SessionState::Ready) return "the session has begun already";
             break;
+        case CommandKind::Done:
+        case CommandKind::Failed:
+            if (attempt_ && attempt_->course.endsByExperimenter()) break;
+            return attempt_ && attempt_->course.awaitsExperimenter() ? "the trial's clock has not been started"
+                                                                     : "no trial runs that the experimenter times";
         case CommandKind::Continue:
             if (state_ != SessionState::Paused) return "the session is not paused";
             break;
@@ -94,8 +100,12 @@ void Session::logCommand(const Command& command, const std::optional<std::string
 Answer Session::execute(const Command& command) {
     switch (command.kind) {
         case CommandKind::Start:
+            if (attempt_) return time(command);
             state_ = SessionState::BetweenTrials;
             return accepted("the session begins");
+        case CommandKind::Done:
+        case CommandKind::Failed:
+            return time(command);
         case CommandKind::Continue:
             apparatus_.rearm();
             state_ = SessionState::BetweenTrials;
@@ -168,6 +178,17 @@ Answer Session::goBack(const Command& command) {
     if (const auto done = discount(place, reason); !done) return {false, toString(done.errors().front())};
     agenda_.goBack();
     return accepted(nameOf(place) + " is next");
+}
+
+/// Starts or stops the clock of a trial that the experimenter times, at the next tick.
+Answer Session::time(const Command& command) {
+    const std::string name = nameOf(agenda_.next());
+    if (command.kind == CommandKind::Start) {
+        attempt_->course.begin();
+        return accepted("the clock of " + name + " runs");
+    }
+    attempt_->course.conclude(command.kind == CommandKind::Done);
+    return accepted(name + (command.kind == CommandKind::Done ? " has succeeded" : " has failed"));
 }
 
 Answer Session::halt(const Command& command) {

@@ -11,6 +11,7 @@
 #include "study/session/questionnaire_source.h"
 #include "study/session/resume.h"
 #include "study/session/trial_sink.h"
+#include "study/session/trial_timer.h"
 
 namespace passung::session {
 
@@ -24,6 +25,7 @@ struct SessionSetup {
     bool waits = false;                        // for the command Start, and for Continue when a device is swapped
     std::optional<Resumption> resumed = {};    // goes on from there; none: begins
     QuestionnaireSource* answers = nullptr;    // who answers; may stay null if the plan has no questionnaire
+    TrialTimer* timer = nullptr;               // of trials that the experimenter times; null: commands do it
 };
 
 /// A trial that is over and durable.

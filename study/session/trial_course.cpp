@@ -25,11 +25,23 @@ const char* eventName(TrialState state) {
 
 }  // namespace
 
-TrialCourse::TrialCourse(const protocol::Task& task, const Pose& X_WT, std::uint64_t attempt_seed)
+using protocol::TimedBy;
+
+TrialCourse::TrialCourse(const protocol::Task& task, const Pose& X_WT, std::uint64_t attempt_seed, TimedBy timed_by)
     : X_WT_(X_WT),
       leave_radius_(task.leave_radius),
       rule_(task, X_WT, attempt_seed),
-      timeout_(std::llround(task.timeout / kTickSeconds)) {}
+      timeout_(std::llround(task.timeout / kTickSeconds)),
+      timed_by_(timed_by) {}
+
+bool TrialCourse::awaitsExperimenter() const {
+    return timed_by_ == TimedBy::Experimenter && state_ == TrialState::AwaitingStart && !begin_asked_;
+}
+
+bool TrialCourse::endsByExperimenter() const {
+    return timed_by_ == TimedBy::Experimenter && (state_ == TrialState::Running || begin_asked_) && !ended() &&
+           !conclusion_;
+}
 
 void TrialCourse::follow(const TickRecord& record, std::vector<TrialEvent>& events) {
     PASSUNG_ASSERT(!ended());
@@ -38,6 +50,15 @@ void TrialCourse::follow(const TickRecord& record, std::vector<TrialEvent>& even
     if (state_ == TrialState::AwaitingStart) awaitStart(record, events);
     if (state_ != TrialState::Running) return;
 
+    const bool over = clock_.periods() - *start_time_ >= timeout_;
+    if (timed_by_ == TimedBy::Program) return watch(record, over, events);
+    std::optional<TrialState> verdict;
+    if (timed_by_ == TimedBy::Experimenter && *start_tick_ < record.tick) verdict = conclusion_;
+    if (!verdict && over) verdict = timed_by_ == TimedBy::Clock ? TrialState::Succeeded : TrialState::TimedOut;
+    if (verdict) end(*verdict, record.tick, eventName(*verdict), events);
+}
+
+void TrialCourse::watch(const TickRecord& record, bool over, std::vector<TrialEvent>& events) {
     if (!touched_ && measures::isContact(record)) {
         touched_ = true;
         events.push_back({clock_.periods(), "first_contact"});
@@ -47,8 +68,7 @@ void TrialCourse::follow(const TickRecord& record, std::vector<TrialEvent>& even
         if (*verdict == TrialState::Aborted) return abort(record.tick, "start pose not reached", events);
         return end(*verdict, record.tick, eventName(*verdict), events);
     }
-    if (!rule_.timesItself() && clock_.periods() - *start_time_ >= timeout_)
-        end(TrialState::TimedOut, record.tick, eventName(TrialState::TimedOut), events);
+    if (!rule_.timesItself() && over) end(TrialState::TimedOut, record.tick, eventName(TrialState::TimedOut), events);
 }
 
 void TrialCourse::abort(std::int64_t tick, std::string reason, std::vector<TrialEvent>& events) {
@@ -69,20 +89,27 @@ measures::TrialContext TrialCourse::context() const {
                                                        : Outcome::Aborted;
     context.X_WT = X_WT_;
     context.leave_radius = leave_radius_;
+    context.watched = timed_by_ == TimedBy::Program;
     rule_.describe(context);
     return context;
 }
 
 void TrialCourse::awaitStart(const TickRecord& record, std::vector<TrialEvent>& events) {
-    if (record.status & kEngaged) {
-        state_ = TrialState::Running;
-        start_tick_ = record.tick;
-        start_time_ = clock_.periods();
-        missed_at_start_ = clock_.missed();
-        events.push_back({clock_.periods(), "trial_started"});
+    if (timed_by_ != TimedBy::Program) {
+        if (begin_asked_ || timed_by_ == TimedBy::Clock) start(record, events);
+    } else if (record.status & kEngaged) {
+        start(record, events);
     } else if (clock_.periods() >= kStartLimit) {
         abort(record.tick, "start pose not reached", events);
     }
+}
+
+void TrialCourse::start(const TickRecord& record, std::vector<TrialEvent>& events) {
+    state_ = TrialState::Running;
+    start_tick_ = record.tick;
+    start_time_ = clock_.periods();
+    missed_at_start_ = clock_.missed();
+    events.push_back({clock_.periods(), "trial_started"});
 }
 
 void TrialCourse::end(TrialState state, std::int64_t tick, const char* event, std::vector<TrialEvent>& events) {

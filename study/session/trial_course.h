@@ -16,11 +16,22 @@ namespace passung::session {
 /// tick. Time counts missed cycles as well as ticks. Aborted by itself if the start pose is not reached within
 /// kStartLimit, or if a wrench was not finite (the
 /// output is then zero, so whatever followed would not be the condition's contact).
+/// A trial that the experimenter times starts, and succeeds or fails, at the next tick after they say so; however long
+/// it waits for the start, and whatever the held part does. One that the clock times starts at its first tick and
+/// succeeds with its time-out.
 class TrialCourse {
 public:
     static constexpr std::int64_t kStartLimit = 60'000;  // [periods]
 
-    TrialCourse(const protocol::Task& task, const Pose& X_WT, std::uint64_t attempt_seed);
+    TrialCourse(const protocol::Task& task, const Pose& X_WT, std::uint64_t attempt_seed,
+                protocol::TimedBy timed_by = protocol::TimedBy::Program);
+
+    /// The experimenter starts the clock. @pre awaitsExperimenter()
+    void begin() { begin_asked_ = true; }
+    /// The experimenter stops it. @pre endsByExperimenter()
+    void conclude(bool success) { conclusion_ = success ? TrialState::Succeeded : TrialState::Failed; }
+    bool awaitsExperimenter() const;
+    bool endsByExperimenter() const;
 
     /// Takes the next record and appends what happened in it. @pre not ended()
     void follow(const TickRecord& record, std::vector<TrialEvent>& events);
@@ -36,6 +47,9 @@ public:
     measures::TrialContext context() const;
     const std::string& abortReason() const { return abort_reason_; }
 
+    /// When the trial started [periods since the attempt's tick 0]; none: it did not.
+    std::optional<std::int64_t> startTime() const { return start_time_; }
+
     /// When the attempt ended [periods since its tick 0]. @pre ended()
     std::int64_t endTime() const { return end_time_; }
 
@@ -49,12 +63,17 @@ public:
 
 private:
     void awaitStart(const TickRecord& record, std::vector<TrialEvent>& events);
+    void start(const TickRecord& record, std::vector<TrialEvent>& events);
+    void watch(const TickRecord& record, bool over, std::vector<TrialEvent>& events);
     void end(TrialState state, std::int64_t tick, const char* event, std::vector<TrialEvent>& events);
 
     Pose X_WT_;
     double leave_radius_;
     TrialRule rule_;
     std::int64_t timeout_;  // [periods]
+    protocol::TimedBy timed_by_;
+    bool begin_asked_ = false;
+    std::optional<TrialState> conclusion_;
     measures::PeriodClock clock_;
     TrialState state_ = TrialState::AwaitingStart;
     std::optional<std::int64_t> start_tick_;

@@ -31,6 +31,7 @@ struct AttemptEnd {
     bool valid = true;
     std::string invalid_reason;  // e.g. dropped records
     std::vector<measures::Value> measures;
+    std::vector<measures::Detection> detections;  // of the secondary task, by time
     LoopHealth health;
     bool timing_measured = true;  // false in virtual time: timing cells are exported as NA
 };

@@ -81,6 +81,7 @@ private:
                         "the same protocol (", ") has " + what + " there");
         };
         same("mesh_file", "mesh, sha256", "another mesh file");
+        same("picture_file", "picture, sha256", "another picture");
         same("stable_stiffness", "device, stable_stiffness_N_per_m, stable_rotational_stiffness_Nm_per_rad",
              "another stable stiffness of its device");
         same("accuracy_pick", "budget_us, candidate", "another pick of accuracy = \"auto\"");

@@ -323,6 +323,25 @@ CREATE TABLE contact_energy(
     PRIMARY KEY(attempt_id, place)) STRICT, WITHOUT ROWID;
 )sql";
 
+constexpr const char* kRevision7 = R"sql(
+-- the secondary task: stimuli with their responses, and presses that answer none
+CREATE TABLE secondary_response(
+    attempt_id INTEGER NOT NULL REFERENCES attempt ON DELETE CASCADE,
+    number INTEGER NOT NULL CHECK(number > 0),
+    stimulus_ns INTEGER,
+    off_ns INTEGER,
+    response_ns INTEGER,
+    result TEXT NOT NULL CHECK(result IN('hit','miss','false_alarm','not_scored')),
+    PRIMARY KEY(attempt_id, number)) STRICT, WITHOUT ROWID;
+-- pictures of the instructions
+CREATE TABLE picture_file(
+    protocol_sha256 TEXT NOT NULL REFERENCES protocol_version,
+    picture TEXT NOT NULL,
+    sha256 TEXT NOT NULL,
+    bytes INTEGER NOT NULL,
+    PRIMARY KEY(protocol_sha256, picture)) STRICT, WITHOUT ROWID;
+)sql";
+
 constexpr std::array kRevisions = {
     Revision{1, "Protocols, participants, sessions, trials, samples, timing and questionnaires", kRevision1, 1},
     // A reader that does not know what was picked would replay another scene.
@@ -333,6 +352,7 @@ constexpr std::array kRevisions = {
     // Samples are packed from here on: columns-v2 of a stream's encoding.
     Revision{5, "Clauses of consent, an audit whose details can be taken away, packed samples", kRevision5, 5},
     Revision{6, "Energy of each attempt by obstacle", kRevision6, 5},
+    Revision{7, "Responses to a secondary task, pictures of the instructions", kRevision7, 5},
 };
 
 bool isEmpty(const Database& database) { return database.integer("SELECT count(*) FROM sqlite_master") == 0; }

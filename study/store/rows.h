@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "study/measures/cues.h"
+#include "study/measures/measures.h"
 #include "study/session/apparatus.h"
 
 namespace passung::store {
@@ -185,6 +186,10 @@ struct AttemptRow {
     std::string app_version;
     std::optional<TimingRow> timing;
     measures::CueSettings cues;                          // what the condition has beside the force
+    bool kinesthetic = true;                             // the force was displayed
+    std::string timed_by = "program";                    // who said when the trial began and ended
+    std::string stimulus = "none";                       // of the secondary task
+    std::optional<std::int64_t> trial_ns;                // start of the trial
     std::map<std::string, double> measures;              // only those that are defined for this attempt
     std::vector<session::ContactEnergy> contact_energy;  // none of attempts from before schema revision 6
 
@@ -192,6 +197,13 @@ struct AttemptRow {
     bool counts() const {
         return valid && phase == "main" && (outcome == "success" || outcome == "failure" || outcome == "timeout");
     }
+};
+
+/// A stimulus of a secondary task with its response, or a press without one; times after the attempt's start.
+struct DetectionRow {
+    std::int64_t attempt_id = 0;
+    std::int64_t number = 1;  // by time
+    measures::Detection detection;
 };
 
 struct EventRow {

@@ -4,6 +4,7 @@
 #include "study/store/hex_text.h"
 #include "study/store/questionnaire_rows.h"
 #include "study/store/remarks.h"
+#include "study/store/secondary_rows.h"
 #include "study/store/session_json.h"
 #include "study/store/sqlite.h"
 #include "study/store/writer_thread.h"
@@ -201,6 +202,7 @@ void SessionWriter::storeEnd(const Database& database, const OpenAttempt& attemp
               hexText(end.health.state_hash), end.timing_measured, attempt_id)
         .run();
     insertMeasures(database, attempt_id, end.measures);
+    insertDetections(database, attempt_id, attempt.start_ns, end.detections);
     insertTiming(database, attempt_id, end.health, end.timing_measured);
     insertContactEnergy(database, attempt_id, end.health.contact_energy);
     transaction.commit();

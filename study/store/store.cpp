@@ -13,6 +13,7 @@
 #include "study/store/digest.h"
 #include "study/store/open_database.h"
 #include "study/store/participant_rows.h"
+#include "study/store/picture_rows.h"
 #include "study/store/process_lock.h"
 #include "study/store/questionnaire_rows.h"
 #include "study/store/remarks.h"
@@ -146,12 +147,14 @@ void requireSameStudy(const Database& database, const protocol::StudyPlan& plan)
 }
 
 std::string importPlan(const Database& database, const protocol::StudyPlan& plan,
-                       const std::vector<MeshContent>& meshes, const OpenOptions& options, bool keep) {
+                       const std::vector<MeshContent>& meshes, const std::vector<PictureContent>& pictures,
+                       const OpenOptions& options, bool keep) {
     const std::string sha256 = sha256Hex(plan.source_text);
     Transaction transaction(database);
     if (database.prepare("SELECT 1 FROM protocol_version WHERE protocol_sha256=?").bind(sha256).step()) {
         requireSeed(database, sha256, plan.seed);
         requireMeshes(database, sha256, meshes);
+        requirePictures(database, sha256, pictures);
         requireQuestionnaires(database, sha256, plan);
         storeSeed(database, sha256, plan.seed);
         insertMeasures(database);
@@ -166,6 +169,7 @@ std::string importPlan(const Database& database, const protocol::StudyPlan& plan
     storeSeed(database, sha256, plan.seed);
     Statement insert_mesh = database.prepare("INSERT INTO mesh_file VALUES(?, ?, ?, ?)");
     for (const MeshContent& mesh : meshes) insert_mesh.bind(sha256, mesh.mesh, mesh.sha256, mesh.bytes).run();
+    insertPictures(database, sha256, pictures);
     insertFactors(database, sha256, plan);
     insertConditions(database, sha256, plan);
     insertQuestionnaires(database, plan);
@@ -357,7 +361,10 @@ Result<std::string> Store::checkProtocol(const protocol::StudyPlan& plan) { retu
 Result<std::string> Store::importOrCheck(const protocol::StudyPlan& plan, bool keep) {
     const auto meshes = readMeshes(plan);
     if (!meshes) return meshes.errors();
-    return thread_->call([&](const Database& database) { return importPlan(database, plan, *meshes, options_, keep); });
+    const auto pictures = readPictures(plan);
+    if (!pictures) return pictures.errors();
+    return thread_->call(
+        [&](const Database& database) { return importPlan(database, plan, *meshes, *pictures, options_, keep); });
 }
 
 Result<std::vector<AccuracyRow>> Store::accuracy(const std::string& protocol_sha256) {

@@ -7,6 +7,7 @@
 #include "study/store/open_database.h"
 #include "study/store/questionnaire_rows.h"
 #include "study/store/sample_codec.h"
+#include "study/store/secondary_rows.h"
 #include "study/store/sqlite.h"
 #include "study/store/stable_stiffness_rows.h"
 
@@ -58,7 +59,12 @@ constexpr std::string_view kAttemptColumns =
     "m.loop, m.ticks, m.mean_us, m.sd_us, m.p99_us, m.p999_us, m.max_us, m.overruns, m.dropped_samples, "
     "json_extract(a.params_json, '$.cues.visual'), json_extract(a.params_json, '$.cues.vibrotactile'), "
     "json_extract(a.params_json, '$.cues.audio'), json_extract(a.params_json, '$.cues.full_depth_m'), "
-    "json_extract(a.params_json, '$.cues.full_speed_m_per_s'), json_extract(a.params_json, '$.cues.sound_decay_s') "
+    "json_extract(a.params_json, '$.cues.full_speed_m_per_s'), json_extract(a.params_json, '$.cues.sound_decay_s'), "
+    "coalesce(json_extract(a.params_json, '$.cues.masking_noise'), 0), "
+    "coalesce(json_extract(a.params_json, '$.kinesthetic'), 1), "
+    "coalesce(json_extract(a.params_json, '$.timed_by'), 'program'), "
+    "coalesce(json_extract(a.params_json, '$.secondary.stimulus'), 'none'), "
+    "(SELECT min(e.t_ns) FROM event e WHERE e.attempt_id=a.attempt_id AND e.event='trial_started') "
     "FROM attempt a JOIN trial_plan t USING(trial_id) JOIN session s USING(session_id) "
     "JOIN participant pa USING(participant_id) JOIN segment g ON g.segment_id=a.segment_id "
     "JOIN condition c USING(condition_id) LEFT JOIN timing m USING(attempt_id)";
@@ -109,8 +115,12 @@ AttemptRow readAttempt(const Database& database, const Statement& row) {
     attempt.app_version = row.text(27);
     if (!row.isNull(28)) attempt.timing = readTiming(row, 28);
     if (!row.isNull(37))
-        attempt.cues = {row.integer(37) != 0, row.integer(38) != 0, row.integer(39) != 0,
-                        row.real(40),         row.real(41),         row.real(42)};
+        attempt.cues = {row.integer(37) != 0, row.integer(38) != 0, row.integer(39) != 0, row.real(40),
+                        row.real(41),         row.real(42),         row.integer(43) != 0};
+    attempt.kinesthetic = row.integer(44) != 0;
+    attempt.timed_by = row.text(45);
+    attempt.stimulus = row.text(46);
+    attempt.trial_ns = row.optionalInteger(47);
     Statement values =
         database.prepare("SELECT measure, value_num FROM attempt_measure WHERE attempt_id=? AND value_num IS NOT NULL");
     values.bind(attempt.attempt_id);
@@ -368,6 +378,10 @@ Result<std::vector<EventRow>> StoreReader::events() const {
                                 row.text(8)};
             });
     });
+}
+
+Result<std::vector<DetectionRow>> StoreReader::detections() const {
+    return guarded(path_, [&] { return readDetections(*database_); });
 }
 
 Result<std::vector<QuestionnaireRunRow>> StoreReader::questionnaireRuns() const {

@@ -4,6 +4,9 @@
 #include <chrono>
 #include <thread>
 
+#include "devices/simulated/resting_device.h"
+#include "study/session/secondary.h"
+#include "ui/app/responding_device.h"
 #include "ui/app/simulated_hand.h"
 #include "ui/app/visible_task.h"
 
@@ -37,7 +40,7 @@ std::vector<session::StageNote> stageNotes(const tick::TickModel& model) {
     return notes;
 }
 
-LoopApparatus::Run::Run(BuiltScenes built, std::unique_ptr<simulated::SimulatedDevice> held, bool show_proxy)
+LoopApparatus::Run::Run(BuiltScenes built, std::unique_ptr<loop::HapticDevice> held, bool show_proxy)
     : scenes(std::move(built)),
       device(std::move(held)),
       ring(kRingRecords),
@@ -55,10 +58,7 @@ Result<std::vector<session::StageNote>> LoopApparatus::prepare(const protocol::C
         return Error{.message = "no such device preset", .key = "device.preset", .value = condition.device};
     auto scenes = buildScenes(session::renderedScenes(condition, seed), parts_);
     if (!scenes) return scenes.errors();
-    const model::Registration& r = condition.scene.registration;
-    auto device = std::make_unique<simulated::SimulatedDevice>(
-        *preset, simulatedHand(person_, trials_before), visibleTask(condition),
-        simulated::HandRegistration{r.X_WB, r.scale, r.X_DH}, seed);
+    auto device = makeDevice(*preset, condition, seed, trials_before);
     description_ = device->description();
     auto run =
         std::make_unique<Run>(std::move(*scenes), std::move(device), condition.shown == protocol::ShownPose::Proxy);
@@ -72,6 +72,25 @@ Result<std::vector<session::StageNote>> LoopApparatus::prepare(const protocol::C
             if (std::none_of(notes.begin(), notes.end(), [&](const auto& known) { return known.name == note.name; }))
                 notes.push_back(std::move(note));
     return notes;
+}
+
+std::unique_ptr<loop::HapticDevice> LoopApparatus::makeDevice(const simulated::DeviceParams& preset,
+                                                              const protocol::Condition& condition, std::uint64_t seed,
+                                                              std::int64_t trials_before) const {
+    const model::Registration& r = condition.scene.registration;
+    const simulated::HandRegistration registration{r.X_WB, r.scale, r.X_DH};
+    const simulated::VisibleTask task = visibleTask(condition);
+    const bool held = condition.timed_by == protocol::TimedBy::Program;
+    std::unique_ptr<loop::HapticDevice> device;
+    if (held)
+        device = std::make_unique<simulated::SimulatedDevice>(preset, simulatedHand(person_, trials_before), task,
+                                                              registration, seed);
+    else
+        device = std::make_unique<simulated::RestingDevice>(preset, registration.handleFromPart(task.X_WHeldStart));
+    if (!condition.secondary.any()) return device;
+    const bool handles = condition.timed_by != protocol::TimedBy::Clock;
+    return std::make_unique<RespondingDevice>(std::move(device), session::detectionSettings(condition.secondary),
+                                              person_, handles, seed);
 }
 
 void LoopApparatus::wait(std::int64_t ticks) {

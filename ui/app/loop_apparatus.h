@@ -15,7 +15,8 @@ namespace passung::app {
 
 enum class Clock { Virtual, RealTime };
 
-/// The session's apparatus: the haptic loop on a simulated device with a simulated hand, in either clock.
+/// The session's apparatus: the haptic loop on a simulated device with a simulated hand, in either clock. Where the
+/// program does not time the trial the hand has left the device: real parts, or nothing at all.
 class LoopApparatus final : public session::Apparatus {
 public:
     LoopApparatus(const simulated::DeviceParams& device, const person::SimulatedPerson& person, Clock clock);
@@ -36,13 +37,17 @@ private:
     /// Everything of one attempt; members are destroyed in reverse order, the thread first.
     struct Run {
         BuiltScenes scenes;
-        std::unique_ptr<simulated::SimulatedDevice> device;
+        std::unique_ptr<loop::HapticDevice> device;
         loop::RecordRing ring;
         loop::HapticCycle cycle;
         std::unique_ptr<loop::RealTimeThread> thread;
 
-        Run(BuiltScenes built, std::unique_ptr<simulated::SimulatedDevice> held, bool show_proxy);
+        Run(BuiltScenes built, std::unique_ptr<loop::HapticDevice> held, bool show_proxy);
     };
+
+    std::unique_ptr<loop::HapticDevice> makeDevice(const simulated::DeviceParams& preset,
+                                                   const protocol::Condition& condition, std::uint64_t seed,
+                                                   std::int64_t trials_before) const;
 
     DeviceDescription description_;
     person::SimulatedPerson person_;

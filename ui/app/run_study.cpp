@@ -18,6 +18,7 @@
 #include "ui/app/command_socket.h"
 #include "ui/app/disk_store.h"
 #include "ui/app/simulated_answers.h"
+#include "ui/app/simulated_timer.h"
 #include "ui/app/stored_plans.h"
 #include "ui/app/wall_clock.h"
 
@@ -152,6 +153,8 @@ private:
         const std::string code = setup.participant;
         SimulatedAnswers simulated(plan_, code);
         setup.answers = options_.answers != nullptr ? options_.answers : &simulated;
+        SimulatedTimer timer(person::personOf(plan_.name, code, plan_.seed));
+        if (options_.answers == nullptr) setup.timer = &timer;  // else somebody is there to say it
         session::Session session(std::move(setup), apparatus, sink, {listener_.acknowledge, listener_.trial});
         conduct(session, apparatus);
         if (session.state() == session::SessionState::Failed) return session.errors();

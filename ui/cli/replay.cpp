@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <map>
 
 #include "core/replay/replayer.h"
 #include "study/session/recompute.h"
@@ -22,7 +23,11 @@ enum class Verdict { Same, Differs, NotProven };
 /// Replays attempts of one database; parts and protocols are built once.
 class Replays {
 public:
-    Replays(const store::StoreReader& reader, const std::string& meshes) : reader_(reader), plans_(reader, meshes) {}
+    Replays(const store::StoreReader& reader, const std::string& meshes,
+            const std::vector<store::DetectionRow>& detections)
+        : reader_(reader), plans_(reader, meshes) {
+        for (const auto& row : detections) detections_[row.attempt_id].push_back(row.detection);
+    }
 
     /// Prints one line per attempt.
     Result<Verdict> replay(const store::AttemptRow& attempt) {
@@ -56,12 +61,13 @@ private:
 
     /// The first measure, or the outcome, that the recorded ticks do not give again; empty if they give all. Bits
     /// count: the formulas are exact functions of what is stored.
-    static Result<std::string> measureDifference(const store::AttemptRow& attempt, const protocol::Condition& condition,
-                                                 const std::vector<TickRecord>& records) {
+    Result<std::string> measureDifference(const store::AttemptRow& attempt, const protocol::Condition& condition,
+                                          const std::vector<TickRecord>& records) const {
         const auto outcome = measures::outcomeNamed(attempt.outcome);
         if (!outcome || !attempt.end_ns) return std::string();  // it did not end: nothing was measured
-        const auto again = session::judgeAgain(condition, records, *outcome,
-                                               (*attempt.end_ns - attempt.start_ns) / kTickNanoseconds, attempt.seed);
+        session::StoredEnd end{*outcome, (*attempt.end_ns - attempt.start_ns) / kTickNanoseconds, {}, attempt.seed};
+        if (attempt.trial_ns) end.start_time = (*attempt.trial_ns - attempt.start_ns) / kTickNanoseconds;
+        const auto again = session::judgeAgain(condition, records, end);
         if (!again) return again.errors();
         if (again->outcome != *outcome)
             return fmt::format("outcome: stored {}, from the ticks {}", attempt.outcome,
@@ -78,6 +84,9 @@ private:
             if (!same)
                 return fmt::format("{}: stored {}, from the ticks {}", value.name, text(stored), text(value.value));
         }
+        if (const auto found = detections_.find(attempt.attempt_id);
+            again->detections != (found == detections_.end() ? std::vector<measures::Detection>{} : found->second))
+            return std::string("the responses to the secondary task");
         return std::string();
     }
 
@@ -124,6 +133,7 @@ private:
     std::unique_ptr<app::DiskStore> store_ = app::openDiskStore();
     model::PartCache parts_{store_.get()};
     app::StoredPlans plans_;
+    std::map<std::int64_t, std::vector<measures::Detection>> detections_;  // by attempt
 };
 
 }  // namespace
@@ -142,7 +152,9 @@ int replay(const ReplayOptions& options) {
         attempts = std::move(*all);
         if (attempts.empty()) return fail({{.message = "holds no attempts", .file = options.database}});
     }
-    Replays replays(*reader, options.meshes);
+    const auto detections = reader->detections();
+    if (!detections) return fail(detections.errors());
+    Replays replays(*reader, options.meshes, *detections);
     std::size_t different = 0, unproven = 0;
     for (const auto& attempt : attempts) {
         const auto verdict = replays.replay(attempt);

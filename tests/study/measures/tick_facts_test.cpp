@@ -25,6 +25,17 @@ TEST(TickFacts, ForceOrTorqueOrAContactPointMakesContact) {
     EXPECT_FALSE(isContact(faint));
 }
 
+TEST(TickFacts, WithoutADisplayedWrenchTheHandsDepthTellsOfContact) {
+    // Truth: invariant: a proxy rests a hair above what it touches, so that no point of it is inside.
+    TickRecord inside;
+    inside.hand_depth_m = 1e-4f;
+    EXPECT_FALSE(isContact(inside)) << "a force would tell";
+    inside.status = kWrenchWithheld;
+    EXPECT_TRUE(isContact(inside));
+    inside.hand_depth_m = 0.0f;
+    EXPECT_FALSE(isContact(inside));
+}
+
 TEST(TickFacts, TipIsInTheBoreBelowTheMouthAndWithinTheClearanceAndTheWallsGive) {
     // Truth: closed form. Target's mouth at z = 0.25; 0.1 mm of clearance and 0.2 mm of give end 0.3 mm beside the
     // axis, diagonally at 0.212 mm each.

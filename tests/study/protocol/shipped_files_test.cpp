@@ -58,9 +58,10 @@ TEST(ShippedFiles, PegInHoleHasItsTwelveConditions) {
     ASSERT_EQ(plan->blocks.size(), 2u);
     EXPECT_EQ(plan->blocks[0].trials, 2);
     EXPECT_EQ(plan->blocks[1].repetitions, 2);
-    std::vector<std::string> possible;  // all but those that only other types of trial have
+    std::vector<std::string> possible;  // all but those of other types of trial and of a secondary task
     for (const auto& definition : measures::definitions()) {
         const auto types = typesWith(definition.name);
+        if (definition.name.starts_with("secondary_")) continue;
         if (types.empty() || types.front()->name == "peg_in_hole") possible.push_back(definition.name);
     }
     EXPECT_EQ(plan->measures, possible);
@@ -105,6 +106,38 @@ TEST(ShippedFiles, DesignsGivesEveryCombinationEquallyOften) {
         }
     EXPECT_EQ(seen.size(), 16u);
     for (const auto& [condition, count] : seen) EXPECT_EQ(count, 4) << plan->conditions[condition].name;
+}
+
+TEST(ShippedFiles, RealVsVirtualHasItsEnvironmentsThreeTimesInBalancedOrders) {
+    // Truth: closed form: 6 environments and the secondary task alone, in three blocks of which two change a key; over
+    // the 6 rows of the square each environment stands at each position of a pass once.
+    const auto plan = readShipped("real_vs_virtual/study.toml");
+    ASSERT_TRUE(plan) << toString(plan.errors()[0]);
+    EXPECT_TRUE(plan->warnings.empty());
+    ASSERT_EQ(plan->conditions.size(), 21u);
+    const Condition &real = plan->conditions[0], &kinesthetic = plan->conditions[4], &alone = plan->conditions[13];
+    EXPECT_EQ(real.timed_by, TimedBy::Experimenter);
+    EXPECT_FALSE(real.scene.display_wrench);
+    EXPECT_TRUE(kinesthetic.scene.display_wrench);
+    EXPECT_EQ(alone.name, "alone@secondary_task");
+    EXPECT_EQ(alone.timed_by, TimedBy::Clock);
+    for (std::size_t i = 0; i < 21; ++i) {
+        EXPECT_EQ(plan->conditions[i].secondary.any(), i / 7 == 1) << plan->conditions[i].name;
+        EXPECT_EQ(plan->conditions[i].cues.masking_noise, i / 7 == 2) << plan->conditions[i].name;
+    }
+    EXPECT_EQ(plan->languages, (std::vector<std::string>{"en", "de"}));
+    EXPECT_EQ(plan->instructions.size(), 5u);
+    EXPECT_EQ(plan->pictures.size(), 1u);
+    const auto design = designOf(*plan);
+    ASSERT_EQ(design::sequencesOf(design), 6u);
+    std::map<std::pair<std::int64_t, std::size_t>, int> seen;  // position in the regular block, condition
+    for (std::size_t slot = 0; slot < 6; ++slot) {
+        const auto trials = *design::planSession(design, {plan->name, plan->seed, "P001", slot, 0, 1});
+        for (const auto& trial : trials)
+            if (trial.block == "regular") ++seen[{trial.trial_in_block, trial.condition}];
+    }
+    EXPECT_EQ(seen.size(), 12u * 6u);
+    for (const auto& [place, count] : seen) EXPECT_EQ(count, 1);
 }
 
 TEST(ShippedFiles, HiddenOffsetMovesOnlyTheTouchedPlate) {

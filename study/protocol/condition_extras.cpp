@@ -1,0 +1,87 @@
+#include "study/protocol/condition_extras.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "study/protocol/table_reader.h"
+
+namespace passung::protocol {
+namespace {
+
+constexpr std::array<const char*, 4> kStimulusNames = {"none", "visual", "vibrotactile", "audio"};
+constexpr std::array<const char*, 3> kTimedByNames = {"program", "experimenter", "clock"};
+
+template <class Enum, std::size_t n>
+Enum named(const std::array<const char*, n>& names, const std::string& name) {
+    for (std::size_t i = 0; i < n; ++i)
+        if (name == names[i]) return static_cast<Enum>(i);
+    return {};
+}
+
+void readFeedback(const Node& table, Condition& condition, Errors& errors) {
+    const TableReader read(table, {"feedback"}, "feedback", errors);
+    condition.scene.display_wrench = read.boolean("kinesthetic");
+    condition.shown = read.text("shown_pose") == "device" ? ShownPose::Device : ShownPose::Proxy;
+    Cues& cues = condition.cues;
+    cues.masking_noise = read.boolean("masking_noise");
+    cues.full_depth = read.number("cue_full_depth_mm");
+    cues.full_speed = read.number("cue_full_speed_mm_per_s");
+    cues.sound_decay = read.number("cue_sound_decay_ms");
+    for (const Node& item : read.items("cues")) {
+        bool* cue = item.text == "visual"         ? &cues.visual
+                    : item.text == "vibrotactile" ? &cues.vibrotactile
+                    : item.text == "audio"        ? &cues.audio
+                                                  : nullptr;
+        if (cue == nullptr || *cue)
+            errors.push_back(
+                errorAt(item.place, "feedback.cues", valueText(item),
+                        cue == nullptr ? "must be \"visual\", \"vibrotactile\" or \"audio\"" : "is listed twice"));
+        else
+            *cue = true;
+    }
+}
+
+void readSecondary(const Node& table, Condition& condition, Errors& errors) {
+    const std::size_t before = errors.size();
+    const TableReader read(table, {"secondary"}, "secondary", errors);
+    SecondaryTask& task = condition.secondary;
+    task.stimulus = named<Stimulus>(kStimulusNames, read.text("stimulus"));
+    task.least_interval = read.number("interval_min_s");
+    task.most_interval = read.number("interval_max_s");
+    task.duration = read.number("stimulus_ms");
+    task.earliest = read.number("response_min_ms");
+    task.latest = read.number("response_max_ms");
+    task.button = static_cast<int>(read.integer("button"));
+    if (errors.size() > before || !task.any()) return;
+    if (task.most_interval < task.least_interval) read.fail("interval_max_s", "must be at least interval_min_s");
+    if (!(task.earliest < task.latest)) read.fail("response_min_ms", "must be less than response_max_ms");
+    // Else a press could answer either of two.
+    if (!(task.latest <= task.least_interval))
+        read.fail("response_max_ms",
+                  fmt::format("must be at most interval_min_s, {:.6g} ms: a response belongs to one stimulus",
+                              1e3 * task.least_interval));
+    if (!(task.duration <= task.least_interval))
+        read.fail("stimulus_ms", fmt::format("must be at most interval_min_s, {:.6g} ms", 1e3 * task.least_interval));
+    if (task.stimulus == Stimulus::Audio && condition.cues.masking_noise)
+        read.fail("stimulus", "cannot be heard with feedback.masking_noise = true");
+}
+
+}  // namespace
+
+const char* stimulusName(Stimulus stimulus) { return kStimulusNames[static_cast<std::size_t>(stimulus)]; }
+const char* timedByName(TimedBy timed_by) { return kTimedByNames[static_cast<std::size_t>(timed_by)]; }
+
+void readConditionExtras(const StudyTables& tables, Condition& condition, Errors& errors) {
+    readFeedback(tables.feedback, condition, errors);
+    readSecondary(tables.secondary, condition, errors);
+    // The table's other keys are the task reader's: looked up without a reader of its own.
+    const Node* timed_by = tables.task.find("timed_by");
+    if (timed_by == nullptr) return;
+    condition.timed_by = named<TimedBy>(kTimedByNames, timed_by->text);
+    if (condition.timed_by != TimedBy::Program && condition.scene.display_wrench)
+        errors.push_back(errorAt(timed_by->place, "task.timed_by", valueText(*timed_by),
+                                 "needs feedback.kinesthetic = false: nothing may be rendered in such a trial"));
+}
+
+}  // namespace passung::protocol

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "study/protocol/factors.h"
+#include "study/protocol/study_plan.h"
+
+namespace passung::protocol {
+
+/// Reads what a condition has beside scene and task: feedback, secondary task, and who times the trial. Adds everything
+/// that is wrong to `errors`.
+void readConditionExtras(const StudyTables& tables, Condition& condition, Errors& errors);
+
+}  // namespace passung::protocol

@@ -1,0 +1,24 @@
+#pragma once
+
+namespace passung::protocol {
+
+enum class Stimulus { None, Visual, Vibrotactile, Audio };
+const char* stimulusName(Stimulus stimulus);  // "none", "visual", …: as stored
+
+/// A detection-response task beside the trial's own, like that of ISO 17488: a stimulus every few seconds, to be
+/// answered with a button. measures::DetectionSettings says when a press counts.
+struct SecondaryTask {
+    Stimulus stimulus = Stimulus::None;
+    double least_interval = 3.0, most_interval = 5.0;  // [s] between onsets
+    double duration = 1.0;                             // [s] that a stimulus lasts without response
+    double earliest = 0.1, latest = 2.5;               // [s] after the onset: a response counts
+    int button = 1;                                    // of the device, from 1
+    bool any() const { return stimulus != Stimulus::None; }
+};
+
+/// Who says when a trial begins and ends: the program, which feels and sees the held part; the experimenter, for real
+/// parts in the hand; or the clock alone, for trials in which nothing is to be handled.
+enum class TimedBy { Program, Experimenter, Clock };
+const char* timedByName(TimedBy timed_by);  // "program", "experimenter", "clock": as stored
+
+}  // namespace passung::protocol

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "study/measures/detection.h"
+#include "study/protocol/secondary_task.h"
+
+namespace passung::session {
+
+/// When presses of the protocol's secondary task count.
+inline measures::DetectionSettings detectionSettings(const protocol::SecondaryTask& task) {
+    return {task.least_interval, task.most_interval, task.duration, task.earliest, task.latest, task.button};
+}
+
+}  // namespace passung::session

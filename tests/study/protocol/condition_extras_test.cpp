@@ -1,0 +1,133 @@
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "study/protocol/json.h"
+#include "study/protocol/protocol_reader.h"
+#include "tests/study/protocol/fake_devices.h"
+
+namespace passung::protocol {
+namespace {
+
+const std::vector<std::string> kMeasures = {"trial_time_s", "secondary_hit_rate"};
+
+/// A study of one condition with these tables beside it.
+Result<StudyPlan> read(const std::string& tables, const std::string& task = "") {
+    const std::string text = R"(passung = 1
+study = { name = "extras", version = "1", seed = 1, participants = 2 }
+[scene]
+device = { preset = ")" + fakeDevices().front().name +
+                             R"(" }
+[[scene.part]]
+name = "plate"
+shape = { kind = "bore_plate", width = 60, depth = 60, height = 30, bore_diameter = 21, bore_depth = 25 }
+[[scene.part]]
+name = "peg"
+held = true
+shape = { kind = "peg", diameter = 20, length = 50 }
+pose = { position = [0, 0, 30] }
+[task]
+type = "peg_in_hole"
+target = "plate"
+)" + task + "\n[[block]]\nname = \"main\"\norder = \"listed\"\n" +
+                             tables;
+    return readProtocolText(text, "extras.toml", fakeDevices(), kMeasures);
+}
+
+std::string faultOf(const Result<StudyPlan>& plan) { return plan ? "" : toString(plan.errors().front()); }
+
+TEST(Feedback, EveryCombinationIsAConditionOfItsOwn) {
+    // Truth: closed form: 2 x 2 x 2 x 2 x 2; what is stored of each says which it is.
+    std::set<std::string> stored;
+    for (unsigned bits = 0; bits < 32; ++bits) {
+        const auto on = [bits](unsigned bit) { return (bits >> bit & 1u) != 0; };
+        std::string cues;
+        for (unsigned bit = 0; bit < 3; ++bit)
+            if (on(bit))
+                cues += std::string(cues.empty() ? "" : ", ") +
+                        std::array{"\"visual\"", "\"vibrotactile\"", "\"audio\""}[bit];
+        const auto plan = read("[feedback]\ncues = [" + cues + "]\nkinesthetic = " + (on(3) ? "true" : "false") +
+                               "\nmasking_noise = " + (on(4) ? "true" : "false") + "\n");
+        ASSERT_TRUE(plan) << faultOf(plan);
+        const Condition& condition = plan->conditions.front();
+        EXPECT_EQ(condition.cues.visual, on(0));
+        EXPECT_EQ(condition.cues.vibrotactile, on(1));
+        EXPECT_EQ(condition.cues.audio, on(2));
+        EXPECT_EQ(condition.scene.display_wrench, on(3));
+        EXPECT_EQ(condition.cues.masking_noise, on(4));
+        EXPECT_EQ(plan->warnings.size(), on(2) && on(4) ? 1u : 0u) << "a sound that is masked";
+        stored.insert(condition.params_json);
+    }
+    EXPECT_EQ(stored.size(), 32u);
+}
+
+TEST(Secondary, IsOffByDefaultAndKeepsItsNumbers) {
+    // Truth: closed form
+    const auto off = read("");
+    ASSERT_TRUE(off) << faultOf(off);
+    EXPECT_FALSE(off->conditions.front().secondary.any());
+    EXPECT_EQ(off->measures, (std::vector<std::string>{"trial_time_s"})) << "it could have no other";
+    EXPECT_EQ(off->conditions.front().params_json.find("secondary"), std::string::npos);
+    const auto plan =
+        read("[secondary]\nstimulus = \"visual\"\ninterval_max_s = 6\nresponse_max_ms = 2000\nbutton = 3\n");
+    ASSERT_TRUE(plan) << faultOf(plan);
+    const SecondaryTask& task = plan->conditions.front().secondary;
+    EXPECT_EQ(task.stimulus, Stimulus::Visual);
+    EXPECT_EQ(task.least_interval, 3.0);
+    EXPECT_EQ(task.most_interval, 6.0);
+    EXPECT_EQ(task.duration, 1.0);
+    EXPECT_DOUBLE_EQ(task.earliest, 0.1);
+    EXPECT_DOUBLE_EQ(task.latest, 2.0);
+    EXPECT_EQ(task.button, 3);
+    EXPECT_EQ(plan->measures, kMeasures);
+    EXPECT_NE(plan->conditions.front().params_json.find("\"interval_max_s\""), std::string::npos);
+}
+
+TEST(Secondary, OfABlockAloneIsStoredToo) {
+    // Truth: closed form: a block's own conditions are read after the others.
+    const auto plan = read("set = { \"secondary.stimulus\" = \"audio\" }\n");
+    ASSERT_TRUE(plan) << faultOf(plan);
+    ASSERT_EQ(plan->conditions.size(), 2u);
+    EXPECT_FALSE(plan->conditions[0].secondary.any());
+    EXPECT_EQ(plan->conditions[1].secondary.stimulus, Stimulus::Audio);
+    EXPECT_EQ(plan->measures, kMeasures);
+}
+
+TEST(Secondary, ACueOfTheSameKindIsWarnedOf) {
+    // Truth: invariant
+    const std::string cue = "[feedback]\ncues = [\"vibrotactile\"]\n[secondary]\nstimulus = ";
+    EXPECT_EQ(read(cue + "\"vibrotactile\"\n")->warnings.size(), 1u);
+    EXPECT_TRUE(read(cue + "\"audio\"\n")->warnings.empty());
+}
+
+TEST(TimedBy, NeedsAConditionThatRendersNothing) {
+    // Truth: invariant
+    for (const char* who : {"experimenter", "clock"}) {
+        const std::string task = std::string("timed_by = \"") + who + "\"";
+        EXPECT_NE(faultOf(read("", task)).find("needs feedback.kinesthetic = false"), std::string::npos);
+        const auto plan = read("[feedback]\nkinesthetic = false\n", task);
+        ASSERT_TRUE(plan) << faultOf(plan);
+        EXPECT_STREQ(timedByName(plan->conditions.front().timed_by), who);
+    }
+    EXPECT_NE(faultOf(read("", "timed_by = \"nobody\"")), "");
+    EXPECT_NE(faultOf(read("", "timed_by = 3")), "");
+}
+
+TEST(StudyTexts, AreThereInEveryLanguageAndForEveryClause) {
+    // Truth: closed form
+    const std::string both = "[text.en]\na = \"A\"\nb = \"B\"\n[text.de]\na = \"Ä\"\n";
+    const auto plan = read(both + "b = \"B\"\n");
+    ASSERT_TRUE(plan) << faultOf(plan);
+    ASSERT_EQ(plan->texts.size(), 2u);
+    EXPECT_EQ(plan->texts[0].languages[1], (std::pair<std::string, std::string>{"de", "Ä"}));
+    EXPECT_NE(plan->expanded_json.find(jsonText("Ä")), std::string::npos);
+    EXPECT_NE(faultOf(read(both)).find("text.de.b: the text is missing, which [text.en] has"), std::string::npos);
+    const std::string clause = "[[consent]]\nclause = \"data\"\ntext = { en = \"Yes?\" }\n";
+    EXPECT_NE(faultOf(read(both + "b = \"B\"\n" + clause)).find("clause data of [[consent]] has no text in \"de\""),
+              std::string::npos);
+    EXPECT_NE(faultOf(read("[text.english]\na = \"A\"\n")).find("two lower-case letters"), std::string::npos);
+    EXPECT_NE(faultOf(read("[text.en]\na = 3\n")).find("must be a text"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace passung::protocol
