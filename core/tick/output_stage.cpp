@@ -65,8 +65,9 @@ void delayOutput(const TickModel& model, TickState& state, TickFrame& frame) noe
     delayPushes(model, state);
 }
 
-void withholdWrench(const TickModel&, TickState&, TickFrame& frame) noexcept {
+void withholdWrench(const TickModel&, TickState& state, TickFrame& frame) noexcept {
     frame.status |= kWrenchWithheld;
+    clearPushes(state);
     if (isFinite(frame.F_H_W)) frame.F_H_W = Wrench{};
 }
 

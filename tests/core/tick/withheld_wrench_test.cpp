@@ -56,6 +56,7 @@ TEST(WithheldWrench, EverythingButTheWrenchIsAsWithIt) {
             EXPECT_EQ(withheld.nodes_visited, displayed.nodes_visited);
             EXPECT_EQ(withheld.quality, displayed.quality);
         }
+        for (const auto& pair : without.state().pairs) EXPECT_EQ(pair.taken_in, 0.0) << "nothing was sent";
         EXPECT_GT(most, 2.9) << "the comparison has a force to leave out";
     }
 }
