@@ -13,6 +13,7 @@
 #include "analysis/export/samples.h"
 #include "analysis/export/secondary_table.h"
 #include "analysis/export/session_tables.h"
+#include "analysis/export/staircase_tables.h"
 #include "analysis/export/study_data.h"
 #include "analysis/export/trial_tables.h"
 
@@ -30,6 +31,10 @@ std::vector<Table> makeTables(const StudyData& study) {
     tables.push_back(makeTiming(study));
     tables.push_back(makeContactEnergy(study));
     if (!study.detections.empty()) tables.push_back(makeSecondary(study));
+    if (!study.staircase_steps.empty()) {
+        tables.push_back(makeStaircase(study));
+        tables.push_back(makeThresholds(study));
+    }
     if (!study.questionnaires.empty()) {
         tables.push_back(makeQuestionnaireItems(study));
         tables.push_back(makeQuestionnaireScores(study));

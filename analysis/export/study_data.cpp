@@ -53,6 +53,7 @@ Result<StudyData> readStudy(const store::StoreReader& reader) {
     take(reader.attempts(), study.attempts, errors);
     take(reader.events(), study.events, errors);
     take(reader.detections(), study.detections, errors);
+    take(reader.staircaseSteps(), study.staircase_steps, errors);
     take(reader.questionnaireRuns(), study.questionnaires, errors);
     take(reader.accuracy(), study.accuracy, errors);
     if (!errors.empty()) return errors;
@@ -101,14 +102,17 @@ std::vector<Cell> cellsOf(const StudyData& study) {
     }
     const bool all_within = std::all_of(study.factors.begin(), study.factors.end(),
                                         [](const FactorColumn& factor) { return factor.kind == "within"; });
-    std::set<std::string> catches;
+    std::set<std::string> apart;  // met in catch trials or those of a staircase only
+    const auto is_apart = [](const store::AttemptRow& a) { return a.phase == "catch" || a.phase == "adaptive"; };
     for (const store::AttemptRow& attempt : study.attempts)
-        if (attempt.phase == "catch") catches.insert(attempt.condition);
+        if (is_apart(attempt)) apart.insert(attempt.condition);
+    for (const store::AttemptRow& attempt : study.attempts)
+        if (!is_apart(attempt)) apart.erase(attempt.condition);
     std::vector<Cell> cells;
     for (const auto& [key, attempts] : by_person) {
         const store::AttemptRow& first = *attempts.front();
         for (const store::ConditionRow& condition : study.conditions) {
-            if (condition.protocol_sha256 != first.protocol_sha256 || catches.count(condition.condition) != 0) continue;
+            if (condition.protocol_sha256 != first.protocol_sha256 || apart.count(condition.condition) != 0) continue;
             const bool met = std::any_of(attempts.begin(), attempts.end(), [&](const store::AttemptRow* attempt) {
                 return attempt->condition == condition.condition;
             });

@@ -30,6 +30,7 @@ struct StudyData {
     std::vector<store::AttemptRow> attempts;
     std::vector<store::EventRow> events;
     std::vector<store::DetectionRow> detections;  // of the attempts, in their order
+    std::vector<store::StaircaseStepRow> staircase_steps;
     std::vector<store::QuestionnaireRunRow> questionnaires;
     std::vector<store::AccuracyRow> accuracy;  // of protocols with contact.accuracy = "auto"
 };
@@ -54,8 +55,8 @@ struct Cell {
 };
 
 /// A cell for each condition of the protocol that a participant had at least one attempt in, empty ones too, but none
-/// for catch trials, nor for conditions of other groups or assignments than the participant's; by participant, then
-/// protocol, then condition as the protocol lists them. Refers to `study`.
+/// for catch trials and those of staircases, nor for conditions of other groups or assignments than the participant's;
+/// by participant, then protocol, then condition as the protocol lists them. Refers to `study`.
 std::vector<Cell> cellsOf(const StudyData& study);
 
 /// The values of `measure` of those attempts for which it is defined.

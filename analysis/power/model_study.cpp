@@ -1,5 +1,7 @@
 #include "analysis/power/model_study.h"
 
+#include <span>
+
 #include "core/base/random.h"
 #include "study/person/completion_time.h"
 #include "study/protocol/participant.h"
@@ -55,7 +57,7 @@ Result<exporter::StudyData> modelStudy(const protocol::StudyPlan& plan, int part
     study.protocols.emplace_back();  // all rows are of this one, without a hash
     for (const protocol::Factor& factor : plan.factors)
         study.factors.push_back({factor.name, factor.name, protocol::factorKindName(factor.kind), factor.unit, {}});
-    for (const protocol::Condition& condition : plan.conditions)
+    for (const protocol::Condition& condition : std::span(plan.conditions).first(protocol::plannedConditions(plan)))
         study.conditions.push_back({{}, condition.name, levelsOf(plan, condition)});
     const auto count = static_cast<std::size_t>(participants);
     const auto places = session::firstPlaces(plan, count, kind);

@@ -10,7 +10,8 @@
 namespace passung::protocol {
 
 enum class Phase { Practice, Main };
-const char* phaseName(Phase phase);  // "practice", "main": as stored
+const char* phaseName(Phase phase);                        // "practice", "main": as stored
+inline constexpr const char* kAdaptivePhase = "adaptive";  // of the trials of a staircase, as stored
 
 using BlockOrder = design::Order;
 const char* blockOrderName(BlockOrder order);  // "williams", "permutations", "random", "shuffled", "listed"
@@ -29,6 +30,7 @@ struct Block {
     design::CatchPlan catches = {};
     int session = 1;                    // of each participant's, from 1
     double rest = 0.0;                  // [s] at least so long is rested before it
+    bool adaptive = false;              // a staircase governs its trials
     std::size_t first_condition = 0;    // its own conditions begin here, parallel to the shared ones; 0: it takes those
     Repeat on_failure = Repeat::Never;  // of a trial that ended by its own rules without success
     Repeat on_timeout = Repeat::Never;

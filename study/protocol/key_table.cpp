@@ -11,6 +11,7 @@
 #include "study/protocol/condition_keys.h"
 #include "study/protocol/questionnaire_keys.h"
 #include "study/protocol/scene_keys.h"
+#include "study/protocol/staircase_keys.h"
 #include "study/protocol/task_keys.h"
 
 namespace passung::protocol {
@@ -110,7 +111,9 @@ constexpr std::array<Key, n + m> joined(const std::array<Key, n>& first, const s
     }(std::make_index_sequence<n>{}, std::make_index_sequence<m>{});
 }
 constexpr auto kKeys =
-    joined(joined(joined(joined(kStudyKeys, kTaskKeys), scene_rows::kSceneKeys), kConditionKeys), kQuestionnaireKeys);
+    joined(joined(joined(joined(joined(kStudyKeys, kTaskKeys), scene_rows::kSceneKeys), kConditionKeys),
+                  staircase_rows::kStaircaseKeys),
+           kQuestionnaireKeys);
 
 /// Tables in the order of the documentation: id, heading, sentence.
 struct TableInfo {
@@ -157,6 +160,8 @@ constexpr std::array kTables{
     TableInfo{"text", "`[text.LANGUAGE]`", "A text for each name; a text that one language has, every one must have, and the clauses of consent too."},
     TableInfo{"instruction", "`[[instruction]]`", ""},
     TableInfo{"block", "`[[block]]`", ""},
+    TableInfo{"staircase", "`[[staircase]]`", "Its block's trials are of the phase `adaptive`: they enter no mean of a condition, but staircase.csv."},
+    TableInfo{"staircase_track", "`tracks` of a staircase", ""},
     TableInfo{"consent", "`[[consent]]`", "Each decision is stored with the SHA-256 of the text that it answers: a changed text has to be asked anew."},
     TableInfo{"resume", "`[resume]`", ""},
     TableInfo{"constraint", "`constraints` of a block", "An order that no shuffle and no search finds is an error that says why."},

@@ -200,6 +200,49 @@ std::string blockJson(const Block& block) {
         .str();
 }
 
+std::string trackJson(const StaircaseTrack& track) {
+    const design::AdaptiveParams& params = track.params;
+    JsonObject json;
+    json.text("track", track.name);
+    if (params.method == design::AdaptiveMethod::Psi) {
+        json.text("method", "psi")
+            .number("guess", params.guess)
+            .number("lapse", params.lapse)
+            .number("sigma_low", params.sigma_low)
+            .number("sigma_high", params.sigma_high);
+    } else {
+        json.text("method", "up_down")
+            .integer("down_after", params.down_after)
+            .number("start", params.start)
+            .number("step_down", params.step_down)
+            .number("step_up", params.step_up)
+            .number("late_factor", params.late_factor)
+            .integer("late_after", params.late_after)
+            .integer("max_reversals", params.max_reversals)
+            .integer("skip_reversals", params.skip_reversals);
+    }
+    return json.integer("max_trials", params.max_trials).str();
+}
+
+std::string staircaseJson(const StudyPlan& plan, const Staircase& staircase) {
+    std::vector<std::string> tracks;
+    for (const StaircaseTrack& track : staircase.tracks) tracks.push_back(trackJson(track));
+    return JsonObject()
+        .text("staircase", staircase.name)
+        .text("block", plan.blocks[staircase.block].name)
+        .text("key", staircase.key)
+        .text("unit", staircase.unit)
+        .json("levels", jsonNumbers(staircase.levels))
+        .boolean("logarithmic", staircase.tracks.front().params.logarithmic)
+        .json("tracks", jsonList(tracks))
+        .integer("catch_trials", static_cast<std::int64_t>(staircase.catch_trials))
+        .number("catch_level", staircase.catch_level)
+        .text("measure", staircase.measure)
+        .number("threshold", staircase.threshold)
+        .boolean("above", staircase.above)
+        .str();
+}
+
 std::string resumeJson(const ResumePolicy& resume) {
     return JsonObject()
         .number("max_age_s", resume.max_age)
@@ -283,6 +326,8 @@ std::string paramsJson(const Condition& condition) {
 }
 
 std::string expandedJson(const StudyPlan& plan) {
+    std::vector<std::string> staircases;
+    for (const Staircase& staircase : plan.staircases) staircases.push_back(staircaseJson(plan, staircase));
     return JsonObject()
         .text("name", plan.name)
         .text("version", plan.version)
@@ -291,7 +336,9 @@ std::string expandedJson(const StudyPlan& plan) {
         .integer("participants", plan.participants)
         .json("factors", listOf(plan.factors, factorJson))
         .json("conditions", listOf(plan.conditions, conditionJson))
+        .integer("planned_conditions", static_cast<std::int64_t>(plannedConditions(plan)))
         .json("blocks", listOf(plan.blocks, blockJson))
+        .json("staircases", jsonList(staircases))
         .json("questionnaires", listOf(plan.questionnaires, questionnaireJson))
         .json("resume", resumeJson(plan.resume))
         .json("groups", listOf(groupNames(plan), [](const std::string& name) { return jsonText(name); }))

@@ -17,12 +17,15 @@
 #include "study/protocol/include.h"
 #include "study/protocol/measures_reader.h"
 #include "study/protocol/plan_json.h"
+#include "study/protocol/plan_warnings.h"
 #include "study/protocol/planned_questionnaires.h"
 #include "study/protocol/scene_node.h"
 #include "study/protocol/session_rules.h"
+#include "study/protocol/staircase_reader.h"
 #include "study/protocol/start_pose.h"
 #include "study/protocol/task_reader.h"
 #include "study/protocol/texts_reader.h"
+#include "study/protocol/trial_types.h"
 
 namespace passung::protocol {
 namespace {
@@ -59,6 +62,8 @@ public:
         readStudy();
         readConditions();
         readBlockTables();
+        staircases_ = readStaircases(root_.items("staircase"), root_.items("block"), factors_, known_measures_,
+                                     plan_.blocks, errors_);
         plan_.questionnaires = readQuestionnaires(root_.items("questionnaire"), plan_.blocks, errors_);
         readLoop();
         plan_.resume = readResume(root_, errors_);
@@ -68,13 +73,14 @@ public:
         plan_.analyses = readAnalyses(root_.items("analysis"), plan_, errors_);
         if (errors_.empty()) checkBlocks(root_.items("block"), plan_, errors_);
         if (errors_.empty()) readBlockConditions();
+        if (errors_.empty()) readStaircaseConditions();
         if (errors_.empty()) checkDuration();
         if (!root_.has("measures")) dropUnused();
         tidy(errors_);
         if (!errors_.empty()) return errors_;
         listMeshes();
         listDevices();
-        warn();
+        plan_.warnings = conditionWarnings(std::span(plan_.conditions).first(plannedConditions(plan_)));
         plan_.expanded_json = expandedJson(plan_);
         return std::move(plan_);
     }
@@ -155,8 +161,48 @@ private:
         }
     }
 
+    /// Every level of a staircase in place of every condition of its block, so that each is looked at before the first
+    /// participant, and a level is the same scene whenever it comes.
+    void readStaircaseConditions() {
+        const Node* scene = root_.node("scene");
+        const std::size_t planned = plan_.conditions.size();
+        if (scene == nullptr || staircases_.empty()) return;
+        for (StaircaseContent& content : staircases_) {
+            Staircase& staircase = content.staircase;
+            const Block& block = plan_.blocks[staircase.block];
+            const Node* own = block.first_condition > 0 ? &root_.items("block")[staircase.block] : nullptr;
+            for (std::size_t c = 0; c < plan_.shared_conditions && errors_.empty(); ++c) {
+                staircase.first_variant.push_back(plan_.conditions.size());
+                for (std::size_t level = 0; level < staircase.levels.size(); ++level) {
+                    const Override step = content.change(level);
+                    readCondition(*scene, plan_.conditions[c].levels, own, &step,
+                                  fmt::format("@{}={:.6g}", staircase.name, staircase.levels[level]));
+                    if (errors_.empty())
+                        plan_.conditions.back().stimulus = {plan_.staircases.size(), step.value->number};
+                }
+            }
+            checkMeasure(content);
+            plan_.staircases.push_back(std::move(staircase));
+        }
+        if (plan_.conditions.size() > kMaxConditions)
+            root_.fail("staircase", fmt::format("levels make more than {} conditions", kMaxConditions));
+        plan_.first_variant = planned;
+    }
+
+    /// A measure that no trial of the type has would never answer.
+    void checkMeasure(const StaircaseContent& content) {
+        const TrialType* type = &typeOf(plan_.conditions.front().task);
+        const auto measures = measuresOf(std::span(&type, 1), known_measures_);
+        if (std::find(measures.begin(), measures.end(), content.staircase.measure) == measures.end())
+            errors_.push_back(errorAt(content.measure_place, "staircase." + content.staircase.name + ".measure",
+                                      "\"" + content.staircase.measure + "\"",
+                                      fmt::format("a trial of the type {} does not have it", type->name)));
+    }
+
     /// Adds the condition of these levels; `block`: with the keys that this block sets, before the levels' own.
-    void readCondition(const Node& scene, std::vector<std::size_t> levels, const Node* block) {
+    /// `step`: the level that a staircase puts into it; `suffix`: what its name ends with then.
+    void readCondition(const Node& scene, std::vector<std::size_t> levels, const Node* block,
+                       const Override* step = nullptr, const std::string& suffix = {}) {
         const auto& factors = factors_;
         const auto copyOf = [&](std::string_view name) {
             const Node* table = root_.node(name);
@@ -172,8 +218,10 @@ private:
             if (i > 0) condition.name += '/';
             condition.name += factors[i].factor.levels[levels[i]].label;
         }
+        if (step != nullptr) applyOverride(*step, tables, errors_);
         if (factors.empty()) condition.name = "single";
         if (block != nullptr) condition.name += "@" + block->find("name")->text;
+        condition.name += suffix;
 
         const std::size_t before = errors_.size();
         auto content = readSceneNode(tables.scene, {"scene"}, "scene", devices_, errors_);
@@ -284,58 +332,6 @@ private:
         for (const auto& [path, name] : names) plan_.meshes.push_back({name, path});
     }
 
-    /// A sentence for the conditions that it concerns.
-    template <class Concerns>
-    void warn(std::string_view sentence, Concerns concerns) {
-        std::vector<std::string_view> names;
-        for (const Condition& condition : plan_.conditions)
-            if (concerns(condition)) names.push_back(condition.name);
-        if (!names.empty())
-            plan_.warnings.push_back(fmt::format("{}; conditions: {}", sentence, fmt::join(names, ", ")));
-    }
-
-    void warn() {
-        using model::PenaltyVariant;
-        const auto penalty = [](const Condition& condition) {
-            return condition.scene.contact.method == model::ContactMethod::Penalty;
-        };
-        const auto renders = [&](PenaltyVariant variant) {
-            return [=](const Condition& condition) {
-                return penalty(condition) && condition.scene.contact.variant == variant;
-            };
-        };
-        warn(
-            "contact.allow_unstable = true: nothing keeps the stiffness where the device is known to be stable; "
-            "`explain` says how far the border is",
-            [](const Condition& condition) { return condition.allow_unstable; });
-        warn(
-            "contact.variant = \"raw\" adds the stiffness up over all points in contact, so that nothing keeps the "
-            "stiffness below the device's stable maximum",
-            renders(PenaltyVariant::Raw));
-        warn(
-            "contact.variant = \"area_weighted\" has a stiffness that grows with the area, so that nothing keeps the "
-            "stiffness below the device's stable maximum",
-            renders(PenaltyVariant::AreaWeighted));
-        const auto rubs = [](const Condition& condition, bool held) {
-            const auto& parts = condition.scene.parts;
-            return std::any_of(parts.begin(), parts.end(),
-                               [=](const auto& part) { return part.held == held && part.friction > 0.0; });
-        };
-        warn("contact.method = \"penalty\" renders no friction: that of the parts acts in other conditions only",
-             [&](const Condition& condition) {
-                 return penalty(condition) && rubs(condition, true) && rubs(condition, false);
-             });
-        warn("friction of one side only has no effect: the held part rubs with another if neither has 0",
-             [&](const Condition& condition) { return rubs(condition, true) != rubs(condition, false); });
-        warn("feedback.masking_noise = true covers the audio cue",
-             [](const Condition& condition) { return condition.cues.masking_noise && condition.cues.audio; });
-        warn("secondary.stimulus is a cue of the contact too: who answers one may mean the other", [](const auto& c) {
-            return (c.cues.vibrotactile && c.secondary.stimulus == Stimulus::Vibrotactile) ||
-                   (c.cues.visual && c.secondary.stimulus == Stimulus::Visual) ||
-                   (c.cues.audio && c.secondary.stimulus == Stimulus::Audio);
-        });
-    }
-
     const Node& document_;
     std::span<const DeviceDescription> devices_;
     std::span<const std::string> known_measures_;
@@ -343,6 +339,7 @@ private:
     TableReader root_;
     StudyPlan plan_;
     std::vector<FactorContent> factors_;
+    std::vector<StaircaseContent> staircases_;
 };
 
 }  // namespace

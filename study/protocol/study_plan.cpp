@@ -67,9 +67,10 @@ design::Design designOf(const StudyPlan& plan) {
         design.conditions.back().levels.resize(plan.factors.size(), design.conditions.size() - 1);
     }
     for (const Block& block : plan.blocks)
-        design.blocks.push_back({block.name, phaseName(block.phase), block.repetitions, block.order,
-                                 static_cast<std::size_t>(block.trials), block.blocked, block.blocked_order,
-                                 block.constraints, block.catches, block.session, block.first_condition});
+        design.blocks.push_back({block.name, block.adaptive ? kAdaptivePhase : phaseName(block.phase),
+                                 block.repetitions, block.order, static_cast<std::size_t>(block.trials), block.blocked,
+                                 block.blocked_order, block.constraints, block.catches, block.session,
+                                 block.first_condition});
     design.allocation_blocks = plan.allocation_blocks;
     return design;
 }
@@ -91,6 +92,10 @@ int sessionsOf(const StudyPlan& plan) {
     int sessions = 1;
     for (const Block& block : plan.blocks) sessions = std::max(sessions, block.session);
     return sessions;
+}
+
+std::size_t plannedConditions(const StudyPlan& plan) {
+    return plan.first_variant > 0 ? plan.first_variant : plan.conditions.size();
 }
 
 }  // namespace passung::protocol

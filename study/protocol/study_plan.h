@@ -10,6 +10,7 @@
 #include "study/design/design.h"
 #include "study/protocol/block.h"
 #include "study/protocol/secondary_task.h"
+#include "study/protocol/staircase.h"
 #include "study/protocol/study_texts.h"
 #include "study/protocol/task.h"
 #include "study/questionnaire/definition.h"
@@ -45,6 +46,12 @@ struct Cues {
     bool any() const { return visual || vibrotactile || audio || masking_noise; }
 };
 
+/// What a staircase presents in a condition.
+struct StaircaseLevel {
+    std::size_t staircase = 0;  // index into the plan's
+    double level = 0.0;
+};
+
 /// One combination of factor levels with everything it means.
 struct Condition {
     std::string name;                 // levels joined by "/", unique
@@ -58,6 +65,7 @@ struct Condition {
     bool accuracy_picked = false;                // it has
     Task task;
     std::optional<model::SceneSpec> comparison;  // of a discrimination_pair: the other interval's scene
+    std::optional<StaircaseLevel> stimulus;      // none: no staircase chose anything in it
     ShownPose shown = ShownPose::Proxy;
     Cues cues;
     TimedBy timed_by = TimedBy::Program;
@@ -126,7 +134,9 @@ struct StudyPlan {
     std::vector<Factor> factors;
     std::vector<Condition> conditions;  // the first factor varies slowest; of all groups and assignments
     std::size_t shared_conditions = 0;  // how many of these, from the first, are no block's own; 0: all
+    std::size_t first_variant = 0;      // from here on they present levels of staircases; 0: none does
     std::vector<Block> blocks;
+    std::vector<Staircase> staircases;
     double max_session = 0.0;  // [s] that a session may take; 0: no limit
     std::vector<Analysis> analyses;
     std::vector<PlannedQuestionnaire> questionnaires;
@@ -154,5 +164,8 @@ std::vector<std::string> groupNames(const StudyPlan& plan);
 
 /// How many sessions a participant has.
 int sessionsOf(const StudyPlan& plan);
+
+/// How many conditions are planned, those apart that present the levels of staircases.
+std::size_t plannedConditions(const StudyPlan& plan);
 
 }  // namespace passung::protocol

@@ -30,6 +30,13 @@ public:
     /// @pre not empty()
     void end(Then then);
 
+    /// Trials that are still to do and for which this holds are not: they were not needed, and nobody goes back to
+    /// them.
+    template <class Needless>
+    void leaveOut(Needless needless) {
+        std::erase_if(todo_, [&](std::size_t place) { return needless(trials_[place]); });
+    }
+
     /// Is there a trial that goBack() could take?
     bool canGoBack() const { return !history_.empty(); }
     /// The trial that is over last. @pre canGoBack()

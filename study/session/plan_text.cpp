@@ -11,6 +11,7 @@
 #include "study/protocol/duration.h"
 #include "study/protocol/participant.h"
 #include "study/session/participant_order.h"
+#include "study/session/staircase_text.h"
 
 namespace passung::session {
 namespace {
@@ -34,7 +35,7 @@ std::string factorsText(const protocol::StudyPlan& plan) {
 
 std::string conditionsText(const protocol::StudyPlan& plan) {
     std::string text = "Conditions\n";
-    for (std::size_t i = 0; i < plan.conditions.size(); ++i) {
+    for (std::size_t i = 0; i < protocol::plannedConditions(plan); ++i) {
         const protocol::Condition& condition = plan.conditions[i];
         const model::ContactSpec& contact = condition.scene.contact;
         text += fmt::format("  {:>3}  {}  (device {}", i + 1, condition.name, condition.device);
@@ -180,7 +181,8 @@ Result<std::string> describePlan(const protocol::StudyPlan& plan, int participan
     std::string text =
         fmt::format("{}\nstudy {}, version {}, seed {}, {} planned\n\n", plan.title, plan.name, plan.version, plan.seed,
                     design::counted(static_cast<std::size_t>(plan.participants), "participant"));
-    text += factorsText(plan) + conditionsText(plan) + blocksText(plan) + questionnairesText(plan);
+    text +=
+        factorsText(plan) + conditionsText(plan) + blocksText(plan) + staircasesText(plan) + questionnairesText(plan);
 
     text += "Orders (numbers of conditions; blocks parted by |)\n";
     const auto groups = protocol::groupNames(plan);

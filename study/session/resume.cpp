@@ -24,6 +24,14 @@ std::vector<std::size_t> toRedo(const protocol::ResumePolicy& policy, const Agen
     return places;
 }
 
+ToldStep toldStep(const protocol::StudyPlan& plan, const StoredAttempt& attempt, const design::PlannedTrial& trial) {
+    const auto staircase = std::find_if(plan.staircases.begin(), plan.staircases.end(),
+                                        [&](const auto& known) { return known.name == attempt.step->staircase; });
+    return {attempt.id,          static_cast<std::size_t>(staircase - plan.staircases.begin()),
+            trial.condition,     attempt.step->track,
+            attempt.step->level, attempt.step->positive};
+}
+
 }  // namespace
 
 Then thenAfter(const protocol::Block& block, Outcome outcome, bool valid, int judged) {
@@ -56,6 +64,7 @@ Resumption resumption(const protocol::StudyPlan& plan, std::vector<design::Plann
         past.last = attempt.id;
         if (attempt.valid) past.counting = attempt.id;
         newest[attempt.place] = &attempt;
+        if (attempt.valid && attempt.step) result.steps.push_back(toldStep(plan, attempt, agenda.trial(attempt.place)));
         agenda.bring(attempt.place);
         const bool last = &attempt == &attempts.back();
         const bool cut_off = !attempt.outcome || (last && !crashed && *attempt.outcome == Outcome::Aborted);
@@ -68,6 +77,9 @@ Resumption resumption(const protocol::StudyPlan& plan, std::vector<design::Plann
         agenda.bring(*place);
         if (auto& counting = result.past[*place].counting) result.discounted.push_back(*counting), counting.reset();
     }
+    std::erase_if(result.steps, [&](const ToldStep& told) {
+        return std::find(result.discounted.begin(), result.discounted.end(), told.attempt) != result.discounted.end();
+    });
     for (const std::size_t place : agenda.over())
         result.finished.push_back({agenda.trial(place), newest[place]->measures});
     const std::int64_t since = agenda.canGoBack() ? newest[agenda.last()]->start_ns : -1;

@@ -8,6 +8,7 @@
 #include "core/base/result.h"
 #include "study/protocol/study_plan.h"
 #include "study/session/agenda.h"
+#include "study/session/staircases.h"
 #include "study/session/trial_sink.h"
 
 namespace passung::session {
@@ -20,6 +21,13 @@ struct Past {
     std::optional<AttemptId> counting;  // the one that is valid and ended by its own rules
 };
 
+/// What a staircase was told by an attempt, as it is stored.
+struct StoredStep {
+    std::string staircase, track;
+    double level = 0.0;
+    bool positive = false;
+};
+
 /// An attempt of an earlier part of the session, as it is stored.
 struct StoredAttempt {
     AttemptId id;
@@ -29,6 +37,7 @@ struct StoredAttempt {
     bool valid;
     std::int64_t start_ns = 0;  // session time
     std::vector<measures::Value> measures = {};
+    std::optional<StoredStep> step = {};  // none: no track was told anything
 };
 
 /// A questionnaire that an earlier part of the session stored.
@@ -45,6 +54,7 @@ struct Resumption {
     std::int64_t start_ns = 0;                 // session time that the earlier parts took
     std::vector<FinishedTrial> finished = {};  // trials that are over and stay so, in time
     std::vector<std::string> answered = {};    // ids of the forms that were stored since the last of them
+    std::vector<ToldStep> steps = {};          // what staircases were told by attempts that count
 };
 
 /// What the protocol says of a trial whose newest attempt ended so; it is number `judged` of those that did.

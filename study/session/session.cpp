@@ -34,9 +34,13 @@ Session::Session(SessionSetup setup, Apparatus& apparatus, TrialSink& sink, Sess
             sink),
       state_(setup_.waits ? SessionState::Ready : SessionState::BetweenTrials),
       agenda_(setup_.resumed ? setup_.resumed->agenda : Agenda(setup_.trials)),
+      staircases_(setup_.plan, setup_.participant, setup_.seed, setup_.ordinal),
       past_(setup_.resumed ? setup_.resumed->past : std::vector<Past>(setup_.trials.size())),
       session_ns_(setup_.resumed ? setup_.resumed->start_ns : 0) {
     if (setup_.resumed) desk_.resume(setup_.resumed->finished, setup_.resumed->answered);
+    if (setup_.resumed)
+        for (ToldStep& told : setup_.resumed->steps) staircases_.restore(std::move(told));
+    leaveOutNeedless();
 }
 
 Session::~Session() {
@@ -130,9 +134,20 @@ bool Session::swapsDevice(const std::string& device) {
     return false;
 }
 
+/// Trials of a staircase whose tracks are all finished.
+void Session::leaveOutNeedless() {
+    if (setup_.plan.staircases.empty()) return;
+    agenda_.leaveOut([&](const design::PlannedTrial& planned) {
+        return staircases_.governs(planned) && !staircases_.next(planned);
+    });
+}
+
 void Session::beginTrial() {
-    PASSUNG_ASSERT(trial().condition < setup_.plan.conditions.size());
-    const protocol::Condition& condition = setup_.plan.conditions[trial().condition];
+    AttemptStart start;
+    if (staircases_.governs(trial())) start.staircase = staircases_.next(trial());
+    const std::size_t shown = start.staircase ? start.staircase->condition : trial().condition;
+    PASSUNG_ASSERT(shown < setup_.plan.conditions.size());
+    const protocol::Condition& condition = setup_.plan.conditions[shown];
     const auto X_WT = targetPose(condition);
     if (!X_WT) return fail("prepare", X_WT.errors());
 
@@ -140,7 +155,6 @@ void Session::beginTrial() {
     if (!instructed_block_) instruct(protocol::ShowAt::SessionStart);
     if (instructed_block_ != trial().block_index) instruct(protocol::ShowAt::BeforeBlock);
     instructed_block_ = trial().block_index;
-    AttemptStart start;
     start.trial_index = trial().trial_index;
     start.attempt_no = past_[agenda_.next()].attempts + 1;
     start.start_ns = session_ns_;
@@ -158,6 +172,7 @@ void Session::beginTrial() {
     if (condition.secondary.any()) attempt_->secondary.emplace(detectionSettings(condition.secondary), start.seed);
     if (setup_.timer != nullptr && condition.timed_by == protocol::TimedBy::Experimenter)
         setup_.timer->begin(condition, start.seed, start.trial_index);
+    attempt_->step = start.staircase;
     apparatus_.start();
     state_ = SessionState::InTrial;
 }
@@ -221,6 +236,8 @@ void Session::finishTrial(std::optional<Then> then) {
         end.valid = false;
         end.invalid_reason = fmt::format("{}: the trial is repeated", measures::outcomeName(end.outcome));
     }
+    if (attempt_->step)
+        end.staircase = staircases_.take(attempt_->id, trial(), *attempt_->step, end.measures, end.valid);
     const auto finished = sink_.finishAttempt(attempt_->id, end);
     session_ns_ += periods * kTickNanoseconds;
     const Attempt attempt = *std::exchange(attempt_, std::nullopt);
@@ -237,6 +254,7 @@ void Session::takeEnd(const Attempt& attempt, const AttemptEnd& end, Then then) 
     if (end.valid) past_[*last_].counting = attempt.id;
     if (then == Then::Done) desk_.remember({agenda_.trial(*last_), end.measures});
     agenda_.end(then);
+    leaveOutNeedless();
     if (!listener_.progress) return;
     std::optional<double> trial_time_s;
     for (const measures::Value& value : end.measures)
@@ -253,6 +271,15 @@ bool Session::isWhole() const {
     for (std::size_t place = 0; place < past_.size(); ++place) {
         const bool is_main = agenda_.trial(place).phase == protocol::phaseName(protocol::Phase::Main);
         if (is_main && !past_[place].counting) return false;
+    }
+    return staircasesAreDone();
+}
+
+/// Every trial of theirs counts, or was not needed because the tracks are finished.
+bool Session::staircasesAreDone() const {
+    for (std::size_t place = 0; place < past_.size() && !setup_.plan.staircases.empty(); ++place) {
+        const design::PlannedTrial& planned = agenda_.trial(place);
+        if (staircases_.governs(planned) && !past_[place].counting && staircases_.next(planned)) return false;
     }
     return true;
 }
@@ -319,7 +346,7 @@ void Session::instruct(protocol::ShowAt moment) {
 void Session::finish(SessionState state) {
     state_ = state;
     if (state == SessionState::Complete) instruct(protocol::ShowAt::SessionEnd);
-    const auto finished = sink_.finishSession(state == SessionState::Complete, session_ns_);
+    const auto finished = sink_.finishSession(state == SessionState::Complete && staircasesAreDone(), session_ns_);
     if (finished) return;
     state_ = SessionState::Failed;
     if (errors_.empty()) errors_ = finished.errors();  // else most likely the same once more

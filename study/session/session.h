@@ -12,6 +12,7 @@
 #include "study/session/command.h"
 #include "study/session/questionnaire_desk.h"
 #include "study/session/session_setup.h"
+#include "study/session/staircases.h"
 #include "study/session/trial_course.h"
 #include "study/session/trial_sink.h"
 
@@ -59,7 +60,7 @@ public:
     SessionState state() const { return state_; }
     bool isOver() const { return state_ >= SessionState::Complete; }
 
-    /// Has every main trial an attempt that counts?
+    /// Has every main trial an attempt that counts, and every track of a staircase come to its end?
     bool isWhole() const;
 
     /// Why the session failed; empty unless state() is Failed.
@@ -75,6 +76,7 @@ private:
         std::int64_t next_tick = 0;
         std::int64_t missing_ticks = 0;
         int silent_looks = 0;
+        std::optional<StaircaseStep> step = {};
         std::string invalidated = {};  // why the experimenter does not want it to count; empty: nothing against it
         std::optional<measures::DetectionTask> secondary = {};
     };
@@ -82,6 +84,8 @@ private:
     const design::PlannedTrial& trial() const { return agenda_.trial(agenda_.next()); }
     bool rest();
     bool swapsDevice(const std::string& device);
+    void leaveOutNeedless();
+    bool staircasesAreDone() const;
     void beginTrial();
     void watchTrial();
     bool asksQuestionnaire();
@@ -124,6 +128,7 @@ private:
     bool pause_asked_ = false;
     std::optional<Attempt> attempt_;
     Agenda agenda_;
+    Staircases staircases_;
     std::vector<Past> past_;                        // by place in the plan
     std::optional<std::size_t> last_;               // place of the newest attempt that ended
     std::optional<std::size_t> rested_for_;         // place of the trial that a rest was last looked for

@@ -202,7 +202,9 @@ Answer Session::halt(const Command& command) {
 Result<Done> Session::discount(std::size_t place, const std::string& reason) {
     if (!past_[place].counting) return Done{};
     const auto done = sink_.invalidateAttempt(*past_[place].counting, reason);
-    if (done) past_[place].counting.reset();
+    if (!done) return done;
+    staircases_.forget(*past_[place].counting);
+    past_[place].counting.reset();
     return done;
 }
 

@@ -11,6 +11,7 @@
 #include "study/measures/measures.h"
 #include "study/session/apparatus.h"
 #include "study/session/questionnaire_source.h"
+#include "study/session/staircase_step.h"
 
 namespace passung::session {
 
@@ -23,6 +24,7 @@ struct AttemptStart {
     std::string params_json;
     std::vector<StageNote> stages;
     std::uint64_t seed = 0;  // of the simulated device and hand
+    std::optional<StaircaseStep> staircase = {};
 };
 
 struct AttemptEnd {
@@ -34,6 +36,7 @@ struct AttemptEnd {
     std::vector<measures::Detection> detections;  // of the secondary task, by time
     LoopHealth health;
     bool timing_measured = true;  // false in virtual time: timing cells are exported as NA
+    std::optional<StaircaseAnswer> staircase = {};
 };
 
 struct Event {

@@ -342,6 +342,22 @@ CREATE TABLE picture_file(
     PRIMARY KEY(protocol_sha256, picture)) STRICT, WITHOUT ROWID;
 )sql";
 
+constexpr const char* kRevision8 = R"sql(
+-- What staircases had a trial present, and what came of it. No program wrote the table of revision 1.
+DROP TABLE staircase_step;
+CREATE TABLE staircase_step(
+    attempt_id INTEGER PRIMARY KEY REFERENCES attempt ON DELETE CASCADE,
+    staircase TEXT NOT NULL,
+    track TEXT,                       -- NULL: a catch trial
+    wanted_level REAL NOT NULL,       -- by the rule
+    level REAL NOT NULL,              -- presented
+    condition_id INTEGER NOT NULL REFERENCES condition,  -- presented
+    positive INTEGER CHECK(positive IN(0,1)),
+    reversal INTEGER NOT NULL DEFAULT 0 CHECK(reversal IN(0,1)),
+    estimate REAL,
+    estimate_sd REAL) STRICT;
+)sql";
+
 constexpr std::array kRevisions = {
     Revision{1, "Protocols, participants, sessions, trials, samples, timing and questionnaires", kRevision1, 1},
     // A reader that does not know what was picked would replay another scene.
@@ -353,6 +369,8 @@ constexpr std::array kRevisions = {
     Revision{5, "Clauses of consent, an audit whose details can be taken away, packed samples", kRevision5, 5},
     Revision{6, "Energy of each attempt by obstacle", kRevision6, 5},
     Revision{7, "Responses to a secondary task, pictures of the instructions", kRevision7, 5},
+    // A reader that does not know what was presented would replay another scene.
+    Revision{8, "Levels that staircases presented, with their answers", kRevision8, 8},
 };
 
 bool isEmpty(const Database& database) { return database.integer("SELECT count(*) FROM sqlite_master") == 0; }

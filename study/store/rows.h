@@ -171,7 +171,8 @@ struct AttemptRow {
     std::int64_t trial_in_block = 0;
     std::int64_t repetition = 1;
     std::int64_t attempt_no = 1;
-    std::string condition;
+    std::string condition;            // as planned
+    std::string presented_condition;  // another one where a staircase chose its level
     Levels levels;
     std::int64_t start_ns = 0;
     std::optional<std::int64_t> end_ns;
@@ -204,6 +205,19 @@ struct DetectionRow {
     std::int64_t attempt_id = 0;
     std::int64_t number = 1;  // by time
     measures::Detection detection;
+};
+
+/// A trial of a staircase.
+struct StaircaseStepRow {
+    std::int64_t attempt_id = 0;
+    std::string staircase;
+    std::optional<std::string> track;  // empty: a catch trial
+    double wanted_level = 0.0;
+    double level = 0.0;  // presented
+    std::optional<bool> positive;
+    bool reversal = false;
+    std::optional<double> estimate;
+    std::optional<double> estimate_sd;
 };
 
 struct EventRow {

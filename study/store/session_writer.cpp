@@ -7,6 +7,7 @@
 #include "study/store/secondary_rows.h"
 #include "study/store/session_json.h"
 #include "study/store/sqlite.h"
+#include "study/store/staircase_rows.h"
 #include "study/store/writer_thread.h"
 
 namespace passung::store {
@@ -115,6 +116,7 @@ Result<session::AttemptId> SessionWriter::startAttempt(const session::AttemptSta
             .run();
         const std::int64_t attempt_id = database.lastRowId();
         trial.reset();
+        if (start.staircase) insertStaircaseStep(database, rows_.session_id, attempt_id, *start.staircase);
         transaction.commit();
         return attempt_id;
     });
@@ -203,6 +205,7 @@ void SessionWriter::storeEnd(const Database& database, const OpenAttempt& attemp
         .run();
     insertMeasures(database, attempt_id, end.measures);
     insertDetections(database, attempt_id, attempt.start_ns, end.detections);
+    if (end.staircase) storeStaircaseAnswer(database, attempt_id, *end.staircase);
     insertTiming(database, attempt_id, end.health, end.timing_measured);
     insertContactEnergy(database, attempt_id, end.health.contact_energy);
     transaction.commit();

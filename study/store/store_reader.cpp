@@ -10,6 +10,7 @@
 #include "study/store/secondary_rows.h"
 #include "study/store/sqlite.h"
 #include "study/store/stable_stiffness_rows.h"
+#include "study/store/staircase_rows.h"
 
 namespace passung::store {
 namespace {
@@ -64,7 +65,9 @@ constexpr std::string_view kAttemptColumns =
     "coalesce(json_extract(a.params_json, '$.kinesthetic'), 1), "
     "coalesce(json_extract(a.params_json, '$.timed_by'), 'program'), "
     "coalesce(json_extract(a.params_json, '$.secondary.stimulus'), 'none'), "
-    "(SELECT min(e.t_ns) FROM event e WHERE e.attempt_id=a.attempt_id AND e.event='trial_started') "
+    "(SELECT min(e.t_ns) FROM event e WHERE e.attempt_id=a.attempt_id AND e.event='trial_started'), "
+    "coalesce((SELECT p.condition FROM staircase_step f JOIN condition p ON p.condition_id=f.condition_id "
+    "WHERE f.attempt_id=a.attempt_id), c.condition) "
     "FROM attempt a JOIN trial_plan t USING(trial_id) JOIN session s USING(session_id) "
     "JOIN participant pa USING(participant_id) JOIN segment g ON g.segment_id=a.segment_id "
     "JOIN condition c USING(condition_id) LEFT JOIN timing m USING(attempt_id)";
@@ -121,6 +124,7 @@ AttemptRow readAttempt(const Database& database, const Statement& row) {
     attempt.timed_by = row.text(45);
     attempt.stimulus = row.text(46);
     attempt.trial_ns = row.optionalInteger(47);
+    attempt.presented_condition = row.text(48);
     Statement values =
         database.prepare("SELECT measure, value_num FROM attempt_measure WHERE attempt_id=? AND value_num IS NOT NULL");
     values.bind(attempt.attempt_id);
@@ -270,7 +274,8 @@ Result<std::vector<ConditionRow>> StoreReader::conditions() const {
     return guarded(path_, [&] {
         return readAll<ConditionRow>(
             database_->prepare("SELECT c.protocol_sha256, c.condition, c.levels_json "
-                               "FROM condition c JOIN protocol_version p USING(protocol_sha256)" +
+                               "FROM condition c JOIN protocol_version p USING(protocol_sha256) WHERE c.position < "
+                               "coalesce(json_extract(p.expanded_json, '$.planned_conditions'), c.position + 1)" +
                                std::string(kByProtocol) + ", c.position"),
             [&](const Statement& row) {
                 return ConditionRow{row.text(0), row.text(1), readLevels(*database_, row.text(2))};
@@ -382,6 +387,10 @@ Result<std::vector<EventRow>> StoreReader::events() const {
 
 Result<std::vector<DetectionRow>> StoreReader::detections() const {
     return guarded(path_, [&] { return readDetections(*database_); });
+}
+
+Result<std::vector<StaircaseStepRow>> StoreReader::staircaseSteps() const {
+    return guarded(path_, [&] { return readStaircaseSteps(*database_); });
 }
 
 Result<std::vector<QuestionnaireRunRow>> StoreReader::questionnaireRuns() const {

@@ -43,6 +43,7 @@ public:
     Result<AttemptRow> attempt(std::int64_t attempt_id) const;
     Result<std::vector<EventRow>> events() const;
     Result<std::vector<DetectionRow>> detections() const;                // attempts as above, then by time
+    Result<std::vector<StaircaseStepRow>> staircaseSteps() const;        // by attempt
     Result<std::vector<QuestionnaireRunRow>> questionnaireRuns() const;  // by session, then as they were asked
 
     /// The attempt's ticks, ascending; gaps are ticks that were dropped. Every chunk's checksum is verified.

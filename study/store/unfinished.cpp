@@ -42,8 +42,8 @@ void readTrials(const Database& database, Unfinished& session) {
     }
     Statement attempts = database.prepare(
         "SELECT attempt_id, (SELECT count(*) FROM trial_plan b WHERE b.session_id=t.session_id AND "
-        "b.trial_index<t.trial_index), attempt_no, outcome, valid, start_ns FROM attempt JOIN trial_plan t "
-        "USING(trial_id) "
+        "b.trial_index<t.trial_index), attempt_no, outcome, valid, start_ns, f.staircase, f.track, f.level, f.positive "
+        "FROM attempt JOIN trial_plan t USING(trial_id) LEFT JOIN staircase_step f USING(attempt_id) "
         "WHERE session_id=? ORDER BY attempt_id");
     attempts.bind(session.session_id);
     while (attempts.step()) {
@@ -53,8 +53,12 @@ void readTrials(const Database& database, Unfinished& session) {
                                     measures::outcomeNamed(attempts.text(3)),
                                     attempts.integer(4) != 0,
                                     attempts.integer(5),
+                                    {},
                                     {}});
         readMeasures(database, session.attempts.back());
+        if (!attempts.isNull(7) && !attempts.isNull(9))
+            session.attempts.back().step =
+                session::StoredStep{attempts.text(6), attempts.text(7), attempts.real(8), attempts.integer(9) != 0};
     }
 }
 

@@ -11,6 +11,7 @@
 #include "study/protocol/questionnaire_reader.h"
 #include "study/session/participant_order.h"
 #include "study/session/plan_text.h"
+#include "study/session/staircase_text.h"
 #include "ui/app/run_study.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
@@ -68,7 +69,8 @@ int check(const CheckOptions& options) {
         trials += planned->size();
     }
     fmt::print("{}: ok: {} {}, {} conditions, {} trials for each of {} participants\n", options.protocol, plan->name,
-               plan->version, plan->conditions.size(), trials, plan->participants);
+               plan->version, protocol::plannedConditions(*plan), trials, plan->participants);
+    fmt::print("{}", session::staircasesText(*plan));
     return 0;
 }
 

@@ -41,10 +41,11 @@ public:
         if (!plan) return plan.errors();
         const auto& conditions = (*plan)->conditions;
         const auto condition = std::find_if(conditions.begin(), conditions.end(),
-                                            [&](const auto& c) { return c.name == attempt.condition; });
+                                            [&](const auto& c) { return c.name == attempt.presented_condition; });
         if (condition == conditions.end()) {
-            return Error{
-                .message = "the stored protocol has no such condition", .key = "condition", .value = attempt.condition};
+            return Error{.message = "the stored protocol has no such condition",
+                         .key = "condition",
+                         .value = attempt.presented_condition};
         }
         const auto scenes = app::buildScenes(session::renderedScenes(*condition, attempt.seed), parts_);
         if (!scenes) return scenes.errors();
@@ -56,7 +57,7 @@ public:
 private:
     static std::string nameOf(const store::AttemptRow& attempt) {
         return fmt::format("attempt {} ({}, session {}, trial {}, {})", attempt.attempt_id, attempt.participant_id,
-                           attempt.session_ordinal, attempt.trial_index + 1, attempt.condition);
+                           attempt.session_ordinal, attempt.trial_index + 1, attempt.presented_condition);
     }
 
     /// The first measure, or the outcome, that the recorded ticks do not give again; empty if they give all. Bits

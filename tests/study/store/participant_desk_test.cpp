@@ -165,8 +165,10 @@ void plantMarkers(const std::string& path, const std::string& code) {
         session +
         " LIMIT 1; "
         "INSERT INTO item_response(run_id, item, presented_index, value_text) VALUES(1, 'i', 1, " +
-        text + "); INSERT INTO score VALUES(1, 's', 1.0, 1, 0, 1); INSERT INTO staircase_step VALUES(" + attempt +
-        ", 't', 'm', 1.0, 1, 0, " + text + ")");
+        text +
+        "); INSERT INTO score VALUES(1, 's', 1.0, 1, 0, 1); INSERT INTO staircase_step(attempt_id, "
+        "staircase, track, wanted_level, level, condition_id) VALUES(" +
+        attempt + ", " + text + ", " + text + ", 1.0, 1.0, 1)");
     // Large enough for pages of its own.
     database.execute("UPDATE sample_chunk SET data=CAST(replace(hex(zeroblob(20000)), '00', " + text +
                      ") AS BLOB) WHERE attempt_id=" + attempt);

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "analysis/export/study_data.h"
+#include "analysis/export/table.h"
+
+namespace passung::exporter {
+
+/// One row per attempt at a trial of a staircase: what was presented, what came of it, the estimate after it.
+Table makeStaircase(const StudyData& study);
+
+/// One row per participant, staircase, condition and track of the counted sessions: the estimate after its last trial.
+Table makeThresholds(const StudyData& study);
+
+}  // namespace passung::exporter

@@ -1,0 +1,60 @@
+#include "study/protocol/plan_warnings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+namespace passung::protocol {
+
+std::vector<std::string> conditionWarnings(std::span<const Condition> conditions) {
+    std::vector<std::string> warnings;
+    const auto warn = [&](std::string_view sentence, auto concerns) {
+        std::vector<std::string_view> names;
+        for (const Condition& condition : conditions)
+            if (concerns(condition)) names.push_back(condition.name);
+        if (!names.empty()) warnings.push_back(fmt::format("{}; conditions: {}", sentence, fmt::join(names, ", ")));
+    };
+    using model::PenaltyVariant;
+    const auto penalty = [](const Condition& condition) {
+        return condition.scene.contact.method == model::ContactMethod::Penalty;
+    };
+    const auto renders = [&](PenaltyVariant variant) {
+        return [=](const Condition& condition) {
+            return penalty(condition) && condition.scene.contact.variant == variant;
+        };
+    };
+    warn(
+        "contact.allow_unstable = true: nothing keeps the stiffness where the device is known to be stable; "
+        "`explain` says how far the border is",
+        [](const Condition& condition) { return condition.allow_unstable; });
+    warn(
+        "contact.variant = \"raw\" adds the stiffness up over all points in contact, so that nothing keeps the "
+        "stiffness below the device's stable maximum",
+        renders(PenaltyVariant::Raw));
+    warn(
+        "contact.variant = \"area_weighted\" has a stiffness that grows with the area, so that nothing keeps the "
+        "stiffness below the device's stable maximum",
+        renders(PenaltyVariant::AreaWeighted));
+    const auto rubs = [](const Condition& condition, bool held) {
+        const auto& parts = condition.scene.parts;
+        return std::any_of(parts.begin(), parts.end(),
+                           [=](const auto& part) { return part.held == held && part.friction > 0.0; });
+    };
+    warn("contact.method = \"penalty\" renders no friction: that of the parts acts in other conditions only",
+         [&](const Condition& condition) {
+             return penalty(condition) && rubs(condition, true) && rubs(condition, false);
+         });
+    warn("friction of one side only has no effect: the held part rubs with another if neither has 0",
+         [&](const Condition& condition) { return rubs(condition, true) != rubs(condition, false); });
+    warn("feedback.masking_noise = true covers the audio cue",
+         [](const Condition& condition) { return condition.cues.masking_noise && condition.cues.audio; });
+    warn("secondary.stimulus is a cue of the contact too: who answers one may mean the other", [](const auto& c) {
+        return (c.cues.vibrotactile && c.secondary.stimulus == Stimulus::Vibrotactile) ||
+               (c.cues.visual && c.secondary.stimulus == Stimulus::Visual) ||
+               (c.cues.audio && c.secondary.stimulus == Stimulus::Audio);
+    });
+    return warnings;
+}
+
+}  // namespace passung::protocol

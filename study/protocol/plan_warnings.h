@@ -1,0 +1,14 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "study/protocol/study_plan.h"
+
+namespace passung::protocol {
+
+/// Sentences about what conditions allow and an experimenter should know, each with their names.
+std::vector<std::string> conditionWarnings(std::span<const Condition> conditions);
+
+}  // namespace passung::protocol

@@ -1,0 +1,28 @@
+#include "study/protocol/staircase.h"
+
+#include <algorithm>
+
+#include "core/base/assert.h"
+#include "study/protocol/study_plan.h"
+
+namespace passung::protocol {
+
+std::size_t Staircase::trials() const {
+    std::size_t count = catch_trials;
+    for (const StaircaseTrack& track : tracks) count += static_cast<std::size_t>(track.params.max_trials);
+    return count;
+}
+
+const Staircase* staircaseOf(const StudyPlan& plan, std::size_t block) {
+    const auto found = std::find_if(plan.staircases.begin(), plan.staircases.end(),
+                                    [&](const Staircase& staircase) { return staircase.block == block; });
+    return found == plan.staircases.end() ? nullptr : &*found;
+}
+
+std::size_t variantOf(const StudyPlan& plan, const Staircase& staircase, std::size_t condition, std::size_t level) {
+    const std::size_t own = condition - plan.blocks[staircase.block].first_condition;
+    PASSUNG_ASSERT(own < staircase.first_variant.size() && level < staircase.levels.size());
+    return staircase.first_variant[own] + level;
+}
+
+}  // namespace passung::protocol

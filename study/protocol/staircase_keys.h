@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+
+#include "study/protocol/key_ranges.h"
+#include "study/protocol/key_table.h"
+
+namespace passung::protocol::staircase_rows {
+
+using enum KeyType;
+using namespace ranges;
+
+// Rows of the key table for staircases.
+// clang-format off
+inline constexpr std::array kStaircaseKeys{
+    Key{"protocol", "staircase", Tables, kAny, "", "(none)", "Keys of the scene whose value follows, trial by trial, from what came before."},
+
+    Key{"staircase", "name", Name, kAny, "", "!", "Unique; a column of staircase.csv."},
+    Key{"staircase", "block", Name, kAny, "", "!", "The main block whose trials it governs; how many those are follows from it. Every condition of the block has all tracks to itself."},
+    Key{"staircase", "key", Text, kAny, "", "!", "What varies, as a factor's `key`; a number that is harder to notice, or easier to fail with, the lower it is."},
+    Key{"staircase", "unit", Text, kAny, "", "(none)", "Unit of the levels, for tables."},
+    Key{"staircase", "levels", Levels, kAny, "", "(low, high and count)", "The values that can be presented, ascending. Each makes a condition that `check` looks at."},
+    Key{"staircase", "low", Number, kAny, "", "(levels)", "In place of `levels`: the lowest."},
+    Key{"staircase", "high", Number, kAny, "", "(levels)", "The highest."},
+    Key{"staircase", "count", Integer, from(2, 200), "", "(levels)", "How many from low to high, evenly on the axis."},
+    Key{"staircase", "logarithmic", Boolean, kAny, "", "false", "The axis is the logarithm of the level: steps and sigmas are decades."},
+    Key{"staircase", "rule", Choice, kAny, "1_up_1_down|1_up_2_down|1_up_3_down|1_up_4_down|psi", "!", "n_down: a step down after n positive trials in a row, a step up after one that is not: settles where p^n = step_up / (step_up + step_down), with equal steps 50, 71, 79, 84 % positive. psi: the level that tells most of threshold and spread."},
+    Key{"staircase", "step_down", Number, above(0), "", "(needed, but not by psi)", "In levels, or decades."},
+    Key{"staircase", "step_up", Number, above(0), "", "(as `step_down`)", "Steps of two sizes weigh the answers."},
+    Key{"staircase", "late_factor", Number, aboveUpTo(0, 1), "", "1", "Steps are smaller by this after `late_after` reversals."},
+    Key{"staircase", "late_after", Integer, from(1, 1000), "", "2", "See `late_factor`."},
+    Key{"staircase", "max_trials", Integer, from(1, 1000), "", "40", "A track stops after so many trials ..."},
+    Key{"staircase", "max_reversals", Integer, from(0, 1000), "", "0", "... or so many reversals; 0: trials alone stop it."},
+    Key{"staircase", "skip_reversals", Integer, from(0, 1000), "", "2", "First reversals that the estimate, the mean of the others, leaves out."},
+    Key{"staircase", "guess", Number, from(0, 0.99), "", "(needed by psi)", "Share of positive trials far below the threshold: 0.5 where one of two is chosen."},
+    Key{"staircase", "lapse", Number, from(0, 0.5), "", "0.02", "Share of trials that are not positive far above it; only psi."},
+    Key{"staircase", "sigma_low", Number, above(0), "", "(needed by psi)", "Smallest standard deviation of the ogive that is thought of, in levels or decades."},
+    Key{"staircase", "sigma_high", Number, above(0), "", "(needed by psi)", "Largest."},
+    Key{"staircase", "tracks", Tables, kAny, "", "!", "Tracks that take turns at random, at least one."},
+    Key{"staircase", "catch_share", Number, from(0, 0.5), "", "0", "Share of the trials that are catch trials: at `catch_level`, and no track is told of them."},
+    Key{"staircase", "catch_level", Number, kAny, "", "(needed with catch_share)", "One of the levels."},
+    Key{"staircase", "measure", Text, kAny, "", "!", "Measure of a trial by which it counts as positive; a trial without it tells its track nothing."},
+    Key{"staircase", "above", Number, kAny, "", "(below)", "Positive: the measure is above this ..."},
+    Key{"staircase", "below", Number, kAny, "", "(above)", "... or below this; in SI units, as exported."},
+
+    Key{"staircase_track", "name", Name, kAny, "", "!", "Unique in the staircase."},
+    Key{"staircase_track", "start", Number, kAny, "", "(needed, but not by psi)", "Its first level."},
+};
+// clang-format on
+
+}  // namespace passung::protocol::staircase_rows

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "study/protocol/study_plan.h"
+
+namespace passung::session {
+
+/// The plan's staircases for an experimenter to read: what varies, by which rule, where it settles, how many trials;
+/// empty if there is none.
+std::string staircasesText(const protocol::StudyPlan& plan);
+
+}  // namespace passung::session
