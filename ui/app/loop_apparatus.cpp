@@ -51,6 +51,20 @@ LoopApparatus::LoopApparatus(const simulated::DeviceParams& device, const person
 
 LoopApparatus::~LoopApparatus() = default;
 
+/// What the person sees; of a pair whose stimulus a staircase chose, also which interval they will name.
+simulated::VisibleTask LoopApparatus::taskOf(const protocol::Condition& condition, std::uint64_t seed,
+                                             std::int64_t trials_before) const {
+    constexpr double kOneOfTwo = 0.5;
+    simulated::VisibleTask task = visibleTask(condition);
+    auto* pair = std::get_if<simulated::CompareGoal>(&task.goal);
+    if (pair == nullptr || !perception_) return task;
+    if (const auto noticed = perception_->notices(condition, trials_before, kOneOfTwo)) {
+        const int comparison = session::comparisonInterval(seed);
+        pair->told_answer = *noticed ? comparison : 3 - comparison;
+    }
+    return task;
+}
+
 Result<std::vector<session::StageNote>> LoopApparatus::prepare(const protocol::Condition& condition, std::uint64_t seed,
                                                                std::int64_t trials_before) {
     const simulated::DeviceParams* preset = simulated::findPreset(condition.device);
@@ -79,7 +93,7 @@ std::unique_ptr<loop::HapticDevice> LoopApparatus::makeDevice(const simulated::D
                                                               std::int64_t trials_before) const {
     const model::Registration& r = condition.scene.registration;
     const simulated::HandRegistration registration{r.X_WB, r.scale, r.X_DH};
-    const simulated::VisibleTask task = visibleTask(condition);
+    const simulated::VisibleTask task = taskOf(condition, seed, trials_before);
     const bool held = condition.timed_by == protocol::TimedBy::Program;
     std::unique_ptr<loop::HapticDevice> device;
     if (held)

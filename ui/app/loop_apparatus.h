@@ -2,6 +2,8 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <utility>
 
 #include "core/loop/haptic_loop.h"
 #include "devices/simulated/presets.h"
@@ -10,6 +12,7 @@
 #include "study/session/apparatus.h"
 #include "ui/app/built_scenes.h"
 #include "ui/app/disk_store.h"
+#include "ui/app/simulated_perception.h"
 
 namespace passung::app {
 
@@ -21,6 +24,9 @@ class LoopApparatus final : public session::Apparatus {
 public:
     LoopApparatus(const simulated::DeviceParams& device, const person::SimulatedPerson& person, Clock clock);
     ~LoopApparatus() override;
+
+    /// The person answers what staircases ask by this; else by what they feel.
+    void perceiveBy(SimulatedPerception perception) { perception_.emplace(std::move(perception)); }
 
     const DeviceDescription& device() const override { return description_; }
     Result<std::vector<session::StageNote>> prepare(const protocol::Condition& condition, std::uint64_t seed,
@@ -45,12 +51,15 @@ private:
         Run(BuiltScenes built, std::unique_ptr<loop::HapticDevice> held, bool show_proxy);
     };
 
+    simulated::VisibleTask taskOf(const protocol::Condition& condition, std::uint64_t seed,
+                                  std::int64_t trials_before) const;
     std::unique_ptr<loop::HapticDevice> makeDevice(const simulated::DeviceParams& preset,
                                                    const protocol::Condition& condition, std::uint64_t seed,
                                                    std::int64_t trials_before) const;
 
     DeviceDescription description_;
     person::SimulatedPerson person_;
+    std::optional<SimulatedPerception> perception_;
     Clock clock_;
     std::unique_ptr<DiskStore> store_ = openDiskStore();
     model::PartCache parts_{store_.get()};

@@ -153,6 +153,7 @@ private:
         const std::string code = setup.participant;
         SimulatedAnswers simulated(plan_, code);
         setup.answers = options_.answers != nullptr ? options_.answers : &simulated;
+        apparatus.perceiveBy(SimulatedPerception(plan_, code));
         SimulatedTimer timer(person::personOf(plan_.name, code, plan_.seed));
         if (options_.answers == nullptr) setup.timer = &timer;  // else somebody is there to say it
         session::Session session(std::move(setup), apparatus, sink, {listener_.acknowledge, listener_.trial});
