@@ -6,6 +6,7 @@
 #include "study/store/consent_rows.h"
 #include "study/store/erase.h"
 #include "study/store/participant_rows.h"
+#include "study/store/readmit.h"
 #include "study/store/store.h"
 #include "study/store/writer_thread.h"
 
@@ -44,6 +45,9 @@ void leave(const Database& database, const Actor& actor, const std::string& code
            const std::string& reason, const std::string& action) {
     Transaction transaction(database);
     requireEnrolled(database, code);
+    protocol::JsonObject detail;
+    detail.text("participant", code).text("status", status).text("reason", reason);
+    describeStanding(database, code, detail);
     const bool excluded = std::string_view(status) == "excluded";
     Statement set = database.prepare(
         "UPDATE participant SET status=?2, status_reason=?3 WHERE participant_id=?1 AND status<>?2 "
@@ -56,8 +60,7 @@ void leave(const Database& database, const Actor& actor, const std::string& code
         .bind(code)
         .run();
     if (action == kWithdraw) withdrawConsents(database, actor, code);
-    appendAudit(database, actor, action,
-                protocol::JsonObject().text("participant", code).text("status", status).text("reason", reason));
+    appendAudit(database, actor, action, detail);
     transaction.commit();
 }
 
@@ -144,6 +147,11 @@ Result<Done> ParticipantDesk::exclude(const std::string& code, const std::string
         leave(database, actor_, code, "excluded", reason, action);
         return Done{};
     });
+}
+
+Result<bool> ParticipantDesk::readmit(const std::string& code, const std::string& reason) {
+    return store_.thread_->call(
+        [&](const Database& database) { return store::readmit(database, actor_, code, reason); });
 }
 
 Result<std::string> ParticipantDesk::erase(const std::string& code) {

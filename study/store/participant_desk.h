@@ -36,6 +36,9 @@ public:
     /// it: "exclude", or "withdraw" where the participant asked for it.
     Result<Done> exclude(const std::string& code, const std::string& reason, const std::string& action = "exclude");
 
+    /// Takes an exclusion (not a withdrawal) back: data counts again. False if somebody else has the place by now.
+    Result<bool> readmit(const std::string& code, const std::string& reason);
+
     /// Nothing of them is left in the database's files (see eraseParticipant()). Returns the surrogate in the audit.
     Result<std::string> erase(const std::string& code);
 

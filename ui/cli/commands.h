@@ -73,6 +73,7 @@ int listParticipants(const ParticipantOptions& options);
 int decideConsent(const ParticipantOptions& options);
 int withdrawParticipant(const ParticipantOptions& options);
 int excludeParticipant(const ParticipantOptions& options);
+int readmitParticipant(const ParticipantOptions& options);
 int auditParticipants(const ParticipantOptions& options);
 struct SessionOptions {
     std::string action;  // one of session::kCommandNames

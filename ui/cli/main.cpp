@@ -210,6 +210,10 @@ private:
         about(sub);
         sub->add_option("--reason", participant_.reason, "stored with the status")->required();
 
+        sub = action("readmit", "take an exclusion back; the audit keeps both", readmitParticipant);
+        about(sub);
+        sub->add_option("--reason", participant_.reason, "stored with the status")->required();
+
         action("audit", "check the chain of what was done to participants", auditParticipants);
     }
 

@@ -139,6 +139,16 @@ int excludeParticipant(const ParticipantOptions& options) {
     });
 }
 
+int readmitParticipant(const ParticipantOptions& options) {
+    return atTheDesk(options, false, [&](store::Store&, store::ParticipantDesk& desk) -> Result<Done> {
+        const auto placed = desk.readmit(options.code, options.reason);
+        if (!placed) return placed.errors();
+        fmt::print("{}: takes part again and the data counts{}\n", options.code,
+                   *placed ? "" : "; the place in the design has another owner by now");
+        return Done{};
+    });
+}
+
 int auditParticipants(const ParticipantOptions& options) {
     const auto reader = store::StoreReader::open(options.database);
     if (!reader) return fail(reader.errors());

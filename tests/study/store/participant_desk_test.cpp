@@ -122,6 +122,40 @@ TEST(ParticipantDesk, ExclusionFreesThePlaceAndCountsNowhereButKeepsEveryRow) {
     EXPECT_EQ(require(reader.participants())[0].status_reason, "did not hold the handle");
 }
 
+TEST(ParticipantDesk, AnExclusionIsTakenBackWithDataStatusAndPlaceAsLongAsNobodyHasIt) {
+    // Truth: invariant (the table before the exclusion), but for a place that has another owner by now.
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    const auto store = fake::openStore(path);
+    const std::string sha256 = require(store->importProtocol(fake::makePlan()));
+    ParticipantDesk desk(*store, kActor);
+    require(desk.enrol("P001", ParticipantKind::Real, ""));
+    completeSession(*store, sha256, "P001");
+    require(desk.exclude("P001", "mixed up with another one"));
+    EXPECT_TRUE(require(desk.readmit("P001", "it was not them")));
+    EXPECT_NE(messageOf(desk.readmit("P001", "again")).find("is not excluded"), std::string::npos);
+    const auto standing = [&] { return require(require(StoreReader::open(path)).participants())[0]; };
+    EXPECT_EQ(standing().status, "complete");
+    EXPECT_EQ(standing().status_reason, "readmitted: it was not them");
+    EXPECT_EQ(standing().sequence_index, 0);
+    EXPECT_EQ(Database(path, OpenMode::ReadOnly).text("SELECT state FROM design_slot WHERE participant_id='P001'"),
+              "complete");
+    for (const AttemptRow& attempt : require(require(StoreReader::open(path)).attempts()))
+        EXPECT_TRUE(attempt.counts());
+
+    require(desk.exclude("P001", "it was them"));
+    require(desk.enrol("P002", ParticipantKind::Real, ""));
+    EXPECT_EQ(require(store->assignSlot(sha256, "P002")).number, 0);
+    EXPECT_FALSE(require(desk.readmit("P001", "at last"))) << "its place is taken";
+    EXPECT_FALSE(standing().sequence_index);
+    EXPECT_EQ(standing().status, "complete");
+
+    require(desk.exclude("P001", "asked for it", "withdraw"));
+    EXPECT_NE(messageOf(desk.readmit("P001", "")).find("has withdrawn"), std::string::npos);
+    EXPECT_NE(messageOf(desk.readmit("P009", "")).find("is not enrolled"), std::string::npos);
+    EXPECT_TRUE(require(require(StoreReader::open(path)).audit()).faults.empty());
+}
+
 TEST(ParticipantDesk, WithdrawalThatOnlyStopsKeepsDataAndPlaceAndEndsEveryConsent) {
     // Truth: invariant
     const fake::TempFolder folder;

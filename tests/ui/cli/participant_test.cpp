@@ -31,10 +31,15 @@ TEST(ParticipantCommand, TakesPeopleFromEnrolmentToErasure) {
     does({"exclude", "s.db", "T007"}, 2, "--reason is required");
     does({"exclude", "s.db", "T007", "--reason", "came late"}, 0, "T007: excluded");
     does({"list", "s.db"}, 0, "; came late");
+    does({"readmit", "s.db", "T007"}, 2, "--reason is required");
+    does({"readmit", "s.db", "T007", "--reason", "wrong code"}, 0, "T007: takes part again and the data counts\n");
+    does({"list", "s.db"}, 0, "; readmitted: wrong code");
+    does({"readmit", "s.db", "T007", "--reason", "again"}, 1, "participant T007 is not excluded");
+    does({"exclude", "s.db", "T007", "--reason", "came late"}, 0, "T007: excluded");
     std::filesystem::create_directory(folder / "tables");
     writeText(folder / "tables/participants.csv", "participant_id,kind\nP001,real\n");
     does({"withdraw", "s.db", "P001", "--scope", "erase"}, 0, "delete this copy too: tables\n");
-    does({"audit", "s.db"}, 0, "5 actions in an unbroken chain, the details of 2 erased");
+    does({"audit", "s.db"}, 0, "7 actions in an unbroken chain, the details of 2 erased");
     const Ended run = runProgram(folder.path(), {"run", "study.toml", "--db", "s.db", "--participant", "T007"});
     EXPECT_EQ(run.exit_code, 1);
     EXPECT_NE(run.err.find("sigma7: has no driver in this program"), std::string::npos) << run.err;
