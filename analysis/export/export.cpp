@@ -9,6 +9,7 @@
 #include "analysis/export/contact_energy_table.h"
 #include "analysis/export/export_folder.h"
 #include "analysis/export/gzip.h"
+#include "analysis/export/note_table.h"
 #include "analysis/export/questionnaire_tables.h"
 #include "analysis/export/samples.h"
 #include "analysis/export/secondary_table.h"
@@ -26,6 +27,7 @@ std::vector<Table> makeTables(const StudyData& study) {
     std::vector<Table> tables = {makeTrials(study), makeCells(study)};
     for (Table& table : makeWide(study)) tables.push_back(std::move(table));
     tables.push_back(makeEvents(study));
+    if (!study.notes.empty()) tables.push_back(makeNotes(study));
     tables.push_back(makeSessions(study));
     tables.push_back(makeParticipants(study));
     tables.push_back(makeTiming(study));

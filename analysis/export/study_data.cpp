@@ -52,6 +52,7 @@ Result<StudyData> readStudy(const store::StoreReader& reader) {
     take(reader.sessions(), study.sessions, errors);
     take(reader.attempts(), study.attempts, errors);
     take(reader.events(), study.events, errors);
+    take(reader.notes(), study.notes, errors);
     take(reader.detections(), study.detections, errors);
     take(reader.staircaseSteps(), study.staircase_steps, errors);
     take(reader.questionnaireRuns(), study.questionnaires, errors);

@@ -29,6 +29,7 @@ struct StudyData {
     std::vector<store::SessionRow> sessions;
     std::vector<store::AttemptRow> attempts;
     std::vector<store::EventRow> events;
+    std::vector<store::NoteRow> notes;
     std::vector<store::DetectionRow> detections;  // of the attempts, in their order
     std::vector<store::StaircaseStepRow> staircase_steps;
     std::vector<store::QuestionnaireRunRow> questionnaires;

@@ -232,6 +232,19 @@ struct EventRow {
     std::string payload_json;
 };
 
+/// A note, or an experimenter's command.
+struct NoteRow {
+    std::string participant_id;
+    std::string kind;
+    std::int64_t session_ordinal = 1;
+    std::string t_utc;
+    std::string author;
+    std::string entry;  // "note", or the command's name
+    bool accepted = true;
+    std::optional<std::string> text, refusal;
+    std::optional<std::int64_t> trial_index, attempt_no;
+};
+
 struct ItemResponseRow {
     std::string item;
     std::int64_t presented_index = 0;  // from 0

@@ -4,6 +4,7 @@
 #include "study/store/audit.h"
 #include "study/store/consent_rows.h"
 #include "study/store/contact_energy_rows.h"
+#include "study/store/note_rows.h"
 #include "study/store/open_database.h"
 #include "study/store/questionnaire_rows.h"
 #include "study/store/sample_codec.h"
@@ -359,6 +360,10 @@ Result<AttemptRow> StoreReader::attempt(std::int64_t attempt_id) const {
         if (rows.empty()) throw std::runtime_error("there is no attempt " + std::to_string(attempt_id));
         return std::move(rows.front());
     });
+}
+
+Result<std::vector<NoteRow>> StoreReader::notes() const {
+    return guarded(path_, [&] { return readNotes(*database_); });
 }
 
 Result<std::vector<EventRow>> StoreReader::events() const {

@@ -42,6 +42,7 @@ public:
     Result<std::vector<AttemptRow>> attempts() const;
     Result<AttemptRow> attempt(std::int64_t attempt_id) const;
     Result<std::vector<EventRow>> events() const;
+    Result<std::vector<NoteRow>> notes() const;
     Result<std::vector<DetectionRow>> detections() const;                // attempts as above, then by time
     Result<std::vector<StaircaseStepRow>> staircaseSteps() const;        // by attempt
     Result<std::vector<QuestionnaireRunRow>> questionnaireRuns() const;  // by session, then as they were asked

@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "study/store/sqlite.h"
+#include "tests/analysis/export/csv_reader.h"
 #include "tests/ui/cli/program.h"
 #include "tests/ui/cli/small_study.h"
 
@@ -79,6 +82,18 @@ TEST_F(SessionCommandsTest, AreObeyedByTheRunningProgramAndStored) {
     EXPECT_LE(database.integer("SELECT count(*) FROM attempt WHERE invalid_reason='emergency stop: smoke'"), 1);
     EXPECT_EQ(database.text("SELECT group_concat(text) FROM note WHERE t_utc GLOB '2000-01-01T00:0*'"),
               "lights on,went home");
+
+    ASSERT_EQ(runProgram(folder_.path(), {"export", "study.db", "--out", "out", "--no-samples"}).exit_code, 0);
+    const auto notes = fake::readCsv(readText(folder_ / "out/notes.csv"));
+    std::multiset<std::string> entries;
+    for (std::size_t row = 0; row < notes.rows.size(); ++row) {
+        EXPECT_EQ(notes.at(row, "author"), "experimenter");
+        EXPECT_TRUE(row == 0 || notes.at(row - 1, "t_utc") <= notes.at(row, "t_utc"));
+        entries.insert(notes.at(row, "entry") + " " + notes.at(row, "accepted") + " " + notes.at(row, "text"));
+    }
+    EXPECT_EQ(entries, (std::multiset<std::string>{"note 1 lights on", "note 1 went home", "pause 0 NA", "start 1 NA",
+                                                   "stop 1 smoke", "invalidate 1 it's \"odd\"", "continue 1 NA",
+                                                   "abort 1 enough"}));
 }
 
 TEST_F(SessionCommandsTest, AKilledProgramLeavesNoSessionToCommand) {
