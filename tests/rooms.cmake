@@ -24,6 +24,10 @@ set(rooms
   "analysis/export     | core/base study/protocol study/questionnaire study/measures study/store"
   "analysis/stats      | core/base"
   "analysis/power      | core/base ${study_rooms} study/session study/store analysis/export analysis/stats"
+  "ui/presenter        | core/base core/model ${study_rooms} study/session study/store analysis/export analysis/stats"
+  "ui/experimenter     | ui/presenter"
+  "ui/participant      | ui/presenter"
+  "ui/window           | *"
   "ui/cli              | *"
   "ui/app              | *"
   "tests               | *")
@@ -47,7 +51,7 @@ set(libraries
   "ODE      | ^ode/                            | tests                                  | cpp"
   "Bullet   | ^(btBullet|Bullet)               | tests                                  | cpp"
   "OpenVDB  | ^openvdb/                        | tests                                  | cpp"
-  "Qt       | ^Q[A-Zt]                         | ui                                     | any"
+  "Qt       | ^Q[A-Zt]                         | ui/experimenter ui/participant ui/window tests | any"
   "gbench   | ^benchmark/                      | tests                                  | cpp"
   "gtest    | ^g(test|mock)/                   | tests                                  | any"
   "POSIX    | ^(sys|linux|arpa|netinet)/|^(unistd|pthread|sched|fcntl|poll|semaphore|signal|time|dlfcn|termios|malloc|pwd|grp)[.]h$ | core/loop devices study/store ui tests | cpp")
@@ -58,7 +62,7 @@ set(tick_standard_headers algorithm array atomic bit bitset cassert cfloat climi
   variant vector)
 # Rooms without a thread or a lock of their own.
 set(threadless_rooms core/base core/query core/replay study/protocol study/design study/questionnaire study/measures
-  study/person study/session)
+  study/person study/session ui/presenter)
 set(thread_headers barrier condition_variable future latch mutex semaphore shared_mutex stop_token thread)
 
 set(room_names)

@@ -64,7 +64,8 @@ void HapticCycle::run(std::uint32_t missed) noexcept {
     }
 }
 
-RealTimeThread::RealTimeThread(HapticCycle& cycle) : cycle_(cycle), thread_([this] { main(); }) {}
+RealTimeThread::RealTimeThread(HapticCycle& cycle, bool lock_memory)
+    : cycle_(cycle), lock_memory_(lock_memory), thread_([this] { main(); }) {}
 
 RealTimeThread::~RealTimeThread() { stop(); }
 
@@ -77,7 +78,7 @@ void RealTimeThread::main() {
     sched_param priority{};
     priority.sched_priority = kPriority;
     fifo_.store(pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority) == 0);
-    locked_.store(mlockall(MCL_CURRENT | MCL_FUTURE) == 0);
+    locked_.store(lock_memory_ && mlockall(MCL_CURRENT | MCL_FUTURE) == 0);
     Cadence cadence(now() + kTickNanoseconds);
     std::int64_t missed = 0;
     while (running_.load(std::memory_order_relaxed)) {

@@ -55,10 +55,11 @@ struct Scheduling {
 };
 
 /// Drives a cycle at 1 kHz in a thread of its own: absolute timer, then a short spin. The thread asks for SCHED_FIFO
-/// and locked memory and goes on without them.
+/// and locked memory and goes on without them. Locked is all memory of the program, so one whose libraries give pages
+/// back to the system and do not bear a refusal, such as a QML engine, must not ask for it.
 class RealTimeThread {
 public:
-    explicit RealTimeThread(HapticCycle& cycle);
+    explicit RealTimeThread(HapticCycle& cycle, bool lock_memory = true);
     ~RealTimeThread();  // stops
     RealTimeThread(const RealTimeThread&) = delete;
     RealTimeThread& operator=(const RealTimeThread&) = delete;
@@ -80,6 +81,7 @@ private:
     void main();
 
     HapticCycle& cycle_;
+    bool lock_memory_;
     std::atomic<bool> running_{true};
     std::atomic<bool> fifo_{false}, locked_{false};
     std::atomic<std::int64_t> ticks_{0}, overruns_{0};

@@ -60,6 +60,9 @@ public:
     SessionState state() const { return state_; }
     bool isOver() const { return state_ >= SessionState::Complete; }
 
+    /// What is done and what is to come.
+    const Agenda& agenda() const { return agenda_; }
+
     /// Has every main trial an attempt that counts, and every track of a staircase come to its end?
     bool isWhole() const;
 

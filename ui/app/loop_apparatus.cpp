@@ -40,14 +40,19 @@ std::vector<session::StageNote> stageNotes(const tick::TickModel& model) {
     return notes;
 }
 
-LoopApparatus::Run::Run(BuiltScenes built, std::unique_ptr<loop::HapticDevice> held, bool show_proxy)
+LoopApparatus::Run::Run(BuiltScenes built, std::unique_ptr<loop::HapticDevice> held, bool show_proxy,
+                        loop::RecordRing* screen)
     : scenes(std::move(built)),
       device(std::move(held)),
       ring(kRingRecords),
-      cycle(scenes.turns, *device, ring, show_proxy) {}
+      cycle(scenes.turns, *device, ring, show_proxy, screen) {}
 
-LoopApparatus::LoopApparatus(const simulated::DeviceParams& device, const person::SimulatedPerson& person, Clock clock)
-    : description_(simulated::describe(device)), person_(person), clock_(clock) {}
+LoopApparatus::LoopApparatus(const simulated::DeviceParams& device, const person::SimulatedPerson& person, Clock clock,
+                             Performer* performer)
+    : description_(performer == nullptr ? simulated::describe(device) : performer->describe(device)),
+      person_(person),
+      clock_(clock),
+      performer_(performer) {}
 
 LoopApparatus::~LoopApparatus() = default;
 
@@ -70,12 +75,14 @@ Result<std::vector<session::StageNote>> LoopApparatus::prepare(const protocol::C
     const simulated::DeviceParams* preset = simulated::findPreset(condition.device);
     if (preset == nullptr)
         return Error{.message = "no such device preset", .key = "device.preset", .value = condition.device};
+    if (performer_ != nullptr) performer_->prepares(condition, trials_before);
     auto scenes = buildScenes(session::renderedScenes(condition, seed), parts_);
     if (!scenes) return scenes.errors();
     auto device = makeDevice(*preset, condition, seed, trials_before);
     description_ = device->description();
     auto run =
-        std::make_unique<Run>(std::move(*scenes), std::move(device), condition.shown == protocol::ShownPose::Proxy);
+        std::make_unique<Run>(std::move(*scenes), std::move(device), condition.shown == protocol::ShownPose::Proxy,
+                              performer_ == nullptr ? nullptr : performer_->screen());
     {
         const std::lock_guard lock(halt_mutex_);
         run_.swap(run);
@@ -96,6 +103,8 @@ std::unique_ptr<loop::HapticDevice> LoopApparatus::makeDevice(const simulated::D
     const simulated::VisibleTask task = taskOf(condition, seed, trials_before);
     const bool held = condition.timed_by == protocol::TimedBy::Program;
     std::unique_ptr<loop::HapticDevice> device;
+    if (performer_ != nullptr) device = performer_->device(preset, condition);
+    if (device != nullptr) return device;
     if (held)
         device = std::make_unique<simulated::SimulatedDevice>(preset, simulatedHand(person_, trials_before), task,
                                                               registration, seed);
@@ -113,7 +122,8 @@ void LoopApparatus::wait(std::int64_t ticks) {
 
 void LoopApparatus::start() {
     const std::lock_guard lock(halt_mutex_);
-    if (clock_ == Clock::RealTime && !halted_) run_->thread = std::make_unique<loop::RealTimeThread>(run_->cycle);
+    if (clock_ == Clock::RealTime && !halted_)
+        run_->thread = std::make_unique<loop::RealTimeThread>(run_->cycle, performer_ == nullptr);
 }
 
 void LoopApparatus::advance(std::int64_t ticks) {

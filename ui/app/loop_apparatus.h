@@ -7,22 +7,23 @@
 
 #include "core/loop/haptic_loop.h"
 #include "devices/simulated/presets.h"
-#include "devices/simulated/simulated_device.h"
 #include "study/person/simulated_person.h"
 #include "study/session/apparatus.h"
 #include "ui/app/built_scenes.h"
 #include "ui/app/disk_store.h"
+#include "ui/app/performer.h"
 #include "ui/app/simulated_perception.h"
 
 namespace passung::app {
 
 enum class Clock { Virtual, RealTime };
 
-/// The session's apparatus: the haptic loop on a simulated device with a simulated hand, in either clock. Where the
-/// program does not time the trial the hand has left the device: real parts, or nothing at all.
+/// The session's apparatus: the haptic loop on a simulated device with a simulated hand, in either clock, or on what a
+/// performer holds. Where the program does not time the trial the hand has left the device: real parts, or nothing.
 class LoopApparatus final : public session::Apparatus {
 public:
-    LoopApparatus(const simulated::DeviceParams& device, const person::SimulatedPerson& person, Clock clock);
+    LoopApparatus(const simulated::DeviceParams& device, const person::SimulatedPerson& person, Clock clock,
+                  Performer* performer = nullptr);
     ~LoopApparatus() override;
 
     /// The person answers what staircases ask by this; else by what they feel.
@@ -48,7 +49,7 @@ private:
         loop::HapticCycle cycle;
         std::unique_ptr<loop::RealTimeThread> thread;
 
-        Run(BuiltScenes built, std::unique_ptr<loop::HapticDevice> held, bool show_proxy);
+        Run(BuiltScenes built, std::unique_ptr<loop::HapticDevice> held, bool show_proxy, loop::RecordRing* screen);
     };
 
     simulated::VisibleTask taskOf(const protocol::Condition& condition, std::uint64_t seed,
@@ -61,6 +62,7 @@ private:
     person::SimulatedPerson person_;
     std::optional<SimulatedPerception> perception_;
     Clock clock_;
+    Performer* performer_;
     std::unique_ptr<DiskStore> store_ = openDiskStore();
     model::PartCache parts_{store_.get()};
     std::mutex halt_mutex_;  // run_ and its thread come and go, halted_ changes

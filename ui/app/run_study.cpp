@@ -44,11 +44,11 @@ public:
         const store::UtcClock clock = clockNow();
         std::string code = options_.participant;
         if (code.empty()) {
-            auto next = store_.nextCode(protocol::ParticipantKind::Simulated);
+            auto next = store_.nextCode(kind());
             if (!next) return next.errors();
             code = *next;
         }
-        if (auto enrolled = store_.enrol(code, protocol::ParticipantKind::Simulated, clock.at(0)); !enrolled) {
+        if (auto enrolled = store_.enrol(code, kind(), clock.at(0)); !enrolled) {
             return enrolled.errors();
         }
         if (options_.ask_consent) {
@@ -109,13 +109,18 @@ public:
 private:
     bool measured() const { return options_.clock == Clock::RealTime; }
 
+    protocol::ParticipantKind kind() const {
+        return options_.performer == nullptr ? protocol::ParticipantKind::Simulated : options_.performer->kind();
+    }
+
     store::UtcClock clockNow() const {
         return measured() ? store::UtcClock::wall(unixMilliseconds()) : store::UtcClock::virtualEpoch();
     }
 
     LoopApparatus apparatusOf(const std::string& code) const {
         const simulated::DeviceParams* device = simulated::findPreset(plan_.conditions.front().device);
-        return LoopApparatus(*device, person::personOf(plan_.name, code, plan_.seed), options_.clock);
+        return LoopApparatus(*device, person::personOf(plan_.name, code, plan_.seed), options_.clock,
+                             options_.performer);
     }
 
     store::SessionStart startOf(std::string session_id, std::string code, int ordinal, const store::UtcClock& clock,
@@ -153,11 +158,15 @@ private:
         const std::string code = setup.participant;
         SimulatedAnswers simulated(plan_, code);
         setup.answers = options_.answers != nullptr ? options_.answers : &simulated;
+        const bool simulates = options_.answers == nullptr && kind() == protocol::ParticipantKind::Simulated;
+        if (kind() != protocol::ParticipantKind::Simulated) setup.answers = options_.performer->answers();
         apparatus.perceiveBy(SimulatedPerception(plan_, code));
         SimulatedTimer timer(person::personOf(plan_.name, code, plan_.seed));
-        if (options_.answers == nullptr) setup.timer = &timer;  // else somebody is there to say it
+        if (simulates) setup.timer = &timer;  // else somebody is there to say it
+        if (options_.performer != nullptr) options_.performer->begins(apparatus, code, setup.trials);
         session::Session session(std::move(setup), apparatus, sink, {listener_.acknowledge, listener_.trial});
         conduct(session, apparatus);
+        if (options_.performer != nullptr) options_.performer->over();
         if (session.state() == session::SessionState::Failed) return session.errors();
         if (session.state() == session::SessionState::Interrupted) return RunEnd::Interrupted;
         if (listener_.session_over) listener_.session_over(code, session.isWhole());
@@ -175,6 +184,7 @@ private:
             if (waits && told != state && listener_.state) listener_.state(state);
             told = state;
             if (commands) (*commands)->serve([&](const session::Command& c) { return session.command(c); }, waits);
+            if (options_.performer != nullptr) options_.performer->look(session);
             if (options_.interrupted && options_.interrupted())
                 session.interrupt("interrupted");
             else

@@ -24,6 +24,7 @@ struct RunOptions {
     std::string language = "en";                      // that participants are spoken to in
     session::QuestionnaireSource* answers = nullptr;  // who answers questionnaires; nullptr: a simulated person
     AskConsent ask_consent;                           // empty: nobody is asked here
+    Performer* performer = nullptr;                   // who takes part or watches; null: nobody
 };
 
 /// How a run ended that met no error.

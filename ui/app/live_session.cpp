@@ -1,0 +1,126 @@
+#include "ui/app/live_session.h"
+
+#include <exception>
+#include <filesystem>
+#include <utility>
+
+#include "devices/mouse/mouse_device.h"
+#include "study/protocol/scene_parts.h"
+
+namespace passung::app {
+
+LiveSession::LiveSession(protocol::StudyPlan plan, LiveOptions options)
+    : plan_(std::move(plan)), options_(std::move(options)) {
+    plan_.questionnaires.clear();
+    thread_ = std::thread([this] { main(); });
+}
+
+LiveSession::~LiveSession() {
+    ends_.store(true);
+    thread_.join();
+}
+
+void LiveSession::main() {
+    RunOptions run;
+    run.database = options_.database;
+    run.clock = Clock::RealTime;
+    run.backup = false;
+    run.wait = options_.waits;
+    run.performer = this;
+    run.interrupted = [this] { return ends_.load(); };
+    RunListener listener;
+    listener.trial = [this](const session::TrialProgress& trial) {
+        tell(presenter::AttemptEnded{trial.trial.trial_index, trial.outcome, trial.valid, trial.invalid_reason,
+                                     trial.trial_time_s});
+    };
+    bool whole = false;
+    listener.session_over = [&whole](const std::string&, bool is_whole) { whole = is_whole; };
+    Errors errors;
+    try {
+        std::error_code problem;  // shows when the database is opened
+        const auto folder = std::filesystem::path(options_.database).parent_path();
+        if (!folder.empty()) std::filesystem::create_directories(folder, problem);
+        const auto end = runStudy(plan_, run, listener);
+        if (!end) errors = end.errors();
+    } catch (const std::exception& thrown) {
+        errors.push_back({.message = thrown.what()});
+    }
+    over();  // also of a session that an exception ended
+    tell(presenter::RunOver{whole, errors});
+}
+
+void LiveSession::command(session::Command command) {
+    const std::lock_guard lock(mutex_);
+    if (command.kind == session::CommandKind::Stop && apparatus_ != nullptr) apparatus_->halt();
+    commands_.push_back(std::move(command));
+}
+
+std::vector<presenter::News> LiveSession::takeNews() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(news_, {});
+}
+
+void LiveSession::tell(presenter::News news) {
+    const std::lock_guard lock(mutex_);
+    news_.push_back(std::move(news));
+}
+
+protocol::ParticipantKind LiveSession::kind() const {
+    return options_.hand == LiveHand::Mouse ? protocol::ParticipantKind::Pilot : protocol::ParticipantKind::Simulated;
+}
+
+DeviceDescription LiveSession::describe(const simulated::DeviceParams& preset) const {
+    return options_.hand == LiveHand::Mouse ? mouse::mouseDescription(preset) : simulated::describe(preset);
+}
+
+std::unique_ptr<loop::HapticDevice> LiveSession::device(const simulated::DeviceParams& preset,
+                                                        const protocol::Condition& condition) {
+    if (options_.hand != LiveHand::Mouse) return nullptr;
+    const model::Registration& r = condition.scene.registration;
+    const simulated::HandRegistration registration{r.X_WB, r.scale, r.X_DH};
+    const Pose start = protocol::heldPart(condition.scene)->X_WP;
+    auto device = std::make_unique<mouse::MouseDevice>(preset, registration, start, pointer_);
+    reach_.store(device->reach() * r.scale);
+    swing_.store(device->swing());
+    return device;
+}
+
+void LiveSession::begins(session::Apparatus& apparatus, const std::string& participant,
+                         std::span<const design::PlannedTrial> trials) {
+    tell(presenter::SessionBegun{participant, {trials.begin(), trials.end()}});
+    const std::lock_guard lock(mutex_);
+    apparatus_ = &apparatus;
+}
+
+void LiveSession::prepares(const protocol::Condition& condition, std::int64_t trial_index) {
+    presenter::AttemptPrepared prepared{trial_index, condition.name, nullptr};
+    if (auto scene = artist_.draw(condition)) prepared.scene = *scene;  // else the session fails at the same mesh
+    tell(std::move(prepared));
+}
+
+void LiveSession::look(session::Session& session) {
+    std::deque<session::Command> commands;
+    {
+        const std::lock_guard lock(mutex_);
+        commands.swap(commands_);
+    }
+    for (const session::Command& command : commands)
+        tell(presenter::CommandAnswered{command, session.command(command)});
+    presenter::SessionGlance glance;
+    glance.state = session.state();
+    const session::Agenda& agenda = session.agenda();
+    if (!agenda.empty()) glance.next = agenda.next();
+    for (std::size_t place = 0; place < agenda.planned(); ++place) glance.over.push_back(agenda.isOver(place));
+    glance.can_go_back = agenda.canGoBack();
+    if (told_anything_ && glance == told_) return;
+    told_anything_ = true;
+    told_ = glance;
+    tell(std::move(glance));
+}
+
+void LiveSession::over() {
+    const std::lock_guard lock(mutex_);
+    apparatus_ = nullptr;
+}
+
+}  // namespace passung::app

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/loop/haptic_device.h"
+#include "core/loop/record_ring.h"
+#include "devices/simulated/presets.h"
+#include "study/design/trial_order.h"
+#include "study/protocol/participant.h"
+#include "study/protocol/study_plan.h"
+#include "study/session/apparatus.h"
+#include "study/session/session.h"
+
+namespace passung::app {
+
+/// Somebody at this computer who takes part or only watches a simulated person, and the screens that show it. Called by
+/// the thread that runs the session.
+class Performer {
+public:
+    virtual ~Performer() = default;
+
+    /// As whom the data is stored.
+    virtual protocol::ParticipantKind kind() const = 0;
+    /// The device for an attempt at `condition`; null: a simulated person holds one. And what it says about itself.
+    virtual std::unique_ptr<loop::HapticDevice> device(const simulated::DeviceParams& preset,
+                                                       const protocol::Condition& condition) = 0;
+    virtual DeviceDescription describe(const simulated::DeviceParams& preset) const = 0;
+    /// Gets every tick's record; null: no screen. Emptied by whoever draws.
+    virtual loop::RecordRing* screen() = 0;
+    /// Who answers questionnaires; may be null if the plan has none.
+    virtual session::QuestionnaireSource* answers() = 0;
+
+    /// A session begins: `apparatus` may be halted at any time until over().
+    virtual void begins(session::Apparatus& apparatus, const std::string& participant,
+                        std::span<const design::PlannedTrial> trials) = 0;
+    /// An attempt at this trial is about to begin, now its scene is built.
+    virtual void prepares(const protocol::Condition& condition, std::int64_t trial_index) = 0;
+    /// Between two steps of the session: to look at it and to give commands.
+    virtual void look(session::Session& session) = 0;
+    virtual void over() = 0;
+};
+
+}  // namespace passung::app

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/base/tick_record.h"
+#include "study/protocol/study_plan.h"
+#include "ui/presenter/shaded_mesh.h"
+
+namespace passung::presenter {
+
+/// Where the scene is looked at from. The camera's own axes: x to the right, y up, looking along -z.
+struct Camera {
+    Pose X_WC;
+    Vec3 centre = Vec3::Zero();         // that it looks at
+    double opening = 30.0 * 0.0174533;  // vertical angle [rad]
+    double near = 0.0, far = 1.0;       // [m]
+
+    /// Metres of the plane through the centre that a pixel of a picture so many pixels high shows.
+    double metresPerPixel(double height_px) const;
+};
+
+struct DrawnPart {
+    std::shared_ptr<const ShadedMesh> mesh;  // shared_ptr: scenes of a study have parts in common
+    Pose X_W;                                // as it is drawn; of the held part at the start
+    bool held = false;
+    bool target = false;
+};
+
+/// What a participant sees of a condition's scene.
+struct DrawnScene {
+    std::vector<DrawnPart> parts;
+    std::size_t held = 0;
+    Vec3 held_offset = Vec3::Zero();  // drawn so far from where it is, world axes [m]
+    protocol::ShownPose shown = protocol::ShownPose::Proxy;
+    protocol::Cues cues;
+    Pose X_WTarget;                          // where the target is drawn; its axis +z points at whoever comes
+    std::shared_ptr<const ShadedMesh> mark;  // a ring about that axis
+    double floor = 0.0;                      // height of the ground [m]
+    double radius = 0.1;                     // of everything about the camera's centre [m]
+    Camera camera;
+};
+
+/// Where the held part is drawn in a tick.
+Pose shownPose(const DrawnScene& scene, const TickRecord& record);
+
+/// Turns conditions into what is drawn; keeps the surfaces that it has made.
+class SceneArtist {
+public:
+    /// Errors: a mesh that cannot be read.
+    Result<std::shared_ptr<const DrawnScene>> draw(const protocol::Condition& condition);
+
+private:
+    Result<std::shared_ptr<const ShadedMesh>> surfaceOf(const model::PartSpec& part);
+
+    std::map<std::string, std::shared_ptr<const ShadedMesh>> surfaces_;  // by geometry
+};
+
+}  // namespace passung::presenter

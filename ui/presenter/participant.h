@@ -1,0 +1,31 @@
+#pragma once
+
+#include "ui/presenter/run.h"
+
+namespace passung::presenter {
+
+/// What the participant is to do now.
+enum class ParticipantScreen { Welcome, Wait, ToStart, Task, Pause, Thanks };
+
+/// What the participant sees; nothing of it tells more than the condition lets them know.
+struct ParticipantView {
+    ParticipantScreen screen = ParticipantScreen::Welcome;
+    bool scene = false;  // is drawn
+    Pose X_WHeld;        // where the held part is drawn
+    bool start_mark = false;
+    Pose X_WStart;
+    double cue = 0.0;                                          // visual collision cue, 0 … 1
+    bool arrow = false;                                        // of the force, for who cannot feel it
+    Vec3 arrow_from = Vec3::Zero(), arrow_way = Vec3::Zero();  // world [m]
+    double share = 0.0;                                        // of the session's trials that are over
+};
+
+/// Length of the arrow per force [m/N].
+inline constexpr double kArrowPerNewton = 4e-3;
+/// Below that no arrow is drawn [N].
+inline constexpr double kLeastForce = 0.15;
+
+/// `feels`: the participant's device renders the force; else it is drawn.
+ParticipantView participantView(const Run& run, bool feels);
+
+}  // namespace passung::presenter

@@ -1,0 +1,219 @@
+#include "ui/presenter/run.h"
+
+#include <algorithm>
+
+namespace passung::presenter {
+
+using session::CommandKind;
+using session::SessionState;
+
+namespace {
+
+RowState rowStateOf(const AttemptEnded& ended) {
+    if (ended.outcome == measures::Outcome::Aborted) return RowState::Aborted;
+    if (!ended.valid) return RowState::Invalid;
+    switch (ended.outcome) {
+        case measures::Outcome::Success:
+            return RowState::Success;
+        case measures::Outcome::Timeout:
+            return RowState::Timeout;
+        case measures::Outcome::Failure:
+        case measures::Outcome::Aborted:
+            break;
+    }
+    return RowState::Failure;
+}
+
+bool hasEnded(RowState state) { return state >= RowState::Success && state != RowState::Skipped; }
+
+}  // namespace
+
+Why RunView::why(CommandKind kind) const {
+    if (!isRunning() || state == RunState::Opening) return Why::NoSession;
+    const bool paused = state == RunState::Paused || state == RunState::Stopped;
+    const bool in_trial = state == RunState::ToStart || state == RunState::Running || state == RunState::Preparing;
+    const bool something_ended =
+        std::any_of(rows.begin(), rows.end(), [](const TrialRow& row) { return row.attempts > 0; });
+    switch (kind) {
+        case CommandKind::Start:
+            return state == RunState::Ready ? Why::Possible : Why::NotReady;
+        case CommandKind::Continue:
+            return paused ? Why::Possible : Why::NotPaused;
+        case CommandKind::Pause:
+            if (state == RunState::Ready) return Why::NotPaused;
+            return paused || pauses_after ? Why::AlreadyPaused : Why::Possible;
+        case CommandKind::Repeat:
+        case CommandKind::Invalidate:
+            return in_trial || something_ended ? Why::Possible : Why::NothingEnded;
+        case CommandKind::Back:
+            return something_ended ? Why::Possible : Why::NothingEnded;
+        case CommandKind::Skip:
+            return number > 0 ? Why::Possible : Why::NothingLeft;
+        case CommandKind::Note:
+        case CommandKind::Abort:
+        case CommandKind::Stop:
+            break;
+    }
+    return Why::Possible;
+}
+
+void Run::open(const protocol::StudyPlan& plan) {
+    *this = Run();
+    view_.state = RunState::Opening;
+    view_.study = plan.title.empty() ? plan.name : plan.title;
+    for (const auto& condition : plan.conditions) conditions_.push_back(condition.name);
+}
+
+void Run::take(const News& news) {
+    std::visit(
+        [this](const auto& what) {
+            using What = std::decay_t<decltype(what)>;
+            if constexpr (std::is_same_v<What, SessionBegun>) begin(what);
+            if constexpr (std::is_same_v<What, AttemptPrepared>) prepare(what);
+            if constexpr (std::is_same_v<What, SessionGlance>) glance(what);
+            if constexpr (std::is_same_v<What, AttemptEnded>) end(what);
+            if constexpr (std::is_same_v<What, CommandAnswered>) answer(what);
+            if constexpr (std::is_same_v<What, RunOver>) finish(what);
+        },
+        news);
+}
+
+void Run::begin(const SessionBegun& begun) {
+    view_.participant = begun.participant;
+    view_.planned = begun.trials.size();
+    view_.rows.clear();
+    for (const auto& trial : begun.trials) {
+        TrialRow row;
+        row.number = trial.trial_index + 1;
+        row.block = trial.block;
+        row.phase = trial.phase;
+        if (trial.condition < conditions_.size()) row.condition = conditions_[trial.condition];
+        view_.rows.push_back(std::move(row));
+    }
+    ++view_.rows_changed;
+}
+
+void Run::prepare(const AttemptPrepared& prepared) {
+    view_.state = RunState::Preparing;
+    view_.number = prepared.trial_index + 1;
+    view_.condition = prepared.condition;
+    view_.trial_s = 0.0;
+    if (prepared.scene) scene_ = prepared.scene;
+    last_.reset();
+    time_ = 0.0;
+    started_ = -1.0;
+    ticks_ = 0;
+    view_.loop = {};
+    force_.clear();
+    depth_.clear();
+}
+
+void Run::glance(const SessionGlance& glance) {
+    switch (glance.state) {
+        case SessionState::Ready:
+            view_.state = RunState::Ready;
+            break;
+        case SessionState::Paused:
+            view_.state = stopped_ ? RunState::Stopped : RunState::Paused;
+            break;
+        case SessionState::InTrial:
+            view_.state = started_ >= 0.0 ? RunState::Running : RunState::ToStart;
+            break;
+        case SessionState::BetweenTrials:
+            view_.state = RunState::Between;
+            break;
+        case SessionState::Complete:
+        case SessionState::Failed:
+        case SessionState::Interrupted:
+            break;
+    }
+    if (glance.state != SessionState::Paused) stopped_ = stopped_ && glance.state == SessionState::InTrial;
+    if (glance.state == SessionState::Paused) view_.pauses_after = false;
+    view_.finished = static_cast<std::size_t>(std::count(glance.over.begin(), glance.over.end(), true));
+    view_.number = glance.next ? static_cast<std::int64_t>(*glance.next) + 1 : 0;
+    for (std::size_t place = 0; place < std::min(glance.over.size(), view_.rows.size()); ++place) {
+        TrialRow& row = view_.rows[place];
+        const bool next = glance.next == place;
+        if (next)
+            row.state = glance.state == SessionState::InTrial ? RowState::Running : RowState::Next;
+        else if (glance.over[place])
+            row.state = hasEnded(row.state) ? row.state : RowState::Skipped;
+        else if (row.state != RowState::Invalid)
+            row.state = RowState::Waiting;
+    }
+    ++view_.rows_changed;
+}
+
+void Run::end(const AttemptEnded& ended) {
+    const auto place = static_cast<std::size_t>(ended.trial_index);
+    if (place >= view_.rows.size()) return;
+    TrialRow& row = view_.rows[place];
+    row.state = rowStateOf(ended);
+    row.time_s = ended.trial_time_s;
+    row.remark = ended.invalid_reason;
+    ++row.attempts;
+    ++view_.rows_changed;
+}
+
+void Run::answer(const CommandAnswered& answered) {
+    view_.told = answered.answer.text;
+    view_.refused = !answered.answer.accepted;
+    if (!answered.answer.accepted) return;
+    if (answered.command.kind == CommandKind::Pause) view_.pauses_after = view_.state != RunState::Paused;
+    if (answered.command.kind == CommandKind::Stop) stopped_ = true;
+    if (answered.command.kind == CommandKind::Continue) stopped_ = false;
+}
+
+void Run::finish(const RunOver& over) {
+    view_.state = over.complete ? RunState::Complete : RunState::Incomplete;
+    view_.number = 0;
+    if (over.errors.empty()) return;
+    view_.state = RunState::Failed;
+    view_.told = toString(over.errors.front());
+    view_.refused = true;
+}
+
+void Run::take(std::span<const TickRecord> records) {
+    for (const TickRecord& record : records) watch(record);
+    if (!records.empty()) judgeLoop();
+}
+
+void Run::watch(const TickRecord& record) {
+    if (record.tick == 0 || (last_ && record.tick <= last_->tick)) {  // another attempt
+        time_ = 0.0;
+        started_ = -1.0;
+        ticks_ = 0;
+        view_.loop.missed = 0;
+    }
+    time_ += record.periods * kTickSeconds;
+    if ((record.status & kEngaged) != 0 && started_ < 0.0) {
+        started_ = time_;
+        if (view_.state == RunState::ToStart || view_.state == RunState::Preparing) view_.state = RunState::Running;
+    }
+    view_.trial_s = started_ < 0.0 ? 0.0 : time_ - started_;
+    view_.force_N =
+        static_cast<double>(Eigen::Vector3f(record.force_N[0], record.force_N[1], record.force_N[2]).norm());
+    view_.depth_mm = 1e3 * static_cast<double>(record.hand_depth_m);
+    force_.add(time_, view_.force_N);
+    depth_.add(time_, view_.depth_mm);
+    const std::size_t slot = ticks_ % durations_us_.size();
+    durations_us_[slot] = static_cast<float>(record.duration_ns) * 1e-3f;
+    periods_[slot] = record.periods;
+    ++ticks_;
+    view_.loop.missed += record.periods - 1;
+    last_ = record;
+}
+
+void Run::judgeLoop() {
+    const std::size_t count = std::min(ticks_, durations_us_.size());
+    std::vector<float> sorted(durations_us_.begin(), durations_us_.begin() + static_cast<std::ptrdiff_t>(count));
+    std::sort(sorted.begin(), sorted.end());
+    std::uint64_t periods = 0;
+    for (std::size_t i = 0; i < count; ++i) periods += periods_[i];
+    view_.loop.known = count == durations_us_.size();
+    view_.loop.rate_hz = static_cast<double>(count) / (static_cast<double>(periods) * kTickSeconds);
+    view_.loop.typical_us = sorted[count / 2];
+    view_.loop.longest_us = sorted.back();
+}
+
+}  // namespace passung::presenter

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ui/presenter/session_news.h"
+#include "ui/presenter/trace.h"
+
+namespace passung::presenter {
+
+/// What goes on, as the largest line on the experimenter's screen says it.
+enum class RunState {
+    Idle,       // no session
+    Opening,    // database and study
+    Preparing,  // the next trial's scene is built
+    ToStart,    // the hand is on its way to the start pose
+    Running,    // the trial
+    Between,    // trials
+    Ready,      // waits for Start
+    Paused,
+    Stopped,  // paused by an emergency stop: motors are off
+    Complete,
+    Incomplete,  // ended before the last trial
+    Failed,
+};
+
+enum class RowState { Waiting, Next, Running, Success, Timeout, Failure, Aborted, Skipped, Invalid };
+
+struct TrialRow {
+    std::int64_t number = 0;  // from 1
+    std::string block, phase, condition;
+    RowState state = RowState::Waiting;
+    int attempts = 0;  // that ended
+    std::optional<double> time_s;
+    std::string remark;  // why it does not count
+};
+
+/// Why a command cannot be given now.
+enum class Why { Possible, NoSession, NotReady, NotPaused, AlreadyPaused, NothingEnded, NothingLeft };
+
+/// How the loop has kept its rate over the last second.
+struct LoopView {
+    double rate_hz = 0.0;     // ticks that happened
+    double typical_us = 0.0;  // computing time of a tick, median
+    double longest_us = 0.0;
+    std::int64_t missed = 0;  // cycles since the attempt began
+    bool known = false;
+};
+
+struct RunView {
+    RunState state = RunState::Idle;
+    std::string study, participant;
+    std::size_t planned = 0, finished = 0;
+    std::int64_t number = 0;  // of the running or next trial, from 1; 0: none
+    std::string condition;
+    bool pauses_after = false;  // the running trial
+    double trial_s = 0.0;       // since the go
+    std::vector<TrialRow> rows;
+    std::int64_t rows_changed = 0;  // counts up whenever a row does
+    LoopView loop;
+    double force_N = 0.0, depth_mm = 0.0;
+    std::string told;  // the answer to the last command, or why the session failed
+    bool refused = false;
+
+    Why why(session::CommandKind kind) const;
+    bool may(session::CommandKind kind) const { return why(kind) == Why::Possible; }
+    bool isRunning() const { return state > RunState::Idle && state < RunState::Complete; }
+};
+
+/// What an experimenter sees of a run and may do to it. Knows no thread and no window: news and records are brought to
+/// it.
+class Run {
+public:
+    /// A run of this study is being opened.
+    void open(const protocol::StudyPlan& plan);
+    void take(const News& news);
+    void take(std::span<const TickRecord> records);
+
+    const RunView& view() const { return view_; }
+    const Trace& force() const { return force_; }
+    const Trace& depth() const { return depth_; }
+    const std::shared_ptr<const DrawnScene>& scene() const { return scene_; }
+    /// The newest tick of the running attempt.
+    const std::optional<TickRecord>& last() const { return last_; }
+
+private:
+    void begin(const SessionBegun& begun);
+    void prepare(const AttemptPrepared& prepared);
+    void glance(const SessionGlance& glance);
+    void end(const AttemptEnded& ended);
+    void answer(const CommandAnswered& answered);
+    void finish(const RunOver& over);
+    void watch(const TickRecord& record);
+    void judgeLoop();
+
+    RunView view_;
+    std::vector<std::string> conditions_;  // names
+    std::shared_ptr<const DrawnScene> scene_;
+    std::optional<TickRecord> last_;
+    Trace force_, depth_;
+    double time_ = 0.0;      // in the attempt [s]
+    double started_ = -1.0;  // when the trial began; negative: not yet
+    bool stopped_ = false;
+    std::array<float, 1000> durations_us_{};
+    std::array<std::uint32_t, 1000> periods_{};
+    std::size_t ticks_ = 0;  // of the attempt
+};
+
+}  // namespace passung::presenter

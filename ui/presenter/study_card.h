@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/device_description.h"
+#include "core/base/result.h"
+#include "study/protocol/study_plan.h"
+
+namespace passung::presenter {
+
+/// A study of the list, as an experimenter looks through them.
+struct StudyCard {
+    struct Factor {
+        std::string name, unit;
+        std::vector<std::string> levels;
+    };
+
+    std::string path;
+    std::string name, version, title;  // of a file that is not sound: the file's name
+    bool sound = false;                // may it be run?
+    Errors problems;                   // why not, each with its place
+    std::vector<std::string> warnings;
+    std::vector<Factor> factors;
+    std::size_t conditions = 0;
+    std::size_t trials = 0;   // of a participant's first session
+    int sessions = 1;         // of each participant
+    double most_minutes = 0;  // that the trials of that session take if all run out of time
+    int participants = 0;
+    std::string device;  // label; of several the first
+    std::vector<std::string> questionnaires;
+};
+
+/// What is to be known of the study file at `path`, which has been read with this result. `devices`: those known.
+StudyCard cardOf(const std::string& path, const Result<protocol::StudyPlan>& read,
+                 const std::vector<DeviceDescription>& devices);
+
+/// The study files in the folders below `root`, "NAME/study.toml", by name.
+std::vector<std::string> studyFilesBelow(const std::string& root);
+
+}  // namespace passung::presenter
