@@ -10,6 +10,9 @@ namespace passung::cli {
 // One struct and one function per command; every function prints what a person needs and returns the exit code:
 // 0, or 1 after an error line on standard error. Wrong usage (2) is main's business.
 
+/// Becomes the program passung-window if there is a display; returns if there is none, or no such program beside this.
+void openWindows();
+
 struct CheckOptions {
     std::string protocol;
 };

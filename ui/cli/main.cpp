@@ -442,6 +442,7 @@ private:
 int main(int argc, char** argv) {
     std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the user's limit of a file's size is an error like any other
     try {
+        if (argc == 1) openWindows();
         return CommandLine().run(argc, argv);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "error: %s\n", error.what());

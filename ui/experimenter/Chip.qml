@@ -1,0 +1,18 @@
+import QtQuick
+
+// A value in a frame.
+Rectangle {
+    property alias text: word.text
+    property color ink: look.text
+    implicitWidth: word.implicitWidth + 18
+    implicitHeight: 26
+    radius: 13
+    color: look.raised
+    border.color: look.edge
+    Say {
+        id: word
+        anchors.centerIn: parent
+        font.pixelSize: 13
+        color: parent.ink
+    }
+}

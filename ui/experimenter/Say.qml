@@ -1,0 +1,12 @@
+import QtQuick
+
+// Text as the console sets it.
+Text {
+    property bool quiet: false
+    color: quiet ? look.dim : look.text
+    font.family: look.family
+    font.pixelSize: 14
+    elide: Text.ElideRight
+    Accessible.role: Accessible.StaticText
+    Accessible.name: text
+}

@@ -1,0 +1,80 @@
+#include "ui/experimenter/trace_item.h"
+
+#include <QtQuick/QSGFlatColorMaterial>
+#include <QtQuick/QSGGeometryNode>
+#include <algorithm>
+#include <cmath>
+
+namespace passung::experimenter {
+
+namespace {
+
+constexpr double kLeastTop = 0.5;
+constexpr float kStroke = 1.6f;  // thickness of what does not change [px]
+
+/// The smallest of 1, 2, 5 × 10^n that is at least `value`.
+double roundScale(double value) {
+    const double ten = std::pow(10.0, std::floor(std::log10(value)));
+    for (const double step : {1.0, 2.0, 5.0})
+        if (step * ten >= value) return step * ten;
+    return 10.0 * ten;
+}
+
+}  // namespace
+
+TraceItem::TraceItem(QQuickItem* parent) : QQuickItem(parent) {
+    setFlag(ItemHasContents);
+    connect(this, &TraceItem::changed, this, &QQuickItem::update);
+}
+
+void TraceItem::show(const presenter::Trace& trace) {
+    spans_ = trace.spans();
+    const double top = roundScale(std::max(kLeastTop, 1.08 * trace.peak()));
+    if (top != top_) {
+        top_ = top;
+        emit changed();
+    }
+    update();
+}
+
+QSGNode* TraceItem::updatePaintNode(QSGNode* old, UpdatePaintNodeData*) {
+    if (spans_.size() < 2 || width() <= 0) {
+        delete old;
+        return nullptr;
+    }
+    auto* node = static_cast<QSGGeometryNode*>(old);
+    if (node == nullptr) {
+        node = new QSGGeometryNode;
+        node->setGeometry(new QSGGeometry(QSGGeometry::defaultAttributes_Point2D(), 0));
+        node->geometry()->setDrawingMode(QSGGeometry::DrawTriangleStrip);
+        node->setMaterial(new QSGFlatColorMaterial);
+        node->setFlags(QSGNode::OwnsGeometry | QSGNode::OwnsMaterial);
+    }
+    static_cast<QSGFlatColorMaterial*>(node->material())->setColor(color_);
+    node->markDirty(QSGNode::DirtyMaterial);
+
+    QSGGeometry& geometry = *node->geometry();
+    geometry.allocate(static_cast<int>(2 * spans_.size()));
+    QSGGeometry::Point2D* point = geometry.vertexDataAsPoint2D();
+    const double whole = presenter::Trace::kSeconds / presenter::Trace::kStretch;
+    const double step = width() / (whole - 1.0);
+    const double left = width() - step * static_cast<double>(spans_.size() - 1);
+    const auto yOf = [this](float value) {
+        return static_cast<float>(height() * (1.0 - std::clamp(static_cast<double>(value) / top_, 0.0, 1.0)));
+    };
+    for (std::size_t i = 0; i < spans_.size(); ++i) {
+        const auto x = static_cast<float>(left + step * static_cast<double>(i));
+        // Neighbouring strokes overlap, so that a rise is a line and not a gap.
+        const float before = i > 0 ? spans_[i - 1].high : spans_[i].high;
+        const float below = i > 0 ? spans_[i - 1].low : spans_[i].low;
+        const float upper = yOf(std::max(spans_[i].high, std::min(before, spans_[i].low)));
+        const float lower = yOf(std::min(spans_[i].low, std::max(below, spans_[i].high)));
+        const float thin = std::max(0.0f, 0.5f * (kStroke - (lower - upper)));
+        point[2 * i].set(x, upper - thin);
+        point[2 * i + 1].set(x, lower + thin);
+    }
+    node->markDirty(QSGNode::DirtyGeometry);
+    return node;
+}
+
+}  // namespace passung::experimenter

@@ -1,0 +1,115 @@
+import QtQuick
+import QtQuick.Window
+
+// What the participant sees: the scene, what to do, how far it is. Nothing of the experimenter's.
+Window {
+    id: window
+    objectName: "participant"
+    title: qsTr("Passung – participant")
+    width: 1280
+    height: 720
+    minimumWidth: 640
+    minimumHeight: 400
+    color: look.ground
+    visible: screenView.shown
+    onClosing: screenView.closed()
+    onVisibleChanged: if (visible)
+        requestActivate()
+
+    Scene3D {
+        id: scene
+        objectName: "scene"
+        anchors.fill: parent
+        visible: screenView.drawn
+        scene: screenView
+        ground: look.dark ? "#1b242c" : "#e9eef2"
+    }
+
+    // Mouse and keyboard as a device of six degrees.
+    MouseArea {
+        id: hand
+        objectName: "hand"
+        anchors.fill: parent
+        enabled: screenView.byMouse
+        acceptedButtons: Qt.LeftButton | Qt.RightButton | Qt.MiddleButton
+        hoverEnabled: true
+        cursorShape: pressed ? Qt.ClosedHandCursor : Qt.OpenHandCursor
+        property real lastX
+        property real lastY
+        property int held // buttons
+        onPressed: event => {
+            lastX = event.x;
+            lastY = event.y;
+            held = event.buttons;
+        }
+        onPositionChanged: event => {
+            if (pressed)
+                screenView.drag(event.x - lastX, event.y - lastY, height, held, event.modifiers);
+            lastX = event.x;
+            lastY = event.y;
+        }
+        onWheel: event => screenView.wheel(event.angleDelta.y / 120, event.modifiers)
+    }
+    Item {
+        objectName: "keys"
+        focus: true
+        Keys.onPressed: event => {
+            if (!event.isAutoRepeat)
+                event.accepted = screenView.key(event.key, true);
+        }
+        Keys.onReleased: event => {
+            if (!event.isAutoRepeat)
+                event.accepted = screenView.key(event.key, false);
+        }
+    }
+
+    // How far the session is.
+    Rectangle {
+        width: parent.width
+        height: 3
+        color: "transparent"
+        Rectangle {
+            height: parent.height
+            width: parent.width * screenView.share
+            color: look.accent
+        }
+    }
+
+    // What to do now.
+    Rectangle {
+        anchors.centerIn: screenView.drawn ? undefined : parent
+        anchors.horizontalCenter: parent.horizontalCenter
+        anchors.top: screenView.drawn ? parent.top : undefined
+        anchors.topMargin: 24
+        visible: screenView.line !== ""
+        width: Math.min(lines.implicitWidth + 56, window.width - 40)
+        height: lines.implicitHeight + 26
+        radius: 10
+        color: screenView.drawn ? look.veil : "transparent"
+        Column {
+            id: lines
+            anchors.centerIn: parent
+            spacing: 4
+            Text {
+                objectName: "line"
+                anchors.horizontalCenter: parent.horizontalCenter
+                text: screenView.line
+                color: look.text
+                font.family: look.family
+                font.pixelSize: screenView.drawn ? 22 : 34
+                font.weight: Font.DemiBold
+                Accessible.role: Accessible.StaticText
+                Accessible.name: text
+            }
+            Text {
+                anchors.horizontalCenter: parent.horizontalCenter
+                horizontalAlignment: Text.AlignHCenter
+                visible: text !== ""
+                text: screenView.hint
+                color: look.dim
+                font.family: look.family
+                font.pixelSize: 15
+            }
+        }
+    }
+}

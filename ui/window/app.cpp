@@ -1,0 +1,75 @@
+#include "ui/window/app.h"
+
+#include <QtCore/QCoreApplication>
+#include <QtGui/QOffscreenSurface>
+#include <QtGui/QOpenGLContext>
+#include <QtGui/QOpenGLFunctions>
+#include <QtQml/QQmlContext>
+#include <QtQuick/QSGRendererInterface>
+#include <stdexcept>
+
+namespace passung::window {
+
+namespace {
+
+constexpr int kMirrorEvery = 150;  // [ms]
+
+/// Is there no graphics card, so that the processor draws?
+bool drawsInSoftware() {
+    QOpenGLContext context;
+    QOffscreenSurface surface;
+    surface.create();
+    if (!context.create() || !context.makeCurrent(&surface)) return true;
+    const auto* name = reinterpret_cast<const char*>(context.functions()->glGetString(GL_RENDERER));
+    const QString renderer = QString::fromLatin1(name);
+    context.doneCurrent();
+    return renderer.contains(QLatin1String("llvmpipe")) || renderer.contains(QLatin1String("softpipe"));
+}
+
+}  // namespace
+
+App::App(const AppOptions& options)
+    : look_(options.dark),
+      desk_(options.data),
+      studies_(desk_, options.protocols),
+      run_(desk_),
+      screen_(desk_, 0),
+      mirror_(desk_, kMirrorEvery) {
+    setLanguage(options.language);
+    qmlRegisterType<experimenter::TraceItem>("Passung", 1, 0, "TraceItem");
+    QQmlContext& context = *engine_.rootContext();
+    context.setContextProperty("app", this);
+    context.setContextProperty("look", &look_);
+    context.setContextProperty("studies", &studies_);
+    context.setContextProperty("run", &run_);
+    context.setContextProperty("screenView", &screen_);
+    context.setContextProperty("mirrorView", &mirror_);
+    const bool software = drawsInSoftware();
+    screen_.setSoftware(software);
+    mirror_.setSoftware(software);
+    engine_.load(QUrl("qrc:/ui/experimenter/Console.qml"));
+    engine_.load(QUrl("qrc:/ui/participant/Participant.qml"));
+    for (QObject* root : engine_.rootObjects()) {
+        auto* window = qobject_cast<QQuickWindow*>(root);
+        if (window != nullptr && window->objectName() == "participant") participant_ = window;
+        if (window != nullptr && window->objectName() == "experimenter") experimenter_ = window;
+    }
+    if (experimenter_ == nullptr || participant_ == nullptr) throw std::runtime_error("the windows cannot be made");
+}
+
+App::~App() { desk_.close(); }
+
+void App::setLanguage(const QString& language) {
+    if (language == language_) return;
+    language_ = language;
+    QCoreApplication::removeTranslator(&translator_);
+    if (language_ != "en" && translator_.load(QStringLiteral(":/texts/passung_%1.qm").arg(language_)))
+        QCoreApplication::installTranslator(&translator_);
+    engine_.retranslate();
+    studies_.retranslate();
+    run_.retranslate();
+    screen_.retranslate();
+    emit languageChanged();
+}
+
+}  // namespace passung::window

@@ -1,0 +1,74 @@
+#include "ui/window/desk.h"
+
+#include <array>
+
+namespace passung::window {
+
+namespace {
+
+constexpr int kFrame = 16;  // [ms]
+
+}  // namespace
+
+Desk::Desk(std::string data) : data_(std::move(data)) {
+    timer_.setTimerType(Qt::PreciseTimer);
+    timer_.setInterval(kFrame);
+    connect(&timer_, &QTimer::timeout, this, &Desk::look);
+}
+
+Desk::~Desk() = default;
+
+void Desk::start(const protocol::StudyPlan& plan, app::LiveHand hand) {
+    live_.reset();
+    hand_ = hand;
+    answered_.reset();
+    run_.open(plan);
+    drawn_ = nullptr;
+    live_ = std::make_unique<app::LiveSession>(
+        plan, app::LiveOptions{.database = data_ + "/" + plan.name + ".db", .hand = hand});
+    timer_.start();
+    emit opened();
+    emit happened();
+}
+
+void Desk::command(session::Command command) {
+    if (live_) live_->command(std::move(command));
+}
+
+void Desk::close() {
+    live_.reset();
+    timer_.stop();
+}
+
+mouse::Pointer* Desk::pointer() { return byMouse() ? &live_->pointer() : nullptr; }
+
+void Desk::look() {
+    // Ticks first: what is still to come of an attempt that is over was before the news of the next one.
+    std::array<TickRecord, 256> records;
+    std::size_t ticks = 0;
+    while (const std::size_t count = live_->takeRecords(records)) {
+        run_.take(std::span(records).first(count));
+        ticks += count;
+    }
+    const auto news = live_->takeNews();
+    for (const presenter::News& what : news) {
+        run_.take(what);
+        if (const auto* answer = std::get_if<presenter::CommandAnswered>(&what)) answered_ = *answer;
+    }
+    if (byMouse() && ticks > 0 && run_.last()) {
+        const auto& p = run_.last()->hand_position_m;
+        const auto& q = run_.last()->hand_quaternion;
+        live_->pointer().keepNear(
+            {Eigen::Quaternionf(q[0], q[1], q[2], q[3]).cast<double>().normalized(), Vec3(p[0], p[1], p[2])},
+            2.0 * live_->reach(), 2.0 * live_->swing());
+    }
+    if (run_.scene().get() != drawn_) {
+        drawn_ = run_.scene().get();
+        emit sceneChanged();
+    }
+    if (!news.empty()) emit happened();
+    if (ticks > 0) emit frame();
+    if (!run_.view().isRunning()) timer_.stop();
+}
+
+}  // namespace passung::window

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <QtCore/QElapsedTimer>
+#include <QtCore/QObject>
+#include <QtCore/QTimer>
+#include <memory>
+#include <optional>
+
+#include "ui/app/live_session.h"
+#include "ui/presenter/run.h"
+
+namespace passung::window {
+
+/// Between the running session and the windows: brings news and ticks to the presenter at the display's rate and tells
+/// the windows to look. The session never waits for it.
+class Desk : public QObject {
+    Q_OBJECT
+
+public:
+    /// `data`: folder for the databases of try-outs.
+    explicit Desk(std::string data);
+    ~Desk() override;
+
+    void start(const protocol::StudyPlan& plan, app::LiveHand hand);
+    void command(session::Command command);
+    /// Ends what runs; waits for the running step only.
+    void close();
+
+    const presenter::Run& run() const { return run_; }
+    /// Where the mouse wants the held part; null: nobody moves it by mouse.
+    mouse::Pointer* pointer();
+    bool byMouse() const { return live_ && hand_ == app::LiveHand::Mouse; }
+    const std::optional<presenter::CommandAnswered>& answered() const { return answered_; }
+
+signals:
+    void opened();    // another run
+    void happened();  // news
+    void frame();     // time for a new picture
+    void sceneChanged();
+
+private:
+    void look();
+
+    std::string data_;
+    std::unique_ptr<app::LiveSession> live_;
+    app::LiveHand hand_ = app::LiveHand::Mouse;
+    presenter::Run run_;
+    std::optional<presenter::CommandAnswered> answered_;
+    const void* drawn_ = nullptr;  // scene that the windows know
+    QTimer timer_;
+};
+
+}  // namespace passung::window

@@ -1,0 +1,125 @@
+#include "ui/window/run_model.h"
+
+#include "ui/window/words.h"
+
+namespace passung::window {
+
+using presenter::RunState;
+
+namespace {
+
+constexpr int kMeasuredEvery = 40;                      // [ms]
+constexpr double kGoodRate = 995.0, kPoorRate = 970.0;  // [Hz]
+
+}  // namespace
+
+RunModel::RunModel(Desk& desk) : desk_(desk) {
+    since_measured_.start();
+    connect(&desk_, &Desk::happened, this, [this] {
+        emit changed();
+        emit measured();
+        if (view().rows_changed == rows_known_) return;
+        rows_known_ = view().rows_changed;
+        emit rowsChanged();
+    });
+    connect(&desk_, &Desk::frame, this, [this] {
+        if (view().state != state_known_) {
+            state_known_ = view().state;
+            emit changed();
+        }
+        if (since_measured_.elapsed() < kMeasuredEvery) return;
+        since_measured_.restart();
+        emit measured();
+    });
+}
+
+QString RunModel::tone() const {
+    switch (view().state) {
+        case RunState::ToStart:
+        case RunState::Running:
+            return QStringLiteral("go");
+        case RunState::Ready:
+        case RunState::Paused:
+            return QStringLiteral("wait");
+        case RunState::Stopped:
+        case RunState::Failed:
+            return QStringLiteral("bad");
+        case RunState::Complete:
+            return QStringLiteral("good");
+        case RunState::Idle:
+        case RunState::Opening:
+        case RunState::Preparing:
+        case RunState::Between:
+        case RunState::Incomplete:
+            break;
+    }
+    return QStringLiteral("rest");
+}
+
+QString RunModel::line() const { return stateLine(view()); }
+QString RunModel::detail() const { return stateDetail(view()); }
+QString RunModel::answer() const { return desk_.answered() ? answerLine(*desk_.answered()) : QString(); }
+
+double RunModel::share() const {
+    if (view().planned == 0) return 0.0;
+    return static_cast<double>(view().finished) / static_cast<double>(view().planned);
+}
+
+QVariantMap RunModel::commands() const {
+    QVariantMap all;
+    for (std::size_t i = 0; i < std::size(session::kCommandNames); ++i) {
+        const std::string_view name = session::kCommandNames[i];
+        all.insert(QString::fromUtf8(name.data(), static_cast<qsizetype>(name.size())),
+                   whyNot(view().why(static_cast<session::CommandKind>(i))));
+    }
+    return all;
+}
+
+QVariantList RunModel::rows() const {
+    QVariantList all;
+    for (const presenter::TrialRow& row : view().rows) {
+        QString tone = QStringLiteral("rest");
+        if (row.state == presenter::RowState::Success) tone = QStringLiteral("good");
+        if (row.state == presenter::RowState::Running || row.state == presenter::RowState::Next)
+            tone = QStringLiteral("go");
+        if (row.state == presenter::RowState::Timeout) tone = QStringLiteral("wait");
+        if (row.state == presenter::RowState::Failure || row.state == presenter::RowState::Aborted ||
+            row.state == presenter::RowState::Invalid)
+            tone = QStringLiteral("bad");
+        all.append(QVariantMap{{"number", static_cast<int>(row.number)},
+                               {"block", QString::fromStdString(row.block)},
+                               {"phase", phaseWord(row.phase)},
+                               {"condition", QString::fromStdString(row.condition)},
+                               {"word", rowWord(row.state)},
+                               {"sign", rowSign(row.state)},
+                               {"tone", tone},
+                               {"attempts", row.attempts},
+                               {"seconds", row.time_s ? *row.time_s : -1.0},
+                               {"remark", QString::fromStdString(row.remark)}});
+    }
+    return all;
+}
+
+QString RunModel::lamp() const {
+    const presenter::LoopView& loop = view().loop;
+    if (!loop.known || !running()) return QStringLiteral("rest");
+    if (loop.rate_hz >= kGoodRate) return QStringLiteral("good");
+    return loop.rate_hz >= kPoorRate ? QStringLiteral("wait") : QStringLiteral("bad");
+}
+
+void RunModel::command(const QString& name, const QString& text) {
+    if (const auto kind = session::commandNamed(name.toStdString()))
+        desk_.command({.kind = *kind, .text = text.trimmed().toStdString()});
+}
+
+void RunModel::showTraces(experimenter::TraceItem* force, experimenter::TraceItem* depth) {
+    force->show(desk_.run().force());
+    depth->show(desk_.run().depth());
+}
+
+void RunModel::retranslate() {
+    emit changed();
+    emit rowsChanged();
+}
+
+}  // namespace passung::window

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <QtCore/QElapsedTimer>
+#include <QtCore/QObject>
+#include <QtCore/QVariant>
+
+#include "ui/experimenter/trace_item.h"
+#include "ui/window/desk.h"
+
+namespace passung::window {
+
+/// The experimenter's view state of a run for QML.
+class RunModel : public QObject {
+    Q_OBJECT
+    Q_PROPERTY(bool known READ known NOTIFY changed)      // there is or was a session
+    Q_PROPERTY(bool running READ running NOTIFY changed)  // it is not over
+    Q_PROPERTY(QString tone READ tone NOTIFY changed)     // "rest", "go", "wait", "bad", "good": colour and sign
+    Q_PROPERTY(QString line READ line NOTIFY changed)
+    Q_PROPERTY(QString detail READ detail NOTIFY changed)
+    Q_PROPERTY(QString study READ study NOTIFY changed)
+    Q_PROPERTY(QString participant READ participant NOTIFY changed)
+    Q_PROPERTY(double share READ share NOTIFY changed)
+    Q_PROPERTY(QString answer READ answer NOTIFY changed)
+    Q_PROPERTY(bool refused READ refused NOTIFY changed)
+    Q_PROPERTY(QVariantMap commands READ commands NOTIFY changed)  // by name: why not; empty: possible
+    Q_PROPERTY(QVariantList rows READ rows NOTIFY rowsChanged)
+    Q_PROPERTY(int currentRow READ currentRow NOTIFY rowsChanged)
+    Q_PROPERTY(double seconds READ seconds NOTIFY measured)
+    Q_PROPERTY(double force READ force NOTIFY measured)
+    Q_PROPERTY(double depth READ depth NOTIFY measured)
+    Q_PROPERTY(QString lamp READ lamp NOTIFY measured)  // "rest", "good", "wait", "bad"
+    Q_PROPERTY(double rate READ rate NOTIFY measured)
+    Q_PROPERTY(double typical READ typical NOTIFY measured)
+    Q_PROPERTY(double longest READ longest NOTIFY measured)
+    Q_PROPERTY(int missed READ missed NOTIFY measured)
+
+public:
+    explicit RunModel(Desk& desk);
+
+    bool known() const { return view().state != presenter::RunState::Idle; }
+    bool running() const { return view().isRunning(); }
+    QString tone() const;
+    QString line() const;
+    QString detail() const;
+    QString study() const { return QString::fromStdString(view().study); }
+    QString participant() const { return QString::fromStdString(view().participant); }
+    double share() const;
+    QString answer() const;
+    bool refused() const { return desk_.answered() && !desk_.answered()->answer.accepted; }
+    QVariantMap commands() const;
+    QVariantList rows() const;
+    int currentRow() const { return static_cast<int>(view().number) - 1; }
+    double seconds() const { return view().trial_s; }
+    double force() const { return view().force_N; }
+    double depth() const { return view().depth_mm; }
+    QString lamp() const;
+    double rate() const { return view().loop.rate_hz; }
+    double typical() const { return view().loop.typical_us; }
+    double longest() const { return view().loop.longest_us; }
+    int missed() const { return static_cast<int>(view().loop.missed); }
+
+    /// `name`: one of session::kCommandNames.
+    Q_INVOKABLE void command(const QString& name, const QString& text = {});
+    Q_INVOKABLE void showTraces(passung::experimenter::TraceItem* force, passung::experimenter::TraceItem* depth);
+    void retranslate();
+
+signals:
+    void changed();
+    void rowsChanged();
+    void measured();
+
+private:
+    const presenter::RunView& view() const { return desk_.run().view(); }
+
+    Desk& desk_;
+    std::int64_t rows_known_ = -1;
+    presenter::RunState state_known_ = presenter::RunState::Idle;
+    QElapsedTimer since_measured_;
+};
+
+}  // namespace passung::window

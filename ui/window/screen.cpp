@@ -1,0 +1,203 @@
+#include "ui/window/screen.h"
+
+#include <QtQml/QQmlEngine>
+#include <cmath>
+
+#include "ui/participant/part_geometry.h"
+#include "ui/window/words.h"
+
+namespace passung::window {
+
+namespace {
+
+constexpr std::size_t kHeavy = 20'000;  // triangles of a scene that software draws without shadows
+constexpr double kDegrees = 57.29577951308232;
+
+QVector3D millimetres(const Vec3& v) {
+    return {static_cast<float>(1e3 * v.x()), static_cast<float>(1e3 * v.y()), static_cast<float>(1e3 * v.z())};
+}
+
+QQuaternion rotation(const Quat& q) {
+    return {static_cast<float>(q.w()), static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z())};
+}
+
+presenter::DragPlane planeOf(int buttons, int modifiers) {
+    if ((modifiers & Qt::ControlModifier) != 0 || (buttons & Qt::RightButton) != 0) return presenter::DragPlane::Turn;
+    if ((modifiers & Qt::ShiftModifier) != 0 || (buttons & Qt::MiddleButton) != 0) return presenter::DragPlane::Ground;
+    return presenter::DragPlane::Upright;
+}
+
+/// Arrow keys and page up, down move; W, A, S, D, Q, E turn. Null: another key.
+double* axisOf(int key, presenter::HeldKeys& keys, double& sign) {
+    sign = 1.0;
+    switch (key) {
+        case Qt::Key_Left:
+            sign = -1.0;
+            [[fallthrough]];
+        case Qt::Key_Right:
+            return &keys.move.x();
+        case Qt::Key_Down:
+            sign = -1.0;
+            [[fallthrough]];
+        case Qt::Key_Up:
+            return &keys.move.y();
+        case Qt::Key_PageDown:
+            sign = -1.0;
+            [[fallthrough]];
+        case Qt::Key_PageUp:
+            return &keys.move.z();
+        case Qt::Key_W:
+            sign = -1.0;
+            [[fallthrough]];
+        case Qt::Key_S:
+            return &keys.turn.x();
+        case Qt::Key_D:
+            sign = -1.0;
+            [[fallthrough]];
+        case Qt::Key_A:
+            return &keys.turn.y();
+        case Qt::Key_Q:
+            sign = -1.0;
+            [[fallthrough]];
+        case Qt::Key_E:
+            return &keys.turn.z();
+        default:
+            return nullptr;
+    }
+}
+
+}  // namespace
+
+Screen::Screen(Desk& desk, int every) : desk_(desk), every_(every) {
+    connect(&desk_, &Desk::sceneChanged, this, &Screen::takeScene);
+    connect(&desk_, &Desk::frame, this, &Screen::takeFrame);
+    connect(&desk_, &Desk::happened, this, [this] {
+        view_ = presenter::participantView(desk_.run(), !desk_.byMouse());
+        emit stateChanged();
+        emit frame();
+    });
+    connect(&desk_, &Desk::opened, this, [this] {
+        shown_ = true;
+        keys_ = {};
+        emit stateChanged();
+    });
+    since_frame_.start();
+    since_keys_.start();
+}
+
+Screen::~Screen() = default;
+
+void Screen::setSoftware(bool software) {
+    software_ = software;
+    emit sceneChanged();
+}
+
+QString Screen::line() const { return participantLine(view_.screen); }
+QString Screen::hint() const { return participantHint(view_.screen, desk_.byMouse()); }
+
+QQuick3DGeometry* Screen::geometryOf(const std::shared_ptr<const presenter::ShadedMesh>& mesh) {
+    auto& geometry = geometries_[mesh];
+    if (!geometry) {
+        geometry = std::make_unique<participant::PartGeometry>(*mesh);
+        QQmlEngine::setObjectOwnership(geometry.get(), QQmlEngine::CppOwnership);
+    }
+    return geometry.get();
+}
+
+void Screen::takeScene() {
+    const auto scene = desk_.run().scene();
+    if (!scene) return;
+    parts_.clear();
+    std::size_t corners = 0;
+    for (const presenter::DrawnPart& part : scene->parts) {
+        QQuick3DGeometry* geometry = geometryOf(part.mesh);
+        parts_.append(QVariantMap{{"geometry", QVariant::fromValue(geometry)},
+                                  {"position", millimetres(part.X_W.p)},
+                                  {"rotation", rotation(part.X_W.q)},
+                                  {"held", part.held}});
+        if (part.held) held_geometry_ = geometry;
+        corners += part.mesh->indices.size();
+    }
+    heavy_ = software_ && corners / 3 > kHeavy;
+    mark_geometry_ = geometryOf(scene->mark);
+    target_position_ = millimetres(scene->X_WTarget.p);
+    target_rotation_ = rotation(scene->X_WTarget.q);
+    radius_ = 1e3 * scene->radius;
+    const presenter::Camera& camera = scene->camera;
+    ground_position_ = millimetres({camera.centre.x(), camera.centre.y(), scene->floor});
+    camera_position_ = millimetres(camera.X_WC.p);
+    camera_rotation_ = rotation(camera.X_WC.q);
+    const Vec3 from = (camera.X_WC.q * Vec3(-0.55, 0.5, 0.35) + 1.3 * Vec3::UnitZ()).normalized();
+    light_rotation_ = rotation(Quat::FromTwoVectors(Vec3::UnitZ(), from));
+    camera_opening_ = kDegrees * camera.opening;
+    camera_near_ = 1e3 * camera.near;
+    camera_far_ = 1e3 * camera.far;
+    view_ = presenter::participantView(desk_.run(), !desk_.byMouse());
+    emit sceneChanged();
+    emit frame();
+}
+
+void Screen::takeFrame() {
+    const double seconds = 1e-3 * static_cast<double>(since_keys_.restart());
+    if (const auto& scene = desk_.run().scene(); scene && keys_.any() && every_ == 0)
+        move(presenter::keyMotion(scene->camera, keys_, std::min(seconds, 0.1)));
+    if (every_ > 0 && since_frame_.elapsed() < every_) return;
+    since_frame_.restart();
+    const auto before = view_.screen;
+    view_ = presenter::participantView(desk_.run(), !desk_.byMouse());
+    if (view_.screen != before) emit stateChanged();
+    emit frame();
+}
+
+QVector3D Screen::heldPosition() const { return millimetres(view_.X_WHeld.p); }
+QQuaternion Screen::heldRotation() const { return rotation(view_.X_WHeld.q); }
+QVector3D Screen::startPosition() const { return millimetres(view_.X_WStart.p); }
+QQuaternion Screen::startRotation() const { return rotation(view_.X_WStart.q); }
+QVector3D Screen::arrowPosition() const { return millimetres(view_.arrow_from); }
+double Screen::arrowLength() const { return 1e3 * view_.arrow_way.norm(); }
+
+QQuaternion Screen::arrowRotation() const {
+    if (!view_.arrow) return {};
+    return rotation(Quat::FromTwoVectors(Vec3::UnitY(), view_.arrow_way));
+}
+
+QColor Screen::heldColor(const QColor& plain) const {
+    const auto mixed = [this](float from, float to) { return from + static_cast<float>(view_.cue) * (to - from); };
+    const QColor hit(0xd5, 0x2e, 0x00);
+    return QColor::fromRgbF(mixed(plain.redF(), hit.redF()), mixed(plain.greenF(), hit.greenF()),
+                            mixed(plain.blueF(), hit.blueF()));
+}
+
+void Screen::move(const presenter::PartMotion& motion) {
+    if (mouse::Pointer* pointer = desk_.pointer()) pointer->move(motion.way, motion.turn);
+}
+
+void Screen::drag(double right, double down, double height, int buttons, int modifiers) {
+    if (const auto& scene = desk_.run().scene())
+        move(presenter::dragMotion(scene->camera, height, planeOf(buttons, modifiers), right, down));
+}
+
+void Screen::wheel(double notches, int modifiers) {
+    if (const auto& scene = desk_.run().scene())
+        move(presenter::wheelMotion(scene->camera, planeOf(0, modifiers), notches));
+}
+
+bool Screen::key(int key, bool down) {
+    if (key == Qt::Key_Space) {
+        if (mouse::Pointer* pointer = desk_.pointer()) pointer->press(down ? 1u : 0u);
+        return true;
+    }
+    double sign = 1.0;
+    double* axis = axisOf(key, keys_, sign);
+    if (axis == nullptr) return false;
+    *axis += down ? sign : -sign;
+    return true;
+}
+
+void Screen::closed() {
+    shown_ = false;
+    desk_.command({.kind = session::CommandKind::Pause, .source = "participant's window was closed"});
+    emit stateChanged();
+}
+
+}  // namespace passung::window

@@ -1,0 +1,216 @@
+#include "ui/window/words.h"
+
+#include <QtCore/QCoreApplication>
+
+namespace passung::window {
+
+using presenter::ParticipantScreen;
+using presenter::RowState;
+using presenter::RunState;
+using presenter::RunView;
+using presenter::Why;
+using session::CommandKind;
+
+namespace {
+
+QString said(const char* text) { return QCoreApplication::translate("words", text); }
+
+}  // namespace
+
+QString stateLine(const RunView& view) {
+    const auto trial = [&view](const char* text) { return said(text).arg(view.number).arg(view.planned); };
+    switch (view.state) {
+        case RunState::Idle:
+            return said(QT_TRANSLATE_NOOP("words", "No session"));
+        case RunState::Opening:
+            return said(QT_TRANSLATE_NOOP("words", "Opening the study"));
+        case RunState::Preparing:
+            return trial(QT_TRANSLATE_NOOP("words", "Trial %1 of %2 is being prepared"));
+        case RunState::ToStart:
+            return trial(QT_TRANSLATE_NOOP("words", "Trial %1 of %2 waits for the start pose"));
+        case RunState::Running:
+            return trial(QT_TRANSLATE_NOOP("words", "Trial %1 of %2 is running"));
+        case RunState::Between:
+            return said(QT_TRANSLATE_NOOP("words", "Between trials"));
+        case RunState::Ready:
+            return said(QT_TRANSLATE_NOOP("words", "Ready to start"));
+        case RunState::Paused:
+            return said(QT_TRANSLATE_NOOP("words", "Paused"));
+        case RunState::Stopped:
+            return said(QT_TRANSLATE_NOOP("words", "Emergency stop: motors are off"));
+        case RunState::Complete:
+            return said(QT_TRANSLATE_NOOP("words", "Session complete"));
+        case RunState::Incomplete:
+            return said(QT_TRANSLATE_NOOP("words", "Session ended early"));
+        case RunState::Failed:
+            break;
+    }
+    return said(QT_TRANSLATE_NOOP("words", "The session failed"));
+}
+
+QString stateDetail(const RunView& view) {
+    if (view.pauses_after) return said(QT_TRANSLATE_NOOP("words", "pauses after this trial"));
+    switch (view.state) {
+        case RunState::Preparing:
+        case RunState::ToStart:
+        case RunState::Running:
+            return QString::fromStdString(view.condition);
+        case RunState::Paused:
+        case RunState::Stopped:
+        case RunState::Between:
+            if (view.number > 0) return said(QT_TRANSLATE_NOOP("words", "next: trial %1")).arg(view.number);
+            return {};
+        case RunState::Complete:
+        case RunState::Incomplete:
+            return said(QT_TRANSLATE_NOOP("words", "%1 of %2 trials are finished and stored"))
+                .arg(view.finished)
+                .arg(view.planned);
+        case RunState::Failed:
+            return QString::fromStdString(view.told);
+        case RunState::Idle:
+        case RunState::Opening:
+        case RunState::Ready:
+            break;
+    }
+    return {};
+}
+
+QString rowWord(RowState state) {
+    switch (state) {
+        case RowState::Waiting:
+            return said(QT_TRANSLATE_NOOP("words", "to come"));
+        case RowState::Next:
+            return said(QT_TRANSLATE_NOOP("words", "next"));
+        case RowState::Running:
+            return said(QT_TRANSLATE_NOOP("words", "running"));
+        case RowState::Success:
+            return said(QT_TRANSLATE_NOOP("words", "succeeded"));
+        case RowState::Timeout:
+            return said(QT_TRANSLATE_NOOP("words", "timed out"));
+        case RowState::Failure:
+            return said(QT_TRANSLATE_NOOP("words", "failed"));
+        case RowState::Aborted:
+            return said(QT_TRANSLATE_NOOP("words", "aborted"));
+        case RowState::Skipped:
+            return said(QT_TRANSLATE_NOOP("words", "left out"));
+        case RowState::Invalid:
+            break;
+    }
+    return said(QT_TRANSLATE_NOOP("words", "does not count"));
+}
+
+QString rowSign(RowState state) {
+    switch (state) {
+        case RowState::Waiting:
+            return QStringLiteral("·");
+        case RowState::Next:
+        case RowState::Running:
+            return QStringLiteral("▶");
+        case RowState::Success:
+            return QStringLiteral("✓");
+        case RowState::Timeout:
+            return QStringLiteral("◷");
+        case RowState::Skipped:
+            return QStringLiteral("–");
+        case RowState::Failure:
+        case RowState::Aborted:
+        case RowState::Invalid:
+            break;
+    }
+    return QStringLiteral("✕");
+}
+
+QString whyNot(Why why) {
+    switch (why) {
+        case Why::Possible:
+            return {};
+        case Why::NoSession:
+            return said(QT_TRANSLATE_NOOP("words", "No session is running."));
+        case Why::NotReady:
+            return said(QT_TRANSLATE_NOOP("words", "The session has begun already."));
+        case Why::NotPaused:
+            return said(QT_TRANSLATE_NOOP("words", "The session is not paused."));
+        case Why::AlreadyPaused:
+            return said(QT_TRANSLATE_NOOP("words", "The session pauses already."));
+        case Why::NothingEnded:
+            return said(QT_TRANSLATE_NOOP("words", "No trial has ended yet."));
+        case Why::NothingLeft:
+            break;
+    }
+    return said(QT_TRANSLATE_NOOP("words", "No trial is left."));
+}
+
+QString answerLine(const presenter::CommandAnswered& answered) {
+    if (!answered.answer.accepted)
+        return said(QT_TRANSLATE_NOOP("words", "Not possible now: %1"))
+            .arg(QString::fromStdString(answered.answer.text));
+    switch (answered.command.kind) {
+        case CommandKind::Start:
+            return said(QT_TRANSLATE_NOOP("words", "The session begins."));
+        case CommandKind::Pause:
+            return said(QT_TRANSLATE_NOOP("words", "The session pauses after the running trial."));
+        case CommandKind::Continue:
+            return said(QT_TRANSLATE_NOOP("words", "The session goes on."));
+        case CommandKind::Repeat:
+            return said(QT_TRANSLATE_NOOP("words", "The trial is repeated."));
+        case CommandKind::Skip:
+            return said(QT_TRANSLATE_NOOP("words", "The trial is left out."));
+        case CommandKind::Invalidate:
+            return said(QT_TRANSLATE_NOOP("words", "The attempt does not count."));
+        case CommandKind::Back:
+            return said(QT_TRANSLATE_NOOP("words", "One trial back."));
+        case CommandKind::Note:
+            return said(QT_TRANSLATE_NOOP("words", "The note is stored."));
+        case CommandKind::Abort:
+            return said(QT_TRANSLATE_NOOP("words", "The session is ended."));
+        case CommandKind::Stop:
+            break;
+    }
+    return said(QT_TRANSLATE_NOOP("words", "Motors are off; the session is paused."));
+}
+
+QString participantLine(ParticipantScreen screen) {
+    switch (screen) {
+        case ParticipantScreen::Welcome:
+            return said(QT_TRANSLATE_NOOP("words", "Welcome"));
+        case ParticipantScreen::Wait:
+            return said(QT_TRANSLATE_NOOP("words", "One moment"));
+        case ParticipantScreen::ToStart:
+            return said(QT_TRANSLATE_NOOP("words", "Move to the start"));
+        case ParticipantScreen::Task:
+            return said(QT_TRANSLATE_NOOP("words", "Bring the part to the ring"));
+        case ParticipantScreen::Pause:
+            return said(QT_TRANSLATE_NOOP("words", "Pause"));
+        case ParticipantScreen::Thanks:
+            break;
+    }
+    return said(QT_TRANSLATE_NOOP("words", "Thank you!"));
+}
+
+QString participantHint(ParticipantScreen screen, bool by_mouse) {
+    switch (screen) {
+        case ParticipantScreen::Welcome:
+            return said(QT_TRANSLATE_NOOP("words", "It begins in a moment."));
+        case ParticipantScreen::ToStart:
+            return said(QT_TRANSLATE_NOOP("words", "Hold the part still where its pale image is."));
+        case ParticipantScreen::Task:
+            if (!by_mouse) return {};
+            return said(QT_TRANSLATE_NOOP(
+                "words", "Drag: move · wheel or Shift + drag: depth · right button or Ctrl + drag: turn"));
+        case ParticipantScreen::Pause:
+            return said(QT_TRANSLATE_NOOP("words", "You may let go. It goes on when the experimenter says so."));
+        case ParticipantScreen::Thanks:
+            return said(QT_TRANSLATE_NOOP("words", "That was all. Please tell the experimenter."));
+        case ParticipantScreen::Wait:
+            break;
+    }
+    return {};
+}
+
+QString phaseWord(const std::string& phase) {
+    if (phase == "practice") return said(QT_TRANSLATE_NOOP("words", "practice"));
+    if (phase == "catch") return said(QT_TRANSLATE_NOOP("words", "catch"));
+    return said(QT_TRANSLATE_NOOP("words", "main"));
+}
+
+}  // namespace passung::window

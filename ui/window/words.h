@@ -1,0 +1,24 @@
+#pragma once
+
+#include <QtCore/QString>
+
+#include "ui/presenter/participant.h"
+#include "ui/presenter/run.h"
+
+namespace passung::window {
+
+// What presenters mean, in the language of the windows.
+
+QString stateLine(const presenter::RunView& view);
+QString stateDetail(const presenter::RunView& view);
+QString rowWord(presenter::RowState state);
+/// A sign that tells row states apart without colour.
+QString rowSign(presenter::RowState state);
+QString whyNot(presenter::Why why);
+/// What came of a command.
+QString answerLine(const presenter::CommandAnswered& answered);
+QString participantLine(presenter::ParticipantScreen screen);
+QString participantHint(presenter::ParticipantScreen screen, bool by_mouse);
+QString phaseWord(const std::string& phase);
+
+}  // namespace passung::window
