@@ -1,0 +1,186 @@
+#include "ui/presenter/run.h"
+
+#include <gtest/gtest.h>
+
+#include "ui/presenter/participant.h"
+
+namespace passung {
+namespace {
+
+using namespace presenter;
+using session::CommandKind;
+using session::SessionState;
+
+/// A run of four trials; conditions "a" and "b" in turn.
+Run begun() {
+    protocol::StudyPlan plan;
+    plan.name = "study";
+    plan.conditions.resize(2);
+    plan.conditions[0].name = "a";
+    plan.conditions[1].name = "b";
+    Run run;
+    run.open(plan);
+    SessionBegun news{"T001", {}};
+    for (int i = 0; i < 4; ++i) {
+        design::PlannedTrial trial;
+        trial.trial_index = i;
+        trial.condition = static_cast<std::size_t>(i % 2);
+        trial.phase = "main";
+        news.trials.push_back(trial);
+    }
+    run.take(news);
+    return run;
+}
+
+SessionGlance glance(SessionState state, std::size_t next, std::vector<bool> over = {false, false, false, false}) {
+    SessionGlance news;
+    news.state = state;
+    news.next = next;
+    news.over = std::move(over);
+    return news;
+}
+
+TickRecord tickOf(std::int64_t tick, bool engaged, float force = 0.0f) {
+    TickRecord record;
+    record.tick = tick;
+    record.status = engaged ? kEngaged : 0u;
+    record.force_N = {0.0f, 0.0f, force};
+    record.hand_quaternion = record.proxy_quaternion = {1.0f, 0.0f, 0.0f, 0.0f};
+    record.duration_ns = 20'000;
+    return record;
+}
+
+void feed(Run& run, std::int64_t from, std::int64_t to, bool engaged, float force = 0.0f) {
+    std::vector<TickRecord> records;
+    for (std::int64_t tick = from; tick < to; ++tick) records.push_back(tickOf(tick, engaged, force));
+    run.take(records);
+}
+
+TEST(Run, GoesFromPreparingOverTheStartPoseToRunningByWhatTheTicksSay) {
+    // Truth: invariant. The go is the first tick that is engaged, and the trial's time counts from there.
+    presenter::Run run = begun();
+    run.take(AttemptPrepared{0, "a", nullptr});
+    EXPECT_EQ(run.view().state, RunState::Preparing);
+    run.take(glance(SessionState::InTrial, 0));
+    EXPECT_EQ(run.view().state, RunState::ToStart);
+    feed(run, 0, 200, false);
+    EXPECT_EQ(run.view().state, RunState::ToStart);
+    EXPECT_EQ(run.view().trial_s, 0.0);
+    feed(run, 200, 1701, true);
+    EXPECT_EQ(run.view().state, RunState::Running);
+    EXPECT_NEAR(run.view().trial_s, 1.5, 1e-9);
+    EXPECT_EQ(run.view().rows[0].state, RowState::Running);
+    EXPECT_EQ(run.view().rows[1].state, RowState::Waiting);
+    EXPECT_EQ(run.view().condition, "a");
+}
+
+TEST(Run, TellsTheRowsApart) {
+    // Truth: invariant. What an attempt ended with stays; a trial that is over without one was left out.
+    presenter::Run run = begun();
+    run.take(AttemptEnded{0, measures::Outcome::Success, true, "", 2.5});
+    run.take(glance(SessionState::BetweenTrials, 3, {true, true, true, false}));
+    run.take(AttemptEnded{2, measures::Outcome::Timeout, true, "", 30.0});
+    EXPECT_EQ(run.view().rows[0].state, RowState::Success);
+    EXPECT_EQ(run.view().rows[0].time_s, 2.5);
+    EXPECT_EQ(run.view().rows[1].state, RowState::Skipped);
+    EXPECT_EQ(run.view().rows[2].state, RowState::Timeout);
+    EXPECT_EQ(run.view().rows[3].state, RowState::Next);
+    EXPECT_EQ(run.view().finished, 3u);
+    // Sent back, it is to come again.
+    run.take(glance(SessionState::InTrial, 0, {false, true, true, false}));
+    EXPECT_EQ(run.view().rows[0].state, RowState::Running);
+    run.take(AttemptEnded{0, measures::Outcome::Aborted, false, "emergency stop", {}});
+    EXPECT_EQ(run.view().rows[0].state, RowState::Aborted);
+    EXPECT_EQ(run.view().rows[0].attempts, 2);
+}
+
+TEST(Run, OffersACommandOnlyWhenTheSessionWouldObey) {
+    // Truth: invariant, the session's own refusals.
+    EXPECT_EQ(presenter::Run().view().why(CommandKind::Pause), Why::NoSession);
+    presenter::Run run = begun();
+    run.take(glance(SessionState::Ready, 0));
+    EXPECT_TRUE(run.view().may(CommandKind::Start));
+    EXPECT_FALSE(run.view().may(CommandKind::Pause));
+    run.take(glance(SessionState::InTrial, 0));
+    EXPECT_FALSE(run.view().may(CommandKind::Start));
+    EXPECT_TRUE(run.view().may(CommandKind::Pause));
+    EXPECT_TRUE(run.view().may(CommandKind::Repeat));
+    EXPECT_EQ(run.view().why(CommandKind::Continue), Why::NotPaused);
+    run.take(CommandAnswered{{.kind = CommandKind::Pause}, {true, ""}});
+    EXPECT_TRUE(run.view().pauses_after);
+    EXPECT_EQ(run.view().why(CommandKind::Pause), Why::AlreadyPaused);
+    run.take(glance(SessionState::Paused, 1, {true, false, false, false}));
+    EXPECT_FALSE(run.view().pauses_after);
+    EXPECT_TRUE(run.view().may(CommandKind::Continue));
+    EXPECT_EQ(run.view().why(CommandKind::Invalidate), Why::NothingEnded);
+    run.take(RunOver{false, {}});
+    EXPECT_EQ(run.view().state, RunState::Incomplete);
+    EXPECT_EQ(run.view().why(CommandKind::Stop), Why::NoSession);
+}
+
+TEST(Run, AnEmergencyStopIsShownUntilTheSessionGoesOn) {
+    // Truth: invariant.
+    presenter::Run run = begun();
+    run.take(glance(SessionState::InTrial, 0));
+    run.take(CommandAnswered{{.kind = CommandKind::Stop}, {true, ""}});
+    run.take(glance(SessionState::Paused, 0));
+    EXPECT_EQ(run.view().state, RunState::Stopped);
+    run.take(CommandAnswered{{.kind = CommandKind::Continue}, {true, ""}});
+    run.take(glance(SessionState::InTrial, 0));
+    run.take(glance(SessionState::Paused, 1));
+    EXPECT_EQ(run.view().state, RunState::Paused);
+}
+
+TEST(Run, CountsTheLoopsMissedCyclesAndItsRate) {
+    // Truth: closed form. 1000 ticks over 1250 periods are 800 Hz.
+    presenter::Run run = begun();
+    std::vector<TickRecord> records;
+    for (int i = 0; i < 1000; ++i) {
+        TickRecord record = tickOf(i, true);
+        record.periods = i % 4 == 3 ? 2 : 1;
+        record.duration_ns = i == 500 ? 90'000 : 20'000;
+        records.push_back(record);
+    }
+    run.take(records);
+    EXPECT_TRUE(run.view().loop.known);
+    EXPECT_EQ(run.view().loop.missed, 250);
+    EXPECT_NEAR(run.view().loop.rate_hz, 800.0, 1e-9);
+    EXPECT_NEAR(run.view().loop.typical_us, 20.0, 1e-4);
+    EXPECT_NEAR(run.view().loop.longest_us, 90.0, 1e-4);
+}
+
+TEST(ParticipantView, ShowsTheForceOnlyToWhoCannotFeelItAndOnlyInTheTrial) {
+    // Truth: invariant.
+    presenter::Run run = begun();
+    auto scene = std::make_shared<DrawnScene>();
+    scene->parts.resize(1);
+    run.take(AttemptPrepared{0, "a", scene});
+    run.take(glance(SessionState::InTrial, 0));
+    feed(run, 0, 10, false, 2.0f);
+    EXPECT_EQ(participantView(run, false).screen, ParticipantScreen::ToStart);
+    EXPECT_FALSE(participantView(run, false).arrow);
+    feed(run, 10, 20, true, 2.0f);
+    EXPECT_EQ(participantView(run, false).screen, ParticipantScreen::Task);
+    EXPECT_TRUE(participantView(run, false).arrow);
+    EXPECT_NEAR(participantView(run, false).arrow_way.z(), 2.0 * kArrowPerNewton, 1e-9);
+    EXPECT_FALSE(participantView(run, true).arrow);
+}
+
+TEST(Trace, KeepsAPeakOfOneTickAndTheLastTenSeconds) {
+    // Truth: closed form.
+    Trace trace;
+    for (int i = 0; i < 15000; ++i) trace.add(1e-3 * i, i == 12345 ? 7.0 : 1.0);
+    const auto spans = trace.spans();
+    ASSERT_EQ(spans.size(), static_cast<std::size_t>(Trace::kSeconds / Trace::kStretch));
+    EXPECT_EQ(trace.peak(), 7.0);
+    int high = 0;
+    for (const auto& span : spans) high += span.high > 1.0f ? 1 : 0;
+    EXPECT_EQ(high, 1);
+    for (int i = 15000; i < 23000; ++i) trace.add(1e-3 * i, 1.0);
+    EXPECT_EQ(trace.peak(), 1.0);
+    trace.add(0.0, 3.0);
+    EXPECT_EQ(trace.spans().size(), 1u);
+}
+
+}  // namespace
+}  // namespace passung
