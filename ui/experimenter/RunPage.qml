@@ -162,15 +162,14 @@ ColumnLayout {
                     id: mirror
                     objectName: "mirror"
                     anchors.fill: parent
-                    anchors.margins: 1
+                    anchors.margins: 6
                     visible: mirrorView.drawn
                     scene: mirrorView
                     shadows: false
-                    ground: look.dark ? "#1b242c" : "#e9eef2"
                 }
                 Say {
-                    x: 16
-                    y: 12
+                    x: 18
+                    y: 14
                     text: qsTr("PARTICIPANT'S VIEW")
                     quiet: true
                     font.pixelSize: 12

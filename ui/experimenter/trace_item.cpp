@@ -59,16 +59,16 @@ QSGNode* TraceItem::updatePaintNode(QSGNode* old, UpdatePaintNodeData*) {
     const double whole = presenter::Trace::kSeconds / presenter::Trace::kStretch;
     const double step = width() / (whole - 1.0);
     const double left = width() - step * static_cast<double>(spans_.size() - 1);
+    using Span = presenter::Trace::Span;
     const auto yOf = [this](float value) {
         return static_cast<float>(height() * (1.0 - std::clamp(static_cast<double>(value) / top_, 0.0, 1.0)));
     };
     for (std::size_t i = 0; i < spans_.size(); ++i) {
         const auto x = static_cast<float>(left + step * static_cast<double>(i));
         // Neighbouring strokes overlap, so that a rise is a line and not a gap.
-        const float before = i > 0 ? spans_[i - 1].high : spans_[i].high;
-        const float below = i > 0 ? spans_[i - 1].low : spans_[i].low;
-        const float upper = yOf(std::max(spans_[i].high, std::min(before, spans_[i].low)));
-        const float lower = yOf(std::min(spans_[i].low, std::max(below, spans_[i].high)));
+        const Span& before = spans_[i > 0 ? i - 1 : 0];
+        const float upper = yOf(std::max(spans_[i].high, before.low));
+        const float lower = yOf(std::min(spans_[i].low, before.high));
         const float thin = std::max(0.0f, 0.5f * (kStroke - (lower - upper)));
         point[2 * i].set(x, upper - thin);
         point[2 * i + 1].set(x, lower + thin);

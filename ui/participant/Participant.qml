@@ -15,6 +15,8 @@ Window {
     onClosing: screenView.closed()
     onVisibleChanged: if (visible)
         requestActivate()
+    onActiveFocusItemChanged: if (activeFocusItem !== hand) // the 3D view takes it
+        hand.forceActiveFocus()
 
     Scene3D {
         id: scene
@@ -22,7 +24,6 @@ Window {
         anchors.fill: parent
         visible: screenView.drawn
         scene: screenView
-        ground: look.dark ? "#1b242c" : "#e9eef2"
     }
 
     // Mouse and keyboard as a device of six degrees.
@@ -49,9 +50,6 @@ Window {
             lastY = event.y;
         }
         onWheel: event => screenView.wheel(event.angleDelta.y / 120, event.modifiers)
-    }
-    Item {
-        objectName: "keys"
         focus: true
         Keys.onPressed: event => {
             if (!event.isAutoRepeat)
@@ -62,7 +60,6 @@ Window {
                 event.accepted = screenView.key(event.key, false);
         }
     }
-
     // How far the session is.
     Rectangle {
         width: parent.width

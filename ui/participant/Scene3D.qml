@@ -6,8 +6,7 @@ View3D {
     id: view
     required property var scene // Screen: what to draw
     property bool shadows: true
-    property color ground: palette3d.ground
-    property bool mirror: false // drawn a few times a second only
+    readonly property color ground: palette3d.ground
     readonly property QtObject palette3d: QtObject {
         readonly property color ground: look.dark ? "#1b242c" : "#e9eef2"
         readonly property color rest: look.dark ? "#8fa3b3" : "#9fb0bd"
@@ -51,7 +50,7 @@ View3D {
         scale: Qt.vector3d(0.01, 0.01, 0.01).times(40 * view.scene.radius)
         castsShadows: false
         materials: PrincipledMaterial {
-            baseColor: view.ground
+            baseColor: look.dark ? view.ground : "#c3ccd3"
             roughness: 1.0
             specularAmount: 0.0
         }

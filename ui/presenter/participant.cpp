@@ -1,6 +1,7 @@
 #include "ui/presenter/participant.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace passung::presenter {
 
@@ -30,6 +31,22 @@ ParticipantScreen screenOf(RunState state) {
     return ParticipantScreen::Thanks;
 }
 
+/// Where a ray from the middle of the part's box leaves it.
+Vec3 outermost(const ShadedMesh& mesh, const Pose& X_W, const Vec3& way) {
+    Vec3 middle, half;
+    for (int i = 0; i < 3; ++i) {
+        const double low = static_cast<double>(mesh.low_mm[static_cast<std::size_t>(i)]);
+        const double high = static_cast<double>(mesh.high_mm[static_cast<std::size_t>(i)]);
+        middle[i] = 0.5e-3 * (low + high);
+        half[i] = 0.5e-3 * (high - low);
+    }
+    const Vec3 inside = X_W.q.conjugate() * way;
+    double length = half.norm();
+    for (int i = 0; i < 3; ++i)
+        if (std::abs(inside[i]) * length > half[i]) length = half[i] / std::abs(inside[i]);
+    return X_W * middle + length * way;
+}
+
 }  // namespace
 
 ParticipantView participantView(const Run& run, bool feels) {
@@ -51,8 +68,8 @@ ParticipantView participantView(const Run& run, bool feels) {
         view.cue = std::min(1.0, static_cast<double>(record.hand_depth_m) / scene->cues.full_depth);
     const Vec3 force(record.force_N[0], record.force_N[1], record.force_N[2]);
     view.arrow = task && !feels && force.norm() >= kLeastForce;
-    view.arrow_from = view.X_WHeld.p;
     view.arrow_way = kArrowPerNewton * force;
+    if (view.arrow) view.arrow_from = outermost(*scene->parts[scene->held].mesh, view.X_WHeld, force.normalized());
     return view;
 }
 

@@ -154,6 +154,10 @@ TEST(ParticipantView, ShowsTheForceOnlyToWhoCannotFeelItAndOnlyInTheTrial) {
     presenter::Run run = begun();
     auto scene = std::make_shared<DrawnScene>();
     scene->parts.resize(1);
+    ShadedMesh peg;
+    peg.low_mm = {-10.0f, -10.0f, 0.0f};
+    peg.high_mm = {10.0f, 10.0f, 50.0f};
+    scene->parts[0].mesh = std::make_shared<const ShadedMesh>(peg);
     run.take(AttemptPrepared{0, "a", scene});
     run.take(glance(SessionState::InTrial, 0));
     feed(run, 0, 10, false, 2.0f);
@@ -163,6 +167,8 @@ TEST(ParticipantView, ShowsTheForceOnlyToWhoCannotFeelItAndOnlyInTheTrial) {
     EXPECT_EQ(participantView(run, false).screen, ParticipantScreen::Task);
     EXPECT_TRUE(participantView(run, false).arrow);
     EXPECT_NEAR(participantView(run, false).arrow_way.z(), 2.0 * kArrowPerNewton, 1e-9);
+    // It begins where it leaves the part, else the part would hide it.
+    EXPECT_NEAR((participantView(run, false).arrow_from - Vec3(0, 0, 0.05)).norm(), 0.0, 1e-7);
     EXPECT_FALSE(participantView(run, true).arrow);
 }
 

@@ -1,0 +1,28 @@
+# cmake -DROOT=... -DLUPDATE=... -DTEMP=... -P translations.cmake: every text of the windows has its German one.
+cmake_policy(VERSION 3.25)
+
+file(MAKE_DIRECTORY ${TEMP})
+configure_file(${ROOT}/ui/window/texts/passung_de.ts ${TEMP}/passung_de.ts COPYONLY)
+execute_process(COMMAND ${LUPDATE} -silent -locations none
+  ${ROOT}/ui/window ${ROOT}/ui/experimenter ${ROOT}/ui/participant -ts ${TEMP}/passung_de.ts
+  COMMAND_ERROR_IS_FATAL ANY)
+file(STRINGS ${TEMP}/passung_de.ts lines REGEX "<source>|<translation")
+set(count 0)
+foreach(line IN LISTS lines)
+  if(line MATCHES "<source>(.*)</source>")
+    set(source "${CMAKE_MATCH_1}")
+    math(EXPR count "${count} + 1")
+  elseif(line MATCHES "unfinished|<translation></translation>|<translation/>")
+    list(APPEND missing "${source}")
+  elseif(line MATCHES "vanished|obsolete")
+    list(APPEND missing "${source} (no window has it any more)")
+  endif()
+endforeach()
+if(count LESS 50)
+  message(FATAL_ERROR "only ${count} texts were found")
+endif()
+if(missing)
+  list(JOIN missing "\n" text)
+  message(FATAL_ERROR "without a German text:\n${text}")
+endif()
+message(STATUS "${count} texts, each in German")
