@@ -68,10 +68,11 @@ public:
         plan_.resume = readResume(root_, errors_);
         plan_.consent = readConsent(root_, errors_);
         readTexts(root_, plan_, errors_);
-        plan_.measures = readMeasures(root_, plan_, known_measures_, errors_);
-        plan_.analyses = readAnalyses(root_.items("analysis"), plan_, errors_);
         if (errors_.empty()) checkBlocks(root_.items("block"), plan_, errors_);
         if (errors_.empty()) readBlockConditions();
+        // A block may have another type of trial than the rest.
+        plan_.measures = readMeasures(root_, plan_, known_measures_, errors_);
+        plan_.analyses = readAnalyses(root_.items("analysis"), plan_, errors_);
         if (errors_.empty()) readStaircaseConditions();
         if (errors_.empty()) checkDuration();
         if (!root_.has("measures")) dropUnused();

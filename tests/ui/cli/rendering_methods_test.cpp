@@ -113,6 +113,8 @@ TEST(RenderingMethods, RunsToItsTablesAndSaysWhenDevicesAreSwapped) {
     ASSERT_EQ(runProgram(folder.path(), {"export", "study.db", "--out", "tables", "--no-samples"}).exit_code, 0);
     const auto lines = linesOf(readText(folder / "tables/trials.csv"));
     EXPECT_EQ(lines.size(), 27u);
+    for (const char* column : {",insertion_depth_m,", ",contour_progress,"})
+        EXPECT_NE(lines.front().find(column), std::string::npos) << column;
     for (const std::size_t i : {2u, 25u}) {
         const auto attempt = std::to_string((*attempts)[i].attempt_id);
         const Ended replay = runProgram(folder.path(), {"replay", "study.db", "--attempt", attempt});
