@@ -25,6 +25,7 @@
 #include "study/protocol/start_pose.h"
 #include "study/protocol/task_reader.h"
 #include "study/protocol/texts_reader.h"
+#include "study/protocol/trial_types.h"
 
 namespace passung::protocol {
 namespace {
