@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "devices/simulated/resting_device.h"
+#include "devices/simulated/simulated_device.h"
 #include "study/session/secondary.h"
 #include "ui/app/responding_device.h"
 #include "ui/app/simulated_hand.h"

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/loop/haptic_loop.h"
+#include "devices/simulated/hand_params.h"
 #include "devices/simulated/presets.h"
 #include "study/person/simulated_person.h"
 #include "study/session/apparatus.h"

@@ -49,6 +49,9 @@ Why RunView::why(CommandKind kind) const {
             return something_ended ? Why::Possible : Why::NothingEnded;
         case CommandKind::Skip:
             return number > 0 ? Why::Possible : Why::NothingLeft;
+        case CommandKind::Done:
+        case CommandKind::Failed:
+            return in_trial ? Why::Possible : Why::NoTrial;
         case CommandKind::Note:
         case CommandKind::Abort:
         case CommandKind::Stop:

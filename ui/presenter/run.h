@@ -38,7 +38,7 @@ struct TrialRow {
 };
 
 /// Why a command cannot be given now.
-enum class Why { Possible, NoSession, NotReady, NotPaused, AlreadyPaused, NothingEnded, NothingLeft };
+enum class Why { Possible, NoSession, NotReady, NotPaused, AlreadyPaused, NothingEnded, NothingLeft, NoTrial };
 
 /// How the loop has kept its rate over the last second.
 struct LoopView {

@@ -135,9 +135,11 @@ QString whyNot(Why why) {
         case Why::NothingEnded:
             return said(QT_TRANSLATE_NOOP("words", "No trial has ended yet."));
         case Why::NothingLeft:
+            return said(QT_TRANSLATE_NOOP("words", "No trial is left."));
+        case Why::NoTrial:
             break;
     }
-    return said(QT_TRANSLATE_NOOP("words", "No trial is left."));
+    return said(QT_TRANSLATE_NOOP("words", "No trial is running."));
 }
 
 QString answerLine(const presenter::CommandAnswered& answered) {
@@ -163,6 +165,10 @@ QString answerLine(const presenter::CommandAnswered& answered) {
             return said(QT_TRANSLATE_NOOP("words", "The note is stored."));
         case CommandKind::Abort:
             return said(QT_TRANSLATE_NOOP("words", "The session is ended."));
+        case CommandKind::Done:
+            return said(QT_TRANSLATE_NOOP("words", "The trial has succeeded."));
+        case CommandKind::Failed:
+            return said(QT_TRANSLATE_NOOP("words", "The trial has failed."));
         case CommandKind::Stop:
             break;
     }

@@ -104,7 +104,8 @@ TEST(ShapeBound, OfFlatFacesIsNextToNothingAndOfWallsWhatTheirCurvatureMakes) {
 
 TEST(ShapeBound, LetsTheFieldOfAPlateStateMicrometres) {
     // Truth: invariant: on walls and faces; φ is 0 there. The Lipschitz constant alone would say 0.1 mm and more.
-    const PartSpec spec{.geometry = Shape(BorePlate{0.04, 0.04, 0.015, 0.02, 0.015, 0.001})};
+    const PartSpec spec{
+        .name = "plate", .geometry = Shape(BorePlate{0.04, 0.04, 0.015, 0.02, 0.015, 0.001}), .X_WP = {}};
     const auto part = buildPart(spec, {.field = true, .tolerance = 20e-6});
     ASSERT_TRUE(part);
     Random random(2);

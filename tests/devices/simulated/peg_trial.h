@@ -1,5 +1,6 @@
 #pragma once
 
+#include "devices/simulated/hand.h"
 #include "devices/simulated/presets.h"
 #include "devices/simulated/simulated_device.h"
 #include "tests/devices/simulated/peg_bore_environment.h"

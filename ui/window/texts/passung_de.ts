@@ -344,6 +344,10 @@
         <translation>Es ist kein Durchgang mehr übrig.</translation>
     </message>
     <message>
+        <source>No trial is running.</source>
+        <translation>Es läuft kein Durchgang.</translation>
+    </message>
+    <message>
         <source>Not possible now: %1</source>
         <translation>Jetzt nicht möglich: %1</translation>
     </message>
@@ -382,6 +386,14 @@
     <message>
         <source>The session is ended.</source>
         <translation>Die Sitzung ist beendet.</translation>
+    </message>
+    <message>
+        <source>The trial has succeeded.</source>
+        <translation>Der Durchgang ist gelungen.</translation>
+    </message>
+    <message>
+        <source>The trial has failed.</source>
+        <translation>Der Durchgang ist misslungen.</translation>
     </message>
     <message>
         <source>Motors are off; the session is paused.</source>
