@@ -31,15 +31,15 @@ QueryClock query_clock;
 // The linker sends the tick's calls of tick::queryObstacles to `timed` (CMakeLists.txt): the tick has no clock.
 namespace passung::tick {
 QueryAnswer real(const TickModel& model, const Pose& X_WS, QueryRequest request, QueryWorkspace& workspace,
-                 ContactManifold& manifold) noexcept asm("__real_" PASSUNG_QUERY_SYMBOL);
+                 ContactManifold& manifold, std::span<PairAccount> pairs) noexcept asm("__real_" PASSUNG_QUERY_SYMBOL);
 QueryAnswer timed(const TickModel& model, const Pose& X_WS, QueryRequest request, QueryWorkspace& workspace,
-                  ContactManifold& manifold) noexcept asm("__wrap_" PASSUNG_QUERY_SYMBOL);
+                  ContactManifold& manifold, std::span<PairAccount> pairs) noexcept asm("__wrap_" PASSUNG_QUERY_SYMBOL);
 
 QueryAnswer timed(const TickModel& model, const Pose& X_WS, QueryRequest request, QueryWorkspace& workspace,
-                  ContactManifold& manifold) noexcept {
-    if (!query_clock.running) return real(model, X_WS, request, workspace, manifold);
+                  ContactManifold& manifold, std::span<PairAccount> pairs) noexcept {
+    if (!query_clock.running) return real(model, X_WS, request, workspace, manifold, pairs);
     const bench::Stopwatch watch;
-    const QueryAnswer answer = real(model, X_WS, request, workspace, manifold);
+    const QueryAnswer answer = real(model, X_WS, request, workspace, manifold, pairs);
     query_clock.seconds += watch.seconds();
     ++query_clock.queries;
     return answer;
