@@ -101,7 +101,14 @@ Table makeThresholds(const StudyData& study) {
     const std::vector<Column> more = {
         {"n_trials", "Trials that told it something", "", "integer", "", 1, {}},
         {"n_reversals", "Reversals", "", "integer", "", 1, {}},
-        {"estimate", "Threshold after the last of them, in the key's unit", "", "number", kEstimate, 1, {}},
+        {"estimate",
+         "Threshold after the last of them as computed then, in the key's unit; answers that were invalidated later "
+         "are in it",
+         "",
+         "number",
+         kEstimate,
+         1,
+         {}},
         {"estimate_sd", "How unsure it is", "", "number", kDeviation, 1, {}},
         {"protocol_sha256", "SHA-256 of the protocol's text, see protocol/", "", "text", "", 1, {}}};
     table.columns.insert(table.columns.end(), more.begin(), more.end());

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numeric>
 
+#include "analysis/export/staircase_tables.h"
 #include "analysis/export/trial_tables.h"
 
 namespace passung::exporter {
@@ -62,6 +63,9 @@ Result<StudyData> readStudy(const store::StoreReader& reader) {
     std::set<std::string> taken;
     for (const Column& column : fixedColumns()) taken.insert(column.name);
     for (const store::MeasureRow& measure : study.measures) taken.insert(measure.measure);
+    if (!study.staircase_steps.empty())
+        for (const Table& table : {makeStaircase(study), makeThresholds(study)})
+            for (const Column& column : table.columns) taken.insert(column.name);
     study.factors = mergeFactors(factors, taken);
     return study;
 }

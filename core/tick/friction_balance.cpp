@@ -371,7 +371,8 @@ RubbedMotion FrictionBalance::find() noexcept {
         result.change = change / size_;
         const bool still = change <= kTurnTolerance * size_;
         if (!still) restart();
-        all = still && cutAmong(true, 0.0);  // some more are not content
+        all =
+            still && found && cutAmong(true, 0.0);  // some more are not content; only what is solved has room for them
         settled = still && !all;
     }
     result.converged = settled || result.change <= kSettled;

@@ -65,6 +65,10 @@ void readSecondary(const Node& table, Condition& condition, Errors& errors) {
         read.fail("stimulus_ms", fmt::format("must be at most interval_min_s, {:.6g} ms", 1e3 * task.least_interval));
     if (task.stimulus == Stimulus::Audio && condition.cues.masking_noise)
         read.fail("stimulus", "cannot be heard with feedback.masking_noise = true");
+    if (std::holds_alternative<FreePlacementTask>(condition.task.form))
+        read.fail("stimulus", "is not for free_placement: any button confirms the placement");
+    if (std::holds_alternative<DiscriminationPairTask>(condition.task.form) && task.button <= 2)
+        read.fail("button", "must be 3 or above: the first two answer the pair");
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace passung::protocol {
 inline constexpr std::array kConditionKeys{
     Key{"protocol", "secondary", KeyType::Table, {}, "", "(its defaults)", "A detection-response task beside the trial's own."},
     Key{"protocol", "text", KeyType::Table, {}, "", "(none)", "The study's texts: a table for each language."},
-    Key{"protocol", "instruction", KeyType::Tables, {}, "", "(none)", "Pages that are shown to the participant, in this order."},
+    Key{"protocol", "instruction", KeyType::Tables, {}, "", "(none)", "Pages for the participant, in this order."},
 
     Key{"task.peg_in_hole", "timed_by", KeyType::Choice, {}, "program|experimenter|clock", "program", "Who says when a trial begins and ends. experimenter: real parts in the hand, and `passung session DB start`, then `done` or `failed`, or the time-out. clock: nothing is handled, the trial begins at once and is a success after `timeout_s`. Both need `feedback.kinesthetic = false`; the device rests, only outcome, trial time and the secondary task's measures are known."},
 

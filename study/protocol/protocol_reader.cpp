@@ -192,7 +192,8 @@ private:
 
     /// A measure that no trial of the type has would never answer.
     void checkMeasure(const StaircaseContent& content) {
-        const TrialType* type = &typeOf(plan_.conditions.front().task);
+        const Block& block = plan_.blocks[content.staircase.block];
+        const TrialType* type = &typeOf(plan_.conditions[block.first_condition].task);
         const auto measures = measuresOf(std::span(&type, 1), known_measures_);
         if (std::find(measures.begin(), measures.end(), content.staircase.measure) == measures.end())
             errors_.push_back(errorAt(content.measure_place, "staircase." + content.staircase.name + ".measure",

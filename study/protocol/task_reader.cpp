@@ -102,7 +102,8 @@ std::string_view sharedByIntervals(const std::string& path, const std::string& h
         if (overlap(path, shared)) return "is one for both intervals";
     for (const std::string& shared : {"part." + held + ".shape", "part." + held + ".mesh", "part." + held + ".pose"})
         if (overlap(path, shared)) return "both intervals are felt with one part from one start";
-    if (path.starts_with("task.") || path.starts_with("feedback.")) return "must be a key of the scene";
+    if (path.starts_with("task.") || path.starts_with("feedback.") || path.starts_with("secondary."))
+        return "must be a key of the scene";
     return "";
 }
 
@@ -168,6 +169,7 @@ model::SceneSpec readComparison(const StudyTables& tables, const Condition& cond
     if (content.accuracy_budget > 0.0)
         errors.push_back(errorAt(tables.task.find("type")->place, "task.type", "discrimination_pair",
                                  "needs an accuracy that is named: contact.accuracy must not be \"auto\""));
+    content.scene.display_wrench = condition.scene.display_wrench;  // feedback is one for both intervals
     return std::move(content.scene);
 }
 

@@ -36,6 +36,7 @@ void Agenda::redo(std::size_t place, Then then) {
     if (then == Then::Done) return;
     std::erase(history_, place);
     std::erase(todo_, place);
+    std::erase(left_out_, place);
     insert(place, then);
 }
 

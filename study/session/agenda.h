@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <utility>
 #include <vector>
 
 #include "study/design/trial_order.h"
@@ -30,11 +31,16 @@ public:
     /// @pre not empty()
     void end(Then then);
 
-    /// Trials that are still to do and for which this holds are not: they were not needed, and nobody goes back to
+    /// Trials that are still to do and for which this holds are not, until it no longer holds; nobody goes back to
     /// them.
     template <class Needless>
     void leaveOut(Needless needless) {
-        std::erase_if(todo_, [&](std::size_t place) { return needless(trials_[place]); });
+        for (const std::size_t place : std::exchange(left_out_, {})) insert(place, Then::RepeatAtBlockEnd);
+        std::erase_if(todo_, [&](std::size_t place) {
+            if (!needless(trials_[place])) return false;
+            left_out_.push_back(place);
+            return true;
+        });
     }
 
     /// Is there a trial that goBack() could take?
@@ -57,7 +63,8 @@ private:
 
     std::vector<design::PlannedTrial> trials_;
     std::deque<std::size_t> todo_;
-    std::vector<std::size_t> history_;  // done or skipped, in time
+    std::vector<std::size_t> history_;   // done or skipped, in time
+    std::vector<std::size_t> left_out_;  // not needed as things are
 };
 
 }  // namespace passung::session

@@ -164,7 +164,12 @@ Answer Session::invalidate(const Command& command) {
     if (!past_[place].counting) return {false, "the attempt of " + nameOf(place) + " is not valid anyway"};
     if (const auto done = discount(place, reason); !done) return {false, toString(done.errors().front())};
     const Then then = thenAfter(blockOf(place), measures::Outcome::Aborted, false, past_[place].judged);
+    const auto running = attempt_ ? std::optional(agenda_.next()) : std::nullopt;
     if (agenda_.isOver(place)) agenda_.redo(place, then);
+    if (running)
+        agenda_.bring(*running);  // it goes on; what is repeated comes after it
+    else
+        leaveOutNeedless();
     return accepted("the attempt of " + nameOf(place) + " no longer counts" +
                     (agenda_.isOver(place) ? "" : ", it is repeated"));
 }
@@ -177,6 +182,7 @@ Answer Session::goBack(const Command& command) {
     const std::string reason = withReason("repeated by the experimenter", command.text);
     if (const auto done = discount(place, reason); !done) return {false, toString(done.errors().front())};
     agenda_.goBack();
+    leaveOutNeedless();
     return accepted(nameOf(place) + " is next");
 }
 

@@ -12,7 +12,6 @@ void insertContactEnergy(const Database& database, std::int64_t attempt_id,
 
 std::vector<session::ContactEnergy> readContactEnergy(const Database& database, std::int64_t attempt_id) {
     std::vector<session::ContactEnergy> pairs;
-    if (database.integer("SELECT count(*) FROM sqlite_master WHERE name='contact_energy'") == 0) return pairs;
     Statement row = database.prepare(
         "SELECT coalesce(obstacle, ''), taken_in_J, least_J FROM contact_energy WHERE attempt_id=? ORDER BY place");
     row.bind(attempt_id);

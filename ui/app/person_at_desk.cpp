@@ -16,13 +16,13 @@ namespace {
 /// Whoever said no to what may be refused is not asked again; a changed text is.
 bool isDecided(const protocol::ConsentClause& clause, const std::vector<store::ConsentRow>& decisions,
                const std::string& participant) {
-    return std::any_of(decisions.begin(), decisions.end(), [&](const store::ConsentRow& row) {
-        const bool about = row.participant_id == participant && row.clause == clause.clause &&
-                           std::any_of(clause.texts.begin(), clause.texts.end(), [&](const auto& text) {
-                               return store::sha256Hex(text.second) == row.text_sha256;
-                           });
-        return about && (row.decision == "yes" || !clause.required);
-    });
+    const store::ConsentRow* latest = nullptr;  // the rows come in the order of the decisions
+    for (const store::ConsentRow& row : decisions)
+        if (row.participant_id == participant && row.clause == clause.clause &&
+            std::any_of(clause.texts.begin(), clause.texts.end(),
+                        [&](const auto& text) { return store::sha256Hex(text.second) == row.text_sha256; }))
+            latest = &row;
+    return latest != nullptr && (latest->decision == "yes" || !clause.required);
 }
 
 }  // namespace

@@ -158,15 +158,22 @@ private:
         const std::string code = setup.participant;
         SimulatedAnswers simulated(plan_, code);
         setup.answers = options_.answers != nullptr ? options_.answers : &simulated;
-        const bool simulates = options_.answers == nullptr && kind() == protocol::ParticipantKind::Simulated;
+        // In virtual time nobody can say when a trial begins and ends.
+        const bool simulates =
+            kind() == protocol::ParticipantKind::Simulated && (options_.answers == nullptr || !measured());
         if (kind() != protocol::ParticipantKind::Simulated) setup.answers = options_.performer->answers();
         apparatus.perceiveBy(SimulatedPerception(plan_, code));
         SimulatedTimer timer(person::personOf(plan_.name, code, plan_.seed));
         if (simulates) setup.timer = &timer;  // else somebody is there to say it
         if (options_.performer != nullptr) options_.performer->begins(apparatus, code, setup.trials);
+        struct Over {  // whatever is thrown: before the apparatus goes
+            Performer* performer;
+            ~Over() {
+                if (performer != nullptr) performer->over();
+            }
+        } const over{options_.performer};
         session::Session session(std::move(setup), apparatus, sink, {listener_.acknowledge, listener_.trial});
         conduct(session, apparatus);
-        if (options_.performer != nullptr) options_.performer->over();
         if (session.state() == session::SessionState::Failed) return session.errors();
         if (session.state() == session::SessionState::Interrupted) return RunEnd::Interrupted;
         if (listener_.session_over) listener_.session_over(code, session.isWhole());

@@ -93,10 +93,11 @@ void printStability(const std::string& what, std::size_t width, const DeviceDesc
 }
 
 void explainStability(const protocol::StudyPlan& plan, std::span<const DeviceDescription> devices) {
+    const auto conditions = std::span(plan.conditions).first(protocol::plannedConditions(plan));
     std::size_t width = 0;
-    for (const auto& condition : plan.conditions) width = std::max(width, condition.name.size());
+    for (const auto& condition : conditions) width = std::max(width, condition.name.size());
     printStabilityHead(width);
-    for (const auto& condition : plan.conditions)
+    for (const auto& condition : conditions)
         if (const auto* device = findDevice(condition.device, devices))
             printStability(condition.name, width, *device, condition.scene);
     for (const auto& stable : plan.stable_stiffness) fmt::print("  {}: {}\n", stable.device, stable.origin);
@@ -108,6 +109,10 @@ std::string costKey(protocol::Condition condition) {
     condition.device.clear();
     condition.shown = protocol::ShownPose::Proxy;
     condition.task = {};
+    condition.comparison.reset();
+    condition.cues = {};
+    condition.secondary = {};
+    condition.timed_by = protocol::TimedBy::Program;
     model::ContactSpec& contact = condition.scene.contact;
     contact.stiffness = contact.rotational_stiffness = contact.area_stiffness = 1.0;
     contact.damping = contact.rotational_damping = 0.0;

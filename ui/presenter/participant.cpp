@@ -62,6 +62,10 @@ ParticipantView participantView(const Run& run, bool feels) {
     view.start_mark = view.screen == ParticipantScreen::ToStart;
     if (!run.last()) return view;
     const TickRecord& record = *run.last();
+    // Between the intervals of a pair the hand has to come back.
+    if (view.screen == ParticipantScreen::Task && (record.status & kEngaged) == 0)
+        view.screen = ParticipantScreen::ToStart;
+    view.start_mark = view.screen == ParticipantScreen::ToStart;
     view.X_WHeld = shownPose(*scene, record);
     const bool task = view.screen == ParticipantScreen::Task;
     if (task && scene->cues.visual)

@@ -40,13 +40,14 @@ Why RunView::why(CommandKind kind) const {
         case CommandKind::Continue:
             return paused ? Why::Possible : Why::NotPaused;
         case CommandKind::Pause:
-            if (state == RunState::Ready) return Why::NotPaused;
+            if (state == RunState::Ready) return Why::NoTrial;
             return paused || pauses_after ? Why::AlreadyPaused : Why::Possible;
         case CommandKind::Repeat:
+            return in_trial || can_go_back ? Why::Possible : Why::NothingEnded;
         case CommandKind::Invalidate:
             return in_trial || something_ended ? Why::Possible : Why::NothingEnded;
         case CommandKind::Back:
-            return something_ended ? Why::Possible : Why::NothingEnded;
+            return can_go_back ? Why::Possible : Why::NothingEnded;
         case CommandKind::Skip:
             return number > 0 ? Why::Possible : Why::NothingLeft;
         case CommandKind::Done:
@@ -132,6 +133,7 @@ void Run::glance(const SessionGlance& glance) {
     }
     if (glance.state != SessionState::Paused) stopped_ = stopped_ && glance.state == SessionState::InTrial;
     if (glance.state == SessionState::Paused) view_.pauses_after = false;
+    view_.can_go_back = glance.can_go_back;
     view_.finished = static_cast<std::size_t>(std::count(glance.over.begin(), glance.over.end(), true));
     view_.number = glance.next ? static_cast<std::int64_t>(*glance.next) + 1 : 0;
     for (std::size_t place = 0; place < std::min(glance.over.size(), view_.rows.size()); ++place) {
@@ -163,13 +165,17 @@ void Run::answer(const CommandAnswered& answered) {
     view_.refused = !answered.answer.accepted;
     if (!answered.answer.accepted) return;
     if (answered.command.kind == CommandKind::Pause) view_.pauses_after = view_.state != RunState::Paused;
-    if (answered.command.kind == CommandKind::Stop) stopped_ = true;
+    if (answered.command.kind == CommandKind::Stop) {
+        stopped_ = true;
+        if (view_.state == RunState::Paused) view_.state = RunState::Stopped;
+    }
     if (answered.command.kind == CommandKind::Continue) stopped_ = false;
 }
 
 void Run::finish(const RunOver& over) {
     view_.state = over.complete ? RunState::Complete : RunState::Incomplete;
     view_.number = 0;
+    view_.pauses_after = false;
     if (over.errors.empty()) return;
     view_.state = RunState::Failed;
     view_.told = toString(over.errors.front());

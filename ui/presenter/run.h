@@ -56,7 +56,8 @@ struct RunView {
     std::int64_t number = 0;  // of the running or next trial, from 1; 0: none
     std::string condition;
     bool pauses_after = false;  // the running trial
-    double trial_s = 0.0;       // since the go
+    bool can_go_back = false;
+    double trial_s = 0.0;  // since the go
     std::vector<TrialRow> rows;
     std::int64_t rows_changed = 0;  // counts up whenever a row does
     LoopView loop;

@@ -183,14 +183,15 @@ void Screen::wheel(double notches, int modifiers) {
 }
 
 bool Screen::key(int key, bool down) {
-    if (key == Qt::Key_Space) {
-        if (mouse::Pointer* pointer = desk_.pointer()) pointer->press(down ? 1u : 0u);
+    const std::uint32_t button = key == Qt::Key_Space || key == Qt::Key_1 ? 1u : key == Qt::Key_2 ? 2u : 0u;
+    if (button != 0) {
+        if (mouse::Pointer* pointer = desk_.pointer()) pointer->press(down ? button : 0u);
         return true;
     }
     double sign = 1.0;
     double* axis = axisOf(key, keys_, sign);
     if (axis == nullptr) return false;
-    *axis += down ? sign : -sign;
+    *axis = down ? sign : *axis == sign ? 0.0 : *axis;
     return true;
 }
 

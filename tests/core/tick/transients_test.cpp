@@ -268,9 +268,9 @@ TEST(Transients, AreNoStageOfASceneWithoutThem) {
     auto names = stagesOf(spec);
     EXPECT_EQ(std::count(names.begin(), names.end(), "contact transients"), 0);
     names = stagesOf(withTransients(spec));
-    ASSERT_GE(names.size(), 4u);
-    EXPECT_EQ(std::vector<std::string>(names.end() - 3, names.end()),
-              (std::vector<std::string>{"contact transients", "output delay", "output limits"}));
+    ASSERT_GE(names.size(), 5u);
+    EXPECT_EQ(std::vector<std::string>(names.end() - 4, names.end()),
+              (std::vector<std::string>{"contact transients", "contact shares", "output delay", "output limits"}));
 }
 
 }  // namespace

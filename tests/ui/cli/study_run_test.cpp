@@ -116,7 +116,9 @@ TEST_P(ShippedStudy, RunsToItsDataFileAndEveryRowSaysWhatHappened) {
     const auto attempts = reader->attempts();
     const auto events = reader->events();
     ASSERT_TRUE(attempts && events);
-    EXPECT_EQ(static_cast<std::int64_t>(attempts->size()), planned_trials);
+    const auto attempted = static_cast<std::int64_t>(attempts->size());
+    EXPECT_TRUE(plan->staircases.empty() ? attempted == planned_trials : attempted <= planned_trials)
+        << attempted << " of " << planned_trials << "; a staircase may end early";
     std::map<std::string, int> outcomes;
     for (const store::AttemptRow& attempt : *attempts) {
         SCOPED_TRACE("trial " + std::to_string(attempt.trial_index + 1) + ", " + attempt.condition);
@@ -137,8 +139,9 @@ TEST_P(ShippedStudy, RunsToItsDataFileAndEveryRowSaysWhatHappened) {
         const auto records = reader->records(attempt.attempt_id);
         ASSERT_TRUE(records);
         const auto condition = std::find_if(plan->conditions.begin(), plan->conditions.end(),
-                                            [&](const auto& c) { return c.name == attempt.condition; });
+                                            [&](const auto& c) { return c.name == attempt.presented_condition; });
         ASSERT_NE(condition, plan->conditions.end());
+        if (condition->timed_by != protocol::TimedBy::Program) continue;  // nothing of it is in the ticks
         expectOutcomeInRecords(attempt, happened.front().t_ns, *records, *condition);
     }
     for (const auto& [outcome, count] : outcomes)
