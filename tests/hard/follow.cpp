@@ -56,7 +56,7 @@ std::string followFault(const Run& run) {
         const Tick& t = run.ticks[i];
         if (t.status & kInputRejected) continue;
         const double depth = device.least(t.device, scale.clear);
-        const bool pressed = depth<-scale.clear, sent = t.sent.force.norm()> 0.0;
+        const bool pressed = depth<-scale.clear, sent = t.sent.force.norm()> 0.0 || t.sent.torque.norm() > 0.0;
         touched = touched || (depth < 0.0 && sent);
         without_force = pressed && !sent ? without_force + 1 : 0;
         const double lag =

@@ -7,12 +7,7 @@ namespace passung::hard {
 std::span<const KnownMiss> knownMisses() {
     static constexpr std::array kMisses{
         // The heuristic keeps a hundredth and accepts a twentieth of a cell of overlap.
-        KnownMiss{"keyed_peg", "god_object_heuristic"},
-        KnownMiss{"square_peg", "god_object_heuristic"},
         KnownMiss{"a6_peg_tilt", "god_object_heuristic"},
-        // Corners of the tip, between the cells of a field that is not refined there or between ticks.
-        KnownMiss{"keyed_peg", "god_object"},
-        KnownMiss{"square_peg", "god_object"},
         // At the block's rim its field points askew: a thousandth of the press is felt along the table.
         KnownMiss{"a9_plane_two_way", "god_object_heuristic"},
         KnownMiss{"a9_plane_two_way", "god_object"},
