@@ -11,8 +11,7 @@ namespace passung {
 namespace {
 
 model::Part build(const model::Shape& shape, double tolerance, bool field) {
-    model::PartSpec spec;
-    spec.geometry = shape;
+    const model::PartSpec spec{.name = {}, .geometry = shape, .X_WP = {}};
     auto part = model::buildPart(spec, {.field = field, .shell = false, .tolerance = tolerance});
     EXPECT_TRUE(part);
     return std::move(*part);
