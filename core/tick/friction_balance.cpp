@@ -8,11 +8,18 @@ namespace passung::tick {
 
 namespace {
 
-constexpr double kTurnTolerance = 5e-9;  // of σ, relative to the wanted motion: what rests creeps less in a tick
-constexpr double kSettled = 1e-4;        // of σ, after the last turn
-constexpr double kUnsettled = 20.0;      // what is left to change, per last change
-constexpr double kAtRest = 1e-6;         // slip relative to the wanted motion
-constexpr double kInner = 0.05;          // what cuts may leave, per last change of σ
+constexpr double kSettled = 1e-4;    // of σ, after the last turn
+constexpr double kUnsettled = 20.0;  // what is left to change, per last change
+constexpr double kAtRest = 1e-6;     // slip relative to the wanted motion w
+constexpr double kInner = 0.05;      // what cuts may leave, per last change of σ
+/// σ has settled when a turn changes it by no more than this, relative to w.
+///   From above: kUnsettled times as much may be left to change. That shall be a tenth of what counts as slip, so that
+/// no patch rests or slides by what has not settled: 1e-7 |w|. Contacts rise or sink by μ times that, half of what they
+/// may err by anyway (2e-7 |w|); of a hand drawn off by 10 mm, 10 N at 1 N/mm, 1 nm.
+///   From below: of rows that are only just independent rounding moves u by up to ε/kIndependent = 2.2e-9 |w|; what is
+/// less may never be reached.
+constexpr double kTurnTolerance = 0.1 * kAtRest / kUnsettled;
+static_assert(kTurnTolerance > std::numeric_limits<double>::epsilon() / ActiveSet::kIndependent);
 constexpr double kFarthestMix = 20.0;
 constexpr double kLongestGradient = 1.2;  // of an interpolated φ
 constexpr int kMostRounds = 200, kMostSteps = 1000;
