@@ -102,6 +102,39 @@ TEST(EdgeSearch, FindsTheLowestPlaceOfARimBetweenItsSamples) {
     }
 }
 
+TEST(EdgeSearch, LeavesCornersToTheSamples) {
+    // Truth: closed form. The beam stands on its corner, 50 um deep in the block's face: along none of the three edges
+    // that meet there is a place lower than the corner, which is a sample.
+    const Quat q = Quat::FromTwoVectors(Vec3(-2, -1, -1), -Vec3::UnitZ());
+    const double low = (q * Vec3(-2, -1, -1) * kHalf).norm();
+    ContactManifold manifold(1000);
+    const QueryRequest near{.collect_below = 20e-6, .search_below = 20e-6};
+    const Pose X_WF{Quat::Identity(), Vec3(0, 0, -kHalf)}, X{q, Vec3(0, 0, low - 50e-6)};
+    EXPECT_FALSE(searchEdges(*roof().field, X_WF, *beam().edges, X, near, manifold).found);
+    EXPECT_EQ(manifold.size(), 0u);
+    QueryWorkspace workspace(beam().shell->nodes().size());
+    EXPECT_NEAR(queryContacts(*roof().field, X_WF, *beam().shell, X, near, workspace, manifold).phi, -50e-6, 0.1e-6);
+}
+
+TEST(EdgeSearch, IsLeftOutUnderABudgetAndWhereTheFieldSaysTooLittle) {
+    // Truth: invariant. Values that jump from voxel to voxel have no least place along an edge, cells of one size blunt
+    // the other edge; a budget leaves no work but what it counts.
+    const model::Part blunt =
+        *model::buildPart({.name = "roof", .geometry = model::Box{2 * kHalf, 4 * kHalf, 2 * kHalf}, .X_WP = {}},
+                          {.field = true, .cell = 0.5e-3});
+    const Pose X = across(50e-6, 0.4e-3, 0.7e-3, 0.15);
+    ContactManifold manifold(1000);
+    const auto searched = [&](const model::DistanceField& field, const QueryRequest& request) {
+        return searchEdges(field, kRoof, *beam().edges, X, request, manifold).points_tested > 0;
+    };
+    EXPECT_TRUE(searched(*roof().field, {}));
+    EXPECT_TRUE(searched(*roof().field, {.mode = model::FieldMode::Cubic}));
+    for (const auto mode : {model::FieldMode::Layered, model::FieldMode::SurfacePoint, model::FieldMode::Linear})
+        EXPECT_FALSE(searched(*roof().field, {.mode = mode}));
+    EXPECT_FALSE(searched(*roof().field, {.max_nodes = 1000}));
+    EXPECT_FALSE(searched(*blunt.field, {}));
+}
+
 TEST(EdgeSearch, ProxyLeavesEdgesApartThatCrossBetweenTheirSamples) {
     // Truth: closed form. The beam is pushed 2 mm down on the ridge and to and fro along it; the edges part where the
     // beam's edge lies at the ridge's height. The proxy accepts as much overlap as the field may err by, and the field
