@@ -12,7 +12,7 @@ namespace passung::session {
 /// What an experimenter may tell a session.
 enum class CommandKind {
     Start,       // a session that waits for it begins; or the clock of a trial that the experimenter times
-    Pause,       // after the running trial
+    Pause,       // after the running trial, or now: it is aborted and done again
     Continue,    // after a pause or an emergency stop
     Repeat,      // the running trial from its beginning, else the last one; its attempt no longer counts
     Skip,        // the running trial, else the next one, is left out
@@ -34,17 +34,40 @@ constexpr std::optional<CommandKind> commandNamed(std::string_view name) {
     return std::nullopt;
 }
 
+/// Why a command is refused.
+enum class WhyNot {
+    Possible,  // it is not
+    NoSession,
+    BegunAlready,
+    NotBegun,
+    NotPaused,
+    PausedAlready,
+    PausesAlready,  // after the running trial
+    NothingEnded,
+    RepeatedAlready,  // will be
+    NothingLeft,
+    NoTrial,          // that the experimenter times
+    ClockNotStarted,  // of that trial
+    NeedsText,
+    UnknownAttempt,
+    CountsNot,     // the attempt, anyway
+    CannotBeKept,  // the data's fault
+};
+
 struct Command {
     CommandKind kind = CommandKind::Pause;
     std::string text = {};                  // the reason, or the note
     std::optional<AttemptId> attempt = {};  // of Invalidate; none: the running one, else the last
     std::string source = "experimenter";    // who says so, for the log
+    bool now = false;                       // of Pause: what must not go on cannot wait for the trial's end
 };
 
 /// What came of a command; for people. What was accepted is in the data when the answer is given.
 struct Answer {
     bool accepted = false;
     std::string text;  // what happens now, or why not
+    WhyNot why = WhyNot::Possible;
+    bool after_trial = false;  // it happens when the running trial is over
 };
 
 }  // namespace passung::session

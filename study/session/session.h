@@ -106,10 +106,15 @@ private:
     void fail(const char* stage, const Errors& errors);
 
     // session_commands.cpp
-    std::optional<std::string> refusal(const Command& command) const;
-    std::optional<std::string> refusalByState(CommandKind kind) const;
-    void logCommand(const Command& command, const std::optional<std::string>& refused);
+    struct Refusal {
+        WhyNot why;
+        std::string text;
+    };
+    std::optional<Refusal> refusal(const Command& command) const;
+    std::optional<Refusal> refusalByState(const Command& command) const;
+    void logCommand(const Command& command, const std::optional<Refusal>& refused);
     Answer execute(const Command& command);
+    Answer pause(const Command& command);
     Answer repeat(const Command& command);
     Answer skip(const Command& command);
     Answer invalidate(const Command& command);

@@ -17,46 +17,51 @@ std::string withReason(std::string what, const std::string& reason) {
 
 Answer accepted(std::string text) { return {true, std::move(text)}; }
 
+Answer notKept(const Error& error) { return {false, toString(error), WhyNot::CannotBeKept}; }
+
 }  // namespace
 
 Answer Session::command(const Command& command) {
     const auto refused = refusal(command);
     logCommand(command, refused);
-    if (refused) return {false, *refused};
+    if (refused) return {false, refused->text, refused->why};
     Answer answer = execute(command);
-    if (state_ == SessionState::Failed && !errors_.empty()) return {false, toString(errors_.front())};
+    if (state_ == SessionState::Failed && !errors_.empty()) return notKept(errors_.front());
     return answer;
 }
 
-std::optional<std::string> Session::refusalByState(CommandKind kind) const {
-    switch (kind) {
+std::optional<Session::Refusal> Session::refusalByState(const Command& command) const {
+    switch (command.kind) {
         case CommandKind::Start:
             if (attempt_ && attempt_->course.awaitsExperimenter()) break;
-            if (state_ != SessionState::Ready) return "the session has begun already";
+            if (state_ != SessionState::Ready) return Refusal{WhyNot::BegunAlready, "the session has begun already"};
             break;
         case CommandKind::Done:
         case CommandKind::Failed:
             if (attempt_ && attempt_->course.endsByExperimenter()) break;
-            return attempt_ && attempt_->course.awaitsExperimenter() ? "the trial's clock has not been started"
-                                                                     : "no trial runs that the experimenter times";
+            if (attempt_ && attempt_->course.awaitsExperimenter())
+                return Refusal{WhyNot::ClockNotStarted, "the trial's clock has not been started"};
+            return Refusal{WhyNot::NoTrial, "no trial runs that the experimenter times"};
         case CommandKind::Continue:
-            if (state_ != SessionState::Paused) return "the session is not paused";
+            if (state_ != SessionState::Paused) return Refusal{WhyNot::NotPaused, "the session is not paused"};
             break;
         case CommandKind::Pause:
-            if (state_ == SessionState::Ready) return "the session has not begun";
-            if (state_ == SessionState::Paused) return "the session is paused already";
-            if (pause_asked_) return "the session pauses after this trial already";
+            if (state_ == SessionState::Ready) return Refusal{WhyNot::NotBegun, "the session has not begun"};
+            if (state_ == SessionState::Paused) return Refusal{WhyNot::PausedAlready, "the session is paused already"};
+            if (pause_asked_ && !command.now)
+                return Refusal{WhyNot::PausesAlready, "the session pauses after this trial already"};
             break;
         case CommandKind::Repeat:
             if (state_ == SessionState::InTrial) break;
-            if (!last_) return "no trial has ended yet";
-            if (!agenda_.canGoBack() || agenda_.last() != *last_) return nameOf(*last_) + " is to be repeated already";
+            if (!last_) return Refusal{WhyNot::NothingEnded, "no trial has ended yet"};
+            if (!agenda_.canGoBack() || agenda_.last() != *last_)
+                return Refusal{WhyNot::RepeatedAlready, nameOf(*last_) + " is to be repeated already"};
             break;
         case CommandKind::Skip:
-            if (agenda_.empty()) return "no trial is left";
+            if (agenda_.empty()) return Refusal{WhyNot::NothingLeft, "no trial is left"};
             break;
         case CommandKind::Back:
-            if (!agenda_.canGoBack()) return "there is no earlier trial";
+            if (!agenda_.canGoBack()) return Refusal{WhyNot::NothingEnded, "there is no earlier trial"};
             break;
         case CommandKind::Invalidate:
         case CommandKind::Note:
@@ -67,21 +72,23 @@ std::optional<std::string> Session::refusalByState(CommandKind kind) const {
     return std::nullopt;
 }
 
-std::optional<std::string> Session::refusal(const Command& command) const {
-    if (isOver()) return "the session is over";
-    if (command.kind == CommandKind::Note && command.text.empty()) return "a note needs a text";
-    if (command.kind != CommandKind::Invalidate) return refusalByState(command.kind);
-    if (command.text.empty()) return "to invalidate an attempt needs a reason";
+std::optional<Session::Refusal> Session::refusal(const Command& command) const {
+    if (isOver()) return Refusal{WhyNot::NoSession, "the session is over"};
+    if (command.kind == CommandKind::Note && command.text.empty())
+        return Refusal{WhyNot::NeedsText, "a note needs a text"};
+    if (command.kind != CommandKind::Invalidate) return refusalByState(command);
+    if (command.text.empty()) return Refusal{WhyNot::NeedsText, "to invalidate an attempt needs a reason"};
     if (command.attempt && attempt_ && *command.attempt == attempt_->id) return std::nullopt;
     if (!command.attempt && (attempt_ || last_)) return std::nullopt;
-    if (!command.attempt) return "no attempt has ended yet";
+    if (!command.attempt) return Refusal{WhyNot::NothingEnded, "no attempt has ended yet"};
     if (!placeOf(*command.attempt))
-        return fmt::format("attempt {} is not the newest one of a trial of this session",
-                           static_cast<std::int64_t>(*command.attempt));
+        return Refusal{WhyNot::UnknownAttempt,
+                       fmt::format("attempt {} is not the newest one of a trial of this session",
+                                   static_cast<std::int64_t>(*command.attempt))};
     return std::nullopt;
 }
 
-void Session::logCommand(const Command& command, const std::optional<std::string>& refused) {
+void Session::logCommand(const Command& command, const std::optional<Refusal>& refused) {
     if (isOver()) return;  // its part of the data is closed
     Event event;
     if (attempt_) event.attempt = attempt_->id;
@@ -90,7 +97,8 @@ void Session::logCommand(const Command& command, const std::optional<std::string
     event.event = fmt::format("command_{}", commandName(command.kind));
     protocol::JsonObject payload;
     payload.boolean("accepted", !refused);
-    if (refused) payload.text("refusal", *refused);
+    if (refused) payload.text("refusal", refused->text);
+    if (command.now) payload.boolean("now", true);
     if (!command.text.empty()) payload.text("text", command.text);
     if (command.attempt) payload.integer("attempt_id", static_cast<std::int64_t>(*command.attempt));
     event.payload_json = payload.str();
@@ -111,9 +119,7 @@ Answer Session::execute(const Command& command) {
             state_ = SessionState::BetweenTrials;
             return accepted(agenda_.empty() ? "the session ends" : "goes on with " + nameOf(agenda_.next()));
         case CommandKind::Pause:
-            pause_asked_ = state_ == SessionState::InTrial;
-            if (!pause_asked_) state_ = SessionState::Paused;
-            return accepted(pause_asked_ ? "pauses after " + nameOf(agenda_.next()) : "paused");
+            return pause(command);
         case CommandKind::Repeat:
             return repeat(command);
         case CommandKind::Skip:
@@ -124,7 +130,7 @@ Answer Session::execute(const Command& command) {
             return goBack(command);
         case CommandKind::Note:
             if (const auto kept = sink_.addNote(command.source, command.text, now()); !kept)
-                return {false, toString(kept.errors().front())};
+                return notKept(kept.errors().front());
             return accepted("noted");
         case CommandKind::Abort:
             interrupt(withReason("aborted by the experimenter", command.text));
@@ -133,6 +139,17 @@ Answer Session::execute(const Command& command) {
             return halt(command);
     }
     return {};
+}
+
+Answer Session::pause(const Command& command) {
+    const bool in_trial = state_ == SessionState::InTrial;
+    if (in_trial && !command.now) {
+        pause_asked_ = true;
+        return {true, "pauses after " + nameOf(agenda_.next()), WhyNot::Possible, true};
+    }
+    if (in_trial) abortRunning(withReason("paused", command.text), Then::RepeatNow);
+    if (!isOver()) state_ = SessionState::Paused;
+    return accepted("paused");
 }
 
 Answer Session::repeat(const Command& command) {
@@ -161,8 +178,9 @@ Answer Session::invalidate(const Command& command) {
         return accepted("the running attempt of " + nameOf(place) + " will not count");
     }
     const std::size_t place = command.attempt ? *placeOf(*command.attempt) : *last_;
-    if (!past_[place].counting) return {false, "the attempt of " + nameOf(place) + " is not valid anyway"};
-    if (const auto done = discount(place, reason); !done) return {false, toString(done.errors().front())};
+    if (!past_[place].counting)
+        return {false, "the attempt of " + nameOf(place) + " is not valid anyway", WhyNot::CountsNot};
+    if (const auto done = discount(place, reason); !done) return notKept(done.errors().front());
     const Then then = thenAfter(blockOf(place), measures::Outcome::Aborted, false, past_[place].judged);
     const auto running = attempt_ ? std::optional(agenda_.next()) : std::nullopt;
     if (agenda_.isOver(place)) agenda_.redo(place, then);
@@ -180,7 +198,7 @@ Answer Session::goBack(const Command& command) {
     if (isOver()) return {};
     const std::size_t place = agenda_.last();
     const std::string reason = withReason("repeated by the experimenter", command.text);
-    if (const auto done = discount(place, reason); !done) return {false, toString(done.errors().front())};
+    if (const auto done = discount(place, reason); !done) return notKept(done.errors().front());
     agenda_.goBack();
     leaveOutNeedless();
     return accepted(nameOf(place) + " is next");

@@ -68,6 +68,36 @@ TEST_F(SessionCommands, APauseComesAfterTheRunningTrialAndEndsByCommand) {
     EXPECT_TRUE(session_->isWhole());
 }
 
+TEST_F(SessionCommands, APauseNowAbortsTheRunningAttemptWhichIsDoneAgain) {
+    // Truth: invariant: no trial is lost, also not when a pause was asked for before.
+    begin(2);
+    enterTrial();
+    EXPECT_TRUE(tell(Kind::Pause).after_trial);
+    const Answer now = session_->command({.kind = Kind::Pause, .text = "no picture", .source = "window", .now = true});
+    EXPECT_TRUE(now.accepted);
+    EXPECT_FALSE(now.after_trial);
+    EXPECT_EQ(session_->state(), SessionState::Paused);
+    EXPECT_EQ(sink_.ends.at(0).outcome, Outcome::Aborted);
+    EXPECT_EQ(sink_.ends.at(0).invalid_reason, "paused: no picture");
+    EXPECT_EQ(tell(Kind::Pause).why, WhyNot::PausedAlready);
+    EXPECT_TRUE(tell(Kind::Continue).accepted);
+    ASSERT_TRUE(session_->run());
+    EXPECT_EQ(trialsBegun(), (Order{1, 2, 11}));
+    EXPECT_TRUE(session_->isWhole());
+}
+
+TEST_F(SessionCommands, APauseNowBetweenTrialsCostsNone) {
+    // Truth: invariant.
+    begin(2);
+    enterTrial();
+    finishAttempts(1);
+    session_->command({.kind = Kind::Pause, .now = true});
+    EXPECT_EQ(session_->state(), SessionState::Paused);
+    EXPECT_TRUE(tell(Kind::Continue).accepted);
+    ASSERT_TRUE(session_->run());
+    EXPECT_EQ(trialsBegun(), (Order{1, 11}));
+}
+
 TEST_F(SessionCommands, RepeatAbortsTheRunningAttemptAndBeginsItsTrialAnew) {
     // Truth: invariant: attempts are never deleted.
     begin(2);
