@@ -28,7 +28,6 @@ using session::Command;
 constexpr std::size_t kLongestMessage = 65'536;
 constexpr int kReceiveMilliseconds = 500;  // for a whole request: it is sent in one go
 constexpr int kAnswerSeconds = 60;         // building a scene comes between two steps of a session
-constexpr auto kServeWait = std::chrono::milliseconds(20);
 
 Error socketError(const std::string& database, const std::string& what) {
     return Error{.message = what + ": " + std::strerror(errno), .file = database};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -19,6 +20,8 @@ namespace passung::app {
 /// of its steps and answers. An emergency stop calls `stop` at once, in that thread.
 class CommandSocket {
 public:
+    static constexpr std::chrono::milliseconds kServeWait{20};
+
     /// @pre this process holds the database's lock, so that a socket found there is left from a killed one.
     static Result<std::unique_ptr<CommandSocket>> listen(const std::string& database, std::function<void()> stop);
     ~CommandSocket();  // refuses what was not answered
@@ -26,7 +29,7 @@ public:
     CommandSocket& operator=(const CommandSocket&) = delete;
 
     /// Lets `obey` answer the commands that have come, in the order of their arrival; if there is none and `wait`,
-    /// waits a little for one.
+    /// waits kServeWait for one.
     void serve(const std::function<session::Answer(const session::Command&)>& obey, bool wait);
 
 private:

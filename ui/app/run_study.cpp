@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <stdexcept>
+#include <thread>
 
 #include "devices/simulated/presets.h"
 #include "study/measures/measures.h"
@@ -190,7 +191,10 @@ private:
             const bool waits = state == session::SessionState::Ready || state == session::SessionState::Paused;
             if (waits && told != state && listener_.state) listener_.state(state);
             told = state;
-            if (commands) (*commands)->serve([&](const session::Command& c) { return session.command(c); }, waits);
+            if (commands)
+                (*commands)->serve([&](const session::Command& c) { return session.command(c); }, waits);
+            else if (waits)
+                std::this_thread::sleep_for(CommandSocket::kServeWait);
             if (options_.performer != nullptr) options_.performer->look(session);
             if (options_.interrupted && options_.interrupted())
                 session.interrupt("interrupted");
