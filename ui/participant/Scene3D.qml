@@ -86,14 +86,21 @@ View3D {
         }
     }
 
-    Model { // the target
-        geometry: view.scene.markGeometry
-        position: view.scene.targetPosition
-        rotation: view.scene.targetRotation
-        castsShadows: false
-        materials: PrincipledMaterial {
-            baseColor: view.palette3d.mark
-            lighting: PrincipledMaterial.NoLighting
+    Repeater3D { // what the trial asks for
+        model: view.scene.marks
+        delegate: Model {
+            required property var modelData
+            visible: !(modelData.pale && view.scene.startMark) // one pale image at a time
+            geometry: modelData.geometry
+            position: modelData.position
+            rotation: modelData.rotation
+            castsShadows: false
+            opacity: modelData.pale ? 0.28 : 1
+            materials: PrincipledMaterial {
+                baseColor: view.palette3d.mark
+                lighting: PrincipledMaterial.NoLighting
+                alphaMode: modelData.pale ? PrincipledMaterial.Blend : PrincipledMaterial.Opaque
+            }
         }
     }
 

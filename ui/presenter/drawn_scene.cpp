@@ -15,9 +15,9 @@ namespace {
 constexpr double kChordError = 0.03e-3;   // of what is drawn [m]: less than a pixel
 const Vec3 kFromWhere(0.34, -1.0, 0.62);  // the eye, seen from the scene: a step to the right, half above
 constexpr double kGround = 4e-3;          // below the lowest part [m]
+constexpr double kLine = 0.5e-3;          // radius of a contour [m]
 
-model::Bounds boundsOf(const ShadedMesh& mesh, const Pose& X_W) {
-    model::Bounds bounds;
+void extendBy(model::Bounds& bounds, const ShadedMesh& mesh, const Pose& X_W) {
     for (int corner = 0; corner < 8; ++corner) {
         Vec3 p;
         for (int i = 0; i < 3; ++i) {
@@ -26,7 +26,6 @@ model::Bounds boundsOf(const ShadedMesh& mesh, const Pose& X_W) {
         }
         bounds.extend(X_W * p);
     }
-    return bounds;
 }
 
 /// Looks at `centre` so that a sphere of this radius fills the picture.
@@ -80,35 +79,54 @@ Result<std::shared_ptr<const ShadedMesh>> SceneArtist::surfaceOf(const model::Pa
     return surfaces_[key] = std::make_shared<const ShadedMesh>(shade(mesh));
 }
 
+/// Fits around the held part, whose axis is z; lies in the plane z = 0.
+std::shared_ptr<const ShadedMesh> SceneArtist::ringAround(const ShadedMesh& held) {
+    const double girth =
+        1e-3 * static_cast<double>(std::max(held.high_mm[0] - held.low_mm[0], held.high_mm[1] - held.low_mm[1]));
+    model::PartSpec ring;
+    ring.geometry = model::Shape(model::Torus{1.5 * girth, 0.045 * girth});
+    return *surfaceOf(ring);  // a shape has no file that could be missing
+}
+
+std::vector<Mark> SceneArtist::marksOf(const protocol::Task& task, const Pose& X_WTarget, const DrawnScene& scene) {
+    const DrawnPart& held = scene.parts[scene.held];
+    if (std::holds_alternative<protocol::PegInHoleTask>(task.form)) return {{ringAround(*held.mesh), X_WTarget, false}};
+    if (const auto* passage = std::get_if<protocol::NarrowPassageTask>(&task.form)) {
+        const auto ring = ringAround(*held.mesh);
+        return {{ring, X_WTarget, false}, {ring, X_WTarget * Pose{Quat::Identity(), {0, 0, -passage->length}}, false}};
+    }
+    if (const auto* contour = std::get_if<protocol::ContourFollowingTask>(&task.form)) {
+        std::string key = "line";
+        for (const Vec3& p : contour->points) key += fmt::format(" {} {} {}", p.x(), p.y(), p.z());
+        auto& line = surfaces_[key];
+        if (!line) line = std::make_shared<const ShadedMesh>(shade(lineThrough(contour->points, kLine)));
+        return {{line, X_WTarget, false}};
+    }
+    if (const auto* placement = std::get_if<protocol::FreePlacementTask>(&task.form))
+        return {{held.mesh, {placement->X_WGoal.q, placement->X_WGoal.p + scene.held_offset}, true}};
+    return {};  // of a pair nothing is to be reached
+}
+
 Result<std::shared_ptr<const DrawnScene>> SceneArtist::draw(const protocol::Condition& condition) {
     auto scene = std::make_shared<DrawnScene>();
     scene->shown = condition.shown;
     scene->cues = condition.cues;
     model::Bounds bounds;
-    double girth = 0.01;  // of the held part across its axis z [m]
+    Pose X_WTarget;
     for (const model::PartSpec& part : condition.scene.parts) {
         auto mesh = surfaceOf(part);
         if (!mesh) return mesh.errors();
-        DrawnPart drawn{*mesh, {part.X_WP.q, part.X_WP.p + part.shown_offset}, part.held, false};
-        drawn.target = part.name == condition.task.target;
-        if (drawn.target) scene->X_WTarget = drawn.X_W;
+        DrawnPart drawn{*mesh, {part.X_WP.q, part.X_WP.p + part.shown_offset}, part.held};
+        if (part.name == condition.task.target) X_WTarget = drawn.X_W;
         if (part.held) {
             scene->held = scene->parts.size();
             scene->held_offset = part.shown_offset;
-            const ShadedMesh& m = **mesh;
-            girth = 1e-3 * static_cast<double>(std::max(m.high_mm[0] - m.low_mm[0], m.high_mm[1] - m.low_mm[1]));
         }
-        const model::Bounds box = boundsOf(**mesh, drawn.X_W);
-        bounds.extend(box.low);
-        bounds.extend(box.high);
+        extendBy(bounds, **mesh, drawn.X_W);
         scene->parts.push_back(std::move(drawn));
     }
-    const model::Torus ring{1.5 * girth, 0.045 * girth};
-    model::PartSpec mark_part;
-    mark_part.geometry = model::Shape(ring);
-    auto mark = surfaceOf(mark_part);
-    if (!mark) return mark.errors();
-    scene->mark = *mark;
+    scene->marks = marksOf(condition.task, X_WTarget, *scene);
+    for (const Mark& mark : scene->marks) extendBy(bounds, *mark.mesh, mark.X_W);
     scene->floor = bounds.low.z() - kGround;
     scene->radius = 0.5 * bounds.size().norm();
     scene->camera = cameraOn(0.5 * (bounds.low + bounds.high), 1.08 * scene->radius);

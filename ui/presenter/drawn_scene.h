@@ -9,6 +9,7 @@
 #include "core/base/tick_record.h"
 #include "study/protocol/study_plan.h"
 #include "ui/presenter/shaded_mesh.h"
+#include "ui/presenter/task_marks.h"
 
 namespace passung::presenter {
 
@@ -27,7 +28,6 @@ struct DrawnPart {
     std::shared_ptr<const ShadedMesh> mesh;  // shared_ptr: scenes of a study have parts in common
     Pose X_W;                                // as it is drawn; of the held part at the start
     bool held = false;
-    bool target = false;
 };
 
 /// What a participant sees of a condition's scene.
@@ -37,10 +37,9 @@ struct DrawnScene {
     Vec3 held_offset = Vec3::Zero();  // drawn so far from where it is, world axes [m]
     protocol::ShownPose shown = protocol::ShownPose::Proxy;
     protocol::Cues cues;
-    Pose X_WTarget;                          // where the target is drawn; its axis +z points at whoever comes
-    std::shared_ptr<const ShadedMesh> mark;  // a ring about that axis
-    double floor = 0.0;                      // height of the ground [m]
-    double radius = 0.1;                     // of everything about the camera's centre [m]
+    std::vector<Mark> marks;
+    double floor = 0.0;   // height of the ground [m]
+    double radius = 0.1;  // of everything about the camera's centre [m]
     Camera camera;
 };
 
@@ -55,8 +54,10 @@ public:
 
 private:
     Result<std::shared_ptr<const ShadedMesh>> surfaceOf(const model::PartSpec& part);
+    std::shared_ptr<const ShadedMesh> ringAround(const ShadedMesh& held);
+    std::vector<Mark> marksOf(const protocol::Task& task, const Pose& X_WTarget, const DrawnScene& scene);
 
-    std::map<std::string, std::shared_ptr<const ShadedMesh>> surfaces_;  // by geometry
+    std::map<std::string, std::shared_ptr<const ShadedMesh>> surfaces_;  // by what they are made from
 };
 
 }  // namespace passung::presenter

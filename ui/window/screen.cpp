@@ -119,9 +119,12 @@ void Screen::takeScene() {
         corners += part.mesh->indices.size();
     }
     heavy_ = software_ && corners / 3 > kHeavy;
-    mark_geometry_ = geometryOf(scene->mark);
-    target_position_ = millimetres(scene->X_WTarget.p);
-    target_rotation_ = rotation(scene->X_WTarget.q);
+    marks_.clear();
+    for (const presenter::Mark& mark : scene->marks)
+        marks_.append(QVariantMap{{"geometry", QVariant::fromValue(geometryOf(mark.mesh))},
+                                  {"position", millimetres(mark.X_W.p)},
+                                  {"rotation", rotation(mark.X_W.q)},
+                                  {"pale", mark.pale}});
     radius_ = 1e3 * scene->radius;
     const presenter::Camera& camera = scene->camera;
     ground_position_ = millimetres({camera.centre.x(), camera.centre.y(), scene->floor});

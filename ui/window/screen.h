@@ -30,9 +30,7 @@ class Screen : public QObject {
 
     Q_PROPERTY(QVariantList parts MEMBER parts_ NOTIFY sceneChanged)
     Q_PROPERTY(QQuick3DGeometry* heldGeometry MEMBER held_geometry_ NOTIFY sceneChanged)
-    Q_PROPERTY(QQuick3DGeometry* markGeometry MEMBER mark_geometry_ NOTIFY sceneChanged)
-    Q_PROPERTY(QVector3D targetPosition MEMBER target_position_ NOTIFY sceneChanged)
-    Q_PROPERTY(QQuaternion targetRotation MEMBER target_rotation_ NOTIFY sceneChanged)
+    Q_PROPERTY(QVariantList marks MEMBER marks_ NOTIFY sceneChanged)
     Q_PROPERTY(QVector3D groundPosition MEMBER ground_position_ NOTIFY sceneChanged)
     Q_PROPERTY(double radius MEMBER radius_ NOTIFY sceneChanged)
     Q_PROPERTY(QVector3D cameraPosition MEMBER camera_position_ NOTIFY sceneChanged)
@@ -104,10 +102,10 @@ private:
     // A surface stays as long as this screen: QML may still draw the scene before.
     std::map<std::shared_ptr<const presenter::ShadedMesh>, std::unique_ptr<QQuick3DGeometry>> geometries_;
     bool shown_ = false, software_ = false, heavy_ = false;
-    QVariantList parts_;
-    QQuick3DGeometry *held_geometry_ = nullptr, *mark_geometry_ = nullptr;
-    QVector3D target_position_, ground_position_, camera_position_;
-    QQuaternion target_rotation_, camera_rotation_, light_rotation_;
+    QVariantList parts_, marks_;
+    QQuick3DGeometry* held_geometry_ = nullptr;
+    QVector3D ground_position_, camera_position_;
+    QQuaternion camera_rotation_, light_rotation_;
     double radius_ = 100.0, camera_opening_ = 30.0, camera_near_ = 1.0, camera_far_ = 1000.0;
 };
 

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/model/shape.h"
+#include "ui/presenter/drawn_scene.h"
 #include "ui/presenter/pointer_motion.h"
 #include "ui/presenter/shaded_mesh.h"
 
@@ -86,6 +87,68 @@ TEST(ShadedMesh, ABoxHasThreeNormalsAtEveryCorner) {
     // Truth: closed form.
     const ShadedMesh shaded = shade(model::tessellate(model::Box{0.02, 0.03, 0.04}, 1e-4));
     EXPECT_EQ(shaded.vertices.size(), 24u);
+}
+
+/// A scene of a plate (target) and a held peg.
+protocol::Condition conditionOf(decltype(protocol::Task::form) form) {
+    protocol::Condition condition;
+    model::PartSpec plate, peg;
+    plate.name = "plate";
+    plate.geometry = model::Shape(model::Box{0.06, 0.06, 0.02});
+    plate.X_WP = {Quat::Identity(), Vec3(0.1, 0.0, 0.0)};
+    peg.name = "peg";
+    peg.held = true;
+    peg.geometry = model::Shape(model::Cylinder{0.02, 0.05});
+    peg.shown_offset = Vec3(0.0, 0.003, 0.0);
+    condition.scene.parts = {plate, peg};
+    condition.task.target = "plate";
+    condition.task.form = std::move(form);
+    return condition;
+}
+
+Vec3 middleOf(const Mark& mark) {
+    Vec3 middle;
+    for (std::size_t i = 0; i < 3; ++i)
+        middle[static_cast<int>(i)] = 0.5e-3 * static_cast<double>(mark.mesh->low_mm[i] + mark.mesh->high_mm[i]);
+    return mark.X_W * middle;
+}
+
+std::vector<Mark> marksOf(decltype(protocol::Task::form) form) {
+    SceneArtist artist;
+    const auto scene = artist.draw(conditionOf(std::move(form)));
+    EXPECT_TRUE(scene);
+    return scene ? (*scene)->marks : std::vector<Mark>{};
+}
+
+TEST(TaskMarks, EveryTypeOfTrialShowsWhatItAsksFor) {
+    // Truth: closed form. Rings stand at the mouths, a contour along its points in the target's frame, a placed part
+    // where it would be drawn, that is, moved by the offset at which it is shown.
+    const auto bore = marksOf(protocol::PegInHoleTask{});
+    ASSERT_EQ(bore.size(), 1u);
+    EXPECT_NEAR((middleOf(bore[0]) - Vec3(0.1, 0, 0)).norm(), 0.0, 1e-6);
+    const auto passage = marksOf(protocol::NarrowPassageTask{.length = 0.02, .width = 0.03});
+    ASSERT_EQ(passage.size(), 2u);
+    EXPECT_NEAR((middleOf(passage[1]) - Vec3(0.1, 0, -0.02)).norm(), 0.0, 1e-6);
+    const auto contour =
+        marksOf(protocol::ContourFollowingTask{.points = {{-0.02, 0, 0.01}, {0.02, 0, 0.01}, {0.02, 0.02, 0.01}}});
+    ASSERT_EQ(contour.size(), 1u);
+    EXPECT_NEAR((middleOf(contour[0]) - Vec3(0.1, 0.01, 0.01)).norm(), 0.0, 1e-6);
+    const auto placement = marksOf(protocol::FreePlacementTask{.X_WGoal = {Quat::Identity(), Vec3(0.2, 0.0, 0.05)}});
+    ASSERT_EQ(placement.size(), 1u);
+    EXPECT_TRUE(placement[0].pale);
+    EXPECT_NEAR((middleOf(placement[0]) - Vec3(0.2, 0.003, 0.05)).norm(), 0.0, 1e-6);
+    EXPECT_TRUE(marksOf(protocol::DiscriminationPairTask{}).empty());
+}
+
+TEST(TaskMarks, ALineIsAsThickAsItIsToBeAllAlong) {
+    // Truth: closed form. Of a line along x, every vertex lies on its surface, within the error of the tessellation.
+    const double radius = 0.5e-3;
+    for (const Vec3& v : lineThrough({{0, 0, 0}, {0.03, 0, 0}}, radius).vertices) {
+        const double beyond = std::max({0.0, -v.x(), v.x() - 0.03});
+        const double away = std::hypot(beyond, v.tail<2>().norm());
+        EXPECT_LE(away, 1.0001 * radius);
+        EXPECT_TRUE(away > 0.85 * radius || (v.x() >= 0 && v.x() <= 0.03)) << v.transpose();
+    }
 }
 
 }  // namespace
