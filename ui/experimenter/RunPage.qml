@@ -46,6 +46,16 @@ ColumnLayout {
             quiet: true
             text: [run.detail, run.participant, run.study].filter(s => s !== "").join("  ·  ")
         }
+        ActionButton {
+            objectName: "openDisplay"
+            anchors.right: clock.visible ? clock.left : parent.right
+            anchors.rightMargin: 24
+            anchors.verticalCenter: parent.verticalCenter
+            visible: run.displayGone
+            kind: "main"
+            text: qsTr("Open the participant's window")
+            onClicked: run.openDisplay()
+        }
         Say {
             id: clock
             anchors.right: parent.right
@@ -85,7 +95,6 @@ ColumnLayout {
                 model: run.rows
                 Accessible.role: Accessible.List
                 Accessible.name: qsTr("Trials")
-                property real kept: 0
                 onModelChanged: Qt.callLater(() => positionViewAtIndex(Math.max(0, run.currentRow), ListView.Contain))
                 delegate: Rectangle {
                     id: trial

@@ -15,6 +15,8 @@ Window {
     onClosing: screenView.closed()
     onVisibleChanged: if (visible)
         requestActivate()
+    onActiveChanged: if (!active)
+        screenView.letGo()
     onActiveFocusItemChanged: if (activeFocusItem !== hand) // the 3D view takes it
         hand.forceActiveFocus()
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <QtQuick3D/QQuick3DGeometry>
-#include <memory>
 
 #include "ui/presenter/shaded_mesh.h"
 

@@ -36,12 +36,13 @@ Why RunView::why(CommandKind kind) const {
         std::any_of(rows.begin(), rows.end(), [](const TrialRow& row) { return row.attempts > 0; });
     switch (kind) {
         case CommandKind::Start:
-            return state == RunState::Ready ? Why::Possible : Why::NotReady;
+            return state == RunState::Ready ? Why::Possible : Why::BegunAlready;
         case CommandKind::Continue:
             return paused ? Why::Possible : Why::NotPaused;
         case CommandKind::Pause:
-            if (state == RunState::Ready) return Why::NoTrial;
-            return paused || pauses_after ? Why::AlreadyPaused : Why::Possible;
+            if (state == RunState::Ready) return Why::NotBegun;
+            if (paused) return Why::PausedAlready;
+            return pauses_after ? Why::PausesAlready : Why::Possible;
         case CommandKind::Repeat:
             return in_trial || can_go_back ? Why::Possible : Why::NothingEnded;
         case CommandKind::Invalidate:
@@ -161,10 +162,9 @@ void Run::end(const AttemptEnded& ended) {
 }
 
 void Run::answer(const CommandAnswered& answered) {
-    view_.told = answered.answer.text;
-    view_.refused = !answered.answer.accepted;
+    view_.answered = answered;
     if (!answered.answer.accepted) return;
-    if (answered.command.kind == CommandKind::Pause) view_.pauses_after = view_.state != RunState::Paused;
+    if (answered.command.kind == CommandKind::Pause) view_.pauses_after = answered.answer.after_trial;
     if (answered.command.kind == CommandKind::Stop) {
         stopped_ = true;
         if (view_.state == RunState::Paused) view_.state = RunState::Stopped;
@@ -178,8 +178,18 @@ void Run::finish(const RunOver& over) {
     view_.pauses_after = false;
     if (over.errors.empty()) return;
     view_.state = RunState::Failed;
-    view_.told = toString(over.errors.front());
-    view_.refused = true;
+    view_.failure = toString(over.errors.front());
+}
+
+std::optional<session::Command> Run::setDisplay(Display display) {
+    const bool was_shown = view_.display == Display::Shown;
+    view_.display = display;
+    if (!was_shown || display == Display::Shown || !view_.isRunning()) return std::nullopt;
+    return session::Command{.kind = CommandKind::Pause,
+                            .text = display == Display::Closed ? "the participant's window was closed"
+                                                               : "the participant's picture was lost",
+                            .source = "window",
+                            .now = true};
 }
 
 void Run::take(std::span<const TickRecord> records) {

@@ -38,7 +38,14 @@ struct TrialRow {
 };
 
 /// Why a command cannot be given now.
-enum class Why { Possible, NoSession, NotReady, NotPaused, AlreadyPaused, NothingEnded, NothingLeft, NoTrial };
+using Why = session::WhyNot;
+
+/// What the participant's window is able to show.
+enum class Display {
+    Shown,
+    Closed,  // the window was
+    Lost,    // the graphics system draws no picture any more
+};
 
 /// How the loop has kept its rate over the last second.
 struct LoopView {
@@ -62,8 +69,9 @@ struct RunView {
     std::int64_t rows_changed = 0;  // counts up whenever a row does
     LoopView loop;
     double force_N = 0.0, depth_mm = 0.0;
-    std::string told;  // the answer to the last command, or why the session failed
-    bool refused = false;
+    std::optional<CommandAnswered> answered;  // the last command
+    std::string failure;                      // why the session failed
+    Display display = Display::Shown;
 
     Why why(session::CommandKind kind) const;
     bool may(session::CommandKind kind) const { return why(kind) == Why::Possible; }
@@ -78,6 +86,8 @@ public:
     void open(const protocol::StudyPlan& plan);
     void take(const News& news);
     void take(std::span<const TickRecord> records);
+    /// What the participant's window shows from now on. The command that the session then needs, if any.
+    std::optional<session::Command> setDisplay(Display display);
 
     const RunView& view() const { return view_; }
     const Trace& force() const { return force_; }

@@ -55,6 +55,16 @@ App::App(const AppOptions& options)
         if (window != nullptr && window->objectName() == "experimenter") experimenter_ = window;
     }
     if (experimenter_ == nullptr || participant_ == nullptr) throw std::runtime_error("the windows cannot be made");
+    watchGraphics();
+}
+
+/// Queued: some of them come from the thread that draws.
+void App::watchGraphics() {
+    const auto lost = [this] { screen_.setDrawing(false); };
+    const auto regained = [this] { screen_.setDrawing(true); };
+    connect(participant_, &QQuickWindow::sceneGraphError, this, lost, Qt::QueuedConnection);
+    connect(participant_, &QQuickWindow::sceneGraphInvalidated, this, lost, Qt::QueuedConnection);
+    connect(participant_, &QQuickWindow::sceneGraphInitialized, this, regained, Qt::QueuedConnection);
 }
 
 App::~App() { desk_.close(); }

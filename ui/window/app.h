@@ -43,6 +43,8 @@ signals:
     void languageChanged();
 
 private:
+    void watchGraphics();
+
     Look look_;
     Desk desk_;
     Studies studies_;

@@ -21,7 +21,6 @@ Desk::~Desk() = default;
 void Desk::start(const protocol::StudyPlan& plan, app::LiveHand hand) {
     live_.reset();
     hand_ = hand;
-    answered_.reset();
     run_.open(plan);
     drawn_ = nullptr;
     live_ = std::make_unique<app::LiveSession>(
@@ -33,6 +32,17 @@ void Desk::start(const protocol::StudyPlan& plan, app::LiveHand hand) {
 
 void Desk::command(session::Command command) {
     if (live_) live_->command(std::move(command));
+}
+
+void Desk::setDisplay(presenter::Display display) {
+    if (run_.view().display == display) return;
+    if (auto needed = run_.setDisplay(display)) command(std::move(*needed));
+    emit happened();
+}
+
+void Desk::openDisplay() {
+    if (run_.view().display == presenter::Display::Lost) setDisplay(presenter::Display::Closed);  // gets a new window
+    setDisplay(presenter::Display::Shown);
 }
 
 void Desk::close() {
@@ -51,10 +61,7 @@ void Desk::look() {
         ticks += count;
     }
     const auto news = live_->takeNews();
-    for (const presenter::News& what : news) {
-        run_.take(what);
-        if (const auto* answer = std::get_if<presenter::CommandAnswered>(&what)) answered_ = *answer;
-    }
+    for (const presenter::News& what : news) run_.take(what);
     if (byMouse() && ticks > 0 && run_.last()) {
         const auto& p = run_.last()->hand_position_m;
         const auto& q = run_.last()->hand_quaternion;

@@ -1,10 +1,8 @@
 #pragma once
 
-#include <QtCore/QElapsedTimer>
 #include <QtCore/QObject>
 #include <QtCore/QTimer>
 #include <memory>
-#include <optional>
 
 #include "ui/app/live_session.h"
 #include "ui/presenter/run.h"
@@ -23,6 +21,10 @@ public:
 
     void start(const protocol::StudyPlan& plan, app::LiveHand hand);
     void command(session::Command command);
+    /// The participant's window shows this from now on; a running trial that nobody sees is paused.
+    void setDisplay(presenter::Display display);
+    /// Shows the participant's window again, whatever became of it.
+    void openDisplay();
     /// Ends what runs; waits for the running step only.
     void close();
 
@@ -30,7 +32,6 @@ public:
     /// Where the mouse wants the held part; null: nobody moves it by mouse.
     mouse::Pointer* pointer();
     bool byMouse() const { return live_ && hand_ == app::LiveHand::Mouse; }
-    const std::optional<presenter::CommandAnswered>& answered() const { return answered_; }
 
 signals:
     void opened();    // another run
@@ -45,7 +46,6 @@ private:
     std::unique_ptr<app::LiveSession> live_;
     app::LiveHand hand_ = app::LiveHand::Mouse;
     presenter::Run run_;
-    std::optional<presenter::CommandAnswered> answered_;
     const void* drawn_ = nullptr;  // scene that the windows know
     QTimer timer_;
 };

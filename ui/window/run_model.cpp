@@ -58,7 +58,7 @@ QString RunModel::tone() const {
 
 QString RunModel::line() const { return stateLine(view()); }
 QString RunModel::detail() const { return stateDetail(view()); }
-QString RunModel::answer() const { return desk_.answered() ? answerLine(*desk_.answered()) : QString(); }
+QString RunModel::answer() const { return view().answered ? answerLine(*view().answered) : QString(); }
 
 double RunModel::share() const {
     if (view().planned == 0) return 0.0;
@@ -108,8 +108,9 @@ QString RunModel::lamp() const {
 }
 
 void RunModel::command(const QString& name, const QString& text) {
-    if (const auto kind = session::commandNamed(name.toStdString()))
-        desk_.command({.kind = *kind, .text = text.trimmed().toStdString()});
+    const auto kind = session::commandNamed(name.toStdString());
+    if (kind == session::CommandKind::Start || kind == session::CommandKind::Continue) openDisplay();
+    if (kind) desk_.command({.kind = *kind, .text = text.trimmed().toStdString()});
 }
 
 void RunModel::showTraces(experimenter::TraceItem* force, experimenter::TraceItem* depth) {

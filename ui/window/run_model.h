@@ -22,6 +22,7 @@ class RunModel : public QObject {
     Q_PROPERTY(double share READ share NOTIFY changed)
     Q_PROPERTY(QString answer READ answer NOTIFY changed)
     Q_PROPERTY(bool refused READ refused NOTIFY changed)
+    Q_PROPERTY(bool displayGone READ displayGone NOTIFY changed)   // the participant sees nothing
     Q_PROPERTY(QVariantMap commands READ commands NOTIFY changed)  // by name: why not; empty: possible
     Q_PROPERTY(QVariantList rows READ rows NOTIFY rowsChanged)
     Q_PROPERTY(int currentRow READ currentRow NOTIFY rowsChanged)
@@ -46,7 +47,8 @@ public:
     QString participant() const { return QString::fromStdString(view().participant); }
     double share() const;
     QString answer() const;
-    bool refused() const { return desk_.answered() && !desk_.answered()->answer.accepted; }
+    bool refused() const { return view().answered && !view().answered->answer.accepted; }
+    bool displayGone() const { return known() && view().display != presenter::Display::Shown; }
     QVariantMap commands() const;
     QVariantList rows() const;
     int currentRow() const { return static_cast<int>(view().number) - 1; }
@@ -61,6 +63,8 @@ public:
 
     /// `name`: one of session::kCommandNames.
     Q_INVOKABLE void command(const QString& name, const QString& text = {});
+    /// Opens the participant's window again.
+    Q_INVOKABLE void openDisplay() { desk_.openDisplay(); }
     Q_INVOKABLE void showTraces(passung::experimenter::TraceItem* force, passung::experimenter::TraceItem* depth);
     void retranslate();
 

@@ -77,8 +77,7 @@ Screen::Screen(Desk& desk, int every) : desk_(desk), every_(every) {
         emit frame();
     });
     connect(&desk_, &Desk::opened, this, [this] {
-        shown_ = true;
-        keys_ = {};
+        letGo();
         emit stateChanged();
     });
     since_frame_.start();
@@ -90,6 +89,11 @@ Screen::~Screen() = default;
 void Screen::setSoftware(bool software) {
     software_ = software;
     emit sceneChanged();
+}
+
+bool Screen::shown() const {
+    const presenter::RunView& run = desk_.run().view();
+    return run.state != presenter::RunState::Idle && run.display != presenter::Display::Closed;
 }
 
 QString Screen::line() const { return participantLine(view_.screen); }
@@ -188,7 +192,8 @@ void Screen::wheel(double notches, int modifiers) {
 bool Screen::key(int key, bool down) {
     const std::uint32_t button = key == Qt::Key_Space || key == Qt::Key_1 ? 1u : key == Qt::Key_2 ? 2u : 0u;
     if (button != 0) {
-        if (mouse::Pointer* pointer = desk_.pointer()) pointer->press(down ? button : 0u);
+        buttons_ = down ? buttons_ | button : buttons_ & ~button;
+        if (mouse::Pointer* pointer = desk_.pointer()) pointer->press(buttons_);
         return true;
     }
     double sign = 1.0;
@@ -198,10 +203,20 @@ bool Screen::key(int key, bool down) {
     return true;
 }
 
+void Screen::letGo() {
+    keys_ = {};
+    buttons_ = 0;
+    if (mouse::Pointer* pointer = desk_.pointer()) pointer->press(0u);
+}
+
 void Screen::closed() {
-    shown_ = false;
-    desk_.command({.kind = session::CommandKind::Pause, .source = "participant's window was closed"});
-    emit stateChanged();
+    letGo();
+    desk_.setDisplay(presenter::Display::Closed);
+}
+
+void Screen::setDrawing(bool draws) {
+    if (desk_.run().view().display == (draws ? presenter::Display::Lost : presenter::Display::Shown))
+        desk_.setDisplay(draws ? presenter::Display::Shown : presenter::Display::Lost);
 }
 
 }  // namespace passung::window

@@ -19,8 +19,8 @@ namespace passung::window {
 /// The participant's view state for QML, and their mouse and keys for the device. Millimetres.
 class Screen : public QObject {
     Q_OBJECT
-    Q_PROPERTY(bool shown MEMBER shown_ NOTIFY stateChanged)  // the window
-    Q_PROPERTY(bool drawn READ drawn NOTIFY stateChanged)     // the scene
+    Q_PROPERTY(bool shown READ shown NOTIFY stateChanged)  // the window
+    Q_PROPERTY(bool drawn READ drawn NOTIFY stateChanged)  // the scene
     Q_PROPERTY(bool byMouse READ byMouse NOTIFY stateChanged)
     Q_PROPERTY(QString line READ line NOTIFY stateChanged)
     Q_PROPERTY(QString hint READ hint NOTIFY stateChanged)
@@ -59,6 +59,7 @@ public:
     void setSoftware(bool software);
     const presenter::ParticipantView& view() const { return view_; }
 
+    bool shown() const;
     bool drawn() const { return view_.scene; }
     bool byMouse() const { return desk_.byMouse(); }
     QString line() const;
@@ -80,7 +81,12 @@ public:
     Q_INVOKABLE void drag(double right, double down, double height, int buttons, int modifiers);
     Q_INVOKABLE void wheel(double notches, int modifiers);
     Q_INVOKABLE bool key(int key, bool down);
+    /// Whatever keys are held: the window no longer learns when they are released.
+    Q_INVOKABLE void letGo();
+    /// The window was closed.
     Q_INVOKABLE void closed();
+    /// The window has lost its graphics, or has them again.
+    void setDrawing(bool draws);
     void retranslate() { emit stateChanged(); }
 
 signals:
@@ -99,9 +105,10 @@ private:
     QElapsedTimer since_frame_, since_keys_;
     presenter::ParticipantView view_;
     presenter::HeldKeys keys_;
+    std::uint32_t buttons_ = 0;  // of the handle, by keys
     // A surface stays as long as this screen: QML may still draw the scene before.
     std::map<std::shared_ptr<const presenter::ShadedMesh>, std::unique_ptr<QQuick3DGeometry>> geometries_;
-    bool shown_ = false, software_ = false, heavy_ = false;
+    bool software_ = false, heavy_ = false;
     QVariantList parts_, marks_;
     QQuick3DGeometry* held_geometry_ = nullptr;
     QVector3D ground_position_, camera_position_;

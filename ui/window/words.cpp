@@ -4,6 +4,7 @@
 
 namespace passung::window {
 
+using presenter::Display;
 using presenter::ParticipantScreen;
 using presenter::RowState;
 using presenter::RunState;
@@ -35,6 +36,10 @@ QString stateLine(const RunView& view) {
         case RunState::Ready:
             return said(QT_TRANSLATE_NOOP("words", "Ready to start"));
         case RunState::Paused:
+            if (view.display == Display::Closed)
+                return said(QT_TRANSLATE_NOOP("words", "Paused: the participant's window is closed"));
+            if (view.display == Display::Lost)
+                return said(QT_TRANSLATE_NOOP("words", "Paused: the participant's picture is lost"));
             return said(QT_TRANSLATE_NOOP("words", "Paused"));
         case RunState::Stopped:
             return said(QT_TRANSLATE_NOOP("words", "Emergency stop: motors are off"));
@@ -66,7 +71,7 @@ QString stateDetail(const RunView& view) {
                 .arg(view.finished)
                 .arg(view.planned);
         case RunState::Failed:
-            return QString::fromStdString(view.told);
+            return QString::fromStdString(view.failure);
         case RunState::Idle:
         case RunState::Opening:
         case RunState::Ready:
@@ -126,16 +131,32 @@ QString whyNot(Why why) {
             return {};
         case Why::NoSession:
             return said(QT_TRANSLATE_NOOP("words", "No session is running."));
-        case Why::NotReady:
+        case Why::BegunAlready:
             return said(QT_TRANSLATE_NOOP("words", "The session has begun already."));
+        case Why::NotBegun:
+            return said(QT_TRANSLATE_NOOP("words", "The session has not begun."));
         case Why::NotPaused:
             return said(QT_TRANSLATE_NOOP("words", "The session is not paused."));
-        case Why::AlreadyPaused:
-            return said(QT_TRANSLATE_NOOP("words", "The session pauses already."));
+        case Why::PausedAlready:
+            return said(QT_TRANSLATE_NOOP("words", "The session is paused already."));
+        case Why::PausesAlready:
+            return said(QT_TRANSLATE_NOOP("words", "The session pauses after this trial already."));
         case Why::NothingEnded:
             return said(QT_TRANSLATE_NOOP("words", "No trial has ended yet."));
+        case Why::RepeatedAlready:
+            return said(QT_TRANSLATE_NOOP("words", "The trial is repeated already."));
         case Why::NothingLeft:
             return said(QT_TRANSLATE_NOOP("words", "No trial is left."));
+        case Why::ClockNotStarted:
+            return said(QT_TRANSLATE_NOOP("words", "The trial's clock has not been started."));
+        case Why::NeedsText:
+            return said(QT_TRANSLATE_NOOP("words", "It needs a text."));
+        case Why::UnknownAttempt:
+            return said(QT_TRANSLATE_NOOP("words", "That is not the newest attempt at a trial of this session."));
+        case Why::CountsNot:
+            return said(QT_TRANSLATE_NOOP("words", "The attempt does not count anyway."));
+        case Why::CannotBeKept:
+            return said(QT_TRANSLATE_NOOP("words", "It cannot be stored."));
         case Why::NoTrial:
             break;
     }
@@ -144,13 +165,14 @@ QString whyNot(Why why) {
 
 QString answerLine(const presenter::CommandAnswered& answered) {
     if (!answered.answer.accepted)
-        return said(QT_TRANSLATE_NOOP("words", "Not possible now: %1"))
-            .arg(QString::fromStdString(answered.answer.text));
+        return said(QT_TRANSLATE_NOOP("words", "Not possible now: %1")).arg(whyNot(answered.answer.why));
     switch (answered.command.kind) {
         case CommandKind::Start:
             return said(QT_TRANSLATE_NOOP("words", "The session begins."));
         case CommandKind::Pause:
-            return said(QT_TRANSLATE_NOOP("words", "The session pauses after the running trial."));
+            if (answered.answer.after_trial)
+                return said(QT_TRANSLATE_NOOP("words", "The session pauses after the running trial."));
+            return said(QT_TRANSLATE_NOOP("words", "The session is paused."));
         case CommandKind::Continue:
             return said(QT_TRANSLATE_NOOP("words", "The session goes on."));
         case CommandKind::Repeat:

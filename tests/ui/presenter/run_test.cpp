@@ -106,11 +106,12 @@ TEST(Run, OffersACommandOnlyWhenTheSessionWouldObey) {
     EXPECT_TRUE(run.view().may(CommandKind::Pause));
     EXPECT_TRUE(run.view().may(CommandKind::Repeat));
     EXPECT_EQ(run.view().why(CommandKind::Continue), Why::NotPaused);
-    run.take(CommandAnswered{{.kind = CommandKind::Pause}, {true, ""}});
+    run.take(CommandAnswered{{.kind = CommandKind::Pause}, {.accepted = true, .text = "", .after_trial = true}});
     EXPECT_TRUE(run.view().pauses_after);
-    EXPECT_EQ(run.view().why(CommandKind::Pause), Why::AlreadyPaused);
+    EXPECT_EQ(run.view().why(CommandKind::Pause), Why::PausesAlready);
     run.take(glance(SessionState::Paused, 1, {true, false, false, false}));
     EXPECT_FALSE(run.view().pauses_after);
+    EXPECT_EQ(run.view().why(CommandKind::Pause), Why::PausedAlready);
     EXPECT_TRUE(run.view().may(CommandKind::Continue));
     EXPECT_EQ(run.view().why(CommandKind::Invalidate), Why::NothingEnded);
     run.take(RunOver{false, {}});
@@ -129,6 +130,28 @@ TEST(Run, AnEmergencyStopIsShownUntilTheSessionGoesOn) {
     run.take(glance(SessionState::InTrial, 0));
     run.take(glance(SessionState::Paused, 1));
     EXPECT_EQ(run.view().state, RunState::Paused);
+}
+
+TEST(Run, ATrialThatTheParticipantNoLongerSeesIsPausedAtOnceAndOnlyOnce) {
+    // Truth: invariant.
+    presenter::Run run = begun();
+    run.take(glance(SessionState::InTrial, 0));
+    const auto pause = run.setDisplay(Display::Lost);
+    ASSERT_TRUE(pause);
+    EXPECT_EQ(pause->kind, CommandKind::Pause);
+    EXPECT_TRUE(pause->now);
+    EXPECT_FALSE(run.setDisplay(Display::Closed)) << "it pauses already";
+    EXPECT_FALSE(run.setDisplay(Display::Shown)) << "only the experimenter goes on";
+    run.take(RunOver{true, {}});
+    EXPECT_FALSE(run.setDisplay(Display::Closed)) << "nothing is left to pause";
+}
+
+TEST(Run, APauseBetweenTrialsIsNotSaidToComeAfterOne) {
+    // Truth: invariant, the session's answer.
+    presenter::Run run = begun();
+    run.take(glance(SessionState::BetweenTrials, 1));
+    run.take(CommandAnswered{{.kind = CommandKind::Pause}, {.accepted = true, .text = "paused"}});
+    EXPECT_FALSE(run.view().pauses_after);
 }
 
 TEST(Run, CountsTheLoopsMissedCyclesAndItsRate) {

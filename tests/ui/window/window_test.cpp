@@ -80,6 +80,74 @@ TEST_F(Windows, KeysStopContinueAndLeaveOutTrialsInEitherLanguage) {
     picture(app_->experimenter(), "studies_de_light");
 }
 
+TEST_F(Windows, AWindowThatNobodySeesPausesTheTrialAndComesBackWithoutLosingIt) {
+    // Truth: invariant. The attempt that nobody saw is aborted, its trial is done again; a key that was held when the
+    // window went away is no longer held.
+    click("study-peg_in_hole");
+    click("tryOut");
+    waitFor(RunState::Running);
+    QQuickWindow* participant = app_->participant();
+    waitFor([&] { return participant->isExposed() && participant->isActive(); });
+    QTest::keyPress(participant, Qt::Key_Left);
+    const double x0 = static_cast<double>(run().last()->hand_position_m[0]);
+    waitFor([&] { return static_cast<double>(run().last()->hand_position_m[0]) < x0 - 0.002; });
+    EXPECT_EQ(item(app_->experimenter(), "openDisplay"), nullptr);
+    participant->close();
+    waitFor(RunState::Paused);
+    EXPECT_FALSE(participant->isVisible());
+    EXPECT_EQ(run().view().rows[0].attempts, 1);
+    EXPECT_EQ(run().view().rows[0].state, presenter::RowState::Next);
+    EXPECT_EQ(item(app_->experimenter(), "stateLine")->property("text").toString(),
+              "Paused: the participant's window is closed");
+    picture(app_->experimenter(), "session_window_closed");
+
+    click("openDisplay");
+    waitFor([&] { return participant->isExposed(); });
+    EXPECT_EQ(run().view().state, RunState::Paused) << "only the experimenter goes on";
+    EXPECT_EQ(item(app_->experimenter(), "openDisplay"), nullptr);
+    click("pause");
+    waitFor(RunState::Running);
+    const double x1 = static_cast<double>(run().last()->hand_position_m[0]);
+    const std::int64_t tick = run().last()->tick;
+    waitFor([&] { return run().last()->tick > tick + 500; });
+    EXPECT_NEAR(static_cast<double>(run().last()->hand_position_m[0]), x1, 1e-4) << "the key is still held";
+    EXPECT_GT(heldPart(picture(participant, "participant_again")).x(), 0.0) << "the new window shows no part";
+}
+
+TEST_F(Windows, LostGraphicsPauseTheTrialUntilTheExperimenterGoesOn) {
+    // Truth: invariant. The scene graph's own signals, as the driver's reset sends them.
+    click("study-peg_in_hole");
+    click("tryOut");
+    waitFor(RunState::Running);
+    emit app_->participant()->sceneGraphInvalidated();
+    waitFor(RunState::Paused);
+    EXPECT_EQ(run().view().display, presenter::Display::Lost);
+    EXPECT_EQ(item(app_->experimenter(), "stateLine")->property("text").toString(),
+              "Paused: the participant's picture is lost");
+    emit app_->participant()->sceneGraphInitialized();
+    waitFor([&] { return run().view().display == presenter::Display::Shown; });
+    EXPECT_EQ(run().view().state, RunState::Paused);
+    emit app_->participant()->sceneGraphError(QQuickWindow::ContextNotAvailable, "no context");
+    waitFor([&] { return run().view().display == presenter::Display::Lost; });
+    click("openDisplay");
+    waitFor([&] { return app_->participant()->isExposed() && run().view().display == presenter::Display::Shown; });
+    click("pause");
+    waitFor(RunState::Running);
+    EXPECT_EQ(run().view().rows[0].attempts, 1);
+}
+
+TEST_F(Windows, ARefusedCommandSaysWhyInTheLanguageOfTheWindows) {
+    // Truth: invariant. The session refuses what its screen would not offer.
+    click("study-peg_in_hole");
+    click("watch");
+    waitFor(RunState::Running);
+    click("language");
+    app_->desk().command({.kind = session::CommandKind::Continue});
+    waitFor([&] { return run().view().answered.has_value(); });
+    EXPECT_EQ(item(app_->experimenter(), "answer")->property("text").toString(),
+              "Jetzt nicht möglich: Die Sitzung ist nicht angehalten.");
+}
+
 }  // namespace
 }  // namespace passung::test
 

@@ -62,7 +62,7 @@ protected:
             const presenter::RunState now = run().view().state;
             return now == state || now == presenter::RunState::Failed;
         });
-        ASSERT_EQ(run().view().state, state) << run().view().told;
+        ASSERT_EQ(run().view().state, state) << run().view().failure;
     }
 
     const presenter::Run& run() const { return app_->desk().run(); }

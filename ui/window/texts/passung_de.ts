@@ -153,6 +153,10 @@
         <source>Attempts: %1</source>
         <translation>Versuche: %1</translation>
     </message>
+    <message>
+        <source>Open the participant&apos;s window</source>
+        <translation>Fenster der Versuchsperson öffnen</translation>
+    </message>
 </context>
 <context>
     <name>StudiesPage</name>
@@ -332,10 +336,6 @@
         <translation>Die Sitzung ist nicht angehalten.</translation>
     </message>
     <message>
-        <source>The session pauses already.</source>
-        <translation>Die Sitzung hält schon an.</translation>
-    </message>
-    <message>
         <source>No trial has ended yet.</source>
         <translation>Noch ist kein Durchgang beendet.</translation>
     </message>
@@ -454,6 +454,54 @@
     <message>
         <source>main</source>
         <translation>Haupt</translation>
+    </message>
+    <message>
+        <source>Paused: the participant&apos;s window is closed</source>
+        <translation>Angehalten: Das Fenster der Versuchsperson ist zu</translation>
+    </message>
+    <message>
+        <source>Paused: the participant&apos;s picture is lost</source>
+        <translation>Angehalten: Das Bild der Versuchsperson ist ausgefallen</translation>
+    </message>
+    <message>
+        <source>The session has not begun.</source>
+        <translation>Die Sitzung hat noch nicht begonnen.</translation>
+    </message>
+    <message>
+        <source>The session is paused already.</source>
+        <translation>Die Sitzung ist schon angehalten.</translation>
+    </message>
+    <message>
+        <source>The session pauses after this trial already.</source>
+        <translation>Die Sitzung hält nach diesem Durchgang schon an.</translation>
+    </message>
+    <message>
+        <source>The trial is repeated already.</source>
+        <translation>Der Durchgang wird schon wiederholt.</translation>
+    </message>
+    <message>
+        <source>The trial&apos;s clock has not been started.</source>
+        <translation>Die Uhr des Durchgangs läuft noch nicht.</translation>
+    </message>
+    <message>
+        <source>It needs a text.</source>
+        <translation>Dazu gehört ein Text.</translation>
+    </message>
+    <message>
+        <source>That is not the newest attempt at a trial of this session.</source>
+        <translation>Das ist nicht der letzte Versuch eines Durchgangs dieser Sitzung.</translation>
+    </message>
+    <message>
+        <source>The attempt does not count anyway.</source>
+        <translation>Der Versuch zählt ohnehin nicht.</translation>
+    </message>
+    <message>
+        <source>It cannot be stored.</source>
+        <translation>Es lässt sich nicht speichern.</translation>
+    </message>
+    <message>
+        <source>The session is paused.</source>
+        <translation>Die Sitzung ist angehalten.</translation>
     </message>
 </context>
 </TS>
