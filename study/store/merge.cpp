@@ -7,6 +7,7 @@
 
 #include "study/store/open_database.h"
 #include "study/store/process_lock.h"
+#include "study/store/session_remarks.h"
 #include "study/store/session_tables.h"
 
 namespace passung::store {
@@ -149,33 +150,51 @@ private:
             ++report_.known;
             return;
         }
-        if (!lacks("main", kSource, id)) {
+        const bool behind = lacks("main", kSource, id);
+        if (behind && lacks(kSource, "main", id)) {
+            Statement who = database_.prepare(
+                "SELECT participant_id || ' stands for two people: session ' || ordinal FROM source.session "
+                "WHERE session_id=?");
+            who.bind(id).step();
+            refuse("participant code " + who.text(0) + " has other trials");
+        }
+        // What was said about the session since lives on, wherever it was said.
+        const SessionRemarks remarks = remarksOf(database_, behind ? "main" : kSource, id);
+        if (behind) {
             database_.prepare("DELETE FROM main.session WHERE session_id=?").bind(id).run();
             copySession(id);
-            ++report_.replaced;
-            return;
         }
-        if (!lacks(kSource, "main", id)) {  // an older copy of what is there
-            ++report_.known;
-            return;
-        }
-        Statement who = database_.prepare(
-            "SELECT participant_id || ' stands for two people: session ' || ordinal FROM source.session "
-            "WHERE session_id=?");
-        who.bind(id).step();
-        refuse("participant code " + who.text(0) + " has other trials");
+        const UnitedRemarks united = uniteRemarks(database_, id, remarks);
+        ++(behind || united.changed ? report_.replaced : report_.known);
+        reportConflicts(id, united.conflicts);
     }
 
-    /// Has `one` an ended attempt of the session that `other` has not?
+    void reportConflicts(const std::string& id, const std::vector<std::string>& conflicts) {
+        Statement who =
+            database_.prepare("SELECT participant_id || ', session ' || ordinal FROM main.session WHERE session_id=?");
+        who.bind(id).step();
+        for (const std::string& conflict : conflicts)
+            report_.conflicts.push_back(source_ + ": " + who.text(0) + ", " + conflict);
+    }
+
+    /// What the session consists of, a line each; remarks on it apart.
+    static std::string contents(const std::string& schema) {
+        const std::string of = " FROM " + schema + ".", where = " WHERE session_id=?1";
+        return "SELECT json_array('attempt', s.started_utc, s.station, t.trial_index, a.attempt_no, a.start_ns, "
+               "a.end_ns, a.outcome, a.seed, a.state_hash)" +
+               of + "attempt a JOIN " + schema + ".trial_plan t USING(trial_id) JOIN " + schema +
+               ".session s USING(session_id)" + where +
+               " UNION ALL SELECT json_array('segment', started_utc, utc_zero, mono_zero_ns)" + of + "segment" + where +
+               " UNION ALL SELECT json_array('form', questionnaire_sha256, moment, block_index, (SELECT trial_index "
+               "FROM " +
+               schema + ".trial_plan t WHERE t.trial_id=q.trial_id), started_utc, completed_utc)" + of +
+               "questionnaire_run q" + where + " UNION ALL SELECT 'complete'" + of + "session" + where +
+               " AND end_state='complete'";
+    }
+
+    /// Has the session in `other` anything that it has not in `one`?
     bool lacks(const std::string& one, const std::string& other, const std::string& id) const {
-        const auto attempts = [](const std::string& schema) {
-            return "SELECT s.started_utc, s.station, t.trial_index, a.attempt_no, a.start_ns, a.end_ns, a.outcome, "
-                   "a.seed, "
-                   "a.state_hash FROM " +
-                   schema + ".attempt a JOIN " + schema + ".trial_plan t USING(trial_id) JOIN " + schema +
-                   ".session s USING(session_id) WHERE s.session_id=?1";
-        };
-        Statement find = database_.prepare(attempts(one) + " EXCEPT " + attempts(other) + " LIMIT 1");
+        Statement find = database_.prepare(contents(other) + " EXCEPT SELECT * FROM (" + contents(one) + ") LIMIT 1");
         return find.bind(id).step();
     }
 

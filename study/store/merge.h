@@ -12,16 +12,18 @@ namespace passung::store {
 /// What a merge did.
 struct MergeReport {
     std::int64_t sessions = 0;  // added
-    std::int64_t replaced = 0;  // had gone on at their station since an earlier merge
+    std::int64_t replaced = 0;  // went on, or got notes or invalidations, since an earlier merge
     std::int64_t known = 0;     // there already
     std::vector<std::string>
         unfinished;  // left out: still running, or killed and not opened since: "B.db: P001, session 1"
     std::vector<std::string> moved_places;  // participants whose place in the design another one had as well
+    std::vector<std::string> conflicts;     // what two files say differently, and which of it stays
 };
 
 /// Adds everything of `sources` that `out` does not hold yet; `out` is made if it is not there, and appears or changes
-/// as a whole or not at all. Merging the same again changes nothing. Refused: another study, one version of a protocol
-/// with two texts, seeds, meshes or picks of accuracy, and one code for two people.
+/// as a whole or not at all. Merging the same again changes nothing, and nothing said about a session is lost: notes
+/// and events of both are kept, and an attempt that does not count in one file does not count. Refused: another study,
+/// one version of a protocol with two texts, seeds, meshes or picks of accuracy, and one code for two people.
 Result<MergeReport> mergeDatabases(const std::vector<std::string>& sources, const std::string& out,
                                    const OpenOptions& options);
 

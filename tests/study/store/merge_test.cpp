@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <functional>
 #include <map>
@@ -172,12 +173,106 @@ TEST(Merge, AddsWhatIsNewAndBringsAChangedSessionUpToDate) {
     EXPECT_EQ(later.sessions, 0);
     EXPECT_EQ(later.replaced, 2);
     EXPECT_EQ(digests(all), digests(a));
-    EXPECT_EQ(merge({older}, all).replaced, 1) << "an ended trial that was called valid once more";
-    merge({a}, all);
+    EXPECT_EQ(merge({older}, all).known, 2) << "an older copy knows nothing of that and takes nothing back";
+    EXPECT_EQ(digests(all), digests(a));
     Database(older, OpenMode::ReadWrite).execute("DELETE FROM session WHERE participant_id='PA001'");
     EXPECT_EQ(merge({older}, all).known, 1) << "one trial less than is there";
     EXPECT_EQ(digests(all), digests(a));
     expectSound(all);
+}
+
+/// Notes and invalid attempts, as the export would show them.
+std::vector<std::string> remarks(const std::string& path) {
+    const StoreReader reader = require(StoreReader::open(path));
+    std::vector<std::string> lines;
+    for (const NoteRow& note : require(reader.notes())) lines.push_back(note.entry + ": " + note.text.value_or(""));
+    for (const AttemptRow& attempt : require(reader.attempts()))
+        if (!attempt.valid) lines.push_back(*attempt.invalid_reason);
+    std::sort(lines.begin(), lines.end());
+    return lines;
+}
+
+TEST(Merge, KeepsWhatWasSaidInTheResultAndUnitesItWithWhatIsSaidAtTheStation) {
+    // Truth: invariant. Notes and invalidations of both files are there after any order of merges, once each.
+    const fake::TempFolder folder;
+    const std::string a = folder / "A.db", all = folder / "ALL.db";
+    Place(a, kA).perform("2001-01-01");
+    merge({a}, all);
+    {
+        const auto store = fake::openStore(all);
+        require(store->addNote(1, "looked at the video"));
+        require(store->invalidateAttempt(1, "the phone rang"));
+    }
+    std::vector<std::string> said = {"invalidate: the phone rang", "invalidated by the experimenter: the phone rang",
+                                     "note: looked at the video"};
+    EXPECT_EQ(remarks(all), said);
+    EXPECT_EQ(merge({a}, all).known, 1);
+    EXPECT_EQ(remarks(all), said);
+    {
+        const auto store = fake::openStore(a);
+        require(store->addNote(1, "the participant was tired"));
+        require(store->invalidateAttempt(1, "a noise outside"));
+        require(store->invalidateAttempt(2, "looked away"));
+    }
+    const MergeReport later = merge({a}, all);
+    EXPECT_EQ(later.replaced, 1);
+    ASSERT_EQ(later.conflicts.size(), 1u);
+    EXPECT_EQ(later.conflicts[0], a + ": PA001, session 1, trial 1, attempt 1 does not count for two reasons: "
+                                      "\"invalidated by the experimenter: the phone rang\" stays, \"invalidated by the "
+                                      "experimenter: a noise outside\" is not kept");
+    said.insert(said.end(), {"invalidate: a noise outside", "invalidate: looked away",
+                             "invalidated by the experimenter: looked away", "note: the participant was tired"});
+    std::sort(said.begin(), said.end());
+    EXPECT_EQ(remarks(all), said);
+    EXPECT_EQ(merge({a}, all).replaced, 0);
+    EXPECT_EQ(remarks(all), said);
+    expectSound(all);
+}
+
+TEST(Merge, ASessionThatGoesOnAtItsStationKeepsWhatWasSaidInTheResult) {
+    // Truth: invariant. The older copy that was merged first had one trial less.
+    const fake::TempFolder folder;
+    const std::string a = folder / "A.db", older = folder / "older.db", all = folder / "ALL.db";
+    {
+        Place one(a, kA);
+        require(one.store().enrol("PA001", ParticipantKind::Real, "2001-01-02"));
+        const auto writer = one.begin("PA001", "");
+        require(fake::writeAttempt(*writer, 0, kTicks));
+        Database(a, OpenMode::ReadWrite).copyTo(older);
+        require(fake::writeAttempt(*writer, 1, kTicks));
+        require(writer->finishSession(true, 1'000'000'000));
+    }
+    Database(older, OpenMode::ReadWrite).execute("UPDATE session SET end_state='aborted' WHERE end_state IS NULL");
+    merge({older}, all);
+    {
+        const auto store = fake::openStore(all);
+        require(store->addNote(1, "looked at the video"));
+        require(store->invalidateAttempt(1, "the phone rang"));
+    }
+    const auto said = remarks(all);
+    ASSERT_EQ(said.size(), 3u);
+    EXPECT_EQ(merge({a}, all).replaced, 1);
+    EXPECT_EQ(remarks(all), said);
+    EXPECT_EQ(Database(all, OpenMode::ReadOnly).integer("SELECT count(*) FROM attempt"), 2);
+    EXPECT_EQ(Database(all, OpenMode::ReadOnly).text("SELECT end_state FROM session"), "complete");
+    EXPECT_EQ(merge({older, a}, all).known, 2);
+    EXPECT_EQ(remarks(all), said);
+}
+
+TEST(Merge, AFormFilledAfterTheLastTrialArrives) {
+    // Truth: invariant. No attempt is new, but the session is now complete, with a form more.
+    const fake::TempFolder folder;
+    const std::string a = folder / "A.db", all = folder / "ALL.db";
+    Place(a, kA).perform("2001-01-01");
+    Database(a, OpenMode::ReadWrite).execute("UPDATE session SET end_state='aborted'");
+    merge({a}, all);
+    const Database database(a, OpenMode::ReadWrite);
+    database.execute(
+        "INSERT INTO questionnaire VALUES('q', 'sus', '1', 'en', 'free', '{}'); INSERT INTO "
+        "questionnaire_run(session_id, questionnaire_sha256, moment, started_utc) SELECT session_id, 'q', "
+        "'session_end', '2001-01-01' FROM session; UPDATE session SET end_state='complete'");
+    EXPECT_EQ(merge({a}, all).replaced, 1);
+    EXPECT_EQ(digests(all), digests(a));
 }
 
 TEST(Merge, GivesTheSecondOfOnePlaceTheSameRowInAFurtherReplicate) {
