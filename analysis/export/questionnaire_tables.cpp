@@ -43,6 +43,9 @@ private:
     std::map<std::tuple<std::string, std::optional<std::string>, std::string>, std::optional<Definition>> known_;
 };
 
+/// Forms that enter means, in the order of the study's rows.
+using CountedRuns = std::vector<const QuestionnaireRunRow*>;
+
 /// Who was asked what, and when: columns that items and scores begin with.
 std::vector<Column> runColumns() {
     return {
@@ -70,10 +73,18 @@ std::vector<Column> runColumns() {
          1,
          {}},
         {"completed_utc", "When the last answer was given", "", "time", "", 1, {}},
+        {"counted",
+         "1 if means and reliability count this form: of a counted session (see sessions.csv) the newest one about its "
+         "occasion",
+         "",
+         "0/1",
+         "",
+         1,
+         {"0", "1"}},
     };
 }
 
-std::vector<std::string> runCells(const QuestionnaireRunRow& run) {
+std::vector<std::string> runCells(const QuestionnaireRunRow& run, const CountedRuns& counted) {
     return {run.participant_id,
             run.kind,
             cell(run.session_ordinal),
@@ -85,15 +96,23 @@ std::vector<std::string> runCells(const QuestionnaireRunRow& run) {
             cell(run.block),
             cell(run.trial_index),
             cell(run.condition),
-            cell(run.completed_utc)};
+            cell(run.completed_utc),
+            cell(std::binary_search(counted.begin(), counted.end(), &run))};
 }
 
-/// Runs of the counted sessions only.
-std::vector<const QuestionnaireRunRow*> countedRuns(const StudyData& study) {
+/// Of the counted sessions the newest form of each occasion: who goes back to a trial or block is asked again.
+CountedRuns countedRuns(const StudyData& study) {
     const std::set<std::string> counted = countedSessions(study);
-    std::vector<const QuestionnaireRunRow*> runs;
+    using Occasion = std::tuple<std::string, std::string, std::string, std::optional<std::int64_t>,
+                                std::optional<std::int64_t>, std::optional<std::string>>;
+    std::map<Occasion, const QuestionnaireRunRow*> newest;  // rows come as they were filled in
     for (const QuestionnaireRunRow& run : study.questionnaires)
-        if (counted.count(run.session_id) != 0) runs.push_back(&run);
+        if (counted.count(run.session_id) != 0)
+            newest[{run.session_id, run.questionnaire, run.moment, run.block_index, run.trial_index, run.condition}] =
+                &run;
+    CountedRuns runs;
+    for (const auto& [occasion, run] : newest) runs.push_back(run);
+    std::sort(runs.begin(), runs.end());
     return runs;
 }
 
@@ -153,9 +172,10 @@ Table makeQuestionnaireItems(const StudyData& study) {
         {"protocol_sha256", "SHA-256 of the protocol's text, see protocol/", "", "text", "", 1, {}},
     };
     table.columns.insert(table.columns.end(), more.begin(), more.end());
+    const CountedRuns counted = countedRuns(study);
     for (const QuestionnaireRunRow& run : study.questionnaires) {
         for (const store::ItemResponseRow& item : run.responses) {
-            std::vector<std::string> row = runCells(run);
+            std::vector<std::string> row = runCells(run, counted);
             row.insert(row.end(), {item.item, cell(item.presented_index), cell(item.value_num), cell(item.value_text),
                                    cell(item.skipped), cell(item.rt_ms), cell(item.changes), run.protocol_sha256});
             table.rows.push_back(std::move(row));
@@ -179,12 +199,13 @@ Table makeQuestionnaireScores(const StudyData& study) {
     };
     table.columns.insert(table.columns.end(), more.begin(), more.end());
     Definitions definitions;
+    const CountedRuns counted = countedRuns(study);
     for (const QuestionnaireRunRow& run : study.questionnaires) {
         for (const store::ScoreRow& score : run.scores) {
             const questionnaire::Scale* scale = definitions.scale(run, score.scale);
             const std::string label(scale != nullptr && score.value ? questionnaire::classOf(*scale, *score.value)
                                                                     : "");
-            std::vector<std::string> row = runCells(run);
+            std::vector<std::string> row = runCells(run, counted);
             row.insert(row.end(),
                        {score.scale, scale != nullptr ? scale->label : kMissing, cell(score.value),
                         label.empty() ? kMissing : label, cell(score.n_items), cell(score.n_missing),
@@ -200,7 +221,7 @@ Table makeQuestionnaireScores(const StudyData& study) {
 Table makeScoresWide(const StudyData& study) {
     Table table{
         "scores_wide.csv",
-        "One row per participant and protocol, one column per scale and occasion: mean of the counted session's "
+        "One row per participant and protocol, one column per scale and occasion: mean of the counted forms' "
         "scores.",
         {{"participant_id", "Code of the participant", "", "text", "", 1, {}},
          {"kind", "Real person, pilot or simulated participant", "", "text", "", 1, protocol::participantKindNames()},
@@ -258,7 +279,7 @@ Table makeReliability(const StudyData& study) {
          {"version", "Version of its items and texts", "", "text", "", 1, {}},
          {"moment", "When it was asked", "", "text", "", 1, {}},
          {"scale", "Name of the scale", "", "text", "", 1, {}},
-         {"n_forms", "Forms of the counted sessions without a missing item in the scale", "", "integer", "", 1, {}},
+         {"n_forms", "Counted forms without a missing item in the scale", "", "integer", "", 1, {}},
          {"n_items", "Items of the scale", "", "integer", "", 1, {}},
          {"cronbach_alpha",
           "Internal consistency; forms of one person count as if they were independent",

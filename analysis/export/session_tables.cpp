@@ -54,8 +54,8 @@ Table makeSessions(const StudyData& study) {
          {"ended_utc", "End", "", "time", "", 1, {}},
          {"end_state", "How the session ended", "", "text", "", 1, {"complete", "aborted", "crashed", "withdrawn"}},
          {"counted",
-          "1 if the tables of cells count this session: the one that the participant completed under this protocol, "
-          "else the latest",
+          "1 if cells, scores and thresholds count this session: one that the participant completed under this "
+          "protocol, else the latest; 0 if the participant is excluded",
           "",
           "0/1",
           "",

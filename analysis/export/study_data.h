@@ -41,7 +41,8 @@ Result<StudyData> readStudy(const store::StoreReader& reader);
 /// The label of `factor`, NA where the condition does not have it.
 std::string levelOf(const store::Levels& levels, const std::string& factor);
 
-/// Of each participant and protocol the sessions that means are taken over: the complete ones, else the latest.
+/// Of each participant and protocol the sessions that means are taken over: the complete ones, else the latest; none
+/// of whoever is excluded.
 std::set<std::string> countedSessions(const StudyData& study);
 
 /// Attempts that count in means (AttemptRow::counts()) of the counted session, of one participant under one protocol

@@ -6,6 +6,7 @@
 
 #include "analysis/export/export.h"
 #include "study/questionnaire/cronbach_alpha.h"
+#include "study/store/participant_desk.h"
 #include "tests/analysis/export/csv_reader.h"
 #include "tests/study/store/fake_questionnaire.h"
 
@@ -20,6 +21,14 @@ constexpr std::int64_t kSecond = 1'000'000'000;
 class QuestionnaireTables : public testing::Test {
 protected:
     void SetUp() override {
+        writeStudy();
+        exportNow();
+    }
+    void exportNow() {
+        const auto reader = require(store::StoreReader::open(folder_ / "s.db"));
+        require(exportAll(reader, folder_ / "out", {}));
+    }
+    void writeStudy() {
         auto store = fake::openStore(folder_ / "s.db");
         for (int person = 0; person < 2; ++person) {
             auto writer = fake::beginAskingSession(*store, plan_, person == 0 ? "S001" : "S002", 4);
@@ -34,8 +43,6 @@ protected:
                                     fake::kHardText));
             require(writer->finishSession(true, 3 * kSecond));
         }
-        const auto reader = require(store::StoreReader::open(folder_ / "s.db"));
-        require(exportAll(reader, folder_ / "out", {}));
     }
     fake::CsvFile csv(const std::string& name) {
         std::ifstream stream(folder_ / ("out/" + name), std::ios::binary);
@@ -106,6 +113,54 @@ TEST_F(QuestionnaireTables, ReliabilityLeavesOutFormsWithAMissingItem) {
             EXPECT_EQ(table.at(row, "cronbach_alpha"), "NA");
         }
     }
+}
+
+TEST_F(QuestionnaireTables, WhoIsExcludedCountsNowhere) {
+    // Truth: invariant: without S001 everything that counts is S002's alone; the forms stay in the long tables.
+    {
+        const auto store = fake::openStore(folder_ / "s.db");
+        require(store::ParticipantDesk(*store, {"e", ""}).exclude("S001", "asleep"));
+    }
+    exportNow();
+    const auto wide = csv("scores_wide.csv");
+    ASSERT_EQ(wide.rows.size(), 1u);
+    EXPECT_EQ(wide.at(0, "participant_id"), "S002");
+    const auto reliability = csv("questionnaire_reliability.csv");
+    for (std::size_t row = 0; row < reliability.rows.size(); ++row) {
+        if (reliability.at(row, "scale") == "clarity") {
+            EXPECT_EQ(reliability.at(row, "n_forms"), "4");
+        }
+    }
+    for (const char* file : {"questionnaire_items.csv", "questionnaire_scores.csv", "sessions.csv"}) {
+        const auto table = csv(file);
+        for (std::size_t row = 0; row < table.rows.size(); ++row)
+            EXPECT_EQ(table.at(row, "counted"), table.at(row, "participant_id") == "S001" ? "0" : "1") << file;
+    }
+}
+
+TEST_F(QuestionnaireTables, OnlyTheNewestFormOfAnOccasionCounts) {
+    // Truth: closed form: one condition asked about twice, 3 then 7 at every item, in one session: clarity is 7.
+    const std::string path = folder_ / "again.db";
+    {
+        auto store = fake::openStore(path);
+        auto writer = fake::beginAskingSession(*store, plan_, "S003", 4);
+        for (const double answer : {3.0, 7.0})
+            for (const std::size_t condition : {0u, 1u})
+                require(fake::storeForm(*writer, plan_, {0, 0, {}, condition},
+                                        std::vector<std::optional<double>>(8, condition == 0 ? answer : 5.0), kSecond));
+        require(writer->finishSession(true, 3 * kSecond));
+    }
+    require(exportAll(require(store::StoreReader::open(path)), folder_ / "out", {}));
+    const auto wide = csv("scores_wide.csv");
+    const std::string clarity = "contact_perception.clarity.after_condition.main, \"first\".";
+    EXPECT_EQ(wide.at(0, clarity + "penalty_0.1"), "7");
+    EXPECT_EQ(wide.at(0, clarity + "penalty_0_5"), "5");
+    const auto items = csv("questionnaire_items.csv");
+    ASSERT_EQ(items.rows.size(), 4u * 8u) << "all of them are there";
+    for (std::size_t row = 0; row < items.rows.size(); ++row)
+        EXPECT_EQ(items.at(row, "counted"), row < 16 ? "0" : "1") << row;
+    const auto reliability = csv("questionnaire_reliability.csv");
+    EXPECT_EQ(reliability.at(0, "n_forms"), "2");
 }
 
 TEST_F(QuestionnaireTables, AreInTheCodebook) {
