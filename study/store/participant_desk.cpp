@@ -20,14 +20,6 @@ void requireEnrolled(const Database& database, const std::string& code) {
         throw std::runtime_error("participant " + code + " is not enrolled");
 }
 
-void refuseErasedCode(const Database& database, const std::string& code, protocol::ParticipantKind kind) {
-    const std::int64_t to = erasedCodesTo(database, kind);
-    if (codeNumber(code) <= to)
-        throw std::runtime_error("participant code " + code +
-                                 " may be that of somebody who was erased: take one with a number above " +
-                                 std::to_string(to));
-}
-
 /// Every yes that still holds is followed by its end.
 void withdrawConsents(const Database& database, const Actor& actor, const std::string& code) {
     database
@@ -93,9 +85,8 @@ Result<Done> ParticipantDesk::enrol(const std::string& code, protocol::Participa
                                     const std::string& created_utc) {
     return store_.thread_->call([&](const Database& database) {
         Transaction transaction(database);
-        if (!insertParticipant(database, code, kind, created_utc))
+        if (!insertParticipant(database, code, kind, created_utc, store_.options_.station))
             throw std::runtime_error("participant " + code + " is already enrolled");
-        refuseErasedCode(database, code, kind);
         appendAudit(database, actor_, "enrol",
                     protocol::JsonObject().text("participant", code).text("kind", protocol::participantKindName(kind)));
         transaction.commit();

@@ -3,7 +3,33 @@
 #include <charconv>
 #include <stdexcept>
 
+#include "study/store/audit.h"
+
 namespace passung::store {
+namespace {
+
+/// Stations whose codes were alike could not be merged.
+void refuseCodeOfNoStation(const std::string& code, protocol::ParticipantKind kind, const Station& station) {
+    const std::string start = codeStart(kind, station);
+    if (code.starts_with(start)) return;
+    throw std::runtime_error("participant code '" + code + "': with " + std::to_string(station.count) +
+                             " stations the codes of station " + station.name + " begin with " + start + ", such as " +
+                             start + "001");
+}
+
+void refuseErasedCode(const Database& database, const std::string& code, protocol::ParticipantKind kind) {
+    const std::int64_t to = erasedCodesTo(database, kind);
+    if (codeNumber(code) <= to)
+        throw std::runtime_error("participant code " + code +
+                                 " may be that of somebody who was erased: take one with a number above " +
+                                 std::to_string(to));
+}
+
+}  // namespace
+
+std::string codeStart(protocol::ParticipantKind kind, const Station& station) {
+    return protocol::codeLetter(kind) + (station.count > 1 ? station.name : "");
+}
 
 std::int64_t codeNumber(const std::string& code) {
     const std::size_t digits = code.find_last_not_of("0123456789") + 1;
@@ -13,7 +39,7 @@ std::int64_t codeNumber(const std::string& code) {
 }
 
 bool insertParticipant(const Database& database, const std::string& code, protocol::ParticipantKind wanted,
-                       const std::string& created_utc) {
+                       const std::string& created_utc, const Station& station) {
     const char* kind = protocol::participantKindName(wanted);
     if (!protocol::isParticipantCode(code)) {
         throw std::runtime_error("participant code '" + code +
@@ -30,6 +56,8 @@ bool insertParticipant(const Database& database, const std::string& code, protoc
         if (find.text(0) == kind) return false;
         throw std::runtime_error("participant " + code + " is " + find.text(0) + ", not " + kind);
     }
+    refuseCodeOfNoStation(code, wanted, station);
+    refuseErasedCode(database, code, wanted);
     database.prepare("INSERT INTO participant VALUES(?, ?, 'enrolled', NULL, ?)").bind(code, kind, created_utc).run();
     return true;
 }

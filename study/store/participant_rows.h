@@ -5,15 +5,19 @@
 
 #include "study/protocol/participant.h"
 #include "study/store/sqlite.h"
+#include "study/store/station.h"
 
 namespace passung::store {
 
 /// The number at the end of a code: 12 of P012.
 std::int64_t codeNumber(const std::string& code);
 
-/// False if the participant is there already with this kind. Throws for a code that is none of this kind. For this room
-/// only, within the caller's transaction.
+/// What the codes of this kind begin with at the station: P; of several stations PB.
+std::string codeStart(protocol::ParticipantKind kind, const Station& station);
+
+/// False if the participant is there already with this kind. Throws for a code that is none of this kind and station,
+/// and for one that an erased participant may have had. For this room only, within the caller's transaction.
 bool insertParticipant(const Database& database, const std::string& code, protocol::ParticipantKind wanted,
-                       const std::string& created_utc);
+                       const std::string& created_utc, const Station& station);
 
 }  // namespace passung::store

@@ -389,7 +389,7 @@ Result<Done> Store::keepAccuracy(const std::vector<AccuracyRow>& rows) {
 Result<bool> Store::enrol(const std::string& code, protocol::ParticipantKind kind, const std::string& created_utc) {
     return thread_->call([&](const Database& database) {
         Transaction transaction(database);
-        const bool fresh = insertParticipant(database, code, kind, created_utc);
+        const bool fresh = insertParticipant(database, code, kind, created_utc, options_.station);
         transaction.commit();
         return fresh;
     });

@@ -16,6 +16,7 @@
 #include "study/store/identity.h"
 #include "study/store/rows.h"
 #include "study/store/session_writer.h"
+#include "study/store/station.h"
 #include "study/store/unfinished.h"
 #include "study/store/utc_clock.h"
 
@@ -32,14 +33,6 @@ struct RecoveryReport {
     std::vector<std::string> crashed_sessions;  // "S001, session 1"
     std::string later_utc;  // the newest time that this file holds, if this machine's clock says an earlier one
     bool empty() const { return crashed_attempts.empty() && crashed_sessions.empty(); }
-};
-
-/// One of several places where a study runs, each with a database of its own. Each takes only its own replicates of the
-/// square and has codes of its own, so that the databases can be merged.
-struct Station {
-    std::string name = "local";  // of several: a capital letter
-    int index = 0;               // from 0
-    int count = 1;
 };
 
 struct OpenOptions {
@@ -107,7 +100,8 @@ public:
     Result<std::vector<protocol::StableStiffness>> stableStiffness(const std::string& protocol_sha256);
 
     /// True if the participant is new, false if already enrolled with this kind; another kind is an error, and so is a
-    /// code that does not begin with the kind's letter.
+    /// code that does not begin with the kind's letter (of several stations: with theirs behind it), or that an erased
+    /// participant may have had.
     Result<bool> enrol(const std::string& code, protocol::ParticipantKind kind, const std::string& created_utc);
 
     /// The first unused code of the kind: P001, P002 … for real participants; of several stations PB001, PB002 ….

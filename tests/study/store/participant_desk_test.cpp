@@ -271,7 +271,31 @@ TEST(ParticipantDesk, ACodeThatAnErasedParticipantMayHaveHadIsNotGivenAgain) {
     require(desk.erase("P002"));
     EXPECT_EQ(require(store->nextCode(ParticipantKind::Real)), "P004");
     EXPECT_NE(messageOf(desk.enrol("P002", ParticipantKind::Real, "")).find("number above 3"), std::string::npos);
+    EXPECT_EQ(messageOf(store->enrol("P002", ParticipantKind::Real, "")),
+              messageOf(desk.enrol("P002", ParticipantKind::Real, "")))
+        << "a run with that code";
+    EXPECT_FALSE(require(store->enrol("P001", ParticipantKind::Real, ""))) << "who is there stays who they are";
     EXPECT_EQ(require(store->nextCode(ParticipantKind::Pilot)), "T001");
+}
+
+TEST(ParticipantDesk, CodesOfSeveralStationsCarryTheirLetter) {
+    // Truth: invariant. Else the stations' files could not be merged; who is there already stays who they are.
+    const fake::TempFolder folder;
+    require(fake::openStore(folder / "s.db")->enrol("P001", ParticipantKind::Real, ""));
+    OpenOptions options = fake::options();
+    options.station = {"B", 1, 2};
+    const auto store = fake::openStore(folder / "s.db", options);
+    ParticipantDesk desk(*store, kActor);
+    for (const char* code : {"P002", "PA002", "TB001"}) {
+        EXPECT_FALSE(desk.enrol(code, ParticipantKind::Real, "")) << code;
+        EXPECT_FALSE(store->enrol(code, ParticipantKind::Real, "")) << code;
+    }
+    EXPECT_EQ(messageOf(desk.enrol("PA002", ParticipantKind::Real, "")),
+              "participant code 'PA002': with 2 stations the codes of station B begin with PB, such as PB001");
+    EXPECT_FALSE(require(store->enrol("P001", ParticipantKind::Real, "")));
+    require(desk.enrol("PB002", ParticipantKind::Real, ""));
+    require(desk.enrol("TB-7", ParticipantKind::Pilot, ""));
+    EXPECT_EQ(require(store->nextCode(ParticipantKind::Real)), "PB001");
 }
 
 TEST(ParticipantDesk, TheAuditTellsWhereItWasTamperedWith) {
