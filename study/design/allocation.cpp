@@ -24,11 +24,30 @@ std::vector<Place> placesOf(const Allocation& allocation, std::string_view strat
     return places;
 }
 
-std::vector<Place> firstPlaces(const Allocation& allocation, std::string_view stratum, std::size_t count) {
+std::vector<std::size_t> rowsOf(const Design& design) {
+    std::vector<std::size_t> rows;
+    for (const Wheel& wheel : wheelsOf(design)) rows.push_back(rowsOf(wheel));
+    return rows;
+}
+
+std::size_t firstRow(std::span<const std::size_t> rows, const Share& share) {
+    std::size_t first = 0, place_value = 1;
+    for (const std::size_t count : rows) {
+        first += share.index * count / share.count % count * place_value;
+        place_value *= count;
+    }
+    return first;
+}
+
+std::vector<Place> firstPlaces(const Allocation& allocation, std::string_view stratum, std::size_t count,
+                               const Share& share, std::size_t first_row) {
     std::vector<Place> places;
     for (std::size_t round = 0; places.size() < count; ++round)
-        for (const Place& place : placesOf(allocation, stratum, round))
-            if (places.size() < count) places.push_back(place);
+        for (Place place : placesOf(allocation, stratum, round)) {
+            if (places.size() == count || place.replicate % share.count != share.index) continue;
+            place.sequence = (place.sequence + first_row) % allocation.sequences;
+            places.push_back(place);
+        }
     return places;
 }
 

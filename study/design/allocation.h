@@ -2,8 +2,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
+
+#include "study/design/design.h"
 
 namespace passung::design {
 
@@ -31,7 +34,22 @@ struct Place {
 /// that what counts is who completed or is under way, not who started.
 std::vector<Place> placesOf(const Allocation& allocation, std::string_view stratum, std::size_t round);
 
-/// The first `count` of all rounds.
-std::vector<Place> firstPlaces(const Allocation& allocation, std::string_view stratum, std::size_t count);
+/// One of several stations at which a study runs. Each takes whole replicates of its own, every count-th of them.
+struct Share {
+    std::size_t index = 0;
+    std::size_t count = 1;
+};
+
+/// Rows of everything that takes turns, the fastest first.
+std::vector<std::size_t> rowsOf(const Design& design);
+
+/// The row with which a station begins its replicates, the others following around. Were it the first everywhere, few
+/// people at each station would meet the first rows only. `rows`: see rowsOf(); each
+/// of them begins count-th parts of its rows apart. 0 for the first station.
+std::size_t firstRow(std::span<const std::size_t> rows, const Share& share);
+
+/// The places that a station's first `count` participants of a stratum take, who begin with row `first_row`.
+std::vector<Place> firstPlaces(const Allocation& allocation, std::string_view stratum, std::size_t count,
+                               const Share& share = {}, std::size_t first_row = 0);
 
 }  // namespace passung::design

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "study/design/allocation.h"
 #include "study/protocol/json.h"
 #include "study/protocol/task_json.h"
 
@@ -343,6 +344,7 @@ std::string expandedJson(const StudyPlan& plan) {
         .json("resume", resumeJson(plan.resume))
         .json("groups", listOf(groupNames(plan), [](const std::string& name) { return jsonText(name); }))
         .integer("allocation_blocks", plan.allocation_blocks)
+        .json("rows", listOf(design::rowsOf(designOf(plan)), [](std::size_t rows) { return std::to_string(rows); }))
         .integer("sessions", sessionsOf(plan))
         .json("analyses", listOf(plan.analyses, analysisJson))
         .json("texts", listOf(plan.texts, textJson))

@@ -21,8 +21,10 @@ struct DesignPlace {
 Result<std::vector<design::PlannedTrial>> planTrials(const protocol::StudyPlan& plan, const DesignPlace& place,
                                                      std::string_view participant, int session = 1);
 
-/// The places of the first `count` participants of a kind, as the store allots them.
+/// The places of the first `count` participants of a kind, as the store allots them; with several `stations` each takes
+/// the next one in turn.
 std::vector<DesignPlace> firstPlaces(const protocol::StudyPlan& plan, std::size_t count,
-                                     protocol::ParticipantKind kind = protocol::ParticipantKind::Real);
+                                     protocol::ParticipantKind kind = protocol::ParticipantKind::Real,
+                                     std::size_t stations = 1);
 
 }  // namespace passung::session

@@ -145,10 +145,20 @@ std::size_t wholeNumber(const design::Design& design) {
     return design::sequencesOf(design) * design::groupsOf(design).size();
 }
 
-std::string balanceText(const design::Design& design, const std::vector<std::string>& groups,
-                        const std::vector<DesignPlace>& places) {
+/// The code that the program gives the i-th participant, from 0.
+std::string codeOf(std::size_t i, std::size_t stations) {
+    const auto number = static_cast<std::int64_t>(i / stations) + 1;
+    auto code = protocol::participantCode(protocol::ParticipantKind::Real, number);
+    if (stations > 1) code.insert(1, 1, static_cast<char>('A' + i % stations));
+    return code;
+}
+
+}  // namespace
+
+std::string describeBalance(const protocol::StudyPlan& plan, const std::vector<DesignPlace>& places) {
+    const auto design = protocol::designOf(plan);
     if (places.empty() || wholeNumber(design) < 2) return "";
-    if (isPlainSquare(design)) return design::balanceSentence(places.size(), design::wheelsOf(design)[0].items) + ".\n";
+    const auto groups = protocol::groupNames(plan);
     std::string text = fmt::format("{}; all rows and groups meet equally often with multiples of {}.\n",
                                    design::counted(places.size(), "participant"), wholeNumber(design));
     for (std::size_t group = 0; group < groups.size(); ++group) {
@@ -161,8 +171,6 @@ std::string balanceText(const design::Design& design, const std::vector<std::str
     }
     return text;
 }
-
-}  // namespace
 
 std::vector<std::string> planWarnings(const protocol::StudyPlan& plan) {
     std::vector<std::string> warnings = plan.warnings;
@@ -177,7 +185,7 @@ std::vector<std::string> planWarnings(const protocol::StudyPlan& plan) {
     return warnings;
 }
 
-Result<std::string> describePlan(const protocol::StudyPlan& plan, int participants) {
+Result<std::string> describePlan(const protocol::StudyPlan& plan, int participants, int stations) {
     std::string text =
         fmt::format("{}\nstudy {}, version {}, seed {}, {} planned\n\n", plan.title, plan.name, plan.version, plan.seed,
                     design::counted(static_cast<std::size_t>(plan.participants), "participant"));
@@ -186,12 +194,13 @@ Result<std::string> describePlan(const protocol::StudyPlan& plan, int participan
 
     text += "Orders (numbers of conditions; blocks parted by |)\n";
     const auto groups = protocol::groupNames(plan);
-    const auto places = firstPlaces(plan, static_cast<std::size_t>(std::max(participants, 0)));
+    const auto places = firstPlaces(plan, static_cast<std::size_t>(std::max(participants, 0)),
+                                    protocol::ParticipantKind::Real, static_cast<std::size_t>(stations));
     const int sessions = protocol::sessionsOf(plan);
     std::vector<double> longest(static_cast<std::size_t>(sessions));
     std::size_t count = 0;
     for (std::size_t i = 0; i < places.size(); ++i) {
-        const auto code = protocol::participantCode(protocol::ParticipantKind::Real, static_cast<std::int64_t>(i) + 1);
+        const auto code = codeOf(i, static_cast<std::size_t>(stations));
         count = 0;
         for (int session = 1; session <= sessions; ++session) {
             const auto trials = planTrials(plan, places[i], code, session);
@@ -203,7 +212,10 @@ Result<std::string> describePlan(const protocol::StudyPlan& plan, int participan
             count += trials->size();
         }
     }
-    text += balanceText(protocol::designOf(plan), groups, places);
+    const auto design = protocol::designOf(plan);
+    text += stations == 1 && !places.empty() && isPlainSquare(design)
+                ? design::balanceSentence(places.size(), design::wheelsOf(design)[0].items) + ".\n"
+                : describeBalance(plan, places);
 
     text += fmt::format("\nDuration\n  {} a participant, at most", design::counted(count, "trial"));
     for (const double& seconds : longest)

@@ -91,6 +91,7 @@ struct ParticipantRow {
     std::optional<std::string> group;
     std::optional<std::int64_t> sequence_index;
     std::optional<std::int64_t> replicate;
+    std::optional<std::string> place_sha256;  // the protocol that the place is of
     std::int64_t sessions = 0;
 };
 

@@ -20,6 +20,11 @@ SlotDesign slotDesignOf(const Database& database, const std::string& sha256) {
     slots.allocation.sequences = static_cast<std::size_t>(find.integer(1));
     slots.allocation.blocks_of = static_cast<std::size_t>(find.integer(2));
     slots.allocation.seed = static_cast<std::uint64_t>(find.integer(3));
+    Statement rows = database.prepare(
+        "SELECT r.value FROM protocol_version p, json_each(p.expanded_json, '$.rows') r WHERE protocol_sha256=?");
+    rows.bind(sha256);
+    while (rows.step()) slots.rows.push_back(static_cast<std::size_t>(rows.integer(0)));
+    if (slots.rows.empty()) slots.rows = {slots.allocation.sequences};
     return slots;
 }
 

@@ -15,6 +15,7 @@ struct SlotDesign {
     std::vector<std::string> groups;
     std::string study;
     design::Allocation allocation;  // without `study`
+    std::vector<std::size_t> rows;  // of everything that takes turns; of older protocols all of it together
 };
 
 SlotDesign slotDesignOf(const Database& database, const std::string& sha256);

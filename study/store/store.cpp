@@ -209,15 +209,24 @@ void refuseComplete(const Database& database, const std::string& sha256, const s
                              "; nobody takes part twice");
 }
 
-/// The first free slot of the station that fits and its row; nothing if there is none.
+/// The first free slot of the station that fits and its row; nothing if there is none. Slots are numbered as a single
+/// station takes them; another one takes each with a row that lies its first one further.
 std::optional<std::pair<std::int64_t, Slot>> findFreeSlot(const Database& database, const std::string& sha256,
                                                           const std::string& kind, const SlotDesign& slots,
                                                           const Station& station,
                                                           const std::function<bool(const Slot&)>& fits) {
+    const auto first = design::firstRow(
+        slots.rows, {static_cast<std::size_t>(station.index), static_cast<std::size_t>(station.count)});
     Statement free = database.prepare(
-        "SELECT slot_id, sequence_index, replicate, between_group FROM design_slot "
-        "WHERE protocol_sha256=? AND kind=? AND state='free' AND replicate % ?=? ORDER BY slot_id");
-    free.bind(sha256, kind, station.count, station.index);
+        "SELECT d.slot_id, d.sequence_index, d.replicate, d.between_group FROM design_slot d LEFT JOIN design_slot "
+        "turn "
+        "ON (turn.protocol_sha256, turn.kind, turn.between_group, turn.replicate)="
+        "(d.protocol_sha256, d.kind, d.between_group, d.replicate) AND turn.sequence_index=(d.sequence_index + ?5) % "
+        "?6 "
+        "WHERE d.protocol_sha256=?1 AND d.kind=?2 AND d.state='free' AND d.replicate % ?3=?4 "
+        "ORDER BY coalesce(turn.slot_id, d.slot_id)");
+    free.bind(sha256, kind, station.count, station.index, slots.allocation.sequences - first,
+              slots.allocation.sequences);
     while (free.step())
         if (const Slot slot = slotOf(free, slots); !fits || fits(slot)) return std::pair(free.integer(0), slot);
     return std::nullopt;

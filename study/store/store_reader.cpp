@@ -302,7 +302,7 @@ Result<std::vector<ParticipantRow>> StoreReader::participants() const {
         return readAll<ParticipantRow>(
             database_->prepare(
                 "SELECT p.participant_id, p.kind, p.status, p.status_reason, p.created_utc, d.between_group, "
-                "d.sequence_index, d.replicate, "
+                "d.sequence_index, d.replicate, d.protocol_sha256, "
                 "(SELECT count(*) FROM session s WHERE s.participant_id=p.participant_id) "
                 "FROM participant p LEFT JOIN design_slot d USING(participant_id) ORDER BY p.participant_id"),
             [](const Statement& row) {
@@ -314,7 +314,8 @@ Result<std::vector<ParticipantRow>> StoreReader::participants() const {
                                       optionalText(row, 5),
                                       row.optionalInteger(6),
                                       row.optionalInteger(7),
-                                      row.integer(8)};
+                                      optionalText(row, 8),
+                                      row.integer(9)};
             });
     });
 }

@@ -21,6 +21,7 @@ int check(const CheckOptions& options);
 struct ExplainOptions {
     std::string file;      // protocol or scene
     int participants = 0;  // 0: as many as the protocol plans
+    int stations = 1;      // where they take part in turn
     std::string database;  // of the study: what accuracy = "auto" picked there; empty: measured anew
 };
 int explain(const ExplainOptions& options);

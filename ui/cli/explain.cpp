@@ -205,8 +205,8 @@ int explain(const ExplainOptions& options) {
         if (!plan) return fail(plan.errors());
         devices = app::devicesAsKept(*stable);
     }
-    const auto described =
-        session::describePlan(*plan, options.participants > 0 ? options.participants : plan->participants);
+    const auto described = session::describePlan(
+        *plan, options.participants > 0 ? options.participants : plan->participants, options.stations);
     if (!described) return fail(described.errors());
     fmt::print("{}", *described);
     explainStability(*plan, devices);

@@ -124,6 +124,8 @@ private:
         sub = command("explain", "design, orders and balance, or the stages of a scene's tick", explain_, explain);
         sub->add_option("FILE", explain_.file, "protocol or scene")->required();
         sub->add_option("--participants", explain_.participants, "how many orders to print")->check(wholeFrom<int>(1));
+        sub->add_option("--stations", explain_.stations, "that they take part at in turn; default 1")
+            ->check(between(1.0, 26.0, "a number from 1 to 26"));
         sub->add_option("--db", explain_.database,
                         "the study's database: shows what accuracy = \"auto\" picked there instead of measuring anew");
 

@@ -5,6 +5,7 @@
 #include "ui/app/wall_clock.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
+#include "ui/cli/places.h"
 
 namespace passung::cli {
 
@@ -19,6 +20,7 @@ int merge(const MergeOptions& options) {
     for (const std::string& conflict : report->conflicts) fmt::print("{}\n", conflict);
     fmt::print("{}: {} sessions added, {} brought up to date, {} known\n", options.out, report->sessions,
                report->replaced, report->known);
+    if (const auto reader = store::StoreReader::open(options.out)) printTakenPlaces(*reader);
     return 0;
 }
 

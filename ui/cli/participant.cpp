@@ -13,6 +13,7 @@
 #include "ui/app/wall_clock.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
+#include "ui/cli/places.h"
 #include "ui/cli/station.h"
 
 namespace passung::cli {
@@ -86,15 +87,21 @@ int listParticipants(const ParticipantOptions& options) {
     if (!people) return fail(people.errors());
     const auto consents = reader->consents();
     if (!consents) return fail(consents.errors());
-    fmt::print("{:<12} {:<10} {:<10} {:>5} {:>8}  {}\n", "code", "kind", "status", "place", "sessions",
+    const auto protocols = reader->protocols();
+    if (!protocols) return fail(protocols.errors());
+    fmt::print("{:<12} {:<10} {:<10} {:>5} {:<8} {:>8}  {}\n", "code", "kind", "status", "place", "version", "sessions",
                "consent; reason of the status");
     for (const auto& person : *people) {
         const std::string place =
             person.sequence_index ? fmt::format("{}.{}", *person.replicate + 1, *person.sequence_index + 1) : "-";
-        fmt::print("{:<12} {:<10} {:<10} {:>5} {:>8}  {}{}\n", person.participant_id, person.kind, person.status, place,
-                   person.sessions, consentText(*consents, person.participant_id),
+        const auto protocol = std::find_if(protocols->begin(), protocols->end(),
+                                           [&](const auto& row) { return row.sha256 == person.place_sha256; });
+        fmt::print("{:<12} {:<10} {:<10} {:>5} {:<8} {:>8}  {}{}\n", person.participant_id, person.kind, person.status,
+                   place, protocol == protocols->end() ? "-" : protocol->version, person.sessions,
+                   consentText(*consents, person.participant_id),
                    person.status_reason ? "; " + *person.status_reason : "");
     }
+    printTakenPlaces(*reader);
     return 0;
 }
 

@@ -66,6 +66,31 @@ TEST(Slots, StayBalancedWhenThreeInTenDropOut) {
     for (const auto& [place, count] : completed) EXPECT_EQ(count, 4);
 }
 
+TEST(Slots, OfTwoStationsFillOneSquareTogether) {
+    // Truth: closed form: 4 rows, two stations with two people each: every row once, and once more with two more each.
+    const fake::TempFolder folder;
+    const protocol::StudyPlan plan = fake::makePlan();
+    std::map<std::int64_t, int> rows;
+    std::vector<std::unique_ptr<Store>> stores;
+    for (const Station& station : {Station{"A", 0, 2}, Station{"B", 1, 2}}) {
+        OpenOptions options = fake::options();
+        options.station = station;
+        stores.push_back(fake::openStore(folder / (station.name + ".db"), options));
+    }
+    for (int round = 1; round <= 4; ++round) {
+        for (const auto& store : stores) {
+            const std::string sha = require(store->importProtocol(plan));
+            const std::string code = require(store->nextCode(protocol::ParticipantKind::Real));
+            require(store->enrol(code, protocol::ParticipantKind::Real, "2001-01-01T00:00:00.000Z"));
+            ++rows[require(store->assignSlot(sha, code)).sequence_index];
+        }
+        if (round % 2 == 0) {
+            EXPECT_EQ(rows,
+                      (std::map<std::int64_t, int>{{0, round / 2}, {1, round / 2}, {2, round / 2}, {3, round / 2}}));
+        }
+    }
+}
+
 TEST(Slots, AreKeptOverAParticipantsSessions) {
     // Truth: invariant: two sessions, one person, one row; the second may fail and be done again.
     const fake::TempFolder folder;

@@ -22,13 +22,53 @@ TEST(Stations, RunApartAndAreMergedIntoOneDatabase) {
     }
     const std::vector<std::string> merge = {"merge", "A.db", "B.db", "--out", "ALL.db"};
     const Ended merged = runProgram(folder.path(), merge);
-    EXPECT_EQ(merged.out, "ALL.db: 2 sessions added, 0 brought up to date, 0 known\n") << merged.err;
-    EXPECT_EQ(runProgram(folder.path(), merge).out, "ALL.db: 0 sessions added, 0 brought up to date, 2 known\n");
+    const std::string balance =
+        "\nplaces of version 1.0, simulated: 2 participants; all rows and groups meet equally often with multiples of "
+        "2.\n  conditions, Williams square of 2 (2 rows): position counts 1, neighbour counts 1\n";
+    EXPECT_EQ(merged.out, "ALL.db: 2 sessions added, 0 brought up to date, 0 known\n" + balance) << merged.err;
+    EXPECT_EQ(runProgram(folder.path(), merge).out,
+              "ALL.db: 0 sessions added, 0 brought up to date, 2 known\n" + balance);
     const auto list = linesOf(runProgram(folder.path(), {"participant", "list", "ALL.db"}).out);
-    ASSERT_EQ(list.size(), 3u);
-    EXPECT_NE(list[1].find("SA001        simulated  complete     1.1"), std::string::npos) << list[1];
-    EXPECT_NE(list[2].find("SB001        simulated  complete     2.1"), std::string::npos) << list[2];
+    ASSERT_EQ(list.size(), 6u);
+    EXPECT_NE(list[1].find("SA001        simulated  complete     1.1 1.0 "), std::string::npos) << list[1];
+    EXPECT_NE(list[2].find("SB001        simulated  complete     2.2 1.0 "), std::string::npos) << list[2];
+    EXPECT_EQ(list[3] + "\n" + list[4] + "\n" + list[5] + "\n", balance);
     EXPECT_EQ(runProgram(folder.path(), {"replay", "ALL.db"}).exit_code, 0);
+}
+
+TEST(Stations, AChangedVersionCountsItsPlacesApartAndTheListSaysSo) {
+    // Truth: invariant: two people at place 1.1, of different protocols.
+    const TempFolder folder;
+    std::string study = smallStudy();
+    writeText(folder / "study.toml", study);
+    const std::vector<std::string> run = {"run", "study.toml", "--db", "s.db", "--no-backup"};
+    ASSERT_EQ(runProgram(folder.path(), run).exit_code, 0);
+    EXPECT_EQ(runProgram(folder.path(), {"participant", "list", "s.db"}).out.find("warning"), std::string::npos);
+    study.replace(study.find("\"1.0\""), 5, "\"1.1\"");
+    writeText(folder / "study.toml", study);
+    ASSERT_EQ(runProgram(folder.path(), run).exit_code, 0);
+    const std::string list = runProgram(folder.path(), {"participant", "list", "s.db"}).out;
+    EXPECT_NE(list.find("S001         simulated  complete     1.1 1.0 "), std::string::npos) << list;
+    EXPECT_NE(list.find("S002         simulated  complete     1.1 1.1 "), std::string::npos) << list;
+    EXPECT_NE(list.find("warning: versions 1.0, 1.1 of the protocol count their places apart"), std::string::npos)
+        << list;
+}
+
+TEST(Stations, ExplainShowsTheOrdersOfSeveral) {
+    // Truth: closed form: two rows; what one station shows as 1st and 2nd, two stations show too.
+    const TempFolder folder;
+    writeText(folder / "study.toml", smallStudy());
+    const auto explain = [&](const std::string& stations) {
+        return runProgram(folder.path(), {"explain", "study.toml", "--participants", "2", "--stations", stations}).out;
+    };
+    const std::string one = explain("1"), two = explain("2");
+    const auto order = [](const std::string& text, const std::string& code) {
+        const auto at = text.find("  " + code + "  ");
+        return at == std::string::npos ? code + " is missing" : text.substr(at + 4 + code.size(), 3);
+    };
+    EXPECT_EQ(order(one, "P001"), order(two, "PA001"));
+    EXPECT_EQ(order(one, "P002"), order(two, "PB001"));
+    EXPECT_NE(two.find("position counts 1, neighbour counts 1\n"), std::string::npos) << two;
 }
 
 TEST(Stations, AResumedSessionKeepsToItsStationsPlaces) {

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "study/store/store_reader.h"
+
+namespace passung::cli {
+
+/// Prints how even the orders of those are who have a place in the design, for each version of the protocol and kind of
+/// participant; that several versions count their places apart is said too.
+void printTakenPlaces(const store::StoreReader& reader);
+
+}  // namespace passung::cli
