@@ -18,11 +18,11 @@ std::string linkHash(const std::string& previous, const std::string& t_utc, cons
                          .str());
 }
 
+}  // namespace
+
 std::string erasedDetail(const std::string& surrogate) {
     return protocol::JsonObject().text("erased", surrogate).str();
 }
-
-}  // namespace
 
 void appendAudit(const Database& database, const Actor& actor, const std::string& action, protocol::JsonObject detail) {
     const std::string text = detail.text("nonce", randomHex(16)).str();
@@ -43,6 +43,33 @@ void eraseAuditDetails(const Database& database, const std::string& participant,
         .run();
 }
 
+std::vector<AuditRow> auditRows(const Database& database, const std::string& schema,
+                                const std::map<std::string, std::string>& left_out) {
+    std::vector<AuditRow> rows;
+    Statement row = database.prepare(
+        "SELECT t_utc, actor, action, detail_json, prev_hash, hash, detail_sha256, "
+        "json_extract(detail_json, '$.participant'), json_extract(detail_json, '$.erased') IS NOT NULL FROM " +
+        schema + ".audit ORDER BY audit_id");
+    while (row.step()) {
+        const auto erased = left_out.find(row.text(7));
+        const bool leaves = erased != left_out.end();
+        rows.push_back({row.text(0), row.text(1), row.text(2), leaves ? erasedDetail(erased->second) : row.text(3),
+                        row.text(4), row.text(5), row.text(6), leaves || row.integer(8) != 0});
+    }
+    return rows;
+}
+
+void mergeAudit(const Database& database, const std::vector<AuditRow>& rows) {
+    Statement known = database.prepare("SELECT 1 FROM audit WHERE hash=?");
+    Statement insert = database.prepare(
+        "INSERT INTO audit(t_utc, actor, action, detail_json, prev_hash, hash, detail_sha256) "
+        "VALUES(?, ?, ?, ?, ?, ?, ?)");
+    for (const AuditRow& row : rows)
+        if (!known.bind(row.hash).step())
+            insert.bind(row.t_utc, row.actor, row.action, row.detail_json, row.prev_hash, row.hash, row.detail_sha256)
+                .run();
+}
+
 std::int64_t erasedCodesTo(const Database& database, protocol::ParticipantKind kind) {
     Statement last = database.prepare(
         "SELECT coalesce(max(json_extract(detail_json, '$.codes_to')), 0) FROM audit "
@@ -60,19 +87,22 @@ AuditReport checkAudit(const Database& database) {
     const auto report_fault = [&](std::int64_t row, const char* what) {
         report.faults.push_back("row " + std::to_string(row) + ": " + what);
     };
-    std::string previous;
+    std::set<std::string> before;
     Statement row = database.prepare(
         "SELECT audit_id, t_utc, actor, action, detail_json, prev_hash, hash, detail_sha256 FROM audit "
         "ORDER BY audit_id");
     while (row.step()) {
         const std::string detail = row.text(4), detail_sha256 = row.text(7);
-        if (row.text(5) != previous) report_fault(row.integer(0), "does not follow the row before it");
+        if (row.text(5).empty())
+            ++report.chains;
+        else if (before.count(row.text(5)) == 0)
+            report_fault(row.integer(0), "does not follow a row before it");
         if (row.text(6) != linkHash(row.text(5), row.text(1), row.text(2), row.text(3), detail_sha256))
             report_fault(row.integer(0), "has been changed");
         const bool taken_away = surrogates.count(detail) > 0;
         if (!taken_away && sha256Hex(detail) != detail_sha256)
             report_fault(row.integer(0), "its detail has been changed");
-        previous = row.text(6);
+        before.insert(row.text(6));
         ++report.rows;
         report.erased += taken_away ? 1 : 0;
     }

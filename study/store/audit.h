@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "study/protocol/json.h"
 #include "study/protocol/participant.h"
@@ -12,7 +14,8 @@ namespace passung::store {
 
 // What experimenters did to participants, as a chain: every row's hash covers the hash before it and that of its own
 // detail. Erasing a participant takes the details about them away and leaves the chain whole; each detail holds a
-// random text, so that nobody can find an erased code by trying. For this room only: the functions throw.
+// random text, so that nobody can find an erased code by trying. A file into which others were merged holds their
+// chains beside its own: every row follows an earlier one, or begins a chain. For this room only: the functions throw.
 
 /// Who does something, and when.
 struct Actor {
@@ -23,13 +26,29 @@ struct Actor {
 /// Adds a row at the end of the chain, within the caller's transaction.
 void appendAudit(const Database& database, const Actor& actor, const std::string& action, protocol::JsonObject detail);
 
+/// What stands in the place of a detail about somebody erased.
+std::string erasedDetail(const std::string& surrogate);
+
 /// Takes away every detail about the participant; `surrogate` stands in its place.
 void eraseAuditDetails(const Database& database, const std::string& participant, const std::string& surrogate);
 
 /// The highest number that a code of this kind had when somebody of it was last erased; 0 if nobody was.
 std::int64_t erasedCodesTo(const Database& database, protocol::ParticipantKind kind);
 
-/// Walks the chain. Rows cut off its end cannot be missed.
+struct AuditRow {
+    std::string t_utc, actor, action, detail_json, prev_hash, hash, detail_sha256;
+    bool erased = false;  // the detail says only that it was taken away
+};
+
+/// All rows of the attached database `schema`, in their order. The details about those who are left out because they
+/// were erased elsewhere (by code: their surrogate) are taken away.
+std::vector<AuditRow> auditRows(const Database& database, const std::string& schema,
+                                const std::map<std::string, std::string>& left_out);
+
+/// Adds those of these rows that the main database has not.
+void mergeAudit(const Database& database, const std::vector<AuditRow>& rows);
+
+/// Walks the chains. Rows cut off the end of one cannot be missed.
 AuditReport checkAudit(const Database& database);
 
 }  // namespace passung::store

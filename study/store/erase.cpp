@@ -6,6 +6,7 @@
 
 #include "study/store/digest.h"
 #include "study/store/participant_rows.h"
+#include "study/store/tombstone.h"
 
 namespace passung::store {
 namespace {
@@ -31,19 +32,18 @@ std::int64_t highestNumber(const Database& database, const std::string& kind) {
 
 std::string deleteRows(const Database& database, const std::string& participant, const Actor& actor) {
     Transaction transaction(database);
-    Statement find = database.prepare("SELECT kind FROM participant WHERE participant_id=?");
+    Statement find = database.prepare("SELECT kind, created_utc FROM participant WHERE participant_id=?");
     if (!find.bind(participant).step()) throw std::runtime_error("participant " + participant + " is not enrolled");
-    const std::string kind = find.text(0);
+    const std::string kind = find.text(0), created_utc = find.text(1);
     find.reset();
     const std::string surrogate = randomHex(8);
-    protocol::JsonObject tombstone;
-    tombstone.text("surrogate", surrogate).text("kind", kind).integer("codes_to", highestNumber(database, kind));
+    const auto detail = tombstone(surrogate, kind, highestNumber(database, kind), participant, created_utc);
     database.prepare("UPDATE design_slot SET state='free', participant_id=NULL WHERE participant_id=?")
         .bind(participant)
         .run();
     database.prepare("DELETE FROM participant WHERE participant_id=?").bind(participant).run();
     eraseAuditDetails(database, participant, surrogate);
-    appendAudit(database, actor, "erase", tombstone);
+    appendAudit(database, actor, "erase", detail);
     transaction.commit();
     return surrogate;
 }

@@ -1,14 +1,17 @@
 #include "study/store/merge.h"
 
-#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <map>
 #include <stdexcept>
 
+#include "study/store/audit.h"
 #include "study/store/open_database.h"
 #include "study/store/process_lock.h"
+#include "study/store/same_study.h"
 #include "study/store/session_remarks.h"
 #include "study/store/session_tables.h"
+#include "study/store/tombstone.h"
 
 namespace passung::store {
 namespace {
@@ -29,11 +32,16 @@ public:
         {
             Transaction transaction(database_);
             tables_ = sessionTables(database_);
+            leaveOutErased();
+            requireSameStudy(database_, kSource, [this](const std::string& reason) { refuse(reason); });
             mergeMeasures();
             mergeProtocols();
             mergePeople();
+            mergeAudit(database_, auditRows(database_, kSource, left_out_));
+            settleStandings();
             mergeSessions();
             mergePlaces();
+            database_.execute("DROP TABLE temp.left_out");
             transaction.commit();
         }
         database_.execute(std::string("DETACH ") + kSource);
@@ -58,16 +66,6 @@ private:
     }
 
     void mergeProtocols() {
-        refuseWhere("SELECT s.name FROM source.protocol_version s JOIN main.protocol_version m ON m.name<>s.name",
-                    "holds the study ", ", which is another one than the rest");
-        refuseWhere(
-            "SELECT s.version FROM source.protocol_version s JOIN main.protocol_version m USING(name, version) "
-            "WHERE s.protocol_sha256<>m.protocol_sha256",
-            "its protocol of version ", " has another text");
-        refuseWhere(
-            "SELECT s.version FROM source.protocol_version s JOIN main.protocol_version m USING(protocol_sha256) "
-            "WHERE json_extract(s.expanded_json, '$.seed')<>json_extract(m.expanded_json, '$.seed')",
-            "its protocol of version ", " was run with another seed");
         for (const std::string& name : tableNames(database_)) {
             const Table table = describeTable(database_, name);
             if (table.find("protocol_sha256") == nullptr || name == "session" || name == "design_slot") continue;
@@ -75,37 +73,27 @@ private:
             database_.execute("INSERT OR IGNORE INTO main." + name + "(" + columns + ") SELECT " + columns +
                               " FROM source." + name);
         }
-        // What the text alone does not say must not differ either. Times that were measured may.
-        const auto same = [&](const std::string& table, const std::string& columns, const std::string& what) {
-            refuseWhere("SELECT protocol_sha256 FROM (SELECT protocol_sha256, " + columns + " FROM source." + table +
-                            " EXCEPT SELECT protocol_sha256, " + columns + " FROM main." + table + ")",
-                        "the same protocol (", ") has " + what + " there");
-        };
-        same("mesh_file", "mesh, sha256", "another mesh file");
-        same("picture_file", "picture, sha256", "another picture");
-        same("stable_stiffness", "device, stable_stiffness_N_per_m, stable_rotational_stiffness_Nm_per_rad",
-             "another stable stiffness of its device");
-        same("accuracy_pick", "budget_us, candidate", "another pick of accuracy = \"auto\"");
-        same("accuracy_candidate", "candidate, mode, tolerance_um, spacing_mm, budget_nodes",
-             "other settings of accuracy = \"auto\"");
     }
 
     void mergeMeasures() {
-        refuseWhere(
-            "SELECT s.measure FROM source.measure s JOIN main.measure m USING(measure) "
-            "WHERE s.formula_version<>m.formula_version",
-            "its measure ", " follows another version of the formula");
         database_.execute("INSERT OR IGNORE INTO main.measure SELECT * FROM source.measure");
         database_.execute("INSERT OR IGNORE INTO main.questionnaire SELECT * FROM source.questionnaire");
     }
 
+    /// Whoever was erased from the result does not come back with a copy. The other way round nobody but the
+    /// experimenter decides.
+    void leaveOutErased() {
+        left_out_ = erasedPeople(database_, "main", kSource);
+        leaveOut(database_, left_out_);
+        for (const auto& [code, surrogate] : left_out_)
+            report_.erased.push_back(source_ + ": " + code + " was erased and is left out; this file still has them");
+        for (const auto& [code, surrogate] : erasedPeople(database_, kSource, "main"))
+            report_.erased.push_back(source_ + ": " + code + " was erased there; the result still has them");
+    }
+
     /// One person has one kind and one time of enrolment. Whoever went on since is as far as they got.
     void mergePeople() {
-        refuseWhere(
-            "SELECT s.participant_id FROM source.participant s JOIN main.participant m USING(participant_id) "
-            "WHERE s.kind<>m.kind OR s.created_utc<>m.created_utc",
-            "participant code ", " stands for two people");
-        database_.execute("INSERT OR IGNORE INTO main.participant SELECT * FROM source.participant");
+        database_.execute("INSERT OR IGNORE INTO main.participant SELECT * FROM source.participant WHERE " + kKept);
         database_.execute(
             "UPDATE main.participant AS m SET status=s.status, status_reason=s.status_reason "
             "FROM source.participant AS s WHERE s.participant_id=m.participant_id AND " +
@@ -115,7 +103,31 @@ private:
             "SELECT participant_id, text_sha256, language, clause, decision, decided_utc FROM source.consent s "
             "WHERE NOT EXISTS(SELECT 1 FROM main.consent m WHERE (m.participant_id, m.text_sha256, m.clause, "
             "m.decision, m.decided_utc)=(s.participant_id, s.text_sha256, s.clause, s.decision, s.decided_utc)) "
-            "ORDER BY consent_id");
+            "AND " +
+            kKept + " ORDER BY consent_id");
+    }
+
+    /// Whoever was excluded, withdrew or was readmitted stands as the newest of these acts says, wherever it was done.
+    void settleStandings() {
+        Statement acts = database_.prepare(
+            "SELECT p.participant_id, p.status IN('excluded', 'withdrawn'), a.action, "
+            "json_extract(a.detail_json, '$.status'), json_extract(a.detail_json, '$.reason'), s.status "
+            "FROM main.participant p JOIN main.audit a ON a.audit_id=(SELECT b.audit_id FROM main.audit b WHERE "
+            "json_extract(b.detail_json, '$.participant')=p.participant_id AND b.action IN('exclude', 'withdraw', "
+            "'readmit') ORDER BY b.t_utc DESC, b.audit_id DESC LIMIT 1) "
+            "JOIN source.participant s ON s.participant_id=p.participant_id");
+        std::vector<std::array<std::string, 3>> settled;
+        while (acts.step()) {
+            const bool out = acts.integer(1) != 0, back = acts.text(2) == "readmit";
+            if (back && !out) continue;
+            const bool goes_on = back && acts.text(5) != "excluded" && acts.text(5) != "withdrawn";
+            settled.push_back(
+                {acts.text(0), goes_on ? acts.text(5) : acts.text(3), (back ? "readmitted: " : "") + acts.text(4)});
+        }
+        for (const auto& [code, status, reason] : settled)
+            database_.prepare("UPDATE main.participant SET status=?2, status_reason=?3 WHERE participant_id=?1")
+                .bind(code, status, reason)
+                .run();
     }
 
     static std::string rankOf(const std::string& alias) {
@@ -126,16 +138,18 @@ private:
 
     void mergeSessions() {
         Statement left_out = database_.prepare(
-            "SELECT participant_id || ', session ' || ordinal FROM source.session WHERE end_state IS NULL "
-            "ORDER BY participant_id, ordinal");
+            "SELECT participant_id || ', session ' || ordinal FROM source.session WHERE end_state IS NULL AND " +
+            kKept + " ORDER BY participant_id, ordinal");
         while (left_out.step()) report_.unfinished.push_back(source_ + ": " + left_out.text(0));
         refuseWhere(
             "SELECT s.participant_id FROM source.session s JOIN main.session m USING(participant_id, ordinal) "
-            "WHERE s.session_id<>m.session_id",
+            "WHERE s.session_id<>m.session_id AND " +
+                kKept,
             "participant code ", " stands for two people: their sessions differ");
         std::vector<std::string> ids;
-        Statement sessions = database_.prepare(
-            "SELECT session_id FROM source.session WHERE end_state IS NOT NULL ORDER BY participant_id, ordinal");
+        Statement sessions =
+            database_.prepare("SELECT session_id FROM source.session WHERE end_state IS NOT NULL AND " + kKept +
+                              " ORDER BY participant_id, ordinal");
         while (sessions.step()) ids.push_back(sessions.text(0));
         for (const std::string& id : ids) mergeSession(id);
     }
@@ -284,21 +298,27 @@ private:
     std::string source_;
     MergeReport& report_;
     std::vector<Table> tables_;
+    std::map<std::string, std::string> left_out_;  // code → surrogate
 };
 
-/// A source must be sound and of this program's schema: columns are copied by their names.
-Result<Done> checkSource(const std::string& path) {
+/// A source must be sound and of this program's schema: columns are copied by their names. Returns what is wrong with
+/// its audit, which nothing but a person can judge.
+Result<std::vector<std::string>> checkSource(const std::string& path) {
     const auto opened = openForReading(path);
     if (!opened) return opened.errors();
-    return Done{};
+    return guarded(path, [&] { return checkAudit(**opened).faults; });
 }
 
 }  // namespace
 
 Result<MergeReport> mergeDatabases(const std::vector<std::string>& sources, const std::string& out,
                                    const OpenOptions& options) {
-    for (const std::string& source : sources)
-        if (const auto sound = checkSource(source); !sound) return sound.errors();
+    MergeReport report;
+    for (const std::string& source : sources) {
+        const auto faults = checkSource(source);
+        if (!faults) return faults.errors();
+        for (const std::string& fault : *faults) report.conflicts.push_back(source + ": audit: " + fault);
+    }
     const auto lock = ProcessLock::take(out);
     if (!lock) return lock.errors();
     const std::string part = out + ".part";
@@ -311,7 +331,6 @@ Result<MergeReport> mergeDatabases(const std::vector<std::string>& sources, cons
         return Done{};
     });
     if (!copied) return copied.errors();
-    MergeReport report;
     auto merged = guarded(out, [&] {
         const OpenedDatabase opened = openForWriting(part, options);
         if (!opened.database) throw std::runtime_error(opened.errors.front().message);

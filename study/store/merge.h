@@ -17,12 +17,14 @@ struct MergeReport {
     std::vector<std::string>
         unfinished;  // left out: still running, or killed and not opened since: "B.db: P001, session 1"
     std::vector<std::string> moved_places;  // participants whose place in the design another one had as well
+    std::vector<std::string> erased;        // who was erased in one of the files and is in another
     std::vector<std::string> conflicts;     // what two files say differently, and which of it stays
 };
 
 /// Adds everything of `sources` that `out` does not hold yet; `out` is made if it is not there, and appears or changes
 /// as a whole or not at all. Merging the same again changes nothing, and nothing said about a session is lost: notes
-/// and events of both are kept, and an attempt that does not count in one file does not count. Refused: another study,
+/// and events of both are kept, and an attempt that does not count in one file does not count. The audits come along;
+/// whoever was erased from the result is left out. Refused: another study,
 /// one version of a protocol with two texts, seeds, meshes or picks of accuracy, and one code for two people.
 Result<MergeReport> mergeDatabases(const std::vector<std::string>& sources, const std::string& out,
                                    const OpenOptions& options);

@@ -116,11 +116,12 @@ struct ConsentRow {
     std::string decided_utc;
 };
 
-/// What a walk along the audit's chain found.
+/// What a walk along the audit's chains found.
 struct AuditReport {
     std::int64_t rows = 0;
+    std::int64_t chains = 0;          // its own, and those of files that were merged into it
     std::int64_t erased = 0;          // rows whose detail an erasure took away
-    std::vector<std::string> faults;  // sentences; empty: the chain is whole
+    std::vector<std::string> faults;  // sentences; empty: the chains are whole
 };
 
 struct SessionRow {

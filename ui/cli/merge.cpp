@@ -17,6 +17,8 @@ int merge(const MergeOptions& options) {
         fmt::print("{}: left out: it runs, or was killed and its database not opened since\n", session);
     for (const std::string& person : report->moved_places)
         fmt::print("{}: the same row of the square in a further replicate, for another one has the place\n", person);
+    for (const std::string& person : report->erased)
+        fmt::print("{}: passung participant withdraw --scope erase removes them\n", person);
     for (const std::string& conflict : report->conflicts) fmt::print("{}\n", conflict);
     fmt::print("{}: {} sessions added, {} brought up to date, {} known\n", options.out, report->sessions,
                report->replaced, report->known);

@@ -132,7 +132,9 @@ int withdrawParticipant(const ParticipantOptions& options) {
         if (!surrogate) return surrogate.errors();
         fmt::print("{}: erased from {}; the audit says {} in its place\n", options.code, options.database, *surrogate);
         for (const std::string& copy : copies) fmt::print("delete this copy too: {}\n", copy);
-        fmt::print("and whatever copies of the database and exports lie elsewhere\n");
+        fmt::print(
+            "and whatever copies of the database and exports lie elsewhere; erase them as well in the databases of "
+            "other stations and in those merged from this one, and push to PostgreSQL again\n");
         return Done{};
     });
 }
@@ -165,7 +167,8 @@ int auditParticipants(const ParticipantOptions& options) {
     for (const std::string& fault : report->faults)
         faults.push_back({.message = fault, .file = options.database, .key = "audit"});
     if (!faults.empty()) return fail(faults);
-    fmt::print("{}: ok: {} actions in an unbroken chain, the details of {} erased\n", options.database, report->rows,
+    fmt::print("{}: ok: {} actions in {}, the details of {} erased\n", options.database, report->rows,
+               report->chains > 1 ? fmt::format("{} unbroken chains", report->chains) : "an unbroken chain",
                report->erased);
     return 0;
 }

@@ -318,6 +318,102 @@ TEST(Merge, AnExclusionReachesTheResultAndFreesThePlace) {
     EXPECT_FALSE(people.at(0).replicate);
 }
 
+AuditReport auditOf(const std::string& path) { return require(require(StoreReader::open(path)).audit()); }
+
+ParticipantRow personOf(const std::string& path, const std::string& code) {
+    for (const auto& person : require(require(StoreReader::open(path)).participants()))
+        if (person.participant_id == code) return person;
+    return {};
+}
+
+TEST(Merge, TheAuditsComeAlongAsUnbrokenChains) {
+    // Truth: invariant. Each file's acts are there once, whatever is merged again, and tampering with one shows.
+    const fake::TempFolder folder;
+    const std::string a = folder / "A.db", b = folder / "B.db", all = folder / "ALL.db";
+    Place one(a, kA), two(b, kB);
+    one.perform("2001-01-01");
+    two.perform("2001-01-02");
+    require(ParticipantDesk(one.store(), {"e", "2001-02-01"}).exclude("PA001", "asleep"));
+    require(ParticipantDesk(two.store(), {"e", "2001-02-01"}).enrol("PB002", ParticipantKind::Real, "2001-02-01"));
+    merge({a, b}, all);
+    require(ParticipantDesk(*fake::openStore(all), {"e", "2001-02-02"}).exclude("PB002", "ill"));
+    require(ParticipantDesk(one.store(), {"e", "2001-02-03"}).readmit("PA001", "was awake"));
+    for (int i = 0; i < 2; ++i) {
+        merge({b, a}, all);
+        const AuditReport report = auditOf(all);
+        EXPECT_EQ(report.faults, std::vector<std::string>{});
+        EXPECT_EQ(report.rows, 4);
+        EXPECT_EQ(report.chains, 2);
+    }
+    Database(all, OpenMode::ReadWrite)
+        .execute("DELETE FROM audit WHERE action='exclude' AND json_extract(detail_json, '$.participant')='PA001'");
+    EXPECT_EQ(auditOf(all).faults.size(), 1u) << "what followed it";
+    EXPECT_EQ(merge({all}, folder / "next.db").conflicts.size(), 1u);
+}
+
+TEST(Merge, TheNewestActDecidesWhoTakesPart) {
+    // Truth: invariant: excluded at the station, readmitted in the result, excluded there anew, readmitted at the
+    // station.
+    const fake::TempFolder folder;
+    const std::string a = folder / "A.db", all = folder / "ALL.db";
+    Place one(a, kA);
+    one.perform("2001-01-01");
+    const auto desk = [](Store& store, const char* now) { return ParticipantDesk(store, {"e", now}); };
+    require(desk(one.store(), "2001-02-01").exclude("PA001", "asleep"));
+    merge({a}, all);
+    EXPECT_EQ(personOf(all, "PA001").status, "excluded");
+    EXPECT_TRUE(require(desk(*fake::openStore(all), "2001-02-02").readmit("PA001", "was awake")));
+    EXPECT_EQ(personOf(all, "PA001").status, "complete");
+    EXPECT_EQ(personOf(all, "PA001").replicate, 0) << "the place too";
+    merge({a}, all);
+    EXPECT_EQ(personOf(all, "PA001").status, "complete") << "the station's exclusion is older";
+    EXPECT_EQ(personOf(all, "PA001").replicate, 0);
+    require(desk(*fake::openStore(all), "2001-02-03").exclude("PA001", "asleep after all"));
+    require(desk(one.store(), "2001-02-04").readmit("PA001", "the video says otherwise"));
+    merge({a}, all);
+    EXPECT_EQ(personOf(all, "PA001").status, "complete");
+    EXPECT_EQ(personOf(all, "PA001").status_reason, "readmitted: the video says otherwise");
+    EXPECT_EQ(personOf(all, "PA001").replicate, 0);
+}
+
+TEST(Merge, WhoWasErasedDoesNotComeBack) {
+    // Truth: closed form (a search for the code's bytes in the result) and invariant
+    const fake::TempFolder folder;
+    const std::string a = folder / "A.db", all = folder / "ALL.db";
+    Place one(a, kA);
+    for (const char* date : {"2001-01-01", "2001-01-02"}) one.perform(date);
+    ParticipantDesk station(one.store(), {"e", "2001-02-01"});
+    require(station.enrol("PA003", ParticipantKind::Real, "2001-02-01"));
+    require(station.exclude("PA003", "is PA003"));
+    merge({a}, all);
+    const auto erase = [&](const char* code) {
+        require(ParticipantDesk(*fake::openStore(all), {"e", "2001-02-02"}).erase(code));
+    };
+    erase("PA003");
+    erase("PA001");
+    for (int i = 0; i < 2; ++i) {
+        const MergeReport report = merge({a}, all);
+        EXPECT_EQ(report.erased,
+                  (std::vector<std::string>{a + ": PA001 was erased and is left out; this file still has them",
+                                            a + ": PA003 was erased and is left out; this file still has them"}));
+        EXPECT_EQ(report.known, 1);
+        for (const char* code : {"PA001", "PA003"}) {
+            EXPECT_EQ(personOf(all, code).participant_id, "");
+            EXPECT_EQ(bytesOf(all).find(code), std::string::npos) << code;
+        }
+        EXPECT_EQ(auditOf(all).faults, std::vector<std::string>{});
+        EXPECT_EQ(auditOf(all).erased, 2);
+    }
+    // A result that knows nothing yet is begun with the same audit: nobody comes back into it either.
+    EXPECT_EQ(merge({all, a}, folder / "next.db").erased.size(), 2u);
+    EXPECT_EQ(bytesOf(folder / "next.db").find("PA001"), std::string::npos);
+    // Erased at the station only: the result tells.
+    require(station.erase("PA002"));
+    EXPECT_EQ(merge({a}, all).erased.back(), a + ": PA002 was erased there; the result still has them");
+    EXPECT_EQ(personOf(all, "PA002").status, "complete");
+    expectSound(all);
+}
+
 TEST(Merge, RefusesAnotherStudyTextSeedOrFormula) {
     // Truth: invariant (rows of two designs could not be told apart)
     const fake::TempFolder folder;

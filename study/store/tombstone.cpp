@@ -1,0 +1,48 @@
+#include "study/store/tombstone.h"
+
+#include "study/store/digest.h"
+
+namespace passung::store {
+namespace {
+
+std::string personHash(const std::string& salt, const std::string& code, const std::string& created_utc) {
+    return sha256Hex(
+        protocol::JsonObject().text("salt", salt).text("code", code).text("created_utc", created_utc).str());
+}
+
+}  // namespace
+
+protocol::JsonObject tombstone(const std::string& surrogate, const std::string& kind, std::int64_t codes_to,
+                               const std::string& code, const std::string& created_utc) {
+    const std::string salt = randomHex(16);
+    protocol::JsonObject detail;
+    detail.text("surrogate", surrogate)
+        .text("kind", kind)
+        .integer("codes_to", codes_to)
+        .text("salt", salt)
+        .text("person", personHash(salt, code, created_utc));
+    return detail;
+}
+
+std::map<std::string, std::string> erasedPeople(const Database& database, const std::string& tombstones,
+                                                const std::string& people) {
+    std::map<std::string, std::string> erased;
+    Statement stones = database.prepare(
+        "SELECT json_extract(detail_json, '$.salt'), json_extract(detail_json, '$.person'), "
+        "json_extract(detail_json, '$.surrogate') FROM " +
+        tombstones + ".audit WHERE action='erase' AND json_extract(detail_json, '$.person') IS NOT NULL");
+    Statement codes = database.prepare("SELECT participant_id, created_utc FROM " + people + ".participant");
+    while (stones.step())
+        for (codes.reset(); codes.step();)
+            if (personHash(stones.text(0), codes.text(0), codes.text(1)) == stones.text(1))
+                erased[codes.text(0)] = stones.text(2);
+    return erased;
+}
+
+void leaveOut(const Database& database, const std::map<std::string, std::string>& erased) {
+    database.execute("CREATE TEMP TABLE left_out(participant_id TEXT PRIMARY KEY)");
+    Statement insert = database.prepare("INSERT INTO temp.left_out VALUES(?)");
+    for (const auto& [code, surrogate] : erased) insert.bind(code).run();
+}
+
+}  // namespace passung::store

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "study/protocol/json.h"
+#include "study/store/sqlite.h"
+
+namespace passung::store {
+
+// What the audit keeps of an erased participant: a random surrogate, and a salted hash of code and time of enrolment by
+// which a copy of that person, in another file, is known again. It tells nothing to whoever has not both; but who has
+// can ask whether they were erased. For this room only: the functions throw.
+
+/// Detail of the audit's row. `codes_to`: highest number of a code of this kind.
+protocol::JsonObject tombstone(const std::string& surrogate, const std::string& kind, std::int64_t codes_to,
+                               const std::string& code, const std::string& created_utc);
+
+/// Who of the people in the attached database `people` was erased, as the audit in `tombstones` says, each with the
+/// surrogate. Tombstones from before there were hashes tell nothing.
+std::map<std::string, std::string> erasedPeople(const Database& database, const std::string& tombstones,
+                                                const std::string& people);
+
+/// Has kKept say who is not among these, until the table temp.left_out is dropped.
+void leaveOut(const Database& database, const std::map<std::string, std::string>& erased);
+inline const std::string kKept = "participant_id NOT IN(SELECT participant_id FROM temp.left_out)";
+
+}  // namespace passung::store
