@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <pqxx/pqxx>
 
+#include "study/store/audit.h"
 #include "study/store/hex_text.h"
 #include "study/store/open_database.h"
+#include "study/store/same_study.h"
 #include "study/store/session_tables.h"
+#include "study/store/tombstone.h"
 
 namespace passung::store {
 namespace {
@@ -61,7 +65,7 @@ Values valuesOf(const Statement& row, const std::vector<TableColumn>& columns) {
 
 /// Rows that do not belong to a session. Their numbers mean nothing outside this file and stay here.
 std::vector<Copy> studyCopies(const Database& database) {
-    const auto copyOf = [&](const std::string& name, std::vector<std::string> keys, const std::string& where = "") {
+    const auto copyOf = [&](const std::string& name, std::vector<std::string> keys, std::string where = "") {
         Table table = describeTable(database, name);
         const TableColumn* number = table.number();
         const std::string numbering = number != nullptr ? number->name : "";
@@ -70,6 +74,7 @@ std::vector<Copy> studyCopies(const Database& database) {
             for (const TableColumn& column : table.columns)
                 if (column.key > 0) keys.push_back(column.name);
         const bool of_person = table.find("participant_id") != nullptr && name != "participant";
+        if (table.find("participant_id") != nullptr) where = " WHERE " + kKept + where;
         return Copy{name, table.columns, keys, of_person ? "REFERENCES participant ON DELETE CASCADE" : "",
                     "SELECT " + joined(table.columns, nameOf) + " FROM " + name + where};
     };
@@ -84,7 +89,7 @@ std::vector<Copy> studyCopies(const Database& database) {
     copies.push_back(copyOf("questionnaire", {}));
     copies.push_back(copyOf("participant", {}));
     copies.push_back(copyOf("consent", {"participant_id", "text_sha256", "clause", "decided_utc", "decision"}));
-    copies.push_back(copyOf("design_slot", {"participant_id"}, " WHERE participant_id IS NOT NULL"));
+    copies.push_back(copyOf("design_slot", {"participant_id"}, " AND participant_id IS NOT NULL"));
     return copies;
 }
 
@@ -121,19 +126,20 @@ public:
         const std::vector<Copy> study = studyCopies(database_), sessions = sessionCopies(tables);
         const std::string name = database_.text("SELECT name FROM protocol_version LIMIT 1");
         if (name.empty()) throw std::runtime_error("holds no study yet");
-        pushStudy(name, study, sessions);
         PushReport report;
+        pushStudy(name, study, sessions, report);
         Statement running = database_.prepare(
             "SELECT participant_id || ', session ' || ordinal FROM session WHERE end_state IS NULL ORDER BY rowid");
         while (running.step()) report.unfinished.push_back(running.text(0));
-        Statement ended = database_.prepare(
-            "SELECT session_id FROM session WHERE end_state IS NOT NULL ORDER BY participant_id, ordinal");
+        Statement ended = database_.prepare("SELECT session_id FROM session WHERE end_state IS NOT NULL AND " + kKept +
+                                            " ORDER BY participant_id, ordinal");
         while (ended.step()) pushSession(ended.text(0), sessions, tables, report);
         return report;
     }
 
 private:
-    void pushStudy(const std::string& name, const std::vector<Copy>& study, const std::vector<Copy>& sessions) {
+    void pushStudy(const std::string& name, const std::vector<Copy>& study, const std::vector<Copy>& sessions,
+                   PushReport& report) {
         pqxx::work work(there_);
         // IF NOT EXISTS tells that something exists; nobody needs to hear it.
         work.exec("SET client_min_messages=warning");
@@ -141,17 +147,85 @@ private:
         work.exec("SET search_path TO " + work.quote_name(name));
         for (const Copy& copy : study) create(work, copy);
         for (const Copy& copy : sessions) create(work, copy);
+        create(work, auditCopy());
         work.exec(
             "CREATE TABLE IF NOT EXISTS pushed_session(session_id TEXT PRIMARY KEY REFERENCES session ON DELETE "
             "CASCADE, digest TEXT NOT NULL)");
-        refuseOtherPeople(work);
+        const auto left_out = compareWithThere(work, study, report);
+        Statement people = database_.prepare("SELECT participant_id FROM participant");
+        while (people.step())  // who gave a place back has it there no more
+            work.exec_params("DELETE FROM design_slot WHERE participant_id=$1", people.text(0));
         for (const Copy& copy : study) {
             Statement rows = database_.prepare(copy.query);
             while (rows.step())
                 insert(work, copy, valuesOf(rows, copy.columns),
                        copy.name == "participant" || copy.name == "design_slot");
         }
+        pushAudit(work, left_out);
+        const auto shared = work.exec(
+            "SELECT string_agg(participant_id, ', ' ORDER BY participant_id) FROM design_slot GROUP BY "
+            "protocol_sha256, kind, between_group, sequence_index, replicate HAVING count(*)>1 ORDER BY 1");
+        for (const auto& row : shared) report.shared_places.push_back(row[0].c_str());
         work.commit();
+    }
+
+    /// The audit's rows mean the same everywhere by their hashes.
+    Copy auditCopy() const {
+        Copy copy{"audit", describeTable(database_, "audit").columns, {"hash"}, {}, {}};
+        std::erase_if(copy.columns, [](const TableColumn& column) { return column.name == "audit_id"; });
+        return copy;
+    }
+
+    /// Copies what decides whether the studies are one beside the tables here, under their names in `temp`, and lets
+    /// the rules of merging judge. Whoever was erased here is deleted there; whoever was erased there is left out.
+    std::map<std::string, std::string> compareWithThere(pqxx::work& work, const std::vector<Copy>& study,
+                                                        PushReport& report) {
+        std::vector<Copy> copies = study;
+        copies.push_back(auditCopy());
+        const std::vector<std::string> apart = {"consent", "design_slot", "condition"};  // nothing of them is compared
+        std::erase_if(
+            copies, [&](const Copy& copy) { return std::find(apart.begin(), apart.end(), copy.name) != apart.end(); });
+        database_.execute("PRAGMA query_only=OFF");  // for tables in `temp`; the file is not written
+        for (const Copy& copy : copies) fetch(work, copy);
+        requireSameStudy(database_, "temp", [](const std::string& reason) { throw std::runtime_error(reason); });
+        for (const auto& [code, surrogate] : erasedPeople(database_, "main", "temp")) {
+            work.exec_params("DELETE FROM session WHERE participant_id=$1", code);
+            work.exec_params("DELETE FROM participant WHERE participant_id=$1", code);
+            work.exec_params("UPDATE audit SET detail_json=$2 WHERE detail_json::jsonb->>'participant'=$1", code,
+                             erasedDetail(surrogate));
+            report.erased_there.push_back(code);
+        }
+        const auto left_out = erasedPeople(database_, "temp", "main");
+        for (const auto& [code, surrogate] : left_out) report.left_out.push_back(code);
+        for (const Copy& copy : copies) database_.execute("DROP TABLE temp." + copy.name);
+        leaveOut(database_, left_out);
+        return left_out;
+    }
+
+    /// The rows there as a table of the same name in `temp`.
+    void fetch(pqxx::work& work, const Copy& copy) {
+        const std::string columns = joined(copy.columns, nameOf);
+        database_.execute("CREATE TEMP TABLE " + copy.name + " AS SELECT " + columns + " FROM main." + copy.name +
+                          " LIMIT 0");
+        Statement insert_here = database_.prepare("INSERT INTO temp." + copy.name + " SELECT " +
+                                                  joined(copy.columns, [&, number = 0](const TableColumn&) mutable {
+                                                      return "json_extract(?1, '$[" + std::to_string(number++) + "]')";
+                                                  }));
+        const auto rows =
+            work.exec("SELECT json_build_array(" +
+                      joined(copy.columns, [&](const TableColumn& column) { return work.quote_name(column.name); }) +
+                      ") FROM " + work.quote_name(copy.name));
+        for (const auto& row : rows) insert_here.bind(row[0].c_str()).run();
+    }
+
+    /// Details that were taken away since are taken away there too.
+    void pushAudit(pqxx::work& work, const std::map<std::string, std::string>& left_out) {
+        for (const AuditRow& row : auditRows(database_, "main", left_out))
+            work.exec_params(
+                std::string("INSERT INTO audit(t_utc, actor, action, detail_json, prev_hash, hash, detail_sha256) "
+                            "VALUES($1, $2, $3, $4, $5, $6, $7) ON CONFLICT (hash) DO ") +
+                    (row.erased ? "UPDATE SET detail_json=EXCLUDED.detail_json" : "NOTHING"),
+                row.t_utc, row.actor, row.action, row.detail_json, row.prev_hash, row.hash, row.detail_sha256);
     }
 
     void create(pqxx::work& work, const Copy& copy) {
@@ -184,16 +258,6 @@ private:
         std::vector<const char*> parameters;
         for (const auto& value : values) parameters.push_back(value ? value->c_str() : nullptr);
         work.exec_params(sql, pqxx::prepare::make_dynamic_params(parameters));
-    }
-
-    void refuseOtherPeople(pqxx::work& work) {
-        Statement people = database_.prepare("SELECT participant_id, kind, created_utc FROM participant");
-        while (people.step()) {
-            const auto found =
-                work.exec_params("SELECT kind, created_utc FROM participant WHERE participant_id=$1", people.text(0));
-            if (!found.empty() && (found[0][0].c_str() != people.text(1) || found[0][1].c_str() != people.text(2)))
-                throw std::runtime_error("participant code " + people.text(0) + " stands for somebody else there");
-        }
     }
 
     void pushSession(const std::string& id, const std::vector<Copy>& copies, const std::vector<Table>& tables,

@@ -10,17 +10,20 @@ namespace passung::store {
 
 /// What a push did.
 struct PushReport {
-    std::int64_t sessions = 0;            // added
-    std::int64_t replaced = 0;            // had changed here since an earlier push
-    std::int64_t known = 0;               // there already
-    std::vector<std::string> unfinished;  // left out: still running, or killed and not opened since
+    std::int64_t sessions = 0;               // added
+    std::int64_t replaced = 0;               // had changed here since an earlier push
+    std::int64_t known = 0;                  // there already
+    std::vector<std::string> unfinished;     // left out: still running, or killed and not opened since
+    std::vector<std::string> erased_there;   // codes: were erased here, and now there too
+    std::vector<std::string> left_out;       // codes: were erased there, from another file
+    std::vector<std::string> shared_places;  // codes that have one place of the design: "P001, P101"
 };
 
 /// Copies the study into the PostgreSQL database `to` (a connection URI or string of libpq), into a schema with the
 /// study's name that is made if it is not there. Tables are those of the file; rows of a session carry its session_id
 /// and are numbered within it, so that files of several stations do not collide. Each session is one transaction;
-/// pushing again copies only what is new or has changed. A code that stands for somebody else there is refused.
-/// The audit and free places of the design stay here.
+/// pushing again copies only what is new or has changed, and places and people that are gone here are gone there.
+/// Refused is what mergeDatabases() refuses. Free places of the design stay here.
 Result<PushReport> pushDatabase(const std::string& path, const std::string& to);
 
 }  // namespace passung::store

@@ -12,6 +12,17 @@ int push(const PushOptions& options) {
     if (!report) return fail(report.errors());
     for (const std::string& session : report->unfinished)
         fmt::print("{}: left out: it runs, or was killed and its database not opened since\n", session);
+    for (const std::string& code : report->erased_there)
+        fmt::print(
+            "{}: was erased here and is deleted there; VACUUM FULL takes the last bytes out of PostgreSQL's tables, "
+            "not "
+            "out of its backups and archived logs\n",
+            code);
+    for (const std::string& code : report->left_out)
+        fmt::print("{}: left out: was erased there; passung participant withdraw --scope erase removes them here\n",
+                   code);
+    for (const std::string& people : report->shared_places)
+        fmt::print("{}: have one place of the design; passung merge would part them\n", people);
     fmt::print("{}: {} sessions added, {} brought up to date, {} known\n", options.database, report->sessions,
                report->replaced, report->known);
     return 0;

@@ -4,6 +4,7 @@
 
 #include <pqxx/pqxx>
 
+#include "study/store/participant_desk.h"
 #include "study/store/sqlite.h"
 #include "tests/study/store/fake_study.h"
 #include "tests/study/store/postgres.h"
@@ -121,12 +122,94 @@ TEST_F(Push, TakesFilesOfSeveralStationsButNoCodeForTwoPeople) {
     EXPECT_EQ(count("attempt"), 4);
     const auto refused = pushDatabase(folder_ / "c.db", server_->uri());
     ASSERT_FALSE(refused);
-    EXPECT_NE(refused.errors()[0].message.find("SA001 stands for somebody else"), std::string::npos);
+    EXPECT_NE(refused.errors()[0].message.find("SA001 stands for two people"), std::string::npos);
     other.execute("UPDATE participant SET created_utc='2000-01-01T00:00:00.000Z'; UPDATE attempt SET state_hash='00'");
     const auto trials = pushDatabase(folder_ / "c.db", server_->uri());
     ASSERT_FALSE(trials);
     EXPECT_NE(trials.errors()[0].message.find("other trials"), std::string::npos) << trials.errors()[0].message;
     EXPECT_EQ(count("attempt"), 4);
+}
+
+TEST_F(Push, APlaceThatWasGivenBackHasItsNewOwnerOnly) {
+    // Truth: invariant: S001 is excluded, S004 takes the place.
+    const std::string path = folder_ / "s.db";
+    perform(path, "S001");
+    require(pushDatabase(path, server_->uri()));
+    require(ParticipantDesk(*fake::openStore(path), {"e", "2001-02-03"}).exclude("S001", "asleep"));
+    perform(path, "S004");
+    EXPECT_EQ(require(pushDatabase(path, server_->uri())).shared_places, std::vector<std::string>{});
+    const auto slots = ask("SELECT participant_id, sequence_index, replicate FROM design_slot");
+    ASSERT_EQ(slots.size(), 1u);
+    EXPECT_STREQ(slots[0][0].c_str(), "S004");
+    EXPECT_EQ(slots[0][1].as<int>() + slots[0][2].as<int>(), 0);
+    // Another file whose S101 has the same place is told, not lost.
+    perform(folder_ / "b.db", "S101");
+    EXPECT_EQ(require(pushDatabase(folder_ / "b.db", server_->uri())).shared_places,
+              std::vector<std::string>{"S004, S101"});
+}
+
+TEST_F(Push, WhoWasErasedHereIsGoneThereAndDoesNotComeBackFromACopy) {
+    // Truth: independent program (PostgreSQL's own answers): no row of any table names them.
+    const std::string path = folder_ / "s.db", copy = folder_ / "copy.db";
+    perform(path, "S001");
+    perform(path, "S002");
+    {
+        const auto store = fake::openStore(path);
+        require(ParticipantDesk(*store, {"e", "2001-02-03"}).exclude("S001", "S001 slept"));
+    }
+    Database(path, OpenMode::ReadWrite).copyTo(copy);
+    require(pushDatabase(path, server_->uri()));
+    EXPECT_EQ(count("audit"), 1);
+    require(ParticipantDesk(*fake::openStore(path), {"e", "2001-02-04"}).erase("S001"));
+    const auto expectGone = [&] {
+        for (const char* table : {"participant", "session", "design_slot", "audit"})
+            EXPECT_EQ(
+                ask(std::string("SELECT count(*) FROM ") + table + " t WHERE t::text LIKE '%S001%'")[0][0].as<int>(), 0)
+                << table;
+        EXPECT_EQ(count("attempt"), 2) << "S002's";
+        EXPECT_EQ(count("audit"), 2);
+    };
+    EXPECT_EQ(require(pushDatabase(path, server_->uri())).erased_there, std::vector<std::string>{"S001"});
+    expectGone();
+    const PushReport again = require(pushDatabase(copy, server_->uri()));
+    EXPECT_EQ(again.left_out, std::vector<std::string>{"S001"});
+    EXPECT_EQ(again.known, 1);
+    expectGone();
+}
+
+TEST_F(Push, RefusesWhatAMergeRefuses) {
+    // Truth: invariant (rows of two designs could not be told apart)
+    const std::string path = folder_ / "s.db";
+    perform(path, "S001");
+    require(pushDatabase(path, server_->uri()));
+    const auto refusal = [&](const std::string& change) {
+        const std::string other = folder_ / "other.db";
+        std::filesystem::remove(other);
+        perform(other, "S101");
+        Database(other, OpenMode::ReadWrite).execute("PRAGMA foreign_keys=OFF; " + change);
+        const auto pushed = pushDatabase(other, server_->uri());
+        return pushed ? "" : pushed.errors()[0].message;
+    };
+    pqxx::nontransaction(*there_).exec("UPDATE fake.protocol_version SET expanded_json='{\"seed\": 7}'");
+    EXPECT_NE(refusal("UPDATE protocol_version SET expanded_json='{\"seed\": 8}'").find("another seed"),
+              std::string::npos);
+    const std::string renamed = "UPDATE protocol_version SET protocol_sha256='00'; ";
+    std::string references;
+    for (const char* table : {"condition", "factor", "protocol_measure", "design_slot", "session"})
+        references += std::string("UPDATE ") + table + " SET protocol_sha256='00'; ";
+    EXPECT_NE(refusal(renamed + references).find("has another text"), std::string::npos);
+    EXPECT_NE(refusal("UPDATE measure SET formula_version=99 WHERE measure='peak_force_N'").find("peak_force_N"),
+              std::string::npos);
+    const std::string mesh = "INSERT INTO mesh_file SELECT protocol_sha256, 'a.stl', 'HASH', 1 FROM protocol_version";
+    const auto meshOf = [&](const char* hash) {
+        std::string sql = mesh;
+        return sql.replace(sql.find("HASH"), 4, hash);
+    };
+    pqxx::nontransaction(*there_).exec(
+        "INSERT INTO fake.mesh_file SELECT protocol_sha256, 'a.stl', 'aa', 1 FROM fake.protocol_version");
+    EXPECT_NE(refusal(meshOf("bb")).find("mesh a.stl"), std::string::npos);
+    EXPECT_EQ(count("session"), 1) << "nothing of the refused files is there";
+    EXPECT_EQ(refusal(meshOf("aa") + "; UPDATE protocol_version SET expanded_json='{\"seed\": 7}'"), "");
 }
 
 TEST_F(Push, ASessionArrivesWholeOrNotAtAll) {
