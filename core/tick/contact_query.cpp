@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 
+#include "core/tick/rim_gradient.h"
 #include "core/tick/surface_descent.h"
 
 namespace passung::tick {
@@ -159,7 +160,9 @@ struct Traversal {
         }
         ContactPoint contact;
         contact.position = R_WS * position + p_WS;
-        contact.gradient = R_WF * gradient;
+        const bool of_face = facing && area > 0.0;
+        contact.gradient =
+            R_WF * (of_face ? withoutTurnOfRim(gradient, R_FS * normal, phi, field.finestCell()) : gradient);
         // A sample on an edge has no face of its own: the obstacle's face decides.
         contact.normal = area > 0.0 || contact.gradient.squaredNorm() < 1e-12 ? Vec3(R_WS * normal)
                                                                               : Vec3(-contact.gradient.normalized());
