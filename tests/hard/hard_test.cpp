@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <span>
+#include <variant>
 #include <vector>
 
+#include "core/model/shape.h"
 #include "tests/hard/case.h"
 #include "tests/hard/figures.h"
 #include "tests/hard/known_misses.h"
@@ -130,6 +133,51 @@ TEST(HardCases, NoMarkIsHeldByAProxyThatDoesNotFollowOrByWhatIsNotFelt) {
             EXPECT_TRUE(seen[i]) << c.name << ": a proxy that " << kFaults[i].name;
         }
     }
+}
+
+void pushesHarder(const Spec&, std::vector<Tick>& ticks) {
+    for (Tick& t : ticks) t.sent.force *= 1.02;
+}
+
+void pushesAskew(const Spec&, std::vector<Tick>& ticks) {
+    for (Tick& t : ticks) t.sent.force = rotationFromVector(Vec3(0.01, 0.01, 0.01)) * t.sent.force;
+}
+
+void turnsBesides(const Spec& spec, std::vector<Tick>& ticks) {
+    double reach = 0.0;
+    for (const Vec3& v : model::tessellate(std::get<model::Shape>(heldPart(spec).geometry), 1e-5).vertices)
+        reach = std::max(reach, v.norm());
+    for (Tick& t : ticks) t.sent.torque += 0.02 * reach * t.sent.force;
+}
+
+void givesBackMore(const Spec&, std::vector<Tick>& ticks) {
+    for (std::size_t i = 1; i < ticks.size(); ++i)
+        if (ticks[i].device.p.z() > ticks[i - 1].device.p.z()) ticks[i].sent.force *= 1.01;
+}
+
+TEST(HardCases, NoClosedFormOfThePenaltyIsHeldByAWrenchThatIsALittleWrong) {
+    // Truth: invariant. Runs of the penalty, which hold their marks, with a planted fault beyond these.
+    constexpr std::array kWrong{Fault{"pushes harder", pushesHarder}, Fault{"pushes askew", pushesAskew},
+                                Fault{"turns besides", turnsBesides}};
+    constexpr std::array kActive{Fault{"gives back more", givesBackMore}};
+    const auto plant = [](const char* name, std::span<const Fault> faults) {
+        const Case* c = findCase(name);
+        ASSERT_NE(c, nullptr);
+        const auto run = runCase(*c, model::ContactMethod::Penalty, 0, false);
+        ASSERT_TRUE(run);
+        const Judgement sound = judgeRun(*c, *run);
+        EXPECT_TRUE(sound.broken.empty() && sound.value <= c->mark) << name << ": " << sound.value << sound.broken;
+        for (const Fault& fault : faults) {
+            auto spoilt = *run;
+            fault.plant(run->spec, spoilt.ticks);
+            const Judgement found = judgeRun(*c, spoilt);
+            EXPECT_TRUE(!found.broken.empty() || found.value > c->mark) << name << ": a wrench that " << fault.name;
+        }
+    };
+    for (const char* name :
+         {"a1_submerged_body", "a2_sphere_plane", "a3_box_plane", "a4_sphere_sphere", "a5_peg_offset"})
+        plant(name, kWrong);
+    plant("a13_cycle", kActive);
 }
 
 TEST(HardCases, KnownMissesNameCasesOfTheTable) {
