@@ -25,7 +25,7 @@ inline constexpr std::array kConditionKeys{
     Key{"secondary", "response_max_ms", KeyType::Number, {1, 10000}, "", "2500", "A stimulus without response by then is a miss."},
     Key{"secondary", "button", KeyType::Integer, {1, 24}, "", "1", "Of the device, from 1."},
 
-    Key{"instruction", "moment", KeyType::Choice, {}, "session_start|before_block|session_end", "!", "When it is shown: before the session's first trial, before the first trial of `block`, after the last trial. Logged as an event."},
+    Key{"instruction", "moment", KeyType::Choice, {}, "session_start|before_block|session_end", "!", "When it is shown: before the session's first trial, before the first trial of `block`, after the last trial. Logged with who read it and, in real time, for how long."},
     Key{"instruction", "block", KeyType::Name, {}, "", "(only before_block)", "The block."},
     Key{"instruction", "text", KeyType::Name, {}, "", "!", "Name of a text."},
     Key{"instruction", "picture", KeyType::Text, {}, "", "(none)", "PNG or JPEG file, relative to the study's. Its SHA-256 is stored with the study, which refuses another content later."},

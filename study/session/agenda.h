@@ -20,7 +20,8 @@ public:
     explicit Agenda(std::vector<design::PlannedTrial> trials);
 
     std::size_t planned() const { return trials_.size(); }
-    std::size_t finished() const { return trials_.size() - todo_.size(); }
+    std::size_t finished() const { return trials_.size() - todo_.size() - left_out_.size(); }
+    std::size_t leftOut() const { return left_out_.size(); }
     bool empty() const { return todo_.empty(); }
     std::size_t next() const { return todo_.front(); }  // @pre not empty()
     const design::PlannedTrial& trial(std::size_t place) const { return trials_[place]; }

@@ -32,6 +32,7 @@ Session::Session(SessionSetup setup, Apparatus& apparatus, TrialSink& sink, Sess
       listener_(std::move(listener)),
       desk_(setup_.plan, {setup_.participant, setup_.seed, setup_.ordinal, setup_.timing_measured}, setup_.answers,
             sink),
+      instructions_(setup_.plan, setup_.language, setup_.timing_measured, setup_.reader, sink),
       state_(setup_.waits ? SessionState::Ready : SessionState::BetweenTrials),
       agenda_(setup_.resumed ? setup_.resumed->agenda : Agenda(setup_.trials)),
       staircases_(setup_.plan, setup_.participant, setup_.seed, setup_.ordinal),
@@ -66,10 +67,11 @@ SessionState Session::advance() {
     switch (state_) {
         case SessionState::BetweenTrials:
             if (asksQuestionnaire()) break;
-            if (agenda_.empty())
-                finish(SessionState::Complete);
-            else if (!rest())
+            if (agenda_.empty()) {
+                if (!instructions_.show(nullptr, session_ns_)) finish(SessionState::Complete);
+            } else if (!rest() && !swapsDevice() && !instructions_.show(&trial(), session_ns_)) {
                 beginTrial();
+            }
             break;
         case SessionState::InTrial:
             watchTrial();
@@ -110,27 +112,49 @@ bool Session::rest() {
     return true;
 }
 
-/// Notes that another device comes into use, with the stable stiffness that the study keeps for it; true if that is
-/// waited for.
-bool Session::swapsDevice(const std::string& device) {
-    const bool other = !device_in_use_.empty() && device_in_use_ != device;
+/// What a staircase chooses for the next trial; nothing if none governs it.
+std::optional<StaircaseStep> Session::nextStep() const {
+    if (!staircases_.governs(trial())) return std::nullopt;
+    return staircases_.next(trial());
+}
+
+/// What the next trial presents.
+const protocol::Condition& Session::conditionOf(const std::optional<StaircaseStep>& step) const {
+    const std::size_t shown = step ? step->condition : trial().condition;
+    PASSUNG_ASSERT(shown < setup_.plan.conditions.size());
+    return setup_.plan.conditions[shown];
+}
+
+/// The device under `key`, with the stable stiffness that the study keeps for it.
+protocol::JsonObject Session::stableStiffnessOf(const char* key, const std::string& device) const {
+    protocol::JsonObject payload;
+    payload.text(key, device);
+    for (const protocol::StableStiffness& stable : setup_.plan.stable_stiffness)
+        if (stable.device == device)
+            payload.number("stable_stiffness_N_per_m", stable.linear)
+                .number("stable_rotational_stiffness_Nm_per_rad", stable.rotational)
+                .text("origin", stable.origin);
+    return payload;
+}
+
+/// Notes that another device comes into use, and what is known of its stability; true if that is waited for.
+bool Session::swapsDevice() {
+    const std::string& device = conditionOf(nextStep()).device;
+    const bool first = device_in_use_.empty(), other = !first && device_in_use_ != device;
     device_in_use_ = device;
     if (other) {
-        protocol::JsonObject payload;
-        payload.text("to", device);
-        for (const protocol::StableStiffness& stable : setup_.plan.stable_stiffness)
-            if (stable.device == device)
-                payload.number("stable_stiffness_N_per_m", stable.linear)
-                    .number("stable_rotational_stiffness_Nm_per_rad", stable.rotational)
-                    .text("origin", stable.origin);
-        note("swap_device", payload.str());
+        note("swap_device", stableStiffnessOf("to", device).str());
         swapping_ = true;
         if (setup_.waits) {
             state_ = SessionState::Paused;
             return true;
         }
     }
-    if (std::exchange(swapping_, false)) note("device_swapped", protocol::JsonObject().text("to", device).str());
+    const bool swapped = std::exchange(swapping_, false);
+    if (swapped) note("device_swapped", protocol::JsonObject().text("to", device).str());
+    if ((first || swapped) && setup_.calibrated_utc)
+        note("device_calibration",
+             stableStiffnessOf("device", device).text("calibrated_utc", setup_.calibrated_utc(device)).str());
     return false;
 }
 
@@ -144,17 +168,11 @@ void Session::leaveOutNeedless() {
 
 void Session::beginTrial() {
     AttemptStart start;
-    if (staircases_.governs(trial())) start.staircase = staircases_.next(trial());
-    const std::size_t shown = start.staircase ? start.staircase->condition : trial().condition;
-    PASSUNG_ASSERT(shown < setup_.plan.conditions.size());
-    const protocol::Condition& condition = setup_.plan.conditions[shown];
+    start.staircase = nextStep();
+    const protocol::Condition& condition = conditionOf(start.staircase);
     const auto X_WT = targetPose(condition);
     if (!X_WT) return fail("prepare", X_WT.errors());
 
-    if (swapsDevice(condition.device)) return;
-    if (!instructed_block_) instruct(protocol::ShowAt::SessionStart);
-    if (instructed_block_ != trial().block_index) instruct(protocol::ShowAt::BeforeBlock);
-    instructed_block_ = trial().block_index;
     start.trial_index = trial().trial_index;
     start.attempt_no = past_[agenda_.next()].attempts + 1;
     start.start_ns = session_ns_;
@@ -260,7 +278,7 @@ void Session::takeEnd(const Attempt& attempt, const AttemptEnd& end, Then then) 
     for (const measures::Value& value : end.measures)
         if (value.name == "trial_time_s") trial_time_s = value.value;
     listener_.progress({agenda_.trial(*last_), attempt.condition, end.outcome, end.valid, end.invalid_reason,
-                        trial_time_s, agenda_.finished(), agenda_.planned(), session_ns_});
+                        trial_time_s, agenda_.finished(), agenda_.planned() - agenda_.leftOut(), session_ns_});
 }
 
 const protocol::Block& Session::blockOf(std::size_t place) const {
@@ -326,26 +344,8 @@ void Session::appendEvents(const std::vector<TrialEvent>& events) {
     }
 }
 
-/// Logs the pages of the moment as shown; before a block: the next trial's.
-void Session::instruct(protocol::ShowAt moment) {
-    for (const protocol::Instruction& page : setup_.plan.instructions) {
-        if (page.moment != moment || (!page.block.empty() && page.block != trial().block)) continue;
-        Event event;
-        event.t_ns = session_ns_;
-        event.source = "session";
-        event.event = "instruction";
-        event.payload_json = protocol::JsonObject()
-                                 .text("moment", protocol::showAtName(moment))
-                                 .text("text", page.text)
-                                 .text("picture", page.picture)
-                                 .str();
-        sink_.appendEvent(event);
-    }
-}
-
 void Session::finish(SessionState state) {
     state_ = state;
-    if (state == SessionState::Complete) instruct(protocol::ShowAt::SessionEnd);
     const auto finished = sink_.finishSession(state == SessionState::Complete && staircasesAreDone(), session_ns_);
     if (finished) return;
     state_ = SessionState::Failed;

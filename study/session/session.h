@@ -8,8 +8,10 @@
 
 #include "core/base/result.h"
 #include "study/measures/detection.h"
+#include "study/protocol/json.h"
 #include "study/session/apparatus.h"
 #include "study/session/command.h"
+#include "study/session/instruction_desk.h"
 #include "study/session/questionnaire_desk.h"
 #include "study/session/session_setup.h"
 #include "study/session/staircases.h"
@@ -39,10 +41,11 @@ public:
     Session& operator=(const Session&) = delete;
 
     /// One bounded piece of work: look whether a due questionnaire is filled, rest for kTicksPerRest before a block
-    /// that asks for it (events rest_started, rest_ended), begin the next trial (if it is on another device than
-    /// the one before: events swap_device and device_swapped; between them a session whose setup waits for commands is
-    /// Paused until the experimenter says Continue), watch the running one for kTicksPerLook, or close the session;
-    /// nothing in Ready and Paused. Whatever is to be done to a session from outside is done between two calls.
+    /// that asks for it (events rest_started, rest_ended), have another device than the last trial's put in place
+    /// (events swap_device and device_swapped; between them a session whose setup waits for commands is Paused until
+    /// the experimenter says Continue), look whether the instructions before the next trial are read, begin it, watch
+    /// the running one for kTicksPerLook, or close the session; nothing in Ready and Paused. Whatever is to be done to
+    /// a session from outside is done between two calls.
     SessionState advance();
 
     /// What an experimenter wants, between two calls of advance(). Every command is logged as an event "command_…",
@@ -66,6 +69,9 @@ public:
     /// Has every main trial an attempt that counts, and every track of a staircase come to its end?
     bool isWhole() const;
 
+    /// The device that is to be put in place while the session is Paused; empty: it waits for none.
+    std::string awaitedDevice() const { return state_ == SessionState::Paused && swapping_ ? device_in_use_ : ""; }
+
     /// Why the session failed; empty unless state() is Failed.
     const Errors& errors() const { return errors_; }
 
@@ -86,7 +92,10 @@ private:
 
     const design::PlannedTrial& trial() const { return agenda_.trial(agenda_.next()); }
     bool rest();
-    bool swapsDevice(const std::string& device);
+    bool swapsDevice();
+    protocol::JsonObject stableStiffnessOf(const char* key, const std::string& device) const;
+    std::optional<StaircaseStep> nextStep() const;
+    const protocol::Condition& conditionOf(const std::optional<StaircaseStep>& step) const;
     void leaveOutNeedless();
     bool staircasesAreDone() const;
     void beginTrial();
@@ -97,7 +106,6 @@ private:
     void finishTrial(std::optional<Then> then = {});  // none: as the protocol says
     void takeEnd(const Attempt& attempt, const AttemptEnd& end, Then then);
     AttemptEnd describeEnd(LoopHealth health) const;
-    void instruct(protocol::ShowAt moment);
     const protocol::Block& blockOf(std::size_t place) const;
     void appendEvents(const std::vector<TrialEvent>& events);
     void finish(SessionState state);
@@ -132,19 +140,19 @@ private:
     TrialSink& sink_;
     SessionListener listener_;
     QuestionnaireDesk desk_;
+    InstructionDesk instructions_;
     SessionState state_ = SessionState::BetweenTrials;
     bool pause_asked_ = false;
     std::optional<Attempt> attempt_;
     Agenda agenda_;
     Staircases staircases_;
-    std::vector<Past> past_;                        // by place in the plan
-    std::optional<std::size_t> last_;               // place of the newest attempt that ended
-    std::optional<std::size_t> rested_for_;         // place of the trial that a rest was last looked for
-    std::int64_t rest_left_ = 0;                    // [periods] of the running rest
-    std::string device_in_use_;                     // of the last trial, or being swapped to
-    bool swapping_ = false;                         // until the first trial on it begins
-    std::optional<std::int64_t> instructed_block_;  // the last one whose instructions this run has shown
-    std::int64_t session_ns_;                       // at tick 0 of the running or next attempt
+    std::vector<Past> past_;                 // by place in the plan
+    std::optional<std::size_t> last_;        // place of the newest attempt that ended
+    std::optional<std::size_t> rested_for_;  // place of the trial that a rest was last looked for
+    std::int64_t rest_left_ = 0;             // [periods] of the running rest
+    std::string device_in_use_;              // of the last trial, or being swapped to
+    bool swapping_ = false;                  // until the first trial on it begins
+    std::int64_t session_ns_;                // at tick 0 of the running or next attempt
     Errors errors_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "study/design/trial_order.h"
 #include "study/protocol/study_plan.h"
+#include "study/session/instruction_reader.h"
 #include "study/session/questionnaire_source.h"
 #include "study/session/resume.h"
 #include "study/session/trial_sink.h"
@@ -26,6 +27,10 @@ struct SessionSetup {
     std::optional<Resumption> resumed = {};    // goes on from there; none: begins
     QuestionnaireSource* answers = nullptr;    // who answers; may stay null if the plan has no questionnaire
     TrialTimer* timer = nullptr;               // of trials that the experimenter times; null: commands do it
+    std::string language = {};                 // of instructions; empty: the first that they have
+    InstructionReader* reader = nullptr;       // of instructions; null: they are logged as not shown
+    /// When a device was calibrated on this machine [UTC], empty: never. Without it (virtual time) nothing is said.
+    std::function<std::string(const std::string& device)> calibrated_utc = {};
 };
 
 /// A trial that is over and durable.
@@ -36,8 +41,8 @@ struct TrialProgress {
     bool valid;
     const std::string& invalid_reason;
     std::optional<double> trial_time_s;
-    std::size_t finished;  // trials of this session that are over; one that is to be repeated is not
-    std::size_t planned;
+    std::size_t finished;     // trials of this session that are over; one that is to be repeated is not
+    std::size_t planned;      // without those that staircases do not need any more
     std::int64_t session_ns;  // session time after the trial
 };
 

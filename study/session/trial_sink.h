@@ -47,8 +47,6 @@ struct Event {
     std::string payload_json = "{}";
 };
 
-/// Where a session's data goes. Calls return quickly; finishAttempt, storeQuestionnaire and finishSession return when
-/// the data is durable.
 /// Where a session's data goes. Calls return quickly; those that give a Result<Done> return when the
 /// data is durable.
 class TrialSink {

@@ -1,6 +1,7 @@
 #include "ui/app/calibration.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -98,6 +99,33 @@ Result<Done> keepCalibration(const protocol::Calibration& calibration) {
     store.keep(fileName(calibration.device), text);
     if (store.load(fileName(calibration.device)) != text) return failed;
     return Done{};
+}
+
+std::optional<std::int64_t> calibratedAt(const std::string& device) {
+    struct stat file {};
+    const std::string path = calibrationPath(device);
+    if (path.empty() || stat(path.c_str(), &file) != 0) return std::nullopt;
+    return std::int64_t{file.st_mtim.tv_sec} * 1000 + file.st_mtim.tv_nsec / 1'000'000;
+}
+
+std::string calibrationAdvice(const std::string& device, std::span<const protocol::StableStiffness> kept,
+                              std::int64_t began_ms) {
+    const std::string remedy = fmt::format("`passung doctor --device {} --find-stiffness` does it", device);
+    const auto calibrated = calibratedAt(device);
+    if (!calibrated) return fmt::format("{} has never been calibrated on this machine: {}", device, remedy);
+    const auto found = protocol::readCalibration(calibrationPath(device));
+    if (!found) return toString(found.errors().front());
+    for (const protocol::StableStiffness& stable : kept) {
+        if (stable.device != device) continue;
+        if (found->stable_stiffness < stable.linear || found->rotational_stiffness < stable.rotational)
+            return fmt::format(
+                "{} bears {:.6g} N/m and {:.6g} Nm/rad by its calibration, less than the {:.6g} N/m and {:.6g} Nm/rad "
+                "that this study keeps for it: it may not stay calm",
+                device, found->stable_stiffness, found->rotational_stiffness, stable.linear, stable.rotational);
+    }
+    if (*calibrated < began_ms)
+        return fmt::format("{} has not been calibrated since this session began: {}", device, remedy);
+    return "";
 }
 
 Result<std::vector<DeviceDescription>> withCalibrations(std::vector<DeviceDescription> devices) {

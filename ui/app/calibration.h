@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,6 +25,14 @@ Result<protocol::Calibration> findStiffness(const simulated::DeviceParams& devic
 
 /// Keeps it for all later runs of this user. Errors: it cannot be written.
 Result<Done> keepCalibration(const protocol::Calibration& calibration);
+
+/// When the device was last calibrated on this machine [Unix time, ms]; nothing: never.
+std::optional<std::int64_t> calibratedAt(const std::string& device);
+
+/// What an experimenter is to know who puts the device in place for a session that began at `began_ms` [Unix time]:
+/// that it has not been calibrated on this machine since, or bears less than the study keeps for it. Empty: nothing.
+std::string calibrationAdvice(const std::string& device, std::span<const protocol::StableStiffness> kept,
+                              std::int64_t began_ms);
 
 /// The devices with what was found on them. Errors: a file that is there and not sound.
 Result<std::vector<DeviceDescription>> withCalibrations(std::vector<DeviceDescription> devices);

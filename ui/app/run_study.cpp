@@ -10,6 +10,7 @@
 #include "devices/simulated/presets.h"
 #include "study/measures/measures.h"
 #include "study/person/simulated_person.h"
+#include "study/protocol/language.h"
 #include "study/protocol/planned_questionnaires.h"
 #include "study/session/participant_order.h"
 #include "study/store/digest.h"
@@ -32,6 +33,12 @@ std::string hostText() {
     uname(&name);
     return std::string(name.sysname) + " " + name.release + " " + name.machine;
 }
+
+/// A simulated person has no use for a text.
+class SimulatedReader : public session::InstructionReader {
+public:
+    std::optional<session::PageRead> read(const session::Page&) override { return session::PageRead{"simulated", {}}; }
+};
 
 /// One participant: enrolled, given a slot, and through all trials.
 class StudyRun {
@@ -163,6 +170,15 @@ private:
         const bool simulates =
             kind() == protocol::ParticipantKind::Simulated && (options_.answers == nullptr || !measured());
         if (kind() != protocol::ParticipantKind::Simulated) setup.answers = options_.performer->answers();
+        SimulatedReader reader;
+        setup.language = options_.language;
+        if (measured())
+            setup.calibrated_utc = [](const std::string& device) {
+                const auto when = calibratedAt(device);
+                return when ? store::UtcClock::wall(*when).at(0) : std::string();
+            };
+        if (kind() == protocol::ParticipantKind::Simulated)
+            setup.reader = options_.reader != nullptr ? options_.reader : &reader;
         apparatus.perceiveBy(SimulatedPerception(plan_, code));
         SimulatedTimer timer(person::personOf(plan_.name, code, plan_.seed));
         if (simulates) setup.timer = &timer;  // else somebody is there to say it
@@ -185,10 +201,14 @@ private:
     void conduct(session::Session& session, LoopApparatus& apparatus) {
         auto commands = CommandSocket::listen(options_.database, [&apparatus] { apparatus.halt(); });
         if (!commands && listener_.warned) listener_.warned(toString(commands.errors().front()));
+        const std::int64_t began = unixMilliseconds();
         auto told = session::SessionState::BetweenTrials;
         while (!session.isOver()) {
             const auto state = session.state();
             const bool waits = state == session::SessionState::Ready || state == session::SessionState::Paused;
+            if (waits && told != state && listener_.swap && !session.awaitedDevice().empty())
+                listener_.swap(session.awaitedDevice(),
+                               calibrationAdvice(session.awaitedDevice(), plan_.stable_stiffness, began));
             if (waits && told != state && listener_.state) listener_.state(state);
             told = state;
             if (commands)
@@ -292,8 +312,11 @@ Error otherStation(const store::Unfinished& session, const RunOptions& options) 
 
 }  // namespace
 
-Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& options, const RunListener& listener) {
+Result<RunEnd> runStudy(const protocol::StudyPlan& plan, RunOptions options, const RunListener& listener) {
     if (isPerson(options.participant)) return missingDevices(plan, options.participant);
+    const auto language = protocol::chooseLanguage(plan, options.language);
+    if (!language) return language.errors();
+    options.language = *language;
     // A calibration that fails must leave nothing behind: neither a new database nor the protocol in an old one.
     std::vector<store::AccuracyRow> measured;
     const auto measure = [&]() -> Result<Done> {
@@ -362,6 +385,7 @@ Result<RunEnd> resumeStudy(const ResumeOptions& resume, RunOptions options, cons
         return done.errors();
     plan.seed = session->seed;
     options.clock = session->virtual_time ? Clock::Virtual : Clock::RealTime;
+    options.language = session->language;
     StudyRun run(plan, options, listener, *opened.store, session->protocol_sha256);
     const auto end = run.resume(*session);
     backUp(*opened.store, options, listener);

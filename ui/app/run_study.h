@@ -21,8 +21,9 @@ struct RunOptions {
     bool backup = true;                               // copy the database when the run ends, however it does
     bool wait = false;                                // every session begins with the command Start
     std::function<bool()> interrupted;                // asked every few ticks: true ends the run; empty: never
-    std::string language = "en";                      // that participants are spoken to in
+    std::string language;                             // participants are spoken to in; empty: the protocol's first
     session::QuestionnaireSource* answers = nullptr;  // who answers questionnaires; nullptr: a simulated person
+    session::InstructionReader* reader = nullptr;     // who reads instructions; nullptr: a simulated person
     AskConsent ask_consent;                           // empty: nobody is asked here
     Performer* performer = nullptr;                   // who takes part or watches; null: nobody
 };
@@ -38,7 +39,9 @@ struct RunListener {
     std::function<void(const std::string&)> warned;
     std::function<void(const std::string& participant, int number, int of)> session;
     std::function<void(const session::TrialProgress&)> trial;
-    std::function<void(session::SessionState)> state;                              // whenever it waits for a command
+    std::function<void(session::SessionState)> state;  // whenever it waits for a command
+    /// Before that: it waits for this device to be put in place; `advice` on its calibration may be empty.
+    std::function<void(const std::string& device, const std::string& advice)> swap;
     std::function<void(const std::string& participant, bool whole)> session_over;  // that was not interrupted
     std::function<void(session::AttemptId, measures::Outcome)> acknowledge;
 };
@@ -50,16 +53,17 @@ struct RunListener {
 /// before an error stays in it. An interruption stores the running trial as aborted and closes the session as aborted,
 /// both with the reason "interrupted". What contact.accuracy = "auto" asks for is picked when the protocol first runs
 /// in this database, and kept there; before later runs in real time a machine that is too slow for it is warned of.
-Result<RunEnd> runStudy(const protocol::StudyPlan& plan, const RunOptions& options, const RunListener& listener);
+/// Errors before anything is stored: a language that is none of protocol::languagesOf(plan).
+Result<RunEnd> runStudy(const protocol::StudyPlan& plan, RunOptions options, const RunListener& listener);
 
 struct ResumeOptions {
     std::string session;  // id; empty: the newest one that did not complete
     std::string meshes;   // folder that the protocol's mesh paths start from; empty: here, else beside the database
 };
 
-/// Goes on with an interrupted session of the database by its protocol's [resume], in the clock that it had. Of
-/// `options`, participant, simulated and clock do not matter. Later trials are what the uninterrupted session's would
-/// have been.
+/// Goes on with an interrupted session of the database by its protocol's [resume], in the clock and language that it
+/// had. Of `options`, participant, simulated, clock and language do not matter. Later trials are what the uninterrupted
+/// session's would have been.
 Result<RunEnd> resumeStudy(const ResumeOptions& resume, RunOptions options, const RunListener& listener);
 
 /// Every device that a protocol may name, as its maker or its model describes it.

@@ -44,7 +44,7 @@ struct RunOptions {
     bool no_backup = false;
     int acknowledge_fd = -1;            // open file descriptor that gets a line per durable attempt
     std::string answers = "simulated";  // or "participant", "experimenter": asked in this terminal
-    std::string language = "en";        // of consent
+    std::string language;               // empty: the first that the protocol has
 };
 int run(const RunOptions& options);
 

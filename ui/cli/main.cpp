@@ -141,7 +141,9 @@ private:
         addStation(sub, run_.station);
         sub->add_flag("--no-backup", run_.no_backup, "leave out the copy DB.backup and its SHA-256 at the end");
         addAnswers(sub, run_.answers);
-        sub->add_option("--language", run_.language, "that consent is asked in with --answers; default en");
+        sub->add_option("--language", run_.language,
+                        "of the session: one that the protocol has texts in; default its first one. It is "
+                        "stored; with --answers consent and instructions are shown in it");
         sub->add_flag("--wait", run_.wait, "begin every session only when `passung session start DB` says so");
         sub->add_option("--acknowledge-fd", run_.acknowledge_fd, "file descriptor for a line per durable attempt");
     }

@@ -57,9 +57,11 @@ int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, con
     listenForSignals();
     Terminal terminal;
     TerminalAnswers at_terminal(terminal, answers);
+    TerminalReader pages(terminal, answers);
     what.interrupted = [&terminal] { return stop_asked != 0 || terminal.ended(); };
     if (answers != "simulated") {
         what.answers = &at_terminal;
+        what.reader = &pages;
         what.ask_consent = [&](const protocol::ConsentClause& clause, const std::string& text) {
             return askConsent(terminal, what.interrupted, clause, text);
         };
@@ -97,6 +99,11 @@ int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, con
                    state == session::SessionState::Ready ? "waits for `passung session start`"
                                                          : "paused; `passung session continue` goes on");
         std::fflush(stdout);
+    };
+    listener.swap = [&](const std::string& device, const std::string& advice) {
+        progress.show("");
+        fmt::print("{}: the next trial is on {}: put it in place{}{}\n", participant, device,
+                   advice.empty() ? "" : "; ", advice);
     };
     listener.session_over = [&](const std::string&, bool whole) {
         progress.show("");

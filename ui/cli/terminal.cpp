@@ -162,6 +162,23 @@ std::optional<session::FilledForm> TerminalAnswers::fill(const session::Form& fo
     return std::exchange(filling_, nullptr)->filled(answered_by_);
 }
 
+std::optional<session::PageRead> TerminalReader::read(const session::Page& page) {
+    if (open_ != page.id) {
+        open_ = page.id;
+        since_ms_ = steadyMilliseconds();
+        const std::string picture = page.picture.empty() ? "" : fmt::format("    picture: {}\n", page.picture);
+        say(fmt::format("\n{}\n{}    Enter: read\n> ", page.text, picture));
+    }
+    const auto line = terminal_.line();
+    if (!line) return std::nullopt;
+    if (!line->empty()) {
+        say("    Enter alone goes on\n> ");
+        return std::nullopt;
+    }
+    open_.clear();
+    return session::PageRead{read_by_, steadyMilliseconds() - since_ms_};
+}
+
 std::optional<bool> askConsent(Terminal& terminal, const std::function<bool()>& stop,
                                const protocol::ConsentClause& clause, const std::string& text) {
     const std::string prompt = "    yes or no > ";

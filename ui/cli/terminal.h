@@ -8,6 +8,7 @@
 
 #include "study/protocol/study_plan.h"
 #include "study/session/form_filling.h"
+#include "study/session/instruction_reader.h"
 
 namespace passung::cli {
 
@@ -43,6 +44,21 @@ private:
     std::string answered_by_;
     std::unique_ptr<session::FormFilling> filling_;
     bool leaves_out_ = false;  // the line before was empty
+};
+
+/// Prints instructions at a terminal; an empty line says that they were read.
+class TerminalReader : public session::InstructionReader {
+public:
+    /// `read_by`: as `answered_by` above. The terminal outlives this.
+    TerminalReader(Terminal& terminal, std::string read_by) : terminal_(terminal), read_by_(std::move(read_by)) {}
+
+    std::optional<session::PageRead> read(const session::Page& page) override;
+
+private:
+    Terminal& terminal_;
+    std::string read_by_;
+    std::string open_;  // id of the page that is shown; empty: none
+    std::int64_t since_ms_ = 0;
 };
 
 /// Shows a clause of consent and waits for yes or no; nothing if the terminal ends or `stop` says so first.

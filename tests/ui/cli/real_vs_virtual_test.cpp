@@ -129,7 +129,9 @@ TEST_F(RealVsVirtual, TheSecondaryTaskAndTheExperimentersClockAreInTheExport) {
             EXPECT_EQ(events.at(row, "source"), "simulated") << "nobody was there";
             ++said[events.at(row, "event")];
         }
-        if (events.at(row, "event") == "instruction") pages.push_back(events.at(row, "payload_json"));
+        if (events.at(row, "event") != "instruction") continue;
+        EXPECT_EQ(events.at(row, "source"), "simulated") << "nobody read it";
+        pages.push_back(events.at(row, "payload_json"));
     }
     EXPECT_EQ(said["command_start"], 4);
     EXPECT_EQ(said["command_done"] + said["command_failed"], 4);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "study/store/sqlite.h"
 #include "study/store/store_reader.h"
 #include "tests/ui/cli/program.h"
 #include "tests/ui/cli/small_study.h"
@@ -123,6 +124,65 @@ TEST_F(Stability, ACalibrationThatIsNotSoundIsAnErrorWithItsPlace) {
     EXPECT_NE(run({"check", "s.toml"}).err.find("calm_stiffness_N_per_m: required"), std::string::npos);
     EXPECT_EQ(run({"doctor", "--device", "falcon", "--find-stiffness"}).exit_code, 0) << "finds it anew";
     EXPECT_EQ(run({"check", "s.toml"}).exit_code, 0);
+}
+
+/// Two blocks of one condition each, the second on another device.
+std::string twoDevices() {
+    std::string text = smallStudy();
+    const std::size_t factor = text.find("[[factor]]"), task = text.find("[task]");
+    text.replace(factor, task - factor,
+                 "[[factor]]\nname = \"robot\"\nkey = \"device.preset\"\nlevels = [\"sigma7\", "
+                 "\"falcon\"]\n\n");
+    text.replace(text.find("timeout_s = 20"), 14, "timeout_s = 0.3");
+    text.replace(text.find("order = \"williams\"\nrepetitions = 3"), 34,
+                 "order = \"williams\"\nblocked = \"robot\"\nblocked_order = \"listed\"\nrepetitions = 1");
+    return text;
+}
+
+TEST_F(Stability, WhoSwapsDevicesIsToldWhatTheirCalibrationIsWorth) {
+    // Truth: invariant: never calibrated; calibrated before the session; found to bear less than the study keeps.
+    writeText(folder / "s.toml", twoDevices());
+    const TempFolder console;
+    const auto session = [&](const std::string& action) {
+        return runProgram(console.path(), {"session", action, folder / "small.db"});
+    };
+    const auto toldAtSwap = [&] {
+        Program program(folder.path(), {"run", "s.toml", "--db", "small.db", "--wait"});
+        while (session("start").exit_code != 0) continue;
+        while (program.out().find("put it in place") == std::string::npos) continue;
+        EXPECT_EQ(session("continue").exit_code, 0);
+        EXPECT_EQ(program.wait(), 0) << program.err();
+        const std::string out = program.out(), begin = "the next trial is on falcon: put it in place";
+        const std::size_t place = out.find(begin);
+        return place == std::string::npos
+                   ? out
+                   : out.substr(place + begin.size(), out.find('\n', place) - place - begin.size());
+    };
+    EXPECT_EQ(toldAtSwap(),
+              "; falcon has never been calibrated on this machine: `passung doctor --device falcon --find-stiffness` "
+              "does it");
+    calibrate(4000.0);
+    EXPECT_EQ(toldAtSwap(),
+              "; falcon has not been calibrated since this session began: `passung doctor --device falcon "
+              "--find-stiffness` does it");
+    calibrate(100.0);
+    EXPECT_NE(toldAtSwap().find("falcon bears 100 N/m and 0 Nm/rad by its calibration, less than the"),
+              std::string::npos);
+}
+
+TEST_F(Stability, InRealTimeTheCalibrationOfEveryDeviceInUseIsStored) {
+    // Truth: invariant: one event a device, with what the study keeps and when the file was written; none in virtual
+    // time, where no clock reaches the data.
+    writeText(folder / "s.toml", twoDevices());
+    calibrate(2000.0);
+    const std::string payloads =
+        "SELECT group_concat(payload_json->>'device' || ' ' || (payload_json->>'stable_stiffness_N_per_m' = 2000) || "
+        "' ' || (payload_json->>'calibrated_utc' GLOB '20*Z'), ', ') FROM (SELECT payload_json FROM event WHERE "
+        "event='device_calibration' ORDER BY event_id)";
+    ASSERT_EQ(run({"run", "s.toml", "--db", "small.db", "--real-time"}).exit_code, 0);
+    EXPECT_EQ(store::Database(folder / "small.db", store::OpenMode::ReadOnly).text(payloads), "sigma7 0 0, falcon 1 1");
+    ASSERT_EQ(run({"run", "s.toml", "--db", "virtual.db"}).exit_code, 0);
+    EXPECT_EQ(store::Database(folder / "virtual.db", store::OpenMode::ReadOnly).text(payloads), "");
 }
 
 }  // namespace

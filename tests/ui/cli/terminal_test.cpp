@@ -180,6 +180,63 @@ TEST_F(TerminalTest, ASessionWhoseTerminalEndsIsInterruptedAndCanGoOn) {
     EXPECT_EQ(query("SELECT end_state FROM session"), "complete");
 }
 
+TEST_F(TerminalTest, InstructionsAreShownInTheAskedLanguageAndWaitForEnter) {
+    // Truth: closed form: the script's lines; one that is not empty does not count as read.
+    std::string study = readText(folder_ / "study.toml");
+    study.replace(study.find("{ en = \"May we analyse the data?\" }"), 35,
+                  R"({ en = "May we analyse the data?", de = "Dürfen wir die Daten auswerten?" })");
+    study.replace(study.find("{ en = \"May we take photos?\" }"), 30,
+                  R"({ en = "May we take photos?", de = "Dürfen wir fotografieren?" })");
+    study += R"(
+[text.en]
+welcome = "Welcome."
+thanks = "Thank you."
+[text.de]
+welcome = "Willkommen."
+thanks = "Danke."
+[[instruction]]
+moment = "session_start"
+text = "welcome"
+[[instruction]]
+moment = "session_end"
+text = "thanks"
+)";
+    writeText(folder_ / "study.toml", study);
+    auto german = rehearse_;
+    german.insert(german.end(), {"--language", "de"});
+    const Ended ended = run("ja\nnein\nx\n\n5\n1\nfine\n\n\n", german);
+    ASSERT_EQ(ended.exit_code, 0) << ended.err << ended.out;
+    for (const char* shown : {"Dürfen wir die Daten auswerten?", "Willkommen.", "Enter alone goes on", "Danke."})
+        EXPECT_NE(ended.out.find(shown), std::string::npos) << shown << " in\n" << ended.out;
+    EXPECT_EQ(ended.out.find("Welcome."), std::string::npos);
+    EXPECT_EQ(query("SELECT language FROM session"), "de");
+    EXPECT_EQ(query("SELECT group_concat(source || ' ' || (payload_json->>'text'), ', ') FROM "
+                    "(SELECT * FROM event WHERE event='instruction' ORDER BY event_id)"),
+              "experimenter welcome, experimenter thanks");
+    const Ended none = run("", {"run", "study.toml", "--db", "other.db", "--language", "fr"});
+    EXPECT_EQ(none.exit_code, 1);
+    EXPECT_EQ(none.err, "study.toml: error: language: \"fr\": must be one of the protocol's languages: en, de\n");
+    EXPECT_FALSE(fs::exists(folder_ / "other.db")) << "nothing is half-written";
+}
+
+TEST_F(TerminalTest, ResumedSessionsKeepTheirLanguage) {
+    // Truth: invariant: a participant is spoken to in one language.
+    std::string study = readText(folder_ / "study.toml");
+    study +=
+        "\n[text.en]\nthanks = \"Thank you.\"\n[text.de]\nthanks = \"Danke.\"\n"
+        "[[instruction]]\nmoment = \"session_end\"\ntext = \"thanks\"\n";
+    for (std::size_t at = 0; (at = study.find("text = { en = \"May we", at)) != std::string::npos; at += 12)
+        study.insert(at + 9, "de = \"Ja?\", ");
+    writeText(folder_ / "study.toml", study);
+    auto german = rehearse_;
+    german.insert(german.end(), {"--language", "de"});
+    EXPECT_EQ(run("ja\nja\n5\n", german).exit_code, 1) << "the terminal ended";
+    const Ended resumed = run("5\n1\nfine\n\n\n", {"resume", "s.db", "--answers", "participant"});
+    ASSERT_EQ(resumed.exit_code, 0) << resumed.err << resumed.out;
+    EXPECT_NE(resumed.out.find("Danke."), std::string::npos) << resumed.out;
+    EXPECT_EQ(query("SELECT language FROM session"), "de");
+}
+
 TEST_F(TerminalTest, PeopleAreRefusedWithoutADeviceAndNothingIsStored) {
     // Truth: invariant: trials of a simulated hand are never stored under the code of a person.
     for (const char* code : {"P07", "T01"}) {
