@@ -60,6 +60,7 @@ public:
         catch_trial_ = false;
         content_.overrides.push_back(std::move(overrides_));
         overrides_.clear();
+        content_.sound.push_back(errors_.size() == before_);
         before_ = errors_.size();
     }
 
@@ -217,6 +218,7 @@ std::vector<std::vector<std::size_t>> combinations(const std::vector<FactorConte
         std::vector<std::vector<std::size_t>> longer;
         for (const auto& combination : all)
             for (std::size_t level = 0; level < factor.factor.levels.size(); ++level) {
+                if (!factor.sound[level]) continue;
                 longer.push_back(combination);
                 longer.back().push_back(level);
             }

@@ -20,6 +20,7 @@ struct Override {
 struct FactorContent {
     Factor factor;
     std::vector<std::vector<Override>> overrides;  // per level
+    std::vector<bool> sound;                       // is a level?
 };
 
 /// The tables that a level may change.
@@ -41,7 +42,8 @@ void applyOverride(const Override& change, StudyTables& tables, Errors& errors);
 /// True if one of the keys is the other or holds it.
 bool overlap(const std::string& a, const std::string& b);
 
-/// Every combination of level indices, the first factor varying slowest. One empty combination without factors.
+/// Every combination of indices of sound levels, the first factor varying slowest. One empty combination without
+/// factors.
 std::vector<std::vector<std::size_t>> combinations(const std::vector<FactorContent>& factors);
 
 }  // namespace passung::protocol

@@ -42,7 +42,7 @@ constexpr std::array kStudyKeys{
     Key{"study", "title", Text, kAny, "", "(the name)", "Title for people."},
     Key{"study", "seed", Integer, atLeast(0), "", "!", "Everything random follows from it."},
     Key{"study", "participants", Integer, from(1, 100000), "", "!", "How many are planned; a multiple of the rows of the Williams square keeps orders balanced."},
-    Key{"study", "max_session_minutes", Number, aboveUpTo(0, 1440), "", "(no limit)", "A session that can take longer, every trial to its time-out and with the rests, is an error."},
+    Key{"study", "max_session_minutes", Number, aboveUpTo(0, 1440), "", "(no limit)", "A session whose trials, each to its time-out, and rests take longer is an error. Ways to the start, repeated attempts and questionnaires are not reckoned with."},
     Key{"study", "allocation_blocks", Integer, from(1, 10), "", "1", "Participants are allotted to groups in permuted blocks that hold each group so often."},
 
     Key{"factor", "name", Name, kAny, "", "!", "A column in every export."},

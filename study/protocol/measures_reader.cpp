@@ -25,9 +25,10 @@ bool contains(std::span<const std::string> names, const std::string& name) {
 
 }  // namespace
 
-std::vector<std::string> readMeasures(const TableReader& root, const StudyPlan& plan,
+std::vector<std::string> readMeasures(const TableReader& root, const StudyPlan* plan,
                                       std::span<const std::string> known_measures, Errors& errors) {
-    const auto possible = measuresOf(typesOf(plan), known_measures);
+    const auto possible = plan != nullptr ? measuresOf(typesOf(*plan), known_measures)
+                                          : std::vector<std::string>(known_measures.begin(), known_measures.end());
     if (!root.has("measures")) return possible;
     std::vector<std::string> measures;
     for (const Node& item : root.items("measures")) {
@@ -41,7 +42,7 @@ std::vector<std::string> readMeasures(const TableReader& root, const StudyPlan& 
                          : fmt::format("unknown measure; known measures: {}", fmt::join(known, ", ")));
         } else if (contains(measures, item.text)) {
             report("is listed twice");
-        } else if (!plan.conditions.empty() && !contains(possible, item.text)) {
+        } else if (!contains(possible, item.text)) {
             report(fmt::format("is a measure of {} trials, and the study has none of these",
                                typesWith(item.text).front()->name));
         }

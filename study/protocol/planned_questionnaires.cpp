@@ -103,6 +103,19 @@ void checkDistinct(const StudyPlan& plan, const std::vector<PlannedQuestionnaire
     }
 }
 
+Result<std::vector<PlannedQuestionnaire>> load(const StudyPlan& plan,
+                                               const std::function<Result<std::string>(const std::string&)>& read) {
+    Errors errors;
+    std::vector<PlannedQuestionnaire> all = plan.questionnaires;
+    Loader loader(plan, read, errors);
+    for (PlannedQuestionnaire& planned : all)
+        if (!planned.file.empty()) loader.load(planned);
+    checkDistinct(plan, all, errors);
+    tidy(errors);
+    if (!errors.empty()) return errors;
+    return all;
+}
+
 }  // namespace
 
 std::vector<PlannedQuestionnaire> readQuestionnaires(const std::vector<Node>& tables, const std::vector<Block>& blocks,
@@ -127,15 +140,15 @@ std::vector<PlannedQuestionnaire> readQuestionnaires(const std::vector<Node>& ta
     return all;
 }
 
+Errors checkQuestionnaires(const StudyPlan& plan, const std::function<Result<std::string>(const std::string&)>& read) {
+    const auto loaded = load(plan, read);
+    return loaded ? Errors{} : loaded.errors();
+}
+
 Result<Done> loadQuestionnaires(StudyPlan& plan, const std::function<Result<std::string>(const std::string&)>& read) {
-    Errors errors;
-    std::vector<PlannedQuestionnaire> all = plan.questionnaires;
-    Loader loader(plan, read, errors);
-    for (PlannedQuestionnaire& planned : all) loader.load(planned);
-    checkDistinct(plan, all, errors);
-    tidy(errors);
-    if (!errors.empty()) return errors;
-    plan.questionnaires = std::move(all);
+    auto loaded = load(plan, read);
+    if (!loaded) return loaded.errors();
+    plan.questionnaires = *std::move(loaded);
     plan.expanded_json = expandedJson(plan);
     return Done{};
 }

@@ -14,6 +14,9 @@ namespace passung::protocol {
 std::vector<PlannedQuestionnaire> readQuestionnaires(const std::vector<Node>& tables, const std::vector<Block>& blocks,
                                                      Errors& errors);
 
+/// What is wrong with these files.
+Errors checkQuestionnaires(const StudyPlan& plan, const std::function<Result<std::string>(const std::string&)>& read);
+
 /// Reads the files that the plan's questionnaires name, relative to the plan's own, and checks them; the plan's
 /// expanded JSON then holds their texts. `read` gives a file's bytes by its path. A plan with an error in it stays as
 /// it was.

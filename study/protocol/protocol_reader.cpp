@@ -16,6 +16,7 @@
 #include "study/protocol/factors.h"
 #include "study/protocol/include.h"
 #include "study/protocol/measures_reader.h"
+#include "study/protocol/plan_contents.h"
 #include "study/protocol/plan_json.h"
 #include "study/protocol/plan_warnings.h"
 #include "study/protocol/planned_questionnaires.h"
@@ -48,7 +49,8 @@ std::string fingerprint(Condition condition) {
     return paramsJson(condition) + meshes;
 }
 
-/// Reads one study file, step by step; every step adds to errors_.
+/// Reads one study file, step by step; every step adds to errors_. A step is left out only if what it would say follows
+/// from an error that is known already.
 class ProtocolReader {
 public:
     ProtocolReader(const Node& document, std::span<const DeviceDescription> devices,
@@ -58,35 +60,48 @@ public:
           known_measures_(known_measures),
           root_(document, {"protocol"}, "", errors_) {}
 
-    Result<StudyPlan> read() {
-        readStudy();
+    /// The plan as far as it can be read; complete if there are no errors.
+    Examined read() {
+        const bool study = isSound([&] { readStudy(); });
         readConditions();
-        readBlockTables();
-        staircases_ = readStaircases(root_.items("staircase"), root_.items("block"), factors_, known_measures_,
-                                     plan_.blocks, errors_);
+        const bool blocks = isSound([&] {
+            readBlockTables();
+            staircases_ = readStaircases(root_.items("staircase"), root_.items("block"), factors_, known_measures_,
+                                         plan_.blocks, errors_);
+        });
         plan_.questionnaires = readQuestionnaires(root_.items("questionnaire"), plan_.blocks, errors_);
         readLoop();
         plan_.resume = readResume(root_, errors_);
         plan_.consent = readConsent(root_, errors_);
         readTexts(root_, plan_, errors_);
-        if (errors_.empty()) checkBlocks(root_.items("block"), plan_, errors_);
-        if (errors_.empty()) readBlockConditions();
+        const bool expands = levels_sound_ && blocks && !plan_.conditions.empty() && !plan_.blocks.empty();
+        const bool design = expands && study && isSound([&] { checkBlocks(root_.items("block"), plan_, errors_); });
+        if (expands) readBlockConditions();
         // A block may have another type of trial than the rest.
-        plan_.measures = readMeasures(root_, plan_, known_measures_, errors_);
+        plan_.measures = readMeasures(root_, tasks_sound_ ? &plan_ : nullptr, known_measures_, errors_);
         plan_.analyses = readAnalyses(root_.items("analysis"), plan_, errors_);
-        if (errors_.empty()) readStaircaseConditions();
-        if (errors_.empty()) checkDuration();
+        if (expands) readStaircaseConditions();
+        if (design && tasks_sound_) checkDuration();
         if (!root_.has("measures")) dropUnused();
+        plan_.meshes = meshesOf(plan_, document_.place.file);
+        plan_.stable_stiffness = stableStiffnessOf(plan_, devices_);
         tidy(errors_);
-        if (!errors_.empty()) return errors_;
-        listMeshes();
-        listDevices();
-        plan_.warnings = conditionWarnings(std::span(plan_.conditions).first(plannedConditions(plan_)));
-        plan_.expanded_json = expandedJson(plan_);
-        return std::move(plan_);
+        if (errors_.empty()) {
+            plan_.warnings = conditionWarnings(std::span(plan_.conditions).first(plannedConditions(plan_)));
+            plan_.expanded_json = expandedJson(plan_);
+        }
+        return {std::move(plan_), std::move(errors_)};
     }
 
 private:
+    /// Does the step find nothing wrong?
+    template <class Step>
+    bool isSound(Step step) {
+        const std::size_t before = errors_.size();
+        step();
+        return errors_.size() == before;
+    }
+
     void readStudy() {
         const Node* table = root_.node("study");
         if (table == nullptr) return;
@@ -115,26 +130,26 @@ private:
 
     void readConditions() {
         const Node* scene = findScene();
-        const std::size_t before = errors_.size();
-        factors_ = readFactors(root_.items("factor"), known_measures_, errors_);
-        const auto& factors = factors_;
+        levels_sound_ = isSound([&] { factors_ = readFactors(root_.items("factor"), known_measures_, errors_); });
         std::size_t count = 1;
-        for (const auto& factor : factors) {
+        for (const auto& factor : factors_) {
             plan_.factors.push_back(factor.factor);
             count = std::min(count * std::max<std::size_t>(1, factor.factor.levels.size()), kMaxConditions + 1);
         }
         if (count > kMaxConditions)
-            root_.fail("factor", fmt::format("more than {} combinations of levels", kMaxConditions));
-        // Levels that are wrong in themselves would be reported once more in every condition.
-        if (errors_.size() > before) return;
-        const auto exclusions = readExclusions(root_.items("exclude"), plan_.factors, errors_);
-        if (scene == nullptr || errors_.size() > before) return;
-        for (auto& levels : combinations(factors))
+            return root_.fail("factor", fmt::format("more than {} combinations of levels", kMaxConditions));
+        std::vector<Exclusion> exclusions;
+        const bool excluded =
+            isSound([&] { exclusions = readExclusions(root_.items("exclude"), plan_.factors, errors_); });
+        levels_sound_ = levels_sound_ && excluded;
+        if (scene == nullptr) return;
+        const std::size_t before = errors_.size();
+        for (auto& levels : combinations(factors_))
             if (!isExcluded(exclusions, levels)) readCondition(*scene, std::move(levels), nullptr);
-        if (errors_.size() > before) return;
+        plan_.shared_conditions = plan_.conditions.size();
+        if (!levels_sound_ || errors_.size() > before) return;
         if (plan_.conditions.empty()) root_.fail("exclude", "leaves no condition");
         checkDistinct();
-        plan_.shared_conditions = plan_.conditions.size();
     }
 
     /// Blocks with a `set` have conditions of their own: the shared ones with the keys that the block changes.
@@ -153,9 +168,8 @@ private:
                                     entry.place, "block." + plan_.blocks[b].name + ".set", entry.key,
                                     fmt::format("is changed by factor {}, whose level would win", factor.factor.name)));
             if (plan_.conditions.size() + plan_.shared_conditions > kMaxConditions)
-                root_.fail("block",
-                           fmt::format("more than {} conditions with those that blocks change", kMaxConditions));
-            if (!errors_.empty()) return;
+                return root_.fail("block",
+                                  fmt::format("more than {} conditions with those that blocks change", kMaxConditions));
             plan_.blocks[b].first_condition = plan_.conditions.size();
             for (std::size_t c = 0; c < plan_.shared_conditions; ++c)
                 readCondition(*scene, plan_.conditions[c].levels, &tables[b]);
@@ -172,17 +186,16 @@ private:
             Staircase& staircase = content.staircase;
             const Block& block = plan_.blocks[staircase.block];
             const Node* own = block.first_condition > 0 ? &root_.items("block")[staircase.block] : nullptr;
-            for (std::size_t c = 0; c < plan_.shared_conditions && errors_.empty(); ++c) {
+            for (std::size_t c = 0; c < plan_.shared_conditions; ++c) {
                 staircase.first_variant.push_back(plan_.conditions.size());
                 for (std::size_t level = 0; level < staircase.levels.size(); ++level) {
                     const Override step = content.change(level);
                     readCondition(*scene, plan_.conditions[c].levels, own, &step,
                                   fmt::format("@{}={:.6g}", staircase.name, staircase.levels[level]));
-                    if (errors_.empty())
-                        plan_.conditions.back().stimulus = {plan_.staircases.size(), step.value->number};
+                    plan_.conditions.back().stimulus = {plan_.staircases.size(), step.value->number};
                 }
             }
-            checkMeasure(content);
+            if (tasks_sound_) checkMeasure(content);
             plan_.staircases.push_back(std::move(staircase));
         }
         if (plan_.conditions.size() > kMaxConditions)
@@ -227,28 +240,31 @@ private:
 
         const std::size_t before = errors_.size();
         auto content = readSceneNode(tables.scene, {"scene"}, "scene", devices_, errors_);
-        if (errors_.size() == before && content.device.empty()) {
-            const Node* device = tables.scene.find("device");
+        const Node* device = tables.scene.find("device");
+        const bool names_device =
+            device != nullptr && (device->kind != Node::Kind::Table || device->find("preset") != nullptr);
+        if (!names_device)
             errors_.push_back(errorAt(device != nullptr ? device->place : tables.scene.place, "device.preset", "",
                                       "required in a study"));
-        }
         condition.scene = std::move(content.scene);
         condition.accuracy_budget = content.accuracy_budget;
         condition.accuracy_line = content.accuracy_place.line;
         condition.accuracy_column = content.accuracy_place.column;
         condition.allow_unstable = content.allow_unstable;
         condition.device = std::move(content.device);
-        if (errors_.size() == before && root_.has("task")) condition.task = readTask(tables, condition.scene, errors_);
+        const bool task = content.parts_sound && isSound([&] {
+                              if (root_.has("task")) condition.task = readTask(tables, &condition.scene, errors_);
+                          });
+        if (!content.parts_sound && root_.has("task")) readTask(tables, nullptr, errors_);
+        tasks_sound_ = tasks_sound_ && task && root_.has("task");
         readConditionExtras(tables, condition, errors_);
         const bool pair = std::holds_alternative<DiscriminationPairTask>(condition.task.form);
-        if (errors_.size() == before && pair)
-            condition.comparison = readComparison(tables, condition, devices_, errors_);
-        if (errors_.size() == before) checkStartPose(tables.scene, "scene", condition.scene, errors_);
+        if (task && pair) condition.comparison = readComparison(tables, condition, devices_, errors_);
+        if (content.sound) checkStartPose(tables.scene, "scene", condition.scene, errors_);
         if (errors_.size() == before && pair) checkStartPose(tables.scene, "scene", *condition.comparison, errors_);
-        if (errors_.size() > before) return;
         condition.levels_json = levelsJson(plan_.factors, levels);
         condition.levels = std::move(levels);
-        condition.params_json = paramsJson(condition);
+        if (errors_.size() == before) condition.params_json = paramsJson(condition);
         plan_.conditions.push_back(std::move(condition));
     }
 
@@ -281,7 +297,7 @@ private:
         if (!(plan_.max_session > 0.0 && seconds > plan_.max_session)) return;
         const TableReader read(*root_.node("study"), {"study"}, "study", errors_);
         read.fail("max_session_minutes",
-                  fmt::format("a session takes up to {:.1f} min: every trial to its time-out, and the rests",
+                  fmt::format("the trials of a session, each to its time-out, and the rests take {:.1f} min",
                               seconds / 60.0));
     }
 
@@ -303,68 +319,22 @@ private:
         });
     }
 
-    void listDevices() {
-        std::set<std::string> named;
-        for (const Condition& condition : plan_.conditions) named.insert(condition.device);
-        for (const DeviceDescription& device : devices_)
-            if (named.erase(device.name) > 0)
-                plan_.stable_stiffness.push_back({device.name, device.stable_stiffness_N_per_m,
-                                                  device.stable_rotational_stiffness_Nm_per_rad,
-                                                  device.stability_source});
-        std::sort(plan_.stable_stiffness.begin(), plan_.stable_stiffness.end(),
-                  [](const StableStiffness& a, const StableStiffness& b) { return a.device < b.device; });
-    }
-
-    void listMeshes() {
-        const auto folder = std::filesystem::path(document_.place.file).parent_path();
-        std::map<std::string, std::string> names;  // by path
-        const auto list = [&](const model::SceneSpec& scene) {
-            for (const model::PartSpec& part : scene.parts)
-                if (const auto* mesh = std::get_if<model::MeshFile>(&part.geometry)) {
-                    const std::filesystem::path path(mesh->path);
-                    const bool below = path.is_relative() == folder.is_relative() && !folder.empty();
-                    names[mesh->path] =
-                        below ? path.lexically_relative(folder).generic_string() : path.generic_string();
-                }
-        };
-        for (const Condition& condition : plan_.conditions) {
-            list(condition.scene);
-            if (condition.comparison) list(*condition.comparison);
-        }
-        for (const auto& [path, name] : names) plan_.meshes.push_back({name, path});
-    }
-
     const Node& document_;
     std::span<const DeviceDescription> devices_;
     std::span<const std::string> known_measures_;
     Errors errors_;
     TableReader root_;
     StudyPlan plan_;
+    bool levels_sound_ = true, tasks_sound_ = true;  // so far
     std::vector<FactorContent> factors_;
     std::vector<StaircaseContent> staircases_;
 };
 
-}  // namespace
-
-Result<StudyPlan> readProtocol(const std::string& path, std::span<const DeviceDescription> devices,
-                               std::span<const std::string> known_measures) {
-    const auto text = readFile(path);
-    if (!text) return text.errors();
-    auto plan = readProtocolText(*text, path, devices, known_measures);
-    if (!plan) return plan;
-    Errors errors = checkPictures(*plan, readFile);
-    if (!plan->questionnaires.empty())
-        if (const auto done = loadQuestionnaires(*plan, readFile); !done)
-            errors.insert(errors.end(), done.errors().begin(), done.errors().end());
-    if (!errors.empty()) return errors;
-    return plan;
-}
-
-Result<StudyPlan> readProtocolText(const std::string& text, const std::string& path,
-                                   std::span<const DeviceDescription> devices,
-                                   std::span<const std::string> known_measures) {
+/// Without the files that the study names.
+Examined examineText(const std::string& text, const std::string& path, std::span<const DeviceDescription> devices,
+                     std::span<const std::string> known_measures) {
     const auto included = includeFiles(text, path);
-    if (!included) return included.errors();
+    if (!included) return {{}, included.errors()};
     auto document = parseDocument(included->text, path);
     if (!document) {
         Error error = document.errors().front();
@@ -372,15 +342,50 @@ Result<StudyPlan> readProtocolText(const std::string& text, const std::string& p
         relocate(*included, place);
         error.file = place.file;
         error.line = place.line;
-        return error;
+        return {{}, {error}};
     }
     relocate(*included, *document);
-    if (const auto other = otherKind(*document, FileKind::Study)) return errorAt(document->place, "", "", *other);
-    auto plan = ProtocolReader(*document, devices, known_measures).read();
-    if (!plan) return plan.errors();
-    plan->source_text = included->text;
-    plan->source_path = path;
-    return plan;
+    if (const auto other = otherKind(*document, FileKind::Study))
+        return {{}, {errorAt(document->place, "", "", *other)}};
+    Examined examined = ProtocolReader(*document, devices, known_measures).read();
+    examined.plan.source_text = included->text;
+    examined.plan.source_path = path;
+    return examined;
+}
+
+}  // namespace
+
+Examined examineProtocol(const std::string& path, std::span<const DeviceDescription> devices,
+                         std::span<const std::string> known_measures) {
+    const auto text = readFile(path);
+    if (!text) return {{}, text.errors()};
+    Examined examined = examineText(*text, path, devices, known_measures);
+    const bool sound = examined.errors.empty();
+    const auto add = [&](const Errors& errors) {
+        examined.errors.insert(examined.errors.end(), errors.begin(), errors.end());
+    };
+    add(checkPictures(examined.plan, readFile));
+    if (!sound) {
+        add(checkQuestionnaires(examined.plan, readFile));
+    } else if (!examined.plan.questionnaires.empty()) {
+        if (const auto done = loadQuestionnaires(examined.plan, readFile); !done) add(done.errors());
+    }
+    return examined;
+}
+
+Result<StudyPlan> readProtocol(const std::string& path, std::span<const DeviceDescription> devices,
+                               std::span<const std::string> known_measures) {
+    Examined examined = examineProtocol(path, devices, known_measures);
+    if (!examined.errors.empty()) return std::move(examined.errors);
+    return std::move(examined.plan);
+}
+
+Result<StudyPlan> readProtocolText(const std::string& text, const std::string& path,
+                                   std::span<const DeviceDescription> devices,
+                                   std::span<const std::string> known_measures) {
+    Examined examined = examineText(text, path, devices, known_measures);
+    if (!examined.errors.empty()) return std::move(examined.errors);
+    return std::move(examined.plan);
 }
 
 }  // namespace passung::protocol

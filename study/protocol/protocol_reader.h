@@ -10,13 +10,20 @@
 namespace passung::protocol {
 
 /// Reads a study file: checks everything and expands it to conditions that are ready to run. `devices` are the known
-/// presets, `known_measures` the names that `measures` may list. All problems are collected, each with its place; those
-/// of the questionnaires' files once the study itself is sound.
+/// presets, `known_measures` the names that `measures` may list. All problems are collected, each with its place.
 Result<StudyPlan> readProtocol(const std::string& path, std::span<const DeviceDescription> devices,
                                std::span<const std::string> known_measures);
 
-/// The same for a text that stands for the file `path` (names in messages and the base of other paths). The files of
-/// questionnaires are not opened: see loadQuestionnaires().
+/// The same with what could be read of a study that is not sound.
+struct Examined {
+    StudyPlan plan;  // complete if there are no errors; else conditions as far as they go, for their files
+    Errors errors;
+};
+Examined examineProtocol(const std::string& path, std::span<const DeviceDescription> devices,
+                         std::span<const std::string> known_measures);
+
+/// The same as readProtocol() for a text that stands for the file `path` (names in messages and the base of other
+/// paths). The files of questionnaires are not opened: see loadQuestionnaires().
 Result<StudyPlan> readProtocolText(const std::string& text, const std::string& path,
                                    std::span<const DeviceDescription> devices,
                                    std::span<const std::string> known_measures);

@@ -18,10 +18,12 @@ struct SceneContent {
     double accuracy_budget = 0.0;  // [s] > 0: contact.accuracy is "auto"
     Place accuracy_place;          // of that budget
     bool allow_unstable = false;
+    bool parts_sound = false;  // what is said of parts, and the unit
+    bool sound = false;        // everything but the device
 };
 
 /// Reads a scene's table. `ids`: its tables in the key table; `path`: its name in messages ("scene" or "").
-/// Adds everything that is wrong to `errors`; the result is meaningful only if nothing was added.
+/// Adds everything that is wrong to `errors`; the result is meaningful only where it says that it is sound.
 SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids, const std::string& path,
                            std::span<const DeviceDescription> devices, Errors& errors);
 

@@ -84,10 +84,11 @@ struct Stiffness {
     double fraction = 1.0;
 };
 
+/// `otherwise`: the stiffness on a device that is named but not known.
 Stiffness resolveStiffness(const TableReader& read, const char* key, double maximum, const DeviceDescription* device,
-                           bool device_named) {
+                           bool device_named, double otherwise) {
     const Node* node = read.node(key);
-    if (node == nullptr || (device_named && device == nullptr)) return {};
+    if (device_named && device == nullptr) return {otherwise, 1.0};
     const bool limited = maximum > 0.0;
     if (node->kind == Node::Kind::Text) {
         const double fraction = stiffnessFraction(node->text).value_or(1.0);
@@ -107,19 +108,20 @@ void readCoupling(const TableReader& read, const DeviceDescription* device, bool
                   model::ContactSpec& contact) {
     const double maximum = device != nullptr ? device->stable_stiffness_N_per_m : 0.0;
     const double rotational_maximum = device != nullptr ? device->stable_rotational_stiffness_Nm_per_rad : 0.0;
-    const auto resolve = [&](const char* key, double limit) {
-        return resolveStiffness(read, key, limit, device, device_named);
+    const auto resolve = [&](const char* key, double limit, double otherwise) {
+        return resolveStiffness(read, key, limit, device, device_named, otherwise);
     };
     double fraction = 1.0;
     contact.stiffness = maximum > 0.0 ? maximum : kDefaultStiffness;
     if (read.has("stiffness_N_per_m")) {
-        const auto stiffness = resolve("stiffness_N_per_m", maximum);
+        const auto stiffness = resolve("stiffness_N_per_m", maximum, kDefaultStiffness);
         contact.stiffness = stiffness.value;
         fraction = stiffness.fraction;
     }
     contact.rotational_stiffness = device != nullptr ? fraction * rotational_maximum : kDefaultRotationalStiffness;
     if (read.has("rotational_stiffness_Nm_per_rad"))
-        contact.rotational_stiffness = resolve("rotational_stiffness_Nm_per_rad", rotational_maximum).value;
+        contact.rotational_stiffness =
+            resolve("rotational_stiffness_Nm_per_rad", rotational_maximum, kDefaultRotationalStiffness).value;
     contact.damping = read.numberOr("damping_Ns_per_m", device != nullptr ? device->recommended_damping_Ns_per_m : 0.0);
     contact.rotational_damping = read.numberOr(
         "rotational_damping_Nms_per_rad", device != nullptr ? device->recommended_rotational_damping_Nms_per_rad : 0.0);
@@ -273,11 +275,16 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
         return TableReader(node != nullptr ? *node : absent, {name}, read.pathOf(name), errors);
     };
     SceneContent content;
+    const std::size_t before_parts = errors.size();
     content.scene.parts = readParts(read, table, path, units, errors);
+    const bool unit_sound = read.has("unit") || table.find("unit") == nullptr;
+    content.parts_sound = unit_sound && read.has("part") && errors.size() == before_parts;
+    const std::size_t before_device = errors.size();
     const auto device_table = open("device");
     const DeviceDescription* device = findDevice(device_table, devices);
     content.device = device_table.text("preset");
     content.scene.limits = readLimits(device_table, device);
+    const std::size_t of_device = errors.size() - before_device;
     const auto contact_table = open("contact");
     content.scene.contact = readContact(contact_table, device, device_table.has("preset"));
     content.accuracy_budget = readAccuracyBudget(contact_table, content.scene);
@@ -285,16 +292,16 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     content.allow_unstable = contact_table.boolean("allow_unstable");
     const auto registration_table = open("registration");
     content.scene.registration = readRegistration(registration_table, units);
-    if (errors.size() == before) {
-        checkStability(device_table, contact_table, registration_table, device, content.scene);
-        checkSpacing(contact_table, content.scene);
-    }
+    const auto only_device = [&] { return errors.size() == before + of_device; };
+    if (only_device()) checkSpacing(contact_table, content.scene);
+    checkStability(device_table, contact_table, registration_table, device, content.scene);
     content.scene.start_gate = readStartGate(open("start_gate"));
     content.scene.effects = readEffects(open("effects"), errors);
     // What only the model itself can judge has no line of its own.
-    if (errors.size() == before)
+    if (only_device())
         for (const Error& error : content.scene.validate())
             errors.push_back(errorAt(table.place, error.key, error.value, error.message));
+    content.sound = only_device();
     return content;
 }
 

@@ -109,7 +109,7 @@ std::string_view sharedByIntervals(const std::string& path, const std::string& h
 
 }  // namespace
 
-Task readTask(const StudyTables& tables, const model::SceneSpec& scene, Errors& errors) {
+Task readTask(const StudyTables& tables, const model::SceneSpec* scene, Errors& errors) {
     const std::size_t before = errors.size();
     Task task;
     const Node* type = tables.task.find("type");
@@ -125,16 +125,18 @@ Task readTask(const StudyTables& tables, const model::SceneSpec& scene, Errors& 
         return task;
     }
     const TableReader read(tables.task, {"task", found->keys}, "task", errors);
-    if (errors.size() > before) return task;
+    const bool own_sound = errors.size() == before;
     const bool placement = found->name == "free_placement", pair = found->name == "discrimination_pair";
+    const model::PartSpec* target =
+        placement || scene == nullptr || !read.has("target") ? nullptr : findTarget(read, *scene);
+    if (!own_sound || scene == nullptr) return task;
     if (!placement) task.target = read.text("target");
     if (!pair) task.timeout = read.number("timeout_s");
     if (!pair) task.leave_radius = read.number("leave_radius_mm");
-    const model::PartSpec* target = placement ? nullptr : findTarget(read, scene);
     if (placement) {
         task.form = readPlacement(read, unitsOf(tables));
     } else if (pair) {
-        const auto form = readPair(read, tables, scene, errors);
+        const auto form = readPair(read, tables, *scene, errors);
         task.timeout = 2.0 * form.interval + form.answer + kWayBack;
         task.form = form;
     } else if (found->name == "contour_following") {
@@ -142,7 +144,7 @@ Task readTask(const StudyTables& tables, const model::SceneSpec& scene, Errors& 
     } else if (found->name == "narrow_passage") {
         task.form = NarrowPassageTask{read.number("passage_length_mm"), read.number("passage_width_mm")};
     } else {
-        task.form = readPegInHole(read, tables, scene, target, task, errors);
+        task.form = readPegInHole(read, tables, *scene, target, task, errors);
     }
     return task;
 }

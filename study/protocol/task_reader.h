@@ -8,8 +8,9 @@
 
 namespace passung::protocol {
 
-/// Reads [task] as its type declares it (trial_types.h). Sentences of errors name keys as the user wrote them.
-Task readTask(const StudyTables& tables, const model::SceneSpec& scene, Errors& errors);
+/// Reads [task] as its type declares it (trial_types.h). Sentences of errors name keys as the user wrote them. Without
+/// a `scene` (nullptr: its parts are not known) it looks at what the table says by itself.
+Task readTask(const StudyTables& tables, const model::SceneSpec* scene, Errors& errors);
 
 /// The scene of the other interval of a discrimination_pair: the condition's with the keys of task.comparison.
 model::SceneSpec readComparison(const StudyTables& tables, const Condition& condition,

@@ -62,4 +62,11 @@ std::string staircasesText(const protocol::StudyPlan& plan) {
     return text + "\n";
 }
 
+bool mayEndEarly(const protocol::StudyPlan& plan) {
+    for (const protocol::Staircase& staircase : plan.staircases)
+        for (const protocol::StaircaseTrack& track : staircase.tracks)
+            if (track.params.max_reversals > 0) return true;
+    return false;
+}
+
 }  // namespace passung::session

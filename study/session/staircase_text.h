@@ -10,4 +10,7 @@ namespace passung::session {
 /// empty if there is none.
 std::string staircasesText(const protocol::StudyPlan& plan);
 
+/// May a session need fewer trials than are planned?
+bool mayEndEarly(const protocol::StudyPlan& plan);
+
 }  // namespace passung::session

@@ -20,9 +20,10 @@ namespace passung::cli {
 
 namespace {
 
-/// Meshes are readable, and their size suits the spacing: what `run` would find at the first trial only.
-Result<Done> checkMeshes(const protocol::StudyPlan& plan) {
-    std::map<std::pair<std::string, double>, model::MeshReport> reports;
+/// What is wrong with meshes: `run` would find it at the first trial only.
+Errors checkMeshes(const protocol::StudyPlan& plan) {
+    std::map<std::pair<std::string, double>, std::optional<model::MeshReport>> reports;
+    Errors errors;
     for (const auto& condition : plan.conditions) {
         for (const auto& part : condition.scene.parts) {
             const auto* file = std::get_if<model::MeshFile>(&part.geometry);
@@ -30,16 +31,19 @@ Result<Done> checkMeshes(const protocol::StudyPlan& plan) {
             const auto [place, fresh] = reports.try_emplace({file->path, file->metres_per_unit});
             if (fresh) {
                 auto mesh = model::importMesh(file->path, file->metres_per_unit);
-                if (!mesh) return mesh.errors();
-                place->second = std::move(mesh->report);
+                if (mesh)
+                    place->second = std::move(mesh->report);
+                else
+                    errors.insert(errors.end(), mesh.errors().begin(), mesh.errors().end());
             }
             const auto& report = place->second;
-            if (!part.held) continue;
-            if (const auto excess = model::tooManyPoints(report.size, report.area, condition.scene.contact.spacing))
-                return Error{.message = *excess, .file = plan.source_path, .key = "part " + part.name};
+            if (!part.held || !report) continue;
+            if (const auto excess = model::tooManyPoints(report->size, report->area, condition.scene.contact.spacing))
+                errors.push_back({.message = *excess, .file = plan.source_path, .key = "part " + part.name});
         }
     }
-    return Done{};
+    protocol::tidy(errors);
+    return errors;
 }
 
 /// A questionnaire's file by itself; nothing if it is none.
@@ -58,19 +62,21 @@ std::optional<int> checkQuestionnaire(const std::string& path) {
 
 int check(const CheckOptions& options) {
     if (const auto code = checkQuestionnaire(options.protocol)) return *code;
-    const auto plan = protocol::readProtocol(options.protocol, app::knownDevices(), app::knownMeasures());
-    if (!plan) return fail(plan.errors());
-    if (const auto meshes = checkMeshes(*plan); !meshes) return fail(meshes.errors());
-    warn(options.protocol, session::planWarnings(*plan));
+    auto [plan, errors] = protocol::examineProtocol(options.protocol, app::knownDevices(), app::knownMeasures());
+    const Errors of_meshes = checkMeshes(plan);
+    errors.insert(errors.end(), of_meshes.begin(), of_meshes.end());
+    if (!errors.empty()) return fail(errors);
+    warn(options.protocol, session::planWarnings(plan));
     std::size_t trials = 0;
-    for (int session = 1; session <= protocol::sessionsOf(*plan); ++session) {
-        const auto planned = session::planTrials(*plan, {}, "S001", session);
+    for (int session = 1; session <= protocol::sessionsOf(plan); ++session) {
+        const auto planned = session::planTrials(plan, {}, "S001", session);
         if (!planned) return fail(planned.errors());
         trials += planned->size();
     }
-    fmt::print("{}: ok: {} {}, {} conditions, {} trials for each of {} participants\n", options.protocol, plan->name,
-               plan->version, protocol::plannedConditions(*plan), trials, plan->participants);
-    fmt::print("{}", session::staircasesText(*plan));
+    fmt::print("{}: ok: {} {}, {} conditions, {}{} trials for each of {} participants\n", options.protocol, plan.name,
+               plan.version, protocol::plannedConditions(plan), session::mayEndEarly(plan) ? "at most " : "", trials,
+               plan.participants);
+    fmt::print("{}", session::staircasesText(plan));
     return 0;
 }
 

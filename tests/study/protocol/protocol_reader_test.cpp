@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -349,6 +350,81 @@ TEST(ProtocolReader, DescribesEveryNumberInDeterministicJson) {
           R"("clearance_m":0.000500000000)", R"("position_m":[0,0,0],"quaternion_wxyz":[1,0,0,0])"})
         EXPECT_NE(params.find(part), std::string::npos) << part << " in " << params;
     EXPECT_NE(first->expanded_json.find(params), std::string::npos);
+}
+
+/// One line of a study and what makes it wrong.
+struct Fault {
+    std::string sound, wrong;
+};
+
+std::string withFaults(std::string text, const std::vector<Fault>& faults) {
+    for (const Fault& fault : faults) {
+        const auto place = text.find(fault.sound);
+        EXPECT_NE(place, std::string::npos) << fault.sound;
+        text.replace(place, fault.sound.size(), fault.wrong);
+    }
+    return text;
+}
+
+TEST(ProtocolReader, TellsOfEveryFaultAtOnce) {
+    // Truth: invariant: a fault that is found when it stands alone is found beside others that it does not follow from.
+    const std::string text = kHead + "max_session_minutes = 60\n" + kScene + "[scene.contact]\ntolerance_um = 20\n" +
+                             kTask + kFactors + kBlock + R"(set = { "contact.spacing_mm" = 1 }
+constraints = [{ rule = "max_run", factor = "stiffness", count = 3 }]
+order = "shuffled"
+[[block]]
+name = "threshold"
+[[staircase]]
+name = "coarse"
+block = "threshold"
+key = "contact.proxy_filter_hz"
+levels = [5, 10, 20]
+rule = "1_up_2_down"
+step_down = 6
+measure = "completion_time_s"
+above = 5
+tracks = [{ name = "only", max_trials = 4 }]
+[[analysis]]
+outcome = "completion_time_s"
+factors = ["method"]
+test = "paired_t"
+[text.en]
+hello = "Hello"
+[[instruction]]
+moment = "session_start"
+text = "hello"
+)";
+    ASSERT_EQ(errorsOf(text), "");
+    const std::vector<Fault> faults{{"preset = \"arm\"", "preset = \"armm\""},
+                                    {"tolerance_um = 20", "tolerance_um = -2"},
+                                    {"levels = [\"penalty\",", "levels = [\"penalti\","},
+                                    {"\"contact.spacing_mm\" = 1 ", "\"contact.spacing_mm\" = 0 "},
+                                    {"count = 3", "count = 0"},
+                                    {"levels = [5, 10, 20]", "levels = [5, 10, -1]"},
+                                    {"factors = [\"method\"]", "factors = [\"metho\"]"},
+                                    {"target = \"plate\"", "target = \"plat\""},
+                                    {"text = \"hello\"", "text = \"hallo\""},
+                                    {"seed = 42", "seed = -42"}};
+    std::vector<std::string> alone;
+    for (const Fault& fault : faults) {
+        alone.push_back(errorsOf(withFaults(text, {fault})));
+        EXPECT_FALSE(alone.back().empty()) << fault.wrong;
+        EXPECT_EQ(std::count(alone.back().begin(), alone.back().end(), '\n'), 0) << alone.back();
+    }
+    const std::string together = errorsOf(withFaults(text, faults));
+    for (const std::string& line : alone) EXPECT_NE(together.find(line), std::string::npos) << line << "\n" << together;
+    EXPECT_EQ(std::count(together.begin(), together.end(), '\n') + 1, static_cast<std::ptrdiff_t>(faults.size()))
+        << together;
+    // Each of these beside a device that is not known, as they hide nothing from each other.
+    const Fault device = faults.front();
+    for (const Fault& fault : {Fault{"max_session_minutes = 60", "max_session_minutes = 0.1"},
+                               Fault{"pose = { position = [0, 0, 30] }", "pose = { position = [0, 0, -9] }"},
+                               Fault{"order = \"shuffled\"", "order = \"shuffled\"\ncatch_trials = 2"}}) {
+        const std::string line = errorsOf(withFaults(text, {fault}));
+        const std::string both = errorsOf(withFaults(text, {fault, device}));
+        EXPECT_NE(both.find(line), std::string::npos) << line << "\n" << both;
+        EXPECT_NE(both.find("device.preset"), std::string::npos) << both;
+    }
 }
 
 TEST(ProtocolReader, TellsOfAFileThatCannotBeOpened) {

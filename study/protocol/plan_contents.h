@@ -1,0 +1,18 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/device_description.h"
+#include "study/protocol/study_plan.h"
+
+namespace passung::protocol {
+
+/// The mesh files that conditions of the plan name, each once; names are relative to `study`, the plan's own file.
+std::vector<MeshSource> meshesOf(const StudyPlan& plan, const std::string& study);
+
+/// What the devices that conditions of the plan name display stably, by name; of `devices` those that are known.
+std::vector<StableStiffness> stableStiffnessOf(const StudyPlan& plan, std::span<const DeviceDescription> devices);
+
+}  // namespace passung::protocol
