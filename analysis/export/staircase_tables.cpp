@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <tuple>
+#include <utility>
 
+#include "study/design/adaptive.h"
 #include "study/protocol/participant.h"
 
 namespace passung::exporter {
@@ -51,9 +54,31 @@ void forSteps(const StudyData& study, Each each) {
         if (const auto step = steps.find(attempt.attempt_id); step != steps.end()) each(attempt, *step->second);
 }
 
-/// The attempt's answer was told to a track and still counts.
-bool counts(const AttemptRow& attempt, const StaircaseStepRow& step) {
-    return attempt.valid && step.track && step.positive;
+/// Everything that a track of a session was told, in time.
+struct Told {
+    std::map<std::int64_t, std::pair<const AttemptRow*, const StaircaseStepRow*>> answers;  // by attempt
+    const AttemptRow& attempt() const { return *answers.begin()->second.first; }
+    const StaircaseStepRow& step() const { return *answers.begin()->second.second; }
+};
+
+/// Trials that count, their reversals, trials that no longer count, the estimate and its deviation: the track told
+/// anew what counts.
+std::vector<std::string> thresholdCells(const StudyData& study, const Told& told) {
+    const auto known = std::find_if(study.staircase_tracks.begin(), study.staircase_tracks.end(), [&](const auto& row) {
+        return row.protocol_sha256 == told.attempt().protocol_sha256 && row.staircase == told.step().staircase &&
+               row.track == told.step().track;
+    });
+    std::int64_t trials = 0, invalidated = 0;
+    std::optional<design::AdaptiveTrack> track;
+    if (known != study.staircase_tracks.end()) track.emplace(known->params);
+    for (const auto& [id, answer] : told.answers) {
+        const auto& [attempt, step] = answer;
+        ++(attempt->valid ? trials : invalidated);
+        if (attempt->valid && track && !track->finished()) track->answer(step->level, *step->positive);
+    }
+    if (!track) return {cell(trials), kMissing, cell(invalidated), kMissing, kMissing};
+    return {cell(trials), cell(std::int64_t{track->reversals()}), cell(invalidated), cell(track->estimate()),
+            cell(track->uncertainty())};
 }
 
 }  // namespace
@@ -67,14 +92,21 @@ Table makeStaircase(const StudyData& study) {
         {"wanted_level", "Level that the rule asked for, in the key's unit", "", "number", "", 1, {}},
         {"level", "Level that was presented, in the key's unit", "", "number", "", 1, {}},
         {"positive",
-         "1 if the response was positive; NA: no answer, or it did not count",
+         "1 if the response was positive; NA: no answer, or the attempt did not count when it ended",
          "",
          "0/1",
          "the staircase's measure against its threshold",
          1,
          {"0", "1"}},
         {"reversal", "1 if the track turned here", "", "0/1", "", 1, {"0", "1"}},
-        {"estimate", "Threshold of the track after this trial, in the key's unit", "", "number", kEstimate, 1, {}},
+        {"estimate",
+         "Threshold of the track after this trial as computed then, in the key's unit: answers that were invalidated "
+         "later are in it, not in thresholds.csv",
+         "",
+         "number",
+         kEstimate,
+         1,
+         {}},
         {"estimate_sd", "How unsure it is", "", "number", kDeviation, 1, {}},
         {"valid", "1 if the attempt counts", "", "0/1", "", 1, {"0", "1"}},
         {"protocol_sha256", "SHA-256 of the protocol's text, see protocol/", "", "text", "", 1, {}}};
@@ -99,44 +131,31 @@ Table makeThresholds(const StudyData& study) {
     table.columns.back().label = "Which of the tracks that take turns";
     addFactors(table.columns, study);
     const std::vector<Column> more = {
-        {"n_trials", "Trials that told it something", "", "integer", "", 1, {}},
-        {"n_reversals", "Reversals", "", "integer", "", 1, {}},
-        {"estimate",
-         "Threshold after the last of them as computed then, in the key's unit; answers that were invalidated later "
-         "are in it",
-         "",
-         "number",
-         kEstimate,
-         1,
-         {}},
+        {"n_trials", "Trials that told it something and count", "", "integer", "", 1, {}},
+        {"n_reversals", "Reversals of the track by these alone", "", "integer", "", 1, {}},
+        {"n_invalidated", "Trials that told it something and were invalidated later", "", "integer", "", 1, {}},
+        {"estimate", "Threshold by the trials that count, in the key's unit", "", "number", kEstimate, 1, {}},
         {"estimate_sd", "How unsure it is", "", "number", kDeviation, 1, {}},
         {"protocol_sha256", "SHA-256 of the protocol's text, see protocol/", "", "text", "", 1, {}}};
     table.columns.insert(table.columns.end(), more.begin(), more.end());
-    struct Track {
-        const AttemptRow* attempt = nullptr;  // the newest
-        const StaircaseStepRow* step = nullptr;
-        std::int64_t trials = 0, reversals = 0;
-    };
     const auto counted = countedSessions(study);
-    std::map<std::tuple<std::string, std::string, std::string, std::string>, Track> tracks;
+    std::map<std::tuple<std::string, std::string, std::string, std::string>, Told> tracks;
     forSteps(study, [&](const AttemptRow& attempt, const StaircaseStepRow& step) {
-        if (!counts(attempt, step) || counted.count(attempt.session_id) == 0) return;
-        Track& track = tracks[{attempt.session_id, step.staircase, attempt.condition, *step.track}];
-        if (track.attempt == nullptr || track.attempt->attempt_id < attempt.attempt_id)
-            track.attempt = &attempt, track.step = &step;
-        ++track.trials;
-        track.reversals += step.reversal ? 1 : 0;
+        if (!step.track || !step.positive || counted.count(attempt.session_id) == 0) return;
+        Told& told = tracks[{attempt.session_id, step.staircase, attempt.condition, *step.track}];
+        told.answers[attempt.attempt_id] = {&attempt, &step};
     });
-    std::vector<const Track*> sorted;
-    for (const auto& [key, track] : tracks) sorted.push_back(&track);
-    std::stable_sort(sorted.begin(), sorted.end(), [](const Track* a, const Track* b) {
-        return a->attempt->participant_id < b->attempt->participant_id;
+    std::vector<const Told*> sorted;
+    for (const auto& [key, told] : tracks) sorted.push_back(&told);
+    std::stable_sort(sorted.begin(), sorted.end(), [](const Told* a, const Told* b) {
+        return a->attempt().participant_id < b->attempt().participant_id;
     });
-    for (const Track* track : sorted) {
-        auto row = leadingCells(*track->attempt, *track->step);
-        addFactorCells(row, study, *track->attempt);
-        row.insert(row.end(), {cell(track->trials), cell(track->reversals), cell(track->step->estimate),
-                               cell(track->step->estimate_sd), track->attempt->protocol_sha256});
+    for (const Told* told : sorted) {
+        const AttemptRow& attempt = told->attempt();
+        auto row = leadingCells(attempt, told->step());
+        addFactorCells(row, study, attempt);
+        for (const std::string& value : thresholdCells(study, *told)) row.push_back(value);
+        row.push_back(attempt.protocol_sha256);
         table.rows.push_back(std::move(row));
     }
     return table;

@@ -8,7 +8,8 @@ namespace passung::exporter {
 /// One row per attempt at a trial of a staircase: what was presented, what came of it, the estimate after it.
 Table makeStaircase(const StudyData& study);
 
-/// One row per participant, staircase, condition and track of the counted sessions: the estimate after its last trial.
+/// One row per participant, staircase, condition and track of the counted sessions: the estimate by the answers that
+/// count.
 Table makeThresholds(const StudyData& study);
 
 }  // namespace passung::exporter

@@ -55,6 +55,7 @@ Result<StudyData> readStudy(const store::StoreReader& reader) {
     take(reader.events(), study.events, errors);
     take(reader.notes(), study.notes, errors);
     take(reader.detections(), study.detections, errors);
+    take(reader.staircaseTracks(), study.staircase_tracks, errors);
     take(reader.staircaseSteps(), study.staircase_steps, errors);
     take(reader.questionnaireRuns(), study.questionnaires, errors);
     take(reader.accuracy(), study.accuracy, errors);

@@ -31,6 +31,7 @@ struct StudyData {
     std::vector<store::EventRow> events;
     std::vector<store::NoteRow> notes;
     std::vector<store::DetectionRow> detections;  // of the attempts, in their order
+    std::vector<store::StaircaseTrackRow> staircase_tracks;
     std::vector<store::StaircaseStepRow> staircase_steps;
     std::vector<store::QuestionnaireRunRow> questionnaires;
     std::vector<store::AccuracyRow> accuracy;  // of protocols with contact.accuracy = "auto"

@@ -217,13 +217,13 @@ Result<std::string> describePlan(const protocol::StudyPlan& plan, int participan
                 ? design::balanceSentence(places.size(), design::wheelsOf(design)[0].items) + ".\n"
                 : describeBalance(plan, places);
 
-    text += fmt::format("\nDuration\n  {} a participant, at most", design::counted(count, "trial"));
+    text += fmt::format("\nDuration\n  {}{} a participant,", mayEndEarly(plan) ? "at most " : "",
+                        design::counted(count, "trial"));
     for (const double& seconds : longest)
         text += fmt::format("{} {:.1f} min", &seconds == &longest[0] ? "" : " +", seconds / 60.0);
-    text += fmt::format(" (every trial to its time-out, {})\n",
-                        std::any_of(plan.blocks.begin(), plan.blocks.end(), [](const auto& b) { return b.rest > 0.0; })
-                            ? "rests as short as they may be"
-                            : "pauses not counted");
+    text +=
+        " if each lasts to its time-out and rests are as short as they may be;\n"
+        "  ways to the start, repeated attempts, questionnaires and instructions come on top\n";
     if (!plan.analyses.empty()) text += "\nPlanned analyses\n";
     for (const auto& analysis : plan.analyses)
         text += fmt::format("  {} by {}: {}\n", analysis.outcome, fmt::join(analysis.factors, ", "), analysis.test);

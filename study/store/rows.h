@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "study/design/adaptive.h"
 #include "study/measures/cues.h"
 #include "study/measures/measures.h"
 #include "study/session/apparatus.h"
@@ -207,6 +208,13 @@ struct DetectionRow {
     std::int64_t attempt_id = 0;
     std::int64_t number = 1;  // by time
     measures::Detection detection;
+};
+
+/// A track of a protocol's staircase.
+struct StaircaseTrackRow {
+    std::string protocol_sha256;
+    std::string staircase, track;
+    design::AdaptiveParams params;
 };
 
 /// A trial of a staircase.

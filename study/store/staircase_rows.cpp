@@ -30,6 +30,47 @@ void storeStaircaseAnswer(const Database& database, std::int64_t attempt_id, con
         .run();
 }
 
+std::vector<StaircaseTrackRow> readStaircaseTracks(const Database& database) {
+    std::vector<StaircaseTrackRow> rows;
+    Statement row = database.prepare(
+        "SELECT protocol_sha256, s.value->>'staircase', t.value->>'track', t.value->>'method', "
+        "s.value->>'logarithmic', t.value->>'down_after', t.value->>'start', t.value->>'step_down', "
+        "t.value->>'step_up', t.value->>'late_factor', t.value->>'late_after', t.value->>'max_reversals', "
+        "t.value->>'skip_reversals', t.value->>'guess', t.value->>'lapse', t.value->>'sigma_low', "
+        "t.value->>'sigma_high', t.value->>'max_trials', s.value->>'levels' FROM protocol_version, "
+        "json_each(expanded_json, '$.staircases') s, json_each(s.value, '$.tracks') t ORDER BY 1, s.key, t.key");
+    Statement level = database.prepare("SELECT value FROM json_each(?) ORDER BY key");
+    while (row.step()) {
+        design::AdaptiveParams params;
+        level.bind(row.text(18));
+        while (level.step()) params.levels.push_back(level.real(0));
+        if (params.levels.empty()) continue;
+        params.low = params.levels.front();
+        params.high = params.levels.back();
+        params.logarithmic = row.integer(4) != 0;
+        params.max_trials = static_cast<int>(row.integer(17));
+        if (row.text(3) == "psi") {
+            params.method = design::AdaptiveMethod::Psi;
+            params.start = params.low;
+            params.guess = row.real(13);
+            params.lapse = row.real(14);
+            params.sigma_low = row.real(15);
+            params.sigma_high = row.real(16);
+        } else {
+            params.down_after = static_cast<int>(row.integer(5));
+            params.start = row.real(6);
+            params.step_down = row.real(7);
+            params.step_up = row.real(8);
+            params.late_factor = row.real(9);
+            params.late_after = static_cast<int>(row.integer(10));
+            params.max_reversals = static_cast<int>(row.integer(11));
+            params.skip_reversals = static_cast<int>(row.integer(12));
+        }
+        rows.push_back({row.text(0), row.text(1), row.text(2), std::move(params)});
+    }
+    return rows;
+}
+
 std::vector<StaircaseStepRow> readStaircaseSteps(const Database& database) {
     Statement row = database.prepare(
         "SELECT attempt_id, staircase, track, wanted_level, level, positive, reversal, estimate, estimate_sd "

@@ -18,6 +18,9 @@ void insertStaircaseStep(const Database& database, const std::string& session_id
 /// What came of it. @pre in the transaction that ends the attempt
 void storeStaircaseAnswer(const Database& database, std::int64_t attempt_id, const session::StaircaseAnswer& answer);
 
+/// By protocol, as it lists them.
+std::vector<StaircaseTrackRow> readStaircaseTracks(const Database& database);
+
 /// By attempt.
 std::vector<StaircaseStepRow> readStaircaseSteps(const Database& database);
 

@@ -283,6 +283,10 @@ Result<std::vector<ConditionRow>> StoreReader::conditions() const {
             });
     });
 }
+Result<std::vector<StaircaseTrackRow>> StoreReader::staircaseTracks() const {
+    return guarded(path_, [&] { return readStaircaseTracks(*database_); });
+}
+
 
 Result<std::vector<MeasureRow>> StoreReader::measures() const {
     return guarded(path_, [&] {

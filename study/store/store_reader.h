@@ -44,6 +44,7 @@ public:
     Result<std::vector<EventRow>> events() const;
     Result<std::vector<NoteRow>> notes() const;
     Result<std::vector<DetectionRow>> detections() const;                // attempts as above, then by time
+    Result<std::vector<StaircaseTrackRow>> staircaseTracks() const;      // by protocol, as it lists them
     Result<std::vector<StaircaseStepRow>> staircaseSteps() const;        // by attempt
     Result<std::vector<QuestionnaireRunRow>> questionnaireRuns() const;  // by session, then as they were asked
 

@@ -53,7 +53,8 @@ Orders (numbers of conditions; blocks parted by |)
 2 is not a multiple of 4: position counts 0-1, neighbour counts 0-1; balanced with 4.
 
 Duration
-  14 trials a participant, at most 7.0 min (every trial to its time-out, pauses not counted)
+  14 trials a participant, 7.0 min if each lasts to its time-out and rests are as short as they may be;
+  ways to the start, repeated attempts, questionnaires and instructions come on top
 )");
 }
 

@@ -116,6 +116,36 @@ TEST(StaircaseRun, PresentsWhatTheRuleSaysAndFindsTheLevelWhereAnswersChange) {
     EXPECT_NE(replayed.out.find("30 attempts replayed, 0 differ"), std::string::npos);
 }
 
+TEST(StaircaseRun, AnAnswerThatIsInvalidatedLaterIsInNoThreshold) {
+    // Truth: invariant: without its last answer a track has the estimate that it had before that answer.
+    const TempFolder folder;
+    writeText(folder.path() / "study.toml", study());
+    ASSERT_EQ(runProgram(folder.path(), {"run", "study.toml", "--db", "s.db"}).exit_code, 0);
+    const auto tables = [&] {
+        EXPECT_EQ(runProgram(folder.path(), {"export", "s.db", "--out", "out", "--no-samples"}).exit_code, 0);
+        return std::pair(readCsv(folder.path() / "out/staircase.csv"), readCsv(folder.path() / "out/thresholds.csv"));
+    };
+    const auto [steps, whole] = tables();
+    const std::string track = whole.front().at("track");
+    std::vector<std::string> estimates, attempts;
+    for (const auto& step : steps) {
+        if (step.at("track") != track) continue;
+        estimates.push_back(step.at("estimate"));
+        attempts.push_back(std::to_string(std::stoi(step.at("trial_index")) + 1));
+    }
+    EXPECT_EQ(whole.front().at("estimate"), estimates.back());
+    EXPECT_NE(estimates.back(), estimates.at(estimates.size() - 2)) << "the last answer tells nothing";
+    const auto done = runProgram(folder.path(), {"session", "invalidate", "s.db", "--attempt", attempts.back(),
+                                                 "--reason", "the participant sneezed"});
+    ASSERT_EQ(done.exit_code, 0) << done.err;
+    const auto [later, without] = tables();
+    EXPECT_EQ(without.front().at("estimate"), estimates.at(estimates.size() - 2));
+    EXPECT_EQ(without.front().at("n_trials"), "5");
+    EXPECT_EQ(without.front().at("n_invalidated"), "1");
+    EXPECT_EQ(without.back().at("n_invalidated"), "0");
+    EXPECT_EQ(later.size(), steps.size()) << "what was recorded stays";
+}
+
 TEST(StaircaseRun, KilledAndResumedItPresentsWhatTheUninterruptedRunDoes) {
     // Truth: independent program (the uninterrupted run)
     const TempFolder whole, folder;
@@ -144,7 +174,11 @@ TEST(StaircaseRun, EndsWithItsReversals) {
     writeText(folder.path() / "study.toml", study("max_reversals = 2\n"));
     const auto run = runProgram(folder.path(), {"run", "study.toml", "--db", "s.db"});
     ASSERT_EQ(run.exit_code, 0) << run.err;
-    EXPECT_LT(answered(folder / "s.db").size(), 12u);
+    const std::size_t trials = answered(folder / "s.db").size();
+    EXPECT_LT(trials, 12u);
+    EXPECT_NE(run.out.find("S001 (1 of 1): " + std::to_string(trials) + " trials, "), std::string::npos) << run.out;
+    const auto checked = runProgram(folder.path(), {"check", "study.toml"});
+    EXPECT_NE(checked.out.find("at most 12 trials for each"), std::string::npos) << checked.out;
     const store::Database database(folder / "s.db", store::OpenMode::ReadOnly);
     EXPECT_EQ(database.text("SELECT end_state FROM session"), "complete") << "trials that are not needed do not lack";
 }
