@@ -297,7 +297,9 @@ Table makeReliability(const StudyData& study) {
         const Definition* definition = definitions.of(*run);
         if (definition == nullptr) continue;
         for (const questionnaire::Scale& scale : definition->scales) {
-            if (scale.items.size() < 2 || scale.formula == questionnaire::Formula::PairWeighted) continue;
+            using questionnaire::Formula;
+            const bool averages = scale.formula == Formula::Mean || scale.formula == Formula::Sum;
+            if (scale.items.size() < 2 || !averages) continue;
             const Key key(run->kind, run->questionnaire, run->version, run->moment, scale.name);
             items[key] = scale.items.size();
             auto& rows = answers[key];

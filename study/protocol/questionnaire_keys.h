@@ -54,7 +54,8 @@ inline constexpr std::array kQuestionnaireKeys{
 
     Key{"questionnaire_scale", "name", KeyType::Name, {}, "", "!", "The column in exports."},
     Key{"questionnaire_scale", "label", KeyType::Text, {}, "", "(the name)", "What it measures, for the codebook."},
-    Key{"questionnaire_scale", "formula", KeyType::Choice, {}, "mean|sum|pair_weighted", "mean", "Over the items or scales."},
+    Key{"questionnaire_scale", "formula", KeyType::Choice, {}, "mean|sum|pair_weighted|laterality|most_identical|wide_scales", "mean", "Over the items or scales. laterality: 100 (R - L) / (R + L) of choices from 2 (always right) to -2. Two find careless answers: most_identical counts the most frequent answer as given, wide_scales the scales in which aligned answers differ by more than `spread`."},
+    Key{"questionnaire_scale", "spread", KeyType::Number, {.low = 0}, "", "(none)", "Of wide_scales."},
     Key{"questionnaire_scale", "items", KeyType::Texts, {}, "", "(none)", "Ids of the items that enter."},
     Key{"questionnaire_scale", "scales", KeyType::Texts, {}, "", "(none)", "In place of items: names of scales that stand before."},
     Key{"questionnaire_scale", "shift", KeyType::Number, {}, "", "0", "Added to every aligned answer."},

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -28,6 +29,14 @@ Felt feltNamed(std::string_view name) {
     if (name == "failure") return Felt::Failure;
     if (name == "success") return Felt::Success;
     return name == "depth" ? Felt::Depth : Felt::Hardness;
+}
+
+Formula formulaNamed(std::string_view name) {
+    if (name == "sum") return Formula::Sum;
+    if (name == "pair_weighted") return Formula::PairWeighted;
+    if (name == "laterality") return Formula::Laterality;
+    if (name == "most_identical") return Formula::MostIdentical;
+    return name == "wide_scales" ? Formula::WideScales : Formula::Mean;
 }
 
 bool hasLimits(AnswerKind kind) { return kind == AnswerKind::Rating || kind == AnswerKind::Number; }
@@ -195,10 +204,8 @@ private:
         Scale scale;
         scale.name = read.text("name");
         scale.label = read.has("label") ? read.text("label") : scale.name;
-        const auto formula = read.text("formula");
-        scale.formula = formula == "sum"             ? Formula::Sum
-                        : formula == "pair_weighted" ? Formula::PairWeighted
-                                                     : Formula::Mean;
+        scale.formula = formulaNamed(read.text("formula"));
+        scale.spread = read.number("spread");
         scale.shift = read.number("shift");
         scale.factor = read.number("factor");
         scale.max_missing = static_cast<std::size_t>(read.integer("max_missing"));
@@ -241,12 +248,37 @@ private:
             read.fail("items", "a text or a pair cannot be scored");
         if (!scale.items.empty() && scale.max_missing >= scale.items.size())
             read.fail("max_missing", "must leave at least one answer");
+        checkFormula(read, scale);
         if (scale.formula != Formula::PairWeighted) return;
         const auto is_pair = [](const Item& item) { return item.response.kind == AnswerKind::Pair; };
         const auto pairs = std::count_if(definition_.items.begin(), definition_.items.end(), is_pair);
         const std::size_t needed = scale.items.size() * (scale.items.size() - 1) / 2;
         if (scale.items.empty() || static_cast<std::size_t>(pairs) != needed)
             read.fail("formula", fmt::format("needs every pair of its items once: {} pairs, not {}", needed, pairs));
+    }
+
+    /// Keys that the formula has no use for, and what it needs.
+    void checkFormula(const TableReader& read, const Scale& scale) {
+        const bool wide = scale.formula == Formula::WideScales;
+        if (wide && (scale.scales.empty() || !read.has("spread")))
+            read.fail("formula", "needs `scales` and their `spread`");
+        if (!wide && read.has("spread")) read.fail("spread", "is for the formula wide_scales");
+        if (wide && std::any_of(scale.scales.begin(), scale.scales.end(),
+                                [&](std::size_t s) { return definition_.scales[s].items.empty(); }))
+            read.fail("scales", "must be scales of items");
+        const bool averages = scale.formula == Formula::Mean || scale.formula == Formula::Sum;
+        for (const char* key : {"shift", "max_missing"})
+            if (!averages && read.has(key)) read.fail(key, "is for means and sums");
+        if (!averages && !wide && read.has("scales")) read.fail("scales", "this formula is one of items");
+        if (scale.formula != Formula::Laterality) return;
+        for (const std::size_t i : scale.items) {
+            const Response& response = definition_.items[i].response;
+            const bool marks = response.kind == AnswerKind::Choice &&
+                               std::all_of(response.options.begin(), response.options.end(), [](const Option& option) {
+                                   return std::abs(option.value) <= 2.0 && option.value == std::round(option.value);
+                               });
+            if (!marks) return read.fail("items", "must be choices whose options are from -2 to 2");
+        }
     }
 
     void readGolden(const Node& table) {

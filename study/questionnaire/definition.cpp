@@ -22,6 +22,24 @@ bool isOnStep(const Response& response, double value) {
     return std::abs(steps - std::round(steps)) < 1e-9;
 }
 
+std::string nameOf(const Scale& scale) {
+    switch (scale.formula) {
+        case Formula::Mean:
+            return "mean";
+        case Formula::Sum:
+            return "sum";
+        case Formula::PairWeighted:
+            return "sum of weight × answer, by the number of pairs; weight: pairs won";
+        case Formula::Laterality:
+            return "100 (R - L) / (R + L); R, L: marks for right and left, one each for both";
+        case Formula::MostIdentical:
+            return "number of items with the most frequent answer";
+        case Formula::WideScales:
+            return fmt::format("number with answers that differ by more than {},", scale.spread);
+    }
+    return "";
+}
+
 }  // namespace
 
 std::optional<std::size_t> itemNamed(const Definition& definition, std::string_view id) {
@@ -61,10 +79,7 @@ std::string answerFault(const Item& item, const Answer& answer) {
 std::string formulaText(const Definition& definition, const Scale& scale) {
     std::string text;
     if (scale.factor != 1.0) text += fmt::format("{} × ", scale.factor);
-    if (scale.formula == Formula::PairWeighted)
-        text += "sum of weight × answer, by the number of pairs; weight: pairs won";
-    else
-        text += scale.formula == Formula::Mean ? "mean" : "sum";
+    text += nameOf(scale);
     if (!scale.scales.empty()) {
         const auto name = [](const Scale& other) { return other.name; };
         return text + " of the scales " + listed(definition.scales, scale.scales, name);

@@ -48,7 +48,11 @@ struct Item {
 /// Mean and Sum: factor · (mean or sum of answer + shift over the items; of the values over the scales).
 /// PairWeighted: sum of weight · answer over the items, by the number of pairs; an item's weight is how many pairs it
 /// won.
-enum class Formula { Mean, Sum, PairWeighted };
+/// Laterality (Oldfield 1971): 100 (R - L) / (R + L) of marks for right and left: an answer of 2 or 1 gives so many to
+/// the right, -1 or -2 to the left, 0 one to each.
+/// Two that tell careless answers: MostIdentical: how many items have the most frequent answer, as given;
+/// WideScales: in how many of the scales aligned answers differ by more than `spread`.
+enum class Formula { Mean, Sum, PairWeighted, Laterality, MostIdentical, WideScales };
 
 /// Everything from `from` up to the next class.
 struct Class {
@@ -65,6 +69,7 @@ struct Scale {
     std::vector<std::size_t> scales;
     double shift = 0.0;
     double factor = 1.0;
+    double spread = 0.0;          // WideScales
     std::size_t max_missing = 0;  // so many missing items are replaced by the mean of the others; with more: no score
     std::vector<Class> classes;   // ascending; may be none
 };

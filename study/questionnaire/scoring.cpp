@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/base/assert.h"
 
@@ -73,16 +75,74 @@ Score scorePairs(const Definition& definition, const Scale& scale, const std::ve
     return score;
 }
 
+/// Missing items are told by `score`.
+std::vector<double> answered(const std::vector<std::size_t>& items, const std::vector<Answer>& answers, Score& score) {
+    std::vector<double> numbers;
+    for (const std::size_t i : items)
+        if (answers[i].number)
+            numbers.push_back(*answers[i].number);
+        else
+            ++score.missing;
+    return numbers;
+}
+
+Score scoreLaterality(const Scale& scale, const std::vector<Answer>& answers) {
+    Score score{std::nullopt, scale.items.size(), 0};
+    double right = 0.0, left = 0.0;
+    for (const double answer : answered(scale.items, answers, score)) {
+        right += answer == 0.0 ? 1.0 : std::max(answer, 0.0);
+        left += answer == 0.0 ? 1.0 : std::max(-answer, 0.0);
+    }
+    if (score.missing == 0) score.value = 100.0 * (right - left) / (right + left);
+    return score;
+}
+
+Score countIdentical(const Scale& scale, const std::vector<Answer>& answers) {
+    Score score{std::nullopt, scale.items.size(), 0};
+    std::map<double, double> times;
+    double most = 0.0;
+    for (const double answer : answered(scale.items, answers, score)) most = std::max(most, ++times[answer]);
+    if (score.missing == 0) score.value = most;
+    return score;
+}
+
+Score countWideScales(const Definition& definition, const Scale& scale, const std::vector<Answer>& answers) {
+    Score score;
+    double wide = 0.0;
+    for (const std::size_t s : scale.scales) {
+        double low = INFINITY, high = -INFINITY;
+        for (const std::size_t i : definition.scales[s].items) {
+            ++score.items;
+            if (!answers[i].number) {
+                ++score.missing;
+                continue;
+            }
+            const double answer = aligned(definition.items[i], *answers[i].number);
+            low = std::min(low, answer);
+            high = std::max(high, answer);
+        }
+        if (high - low > scale.spread) wide += 1.0;
+    }
+    if (score.missing == 0) score.value = wide;
+    return score;
+}
+
 }  // namespace
 
 std::vector<Score> computeScores(const Definition& definition, const std::vector<Answer>& answers) {
     PASSUNG_ASSERT(answers.size() == definition.items.size());
     std::vector<Score> scores;
     for (const Scale& scale : definition.scales) {
-        if (!scale.scales.empty())
+        if (scale.formula == Formula::WideScales)
+            scores.push_back(countWideScales(definition, scale, answers));
+        else if (!scale.scales.empty())
             scores.push_back(scoreScales(scale, scores));
         else if (scale.formula == Formula::PairWeighted)
             scores.push_back(scorePairs(definition, scale, answers));
+        else if (scale.formula == Formula::Laterality)
+            scores.push_back(scoreLaterality(scale, answers));
+        else if (scale.formula == Formula::MostIdentical)
+            scores.push_back(countIdentical(scale, answers));
         else
             scores.push_back(scoreItems(definition, scale, answers));
     }

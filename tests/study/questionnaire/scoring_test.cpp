@@ -99,6 +99,37 @@ TEST(Scoring, PairsWeighARating) {
         << "b weighs nothing here, but it was asked";
 }
 
+TEST(Scoring, LateralityComparesMarksForBothHands) {
+    // Truth: closed form: 2 + 1 + 1 marks right, 1 + 1 left; "both" marks both.
+    Definition definition = fourItems();
+    definition.scales = {scaleOf(Formula::Laterality, {0, 1, 2, 3})};
+    EXPECT_DOUBLE_EQ(computeScores(definition, answersOf({2, 1, 0, -1}))[0].value.value(), 100.0 * (4 - 2) / (4 + 2));
+    EXPECT_DOUBLE_EQ(computeScores(definition, answersOf({-1, -1, -2, -2}))[0].value.value(), -100.0);
+    EXPECT_FALSE(computeScores(definition, answersOf({2, std::nullopt, 0, -1}))[0].value);
+}
+
+TEST(Scoring, CarelessAnswersAreCounted) {
+    // Truth: closed form: the last item is reversed, so that equal answers are 10 - 2 x 2 = 6 apart; identical ones are
+    // counted as given. A difference of exactly the spread is not wide.
+    Definition definition = fourItems();
+    definition.scales = {scaleOf(Formula::Mean, {0, 3}),
+                         scaleOf(Formula::Mean, {1, 2}),
+                         {},
+                         scaleOf(Formula::MostIdentical, {0, 1, 2, 3})};
+    definition.scales[2].formula = Formula::WideScales;
+    definition.scales[2].scales = {0, 1};
+    definition.scales[2].spread = 5.0;
+    const auto wide = [&](const std::vector<std::optional<double>>& answers) {
+        return computeScores(definition, answersOf(answers))[2].value;
+    };
+    EXPECT_EQ(wide({2, 2, 2, 2}), 1.0);
+    EXPECT_EQ(wide({2, 2, 7, 8}), 0.0);
+    EXPECT_EQ(wide({2, 2, 8, 2}), 2.0);
+    EXPECT_FALSE(wide({2, 2, std::nullopt, 2}));
+    EXPECT_EQ(computeScores(definition, answersOf({2, 3, 2, 3}))[3].value, 2.0);
+    EXPECT_EQ(computeScores(definition, answersOf({2, 2, 2, 3}))[3].value, 3.0);
+}
+
 TEST(Scoring, AClassBeginsAtItsLimit) {
     // Truth: closed form
     Scale scale;
