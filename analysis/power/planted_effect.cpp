@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <map>
 #include <string_view>
 
 namespace passung::power {
@@ -63,8 +62,8 @@ Result<PlantedEffect> readEffect(const std::string& text, const std::string& aga
     if (factor == plan.factors.end())
         return wrong("--effect", effect.factor,
                      "must be a factor: " + listed(plan.factors, [](const auto& f) { return f.name; }));
-    if (factor->kind != protocol::FactorKind::Within)
-        return wrong("--effect", effect.factor, "must vary within participants: the test is paired");
+    if (factor->kind == protocol::FactorKind::Nuisance)
+        return wrong("--effect", effect.factor, "is a nuisance factor: its levels are assigned, not compared");
     const std::string levels = "must be a level of " + factor->name + ": " +
                                listed(factor->levels, [](const auto& level) { return level.label; });
     if (!hasLevel(*factor, effect.level)) return wrong("--effect", effect.level, levels);
@@ -89,26 +88,6 @@ void plant(const PlantedEffect& effect, exporter::StudyData& study) {
         if (const auto found = attempt.measures.find(effect.measure); found != attempt.measures.end())
             found->second = effect.scale * found->second + effect.shift;
     }
-}
-
-stats::PairedT testEffect(const PlantedEffect& effect, const exporter::StudyData& study) {
-    struct Means {
-        std::vector<double> at_level, at_other;
-    };
-    std::map<std::string, Means> people;
-    for (const exporter::Cell& cell : exporter::cellsOf(study)) {
-        const std::string level = exporter::levelOf(cell.condition->levels, effect.factor);
-        Means& means = people[cell.participant_id];
-        const double mean = exporter::meanOf(exporter::valuesOf(cell.attempts, effect.measure));
-        if (level == effect.level) means.at_level.push_back(mean);
-        if (level == effect.against) means.at_other.push_back(mean);
-    }
-    std::vector<double> differences;
-    for (const auto& [code, means] : people) {
-        const double difference = exporter::meanOf(means.at_level) - exporter::meanOf(means.at_other);
-        if (std::isfinite(difference)) differences.push_back(difference);
-    }
-    return stats::pairedT(differences);
 }
 
 }  // namespace passung::power

@@ -4,14 +4,13 @@
 #include <string>
 
 #include "analysis/export/study_data.h"
-#include "analysis/stats/paired_t.h"
 #include "core/base/result.h"
 #include "study/protocol/study_plan.h"
 
 namespace passung::power {
 
 /// What every virtual study is given on top of its own data: in all attempts of one level of a factor the measure is
-/// multiplied, then shifted. The test compares that level with another one.
+/// multiplied, then shifted. That level is compared with another one.
 struct PlantedEffect {
     std::string factor;
     std::string level;
@@ -30,9 +29,5 @@ Result<PlantedEffect> readEffect(const std::string& text, const std::string& aga
 std::optional<double> addedBy(const std::string& text);
 
 void plant(const PlantedEffect& effect, exporter::StudyData& study);
-
-/// The paired t test of a virtual study: a participant's difference is the mean of their cells' means at the level less
-/// that at the other. Cells and means are those of the exports. Whoever has no value in a cell of either is left out.
-stats::PairedT testEffect(const PlantedEffect& effect, const exporter::StudyData& study);
 
 }  // namespace passung::power

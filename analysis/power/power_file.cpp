@@ -14,8 +14,8 @@
 namespace passung::power {
 namespace {
 
-constexpr std::string_view kTitle = "# passung power, format 1";
-constexpr std::string_view kColumns = "run,n,mean_difference,sd_difference,t,p";
+constexpr std::string_view kTitle = "# passung power, format 2";
+constexpr std::string_view kColumns = "run,n,mean_difference,sd_difference,statistic,p";
 
 /// Every key of the header with its field, in order.
 template <class Job, class Visit>
@@ -30,6 +30,7 @@ void eachKey(Job& job, Visit visit) {
     visit("measure", job.measure);
     visit("effect", job.effect);
     visit("against", job.against);
+    visit("test", job.test);
     visit("alpha", job.alpha);
 }
 
@@ -90,12 +91,9 @@ std::string_view valueOf(Lines& lines, const std::string& key) {
 
 Shard readShard(Lines& lines) {
     const std::string_view text = valueOf(lines, "shard");
-    const std::size_t slash = std::min(text.find('/'), text.size());
-    Shard shard;
-    const bool good = slash < text.size() && read(text.substr(0, slash), shard.index) &&
-                      read(text.substr(slash + 1), shard.of) && shard.index >= 1 && shard.index <= shard.of;
-    if (!good) lines.wrong("shard", text, "must be i/n with 1 ≤ i ≤ n");
-    return good ? shard : Shard{};
+    const auto shard = shardNamed(text);
+    if (!shard) lines.wrong("shard", text, "must be i/n with 1 ≤ i ≤ n");
+    return shard.value_or(Shard{});
 }
 
 void readTest(Lines& lines, std::int64_t run, std::vector<StudyTest>& tests) {
@@ -109,12 +107,20 @@ void readTest(Lines& lines, std::int64_t run, std::vector<StudyTest>& tests) {
     StudyTest test;
     const bool good = cells.size() == 6 && read(cells[0], test.run) && test.run == run && read(cells[1], test.test.n) &&
                       readCell(cells[2], test.test.mean) && readCell(cells[3], test.test.sd) &&
-                      readCell(cells[4], test.test.t) && readCell(cells[5], test.test.p);
+                      readCell(cells[4], test.test.statistic) && readCell(cells[5], test.test.p);
     if (!good) lines.wrong("run", line, fmt::format("must be run {}: {}", run, kColumns));
     tests.push_back(test);
 }
 
 }  // namespace
+
+std::optional<Shard> shardNamed(std::string_view text) {
+    const std::size_t slash = std::min(text.find('/'), text.size());
+    Shard shard;
+    const bool good = slash < text.size() && read(text.substr(0, slash), shard.index) &&
+                      read(text.substr(slash + 1), shard.of) && shard.index >= 1 && shard.index <= shard.of;
+    return good ? std::optional(shard) : std::nullopt;
+}
 
 std::string powerText(const PowerResult& result) {
     std::string text(kTitle);
@@ -123,8 +129,9 @@ std::string powerText(const PowerResult& result) {
             [&](const char* key, const auto& value) { text += fmt::format("# {} = {}\n", key, textOf(value)); });
     text += fmt::format("# shard = {}/{}\n{}\n", result.shard.index, result.shard.of, kColumns);
     for (const StudyTest& row : result.tests) {
-        text += fmt::format("{},{},{},{},{},{}\n", row.run, row.test.n, exporter::cell(row.test.mean),
-                            exporter::cell(row.test.sd), exporter::cell(row.test.t), exporter::cell(row.test.p));
+        text +=
+            fmt::format("{},{},{},{},{},{}\n", row.run, row.test.n, exporter::cell(row.test.mean),
+                        exporter::cell(row.test.sd), exporter::cell(row.test.statistic), exporter::cell(row.test.p));
     }
     return text;
 }

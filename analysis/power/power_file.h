@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "analysis/stats/paired_t.h"
+#include "analysis/power/effect_test.h"
 #include "core/base/result.h"
 
 namespace passung::power {
@@ -21,6 +23,7 @@ struct PowerJob {
     std::string measure;
     std::string effect;   // as readEffect takes it
     std::string against;  // level
+    std::string test;     // as chooseTest gives it
     double alpha = 0.05;
 
     friend bool operator==(const PowerJob&, const PowerJob&) = default;
@@ -35,9 +38,12 @@ struct Shard {
     friend bool operator==(const Shard&, const Shard&) = default;
 };
 
+/// From "2/8"; nothing if that is none.
+std::optional<Shard> shardNamed(std::string_view text);
+
 struct StudyTest {
     std::int64_t run = 0;
-    stats::PairedT test;
+    EffectTest test;
 };
 
 struct PowerResult {

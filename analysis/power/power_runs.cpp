@@ -11,7 +11,7 @@
 
 namespace passung::power {
 
-PowerJob describeJob(const protocol::StudyPlan& plan, const PlantedEffect& effect) {
+PowerJob describeJob(const protocol::StudyPlan& plan, const PlantedEffect& effect, const std::string& test) {
     std::string all = plan.source_text + plan.expanded_json;
     for (const protocol::Condition& condition : plan.conditions) all += condition.params_json;
     PowerJob job;
@@ -20,6 +20,7 @@ PowerJob describeJob(const protocol::StudyPlan& plan, const PlantedEffect& effec
     job.seed = plan.seed;
     job.measure = effect.measure;
     job.against = effect.against;
+    job.test = test;
     return job;
 }
 
@@ -45,7 +46,7 @@ Result<PowerResult> runShard(const PowerJob& job, const Shard& shard, const Plan
             auto study = perform(own, job.participants);
             if (study) {
                 plant(effect, *study);
-                result.tests[i].test = testEffect(effect, *study);
+                result.tests[i].test = testEffect(effect, job.test, plan, *study);
             }
             const std::lock_guard lock(mutex);
             if (!study && errors.empty()) errors = study.errors();

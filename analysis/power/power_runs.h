@@ -14,8 +14,8 @@ namespace passung::power {
 /// at once.
 using Perform = std::function<Result<exporter::StudyData>(const protocol::StudyPlan& plan, int participants)>;
 
-/// The job for a plan, its seed included.
-PowerJob describeJob(const protocol::StudyPlan& plan, const PlantedEffect& effect);
+/// The job for a plan, its seed included. `test`: see chooseTest().
+PowerJob describeJob(const protocol::StudyPlan& plan, const PlantedEffect& effect, const std::string& test);
 
 /// The seed of a virtual study: its people, orders and everything else random.
 std::uint64_t runSeed(const protocol::StudyPlan& plan, std::int64_t run);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/power/planted_effect.h"
+#include "analysis/stats/paired_t.h"
 #include "analysis/stats/proportion.h"
 #include "core/base/assert.h"
 
@@ -22,17 +23,19 @@ PowerSummary summarise(const PowerResult& result) {
     PowerSummary summary;
     summary.studies = result.tests.size();
     const auto added = result.job.simulation == "model" ? addedBy(result.job.effect) : std::nullopt;
+    const bool paired_t = result.job.test == "paired_t";
     std::vector<double> means;
     double variances = 0.0;
     std::size_t held = 0;
     for (const StudyTest& study : result.tests) {
         if (study.test.p < result.job.alpha) ++summary.significant;
-        if (std::isnan(study.test.sd)) {
+        if (std::isnan(study.test.p) && !(study.test.sd == 0.0)) {
             ++summary.untested;
             continue;
         }
         means.push_back(study.test.mean);
         variances += study.test.sd * study.test.sd;
+        if (!paired_t) continue;
         const auto interval = stats::meanInterval(study.test.n, study.test.mean, study.test.sd, kConfidence);
         if (added && interval.holds(*added)) ++held;
     }
@@ -46,9 +49,9 @@ PowerSummary summarise(const PowerResult& result) {
         summary.difference_interval =
             stats::meanInterval(over_studies.n, over_studies.mean, over_studies.sd, kConfidence);
     summary.sd = std::sqrt(variances / tested);
-    if (added) summary.coverage = static_cast<double>(held) / tested;
+    if (added && paired_t) summary.coverage = static_cast<double>(held) / tested;
     const double d = summary.difference / summary.sd;
-    if (std::isfinite(d) && result.job.participants >= 2) {
+    if (paired_t && std::isfinite(d) && result.job.participants >= 2) {
         summary.closed_form = stats::pairedPower(d, result.job.participants, result.job.alpha);
         summary.size_for_80 = stats::pairedSize(d, kAskedPower, result.job.alpha);
     }
@@ -64,22 +67,27 @@ std::string summaryText(const PowerResult& result) {
     if (result.shard.of > 1)
         text += fmt::format("shard {} of {} alone, of {} studies in all\n", result.shard.index, result.shard.of,
                             job.repeats);
-    text += fmt::format("planted in {}: {}, tested against {} (paired t on cell means, two-sided)\n", job.measure,
-                        job.effect, job.against);
+    text += fmt::format("planted in {}: {}, compared with {} by {} on means of cells\n", job.measure, job.effect,
+                        job.against, job.test);
     text += fmt::format("significant at {}: {} of {}: power {:.4f}, 95 % interval {:.4f} to {:.4f}\n", job.alpha,
                         s.significant, s.studies, s.power, s.power_interval.low, s.power_interval.high);
     if (s.untested > 0) text += fmt::format("{} studies had too few values for a test\n", s.untested);
     if (s.untested == s.studies) return text;
     text += fmt::format(
-        "difference found: mean {:.4g}, 95 % interval {:.4g} to {:.4g}; a participant's deviates by {:.4g}"
-        " (d = {:.3f})\n",
-        s.difference, s.difference_interval.low, s.difference_interval.high, s.sd, s.difference / s.sd);
+        "difference found: mean {:.4g}, 95 % interval {:.4g} to {:.4g}{}\n", s.difference, s.difference_interval.low,
+        s.difference_interval.high,
+        std::isnan(s.sd) ? ""
+                         : fmt::format("; a participant's deviates by {:.4g} (d = {:.3f})", s.sd, s.difference / s.sd));
     if (s.coverage)
         text += fmt::format("of the studies' 95 % intervals {:.1f} % hold what was added\n", 100.0 * *s.coverage);
-    text += fmt::format("closed form for normal differences of that d: power {:.4f}", s.closed_form);
-    const bool found = !s.difference_interval.holds(0.0);
-    if (found && std::isfinite(s.size_for_80)) text += fmt::format("; 80 % with {:.1f} participants", s.size_for_80);
-    return text + "\nSimulated participants show what design and analysis can find, never how people behave.\n";
+    if (job.test == "paired_t") {
+        text += fmt::format("closed form for normal differences of that d: power {:.4f}", s.closed_form);
+        const bool found = !s.difference_interval.holds(0.0);
+        if (found && std::isfinite(s.size_for_80))
+            text += fmt::format("; 80 % with {:.1f} participants", s.size_for_80);
+        text += '\n';
+    }
+    return text + "Simulated participants show what design and analysis can find, never how people behave.\n";
 }
 
 }  // namespace passung::power

@@ -78,7 +78,9 @@ int power(const PowerOptions& options) {
                       .key = "--measure",
                       .value = options.measure}});
 
-    power::PowerJob job = power::describeJob(*plan, *effect);
+    const auto test = power::chooseTest(options.test, *effect, *plan);
+    if (!test) return fail(test.errors());
+    power::PowerJob job = power::describeJob(*plan, *effect, *test);
     job.program = PASSUNG_VERSION;
     job.simulation = options.simulation;
     job.participants = options.participants > 0 ? options.participants : plan->participants;

@@ -74,41 +74,6 @@ TEST(PlantedEffect, ChangesTheMeasureAtItsLevelOnly) {
     EXPECT_GE(changed, 8);
 }
 
-/// One participant's values in the conditions of the small plan, twice each.
-void append(exporter::StudyData& study, const std::string& code, const std::vector<double>& values) {
-    for (std::size_t c = 0; c < values.size(); ++c) {
-        for (const double deviation : {-0.5, 0.5}) {
-            store::AttemptRow row;
-            row.participant_id = row.session_id = code;
-            row.phase = "main";
-            row.valid = true;
-            row.outcome = "success";
-            row.condition = study.conditions[c].condition;
-            row.levels = study.conditions[c].levels;
-            if (std::isfinite(values[c])) row.measures[kTime] = values[c] + deviation;
-            study.attempts.push_back(row);
-        }
-    }
-    store::SessionRow session;
-    session.participant_id = session.session_id = code;
-    study.sessions.push_back(session);
-}
-
-TEST(TestEffect, ComparesMeansOfCellMeans) {
-    // Truth: closed form. Levels a and d of three people: means over the sizes 1 and 2; the fourth lacks a cell.
-    exporter::StudyData study = *modelStudy(smallPlan(), 0);
-    append(study, "S001", {1, 3, 9, 9, 4, 4});  // a 2, d 4
-    append(study, "S002", {1, 1, 9, 9, 1, 5});  // a 1, d 3
-    append(study, "S003", {2, 4, 9, 9, 6, 8});  // a 3, d 7
-    append(study, "S004", {2, 4, 9, 9, std::nan(""), 8});
-    const stats::PairedT test = testEffect(effectOf("method:d=+0"), study);
-    EXPECT_EQ(test.n, 3u);
-    EXPECT_NEAR(test.mean, 8.0 / 3.0, 1e-12);
-    EXPECT_NEAR(test.sd, std::sqrt(4.0 / 3.0), 1e-12);
-    EXPECT_NEAR(test.t, 4.0, 1e-12);
-    EXPECT_NEAR(testEffect(effectOf("method:a=+0", "d"), study).mean, -8.0 / 3.0, 1e-12);
-}
-
 std::vector<double> timesOf(const exporter::StudyData& study) {
     std::vector<double> times;
     for (const auto& attempt : study.attempts) times.push_back(attempt.measures.at(kModelMeasure));
@@ -137,15 +102,6 @@ TEST(ModelStudy, ASecondSessionIsDrawnAnew) {
     ASSERT_EQ(times.size(), 24u);
     EXPECT_EQ(study.sessions.size(), 2u);
     for (std::size_t i = 0; i < 12; ++i) EXPECT_NE(times[i], times[12 + i]);
-}
-
-TEST(TestEffect, TakesEverybodyWhereNobodyMeetsEveryCondition) {
-    // Truth: invariant; the sizes are assigned to the methods, a participant meets three of the six conditions.
-    protocol::StudyPlan plan = smallPlan();
-    plan.factors[1].kind = protocol::FactorKind::Nuisance;
-    const exporter::StudyData study = *modelStudy(plan, 6);
-    EXPECT_EQ(study.attempts.size(), 6u * 7u);
-    EXPECT_EQ(testEffect(effectOf("method:d=+0"), study).n, 6u);
 }
 
 }  // namespace

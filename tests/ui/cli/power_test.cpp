@@ -113,7 +113,20 @@ TEST_F(Power, WrongUsageIsTwoAndWhatTheStudyLacksIsOne) {
     const Ended measure = model({"--measure", "peak_force_N"});
     EXPECT_EQ(measure.exit_code, 1);
     EXPECT_EQ(measure.err, "error: --measure: peak_force_N: the model has completion_time_s only\n");
+    const Ended mixed = model({"--test", "lmm"});
+    EXPECT_EQ(mixed.exit_code, 1);
+    EXPECT_EQ(mixed.err, "error: --test: lmm: a mixed model is not fitted here\n");
+    EXPECT_EQ(model({"--test", "anova"}).exit_code, 2);
     EXPECT_FALSE(fs::exists(folder_ / "s.csv"));
+}
+
+TEST_F(Power, TheTestIsTheOneThatTheProtocolPlans) {
+    // Truth: invariant; --test wins.
+    std::string study = readText(folder_ / "fair.toml");
+    study += "\n[[analysis]]\noutcome = \"completion_time_s\"\nfactors = [\"chance\"]\ntest = \"wilcoxon\"\n";
+    writeText(folder_ / "fair.toml", study);
+    EXPECT_NE(model({}).out.find("compared with none by wilcoxon"), std::string::npos);
+    EXPECT_NE(model({"--test", "rm_anova"}).out.find("compared with none by rm_anova"), std::string::npos);
 }
 
 TEST_F(Power, AVirtualStudyIsARunAndItsExportWithTheEffectOnTop) {

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "analysis/export/study_data.h"
+#include "analysis/power/planted_effect.h"
+#include "core/base/result.h"
+#include "study/protocol/study_plan.h"
+
+namespace passung::power {
+
+/// Names of the tests of an effect, as a protocol's [[analysis]] has them; `power` knows all of these but lmm.
+std::vector<std::string> testNames();
+
+/// The test for an effect of this factor: `asked`, or (empty) that of the plan's first analysis of the measure by the
+/// factor, or paired_t or welch_t. An error says why the test does not suit the factor.
+Result<std::string> chooseTest(const std::string& asked, const PlantedEffect& effect, const protocol::StudyPlan& plan);
+
+/// What a virtual study says.
+struct EffectTest {
+    std::size_t n = 0;       // participants that enter
+    double mean = kNothing;  // difference between the two levels
+    double sd = kNothing;    // of a participant's difference; between groups there is none
+    double statistic = kNothing;
+    double p = kNothing;
+
+    static constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// The test of a virtual study. A participant's value at a level is the mean of their cells' means there; cells and
+/// means are those of the exports. paired_t, wilcoxon, welch_t and mann_whitney compare the effect's two levels;
+/// rm_anova, friedman and mixed_anova test the factor's main effect over all its levels, mixed_anova in the groups that
+/// all between factors make. Whoever has no value at one of these levels is left out.
+EffectTest testEffect(const PlantedEffect& effect, const std::string& test, const protocol::StudyPlan& plan,
+                      const exporter::StudyData& study);
+
+}  // namespace passung::power
