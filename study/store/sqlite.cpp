@@ -74,6 +74,11 @@ std::optional<double> Statement::optionalReal(int column) const {
     return real(column);
 }
 
+std::optional<std::string> Statement::optionalText(int column) const {
+    if (isNull(column)) return std::nullopt;
+    return text(column);
+}
+
 void Statement::bindOne(int index, std::int64_t value) { check(sqlite3_bind_int64(statement_, index, value)); }
 void Statement::bindOne(int index, double value) { check(sqlite3_bind_double(statement_, index, value)); }
 void Statement::bindOne(int index, std::nullptr_t) { check(sqlite3_bind_null(statement_, index)); }

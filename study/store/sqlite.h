@@ -56,6 +56,7 @@ public:
     bool isNull(int column) const;
     std::optional<std::int64_t> optionalInteger(int column) const;
     std::optional<double> optionalReal(int column) const;
+    std::optional<std::string> optionalText(int column) const;
 
 private:
     void bindOne(int index, std::int64_t value);

@@ -1,9 +1,9 @@
 #include "study/store/store_reader.h"
 
 #include "study/store/accuracy_rows.h"
+#include "study/store/attempt_rows.h"
 #include "study/store/audit.h"
 #include "study/store/consent_rows.h"
-#include "study/store/contact_energy_rows.h"
 #include "study/store/note_rows.h"
 #include "study/store/open_database.h"
 #include "study/store/questionnaire_rows.h"
@@ -18,20 +18,6 @@ namespace {
 
 // Order of protocols wherever it decides about columns or rows.
 constexpr std::string_view kByProtocol = " ORDER BY p.name, p.version, p.protocol_sha256";
-
-std::optional<std::string> optionalText(const Statement& row, int column) {
-    if (row.isNull(column)) return std::nullopt;
-    return row.text(column);
-}
-
-/// `{"factor": "label", …}` in the order in which it was written.
-Levels readLevels(const Database& database, const std::string& levels_json) {
-    Levels levels;
-    Statement each = database.prepare("SELECT key, value FROM json_each(?)");
-    each.bind(levels_json);
-    while (each.step()) levels.emplace_back(each.text(0), each.text(1));
-    return levels;
-}
 
 std::vector<std::string> readArray(const Database& database, const std::string& json) {
     std::vector<std::string> items;
@@ -48,103 +34,6 @@ std::vector<Row> readAll(Statement statement, Read read) {
     return rows;
 }
 
-constexpr std::string_view kAttemptColumns =
-    "SELECT a.attempt_id, s.session_id, s.participant_id, pa.kind, "
-    "coalesce((SELECT d.between_group FROM design_slot d WHERE d.participant_id=s.participant_id), 'all'), s.ordinal, "
-    "s.station, coalesce(json_extract(a.params_json, '$.device'), json_extract(g.device_json, '$.name')), "
-    "t.block_index, t.block, t.phase, t.trial_index, "
-    "t.trial_in_block, t.repetition, a.attempt_no, c.condition, c.levels_json, a.start_ns, a.end_ns, a.outcome, "
-    // Whoever is excluded counts nowhere; their rows stay as they are.
-    "a.valid AND pa.status<>'excluded', "
-    "CASE WHEN a.valid AND pa.status='excluded' THEN 'participant excluded' ELSE a.invalid_reason END, a.params_json, "
-    "a.stages_json, a.seed, a.state_hash, s.protocol_sha256, g.app_version, "
-    "m.loop, m.ticks, m.mean_us, m.sd_us, m.p99_us, m.p999_us, m.max_us, m.overruns, m.dropped_samples, "
-    "json_extract(a.params_json, '$.cues.visual'), json_extract(a.params_json, '$.cues.vibrotactile'), "
-    "json_extract(a.params_json, '$.cues.audio'), json_extract(a.params_json, '$.cues.full_depth_m'), "
-    "json_extract(a.params_json, '$.cues.full_speed_m_per_s'), json_extract(a.params_json, '$.cues.sound_decay_s'), "
-    "coalesce(json_extract(a.params_json, '$.cues.masking_noise'), 0), "
-    "coalesce(json_extract(a.params_json, '$.kinesthetic'), 1), "
-    "coalesce(json_extract(a.params_json, '$.timed_by'), 'program'), "
-    "coalesce(json_extract(a.params_json, '$.secondary.stimulus'), 'none'), "
-    "(SELECT min(e.t_ns) FROM event e WHERE e.attempt_id=a.attempt_id AND e.event='trial_started'), "
-    "coalesce((SELECT p.condition FROM staircase_step f JOIN condition p ON p.condition_id=f.condition_id "
-    "WHERE f.attempt_id=a.attempt_id), c.condition) "
-    "FROM attempt a JOIN trial_plan t USING(trial_id) JOIN session s USING(session_id) "
-    "JOIN participant pa USING(participant_id) JOIN segment g ON g.segment_id=a.segment_id "
-    "JOIN condition c USING(condition_id) LEFT JOIN timing m USING(attempt_id)";
-
-TimingRow readTiming(const Statement& row, int first) {
-    TimingRow timing;
-    timing.loop = row.text(first);
-    timing.ticks = row.integer(first + 1);
-    timing.mean_us = row.optionalReal(first + 2);
-    timing.sd_us = row.optionalReal(first + 3);
-    timing.p99_us = row.optionalReal(first + 4);
-    timing.p999_us = row.optionalReal(first + 5);
-    timing.max_us = row.optionalReal(first + 6);
-    timing.overruns = row.integer(first + 7);
-    timing.dropped_samples = row.integer(first + 8);
-    return timing;
-}
-
-AttemptRow readAttempt(const Database& database, const Statement& row) {
-    AttemptRow attempt;
-    attempt.attempt_id = row.integer(0);
-    attempt.session_id = row.text(1);
-    attempt.participant_id = row.text(2);
-    attempt.kind = row.text(3);
-    attempt.group = row.text(4);
-    attempt.session_ordinal = row.integer(5);
-    attempt.station = row.text(6);
-    attempt.device = row.text(7);
-    attempt.block_index = row.integer(8);
-    attempt.block = row.text(9);
-    attempt.phase = row.text(10);
-    attempt.trial_index = row.integer(11);
-    attempt.trial_in_block = row.integer(12);
-    attempt.repetition = row.integer(13);
-    attempt.attempt_no = row.integer(14);
-    attempt.condition = row.text(15);
-    attempt.levels = readLevels(database, row.text(16));
-    attempt.start_ns = row.integer(17);
-    attempt.end_ns = row.optionalInteger(18);
-    attempt.outcome = row.text(19);
-    attempt.valid = row.integer(20) != 0;
-    attempt.invalid_reason = optionalText(row, 21);
-    attempt.params_json = row.text(22);
-    attempt.stages_json = row.text(23);
-    attempt.seed = static_cast<std::uint64_t>(row.integer(24));
-    attempt.state_hash = row.text(25);
-    attempt.protocol_sha256 = row.text(26);
-    attempt.app_version = row.text(27);
-    if (!row.isNull(28)) attempt.timing = readTiming(row, 28);
-    if (!row.isNull(37))
-        attempt.cues = {row.integer(37) != 0, row.integer(38) != 0, row.integer(39) != 0, row.real(40),
-                        row.real(41),         row.real(42),         row.integer(43) != 0};
-    attempt.kinesthetic = row.integer(44) != 0;
-    attempt.timed_by = row.text(45);
-    attempt.stimulus = row.text(46);
-    attempt.trial_ns = row.optionalInteger(47);
-    attempt.presented_condition = row.text(48);
-    Statement values =
-        database.prepare("SELECT measure, value_num FROM attempt_measure WHERE attempt_id=? AND value_num IS NOT NULL");
-    values.bind(attempt.attempt_id);
-    while (values.step()) attempt.measures.emplace(values.text(0), values.real(1));
-    attempt.contact_energy = readContactEnergy(database, attempt.attempt_id);
-    return attempt;
-}
-
-std::vector<AttemptRow> readAttempts(const Database& database, std::optional<std::int64_t> only) {
-    const std::string sql = std::string(kAttemptColumns) +
-                            " WHERE ?1 IS NULL OR a.attempt_id=?1"
-                            " ORDER BY s.participant_id, s.ordinal, t.trial_index, a.attempt_no";
-    Statement statement = database.prepare(sql);
-    statement.bind(only);
-    std::vector<AttemptRow> rows;
-    while (statement.step()) rows.push_back(readAttempt(database, statement));
-    return rows;
-}
-
 SessionRow readSession(const Statement& row) {
     SessionRow session;
     session.session_id = row.text(0);
@@ -154,14 +43,14 @@ SessionRow readSession(const Statement& row) {
     session.station = row.text(4);
     session.device = row.text(5);
     session.device_simulated = row.integer(6) != 0;
-    session.experimenter = optionalText(row, 7);
+    session.experimenter = row.optionalText(7);
     session.language = row.text(8);
     session.seed = static_cast<std::uint64_t>(row.integer(9));
     session.rng = row.text(10);
     session.epoch = row.text(11);
     session.started_utc = row.text(12);
-    session.ended_utc = optionalText(row, 13);
-    session.end_state = optionalText(row, 14);
+    session.ended_utc = row.optionalText(13);
+    session.end_state = row.optionalText(14);
     session.protocol_sha256 = row.text(15);
     session.app_version = row.text(16);
     session.segments = row.integer(17);
@@ -283,10 +172,6 @@ Result<std::vector<ConditionRow>> StoreReader::conditions() const {
             });
     });
 }
-Result<std::vector<StaircaseTrackRow>> StoreReader::staircaseTracks() const {
-    return guarded(path_, [&] { return readStaircaseTracks(*database_); });
-}
-
 
 Result<std::vector<MeasureRow>> StoreReader::measures() const {
     return guarded(path_, [&] {
@@ -313,9 +198,9 @@ Result<std::vector<ParticipantRow>> StoreReader::participants() const {
                 return ParticipantRow{row.text(0),
                                       row.text(1),
                                       row.text(2),
-                                      optionalText(row, 3),
+                                      row.optionalText(3),
                                       row.text(4),
-                                      optionalText(row, 5),
+                                      row.optionalText(5),
                                       row.optionalInteger(6),
                                       row.optionalInteger(7),
                                       optionalText(row, 8),
@@ -397,6 +282,10 @@ Result<std::vector<EventRow>> StoreReader::events() const {
 
 Result<std::vector<DetectionRow>> StoreReader::detections() const {
     return guarded(path_, [&] { return readDetections(*database_); });
+}
+
+Result<std::vector<StaircaseTrackRow>> StoreReader::staircaseTracks() const {
+    return guarded(path_, [&] { return readStaircaseTracks(*database_); });
 }
 
 Result<std::vector<StaircaseStepRow>> StoreReader::staircaseSteps() const {

@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <system_error>
 
+#include "study/protocol/key_table.h"
+
 namespace passung::cli {
 
 namespace {
@@ -118,6 +120,15 @@ void ProgressLine::show(const std::string& text) {
     std::fprintf(stderr, "\r%s%s\r", text.c_str(), std::string(blank, ' ').c_str());
     if (!text.empty()) std::fprintf(stderr, "%s", text.c_str());
     shown_ = text.size();
+}
+
+bool isCommand(const std::string& word, const std::vector<std::string>& commands) {
+    const std::vector<std::string_view> names(commands.begin(), commands.end());
+    if (std::find(names.begin(), names.end(), word) != names.end()) return true;
+    const auto close = protocol::closestWord(word, names);
+    fmt::print(stderr, "error: unknown command \"{}\"{}\ncommands: {}\n", word,
+               close ? fmt::format("; did you mean \"{}\"?", *close) : "", fmt::join(names, ", "));
+    return false;
 }
 
 }  // namespace passung::cli

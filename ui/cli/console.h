@@ -52,4 +52,7 @@ private:
     std::size_t shown_ = 0;
 };
 
+/// Is the program's first word one of its commands? If not, says which may be meant and which there are.
+bool isCommand(const std::string& word, const std::vector<std::string>& commands);
+
 }  // namespace passung::cli

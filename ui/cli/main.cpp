@@ -1,7 +1,5 @@
 #include <CLI/CLI.hpp>
 
-#include <charconv>
-#include <cmath>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
@@ -9,11 +7,14 @@
 #include <functional>
 #include <iterator>
 
+#include "analysis/power/effect_test.h"
+#include "analysis/power/power_file.h"
 #include "core/model/field_mode.h"
-#include "study/protocol/key_table.h"
 #include "study/protocol/participant.h"
 #include "study/session/command.h"
 #include "ui/cli/commands.h"
+#include "ui/cli/console.h"
+#include "ui/cli/option_checks.h"
 
 // The command line: names, options and their help. What a command does is in its own file.
 
@@ -27,38 +28,6 @@ CLI::IsMember aMode() {
     std::vector<std::string> names;
     for (const auto mode : passung::model::kFieldModes) names.emplace_back(passung::model::modeName(mode));
     return CLI::IsMember(names);
-}
-
-/// Checks the word of an option: CLI11's own checks print the limits of the type, digit by digit.
-template <class Number, class Accept>
-CLI::Validator numberThat(Accept accept, const std::string& requirement) {
-    return CLI::Validator(
-        [accept, requirement](std::string& text) {
-            const std::string_view digits = text.starts_with('+') ? std::string_view(text).substr(1) : text;
-            Number value{};
-            const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-            const bool read = problem == std::errc() && end == digits.data() + digits.size();
-            return read && accept(value) ? std::string() : "must be " + requirement + ", not \"" + text + '"';
-        },
-        "");
-}
-
-template <class Number = std::int64_t>
-CLI::Validator wholeFrom(int low) {
-    return numberThat<Number>([low](Number value) { return value >= static_cast<Number>(low); },
-                              "a whole number ≥ " + std::to_string(low));
-}
-
-CLI::Validator above0() {
-    return numberThat<double>([](double value) { return std::isfinite(value) && value > 0.0; }, "a number > 0");
-}
-
-CLI::Validator atLeast0() {
-    return numberThat<double>([](double value) { return std::isfinite(value) && value >= 0.0; }, "a number ≥ 0");
-}
-
-CLI::Validator between(double low, double high, const std::string& words) {
-    return numberThat<double>([low, high](double value) { return value >= low && value <= high; }, words);
 }
 
 class CommandLine {
@@ -75,7 +44,7 @@ public:
     }
 
     int run(int argc, char** argv) {
-        if (argc > 1 && argv[1][0] != '-' && !isCommand(argv[1])) return refuse(argv[1]);
+        if (argc > 1 && argv[1][0] != '-' && !isCommand(argv[1], commandNames())) return kWrongUsage;
         try {
             app_.parse(argc, argv);
         } catch (const CLI::ParseError& error) {
@@ -85,23 +54,10 @@ public:
     }
 
 private:
-    bool isCommand(const std::string& word) const {
-        for (const CLI::App* command : app_.get_subcommands({}))
-            if (command->get_name() == word) return true;
-        return false;
-    }
-
-    /// A first word that is no command: says which word, which may be meant and which there are.
-    int refuse(const std::string& word) const {
-        std::vector<std::string_view> names;
+    std::vector<std::string> commandNames() const {
+        std::vector<std::string> names;
         for (const CLI::App* command : app_.get_subcommands({})) names.push_back(command->get_name());
-        std::string all;
-        for (const std::string_view name : names) all.append(all.empty() ? "" : ", ").append(name);
-        const auto close = passung::protocol::closestWord(word, names);
-        const std::string meant = close ? "; did you mean \"" + std::string(*close) + "\"?" : "";
-        std::fprintf(stderr, "error: unknown command \"%s\"%s\ncommands: %s\n", word.c_str(), meant.c_str(),
-                     all.c_str());
-        return kWrongUsage;
+        return names;
     }
 
     template <class Options>
@@ -123,7 +79,7 @@ private:
 
         sub = command("explain", "design, orders and balance, or the stages of a scene's tick", explain_, explain);
         sub->add_option("FILE", explain_.file, "protocol or scene")->required();
-        sub->add_option("--participants", explain_.participants, "how many orders to print")->check(wholeFrom<int>(1));
+        sub->add_option("--participants", explain_.participants, "how many orders to print")->check(wholeIntFrom(1));
         sub->add_option("--stations", explain_.stations, "that they take part at in turn; default 1")
             ->check(between(1.0, 26.0, "a number from 1 to 26"));
         sub->add_option("--db", explain_.database,
@@ -134,10 +90,10 @@ private:
         sub->add_option("--db", run_.database, "database; default: the study's name with .db");
         auto* participant = sub->add_option("--participant", run_.participant, "code of one participant, such as S001");
         sub->add_option("--simulated", run_.simulated, "number of new participants; default 1")
-            ->check(wholeFrom<int>(1))
+            ->check(wholeIntFrom(1))
             ->excludes(participant);
         sub->add_flag("--real-time", run_.real_time, "at 1 kHz by the clock instead of as fast as the machine goes");
-        sub->add_option("--seed", run_.seed, "instead of the protocol's")->check(wholeFrom<std::uint64_t>(0));
+        sub->add_option("--seed", run_.seed, "instead of the protocol's")->check(wholeUnsigned());
         addStation(sub, run_.station);
         sub->add_flag("--no-backup", run_.no_backup, "leave out the copy DB.backup and its SHA-256 at the end");
         addAnswers(sub, run_.answers);
@@ -159,12 +115,7 @@ private:
         auto* letter = sub->add_option("--station", options.station,
                                        "letter of this station, where several run the study with a database each: it "
                                        "takes places of the design and codes that no other one takes");
-        letter->check(CLI::Validator(
-            [](std::string& text) {
-                const bool good = text.size() == 1 && text[0] >= 'A' && text[0] <= 'Z';
-                return good ? std::string() : "must be a capital letter, A for the first, not \"" + text + '"';
-            },
-            ""));
+        letter->check(capitalLetter());
         auto* count = sub->add_option("--stations", options.stations, "how many there are, the same for each");
         count->check(between(2.0, 26.0, "a number from 2 to 26"))->needs(letter);
         letter->needs(count);
@@ -279,17 +230,21 @@ private:
             "of false positives");
         sub->add_option("--against", power_.against, "level to compare with; default: the factor's first other one");
         sub->add_option("--measure", power_.measure, "default completion_time_s");
+        sub->add_option(
+               "--test", power_.test,
+               "paired_t, wilcoxon, rm_anova, friedman, mixed_anova of a within factor; welch_t, mann_whitney, "
+               "mixed_anova of a between factor; default: the protocol's analysis of that measure and factor, "
+               "else paired_t or welch_t")
+            ->check(CLI::IsMember(passung::power::testNames()));
         sub->add_option("--participants", power_.participants, "of a virtual study; default: the protocol's")
-            ->check(wholeFrom<int>(2));
-        sub->add_option("--repeats", power_.repeats, "virtual studies; default 200")->check(wholeFrom<int>(1));
+            ->check(wholeIntFrom(2));
+        sub->add_option("--repeats", power_.repeats, "virtual studies; default 200")->check(wholeIntFrom(1));
         sub->add_option("--simulation", power_.simulation,
                         "haptic (default): every trial, tick by tick, through database and means of the export; model: "
                         "times drawn for the same people, orders and means, thousands of studies in seconds")
             ->check(CLI::IsMember({"haptic", "model"}));
-        sub->add_option("--alpha", power_.alpha, "level of significance; default 0.05")
-            ->check(numberThat<double>([](double value) { return value > 0.0 && value < 0.8; },
-                                       "a number above 0 and below 0.8"));
-        sub->add_option("--seed", power_.seed, "instead of the protocol's")->check(wholeFrom<std::uint64_t>(0));
+        sub->add_option("--alpha", power_.alpha, "level of significance; default 0.05")->check(above0Below(0.8));
+        sub->add_option("--seed", power_.seed, "instead of the protocol's")->check(wholeUnsigned());
         auto* out = sub->add_option("--out", power_.out,
                                     "file of results, a row per virtual study; appears when all are done, and what is "
                                     "there already is not run again");
@@ -310,17 +265,11 @@ private:
         });
     }
 
-    /// "2/8"
     void readShard(const std::string& text) {
-        const std::size_t slash = text.find('/');
-        const auto number = [](const std::string& digits, int& value) {
-            const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-            return problem == std::errc() && end == digits.data() + digits.size();
-        };
-        const bool read = slash != std::string::npos && number(text.substr(0, slash), power_.shard) &&
-                          number(text.substr(slash + 1), power_.shards);
-        if (!read || power_.shard < 1 || power_.shard > power_.shards)
-            throw CLI::ValidationError("--shard", "must be i/n with 1 ≤ i ≤ n, not \"" + text + '"');
+        const auto shard = passung::power::shardNamed(text);
+        if (!shard) throw CLI::ValidationError("--shard", "must be i/n with 1 ≤ i ≤ n, not \"" + text + '"');
+        power_.shard = shard->index;
+        power_.shards = shard->of;
     }
 
     void addCoreCommands() {
@@ -349,7 +298,7 @@ private:
         sub->add_option("--proximity-mm", query_.proximity_mm, "search no farther; default unlimited")
             ->check(atLeast0());
         sub->add_option("--budget-nodes", query_.budget_nodes, "most tree nodes a query visits")
-            ->check(wholeFrom<int>(1));
+            ->check(wholeIntFrom(1));
         sub->add_option("--quality", query_.quality, "least share of proven area; wins over the budget")
             ->check(between(0.0, 1.0, "a number from 0 to 1"));
         sub->add_flag("--two-way", query_.two_way, "each part's points against the other's field");
@@ -397,9 +346,9 @@ private:
         auto* poses = sub->add_option("--poses", accuracy_.poses,
                                       "CSV of poses of SHELL in FIELD, as for query; default: along contact paths");
         sub->add_option("--paths", accuracy_.paths, "contact paths of 11 poses each; default 12")
-            ->check(wholeFrom<int>(1))
+            ->check(wholeIntFrom(1))
             ->excludes(poses);
-        sub->add_option("--seed", accuracy_.seed, "of the paths; default 1")->check(wholeFrom<std::uint64_t>(0));
+        sub->add_option("--seed", accuracy_.seed, "of the paths; default 1")->check(wholeUnsigned());
         const auto list = [](CLI::Option* option) { option->delimiter(',')->expected(1, -1); };
         list(sub->add_option("--tolerances-um", accuracy_.tolerances_um, "of the field; default 100,50,20,10")
                  ->check(above0()));
@@ -408,13 +357,13 @@ private:
                  ->check(above0()));
         list(sub->add_option("--budgets", accuracy_.budgets,
                              "most nodes of a query, 0: no limit; default 0,1000,300,100")
-                 ->check(wholeFrom<int>(0)));
+                 ->check(wholeIntFrom(0)));
         list(sub->add_option("--modes", accuracy_.modes, "of interpolation; default: all")->check(aMode()));
         sub->add_option("--repetitions", accuracy_.repetitions, "a pose's time is its fastest of so many; default 5")
-            ->check(wholeFrom<int>(1));
+            ->check(wholeIntFrom(1));
         sub->add_option("--fcl-poses", accuracy_.fcl_poses,
                         "further poses whose separation and intersection are compared with FCL; default 1000")
-            ->check(wholeFrom<int>(0));
+            ->check(wholeIntFrom(0));
         sub->add_option("--unit", accuracy_.unit, "of files that have none; default mm")->check(units);
         sub->add_option("--field-unit", accuracy_.field_unit, "of FIELD, instead of --unit")->check(units);
         sub->add_option("--shell-unit", accuracy_.shell_unit, "of SHELL, instead of --unit")->check(units);
