@@ -55,7 +55,8 @@ std::optional<std::size_t> findLevel(const Factor& factor, const std::string& la
 /// Reads one rule for orders.
 class ConstraintReader {
 public:
-    ConstraintReader(const TableReader& read, const std::vector<Factor>& factors) : read_(read), factors_(factors) {}
+    ConstraintReader(const Node& table, const TableReader& read, const std::vector<Factor>& factors)
+        : table_(table), read_(read), factors_(factors) {}
 
     design::Constraint constraint() {
         using design::Rule;
@@ -83,7 +84,7 @@ private:
     /// The key is there if and only if the rule has it; `from` alone may be left out.
     void allow(const char* key, bool wanted, const std::string& rule) {
         if (read_.has(key) && !wanted) read_.fail(key, fmt::format("is not for the rule {}", rule));
-        if (!read_.has(key) && wanted && std::string_view(key) != "from")
+        if (table_.find(key) == nullptr && wanted && std::string_view(key) != "from")
             read_.fail(key, fmt::format("required by the rule {}", rule));
     }
 
@@ -100,6 +101,7 @@ private:
             read_.fail("level", fault);
     }
 
+    const Node& table_;
     const TableReader& read_;
     const std::vector<Factor>& factors_;
 };
@@ -148,7 +150,8 @@ std::vector<Block> readBlocks(const std::vector<Node>& tables, const std::vector
         readCatches(read, block);
         for (const Node& item : read.items("constraints")) {
             const TableReader constraint(item, {"constraint"}, path + ".constraints", errors);
-            if (constraint.has("rule")) block.constraints.push_back(ConstraintReader(constraint, factors).constraint());
+            if (constraint.has("rule"))
+                block.constraints.push_back(ConstraintReader(item, constraint, factors).constraint());
         }
         const int last = blocks.empty() ? 1 : blocks.back().session;
         if (block.session != last && block.session != last + (blocks.empty() ? 0 : 1))

@@ -64,8 +64,8 @@ public:
     Examined read() {
         const bool study = isSound([&] { readStudy(); });
         readConditions();
-        const bool blocks = isSound([&] {
-            readBlockTables();
+        const bool blocks = isSound([&] { readBlockTables(); });
+        const bool staircases = isSound([&] {
             staircases_ = readStaircases(root_.items("staircase"), root_.items("block"), factors_, known_measures_,
                                          plan_.blocks, errors_);
         });
@@ -74,13 +74,14 @@ public:
         plan_.resume = readResume(root_, errors_);
         plan_.consent = readConsent(root_, errors_);
         readTexts(root_, plan_, errors_);
-        const bool expands = levels_sound_ && blocks && !plan_.conditions.empty() && !plan_.blocks.empty();
-        const bool design = expands && study && isSound([&] { checkBlocks(root_.items("block"), plan_, errors_); });
+        const bool expands = levels_sound_ && !plan_.conditions.empty() && !plan_.blocks.empty();
+        const bool design = expands && study && blocks && staircases &&
+                            isSound([&] { checkBlocks(root_.items("block"), plan_, errors_); });
         if (expands) readBlockConditions();
         // A block may have another type of trial than the rest.
         plan_.measures = readMeasures(root_, tasks_sound_ ? &plan_ : nullptr, known_measures_, errors_);
         plan_.analyses = readAnalyses(root_.items("analysis"), plan_, errors_);
-        if (expands) readStaircaseConditions();
+        if (expands && staircases) readStaircaseConditions();
         if (design && tasks_sound_) checkDuration();
         if (!root_.has("measures")) dropUnused();
         plan_.meshes = meshesOf(plan_, document_.place.file);
@@ -158,7 +159,7 @@ private:
         const auto& tables = root_.items("block");
         for (std::size_t b = 0; b < tables.size() && scene != nullptr; ++b) {
             const Node* set = tables[b].find("set");
-            if (set == nullptr) continue;
+            if (set == nullptr || tables[b].find("name") == nullptr) continue;
             for (const Entry& entry : set->entries)
                 for (const auto& factor : factors_)
                     for (const auto& level : factor.overrides)

@@ -42,7 +42,8 @@ std::vector<StaircaseTrackRow> readStaircaseTracks(const Database& database) {
     Statement level = database.prepare("SELECT value FROM json_each(?) ORDER BY key");
     while (row.step()) {
         design::AdaptiveParams params;
-        level.bind(row.text(18));
+        const std::string levels = row.text(18);  // bound by reference
+        level.bind(levels);
         while (level.step()) params.levels.push_back(level.real(0));
         if (params.levels.empty()) continue;
         params.low = params.levels.front();

@@ -203,7 +203,7 @@ Result<std::vector<ParticipantRow>> StoreReader::participants() const {
                                       row.optionalText(5),
                                       row.optionalInteger(6),
                                       row.optionalInteger(7),
-                                      optionalText(row, 8),
+                                      row.optionalText(8),
                                       row.integer(9)};
             });
     });

@@ -383,7 +383,8 @@ rule = "1_up_2_down"
 step_down = 6
 measure = "completion_time_s"
 above = 5
-tracks = [{ name = "only", max_trials = 4 }]
+max_trials = 4
+tracks = [{ name = "only", start = 20 }]
 [[analysis]]
 outcome = "completion_time_s"
 factors = ["method"]

@@ -135,7 +135,7 @@ std::string twoDevices() {
                  "\"falcon\"]\n\n");
     text.replace(text.find("timeout_s = 20"), 14, "timeout_s = 0.3");
     text.replace(text.find("order = \"williams\"\nrepetitions = 3"), 34,
-                 "order = \"williams\"\nblocked = \"robot\"\nblocked_order = \"listed\"\nrepetitions = 1");
+                 "order = \"listed\"\nblocked = \"robot\"\nblocked_order = \"listed\"\nrepetitions = 1");
     return text;
 }
 
