@@ -21,7 +21,7 @@ set(rooms
   "study/session       | core/base core/model ${study_rooms}"
   "study/store         | core/base ${study_rooms} study/session"
   "analysis/truth      | core/base core/model core/tick core/query"
-  "analysis/export     | core/base study/protocol study/questionnaire study/measures study/store"
+  "analysis/export     | core/base study/design study/protocol study/questionnaire study/measures study/store"
   "analysis/stats      | core/base"
   "analysis/power      | core/base ${study_rooms} study/session study/store analysis/export analysis/stats"
   "ui/presenter        | core/base core/model ${study_rooms} study/session study/store analysis/export analysis/stats"
