@@ -1,6 +1,7 @@
 #include "core/tick/friction_balance.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -135,6 +136,7 @@ void FrictionBalance::buildRow(int cut) noexcept {
 }
 
 void FrictionBalance::addCut(std::uint32_t contact, int patch, const Vec3& direction) noexcept {
+    assert(cut_count_ < kMostCuts);
     cuts_[static_cast<std::size_t>(cut_count_)] = {contact, patch, direction};
     buildRow(cut_count_++);
 }
@@ -170,7 +172,12 @@ bool FrictionBalance::cutHeld(double enough) noexcept {
     return cut_count_ > before;
 }
 
-/// Adds the tangents that the motion of now violates most, of the contacts that are watched or of all.
+/// Room for a tangent in every bin.
+void FrictionBalance::makeRoom() noexcept {
+    if (cut_count_ + static_cast<int>(kBins) > kMostCuts) restart();
+}
+
+/// Adds the tangents that the motion of now violates most, of the contacts that are watched or of all. @pre makeRoom()
 bool FrictionBalance::cutAmong(bool all, double enough) noexcept {
     const double least_violation = std::max(tolerance_, enough);
     double lift = 0.0;
@@ -208,9 +215,14 @@ bool FrictionBalance::cutAmong(bool all, double enough) noexcept {
 /// Adds tangents of the contacts that hold, when these are content of those that are watched, and then (`all`) of all.
 /// False if the motion of now violates none by more than `enough`.
 bool FrictionBalance::cutOff(double enough, bool all) noexcept {
-    if (cut_count_ + static_cast<int>(kBins) > kMostCuts) restart();
-    for (Patch& patch : std::span(patches_).first(static_cast<std::size_t>(patch_count_))) patch.slip = patch.B * u_;
+    makeRoom();
+    noteSlips();
     return cutHeld(enough) || cutAmong(false, enough) || (all && cutAmong(true, enough));
+}
+
+/// Slips of the motion of now.
+void FrictionBalance::noteSlips() noexcept {
+    for (Patch& patch : std::span(patches_).first(static_cast<std::size_t>(patch_count_))) patch.slip = patch.B * u_;
 }
 
 /// Forgets what does not hold, and finds anew what the rows that do leave of the motion.
@@ -226,6 +238,7 @@ void FrictionBalance::restart() noexcept {
         active_.tryAdd(rows_[static_cast<std::size_t>(i)], 0.0);
     }
     u_ = active_.start(wanted_);
+    noteSlips();
 }
 
 /// The row that the motion violates most, or -1. Rows that rub have to hold more exactly: what they miss is slip.
@@ -377,9 +390,11 @@ RubbedMotion FrictionBalance::find() noexcept {
         const double change = turn(sweep < kRubSweeps / 2);
         result.change = change / size_;
         const bool still = change <= kTurnTolerance * size_;
-        if (!still) restart();
-        all =
-            still && found && cutAmong(true, 0.0);  // some more are not content; only what is solved has room for them
+        if (still)
+            makeRoom();
+        else
+            restart();
+        all = still && found && cutAmong(true, 0.0);  // some more are not content
         settled = still && !all;
     }
     result.converged = settled || result.change <= kSettled;

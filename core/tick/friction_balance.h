@@ -63,6 +63,8 @@ private:
     double violationOf(const ContactPoint& contact, const Patch& patch) const noexcept;
     int mostViolated() const noexcept;
     bool cutHeld(double enough) noexcept;
+    void makeRoom() noexcept;
+    void noteSlips() noexcept;
     bool cutAmong(bool all, double enough) noexcept;
     bool cutOff(double enough, bool all) noexcept;
     void watch(const Cut& contact) noexcept;

@@ -1,39 +1,13 @@
 #include "core/tick/god_object.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/tick/proxy.h"
+#include "core/tick/proxy_way.h"
 
 namespace passung::tick {
 
 namespace {
-
-/// The way of a proxy within one tick, in a metric in which no point of the held part moves farther than √2 times it.
-class Way {
-public:
-    Way(const TickModel& model) : turn_scale_(model.shell->reach() / model.metric_radius) {}
-    /// How far from the straight line between its ends the way would lie at most after another step: within the
-    /// ellipse whose foci are the ends.
-    double bentBy(const Motion& u) const noexcept {
-        const double length = length_ + scaled(u).norm(), chord = (sum_ + scaled(u)).norm();
-        return 0.5 * std::sqrt(std::max(0.0, length * length - chord * chord));
-    }
-    double length() const noexcept { return length_; }
-    void add(const Motion& u) noexcept {
-        length_ += scaled(u).norm();
-        sum_ += scaled(u);
-    }
-
-private:
-    Motion scaled(const Motion& u) const noexcept {
-        Motion v = u;
-        v.tail<3>() *= turn_scale_;
-        return v;
-    }
-    double turn_scale_, length_ = 0.0;
-    Motion sum_ = Motion::Zero();
-};
 
 /// Makes `u`, or as much of it as leaves no more overlap than `accepted`; the share made, 0 if the proxy stays.
 double makeStep(const TickModel& model, TickState& state, TickFrame& frame, const Motion& u, double reach,
@@ -49,23 +23,16 @@ double makeStep(const TickModel& model, TickState& state, TickFrame& frame, cons
     return 0.0;
 }
 
-/// True if the straight line from where the tick began to `X_to` overlaps, of which the way there knows nothing.
-bool cutsCorner(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_from, const Pose& X_to,
-                double bend, double accepted) noexcept {
-    return bend > model.margins.relieve && overlapHalfway(model, state, frame, X_from, X_to) > accepted;
-}
-
 }  // namespace
 
 void sweepProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
     startProxy(model, state, frame);
     const ProxyMargins& margins = model.margins;
-    const double longest = kLongestStep * model.finest_cell, bent = kBent * model.finest_cell;
+    const double longest = kLongestStep * model.finest_cell;
     const Pose X_before = state.X_WG;
     double reach = nextReach(model, state);
     double repair = kRepair * model.finest_cell;
-    Way way(model);
-    const double between = std::max(margins.relieve, overlap(state));
+    ProxyWay way(model);
     bool arrived = false, whole = false;  // whole: the last step was all that was allowed
     for (int sweep = 0; sweep <= kSweeps; ++sweep) {
         const Motion wanted = unconstrainedMotion(model, state.X_WG, frame.X_WH);
@@ -75,9 +42,7 @@ void sweepProxy(const TickModel& model, TickState& state, TickFrame& frame) noex
         if (arrived) break;
         const double accepted = std::max(margins.accept, before + 0.1 * margins.keep);
         if (sweep < kSweeps && state.room > path) {
-            if (way.bentBy(wanted) > bent ||
-                cutsCorner(model, state, frame, X_before, frame.X_WH, way.bentBy(wanted), between))
-                break;
+            if (way.bentBy(wanted) > margins.relieve) break;
             frame.iterations = static_cast<std::uint32_t>(sweep + 1);
             arrived = arriveFreely(model, state, frame, path, reach, accepted);
             if (arrived) break;
@@ -93,21 +58,17 @@ void sweepProxy(const TickModel& model, TickState& state, TickFrame& frame) noex
         // Contacts that held may be left behind by now, so that the way ends only where those of now leave nothing.
         const bool on_the_way = whole && before <= margins.relieve;
         arrived = step < (on_the_way ? std::max(kEnough * model.finest_cell, kRest * way.length()) : kStill);
-        // Nor does it go on round a bend that it need not take in this tick.
-        arrived = arrived || (on_the_way && way.bentBy(share * allowed.u) > margins.relieve);
         if (arrived && sweep == 0) state.rubbing = allowed.rubbing;
-        if (arrived || way.bentBy(share * allowed.u) > bent) break;
+        // Round a bend it goes on in the next tick.
+        const bool bends = way.bentBy(share * allowed.u) > margins.relieve;
+        arrived = arrived || (on_the_way && bends);
+        if (arrived || bends) break;
         if (sweep == kSweeps) break;
         frame.iterations = static_cast<std::uint32_t>(sweep + 1);
-        const Pose X_here = state.X_WG;
         const double made =
             makeStep(model, state, frame, share * allowed.u, next_reach, std::max(next_reach, path), accepted);
         if (made == 0.0) break;
         way.add(made * share * allowed.u);
-        if (cutsCorner(model, state, frame, X_before, state.X_WG, way.bentBy(Motion::Zero()), between)) {
-            look(model, state, frame, X_here, reach, reach);
-            break;
-        }
         if (made == 1.0) state.rubbing = allowed.rubbing;
         repair = std::max(0.0, repair - std::max(0.0, before - overlap(state)));
         whole = made * share == 1.0;

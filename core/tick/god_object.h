@@ -24,8 +24,8 @@ namespace passung::tick {
 /// nothing is left that is allowed: at most kSweeps times. A step that ends with more overlap than kAccepted is halved;
 /// one with more than kRelieved is followed by another, whose rows ask for it (b_i > 0).
 ///
-/// A tick's way that bends by more than kBent ends early, and before a step that would leave overlap halfway on the
-/// straight line between two ticks' poses, which is what others see of it: that is as free as the way itself.
+/// Round a bend the way goes on in the next tick: the straight line between two ticks' poses, which is what others see
+/// of it, lies within kRelieved of it (proxy_way.h) and is as free as the way itself.
 ///
 /// Repair. A start in overlap is no special case: what is in overlap has to come to φ ≥ -max(keep, d - kRepair · s), d
 /// the deepest overlap when the tick begins. The deepest points come out first, at kRepair · s a tick, so that the
@@ -48,7 +48,6 @@ inline constexpr double kAccepted = 0.02;   // overlap after a step that is take
 inline constexpr double kRepair = 0.2;      // of overlap that was there before, per cell and tick
 inline constexpr double kEnough = 0.002;    // of motion that is left after a step and not made, per cell
 inline constexpr double kRest = 0.5;        // the same, per way made
-inline constexpr double kBent = 0.25;       // of the way in one tick, per cell
 inline constexpr int kSweeps = 16;
 
 /// Stage; those of proxy.h follow. rt-safe.

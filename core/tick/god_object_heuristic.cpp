@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/tick/proxy.h"
+#include "core/tick/proxy_way.h"
 
 namespace passung::tick {
 
@@ -90,6 +91,7 @@ void moveProxy(const TickModel& model, TickState& state, TickFrame& frame) noexc
     const Pose X_before = state.X_WG;
     const double left = leftOf(model, overlap(state));
     double reach = nextReach(model, state);
+    ProxyWay way(model);
     bool arrived = false;
     for (int sub_step = 0; sub_step < kSubSteps; ++sub_step) {
         const Motion wanted = unconstrainedMotion(model, state.X_WG, frame.X_WH);
@@ -99,6 +101,7 @@ void moveProxy(const TickModel& model, TickState& state, TickFrame& frame) noexc
         frame.iterations = static_cast<std::uint32_t>(sub_step + 1);
         const Pose X_here = state.X_WG;
         const double accepted = std::max(model.margins.accept, overlap(state));
+        if (state.room > path && way.bentBy(wanted) > model.margins.relieve) break;
         // Nothing in the way: arrive.
         arrived = state.room > path && arriveFreely(model, state, frame, path, reach, accepted);
         if (arrived) break;
@@ -111,6 +114,7 @@ void moveProxy(const TickModel& model, TickState& state, TickFrame& frame) noexc
         if (arrived) state.rubbing = allowed.rubbing;  // at rest
         if (arrived) break;
         if (step_path > known) u *= known / step_path;
+        if (way.bentBy(u) > model.margins.relieve) break;  // round a bend it goes on in the next tick
         const double next_reach = std::clamp(kReachGrowth * std::min(step_path, path), reach, kLongestStep * s);
         bool good = false, whole = step_path <= known;
         for (int half = 0; half <= kHalvings; ++half, u *= 0.5) {
@@ -125,6 +129,7 @@ void moveProxy(const TickModel& model, TickState& state, TickFrame& frame) noexc
         arrived = good && whole;  // the whole constrained motion was made
         if (!good) look(model, state, frame, X_here, next_reach, next_reach);
         if (!good || whole) break;
+        way.add(unconstrainedMotion(model, X_here, state.X_WG));
         reach = next_reach;
     }
     if (!arrived) frame.status |= kIterationLimit;

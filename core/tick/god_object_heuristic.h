@@ -31,9 +31,9 @@ namespace passung::tick {
 ///    checked by a query. What the linearisation missed (around a rim) is pushed out by the least motion that the
 ///    contacts found there ask for; if the overlap is still not acceptable the step is halved; and all is repeated from
 ///    the new pose up to kSubSteps times; next to a surface that is about kSubSteps / 2 cells per tick, and a faster
-///    hand leaves the proxy behind (kIterationLimit). Where a budget ends a query early, spheres stand for the points
-///    that nobody looked at (contact_query.h): they may leave and slide but not go deeper, so that the proxy stops too
-///    early rather than pass.
+///    hand leaves the proxy behind (kIterationLimit). Round a bend it goes on in the next tick (proxy_way.h). Where a
+///    budget ends a query early, spheres stand for the points that nobody looked at (contact_query.h): they may leave
+///    and slide but not go deeper, so that the proxy stops too early rather than pass.
 ///
 /// #5 low-pass of the proxy, a stage of its own: filterProxy in proxy.h.
 ///

@@ -94,16 +94,6 @@ void look(const TickModel& model, TickState& state, TickFrame& frame, const Pose
     state.room = std::max(reach, answer.lower_bound);
 }
 
-double overlapHalfway(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_from,
-                      const Pose& X_to) noexcept {
-    const Pose X{X_from.q.slerp(0.5, X_to.q), 0.5 * (X_from.p + X_to.p)};
-    state.scratch.clear();
-    const QueryRequest request{.collect_below = -1e300, .facing = model.contact.two_way, .edges = true};
-    const QueryAnswer answer = queryObstacles(model, X, request, state.workspace, state.scratch);
-    account(answer, frame);
-    return std::max(0.0, -answer.phi);
-}
-
 void lookAround(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_WG) noexcept {
     const double reach = kLongestStep * model.finest_cell;
     look(model, state, frame, X_WG, reach, reach);

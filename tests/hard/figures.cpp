@@ -33,14 +33,18 @@ DenseDistance denseDistance(const Run& run, double spacing) {
 }
 
 double deepestOverlap(const Run& run, double spacing) {
+    constexpr int kBetween = 7;  // parts of the way between two ticks, looked at where the methods do not
     DenseDistance distance = denseDistance(run, spacing);
     double deepest = 0.0;
     for (std::size_t i = 0; i < run.ticks.size(); ++i) {
         const Pose& here = run.ticks[i].proxy;
         if (i > 0) {
             const Pose& from = run.ticks[i - 1].proxy;
-            const Pose between{from.q.slerp(0.5, here.q), 0.5 * (from.p + here.p)};
-            deepest = -distance.least(between, -deepest);
+            for (int k = 1; k < kBetween; ++k) {
+                const double share = static_cast<double>(k) / kBetween;
+                const Pose between{from.q.slerp(share, here.q), from.p + share * (here.p - from.p)};
+                deepest = -distance.least(between, -deepest);
+            }
         }
         deepest = -distance.least(here, -deepest);
     }

@@ -16,7 +16,7 @@ const model::PartSpec& fixedPart(const model::SceneSpec& spec);
 /// Between the held part and the others, as shapes (Run::solids); spacing of the samples on faces [m].
 DenseDistance denseDistance(const Run& run, double spacing = 1e-3);
 
-/// Deepest overlap of the proxy with the obstacles, at all ticks and half way between them [m].
+/// Deepest overlap of the proxy with the obstacles, at all ticks and between them, where the methods do not look [m].
 double deepestOverlap(const Run& run, double spacing = 1e-3);
 
 /// Poses (at ticks and between them) at which FCL finds the thin obstacle in the held part shrunk by the field's

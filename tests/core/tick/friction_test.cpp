@@ -170,6 +170,54 @@ TEST(Friction, ObeysCoulombsLawOnRandomContacts) {
                 kTrials, static_cast<double>(sweeps) / kTrials);
 }
 
+/// Contacts of a peg of 10 mm radius with its bore: all along the wall, at both rims only, or from everywhere; a little
+/// askew, some in touch and some near.
+std::vector<ContactPoint> tightFit(Random& random, int kind, int count) {
+    std::vector<ContactPoint> contacts;
+    const double farthest = std::pow(10.0, random.uniform(-8, -5));
+    for (int i = 0; i < count; ++i) {
+        const double angle = random.uniform(0.0, 2.0 * std::numbers::pi);
+        Vec3 inward(-std::cos(angle), -std::sin(angle), 0.0);
+        const double z = kind == 1 ? 0.02 * std::round(random.uniform()) : random.uniform(0.0, 0.02);
+        Vec3 position = -0.01 * inward + z * Vec3::UnitZ();
+        if (kind == 2) {
+            inward = Vec3(random.normal(), random.normal(), random.normal()).normalized();
+            position = -0.01 * inward;
+        }
+        const Vec3 askew(random.normal(), random.normal(), random.normal());
+        contacts.push_back(contactAt(position, (inward + 0.02 * askew).normalized()));
+        contacts.back().phi = random.uniform(kKeepOut, farthest);
+    }
+    return contacts;
+}
+
+TEST(Friction, HoldsInATightFitOfManyContacts) {
+    // Truth: invariant. However many contacts rub, the motion is finite and no longer than the wanted one, since standing
+    // still is allowed; where a balance is found no contact is entered by more than the problem's tolerance.
+    Random random(20);
+    int settled = 0;
+    constexpr int kRuns = 150;
+    for (int run = 0; run < kRuns; ++run) {
+        const auto contacts = tightFit(random, run % 3, 200 + static_cast<int>(random.uniform(0.0, 1300.0)));
+        const auto manifold = manifoldOf(contacts);
+        Motion wanted;
+        for (int i = 0; i < 6; ++i) wanted[i] = random.normal() * std::pow(10.0, random.uniform(-5, -2));
+        const double at_rest = random.uniform(0.1, 1.0);
+        const RubbedMotion found =
+            rub(wanted, manifold, {.at_rest = at_rest, .sliding = at_rest * random.uniform(0.5, 1.0)});
+        settled += found.converged ? 1 : 0;
+        ASSERT_LE(found.motion.u.norm(), wanted.norm() * (1.0 + 1e-6)) << run;
+        if (!found.converged) continue;
+        const Vec3 turn = found.motion.u.tail<3>() / kRho;
+        for (const ContactPoint& c : contacts) {
+            const Vec3 way = found.motion.u.head<3>() + turn.cross(c.position);
+            ASSERT_GE(c.phi + c.gradient.dot(way), kKeepOut - 1e-6 * wanted.norm()) << run;
+        }
+    }
+    std::printf("settled %d of %d\n", settled, kRuns);
+    EXPECT_GT(settled, kRuns / 4);
+}
+
 TEST(Friction, DoesNotCreepAtRest) {
     // Truth: invariant. A disc drawn aside within its cone, 10 000 times from where it came to: no drift.
     const auto contacts = disc(0.005, 0.5e-3);

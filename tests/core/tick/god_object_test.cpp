@@ -196,7 +196,7 @@ TEST(GodObject, TakesAPegIntoATightBorePushedAndTiltedWithoutOverlap) {
     EXPECT_LT(out.X_WG.p.z(), -0.0115);
     std::printf("deepest %.2f um, cell %.3f mm, %d ticks end early\n", 1e6 * deepest, 1e3 * bench.model().finest_cell,
                 limits);
-    EXPECT_LE(limits, 30);  // a way that bends
+    EXPECT_LE(limits, 60);  // round a bend it goes on in the next tick
     // The field's tolerance, the overlap that is accepted, and the sag between two samples of the peg's mantle in the
     // bore: 0.5²/2 · (1/5 - 1/5.02) mm.
     EXPECT_LT(deepest, kTolerance + tick::kAccepted * bench.model().finest_cell + 0.1e-6);

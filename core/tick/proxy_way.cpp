@@ -1,0 +1,36 @@
+#include "core/tick/proxy_way.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace passung::tick {
+
+ProxyWay::ProxyWay(const TickModel& model) noexcept : turn_scale_(model.shell->reach() / model.metric_radius) {}
+
+Motion ProxyWay::scaled(const Motion& u) const noexcept {
+    Motion v = u;
+    v.tail<3>() *= turn_scale_;
+    return v;
+}
+
+void ProxyWay::add(const Motion& u) noexcept {
+    assert(joints_ < kMostJoints);
+    const Motion v = scaled(u);
+    length_ += v.norm();
+    joint_[joints_] = joints_ > 0 ? Motion(joint_[joints_ - 1] + v) : v;
+    ++joints_;
+}
+
+double ProxyWay::bentBy(const Motion& next) const noexcept {
+    if (joints_ == 0) return 0.0;
+    const Motion line = joint_[joints_ - 1] + scaled(next);
+    const double squared = line.squaredNorm();
+    double farthest = 0.0;
+    for (std::size_t i = 0; i < joints_; ++i) {
+        const double share = squared > 0.0 ? joint_[i].dot(line) / squared : 0.0;
+        farthest = std::max(farthest, (joint_[i] - share * line).norm());
+    }
+    return farthest;
+}
+
+}  // namespace passung::tick
