@@ -57,6 +57,12 @@ std::vector<Error> SceneSpec::validate() const {
     check.notNegative("contact: damping", contact.damping);
     check.notNegative("contact: rotational damping", contact.rotational_damping);
     check.positive("contact: area stiffness", contact.area_stiffness);
+    check.positive("contact: penalty stiffness", contact.penalty_stiffness);
+    check.positive("contact: tool mass", contact.tool_mass);
+    check.positive("contact: tool inertia", contact.tool_inertia);
+    if (contact.coupling != PenaltyCoupling::Direct && contact.method != ContactMethod::Penalty)
+        check.errors.push_back(
+            {.message = "needs the penalty method: a god object has its own", .key = "contact: coupling"});
     check.positive("contact: tolerance", contact.tolerance);
     check.notNegative("contact: cell", contact.cell);
     check.positive("contact: spacing", contact.spacing);

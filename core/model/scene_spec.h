@@ -32,6 +32,7 @@ struct PartSpec {
 
 enum class ContactMethod { Penalty, GodObjectHeuristic, GodObject };
 enum class PenaltyVariant { MaxNormalised, AreaWeighted, Raw };
+enum class PenaltyCoupling { Direct, QuasiStatic, Virtual };
 
 struct ContactSpec {
     ContactMethod method = ContactMethod::GodObjectHeuristic;
@@ -41,13 +42,21 @@ struct ContactSpec {
     double damping = 0.0;               // [N·s/m], ≥ 0
     double rotational_damping = 0.0;    // [N·m·s/rad], ≥ 0
     double area_stiffness = 1e9;        // κ [N/m³], > 0; area-weighted penalty only
-    double tolerance = 20e-6;           // asked accuracy of the distance field near surfaces [m], > 0
-    double cell = 0.0;                  // edge of a field cell [m]; 0 = chosen from the tolerance
-    double spacing = 1.0e-3;            // of the point shell [m], > 0
+    // The penalty may act on a tool that the stiffness and damping above couple to the hand: core/tick/penalty_tool.h.
+    PenaltyCoupling coupling = PenaltyCoupling::Direct;
+    double penalty_stiffness = 10000.0;  // of a coupled penalty's contacts, in place of `stiffness` [N/m], > 0
+    double tool_mass = 0.05;             // of PenaltyCoupling::Virtual [kg], > 0
+    double tool_inertia = 5e-5;          // likewise [kg·m²], > 0
+    double tolerance = 20e-6;            // asked accuracy of the distance field near surfaces [m], > 0
+    double cell = 0.0;                   // edge of a field cell [m]; 0 = chosen from the tolerance
+    double spacing = 1.0e-3;             // of the point shell [m], > 0
     FieldMode mode = FieldMode::Trilinear;
     int budget_nodes = 0;       // per query; 0 = no budget
     bool two_way = false;       // the obstacles' points are held against the held part's field too
-    double proxy_filter = 0.0;  // corner of the proxy's low-pass while in contact [Hz]; 0 = none
+    double proxy_filter = 0.0;  // corner of the god object's low-pass while in contact [Hz]; 0 = none
+
+    /// True if forces come from the overlap at the hand's own pose, false if there is a proxy or tool.
+    bool rendersAtHand() const { return method == ContactMethod::Penalty && coupling == PenaltyCoupling::Direct; }
 };
 
 inline constexpr int kMaxDelayTicks = 100;

@@ -68,6 +68,11 @@ Wrench weightedWrench(const model::ContactSpec& contact, const Wrench& load, std
 
 Wrench penaltyWrench(const model::ContactSpec& contact, const ContactManifold& manifold, const Vec3& p_WO,
                      std::span<PairAccount> pairs) noexcept {
+    return penaltyLoad(contact, manifold, p_WO, pairs).wrench;
+}
+
+PenaltyLoad penaltyLoad(const model::ContactSpec& contact, const ContactManifold& manifold, const Vec3& p_WO,
+                        std::span<PairAccount> pairs) noexcept {
     const bool weighted = isWeighted(contact.variant);
     Wrench sum;
     double depth_sum = 0.0, deepest = 0.0;
@@ -88,10 +93,10 @@ Wrench penaltyWrench(const model::ContactSpec& contact, const ContactManifold& m
     double scale = (contact.two_way ? 0.5 : 1.0) * (weighted ? contact.area_stiffness : contact.stiffness);
     if (contact.variant == model::PenaltyVariant::MaxNormalised) {
         const double coherent = std::max(sum.force.norm(), kLeastCoherence * depth_sum);
-        scale = coherent > 0.0 ? contact.stiffness * deepest / coherent : 0.0;
+        if (coherent > 0.0) scale = contact.stiffness * deepest / coherent;
     }
     scalePushes(pairs, scale);
-    return {scale * sum.force, scale * sum.torque};
+    return {{scale * sum.force, scale * sum.torque}, scale};
 }
 
 void renderPenalty(const TickModel& model, TickState& state, TickFrame& frame) noexcept {

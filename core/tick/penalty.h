@@ -31,6 +31,13 @@ void findContactsAtHand(const TickModel& model, TickState& state, TickFrame& fra
 /// `pairs`, if given, without pushes so far, get each obstacle's part of it.
 Wrench penaltyWrench(const model::ContactSpec& contact, const ContactManifold& manifold, const Vec3& p_WO,
                      std::span<PairAccount> pairs = {}) noexcept;
+/// The same, and what each point has of it per depth, area-weighted per depth and area [N/m], [N/m³].
+struct PenaltyLoad {
+    Wrench wrench;
+    double scale = 0.0;
+};
+PenaltyLoad penaltyLoad(const model::ContactSpec& contact, const ContactManifold& manifold, const Vec3& p_WO,
+                        std::span<PairAccount> pairs = {}) noexcept;
 /// The same for area_weighted, of QueryAnswer::load; `pairs`: each obstacle's load so far. rt-safe.
 Wrench weightedWrench(const model::ContactSpec& contact, const Wrench& load,
                       std::span<PairAccount> pairs = {}) noexcept;

@@ -10,6 +10,7 @@
 #include "core/tick/output_stage.h"
 #include "core/tick/passivity.h"
 #include "core/tick/penalty.h"
+#include "core/tick/penalty_tool.h"
 #include "core/tick/proxy.h"
 #include "core/tick/transients.h"
 #include "core/tick/virtual_coupling.h"
@@ -65,12 +66,24 @@ void addGodObject(TickModel& model) {
                             false, sweepProxy});
 }
 
+void addPenaltyTool(TickModel& model) {
+    model.stages.push_back({"penalty tool",
+                            model.contact.coupling == model::PenaltyCoupling::Virtual
+                                ? "contact.coupling is virtual: a tool with mass between the hand's spring and the "
+                                  "contacts' penalty"
+                                : "contact.coupling is quasi_static: a tool where the hand's spring and the contacts' "
+                                  "penalty balance",
+                            false, settleTool});
+}
+
+void addProxyFilter(TickModel& model) {
+    if (!(model.contact.proxy_filter > 0.0)) return;
+    model.stages.push_back(
+        {"proxy filter", "contact.proxy_filter_hz is set: a low-pass of the proxy in contact", false, filterProxy});
+}
+
 /// What follows the proxy's motion, whatever the method.
 void addProxy(TickModel& model, bool record_hand_depth) {
-    if (model.contact.proxy_filter > 0.0) {
-        model.stages.push_back(
-            {"proxy filter", "contact.proxy_filter_hz is set: a low-pass of the proxy in contact", false, filterProxy});
-    }
     model.stages.push_back({"proxy record", "overlap and contacts at the proxy, for the record", false, describeProxy});
     if (record_hand_depth) {
         model.stages.push_back(
@@ -134,13 +147,16 @@ TickModel makeModel(const model::Scene& scene) {
     }
     if (model.obstacles.empty()) {
         model.stages.push_back({"free hand", "the scene has no obstacle", false, followHand});
-    } else if (spec.contact.method == model::ContactMethod::Penalty) {
+    } else if (spec.contact.rendersAtHand()) {
         addPenalty(model);
     } else {
-        if (spec.contact.method == model::ContactMethod::GodObject)
+        if (spec.contact.method == model::ContactMethod::Penalty)
+            addPenaltyTool(model);
+        else if (spec.contact.method == model::ContactMethod::GodObject)
             addGodObject(model);
         else
             addGodObjectHeuristic(model);
+        if (spec.contact.method != model::ContactMethod::Penalty) addProxyFilter(model);
         addProxy(model, spec.record_hand_depth);
     }
     if (spec.effects.transients.amplitude > 0.0 && !model.obstacles.empty()) {

@@ -125,9 +125,11 @@ struct TickState {
     Pose X_WG_last;                // for the proxy filter
     bool has_last_proxy = false;
     // penalty damping
-    Pose X_WH_last;  // at the last new sample
+    Pose X_WH_last;  // at the last new sample; of a coupled penalty at the last tick
     Twist V_H_last;  // measured there
     bool has_last_hand = false;
+    // coupled penalty
+    Motion tool_motion = Motion::Zero();  // in the last tick, in the metric of metric_radius [m]
     // coupling
     Vec3 last_stretch = Vec3::Zero(), last_twist = Vec3::Zero();  // at the last new sample
     Vec3 last_stretch_rate = Vec3::Zero(), last_twist_rate = Vec3::Zero();

@@ -90,6 +90,22 @@ TEST(Replayer, ReproducesEveryRecordedBitOfEveryMethod) {
     }
 }
 
+TEST(Replayer, ReproducesEveryRecordedBitOfACoupledPenalty) {
+    // Truth: invariant. The tool's pose and speed follow from the recorded inputs; every effect on.
+    for (const auto coupling : {model::PenaltyCoupling::QuasiStatic, model::PenaltyCoupling::Virtual}) {
+        auto spec = withEveryEffect(pressing(model::ContactMethod::Penalty));
+        spec.contact.coupling = coupling;
+        test::Bench bench(spec);
+        std::uint64_t hash = 0;
+        const auto records = record(bench, hash);
+        const auto report = replay::replay(bench.scene(), records);
+        EXPECT_FALSE(report.first_difference)
+            << report.first_difference->column << " at " << report.first_difference->tick;
+        EXPECT_EQ(report.state_hash, hash);
+        EXPECT_EQ(report.ticks, 2000);
+    }
+}
+
 TEST(Replayer, FindsOneChangedBitAndOneMissingTick) {
     // Truth: planted faults.
     test::Bench bench(pressing(model::ContactMethod::GodObjectHeuristic));

@@ -44,6 +44,13 @@ std::vector<std::pair<const char*, model::SceneSpec>> everyKindOfScene() {
     }
     scenes.emplace_back("penalty, two-way", pegAndPlate(model::ContactMethod::Penalty));
     scenes.back().second.contact.two_way = true;
+    for (const auto coupling : {model::PenaltyCoupling::QuasiStatic, model::PenaltyCoupling::Virtual}) {
+        scenes.emplace_back("coupled penalty", pegAndPlate(model::ContactMethod::Penalty));
+        scenes.back().second.contact.coupling = coupling;
+        scenes.emplace_back("coupled penalty, two-way, budget", scenes.back().second);
+        scenes.back().second.contact.two_way = true;
+        scenes.back().second.contact.budget_nodes = 200;
+    }
     for (const auto method : {model::ContactMethod::GodObjectHeuristic, model::ContactMethod::GodObject}) {
         scenes.emplace_back("god object", pegAndPlate(method));
         scenes.emplace_back("god object, everything named", pegAndPlate(method));
@@ -125,6 +132,10 @@ TEST(Step, BuildsOnlyTheStagesThatTheSceneNames) {
     auto spec = pegAndPlate(model::ContactMethod::Penalty);
     EXPECT_EQ(names(spec), (Names{"input guard", "energy account", "contacts at the hand", "penalty wrench",
                                   "contact shares", "output limits"}));
+    spec.contact.coupling = model::PenaltyCoupling::QuasiStatic;
+    EXPECT_EQ(names(spec), (Names{"input guard", "energy account", "penalty tool", "proxy record", "hand depth",
+                                  "virtual coupling", "contact shares", "output limits"}));
+    spec.contact.coupling = model::PenaltyCoupling::Direct;
     spec.contact.method = model::ContactMethod::GodObjectHeuristic;
     spec.record_hand_depth = false;
     EXPECT_EQ(names(spec), (Names{"input guard", "energy account", "proxy correction", "proxy motion", "proxy record",

@@ -1,0 +1,204 @@
+#include "core/tick/penalty_tool.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/tick/contact_energy.h"
+#include "core/tick/god_object.h"
+#include "core/tick/obstacle_query.h"
+#include "core/tick/penalty.h"
+#include "core/tick/proxy.h"
+
+namespace passung::tick {
+
+namespace {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+constexpr int kRounds = 12;  // of Newton's method on the linearised contacts
+
+/// A x = b for A symmetric, positive definite (Cholesky, in a fixed order of operations).
+Motion solved(Matrix6 A, Motion b) noexcept {
+    for (int j = 0; j < 6; ++j) {
+        for (int k = 0; k < j; ++k) A(j, j) -= A(j, k) * A(j, k);
+        A(j, j) = std::sqrt(A(j, j));
+        for (int i = j + 1; i < 6; ++i) {
+            for (int k = 0; k < j; ++k) A(i, j) -= A(i, k) * A(j, k);
+            A(i, j) /= A(j, j);
+        }
+    }
+    for (int i = 0; i < 6; ++i) {
+        for (int k = 0; k < i; ++k) b[i] -= A(i, k) * b[k];
+        b[i] /= A(i, i);
+    }
+    for (int i = 5; i >= 0; --i) {
+        for (int k = i + 1; k < 6; ++k) b[i] -= A(k, i) * b[k];
+        b[i] /= A(i, i);
+    }
+    return b;
+}
+
+/// The equation of one tick: penalty_tool.h.
+class Balance {
+public:
+    Balance(const TickModel& model, const TickState& state, const TickFrame& frame) noexcept
+        : model_(model), X_WH_(frame.X_WH), X_before_(state.X_WG), law_(model.contact) {
+        const model::ContactSpec& c = model.contact;
+        law_.stiffness = c.penalty_stiffness;
+        if (c.coupling != model::PenaltyCoupling::Virtual) return;
+        const double K = c.stiffness, turn = K * model.metric_radius * model.metric_radius;
+        damper_ = split(c.damping / K, c.rotational_damping / turn) / kTickSeconds;
+        inertia_ = split(c.tool_mass / K, c.tool_inertia / turn) / (kTickSeconds * kTickSeconds);
+        stiff_ += damper_ + inertia_;
+        last_ = state.tool_motion;
+        if (state.has_last_hand) hand_ = unconstrainedMotion(model, state.X_WH_last, frame.X_WH);
+    }
+
+    /// Takes up what is known around the tool.
+    void update(const TickState& state) noexcept {
+        const PenaltyLoad load = penaltyLoad(law_, state.manifold, state.X_WG.p);
+        scale_ = load.scale / model_.contact.stiffness;
+        Motion push;
+        push << load.wrench.force, load.wrench.torque / model_.metric_radius;
+        stretch = unconstrainedMotion(model_, state.X_WG, X_WH_);
+        const Motion U = way(state);
+        open = stretch + push / model_.contact.stiffness + damper_.cwiseProduct(hand_ - U) +
+               inertia_.cwiseProduct(last_ - U);
+    }
+
+    /// The tool's motion in this tick so far.
+    Motion way(const TickState& state) const noexcept { return unconstrainedMotion(model_, X_before_, state.X_WG); }
+    const model::ContactSpec& law() const noexcept { return law_; }
+    double size() const noexcept { return open.cwiseQuotient(stiff_).norm(); }
+    /// How far the tool may end from the hand where contacts push it away.
+    double longestStretch() const noexcept {
+        const double drift = (model_.contact.coupling == model::PenaltyCoupling::Virtual) ? last_.norm() : 0.0;
+        return stretch.norm() + drift + kRepair * model_.finest_cell;
+    }
+
+    /// The motion that solves the linearised equation.
+    Motion step(const ContactManifold& contacts, const Vec3& p_WG) const noexcept {
+        Motion u = Motion::Zero();
+        for (int round = 0; round < kRounds; ++round) {
+            Matrix6 A = stiff_.asDiagonal();
+            Motion b = open;
+            for (const ContactPoint& contact : contacts) {
+                const double depth = -contact.phi;
+                const Motion a = rowOf(contact, p_WG);
+                const double sigma =
+                    scale_ * (law_.variant == model::PenaltyVariant::AreaWeighted ? contact.area : 1.0);
+                if (depth > 0.0) b -= sigma * depth * a;
+                if (!(depth - a.dot(u) > 0.0)) continue;
+                A += (sigma * a) * a.transpose();
+                b += sigma * depth * a;
+            }
+            const Motion next = solved(A, b);
+            const bool same = (next - u).norm() < kSettled;
+            u = next;
+            if (same) break;
+        }
+        return u;
+    }
+
+    Motion stretch = Motion::Zero(), open = Motion::Zero();  // w and q
+
+private:
+    static Motion split(double translation, double rotation) noexcept {
+        Motion both;
+        both << Vec3::Constant(translation), Vec3::Constant(rotation);
+        return both;
+    }
+    Motion rowOf(const ContactPoint& contact, const Vec3& p_WG) const noexcept {
+        Motion a;
+        a << contact.gradient, (contact.position - p_WG).cross(contact.gradient) / model_.metric_radius;
+        return a;
+    }
+
+    const TickModel& model_;
+    const Pose& X_WH_;
+    const Pose X_before_;
+    model::ContactSpec law_;  // of the contacts
+    Motion stiff_ = Motion::Ones(), damper_ = Motion::Zero(), inertia_ = Motion::Zero();
+    double scale_ = 0.0;  // of penaltyLoad, per K
+    Motion last_ = Motion::Zero(), hand_ = Motion::Zero();
+};
+
+/// Puts the tool at `X_WG` and looks around: points nearer than `reach`, and up to `search` how far the nearest is.
+void lookAt(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_WG, double reach,
+            double search) noexcept {
+    state.manifold.clear();
+    const QueryRequest request{.collect_below = reach, .search_below = std::max(reach, search), .refine = true};
+    const QueryAnswer answer = queryObstacles(model, X_WG, request, state.workspace, state.manifold);
+    account(answer, frame);
+    state.X_WG = X_WG;
+    state.manifold_reach = reach;
+    state.clearance = answer.phi;
+}
+
+void startTool(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
+    if (frame.relocated) {
+        state.X_WG = frame.X_WH;
+        state.manifold_reach = -1.0;
+        state.has_last_stretch = state.has_last_hand = false;
+        state.tool_motion = Motion::Zero();
+    }
+    const double reach = kLongestStep * model.finest_cell;
+    if (state.manifold_reach < 0.0) lookAt(model, state, frame, state.X_WG, reach, reach);
+}
+
+/// The share of `u` after which the stretch, now w, is no longer than `longest`.
+double shareWithin(double longest, const Motion& w, const Motion& u) noexcept {
+    const double square = u.squaredNorm(), along = w.dot(u);
+    const double room = std::max(0.0, longest * longest - w.squaredNorm());
+    if (!((w - u).norm() > longest)) return 1.0;
+    return (along + std::sqrt(along * along + square * room)) / square;
+}
+
+/// Moves by `u`, or as much of it as makes the balance's rest smaller; false, and the tool stays, if none does.
+bool makeStep(const TickModel& model, TickState& state, TickFrame& frame, Balance& balance, const Motion& u,
+              double reach, double search) noexcept {
+    const Pose X_here = state.X_WG;
+    const double before = balance.size();
+    double share = 1.0;
+    for (int half = 0; half <= kHalvings; ++half, share *= 0.5) {
+        lookAt(model, state, frame, moved(model, X_here, share * u), reach, search);
+        balance.update(state);
+        if (balance.size() < before) return true;
+        frame.status |= kStepRejected;
+    }
+    lookAt(model, state, frame, X_here, reach, reach);
+    balance.update(state);
+    return false;
+}
+
+}  // namespace
+
+void settleTool(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
+    startTool(model, state, frame);
+    Balance balance(model, state, frame);
+    balance.update(state);
+    const double longest = balance.longestStretch(), half_cell = kLongestStep * model.finest_cell;
+    const double reach = nextReach(model, state);
+    bool settled = false, held_back = false;
+    for (int i = 0; i < kToolSteps; ++i) {
+        settled = balance.size() < kSettled;
+        if (settled) break;
+        Motion u = balance.step(state.manifold, state.X_WG.p);
+        const double path = longestPath(model, u), farthest = std::max(0.0, state.clearance) + half_cell;
+        if (path > farthest) u *= farthest / path;
+        const double share = shareWithin(longest, balance.stretch, u);
+        held_back = share < 1.0;
+        frame.iterations = static_cast<std::uint32_t>(i + 1);
+        if (!makeStep(model, state, frame, balance, share * u, reach, path)) break;
+    }
+    if (!settled && !(balance.size() < kSettled)) frame.status |= kIterationLimit;
+    const Motion way = balance.way(state);
+    state.last_motion = way.norm();
+    state.tool_motion = held_back ? Motion::Zero() : way;
+    state.X_WH_last = frame.X_WH;
+    state.has_last_hand = true;
+    clearPushes(state);
+    penaltyWrench(balance.law(), state.manifold, state.X_WG.p, state.pairs);
+}
+
+}  // namespace passung::tick
