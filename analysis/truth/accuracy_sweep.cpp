@@ -70,7 +70,7 @@ public:
     Answer at(const Pose& X_FS) {
         tick::TickFrame frame;
         frame.X_WH = X_FS;
-        if (model_.contact.method != model::ContactMethod::Penalty) {
+        if (!model_.contact.rendersAtHand()) {
             tick::lookAround(model_, state_, frame, X_FS);
             return {std::max(0.0, -state_.clearance), tick::penaltyWrench(weighted_, state_.manifold, X_FS.p)};
         }

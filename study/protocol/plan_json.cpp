@@ -59,6 +59,18 @@ const char* variantName(model::PenaltyVariant variant) {
     return "";
 }
 
+const char* couplingName(model::PenaltyCoupling coupling) {
+    switch (coupling) {
+        case model::PenaltyCoupling::Direct:
+            return "direct";
+        case model::PenaltyCoupling::QuasiStatic:
+            return "quasi_static";
+        case model::PenaltyCoupling::Virtual:
+            return "virtual";
+    }
+    return "";
+}
+
 std::string contactJson(const Condition& condition) {
     const model::ContactSpec& contact = condition.scene.contact;
     const bool automatic = condition.accuracy_budget > 0.0;
@@ -71,6 +83,11 @@ std::string contactJson(const Condition& condition) {
         .number("damping_Ns_per_m", contact.damping)
         .number("rotational_damping_Nms_per_rad", contact.rotational_damping)
         .number("area_stiffness_N_per_m3", contact.area_stiffness);
+    if (contact.coupling != model::PenaltyCoupling::Direct)
+        json.text("coupling", couplingName(contact.coupling))
+            .number("penalty_stiffness_N_per_m", contact.penalty_stiffness);
+    if (contact.coupling == model::PenaltyCoupling::Virtual)
+        json.number("tool_mass_kg", contact.tool_mass).number("tool_inertia_kg_m2", contact.tool_inertia);
     if (automatic) json.text("accuracy", "auto").number("accuracy_budget_s", condition.accuracy_budget);
     if (!automatic || condition.accuracy_picked)
         json.number("tolerance_m", contact.tolerance)

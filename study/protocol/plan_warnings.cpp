@@ -21,7 +21,7 @@ std::vector<std::string> conditionWarnings(std::span<const Condition> conditions
     };
     const auto renders = [&](PenaltyVariant variant) {
         return [=](const Condition& condition) {
-            return penalty(condition) && condition.scene.contact.variant == variant;
+            return condition.scene.contact.rendersAtHand() && condition.scene.contact.variant == variant;
         };
     };
     warn(

@@ -15,6 +15,8 @@ namespace {
 
 constexpr double kDefaultStiffness = 1000.0;         // [N/m], without a device
 constexpr double kDefaultRotationalStiffness = 1.0;  // [N·m/rad], without a device
+constexpr double kHardness = 10.0;                   // of a coupled penalty's contacts, per stiffness of the coupling
+constexpr double kToolShare = 0.1;                   // of a virtual tool's inertia, per the device's
 
 std::vector<model::PartSpec> readParts(const TableReader& read, const Node& scene, const std::string& path,
                                        double units, Errors& errors) {
@@ -127,6 +129,22 @@ void readCoupling(const TableReader& read, const DeviceDescription* device, bool
         "rotational_damping_Nms_per_rad", device != nullptr ? device->recommended_rotational_damping_Nms_per_rad : 0.0);
 }
 
+/// How the penalty reaches the hand, and the tool between them.
+void readPenaltyCoupling(const TableReader& read, const DeviceDescription* device, model::ContactSpec& contact) {
+    const auto coupling = read.text("coupling");
+    contact.coupling = coupling == "quasi_static" ? model::PenaltyCoupling::QuasiStatic
+                       : coupling == "virtual"    ? model::PenaltyCoupling::Virtual
+                                                  : model::PenaltyCoupling::Direct;
+    if (contact.coupling != model::PenaltyCoupling::Direct && contact.method != model::ContactMethod::Penalty)
+        read.fail("coupling", "needs method = \"penalty\": a god object is coupled by a spring of its own");
+    contact.penalty_stiffness = read.numberOr("penalty_stiffness_N_per_m", kHardness * contact.stiffness);
+    const DeviceMechanism* mechanism = device != nullptr && device->mechanism ? &*device->mechanism : nullptr;
+    contact.tool_mass =
+        read.numberOr("tool_mass_kg", mechanism != nullptr ? kToolShare * mechanism->mass_kg : contact.tool_mass);
+    contact.tool_inertia = read.numberOr(
+        "tool_inertia_kg_m2", mechanism != nullptr ? kToolShare * mechanism->inertia_kg_m2 : contact.tool_inertia);
+}
+
 /// The device's stable maximum was found under these circumstances only: under others nothing is known to be stable.
 void checkStability(const TableReader& device_table, const TableReader& contact_table, const TableReader& registration,
                     const DeviceDescription* device, const model::SceneSpec& scene) {
@@ -203,6 +221,7 @@ model::ContactSpec readContact(const TableReader& read, const DeviceDescription*
                       : variant == "area_weighted" ? model::PenaltyVariant::AreaWeighted
                                                    : model::PenaltyVariant::MaxNormalised;
     readCoupling(read, device, device_named, contact);
+    readPenaltyCoupling(read, device, contact);
     contact.area_stiffness = read.number("area_stiffness_N_per_m3");
     contact.tolerance = read.number("tolerance_um");
     contact.cell = read.numberOr("cell_mm", 0.0);

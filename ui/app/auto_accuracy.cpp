@@ -44,8 +44,8 @@ std::string geometryOf(const model::PartSpec& part) {
 
 /// What of a contact makes its query another one.
 auto wayOfAsking(const model::ContactSpec& contact) {
-    const bool penalty = contact.method == model::ContactMethod::Penalty;
-    return std::tuple(penalty, penalty && contact.variant == model::PenaltyVariant::AreaWeighted, contact.two_way);
+    const bool at_hand = contact.rendersAtHand();
+    return std::tuple(at_hand, at_hand && contact.variant == model::PenaltyVariant::AreaWeighted, contact.two_way);
 }
 
 /// One scene for every geometry among those that ask for a pick, with each way of asking once.

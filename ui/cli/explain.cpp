@@ -90,6 +90,12 @@ void printStability(const std::string& what, std::size_t width, const DeviceDesc
     printWall(what, width, "N/m", device.stable_stiffness_N_per_m, app::translationWall(device, scene));
     if (device.actuated_degrees >= 6 && scene.contact.rotational_stiffness > 0.0)
         printWall("", width, "Nm/rad", device.stable_rotational_stiffness_Nm_per_rad, app::rotationWall(device, scene));
+    if (scene.contact.coupling == model::PenaltyCoupling::QuasiStatic)
+        fmt::print("  {:<{}}  (coupled penalty: the most that the device feels, where contacts are hard)\n", "", width);
+    if (scene.contact.coupling == model::PenaltyCoupling::Virtual)
+        fmt::print(
+            "  {:<{}}  (of a rigid wall: the model leaves out the tool's mass of {:.4g} kg, which moves the border)\n",
+            "", width, scene.contact.tool_mass);
 }
 
 void explainStability(const protocol::StudyPlan& plan, std::span<const DeviceDescription> devices) {
@@ -114,7 +120,8 @@ std::string costKey(protocol::Condition condition) {
     condition.secondary = {};
     condition.timed_by = protocol::TimedBy::Program;
     model::ContactSpec& contact = condition.scene.contact;
-    contact.stiffness = contact.rotational_stiffness = contact.area_stiffness = 1.0;
+    contact.stiffness = contact.rotational_stiffness = contact.area_stiffness = contact.penalty_stiffness = 1.0;
+    contact.tool_mass = contact.tool_inertia = 1.0;
     contact.damping = contact.rotational_damping = 0.0;
     model::OutputLimits limits;
     limits.delay_ticks = condition.scene.limits.delay_ticks;
