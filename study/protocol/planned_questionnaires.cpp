@@ -59,6 +59,10 @@ public:
         if (definition->language != planned.language)
             return fail(planned, "language", planned.language,
                         fmt::format("there are no texts of {} in this language", definition->key));
+        for (const std::string& language : languagesAsked(plan_, planned))
+            if (!slot && readQuestionnaire(*text, path, language)->language != language)
+                fail(planned, "language", language,
+                     fmt::format("there are no texts of {} in this language of the study", definition->key));
         planned.definition = *std::move(definition);
         planned.source_json = source.str();
     }
@@ -88,12 +92,48 @@ private:
     Errors& errors_;
 };
 
+bool speaks(const StudyPlan& plan, const std::string& language) {
+    return plan.languages.size() > 1 &&
+           std::find(plan.languages.begin(), plan.languages.end(), language) != plan.languages.end();
+}
+
+/// Those of a session in this language.
+void speakLanguage(const StudyPlan& plan, const std::string& language, std::vector<PlannedQuestionnaire>& all) {
+    if (!speaks(plan, language)) return;
+    std::erase_if(all, [&](const PlannedQuestionnaire& planned) {
+        return !planned.texts.empty() && speaks(plan, planned.language) && planned.language != language;
+    });
+    for (PlannedQuestionnaire& planned : all)
+        if (speaks(plan, planned.language)) planned.language = language;
+}
+
+/// The lab's texts of a slot are in one language each: a session has those in its own.
+void checkSlots(const StudyPlan& plan, const std::vector<PlannedQuestionnaire>& all, Errors& errors) {
+    for (const PlannedQuestionnaire& slot : all) {
+        if (slot.texts.empty() || !speaks(plan, slot.language)) continue;
+        for (const std::string& language : plan.languages) {
+            const bool there = std::any_of(all.begin(), all.end(), [&](const PlannedQuestionnaire& other) {
+                return other.file == slot.file && other.moment == slot.moment && other.block == slot.block &&
+                       other.language == language;
+            });
+            if (there) continue;
+            errors.push_back(errorAt({plan.source_path, slot.line, slot.column}, "questionnaire.texts",
+                                     fmt::format("\"{}\"", slot.texts),
+                                     fmt::format("the study is also in \"{}\": another [[questionnaire]] has to give "
+                                                 "the texts in that language",
+                                                 language)));
+        }
+    }
+}
+
 /// The answers to one moment must be told apart by the questionnaire's name.
 void checkDistinct(const StudyPlan& plan, const std::vector<PlannedQuestionnaire>& all, Errors& errors) {
     for (std::size_t i = 0; i < all.size(); ++i) {
         const auto twin = [&](const PlannedQuestionnaire& other) {
             return other.definition.key == all[i].definition.key && other.moment == all[i].moment &&
-                   other.block == all[i].block;
+                   other.block == all[i].block &&
+                   (other.language == all[i].language || other.texts.empty() || !speaks(plan, other.language) ||
+                    !speaks(plan, all[i].language));
         };
         const auto end = all.begin() + static_cast<std::ptrdiff_t>(i);
         if (all[i].definition.key.empty() || std::none_of(all.begin(), end, twin)) continue;
@@ -104,13 +144,16 @@ void checkDistinct(const StudyPlan& plan, const std::vector<PlannedQuestionnaire
 }
 
 Result<std::vector<PlannedQuestionnaire>> load(const StudyPlan& plan,
-                                               const std::function<Result<std::string>(const std::string&)>& read) {
+                                               const std::function<Result<std::string>(const std::string&)>& read,
+                                               const std::string& language) {
     Errors errors;
     std::vector<PlannedQuestionnaire> all = plan.questionnaires;
+    speakLanguage(plan, language, all);
     Loader loader(plan, read, errors);
     for (PlannedQuestionnaire& planned : all)
         if (!planned.file.empty()) loader.load(planned);
     checkDistinct(plan, all, errors);
+    if (language.empty()) checkSlots(plan, all, errors);
     tidy(errors);
     if (!errors.empty()) return errors;
     return all;
@@ -140,13 +183,19 @@ std::vector<PlannedQuestionnaire> readQuestionnaires(const std::vector<Node>& ta
     return all;
 }
 
+std::vector<std::string> languagesAsked(const StudyPlan& plan, const PlannedQuestionnaire& planned) {
+    if (planned.texts.empty() && speaks(plan, planned.language)) return plan.languages;
+    return {planned.language};
+}
+
 Errors checkQuestionnaires(const StudyPlan& plan, const std::function<Result<std::string>(const std::string&)>& read) {
-    const auto loaded = load(plan, read);
+    const auto loaded = load(plan, read, "");
     return loaded ? Errors{} : loaded.errors();
 }
 
-Result<Done> loadQuestionnaires(StudyPlan& plan, const std::function<Result<std::string>(const std::string&)>& read) {
-    auto loaded = load(plan, read);
+Result<Done> loadQuestionnaires(StudyPlan& plan, const std::function<Result<std::string>(const std::string&)>& read,
+                                const std::string& language) {
+    auto loaded = load(plan, read, language);
     if (!loaded) return loaded.errors();
     plan.questionnaires = *std::move(loaded);
     plan.expanded_json = expandedJson(plan);

@@ -11,7 +11,7 @@ namespace passung::protocol {
 inline constexpr std::array kQuestionnaireKeys{
     Key{"questionnaire", "file", KeyType::Text, {}, "", "!", "The questionnaire's file, relative to this one."},
     Key{"questionnaire", "texts", KeyType::Text, {}, "", "(none)", "For a slot: the file with the lab's texts, relative to this one."},
-    Key{"questionnaire", "language", KeyType::Text, {}, "", "en", "Language in which it is shown."},
+    Key{"questionnaire", "language", KeyType::Text, {}, "", "en", "Language in which it is shown. In a study with texts in several languages, of which this is one, it is shown in the session's, and has to have them all; a slot then needs a table for the texts in each."},
     Key{"questionnaire", "moment", KeyType::Choice, {}, "session_start|before_block|after_block|after_trial|after_condition|session_end", "!", "When it is asked. `after_condition`: after the last trial of each condition in a block."},
     Key{"questionnaire", "block", KeyType::Name, {}, "", "(every main block)", "The block that `moment` is about."},
 

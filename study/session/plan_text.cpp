@@ -10,6 +10,7 @@
 #include "study/design/williams.h"
 #include "study/protocol/duration.h"
 #include "study/protocol/participant.h"
+#include "study/protocol/planned_questionnaires.h"
 #include "study/session/participant_order.h"
 #include "study/session/staircase_text.h"
 
@@ -97,7 +98,8 @@ std::string questionnairesText(const protocol::StudyPlan& plan) {
                             of_session              ? ""
                             : planned.block.empty() ? " of every main block"
                                                     : " of block " + planned.block,
-                            planned.language, design::counted(planned.definition.items.size(), "item"));
+                            fmt::join(protocol::languagesAsked(plan, planned), "/"),
+                            design::counted(planned.definition.items.size(), "item"));
     }
     return text + "\n";
 }

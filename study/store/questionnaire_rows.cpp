@@ -43,6 +43,15 @@ void insertScores(const Database& database, std::int64_t run_id, const session::
             .run();
 }
 
+/// Unless it is there.
+void insertQuestionnaire(const Database& database, const PlannedQuestionnaire& planned) {
+    const std::string json = definitionJson(planned), sha256 = sha256Hex(json);
+    const auto& definition = planned.definition;
+    database.prepare("INSERT OR IGNORE INTO questionnaire VALUES(?, ?, ?, ?, ?, ?)")
+        .bind(sha256, definition.key, definition.version, definition.language, definition.licence, json)
+        .run();
+}
+
 template <class Row, class Read>
 std::vector<Row> readOf(const Database& database, std::string_view sql, std::int64_t run_id, Read read) {
     Statement statement = database.prepare(sql);
@@ -76,12 +85,7 @@ std::vector<ScoreRow> readScores(const Database& database, std::int64_t run_id) 
 }  // namespace
 
 void insertQuestionnaires(const Database& database, const protocol::StudyPlan& plan) {
-    Statement insert = database.prepare("INSERT OR IGNORE INTO questionnaire VALUES(?, ?, ?, ?, ?, ?)");
-    for (const PlannedQuestionnaire& planned : plan.questionnaires) {
-        const std::string json = definitionJson(planned), sha256 = sha256Hex(json);
-        const auto& definition = planned.definition;
-        insert.bind(sha256, definition.key, definition.version, definition.language, definition.licence, json).run();
-    }
+    for (const PlannedQuestionnaire& planned : plan.questionnaires) insertQuestionnaire(database, planned);
 }
 
 void requireQuestionnaires(const Database& database, const std::string& protocol_sha256,
@@ -100,6 +104,7 @@ void insertQuestionnaireRun(const Database& database, const std::string& session
     const session::Occasion& occasion = run.form.occasion;
     const PlannedQuestionnaire& planned = run.form.planned;
     const char* moment = protocol::momentName(planned.moment);
+    insertQuestionnaire(database, planned);  // the session's language may be another one than the protocol's first
     std::optional<std::int64_t> condition;
     if (occasion.condition) condition = static_cast<std::int64_t>(*occasion.condition);
     database

@@ -10,6 +10,7 @@
 #include "devices/simulated/presets.h"
 #include "study/measures/measures.h"
 #include "study/person/simulated_person.h"
+#include "study/protocol/document.h"
 #include "study/protocol/language.h"
 #include "study/protocol/planned_questionnaires.h"
 #include "study/session/participant_order.h"
@@ -276,17 +277,18 @@ store::Store::Opened openForRun(const RunOptions& options, const RunListener& li
     return opened;
 }
 
-/// The questionnaires as the protocol was imported with them, whatever became of their files.
-Result<Done> loadStoredQuestionnaires(const store::StoreReader& reader, const std::string& sha256,
+/// The session's questionnaires as the protocol was imported with them, whatever became of their files.
+Result<Done> loadStoredQuestionnaires(const store::StoreReader& reader, const store::Unfinished& session,
                                       protocol::StudyPlan& plan) {
-    const auto texts = reader.questionnaireTexts(sha256);
+    const auto texts = reader.questionnaireTexts(session.protocol_sha256);
     if (!texts) return texts.errors();
     const auto folder = std::filesystem::path(plan.source_path).parent_path();
-    return protocol::loadQuestionnaires(plan, [&](const std::string& path) -> Result<std::string> {
+    const auto read = [&](const std::string& path) -> Result<std::string> {
         for (const auto& [file, text] : *texts)
             if ((folder / file).string() == path) return text;
         return Error{.message = "is not stored with the protocol"};
-    });
+    };
+    return protocol::loadQuestionnaires(plan, read, session.language);
 }
 
 void backUp(store::Store& store, const RunOptions& options, const RunListener& listener) {
@@ -362,6 +364,8 @@ Result<RunEnd> runStudy(const protocol::StudyPlan& plan, RunOptions options, con
         for (const std::string& difference : stiffnessDifferences(plan, *kept_plan)) listener.warned(difference);
     auto picked = withKeptAccuracy(*kept_plan, *sha256, *opened.store);
     if (!picked) return picked.errors();
+    if (const auto done = protocol::loadQuestionnaires(*picked, protocol::readFile, options.language); !done)
+        return done.errors();
     StudyRun run(*picked, options, listener, *opened.store, *sha256);
     Result<RunEnd> end = RunEnd::Complete;
     for (int i = 0; i < options.simulated && end && *end == RunEnd::Complete; ++i) end = run.participant(i + 1);
@@ -381,8 +385,7 @@ Result<RunEnd> resumeStudy(const ResumeOptions& resume, RunOptions options, cons
     const auto stored = plans.plan(session->protocol_sha256);
     if (!stored) return stored.errors();
     protocol::StudyPlan plan = **stored;
-    if (const auto done = loadStoredQuestionnaires(*reader, session->protocol_sha256, plan); !done)
-        return done.errors();
+    if (const auto done = loadStoredQuestionnaires(*reader, *session, plan); !done) return done.errors();
     plan.seed = session->seed;
     options.clock = session->virtual_time ? Clock::Virtual : Clock::RealTime;
     options.language = session->language;

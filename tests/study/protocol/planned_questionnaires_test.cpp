@@ -85,6 +85,64 @@ TEST(PlannedQuestionnaires, ASlotNeedsTextsInTheStudysLanguageAndNothingElseTake
               "studies/study.toml:1:1: error: questionnaire.texts: \"none.toml\": cannot be opened");
 }
 
+TEST(PlannedQuestionnaires, OfAStudyInSeveralLanguagesAreAskedInThatOfTheSession) {
+    // Truth: closed form (the shipped file's own texts); the words are a regression
+    Errors errors;
+    StudyPlan plan = planOf(kTlx, errors);
+    plan.languages = {"en", "de"};
+    Files files{{{"studies/q/tlx.toml", shipped("nasa_tlx_raw")}}};
+    ASSERT_TRUE(loadQuestionnaires(plan, std::ref(files)));
+    EXPECT_EQ(languagesAsked(plan, plan.questionnaires[0]), plan.languages);
+    const std::string stored = plan.expanded_json;
+    ASSERT_TRUE(loadQuestionnaires(plan, std::ref(files), "en"));
+    EXPECT_EQ(plan.questionnaires[0].definition.language, "en");
+    EXPECT_NE(plan.expanded_json, stored) << "only the plan as it was is the protocol's";
+
+    plan.languages = {"de", "fr"};
+    plan.questionnaires[0].language = "de";
+    const auto missing = loadQuestionnaires(plan, std::ref(files));
+    ASSERT_FALSE(missing);
+    EXPECT_EQ(
+        toString(missing.errors().front()),
+        "studies/study.toml:1:1: error: questionnaire.language: \"fr\": there are no texts of nasa_tlx_raw in this "
+        "language of the study");
+    plan.languages = {"fr", "it"};
+    EXPECT_TRUE(loadQuestionnaires(plan, std::ref(files))) << "German whatever the session is in";
+    EXPECT_TRUE(loadQuestionnaires(plan, std::ref(files), "it"));
+    EXPECT_EQ(plan.questionnaires[0].language, "de");
+}
+
+TEST(PlannedQuestionnaires, ASlotOfAStudyInSeveralLanguagesHasItsTextsInEach) {
+    // Truth: closed form; the words are a regression
+    const auto texts = [](const std::string& language) {
+        std::string text =
+            "texts_for = \"ueq_s\"\nlanguage = \"" + language + "\"\nsource = \"made up\"\nlow = 1\nhigh = 7\n";
+        for (int i = 1; i <= 8; ++i) text += "[[item]]\nid = \"i" + std::to_string(i) + "\"\ntext = \"Text\"\n";
+        return text;
+    };
+    Files files{
+        {{"studies/u.toml", shipped("ueq_s")}, {"studies/de.toml", texts("de")}, {"studies/en.toml", texts("en")}}};
+    const auto table = [](const std::string& language) {
+        return "[[questionnaire]]\nmoment = \"session_end\"\nfile = \"u.toml\"\ntexts = \"" + language +
+               ".toml\"\nlanguage = \"" + language + "\"\n";
+    };
+    Errors errors;
+    StudyPlan one = planOf(table("de"), errors);
+    one.languages = {"en", "de"};
+    const auto missing = loadQuestionnaires(one, std::ref(files));
+    ASSERT_FALSE(missing);
+    EXPECT_NE(toString(missing.errors().front()).find("\"de.toml\": the study is also in \"en\""), std::string::npos);
+
+    StudyPlan both = planOf(table("de") + table("en"), errors);
+    EXPECT_FALSE(loadQuestionnaires(both, std::ref(files))) << "asked twice at one moment";
+    both.languages = {"en", "de"};
+    const auto done = loadQuestionnaires(both, std::ref(files));
+    ASSERT_TRUE(done) << toString(done.errors().front());
+    ASSERT_TRUE(loadQuestionnaires(both, std::ref(files), "en"));
+    ASSERT_EQ(both.questionnaires.size(), 1u);
+    EXPECT_EQ(both.questionnaires[0].definition.language, "en");
+}
+
 TEST(PlannedQuestionnaires, ABlockHasNoMeaningAtTheEndsOfASession) {
     // Truth: closed form; the words are a regression
     Errors errors;

@@ -52,6 +52,28 @@ protected:
     TempFolder folder_;
 };
 
+TEST_F(QuestionnaireRun, OfAStudyInTwoLanguagesIsInThatOfTheSession) {
+    // Truth: invariant: two people, one protocol, each reads their own language, and both are scored alike.
+    writeText(folder_.path() / "two.toml",
+              smallStudy("two") +
+                  "[text.en]\nwelcome = \"Welcome\"\n[text.de]\nwelcome = \"Willkommen\"\n[[instruction]]\nmoment = "
+                  "\"session_start\"\ntext = \"welcome\"\n[[questionnaire]]\nfile = \"ssq.toml\"\nmoment = "
+                  "\"session_end\"\n");
+    for (const char* language : {"de", "en"}) {
+        const Ended ended = run({"run", "two.toml", "--db", "s.db", "--no-backup", "--language", language});
+        ASSERT_EQ(ended.exit_code, 0) << ended.err;
+    }
+    const auto reader = store::StoreReader::open(folder_ / "s.db");
+    const auto runs = reader->questionnaireRuns();
+    ASSERT_TRUE(runs);
+    ASSERT_EQ(runs->size(), 2u);
+    EXPECT_EQ((*runs)[0].language, "de");
+    EXPECT_EQ((*runs)[1].language, "en");
+    EXPECT_EQ((*runs)[0].scores.size(), (*runs)[1].scores.size());
+    const auto tables = exported("s.db");
+    EXPECT_NE(tables.at("scores_wide.csv").find("ssq.total.session_end"), std::string::npos);
+}
+
 TEST_F(QuestionnaireRun, ASimulatedParticipantAnswersEveryFormAtItsMomentAndIsMarked) {
     // Truth: closed form: six trials of two conditions in one block: 1 + 6 + 2 + 1 + 1 forms of 16, 8, 21, 8 items.
     const Ended ended = run({"run", "study.toml", "--db", "s.db"});
