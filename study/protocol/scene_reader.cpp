@@ -138,11 +138,12 @@ void readPenaltyCoupling(const TableReader& read, const DeviceDescription* devic
     if (contact.coupling != model::PenaltyCoupling::Direct && contact.method != model::ContactMethod::Penalty)
         read.fail("coupling", "needs method = \"penalty\": a god object is coupled by a spring of its own");
     contact.penalty_stiffness = read.numberOr("penalty_stiffness_N_per_m", kHardness * contact.stiffness);
-    const DeviceMechanism* mechanism = device != nullptr && device->mechanism ? &*device->mechanism : nullptr;
-    contact.tool_mass =
-        read.numberOr("tool_mass_kg", mechanism != nullptr ? kToolShare * mechanism->mass_kg : contact.tool_mass);
-    contact.tool_inertia = read.numberOr(
-        "tool_inertia_kg_m2", mechanism != nullptr ? kToolShare * mechanism->inertia_kg_m2 : contact.tool_inertia);
+    const auto mechanism = device != nullptr ? device->mechanism.value_or(DeviceMechanism{}) : DeviceMechanism{};
+    const auto share = [](double of_device, double unknown) {
+        return of_device > 0.0 ? kToolShare * of_device : unknown;
+    };
+    contact.tool_mass = read.numberOr("tool_mass_kg", share(mechanism.mass_kg, contact.tool_mass));
+    contact.tool_inertia = read.numberOr("tool_inertia_kg_m2", share(mechanism.inertia_kg_m2, contact.tool_inertia));
 }
 
 /// The device's stable maximum was found under these circumstances only: under others nothing is known to be stable.

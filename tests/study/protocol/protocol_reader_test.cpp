@@ -215,6 +215,10 @@ TEST(ProtocolReader, WarnsOfPenaltiesThatNoStiffnessLimits) {
         EXPECT_TRUE(plan->warnings[0].starts_with("contact.variant = \"" + variant + "\"")) << plan->warnings[0];
         EXPECT_TRUE(plan->warnings[0].ends_with("conditions: single")) << plan->warnings[0];
     }
+    const auto coupled = read(kHead + kScene + method + "\"raw\"\ncoupling = \"quasi_static\"\n" + kTask + kBlock +
+                              "order = \"listed\"\n");
+    ASSERT_TRUE(coupled);
+    EXPECT_TRUE(coupled->warnings.empty()) << "the coupling's stiffness is the most that is felt";
     const auto god =
         read(kHead + kScene + "[scene.contact]\nvariant = \"raw\"\n" + kTask + kBlock + "order = \"listed\"\n");
     ASSERT_TRUE(god);

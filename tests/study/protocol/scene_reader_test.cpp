@@ -187,6 +187,34 @@ TEST(SceneReader, TakesWhatIsLeftOutFromTheDevice) {
     EXPECT_EQ(stick->contact.rotational_stiffness, 0.0);
 }
 
+TEST(SceneReader, CouplesThePenaltyThroughATool) {
+    // Truth: closed form: ten times the stiffness and a tenth of the device's inertia, as the key table says.
+    std::vector<DeviceDescription> devices = fakeDevices();
+    devices[0].mechanism = DeviceMechanism{.mass_kg = 0.6, .inertia_kg_m2 = 8e-4};
+    const std::string head = kParts + "[device]\npreset = \"arm\"\n[contact]\nmethod = \"penalty\"\ncoupling = ";
+    const auto scene = readSceneText(head + "\"virtual\"\n", "s.toml", devices);
+    ASSERT_TRUE(scene);
+    EXPECT_EQ(scene->contact.coupling, model::PenaltyCoupling::Virtual);
+    EXPECT_EQ(scene->contact.penalty_stiffness, 40000.0);
+    EXPECT_DOUBLE_EQ(scene->contact.tool_mass, 0.06);
+    EXPECT_DOUBLE_EQ(scene->contact.tool_inertia, 8e-5);
+    const auto named = readSceneText(
+        head + "\"quasi_static\"\npenalty_stiffness_N_per_m = 7000\ntool_mass_kg = 0.2\ntool_inertia_kg_m2 = 0.001\n",
+        "s.toml", devices);
+    ASSERT_TRUE(named);
+    EXPECT_EQ(named->contact.coupling, model::PenaltyCoupling::QuasiStatic);
+    EXPECT_EQ(named->contact.penalty_stiffness, 7000.0);
+    EXPECT_EQ(named->contact.tool_mass, 0.2);
+    EXPECT_EQ(named->contact.tool_inertia, 0.001);
+    const auto unknown = read(kParts + "[contact]\nmethod = \"penalty\"\ncoupling = \"virtual\"\n");
+    ASSERT_TRUE(unknown);
+    EXPECT_EQ(unknown->contact.tool_mass, 0.05);
+    EXPECT_EQ(unknown->contact.tool_inertia, 5e-5);
+    EXPECT_NE(
+        errorsOf(kParts + "[contact]\nmethod = \"god_object\"\ncoupling = \"virtual\"\n").find("contact.coupling"),
+        std::string::npos);
+}
+
 TEST(SceneReader, TakesEncoderStepsFromTheDeviceIfTheyAreKnown) {
     // Truth: closed form: the numbers of a mechanism; of a device without one, as every real one, none are known.
     std::vector<DeviceDescription> devices = fakeDevices();
