@@ -10,6 +10,7 @@
 #include "analysis/export/export_folder.h"
 #include "analysis/export/gzip.h"
 #include "analysis/export/note_table.h"
+#include "analysis/export/presentation_table.h"
 #include "analysis/export/questionnaire_tables.h"
 #include "analysis/export/samples.h"
 #include "analysis/export/secondary_table.h"
@@ -32,6 +33,7 @@ std::vector<Table> makeTables(const StudyData& study) {
     tables.push_back(makeParticipants(study));
     tables.push_back(makeTiming(study));
     tables.push_back(makeContactEnergy(study));
+    if (Table shown = makePresentation(study); !shown.rows.empty()) tables.push_back(std::move(shown));
     if (!study.detections.empty()) tables.push_back(makeSecondary(study));
     if (!study.staircase_steps.empty()) {
         tables.push_back(makeStaircase(study));

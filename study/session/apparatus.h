@@ -3,6 +3,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,6 +22,18 @@ struct ContactEnergy {
     double least_J = 0.0;     // at any tick, ≤ 0
 };
 
+/// What a window gave the participant during one attempt. The age of a picture: from the reading of the device for the
+/// newest tick that it shows until the display gets it; of pictures that show no newer tick than the one before none is
+/// known.
+struct Presentation {
+    std::string drawn_pose;   // of the held part: "proxy", "device"
+    std::int64_t frames = 0;  // of known age
+    double frame_age_median_us = 0, frame_age_p99_us = 0, frame_age_max_us = 0;
+    std::string sound = "none";  // "none": the condition has nothing to be heard; "played"; "silent": had no output
+    std::string sound_output;    // its name
+    double sound_delay_us = 0;   // of what is played: the length of the output's buffer
+};
+
 /// How well the loop kept its rate during one attempt.
 struct LoopHealth {
     std::string loop;  // "virtual", "real-time fifo", "real-time normal"
@@ -31,6 +44,7 @@ struct LoopHealth {
     std::vector<std::int64_t> histogram;        // ticks per bucket, bucket i: [2^i, 2^(i+1)) × 0.1 µs
     std::uint64_t state_hash = 0;               // over every exact output of the attempt; equal on replay
     std::vector<ContactEnergy> contact_energy;  // of each obstacle in the order of the scene, then of none
+    std::optional<Presentation> presentation;   // none: no window showed the attempt
 };
 
 /// One stage of the tick and why it runs.

@@ -1,6 +1,7 @@
 #include "study/store/attempt_rows.h"
 
 #include "study/store/contact_energy_rows.h"
+#include "study/store/presentation_rows.h"
 #include "study/store/sqlite.h"
 
 namespace passung::store {
@@ -89,6 +90,7 @@ AttemptRow readAttempt(const Database& database, const Statement& row) {
     values.bind(attempt.attempt_id);
     while (values.step()) attempt.measures.emplace(values.text(0), values.real(1));
     attempt.contact_energy = readContactEnergy(database, attempt.attempt_id);
+    attempt.presentation = readPresentation(database, attempt.attempt_id);
     return attempt;
 }
 

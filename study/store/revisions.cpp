@@ -358,6 +358,20 @@ CREATE TABLE staircase_step(
     estimate_sd REAL) STRICT;
 )sql";
 
+constexpr const char* kRevision9 = R"sql(
+-- what a window gave the participant: pictures, with their age when the display got them, and sound
+CREATE TABLE presentation(
+    attempt_id INTEGER PRIMARY KEY REFERENCES attempt ON DELETE CASCADE,
+    drawn_pose TEXT NOT NULL CHECK(drawn_pose IN('proxy','device')),
+    frames INTEGER NOT NULL CHECK(frames >= 0),
+    frame_age_median_us REAL,
+    frame_age_p99_us REAL,
+    frame_age_max_us REAL,
+    sound TEXT NOT NULL CHECK(sound IN('none','played','silent')),
+    sound_output TEXT,
+    sound_delay_us REAL) STRICT;
+)sql";
+
 constexpr std::array kRevisions = {
     Revision{1, "Protocols, participants, sessions, trials, samples, timing and questionnaires", kRevision1, 1},
     // A reader that does not know what was picked would replay another scene.
@@ -371,6 +385,7 @@ constexpr std::array kRevisions = {
     Revision{7, "Responses to a secondary task, pictures of the instructions", kRevision7, 5},
     // A reader that does not know what was presented would replay another scene.
     Revision{8, "Levels that staircases presented, with their answers", kRevision8, 8},
+    Revision{9, "Pictures and sound of each attempt that a window showed", kRevision9, 8},
 };
 
 bool isEmpty(const Database& database) { return database.integer("SELECT count(*) FROM sqlite_master") == 0; }

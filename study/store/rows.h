@@ -196,6 +196,7 @@ struct AttemptRow {
     std::optional<std::int64_t> trial_ns;                // start of the trial
     std::map<std::string, double> measures;              // only those that are defined for this attempt
     std::vector<session::ContactEnergy> contact_energy;  // none of attempts from before schema revision 6
+    std::optional<session::Presentation> presentation;   // none: no window showed it
 
     /// A main-phase attempt that counts in means: it ended by its own rules and nothing spoilt it.
     bool counts() const {

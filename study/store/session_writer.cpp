@@ -2,6 +2,7 @@
 
 #include "study/store/contact_energy_rows.h"
 #include "study/store/hex_text.h"
+#include "study/store/presentation_rows.h"
 #include "study/store/questionnaire_rows.h"
 #include "study/store/remarks.h"
 #include "study/store/secondary_rows.h"
@@ -208,6 +209,7 @@ void SessionWriter::storeEnd(const Database& database, const OpenAttempt& attemp
     if (end.staircase) storeStaircaseAnswer(database, attempt_id, *end.staircase);
     insertTiming(database, attempt_id, end.health, end.timing_measured);
     insertContactEnergy(database, attempt_id, end.health.contact_energy);
+    if (end.health.presentation) insertPresentation(database, attempt_id, *end.health.presentation);
     transaction.commit();
 }
 

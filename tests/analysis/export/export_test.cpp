@@ -47,12 +47,12 @@ std::pair<std::string, int> shell(const std::string& command) {
 
 /// Two simulated participants with `trials` attempts each, an event with a hard text, and a third
 /// participant whose only attempt is left running.
-void writeStudy(const std::string& path, std::int64_t trials = 6) {
+void writeStudy(const std::string& path, std::int64_t trials = 6, bool measured = false) {
     auto store = fake::openStore(path);
     for (const char* code : {"S001", "S002"}) {
         auto writer = fake::beginSession(*store, code, trials);
         writer->appendEvent({{}, 5, "experimenter", fake::kHardText, R"({"note": "a, \"b\""})"});
-        for (std::int64_t trial = 0; trial < trials; ++trial) require(fake::writeAttempt(*writer, trial, 40));
+        for (std::int64_t trial = 0; trial < trials; ++trial) require(fake::writeAttempt(*writer, trial, 40, measured));
         require(writer->finishSession(true, 60'000'000'000));
     }
     auto writer = fake::beginSession(*store, "S003", 8);
@@ -191,6 +191,30 @@ TEST_F(Export, EnergyIsToldOfEachAttemptAndObstacle) {
     EXPECT_EQ(energy.at(0, "least_J"), "-0.25");
     EXPECT_EQ(energy.at(1, "obstacle"), "NA");
     EXPECT_EQ(energy.at(3, "taken_in_J"), energy.at(3, "trial_index"));
+}
+
+TEST_F(Export, PicturesAndSoundAreToldOfAttemptsThatAWindowShowed) {
+    // Truth: invariant: what the fake study hands over.
+    EXPECT_FALSE(files_.contains("presentation.csv")) << "no window showed it";
+    const fake::TempFolder folder;
+    writeStudy(folder / "s.db", 6, true);
+    exportTo(folder / "s.db", folder / "out");
+    const fake::CsvFile shown = fake::readCsv(readFile(folder / "out/presentation.csv"));
+    ASSERT_EQ(shown.rows.size(), 12u);
+    EXPECT_EQ(shown.at(2, "drawn_pose"), "proxy");
+    EXPECT_EQ(shown.at(2, "n_frames"), "92");
+    EXPECT_EQ(shown.at(2, "frame_age_median_us"), "20000.5");
+    EXPECT_EQ(shown.at(2, "frame_age_p99_us"), "30000");
+    EXPECT_EQ(shown.at(2, "frame_age_max_us"), "41000");
+    EXPECT_EQ(shown.at(2, "sound_output"), "speakers");
+    EXPECT_EQ(shown.at(2, "sound_delay_us"), "21333");
+    EXPECT_EQ(shown.at(5, "drawn_pose"), "device");
+    EXPECT_EQ(shown.at(5, "sound"), "silent");
+    for (const char* column : {"frame_age_median_us", "frame_age_max_us", "sound_output", "sound_delay_us"})
+        EXPECT_EQ(shown.at(5, column), "NA") << column;
+    const std::string book = readFile(folder / "out/codebook.csv");
+    for (const std::string& column : shown.header)
+        EXPECT_NE(book.find("presentation.csv," + column), std::string::npos) << column;
 }
 
 TEST_F(Export, NoMeasuredTimeReachesAnExportOfVirtualTime) {

@@ -72,6 +72,29 @@ TEST(Store, TablesHoldEveryColumnOfTheDocumentedOutline) {
     }
 }
 
+TEST(Store, PicturesAndSoundOfAnAttemptAreReadAsTheyWereWritten) {
+    // Truth: invariant: what the fake study hands over.
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    {
+        const auto store = fake::openStore(path);
+        const auto writer = fake::beginSession(*store, "S001", 6, true);
+        for (int trial = 0; trial < 6; ++trial) require(fake::writeAttempt(*writer, trial, 40, trial != 0));
+        require(writer->finishSession(true, 60'000'000'000));
+    }
+    const auto attempts = require(require(StoreReader::open(path)).attempts());
+    EXPECT_FALSE(attempts[0].presentation) << "no window showed it";
+    ASSERT_TRUE(attempts[1].presentation);
+    EXPECT_EQ(attempts[1].presentation->drawn_pose, "proxy");
+    EXPECT_EQ(attempts[1].presentation->frames, 91);
+    EXPECT_EQ(attempts[1].presentation->frame_age_p99_us, 30'000.0);
+    EXPECT_EQ(attempts[1].presentation->sound_output, "speakers");
+    EXPECT_EQ(attempts[1].presentation->sound_delay_us, 21'333.0);
+    ASSERT_TRUE(attempts[5].presentation);
+    EXPECT_EQ(attempts[5].presentation->sound, "silent");
+    EXPECT_EQ(attempts[5].presentation->sound_output, "");
+}
+
 TEST(Store, ChunksBeginWhereTheMissedCyclesBeforeThemPutThem) {
     // Truth: closed form. Of the fake ticks every sixteenth comes after two missed cycles: 62 of the first 1000, so
     // that tick 1000 is at 1000 + 2 · 62 ms; 125 of the first 2000.
