@@ -25,6 +25,7 @@ set(rooms
   "analysis/stats      | core/base"
   "analysis/power      | core/base ${study_rooms} study/session study/store analysis/export analysis/stats"
   "ui/presenter        | core/base core/model ${study_rooms} study/session study/store analysis/export analysis/stats"
+  "ui/sound            | core/base core/loop study/measures"
   "ui/experimenter     | ui/presenter"
   "ui/participant      | ui/presenter"
   "ui/window           | *"

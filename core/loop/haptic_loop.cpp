@@ -36,12 +36,12 @@ void sleepUntil(std::int64_t nanoseconds) noexcept {
 }  // namespace
 
 HapticCycle::HapticCycle(const tick::TickModel& model, HapticDevice& device, RecordRing& ring, bool show_proxy,
-                         RecordRing* screen)
-    : HapticCycle(std::array{tick::SceneTurn{&model}}, device, ring, show_proxy, screen) {}
+                         std::span<ScreenRing* const> screens)
+    : HapticCycle(std::array{tick::SceneTurn{&model}}, device, ring, show_proxy, screens) {}
 
 HapticCycle::HapticCycle(std::span<const tick::SceneTurn> turns, HapticDevice& device, RecordRing& ring,
-                         bool show_proxy, RecordRing* screen)
-    : scenes_(turns), device_(device), ring_(ring), show_proxy_(show_proxy), screen_(screen) {}
+                         bool show_proxy, std::span<ScreenRing* const> screens)
+    : scenes_(turns), device_(device), ring_(ring), show_proxy_(show_proxy), screens_(screens) {}
 
 void HapticCycle::run(std::uint32_t missed) noexcept {
     const std::int64_t tick = scenes_.tick();
@@ -56,7 +56,7 @@ void HapticCycle::run(std::uint32_t missed) noexcept {
     TickRecord record = tick::makeRecord(tick, reading, output);
     record.duration_ns = duration;
     ring_.tryPush(record);
-    if (screen_ != nullptr) screen_->tryPush(record);
+    for (ScreenRing* screen : screens_) screen->tryPush({record, begin});
 
     if (tick == 0 || tick * kDisplayHz / 1000 != (tick - 1) * kDisplayHz / 1000) {
         const bool running = (output.frame.status & kEngaged) != 0;

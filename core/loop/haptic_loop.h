@@ -18,13 +18,13 @@ inline constexpr std::int64_t kDisplayHz = 60;
 /// The haptic cycle, whatever clock drives it: read the device, compute the tick, command the wrench, record.
 class HapticCycle {
 public:
-    /// `show_proxy`: the display draws the proxy, otherwise the device's pose. `screen` gets every record too; what it
-    /// drops matters to nobody. Borrows everything.
+    /// `show_proxy`: the display draws the proxy, otherwise the device's pose. `screens` get every tick too; what
+    /// they drop matters to nobody. Borrows everything.
     HapticCycle(const tick::TickModel& model, HapticDevice& device, RecordRing& ring, bool show_proxy,
-                RecordRing* screen = nullptr);
+                std::span<ScreenRing* const> screens = {});
     /// The same for scenes that are rendered one after the other.
     HapticCycle(std::span<const tick::SceneTurn> turns, HapticDevice& device, RecordRing& ring, bool show_proxy,
-                RecordRing* screen = nullptr);
+                std::span<ScreenRing* const> screens = {});
 
     /// One cycle. `missed`: cycles that were missed since the previous one, because it ended after its deadline; for
     /// the record, which else could not tell how much time lies between two ticks. rt-safe.
@@ -44,7 +44,7 @@ private:
     HapticDevice& device_;
     RecordRing& ring_;
     bool show_proxy_;
-    RecordRing* screen_;
+    std::span<ScreenRing* const> screens_;
     TimingHistogram timing_;
 };
 

@@ -46,6 +46,9 @@ public:
 
     void follow(const TickRecord& record);
 
+    /// Is a stimulus on, as of the newest record?
+    bool isOn() const { return current_ && !all_[*current_].off; }
+
     /// What has come of the task, by time, for a trial from `start` to `end`; without `start` it never began. A
     /// stimulus of the trial counts if it was answered before the end or could have been; what else there was is
     /// NotScored.

@@ -1,17 +1,37 @@
 #include "ui/app/live_session.h"
 
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <utility>
 
 #include "devices/mouse/mouse_device.h"
 #include "study/protocol/scene_parts.h"
+#include "study/session/secondary.h"
 
 namespace passung::app {
+
+namespace {
+
+sound::SoundPlan soundOf(const protocol::Condition& condition, std::uint64_t seed) {
+    const protocol::Cues& cues = condition.cues;
+    sound::SoundPlan plan;
+    plan.cues = {.sound = cues.audio,
+                 .full_speed = cues.full_speed,
+                 .sound_decay = cues.sound_decay,
+                 .masking = cues.masking_noise};
+    if (condition.secondary.stimulus == protocol::Stimulus::Audio)
+        plan.stimulus = session::detectionSettings(condition.secondary);
+    plan.seed = seed;
+    return plan;
+}
+
+}  // namespace
 
 LiveSession::LiveSession(protocol::StudyPlan plan, LiveOptions options)
     : plan_(std::move(plan)), options_(std::move(options)) {
     plan_.questionnaires.clear();
+    if (options_.sound != nullptr) screens_.push_back(&options_.sound->ring());
     thread_ = std::thread([this] { main(); });
 }
 
@@ -45,7 +65,8 @@ void LiveSession::main() {
     } catch (const std::exception& thrown) {
         errors.push_back({.message = thrown.what()});
     }
-    over();  // also of a session that an exception ended
+    if (cancelled_) errors.clear();  // that is what was asked for
+    over();                          // also of a session that an exception ended
     tell(presenter::RunOver{whole, errors});
 }
 
@@ -92,10 +113,24 @@ void LiveSession::begins(session::Apparatus& apparatus, const std::string& parti
     apparatus_ = &apparatus;
 }
 
-void LiveSession::prepares(const protocol::Condition& condition, std::int64_t trial_index) {
-    presenter::AttemptPrepared prepared{trial_index, condition.name, nullptr};
+void LiveSession::prepares(const protocol::Condition& condition, std::int64_t trial_index, std::uint64_t seed) {
+    const sound::SoundPlan heard = soundOf(condition, seed);
+    if (options_.sound != nullptr) options_.sound->plan(heard);
+    shown_ = {};
+    shown_.drawn_pose = condition.shown == protocol::ShownPose::Proxy ? "proxy" : "device";
+    if (heard.any()) shown_.sound = "silent";
+    presenter::AttemptPrepared prepared{trial_index, condition.name, nullptr, heard.any()};
     if (auto scene = artist_.draw(condition)) prepared.scene = *scene;  // else the session fails at the same mesh
     tell(std::move(prepared));
+}
+
+bool LiveSession::builds(double share) {
+    tell(presenter::BuildProgress{share});
+    const std::lock_guard lock(mutex_);
+    cancelled_ = ends_.load() || std::any_of(commands_.begin(), commands_.end(), [](const session::Command& command) {
+                     return command.kind == session::CommandKind::Abort;
+                 });
+    return !cancelled_;
 }
 
 void LiveSession::look(session::Session& session) {
@@ -118,7 +153,26 @@ void LiveSession::look(session::Session& session) {
     tell(std::move(glance));
 }
 
+session::Presentation LiveSession::presented(std::int64_t since_ns) {
+    session::Presentation shown = shown_;
+    const auto times = options_.frames == nullptr ? std::nullopt : options_.frames->timesSince(since_ns);
+    if (times) {
+        shown.frames = times->age.count();
+        shown.frame_age_median_us = times->age.quantileMicroseconds(0.5);
+        shown.frame_age_p99_us = times->age.quantileMicroseconds(0.99);
+        shown.frame_age_max_us = times->age.maxMicroseconds();
+    }
+    const auto output = options_.sound == nullptr ? std::nullopt : options_.sound->output();
+    if (shown.sound == "silent" && output) {
+        shown.sound = "played";
+        shown.sound_output = output->name;
+        shown.sound_delay_us = output->delay_us;
+    }
+    return shown;
+}
+
 void LiveSession::over() {
+    if (options_.sound != nullptr) options_.sound->plan({});
     const std::lock_guard lock(mutex_);
     apparatus_ = nullptr;
 }

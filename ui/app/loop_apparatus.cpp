@@ -7,6 +7,7 @@
 #include "devices/simulated/resting_device.h"
 #include "devices/simulated/simulated_device.h"
 #include "study/session/secondary.h"
+#include "ui/app/frame_clock.h"
 #include "ui/app/responding_device.h"
 #include "ui/app/simulated_hand.h"
 #include "ui/app/visible_task.h"
@@ -42,11 +43,11 @@ std::vector<session::StageNote> stageNotes(const tick::TickModel& model) {
 }
 
 LoopApparatus::Run::Run(BuiltScenes built, std::unique_ptr<loop::HapticDevice> held, bool show_proxy,
-                        loop::RecordRing* screen)
+                        std::span<loop::ScreenRing* const> screens)
     : scenes(std::move(built)),
       device(std::move(held)),
       ring(kRingRecords),
-      cycle(scenes.turns, *device, ring, show_proxy, screen) {}
+      cycle(scenes.turns, *device, ring, show_proxy, screens) {}
 
 LoopApparatus::LoopApparatus(const simulated::DeviceParams& device, const person::SimulatedPerson& person, Clock clock,
                              Performer* performer)
@@ -76,14 +77,14 @@ Result<std::vector<session::StageNote>> LoopApparatus::prepare(const protocol::C
     const simulated::DeviceParams* preset = simulated::findPreset(condition.device);
     if (preset == nullptr)
         return Error{.message = "no such device preset", .key = "device.preset", .value = condition.device};
-    if (performer_ != nullptr) performer_->prepares(condition, trials_before);
-    auto scenes = buildScenes(session::renderedScenes(condition, seed), parts_);
+    if (performer_ != nullptr) performer_->prepares(condition, trials_before, seed);
+    auto scenes = build(session::renderedScenes(condition, seed));
     if (!scenes) return scenes.errors();
     auto device = makeDevice(*preset, condition, seed, trials_before);
     description_ = device->description();
     auto run =
         std::make_unique<Run>(std::move(*scenes), std::move(device), condition.shown == protocol::ShownPose::Proxy,
-                              performer_ == nullptr ? nullptr : performer_->screen());
+                              performer_ == nullptr ? std::span<loop::ScreenRing* const>() : performer_->screens());
     {
         const std::lock_guard lock(halt_mutex_);
         run_.swap(run);
@@ -94,6 +95,18 @@ Result<std::vector<session::StageNote>> LoopApparatus::prepare(const protocol::C
             if (std::none_of(notes.begin(), notes.end(), [&](const auto& known) { return known.name == note.name; }))
                 notes.push_back(std::move(note));
     return notes;
+}
+
+Result<BuiltScenes> LoopApparatus::build(const std::vector<session::RenderedScene>& scenes) {
+    std::size_t pieces = 0;
+    for (const session::RenderedScene& scene : scenes)
+        pieces += scene.spec.parts.size() * (scene.spec.contact.two_way ? 2 : 1);
+    watched_.begin(pieces, [this](double share) { return performer_ == nullptr || performer_->builds(share); });
+    try {
+        return buildScenes(scenes, parts_);
+    } catch (const BuildCancelled& cancelled) {
+        return Error{.message = cancelled.what()};
+    }
 }
 
 std::unique_ptr<loop::HapticDevice> LoopApparatus::makeDevice(const simulated::DeviceParams& preset,
@@ -122,6 +135,7 @@ void LoopApparatus::wait(std::int64_t ticks) {
 }
 
 void LoopApparatus::start() {
+    started_ns_ = steadyNanoseconds();
     const std::lock_guard lock(halt_mutex_);
     if (clock_ == Clock::RealTime && !halted_)
         run_->thread = std::make_unique<loop::RealTimeThread>(run_->cycle, performer_ == nullptr);
@@ -170,6 +184,7 @@ session::LoopHealth LoopApparatus::stop() {
     health.histogram = timing.octaves();
     health.state_hash = run_->cycle.stateHash();
     health.contact_energy = contactEnergy(run_->scenes.scenes, run_->cycle.pairs());
+    if (performer_ != nullptr) health.presentation = performer_->presented(started_ns_);
     return health;
 }
 

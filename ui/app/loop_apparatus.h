@@ -14,6 +14,7 @@
 #include "ui/app/disk_store.h"
 #include "ui/app/performer.h"
 #include "ui/app/simulated_perception.h"
+#include "ui/app/watched_store.h"
 
 namespace passung::app {
 
@@ -50,9 +51,11 @@ private:
         loop::HapticCycle cycle;
         std::unique_ptr<loop::RealTimeThread> thread;
 
-        Run(BuiltScenes built, std::unique_ptr<loop::HapticDevice> held, bool show_proxy, loop::RecordRing* screen);
+        Run(BuiltScenes built, std::unique_ptr<loop::HapticDevice> held, bool show_proxy,
+            std::span<loop::ScreenRing* const> screens);
     };
 
+    Result<BuiltScenes> build(const std::vector<session::RenderedScene>& scenes);
     simulated::VisibleTask taskOf(const protocol::Condition& condition, std::uint64_t seed,
                                   std::int64_t trials_before) const;
     std::unique_ptr<loop::HapticDevice> makeDevice(const simulated::DeviceParams& preset,
@@ -65,9 +68,11 @@ private:
     Clock clock_;
     Performer* performer_;
     std::unique_ptr<DiskStore> store_ = openDiskStore();
-    model::PartCache parts_{store_.get()};
+    WatchedStore watched_{store_.get()};
+    model::PartCache parts_{&watched_};
     std::mutex halt_mutex_;  // run_ and its thread come and go, halted_ changes
     bool halted_ = false;
+    std::int64_t started_ns_ = 0;  // on the steady clock, of the running attempt's loop
     std::unique_ptr<Run> run_;
 };
 

@@ -27,16 +27,20 @@ public:
     virtual std::unique_ptr<loop::HapticDevice> device(const simulated::DeviceParams& preset,
                                                        const protocol::Condition& condition) = 0;
     virtual DeviceDescription describe(const simulated::DeviceParams& preset) const = 0;
-    /// Gets every tick's record; null: no screen. Emptied by whoever draws.
-    virtual loop::RecordRing* screen() = 0;
+    /// Get every tick, and are emptied by whoever draws or plays.
+    virtual std::span<loop::ScreenRing* const> screens() = 0;
+    /// What windows have given the participant of the attempt whose loop began then, on the steady clock.
+    virtual session::Presentation presented(std::int64_t since_ns) = 0;
     /// Who answers questionnaires; may be null if the plan has none.
     virtual session::QuestionnaireSource* answers() = 0;
 
     /// A session begins: `apparatus` may be halted at any time until over().
     virtual void begins(session::Apparatus& apparatus, const std::string& participant,
                         std::span<const design::PlannedTrial> trials) = 0;
-    /// An attempt at this trial is about to begin, now its scene is built.
-    virtual void prepares(const protocol::Condition& condition, std::int64_t trial_index) = 0;
+    /// An attempt at this trial is about to begin, now its scene is built. `seed`: of the attempt.
+    virtual void prepares(const protocol::Condition& condition, std::int64_t trial_index, std::uint64_t seed) = 0;
+    /// Fields and shells of that scene are built; this share of them is done. False: nobody waits for it.
+    virtual bool builds(double share) = 0;
     /// Between two steps of the session: to look at it and to give commands.
     virtual void look(session::Session& session) = 0;
     virtual void over() = 0;

@@ -9,12 +9,12 @@ T.Button {
     property string kind: "plain" // "main", "stop"
     property bool tall: false
     enabled: why === ""
-    implicitHeight: tall ? 52 : 38
+    implicitHeight: look.scale * (tall ? 52 : 38)
     implicitWidth: Math.max(96, row.implicitWidth + 32)
     focusPolicy: Qt.StrongFocus
     hoverEnabled: true
     font.family: look.family
-    font.pixelSize: tall ? 17 : 14
+    font.pixelSize: look.scale * (tall ? 17 : 14)
     font.weight: kind === "plain" ? Font.Medium : Font.DemiBold
     Accessible.role: Accessible.Button
     Accessible.name: text
@@ -58,7 +58,7 @@ T.Button {
                 visible: button.keyName !== ""
                 text: button.keyName
                 font.family: look.family
-                font.pixelSize: 11
+                font.pixelSize: look.scale * 11
                 color: button.ink
                 opacity: button.enabled ? 0.62 : 0.35
             }

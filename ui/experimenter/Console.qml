@@ -11,7 +11,6 @@ Window {
     height: 900
     minimumWidth: 1180
     minimumHeight: 760
-    visible: true
     color: look.ground
     property int page: 0
     onClosing: Qt.quit()

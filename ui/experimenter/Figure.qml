@@ -9,20 +9,20 @@ Column {
     Say {
         text: parent.name
         quiet: true
-        font.pixelSize: 12
+        font.pixelSize: look.scale * 12
     }
     Row {
         spacing: 5
         Say {
             text: parent.parent.value
             font.family: look.digits
-            font.pixelSize: 19
+            font.pixelSize: look.scale * 19
         }
         Say {
             anchors.baseline: parent.children[0].baseline
             text: parent.parent.unit
             quiet: true
-            font.pixelSize: 12
+            font.pixelSize: look.scale * 12
         }
     }
 }

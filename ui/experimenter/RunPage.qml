@@ -16,7 +16,7 @@ ColumnLayout {
     // The state, to be read from across the room.
     Rectangle {
         Layout.fillWidth: true
-        implicitHeight: 92
+        implicitHeight: look.scale * 92
         radius: 10
         color: look.panel
         border.color: look.edge
@@ -27,49 +27,57 @@ ColumnLayout {
             color: page.toneColor
         }
         Say {
-            objectName: "stateLine"
             id: stateLine
+            objectName: "stateLine"
             anchors.left: parent.left
             anchors.leftMargin: 32
-            anchors.right: clock.left
+            anchors.right: aside.left
             anchors.rightMargin: 20
             y: 14
             text: run.line
-            font.pixelSize: 30
+            font.pixelSize: look.scale * 30
+            fontSizeMode: Text.HorizontalFit
+            minimumPixelSize: 15
             font.weight: Font.DemiBold
         }
         Say {
             anchors.left: stateLine.left
-            anchors.right: clock.left
+            anchors.right: aside.left
             anchors.top: stateLine.bottom
             anchors.topMargin: 2
             quiet: true
             text: [run.detail, run.participant, run.study].filter(s => s !== "").join("  ·  ")
         }
-        ActionButton {
-            objectName: "openDisplay"
-            anchors.right: clock.visible ? clock.left : parent.right
-            anchors.rightMargin: 24
-            anchors.verticalCenter: parent.verticalCenter
-            visible: run.displayGone
-            kind: "main"
-            text: qsTr("Open the participant's window")
-            onClicked: run.openDisplay()
-        }
-        Say {
-            id: clock
+        Row {
+            id: aside
             anchors.right: parent.right
             anchors.rightMargin: 24
             anchors.verticalCenter: parent.verticalCenter
-            visible: run.running
-            text: run.seconds.toFixed(1) + " s"
-            font.family: look.digits
-            font.pixelSize: 34
+            spacing: 24
+            ActionButton {
+                objectName: "cancelBuild"
+                visible: run.built >= 0
+                text: qsTr("Cancel")
+                onClicked: run.command("abort")
+            }
+            ActionButton {
+                objectName: "openDisplay"
+                visible: run.displayGone
+                kind: "main"
+                text: qsTr("Open the participant's window")
+                onClicked: run.openDisplay()
+            }
+            Say {
+                visible: run.running && run.built < 0 && !run.displayGone
+                text: run.seconds.toFixed(1) + " s"
+                font.family: look.digits
+                font.pixelSize: look.scale * 34
+            }
         }
         Rectangle {
             anchors.bottom: parent.bottom
             height: 4
-            width: parent.width * run.share
+            width: parent.width * (run.built >= 0 ? run.built : run.share)
             color: page.toneColor
         }
     }
@@ -82,7 +90,7 @@ ColumnLayout {
         Panel {
             title: qsTr("TRIALS")
             extra: run.known ? Math.round(100 * run.share) + " %" : ""
-            Layout.preferredWidth: 330
+            Layout.preferredWidth: look.scale * 330
             Layout.fillHeight: true
             ListView {
                 id: trials
@@ -100,7 +108,7 @@ ColumnLayout {
                     id: trial
                     required property var modelData
                     width: trials.width
-                    height: 42
+                    height: look.scale * 42
                     radius: 6
                     color: modelData.tone === "go" ? look.raised : "transparent"
                     readonly property color tint: modelData.tone === "good" ? look.good : modelData.tone === "bad" ? look.bad : modelData.tone === "wait" ? look.care : modelData.tone === "go" ? look.accent : look.dim
@@ -114,7 +122,7 @@ ColumnLayout {
                         text: trial.modelData.number
                         quiet: true
                         font.family: look.digits
-                        font.pixelSize: 13
+                        font.pixelSize: look.scale * 13
                     }
                     Say {
                         x: 38
@@ -123,7 +131,7 @@ ColumnLayout {
                         horizontalAlignment: Text.AlignHCenter
                         text: trial.modelData.sign
                         color: trial.tint
-                        font.pixelSize: 15
+                        font.pixelSize: look.scale * 15
                     }
                     Column {
                         x: 66
@@ -132,12 +140,12 @@ ColumnLayout {
                         Say {
                             width: parent.width
                             text: trial.modelData.condition
-                            font.pixelSize: 13
+                            font.pixelSize: look.scale * 13
                         }
                         Say {
                             width: parent.width
                             quiet: true
-                            font.pixelSize: 11
+                            font.pixelSize: look.scale * 11
                             text: trial.modelData.phase + " · " + trial.modelData.word + (trial.modelData.attempts > 1 ? " · " + qsTr("Attempts: %1").arg(trial.modelData.attempts) : "")
                         }
                     }
@@ -148,7 +156,7 @@ ColumnLayout {
                         anchors.verticalCenter: parent.verticalCenter
                         quiet: true
                         font.family: look.digits
-                        font.pixelSize: 13
+                        font.pixelSize: look.scale * 13
                         text: trial.modelData.seconds >= 0 ? trial.modelData.seconds.toFixed(1) + " s" : ""
                     }
                 }
@@ -181,7 +189,7 @@ ColumnLayout {
                     y: 14
                     text: qsTr("PARTICIPANT'S VIEW")
                     quiet: true
-                    font.pixelSize: 12
+                    font.pixelSize: look.scale * 12
                     font.weight: Font.DemiBold
                     font.letterSpacing: 0.4
                 }
@@ -189,7 +197,7 @@ ColumnLayout {
             Panel {
                 title: qsTr("LAST TEN SECONDS")
                 Layout.fillWidth: true
-                Layout.preferredHeight: 240
+                Layout.preferredHeight: look.scale * 240
                 RowLayout {
                     anchors.fill: parent
                     spacing: 24
@@ -222,145 +230,142 @@ ColumnLayout {
         }
 
         ColumnLayout {
-            Layout.preferredWidth: 330
-            Layout.maximumWidth: 330
+            Layout.preferredWidth: look.scale * 330
+            Layout.maximumWidth: look.scale * 330
             Layout.fillHeight: true
             spacing: 16
             Panel {
                 title: qsTr("SESSION")
                 Layout.fillWidth: true
-                Layout.preferredHeight: 284
-                GridLayout {
+                Layout.preferredHeight: fitting
+                ColumnLayout {
                     anchors.left: parent.left
                     anchors.right: parent.right
-                    columns: 2
-                    rowSpacing: 8
-                    columnSpacing: 8
-                    ActionButton {
-                        objectName: "start"
+                    spacing: 8
+                    GridLayout {
                         Layout.fillWidth: true
-                        text: qsTr("Start")
-                        keyName: "F5"
-                        why: run.commands.start
-                        onClicked: run.command("start")
-                    }
-                    ActionButton {
-                        objectName: "pause"
-                        Layout.fillWidth: true
-                        readonly property bool paused: run.commands.continue === ""
-                        kind: paused ? "main" : "plain"
-                        text: paused ? qsTr("Continue") : qsTr("Pause")
-                        keyName: qsTr("Ctrl+P")
-                        why: paused ? "" : run.commands.pause
-                        onClicked: run.command(paused ? "continue" : "pause")
-                    }
-                    ActionButton {
-                        objectName: "repeat"
-                        Layout.fillWidth: true
-                        text: qsTr("Repeat")
-                        keyName: qsTr("Ctrl+R")
-                        why: run.commands.repeat
-                        onClicked: run.command("repeat", note.take())
-                    }
-                    ActionButton {
-                        objectName: "skip"
-                        Layout.fillWidth: true
-                        text: qsTr("Leave out")
-                        keyName: qsTr("Ctrl+K")
-                        why: run.commands.skip
-                        onClicked: run.command("skip", note.take())
-                    }
-                }
-                T.TextField {
-                    id: note
-                    objectName: "noteText"
-                    anchors.left: parent.left
-                    anchors.right: parent.right
-                    y: 100
-                    height: 38
-                    leftPadding: 12
-                    rightPadding: 12
-                    verticalAlignment: TextInput.AlignVCenter
-                    color: look.text
-                    font.family: look.family
-                    font.pixelSize: 14
-                    selectByMouse: true
-                    placeholderText: qsTr("Note or reason")
-                    Accessible.role: Accessible.EditableText
-                    Accessible.name: placeholderText
-                    function take() {
-                        const words = text;
-                        text = "";
-                        return words;
-                    }
-                    Keys.onReturnPressed: noteButton.clicked()
-                    background: Rectangle {
-                        radius: 7
-                        color: look.ground
-                        border.width: note.activeFocus ? 2 : 1
-                        border.color: note.activeFocus ? look.accent : look.edge
-                        Say {
-                            anchors.verticalCenter: parent.verticalCenter
-                            x: 12
-                            visible: note.text === ""
-                            text: note.placeholderText
-                            quiet: true
+                        columns: 2
+                        rowSpacing: 8
+                        columnSpacing: 8
+                        ActionButton {
+                            objectName: "start"
+                            Layout.fillWidth: true
+                            text: qsTr("Start")
+                            keyName: "F5"
+                            why: run.commands.start
+                            onClicked: run.command("start")
+                        }
+                        ActionButton {
+                            objectName: "pause"
+                            Layout.fillWidth: true
+                            readonly property bool paused: run.commands.continue === ""
+                            kind: paused ? "main" : "plain"
+                            text: paused ? qsTr("Continue") : qsTr("Pause")
+                            keyName: qsTr("Ctrl+P")
+                            why: paused ? "" : run.commands.pause
+                            onClicked: run.command(paused ? "continue" : "pause")
+                        }
+                        ActionButton {
+                            objectName: "repeat"
+                            Layout.fillWidth: true
+                            text: qsTr("Repeat")
+                            keyName: qsTr("Ctrl+R")
+                            why: run.commands.repeat
+                            onClicked: run.command("repeat", note.take())
+                        }
+                        ActionButton {
+                            objectName: "skip"
+                            Layout.fillWidth: true
+                            text: qsTr("Leave out")
+                            keyName: qsTr("Ctrl+K")
+                            why: run.commands.skip
+                            onClicked: run.command("skip", note.take())
                         }
                     }
-                }
-                GridLayout {
-                    anchors.left: parent.left
-                    anchors.right: parent.right
-                    y: 146
-                    columns: 2
-                    rowSpacing: 8
-                    columnSpacing: 8
-                    ActionButton {
-                        id: noteButton
-                        objectName: "note"
+                    T.TextField {
+                        id: note
+                        objectName: "noteText"
                         Layout.fillWidth: true
-                        Layout.preferredWidth: 1
-                        text: qsTr("Keep note")
-                        why: run.commands.note !== "" ? run.commands.note : note.text.trim() === "" ? qsTr("Write it first.") : ""
-                        onClicked: if (enabled)
-                            run.command("note", note.take())
-                    }
-                    ActionButton {
-                        objectName: "invalidate"
-                        Layout.fillWidth: true
-                        Layout.preferredWidth: 1
-                        text: qsTr("Does not count")
-                        why: run.commands.invalidate !== "" ? run.commands.invalidate : note.text.trim() === "" ? qsTr("Write the reason first.") : ""
-                        onClicked: run.command("invalidate", note.take())
-                    }
-                    ActionButton {
-                        objectName: "abort"
-                        Layout.columnSpan: 2
-                        Layout.fillWidth: true
-                        property bool armed: false
-                        text: armed ? qsTr("Really end the session?") : qsTr("End the session")
-                        why: run.commands.abort
-                        onClicked: {
-                            if (armed)
-                                run.command("abort", note.take());
-                            armed = !armed;
+                        implicitHeight: look.scale * 38
+                        leftPadding: 12
+                        rightPadding: 12
+                        verticalAlignment: TextInput.AlignVCenter
+                        color: look.text
+                        font.family: look.family
+                        font.pixelSize: look.scale * 14
+                        selectByMouse: true
+                        placeholderText: qsTr("Note or reason")
+                        Accessible.role: Accessible.EditableText
+                        Accessible.name: placeholderText
+                        function take() {
+                            const words = text;
+                            text = "";
+                            return words;
                         }
-                        onActiveFocusChanged: if (!activeFocus)
-                            armed = false
+                        Keys.onReturnPressed: noteButton.clicked()
+                        background: Rectangle {
+                            radius: 7
+                            color: look.ground
+                            border.width: note.activeFocus ? 2 : 1
+                            border.color: note.activeFocus ? look.accent : look.edge
+                            Say {
+                                anchors.verticalCenter: parent.verticalCenter
+                                x: 12
+                                visible: note.text === ""
+                                text: note.placeholderText
+                                quiet: true
+                            }
+                        }
+                    }
+                    GridLayout {
+                        Layout.fillWidth: true
+                        columns: 2
+                        rowSpacing: 8
+                        columnSpacing: 8
+                        ActionButton {
+                            id: noteButton
+                            objectName: "note"
+                            Layout.fillWidth: true
+                            Layout.preferredWidth: 1
+                            text: qsTr("Keep note")
+                            why: run.commands.note !== "" ? run.commands.note : note.text.trim() === "" ? qsTr("Write it first.") : ""
+                            onClicked: if (enabled)
+                                run.command("note", note.take())
+                        }
+                        ActionButton {
+                            objectName: "invalidate"
+                            Layout.fillWidth: true
+                            Layout.preferredWidth: 1
+                            text: qsTr("Does not count")
+                            why: run.commands.invalidate !== "" ? run.commands.invalidate : note.text.trim() === "" ? qsTr("Write the reason first.") : ""
+                            onClicked: run.command("invalidate", note.take())
+                        }
+                        ActionButton {
+                            objectName: "abort"
+                            Layout.columnSpan: 2
+                            Layout.fillWidth: true
+                            property bool armed: false
+                            text: armed ? qsTr("Really end the session?") : qsTr("End the session")
+                            why: run.commands.abort
+                            onClicked: {
+                                if (armed)
+                                    run.command("abort", note.take());
+                                armed = !armed;
+                            }
+                            onActiveFocusChanged: if (!activeFocus)
+                                armed = false
+                        }
                     }
                 }
             }
             Panel {
                 title: qsTr("HAPTIC LOOP")
                 Layout.fillWidth: true
-                Layout.preferredHeight: 172
-                Lamp {
-                    anchors.right: parent.right
-                    y: -24
-                    tone: run.lamp
-                }
+                Layout.preferredHeight: fitting
+                lamp: run.lamp
                 GridLayout {
-                    anchors.fill: parent
+                    anchors.left: parent.left
+                    anchors.right: parent.right
                     columns: 2
                     rowSpacing: 10
                     columnSpacing: 12
@@ -390,6 +395,14 @@ ColumnLayout {
                         unit: "µs"
                     }
                 }
+            }
+            Say {
+                objectName: "sound"
+                Layout.fillWidth: true
+                visible: run.sound !== ""
+                wrapMode: Text.WordWrap
+                text: run.sound
+                quiet: true
             }
             Say {
                 objectName: "answer"

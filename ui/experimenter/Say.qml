@@ -5,7 +5,7 @@ Text {
     property bool quiet: false
     color: quiet ? look.dim : look.text
     font.family: look.family
-    font.pixelSize: 14
+    font.pixelSize: look.scale * 14
     elide: Text.ElideRight
     Accessible.role: Accessible.StaticText
     Accessible.name: text

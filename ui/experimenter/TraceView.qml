@@ -11,21 +11,24 @@ Item {
     property alias trace: item
     Say {
         id: label
+        width: parent.width - number.width - 8
+        wrapMode: Text.WordWrap
         text: view.name
         quiet: true
-        font.pixelSize: 12
+        font.pixelSize: look.scale * 12
     }
     Say {
+        id: number
         anchors.right: parent.right
         text: view.value.toFixed(2) + " " + view.unit
         color: view.ink
         font.family: look.digits
-        font.pixelSize: 15
+        font.pixelSize: look.scale * 15
     }
     Item {
         id: field
         anchors.fill: parent
-        anchors.topMargin: 24
+        anchors.topMargin: Math.max(label.height, number.height) + 6
         Repeater { // lines at whole, half and none
             model: 3
             Rectangle {
@@ -48,7 +51,7 @@ Item {
             y: 2
             text: item.full
             quiet: true
-            font.pixelSize: 10
+            font.pixelSize: look.scale * 10
             font.family: look.digits
         }
     }

@@ -11,7 +11,7 @@ Window {
     minimumWidth: 640
     minimumHeight: 400
     color: look.ground
-    visible: screenView.shown
+    visibility: !screenView.shown ? Window.Hidden : screenView.fullScreen ? Window.FullScreen : Window.Windowed
     onClosing: screenView.closed()
     onVisibleChanged: if (visible)
         requestActivate()
@@ -95,7 +95,7 @@ Window {
                 text: screenView.line
                 color: look.text
                 font.family: look.family
-                font.pixelSize: screenView.drawn ? 22 : 34
+                font.pixelSize: look.scale * (screenView.drawn ? 22 : 34)
                 font.weight: Font.DemiBold
                 Accessible.role: Accessible.StaticText
                 Accessible.name: text
@@ -107,7 +107,7 @@ Window {
                 text: screenView.hint
                 color: look.dim
                 font.family: look.family
-                font.pixelSize: 15
+                font.pixelSize: look.scale * 15
             }
         }
     }

@@ -34,8 +34,8 @@ View3D {
         rotation: view.scene.lightRotation
         brightness: 1.0
         ambientColor: Qt.rgba(0.34, 0.36, 0.4, 1.0)
-        castsShadow: view.shadows && !view.scene.heavy
-        shadowMapQuality: Light.ShadowMapQualityHigh
+        castsShadow: view.shadows
+        shadowMapQuality: view.scene.software ? Light.ShadowMapQualityMedium : Light.ShadowMapQualityHigh
         shadowFactor: 55
         shadowMapFar: 10 * view.scene.radius
     }
@@ -63,6 +63,7 @@ View3D {
             geometry: modelData.geometry
             position: modelData.held ? view.scene.heldPosition : modelData.position
             rotation: modelData.held ? view.scene.heldRotation : modelData.rotation
+            castsShadows: modelData.casts
             materials: PrincipledMaterial {
                 baseColor: modelData.held ? view.scene.heldColor(view.palette3d.held) : view.palette3d.rest
                 roughness: modelData.held ? 0.38 : 0.5

@@ -75,6 +75,7 @@ void Run::take(const News& news) {
             using What = std::decay_t<decltype(what)>;
             if constexpr (std::is_same_v<What, SessionBegun>) begin(what);
             if constexpr (std::is_same_v<What, AttemptPrepared>) prepare(what);
+            if constexpr (std::is_same_v<What, BuildProgress>) view_.built = what.share;
             if constexpr (std::is_same_v<What, SessionGlance>) glance(what);
             if constexpr (std::is_same_v<What, AttemptEnded>) end(what);
             if constexpr (std::is_same_v<What, CommandAnswered>) answer(what);
@@ -104,6 +105,7 @@ void Run::prepare(const AttemptPrepared& prepared) {
     view_.condition = prepared.condition;
     view_.trial_s = 0.0;
     if (prepared.scene) scene_ = prepared.scene;
+    view_.sound = prepared.sound;
     last_.reset();
     time_ = 0.0;
     started_ = -1.0;
@@ -114,6 +116,7 @@ void Run::prepare(const AttemptPrepared& prepared) {
 }
 
 void Run::glance(const SessionGlance& glance) {
+    view_.built.reset();
     switch (glance.state) {
         case SessionState::Ready:
             view_.state = RunState::Ready;
@@ -173,6 +176,7 @@ void Run::answer(const CommandAnswered& answered) {
 }
 
 void Run::finish(const RunOver& over) {
+    view_.built.reset();
     view_.state = over.complete ? RunState::Complete : RunState::Incomplete;
     view_.number = 0;
     view_.pauses_after = false;

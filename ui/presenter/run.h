@@ -72,6 +72,8 @@ struct RunView {
     std::optional<CommandAnswered> answered;  // the last command
     std::string failure;                      // why the session failed
     Display display = Display::Shown;
+    std::optional<double> built;  // of the scene that is being built: the share that is done
+    bool sound = false;           // the trial has something to be heard
 
     Why why(session::CommandKind kind) const;
     bool may(session::CommandKind kind) const { return why(kind) == Why::Possible; }

@@ -29,6 +29,12 @@ struct AttemptPrepared {
     std::int64_t trial_index = 0;
     std::string condition;
     std::shared_ptr<const DrawnScene> scene;  // shared_ptr: windows draw it as long as they like
+    bool sound = false;                       // there is something to be heard
+};
+
+/// Models of that scene's parts are built, which takes long the first time: this share of them is done.
+struct BuildProgress {
+    double share = 0.0;
 };
 
 /// How things stand; told whenever something of it has changed.
@@ -60,6 +66,7 @@ struct RunOver {
     Errors errors;
 };
 
-using News = std::variant<SessionBegun, AttemptPrepared, SessionGlance, AttemptEnded, CommandAnswered, RunOver>;
+using News =
+    std::variant<SessionBegun, AttemptPrepared, BuildProgress, SessionGlance, AttemptEnded, CommandAnswered, RunOver>;
 
 }  // namespace passung::presenter

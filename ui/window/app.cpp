@@ -1,9 +1,11 @@
 #include "ui/window/app.h"
 
 #include <QtCore/QCoreApplication>
+#include <QtGui/QGuiApplication>
 #include <QtGui/QOffscreenSurface>
 #include <QtGui/QOpenGLContext>
 #include <QtGui/QOpenGLFunctions>
+#include <QtGui/QScreen>
 #include <QtQml/QQmlContext>
 #include <QtQuick/QSGRendererInterface>
 #include <stdexcept>
@@ -34,7 +36,9 @@ App::App(const AppOptions& options)
       studies_(desk_, options.protocols),
       run_(desk_),
       screen_(desk_, 0),
-      mirror_(desk_, kMirrorEvery) {
+      mirror_(desk_, kMirrorEvery),
+      places_(QString::fromStdString(options.data) + "/windows.ini") {
+    look_.setScale(options.text_scale);
     setLanguage(options.language);
     qmlRegisterType<experimenter::TraceItem>("Passung", 1, 0, "TraceItem");
     QQmlContext& context = *engine_.rootContext();
@@ -56,18 +60,50 @@ App::App(const AppOptions& options)
     }
     if (experimenter_ == nullptr || participant_ == nullptr) throw std::runtime_error("the windows cannot be made");
     watchGraphics();
+    places_.restore("experimenter", *experimenter_);
+    places_.restore("participant", *participant_);
+    experimenter_->show();
+    connect(&desk_, &Desk::opened, this, &App::placeParticipant);
+    for (QQuickWindow* window : {experimenter_, participant_})
+        for (const auto moved :
+             {&QWindow::xChanged, &QWindow::yChanged, &QWindow::widthChanged, &QWindow::heightChanged})
+            connect(window, moved, this, &App::keepPlaces);
 }
 
-/// Queued: some of them come from the thread that draws.
+/// On a screen of their own, if there is one, the participant sees nothing else.
+void App::placeParticipant() {
+    const auto screens = QGuiApplication::screens();
+    QList<QRect> areas;
+    for (const QScreen* screen : screens) areas.append(screen->geometry());
+    const auto own = participantScreen(areas, experimenter_->geometry());
+    if (own && !participant_->isVisible()) {
+        participant_->setScreen(screens[*own]);
+        participant_->setGeometry(areas[*own]);
+    }
+    screen_.setFullScreen(own.has_value());
+}
+
+/// What tells of losses is queued, what measures is not: both may come from the thread that draws.
 void App::watchGraphics() {
     const auto lost = [this] { screen_.setDrawing(false); };
     const auto regained = [this] { screen_.setDrawing(true); };
     connect(participant_, &QQuickWindow::sceneGraphError, this, lost, Qt::QueuedConnection);
     connect(participant_, &QQuickWindow::sceneGraphInvalidated, this, lost, Qt::QueuedConnection);
     connect(participant_, &QQuickWindow::sceneGraphInitialized, this, regained, Qt::QueuedConnection);
+    app::FrameClock& frames = desk_.frames();
+    connect(
+        participant_, &QQuickWindow::afterSynchronizing, this, [&frames] { frames.take(); }, Qt::DirectConnection);
+    connect(
+        participant_, &QQuickWindow::frameSwapped, this, [&frames] { frames.present(app::steadyNanoseconds()); },
+        Qt::DirectConnection);
 }
 
 App::~App() { desk_.close(); }
+
+void App::keepPlaces() {
+    places_.keep("experimenter", *experimenter_);
+    places_.keep("participant", *participant_);
+}
 
 void App::setLanguage(const QString& language) {
     if (language == language_) return;

@@ -8,6 +8,7 @@
 
 #include "ui/window/desk.h"
 #include "ui/window/look.h"
+#include "ui/window/places.h"
 #include "ui/window/run_model.h"
 #include "ui/window/screen.h"
 #include "ui/window/studies.h"
@@ -16,9 +17,10 @@ namespace passung::window {
 
 struct AppOptions {
     std::string protocols;  // folder of the studies
-    std::string data;       // folder for the databases of try-outs
+    std::string data;       // folder for the databases of try-outs, and for what the windows remember
     QString language;       // "de", "en"
     bool dark = true;
+    double text_scale = 1.0;
 };
 
 /// Both windows and everything behind them.
@@ -44,6 +46,8 @@ signals:
 
 private:
     void watchGraphics();
+    void placeParticipant();
+    void keepPlaces();
 
     Look look_;
     Desk desk_;
@@ -55,6 +59,7 @@ private:
     QQmlApplicationEngine engine_;  // last: the windows go before what they show
     QQuickWindow* experimenter_ = nullptr;
     QQuickWindow* participant_ = nullptr;
+    Places places_;
 };
 
 }  // namespace passung::window

@@ -1,5 +1,6 @@
 #include "ui/window/desk.h"
 
+#include <algorithm>
 #include <array>
 
 namespace passung::window {
@@ -24,7 +25,8 @@ void Desk::start(const protocol::StudyPlan& plan, app::LiveHand hand) {
     run_.open(plan);
     drawn_ = nullptr;
     live_ = std::make_unique<app::LiveSession>(
-        plan, app::LiveOptions{.database = data_ + "/" + plan.name + ".db", .hand = hand});
+        plan, app::LiveOptions{
+                  .database = data_ + "/" + plan.name + ".db", .hand = hand, .frames = &frames_, .sound = &sound_});
     timer_.start();
     emit opened();
     emit happened();
@@ -54,15 +56,20 @@ mouse::Pointer* Desk::pointer() { return byMouse() ? &live_->pointer() : nullptr
 
 void Desk::look() {
     // Ticks first: what is still to come of an attempt that is over was before the news of the next one.
+    std::array<loop::ScreenTick, 256> ticks;
     std::array<TickRecord, 256> records;
-    std::size_t ticks = 0;
-    while (const std::size_t count = live_->takeRecords(records)) {
+    bool fresh = false;
+    while (const std::size_t count = live_->takeTicks(ticks)) {
+        std::transform(ticks.begin(), ticks.begin() + count, records.begin(),
+                       [](const loop::ScreenTick& tick) { return tick.record; });
         run_.take(std::span(records).first(count));
-        ticks += count;
+        frames_.show(ticks[count - 1]);
+        fresh = true;
     }
     const auto news = live_->takeNews();
     for (const presenter::News& what : news) run_.take(what);
-    if (byMouse() && ticks > 0 && run_.last()) {
+    if (run_.view().sound && !speaker_) speaker_ = openSpeaker(sound_);
+    if (byMouse() && fresh && run_.last()) {
         const auto& p = run_.last()->hand_position_m;
         const auto& q = run_.last()->hand_quaternion;
         live_->pointer().keepNear(
@@ -74,7 +81,7 @@ void Desk::look() {
         emit sceneChanged();
     }
     if (!news.empty()) emit happened();
-    if (ticks > 0) emit frame();
+    if (fresh) emit frame();
     if (!run_.view().isRunning()) timer_.stop();
 }
 

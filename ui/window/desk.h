@@ -3,9 +3,11 @@
 #include <QtCore/QObject>
 #include <QtCore/QTimer>
 #include <memory>
+#include <optional>
 
 #include "ui/app/live_session.h"
 #include "ui/presenter/run.h"
+#include "ui/window/speaker.h"
 
 namespace passung::window {
 
@@ -33,6 +35,11 @@ public:
     mouse::Pointer* pointer();
     bool byMouse() const { return live_ && hand_ == app::LiveHand::Mouse; }
 
+    /// The pictures of the participant's window.
+    app::FrameClock& frames() { return frames_; }
+    /// Where sound comes from; none: nowhere.
+    std::optional<sound::SoundOutput> soundOutput() const { return sound_.output(); }
+
 signals:
     void opened();    // another run
     void happened();  // news
@@ -43,6 +50,9 @@ private:
     void look();
 
     std::string data_;
+    app::FrameClock frames_;
+    sound::SoundFeed sound_;
+    std::unique_ptr<Speaker> speaker_;  // once something is to be heard
     std::unique_ptr<app::LiveSession> live_;
     app::LiveHand hand_ = app::LiveHand::Mouse;
     presenter::Run run_;

@@ -20,6 +20,12 @@ Look::Look(bool dark)
       family_(firstOf({"Inter", "Noto Sans", "DejaVu Sans"}, QFontDatabase::GeneralFont)),
       digits_(firstOf({"JetBrains Mono", "DejaVu Sans Mono"}, QFontDatabase::FixedFont)) {}
 
+void Look::setScale(double scale) {
+    if (scale == scale_) return;
+    scale_ = scale;
+    emit changed();
+}
+
 void Look::setDark(bool dark) {
     if (dark == dark_) return;
     dark_ = dark;

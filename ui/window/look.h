@@ -10,6 +10,7 @@ namespace passung::window {
 class Look : public QObject {
     Q_OBJECT
     Q_PROPERTY(bool dark READ dark WRITE setDark NOTIFY changed)
+    Q_PROPERTY(double scale READ scale WRITE setScale NOTIFY changed)  // of all text
     Q_PROPERTY(QString family READ family CONSTANT)
     Q_PROPERTY(QString digits READ digits CONSTANT)
     Q_PROPERTY(QColor ground READ ground NOTIFY changed)  // behind everything
@@ -29,6 +30,8 @@ public:
     explicit Look(bool dark);
     bool dark() const { return dark_; }
     void setDark(bool dark);
+    double scale() const { return scale_; }
+    void setScale(double scale);
     const QString& family() const { return family_; }
     const QString& digits() const { return digits_; }
 
@@ -52,6 +55,7 @@ private:
     QColor pick(const char* dark, const char* light) const { return QColor(QLatin1String(dark_ ? dark : light)); }
 
     bool dark_;
+    double scale_ = 1.0;
     QString family_, digits_;
 };
 

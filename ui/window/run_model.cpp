@@ -60,6 +60,8 @@ QString RunModel::line() const { return stateLine(view()); }
 QString RunModel::detail() const { return stateDetail(view()); }
 QString RunModel::answer() const { return view().answered ? answerLine(*view().answered) : QString(); }
 
+QString RunModel::sound() const { return view().sound ? soundLine(desk_.soundOutput()) : QString(); }
+
 double RunModel::share() const {
     if (view().planned == 0) return 0.0;
     return static_cast<double>(view().finished) / static_cast<double>(view().planned);

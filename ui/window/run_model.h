@@ -22,7 +22,9 @@ class RunModel : public QObject {
     Q_PROPERTY(double share READ share NOTIFY changed)
     Q_PROPERTY(QString answer READ answer NOTIFY changed)
     Q_PROPERTY(bool refused READ refused NOTIFY changed)
+    Q_PROPERTY(double built READ built NOTIFY changed)  // share of models that are being built; below 0: none are
     Q_PROPERTY(bool displayGone READ displayGone NOTIFY changed)   // the participant sees nothing
+    Q_PROPERTY(QString sound READ sound NOTIFY measured)           // of this trial; empty: it has none
     Q_PROPERTY(QVariantMap commands READ commands NOTIFY changed)  // by name: why not; empty: possible
     Q_PROPERTY(QVariantList rows READ rows NOTIFY rowsChanged)
     Q_PROPERTY(int currentRow READ currentRow NOTIFY rowsChanged)
@@ -48,7 +50,9 @@ public:
     double share() const;
     QString answer() const;
     bool refused() const { return view().answered && !view().answered->answer.accepted; }
+    double built() const { return view().built.value_or(-1.0); }
     bool displayGone() const { return known() && view().display != presenter::Display::Shown; }
+    QString sound() const;
     QVariantMap commands() const;
     QVariantList rows() const;
     int currentRow() const { return static_cast<int>(view().number) - 1; }

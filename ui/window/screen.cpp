@@ -10,7 +10,7 @@ namespace passung::window {
 
 namespace {
 
-constexpr std::size_t kHeavy = 20'000;  // triangles of a scene that software draws without shadows
+constexpr std::size_t kHeavy = 20'000;  // triangles; a part that software draws casts no shadow with more
 constexpr double kDegrees = 57.29577951308232;
 
 QVector3D millimetres(const Vec3& v) {
@@ -91,6 +91,11 @@ void Screen::setSoftware(bool software) {
     emit sceneChanged();
 }
 
+void Screen::setFullScreen(bool full) {
+    full_screen_ = full;
+    emit stateChanged();
+}
+
 bool Screen::shown() const {
     const presenter::RunView& run = desk_.run().view();
     return run.state != presenter::RunState::Idle && run.display != presenter::Display::Closed;
@@ -118,7 +123,8 @@ void Screen::takeScene() {
         parts_.append(QVariantMap{{"geometry", QVariant::fromValue(geometry)},
                                   {"position", millimetres(part.X_W.p)},
                                   {"rotation", rotation(part.X_W.q)},
-                                  {"held", part.held}});
+                                  {"held", part.held},
+                                  {"casts", !(software_ && part.mesh->indices.size() / 3 > kHeavy)}});
         if (part.held) held_geometry_ = geometry;
         corners += part.mesh->indices.size();
     }

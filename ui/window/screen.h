@@ -20,6 +20,7 @@ namespace passung::window {
 class Screen : public QObject {
     Q_OBJECT
     Q_PROPERTY(bool shown READ shown NOTIFY stateChanged)  // the window
+    Q_PROPERTY(bool fullScreen MEMBER full_screen_ NOTIFY stateChanged)
     Q_PROPERTY(bool drawn READ drawn NOTIFY stateChanged)  // the scene
     Q_PROPERTY(bool byMouse READ byMouse NOTIFY stateChanged)
     Q_PROPERTY(QString line READ line NOTIFY stateChanged)
@@ -57,6 +58,7 @@ public:
     ~Screen() override;
 
     void setSoftware(bool software);
+    void setFullScreen(bool full);
     const presenter::ParticipantView& view() const { return view_; }
 
     bool shown() const;
@@ -108,7 +110,7 @@ private:
     std::uint32_t buttons_ = 0;  // of the handle, by keys
     // A surface stays as long as this screen: QML may still draw the scene before.
     std::map<std::shared_ptr<const presenter::ShadedMesh>, std::unique_ptr<QQuick3DGeometry>> geometries_;
-    bool software_ = false, heavy_ = false;
+    bool full_screen_ = false, software_ = false, heavy_ = false;
     QVariantList parts_, marks_;
     QQuick3DGeometry* held_geometry_ = nullptr;
     QVector3D ground_position_, camera_position_;

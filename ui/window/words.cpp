@@ -55,6 +55,8 @@ QString stateLine(const RunView& view) {
 
 QString stateDetail(const RunView& view) {
     if (view.pauses_after) return said(QT_TRANSLATE_NOOP("words", "pauses after this trial"));
+    if (view.built)
+        return said(QT_TRANSLATE_NOOP("words", "models of the parts are built: %1 %")).arg(qRound(100 * *view.built));
     switch (view.state) {
         case RunState::Preparing:
         case RunState::ToStart:
@@ -233,6 +235,13 @@ QString participantHint(ParticipantScreen screen, bool by_mouse) {
             break;
     }
     return {};
+}
+
+QString soundLine(const std::optional<sound::SoundOutput>& output) {
+    if (!output) return said(QT_TRANSLATE_NOOP("words", "No sound: this computer has no output for it"));
+    return said(QT_TRANSLATE_NOOP("words", "Sound: %1, delay %2 ms"))
+        .arg(QString::fromStdString(output->name))
+        .arg(1e-3 * output->delay_us, 0, 'f', 0);
 }
 
 QString phaseWord(const std::string& phase) {

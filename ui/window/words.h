@@ -1,9 +1,11 @@
 #pragma once
 
 #include <QtCore/QString>
+#include <optional>
 
 #include "ui/presenter/participant.h"
 #include "ui/presenter/run.h"
+#include "ui/sound/sound_feed.h"
 
 namespace passung::window {
 
@@ -19,6 +21,7 @@ QString whyNot(presenter::Why why);
 QString answerLine(const presenter::CommandAnswered& answered);
 QString participantLine(presenter::ParticipantScreen screen);
 QString participantHint(presenter::ParticipantScreen screen, bool by_mouse);
+QString soundLine(const std::optional<sound::SoundOutput>& output);
 QString phaseWord(const std::string& phase);
 
 }  // namespace passung::window

@@ -1,7 +1,10 @@
 #include "core/loop/haptic_loop.h"
 
 #include <gtest/gtest.h>
+
 #include <time.h>
+#include <array>
+#include <chrono>
 
 #include <algorithm>
 #include <cmath>
@@ -66,13 +69,39 @@ TEST(HapticCycle, RecordsEveryTickAndShowsSixtyImagesASecond) {
     EXPECT_EQ(device.last.force.norm(), 0.0);
 }
 
+TEST(HapticCycle, EveryScreenGetsEveryTickWithTheTimeAtWhichItBegan) {
+    // Truth: invariant. A screen that nobody empties costs the others and the recording nothing.
+    test::Bench bench = ballInTable();
+    StillDevice device(kPressed);
+    loop::RecordRing ring(256);
+    loop::ScreenRing screen(256), forgotten(16);
+    const std::array screens{&forgotten, &screen};
+    loop::HapticCycle cycle(bench.model(), device, ring, true, screens);
+    const auto steady = [] { return std::chrono::steady_clock::now().time_since_epoch().count(); };
+    std::int64_t before = steady();
+    for (int i = 0; i < 200; ++i) cycle.run();
+    const std::int64_t after = steady();
+    std::vector<loop::ScreenTick> ticks(256);
+    ASSERT_EQ(screen.take(ticks), 200u);
+    for (std::size_t i = 0; i < 200; ++i) {
+        EXPECT_EQ(ticks[i].record.tick, static_cast<std::int64_t>(i));
+        EXPECT_GE(ticks[i].began_ns, before);
+        before = ticks[i].began_ns;
+    }
+    EXPECT_LE(before, after);
+    EXPECT_EQ(forgotten.dropped(), 184);
+    EXPECT_EQ(ring.dropped(), 0);
+}
+
 TEST(HapticCycle, AllocatesLocksAndWritesNothing) {
     // Truth: invariant, counted by interposed functions; the cycle reads the clock, nothing else.
     if (!support::RtGuard::available()) GTEST_SKIP() << "the sanitizer owns the interposed functions";
     test::Bench bench = ballInTable();
     StillDevice device(kPressed);
     loop::RecordRing ring(1024);  // fills up: dropping must be as quiet
-    loop::HapticCycle cycle(bench.model(), device, ring, true);
+    loop::ScreenRing screen(64);
+    const std::array screens{&screen};
+    loop::HapticCycle cycle(bench.model(), device, ring, true, screens);
     support::RtGuard guard;
     for (int i = 0; i < 10000; ++i) cycle.run();
     EXPECT_EQ(guard.violations(), 0) << guard.describe();

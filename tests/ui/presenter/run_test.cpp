@@ -154,6 +154,18 @@ TEST(Run, APauseBetweenTrialsIsNotSaidToComeAfterOne) {
     EXPECT_FALSE(run.view().pauses_after);
 }
 
+TEST(Run, TellsHowMuchOfASceneIsBuiltUntilItsTrialBegins) {
+    // Truth: invariant.
+    presenter::Run run = begun();
+    run.take(AttemptPrepared{0, "a", nullptr});
+    EXPECT_FALSE(run.view().built);
+    run.take(BuildProgress{0.5});
+    EXPECT_EQ(run.view().built, 0.5);
+    EXPECT_TRUE(run.view().may(CommandKind::Abort)) << "it can be cancelled";
+    run.take(glance(SessionState::InTrial, 0));
+    EXPECT_FALSE(run.view().built);
+}
+
 TEST(Run, CountsTheLoopsMissedCyclesAndItsRate) {
     // Truth: closed form. 1000 ticks over 1250 periods are 800 Hz.
     presenter::Run run = begun();

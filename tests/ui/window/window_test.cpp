@@ -2,7 +2,11 @@
 
 #include <QtGui/QImage>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
+#include "study/store/store_reader.h"
+#include "tests/ui/cli/small_study.h"
 #include "tests/ui/window/windows.h"
 
 // A try-out of a study: the scene that follows the mouse, the console's keys, both languages.
@@ -64,6 +68,18 @@ TEST_F(Windows, KeysStopContinueAndLeaveOutTrialsInEitherLanguage) {
     EXPECT_GT(pixelsLike(stopped.copy(20, 60, 12, 120), app_->look().bad()), 300) << "the state line is not marked";
     EXPECT_EQ(run().view().rows[0].state, presenter::RowState::Next);
     EXPECT_EQ(run().view().rows[0].attempts, 1);
+    const auto stored = store::StoreReader::open(folder_ / "data/peg_in_hole.db");
+    ASSERT_TRUE(stored);
+    const auto attempts = stored->attempts();
+    ASSERT_TRUE(attempts);
+    const auto presentation = attempts->at(0).presentation;
+    ASSERT_TRUE(presentation);
+    EXPECT_EQ(presentation->drawn_pose, "proxy");
+    EXPECT_GT(presentation->frames, 0);
+    EXPECT_GT(presentation->frame_age_median_us, 0.0);
+    EXPECT_GE(presentation->frame_age_p99_us, presentation->frame_age_median_us);
+    EXPECT_GE(presentation->frame_age_max_us, presentation->frame_age_p99_us);
+    EXPECT_EQ(presentation->sound, "none") << "the study has nothing to be heard";
 
     click("language");
     EXPECT_EQ(item(app_->experimenter(), "stateLine")->property("text").toString(), "Not-Halt: Motoren sind aus");
@@ -134,6 +150,34 @@ TEST_F(Windows, LostGraphicsPauseTheTrialUntilTheExperimenterGoesOn) {
     click("pause");
     waitFor(RunState::Running);
     EXPECT_EQ(run().view().rows[0].attempts, 1);
+}
+
+TEST_F(Windows, ATrialWithSomethingToHearSaysWhereItsSoundComesFromOrThatItHasNone) {
+    // Truth: invariant. Whether this machine has an output or not, the console and the data say the same.
+    protocols_ = folder_ / "studies";
+    std::filesystem::create_directories(protocols_ + "/heard");
+    std::ofstream(protocols_ + "/heard/study.toml")
+        << smallStudy("heard") << "[feedback]\ncues = [\"audio\"]\nmasking_noise = true\n";
+    open("en", true);
+    click("study-heard");
+    click("watch");
+    waitFor([&] { return run().view().sound; });
+    QQuickItem* line = item(app_->experimenter(), "sound");
+    ASSERT_NE(line, nullptr);
+    waitFor([&] { return !run().view().isRunning(); });
+    ASSERT_NE(run().view().state, RunState::Failed) << run().view().failure;
+    const bool heard = app_->desk().soundOutput().has_value();
+    EXPECT_EQ(line->property("text").toString().startsWith("Sound: "), heard);
+    EXPECT_EQ(line->property("text").toString().startsWith("No sound: "), !heard);
+    const auto stored = store::StoreReader::open(folder_ / "data/heard.db");
+    ASSERT_TRUE(stored);
+    const auto attempts = stored->attempts();
+    ASSERT_TRUE(attempts);
+    const auto last = attempts->back().presentation;
+    ASSERT_TRUE(last);
+    EXPECT_EQ(last->sound, heard ? "played" : "silent");
+    EXPECT_EQ(last->sound_output.empty(), !heard);
+    EXPECT_EQ(last->sound_delay_us > 0.0, heard);
 }
 
 TEST_F(Windows, ARefusedCommandSaysWhyInTheLanguageOfTheWindows) {

@@ -157,6 +157,10 @@
         <source>Open the participant&apos;s window</source>
         <translation>Fenster der Versuchsperson öffnen</translation>
     </message>
+    <message>
+        <source>Cancel</source>
+        <translation>Abbrechen</translation>
+    </message>
 </context>
 <context>
     <name>StudiesPage</name>
@@ -502,6 +506,18 @@
     <message>
         <source>The session is paused.</source>
         <translation>Die Sitzung ist angehalten.</translation>
+    </message>
+    <message>
+        <source>No sound: this computer has no output for it</source>
+        <translation>Kein Ton: Dieser Rechner hat keinen Ausgang dafür</translation>
+    </message>
+    <message>
+        <source>Sound: %1, delay %2 ms</source>
+        <translation>Ton: %1, Verzögerung %2 ms</translation>
+    </message>
+    <message>
+        <source>models of the parts are built: %1 %</source>
+        <translation>Modelle der Teile werden gebaut: %1 %</translation>
     </message>
 </context>
 </TS>
