@@ -8,20 +8,31 @@
 
 namespace passung::session {
 
-Agenda::Agenda(std::vector<design::PlannedTrial> trials) : trials_(std::move(trials)), todo_(trials_.size()) {
+Agenda::Agenda(std::vector<design::PlannedTrial> trials)
+    : trials_(std::move(trials)), todo_(trials_.size()), needless_(trials_.size()) {
     std::iota(todo_.begin(), todo_.end(), std::size_t{0});
+}
+
+std::deque<std::size_t>::const_iterator Agenda::first() const {
+    return std::find_if(todo_.begin(), todo_.end(), [&](std::size_t place) { return !needless_[place]; });
 }
 
 std::vector<design::PlannedTrial> Agenda::toDo() const {
     std::vector<design::PlannedTrial> trials;
-    for (const std::size_t place : todo_) trials.push_back(trials_[place]);
+    for (const std::size_t place : todo_)
+        if (!needless_[place]) trials.push_back(trials_[place]);
     return trials;
+}
+
+std::size_t Agenda::leftOut() const {
+    return static_cast<std::size_t>(
+        std::count_if(todo_.begin(), todo_.end(), [&](std::size_t place) { return needless_[place]; }));
 }
 
 void Agenda::end(Then then) {
     PASSUNG_ASSERT(!empty());
-    const std::size_t place = todo_.front();
-    todo_.pop_front();
+    const std::size_t place = next();
+    todo_.erase(first());
     if (then == Then::Done)
         history_.push_back(place);
     else
@@ -36,7 +47,7 @@ void Agenda::redo(std::size_t place, Then then) {
     if (then == Then::Done) return;
     std::erase(history_, place);
     std::erase(todo_, place);
-    std::erase(left_out_, place);
+    needless_[place] = false;
     insert(place, then);
 }
 

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <deque>
-#include <utility>
 #include <vector>
 
 #include "study/design/trial_order.h"
@@ -20,10 +19,10 @@ public:
     explicit Agenda(std::vector<design::PlannedTrial> trials);
 
     std::size_t planned() const { return trials_.size(); }
-    std::size_t finished() const { return trials_.size() - todo_.size() - left_out_.size(); }
-    std::size_t leftOut() const { return left_out_.size(); }
-    bool empty() const { return todo_.empty(); }
-    std::size_t next() const { return todo_.front(); }  // @pre not empty()
+    std::size_t finished() const { return trials_.size() - todo_.size(); }
+    std::size_t leftOut() const;  // of those to do
+    bool empty() const { return first() == todo_.end(); }
+    std::size_t next() const { return *first(); }  // @pre not empty()
     const design::PlannedTrial& trial(std::size_t place) const { return trials_[place]; }
     /// All that are still to do, the next one first.
     std::vector<design::PlannedTrial> toDo() const;
@@ -32,24 +31,17 @@ public:
     /// @pre not empty()
     void end(Then then);
 
-    /// Trials that are still to do and for which this holds are not, until it no longer holds; nobody goes back to
-    /// them.
+    /// Trials that are still to do and for which this holds are passed over until it is asked again; nobody goes back
+    /// to them.
     template <class Needless>
     void leaveOut(Needless needless) {
-        for (const std::size_t place : std::exchange(left_out_, {})) insert(place, Then::RepeatAtBlockEnd);
-        std::erase_if(todo_, [&](std::size_t place) {
-            if (!needless(trials_[place])) return false;
-            left_out_.push_back(place);
-            return true;
-        });
+        for (const std::size_t place : todo_) needless_[place] = needless(trials_[place]);
     }
 
-    /// Is there a trial that goBack() could take?
+    /// Is any trial over?
     bool canGoBack() const { return !history_.empty(); }
     /// The trial that is over last. @pre canGoBack()
     std::size_t last() const { return history_.back(); }
-    /// The trial that was over last is next again; called again, the one before it. @pre canGoBack()
-    void goBack() { bring(last()); }
 
     /// All that are over, in time.
     const std::vector<std::size_t>& over() const { return history_; }
@@ -61,11 +53,12 @@ public:
 
 private:
     void insert(std::size_t place, Then then);
+    std::deque<std::size_t>::const_iterator first() const;  // that is needed
 
     std::vector<design::PlannedTrial> trials_;
-    std::deque<std::size_t> todo_;
-    std::vector<std::size_t> history_;   // done or skipped, in time
-    std::vector<std::size_t> left_out_;  // not needed as things are
+    std::deque<std::size_t> todo_;      // also those that are not needed as things are
+    std::vector<bool> needless_;        // by place
+    std::vector<std::size_t> history_;  // done or skipped, in time
 };
 
 }  // namespace passung::session

@@ -16,7 +16,7 @@ namespace passung::session {
 /// What a trial of the plan has had so far.
 struct Past {
     int attempts = 0;                   // begun
-    int judged = 0;                     // of them ended by themselves: these count for the protocol's max_attempts
+    int judged = 0;                     // of them the protocol decided on: these count for its max_attempts
     std::optional<AttemptId> last;      // the newest attempt that ended
     std::optional<AttemptId> counting;  // the one that is valid and ended by its own rules
 };
@@ -50,7 +50,8 @@ struct StoredForm {
 struct Resumption {
     Agenda agenda;
     std::vector<Past> past;                    // by place in the plan
-    std::vector<AttemptId> discounted;         // valid ones whose trials are done again by the protocol's [resume]
+    Reordering change = {};                    // to be stored before it goes on
+    std::optional<std::size_t> last = {};      // place of the newest attempt that ended
     std::int64_t start_ns = 0;                 // session time that the earlier parts took
     std::vector<FinishedTrial> finished = {};  // trials that are over and stay so, in time
     std::vector<std::string> answered = {};    // ids of the forms that were stored since the last of them
@@ -59,15 +60,21 @@ struct Resumption {
 
 /// What the protocol says of a trial whose newest attempt ended so; it is number `judged` of those that did.
 Then thenAfter(const protocol::Block& block, measures::Outcome outcome, bool valid, int judged);
+/// The same of a trial whose finished attempt was made invalid.
+Then thenAfterInvalid(const protocol::Block& block, int judged);
 
-/// The session's state after `attempts`, ascending by time: trials come in the order that the uninterrupted session
-/// would have had, the interrupted one again, and then the protocol's [resume] adds what is to be done anew. A trial
-/// that the experimenter left out is offered again. `crashed`: the program was killed; else the session was ended by
-/// somebody, in the middle of the newest attempt if that is aborted. A questionnaire is asked again unless it is among
-/// `forms` and the trial before it stays over.
+/// Does a whole session need another attempt at this trial?
+bool lacks(const Staircases& staircases, const design::PlannedTrial& trial, const Past& past);
+
+/// The session's state after `attempts`, ascending by time, and the `steps` that its order took: trials come as in the
+/// uninterrupted session, the interrupted one again, and then the protocol's [resume] adds what is to be done anew.
+/// Where nothing is left but the session is not whole, what it lacks is offered again. Attempts of which no step tells
+/// are of older programs, or crashed; of those the protocol decides. `crashed`: the program was killed; else the
+/// session was ended by somebody, in the middle of the newest attempt if that is aborted. A questionnaire is asked
+/// again unless it is among `forms` and the trial before it stays over.
 Resumption resumption(const protocol::StudyPlan& plan, std::vector<design::PlannedTrial> trials,
                       const std::vector<StoredAttempt>& attempts, bool crashed,
-                      const std::vector<StoredForm>& forms = {});
+                      const std::vector<StoredForm>& forms = {}, const std::vector<OrderStep>& steps = {});
 
 /// Why a session that was interrupted so long ago must not go on; nothing if it may.
 std::optional<std::string> tooOld(const protocol::ResumePolicy& policy, double age_s);

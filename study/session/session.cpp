@@ -37,6 +37,7 @@ Session::Session(SessionSetup setup, Apparatus& apparatus, TrialSink& sink, Sess
       agenda_(setup_.resumed ? setup_.resumed->agenda : Agenda(setup_.trials)),
       staircases_(setup_.plan, setup_.participant, setup_.seed, setup_.ordinal),
       past_(setup_.resumed ? setup_.resumed->past : std::vector<Past>(setup_.trials.size())),
+      last_(setup_.resumed ? setup_.resumed->last : std::nullopt),
       session_ns_(setup_.resumed ? setup_.resumed->start_ns : 0) {
     if (setup_.resumed) desk_.resume(setup_.resumed->finished, setup_.resumed->answered);
     if (setup_.resumed)
@@ -56,7 +57,7 @@ Result<Done> Session::run() {
 
 void Session::interrupt(const std::string& reason) {
     const bool complete = state_ != SessionState::InTrial && agenda_.empty() && !desk_.isDue({});
-    if (state_ == SessionState::InTrial) abortRunning(reason, Then::RepeatNow);
+    if (state_ == SessionState::InTrial) abortRunning(reason, Then::RepeatNow, Decider::Interruption);
     if (isOver()) return;
     if (complete) return finish(SessionState::Complete);
     note("session_interrupted", "reason", reason);
@@ -161,9 +162,7 @@ bool Session::swapsDevice() {
 /// Trials of a staircase whose tracks are all finished.
 void Session::leaveOutNeedless() {
     if (setup_.plan.staircases.empty()) return;
-    agenda_.leaveOut([&](const design::PlannedTrial& planned) {
-        return staircases_.governs(planned) && !staircases_.next(planned);
-    });
+    agenda_.leaveOut([&](const design::PlannedTrial& planned) { return !staircases_.needs(planned); });
 }
 
 void Session::beginTrial() {
@@ -207,7 +206,7 @@ void Session::watchTrial() {
         appendEvents(events);
     }
     if (!attempt_->course.ended()) return;
-    finishTrial();
+    finishTrial(silent ? std::optional(Verdict{Then::RepeatNow, Decider::Interruption}) : std::nullopt);
     if (silent && state_ != SessionState::Failed) {
         Error error;
         error.message = "the haptic loop delivers no records";
@@ -242,15 +241,17 @@ void Session::judge(std::span<const TickRecord> records) {
     appendEvents(events);
 }
 
-void Session::finishTrial(std::optional<Then> then) {
+void Session::finishTrial(std::optional<Verdict> verdict) {
     LoopHealth health = apparatus_.stop();
     takeRecords();
     // From tick 0 to where a next tick would be.
     const std::int64_t periods = attempt_->clock.until(std::max(attempt_->next_tick, health.ticks));
     AttemptEnd end = describeEnd(std::move(health));
-    if (!then) then = thenAfter(blockOf(agenda_.next()), end.outcome, end.valid, ++past_[agenda_.next()].judged);
+    if (!verdict) verdict = judgeByProtocol(end);
+    end.then = verdict->then;
+    end.decided_by = verdict->by;
     // Of two attempts at one trial at most one counts.
-    if (end.valid && *then != Then::Done) {
+    if (end.valid && end.then != Then::Done) {
         end.valid = false;
         end.invalid_reason = fmt::format("{}: the trial is repeated", measures::outcomeName(end.outcome));
     }
@@ -260,18 +261,29 @@ void Session::finishTrial(std::optional<Then> then) {
     session_ns_ += periods * kTickNanoseconds;
     const Attempt attempt = *std::exchange(attempt_, std::nullopt);
     if (!finished) return fail("finish attempt", finished.errors());
-    takeEnd(attempt, end, *then);
+    takeEnd(attempt, end);
+}
+
+Session::Verdict Session::judgeByProtocol(const AttemptEnd& end) {
+    const protocol::Block& block = blockOf(agenda_.next());
+    const int judged = ++past_[agenda_.next()].judged;
+    const Then then = thenAfter(block, end.outcome, end.valid, judged);
+    // A track that lacks an answer never finishes.
+    const bool lacks = attempt_->step && !attempt_->step->track.empty() &&
+                       !(end.valid && staircases_.answerTo(trial(), end.measures).has_value());
+    if (then == Then::Done && lacks && judged < block.max_attempts) return {Then::RepeatAtBlockEnd, Decider::Protocol};
+    return {then, Decider::Protocol};
 }
 
 /// The attempt is durable: who waits for it is told, and the agenda moves on.
-void Session::takeEnd(const Attempt& attempt, const AttemptEnd& end, Then then) {
+void Session::takeEnd(const Attempt& attempt, const AttemptEnd& end) {
     state_ = std::exchange(pause_asked_, false) ? SessionState::Paused : SessionState::BetweenTrials;
     if (listener_.acknowledge) listener_.acknowledge(attempt.id, end.outcome);
     last_ = agenda_.next();
     past_[*last_].last = attempt.id;
     if (end.valid) past_[*last_].counting = attempt.id;
-    if (then == Then::Done) desk_.remember({agenda_.trial(*last_), end.measures});
-    agenda_.end(then);
+    if (end.then == Then::Done) desk_.remember({agenda_.trial(*last_), end.measures});
+    agenda_.end(end.then);
     leaveOutNeedless();
     if (!listener_.progress) return;
     std::optional<double> trial_time_s;
@@ -286,19 +298,8 @@ const protocol::Block& Session::blockOf(std::size_t place) const {
 }
 
 bool Session::isWhole() const {
-    for (std::size_t place = 0; place < past_.size(); ++place) {
-        const bool is_main = agenda_.trial(place).phase == protocol::phaseName(protocol::Phase::Main);
-        if (is_main && !past_[place].counting) return false;
-    }
-    return staircasesAreDone();
-}
-
-/// Every trial of theirs counts, or was not needed because the tracks are finished.
-bool Session::staircasesAreDone() const {
-    for (std::size_t place = 0; place < past_.size() && !setup_.plan.staircases.empty(); ++place) {
-        const design::PlannedTrial& planned = agenda_.trial(place);
-        if (staircases_.governs(planned) && !past_[place].counting && staircases_.next(planned)) return false;
-    }
+    for (std::size_t place = 0; place < past_.size(); ++place)
+        if (lacks(staircases_, agenda_.trial(place), past_[place])) return false;
     return true;
 }
 
@@ -346,7 +347,7 @@ void Session::appendEvents(const std::vector<TrialEvent>& events) {
 
 void Session::finish(SessionState state) {
     state_ = state;
-    const auto finished = sink_.finishSession(state == SessionState::Complete && staircasesAreDone(), session_ns_);
+    const auto finished = sink_.finishSession(state == SessionState::Complete && isWhole(), session_ns_);
     if (finished) return;
     state_ = SessionState::Failed;
     if (errors_.empty()) errors_ = finished.errors();  // else most likely the same once more

@@ -90,6 +90,11 @@ private:
         std::optional<measures::DetectionTask> secondary = {};
     };
 
+    struct Verdict {
+        Then then;
+        Decider by;
+    };
+
     const design::PlannedTrial& trial() const { return agenda_.trial(agenda_.next()); }
     bool rest();
     bool swapsDevice();
@@ -97,14 +102,14 @@ private:
     std::optional<StaircaseStep> nextStep() const;
     const protocol::Condition& conditionOf(const std::optional<StaircaseStep>& step) const;
     void leaveOutNeedless();
-    bool staircasesAreDone() const;
     void beginTrial();
     void watchTrial();
     bool asksQuestionnaire();
     std::size_t takeRecords();
     void judge(std::span<const TickRecord> records);
-    void finishTrial(std::optional<Then> then = {});  // none: as the protocol says
-    void takeEnd(const Attempt& attempt, const AttemptEnd& end, Then then);
+    void finishTrial(std::optional<Verdict> verdict = {});  // none: as the protocol says
+    Verdict judgeByProtocol(const AttemptEnd& end);
+    void takeEnd(const Attempt& attempt, const AttemptEnd& end);
     AttemptEnd describeEnd(LoopHealth health) const;
     const protocol::Block& blockOf(std::size_t place) const;
     void appendEvents(const std::vector<TrialEvent>& events);
@@ -129,8 +134,8 @@ private:
     Answer goBack(const Command& command);
     Answer halt(const Command& command);
     Answer time(const Command& command);
-    Result<Done> discount(std::size_t place, const std::string& reason);
-    void abortRunning(const std::string& reason, Then then);
+    Result<Done> reorder(std::size_t place, const std::string& reason, Then then);
+    void abortRunning(const std::string& reason, Then then, Decider by = Decider::Experimenter);
     std::optional<std::size_t> placeOf(AttemptId attempt) const;
     std::string nameOf(std::size_t place) const;
     std::int64_t now() const;  // session time [ns]

@@ -165,6 +165,8 @@ Answer Session::skip(const Command& command) {
     const std::size_t place = agenda_.next();
     if (state_ == SessionState::InTrial)
         abortRunning(withReason("skipped by the experimenter", command.text), Then::Done);
+    else if (const auto done = sink_.reorder({.steps = {{.trial_index = trial().trial_index}}}); !done)
+        return notKept(done.errors().front());
     else
         agenda_.end(Then::Done);
     return accepted(nameOf(place) + " is left out");
@@ -180,10 +182,9 @@ Answer Session::invalidate(const Command& command) {
     const std::size_t place = command.attempt ? *placeOf(*command.attempt) : *last_;
     if (!past_[place].counting)
         return {false, "the attempt of " + nameOf(place) + " is not valid anyway", WhyNot::CountsNot};
-    if (const auto done = discount(place, reason); !done) return notKept(done.errors().front());
-    const Then then = thenAfter(blockOf(place), measures::Outcome::Aborted, false, past_[place].judged);
+    const Then then = agenda_.isOver(place) ? thenAfterInvalid(blockOf(place), past_[place].judged) : Then::Done;
     const auto running = attempt_ ? std::optional(agenda_.next()) : std::nullopt;
-    if (agenda_.isOver(place)) agenda_.redo(place, then);
+    if (const auto done = reorder(place, reason, then); !done) return notKept(done.errors().front());
     if (running)
         agenda_.bring(*running);  // it goes on; what is repeated comes after it
     else
@@ -198,8 +199,7 @@ Answer Session::goBack(const Command& command) {
     if (isOver()) return {};
     const std::size_t place = agenda_.last();
     const std::string reason = withReason("repeated by the experimenter", command.text);
-    if (const auto done = discount(place, reason); !done) return notKept(done.errors().front());
-    agenda_.goBack();
+    if (const auto done = reorder(place, reason, Then::RepeatNow); !done) return notKept(done.errors().front());
     leaveOutNeedless();
     return accepted(nameOf(place) + " is next");
 }
@@ -222,22 +222,25 @@ Answer Session::halt(const Command& command) {
     return accepted("motors are off, the session is paused");
 }
 
-/// What counts of the trial at `place` no longer does.
-Result<Done> Session::discount(std::size_t place, const std::string& reason) {
-    if (!past_[place].counting) return Done{};
-    const auto done = sink_.invalidateAttempt(*past_[place].counting, reason);
+/// What counts of the trial at `place` no longer does, and it is to do again unless that is Done.
+Result<Done> Session::reorder(std::size_t place, const std::string& reason, Then then) {
+    Reordering change{.reason = reason};
+    if (past_[place].counting) change.discounted.push_back(*past_[place].counting);
+    if (then != Then::Done) change.steps.push_back({.trial_index = agenda_.trial(place).trial_index, .then = then});
+    const auto done = sink_.reorder(change);
     if (!done) return done;
-    staircases_.forget(*past_[place].counting);
+    if (past_[place].counting) staircases_.forget(*past_[place].counting);
     past_[place].counting.reset();
+    agenda_.redo(place, then);
     return done;
 }
 
-void Session::abortRunning(const std::string& reason, Then then) {
+void Session::abortRunning(const std::string& reason, Then then, Decider by) {
     PASSUNG_ASSERT(state_ == SessionState::InTrial);
     std::vector<TrialEvent> events;
     if (!attempt_->course.ended()) attempt_->course.abort(attempt_->next_tick, reason, events);
     appendEvents(events);
-    finishTrial(then);
+    finishTrial(Verdict{then, by});
 }
 
 std::optional<std::size_t> Session::placeOf(AttemptId attempt) const {

@@ -77,14 +77,28 @@ std::optional<StaircaseStep> Staircases::next(const design::PlannedTrial& trial)
     return step;
 }
 
+bool Staircases::needs(const design::PlannedTrial& trial) const {
+    const protocol::Staircase* staircase = find(trial);
+    if (staircase == nullptr) return true;
+    const Tracks& all = tracks(*staircase, trial.condition);
+    return std::any_of(all.begin(), all.end(), [](const design::AdaptiveTrack& track) { return !track.finished(); });
+}
+
+std::optional<bool> Staircases::answerTo(const design::PlannedTrial& trial,
+                                         const std::vector<measures::Value>& measures) const {
+    const protocol::Staircase* staircase = find(trial);
+    PASSUNG_ASSERT(staircase != nullptr);
+    const auto value = valueOf(measures, staircase->measure);
+    if (!value) return std::nullopt;
+    return staircase->above ? *value > staircase->threshold : *value < staircase->threshold;
+}
+
 StaircaseAnswer Staircases::take(AttemptId attempt, const design::PlannedTrial& trial, const StaircaseStep& step,
                                  const std::vector<measures::Value>& measures, bool counts) {
     const protocol::Staircase* staircase = find(trial);
     PASSUNG_ASSERT(staircase != nullptr);
     StaircaseAnswer answer;
-    const auto value = valueOf(measures, staircase->measure);
-    if (counts && value)
-        answer.positive = staircase->above ? *value > staircase->threshold : *value < staircase->threshold;
+    if (counts) answer.positive = answerTo(trial, measures);
     if (step.track.empty()) return answer;
     const std::size_t which = indexOf(staircase->tracks, step.track);
     design::AdaptiveTrack& track = tracks(*staircase, trial.condition)[which];

@@ -40,6 +40,12 @@ public:
     /// governs(trial)
     std::optional<StaircaseStep> next(const design::PlannedTrial& trial) const;
 
+    /// False of trials of a staircase whose tracks are all finished.
+    bool needs(const design::PlannedTrial& trial) const;
+
+    /// What the trial's measures say to its track; nothing if they lack the staircase's. @pre governs(trial)
+    std::optional<bool> answerTo(const design::PlannedTrial& trial, const std::vector<measures::Value>& measures) const;
+
     /// Takes the attempt's answer, if it `counts` and has one. @pre `step` was next() of the trial
     StaircaseAnswer take(AttemptId attempt, const design::PlannedTrial& trial, const StaircaseStep& step,
                          const std::vector<measures::Value>& measures, bool counts);

@@ -9,6 +9,7 @@
 #include "core/base/result.h"
 #include "core/base/tick_record.h"
 #include "study/measures/measures.h"
+#include "study/session/agenda.h"
 #include "study/session/apparatus.h"
 #include "study/session/questionnaire_source.h"
 #include "study/session/staircase_step.h"
@@ -27,6 +28,9 @@ struct AttemptStart {
     std::optional<StaircaseStep> staircase = {};
 };
 
+/// Who says what becomes of a trial. Only attempts that the protocol decides on count for its max_attempts.
+enum class Decider { Protocol, Experimenter, Interruption };
+
 struct AttemptEnd {
     std::int64_t end_ns = 0;
     measures::Outcome outcome = measures::Outcome::Aborted;
@@ -37,6 +41,23 @@ struct AttemptEnd {
     LoopHealth health;
     bool timing_measured = true;  // false in virtual time: timing cells are exported as NA
     std::optional<StaircaseAnswer> staircase = {};
+    Then then = Then::Done;  // of its trial
+    Decider decided_by = Decider::Protocol;
+};
+
+/// What becomes of a trial in the session's order.
+struct OrderStep {
+    std::int64_t trial_index = 0;  // in the session's plan
+    Then then = Then::Done;
+    Decider decided_by = Decider::Experimenter;
+    std::optional<AttemptId> attempt = {};  // that has ended so; none: the order changes between ends
+};
+
+/// What changes the order between the ends of attempts: durable as a whole or not at all.
+struct Reordering {
+    std::vector<AttemptId> discounted = {};  // finished ones that no longer count; what was recorded of them stays
+    std::string reason = {};                 // why not
+    std::vector<OrderStep> steps = {};       // in time
 };
 
 struct Event {
@@ -57,8 +78,7 @@ public:
     virtual void appendEvent(const Event& event) = 0;
     virtual Result<Done> finishAttempt(AttemptId attempt, const AttemptEnd& end) = 0;
     virtual Result<Done> storeQuestionnaire(const QuestionnaireRun& run) = 0;
-    /// A finished attempt of this session no longer counts; what was recorded of it stays.
-    virtual Result<Done> invalidateAttempt(AttemptId attempt, const std::string& reason) = 0;
+    virtual Result<Done> reorder(const Reordering& change) = 0;
     virtual Result<Done> addNote(const std::string& author, const std::string& text, std::int64_t t_ns) = 0;
     virtual Result<Done> finishSession(bool complete, std::int64_t end_ns) = 0;
 };

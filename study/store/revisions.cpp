@@ -372,6 +372,19 @@ CREATE TABLE presentation(
     sound_delay_us REAL) STRICT;
 )sql";
 
+constexpr const char* kRevision10 = R"sql(
+-- What became of trials in the order of their session, in time: a resumed session goes on in the same order.
+CREATE TABLE order_step(
+    step_id INTEGER PRIMARY KEY,
+    segment_id INTEGER NOT NULL REFERENCES segment ON DELETE CASCADE,
+    trial_id INTEGER NOT NULL REFERENCES trial_plan ON DELETE CASCADE,
+    attempt_id INTEGER UNIQUE REFERENCES attempt ON DELETE CASCADE,  -- that has ended so; NULL: between ends
+    then_what TEXT NOT NULL CHECK(then_what IN('done','repeat_now','repeat_at_block_end')),
+    decided_by TEXT NOT NULL CHECK(decided_by IN('protocol','experimenter','interruption'))) STRICT;
+CREATE INDEX order_step_of_segment ON order_step(segment_id);
+CREATE INDEX order_step_of_trial ON order_step(trial_id);
+)sql";
+
 constexpr std::array kRevisions = {
     Revision{1, "Protocols, participants, sessions, trials, samples, timing and questionnaires", kRevision1, 1},
     // A reader that does not know what was picked would replay another scene.
@@ -386,6 +399,7 @@ constexpr std::array kRevisions = {
     // A reader that does not know what was presented would replay another scene.
     Revision{8, "Levels that staircases presented, with their answers", kRevision8, 8},
     Revision{9, "Pictures and sound of each attempt that a window showed", kRevision9, 8},
+    Revision{10, "What became of each trial in the session's order", kRevision10, 8},
 };
 
 bool isEmpty(const Database& database) { return database.integer("SELECT count(*) FROM sqlite_master") == 0; }

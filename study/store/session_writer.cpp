@@ -1,7 +1,10 @@
 #include "study/store/session_writer.h"
 
+#include <array>
+
 #include "study/store/contact_energy_rows.h"
 #include "study/store/hex_text.h"
+#include "study/store/order_rows.h"
 #include "study/store/presentation_rows.h"
 #include "study/store/questionnaire_rows.h"
 #include "study/store/remarks.h"
@@ -122,7 +125,7 @@ Result<session::AttemptId> SessionWriter::startAttempt(const session::AttemptSta
         return attempt_id;
     });
     if (!id) return id.errors();
-    open_ = OpenAttempt{session::AttemptId{*id}, start.start_ns, {}, {}};
+    open_ = OpenAttempt{session::AttemptId{*id}, start.trial_index, start.start_ns, {}, {}};
     return open_->id;
 }
 
@@ -210,6 +213,8 @@ void SessionWriter::storeEnd(const Database& database, const OpenAttempt& attemp
     insertTiming(database, attempt_id, end.health, end.timing_measured);
     insertContactEnergy(database, attempt_id, end.health.contact_energy);
     if (end.health.presentation) insertPresentation(database, attempt_id, *end.health.presentation);
+    insertOrderSteps(database, rows_.session_id, rows_.segment_id,
+                     std::array{session::OrderStep{attempt.trial_index, end.then, end.decided_by, attempt.id}});
     transaction.commit();
 }
 
@@ -237,10 +242,12 @@ Result<Done> SessionWriter::storeQuestionnaire(const session::QuestionnaireRun& 
     });
 }
 
-Result<Done> SessionWriter::invalidateAttempt(session::AttemptId attempt, const std::string& reason) {
+Result<Done> SessionWriter::reorder(const session::Reordering& change) {
     return thread_.call([&](const Database& database) {
         Transaction transaction(database, Durability::Full);
-        markInvalid(database, static_cast<std::int64_t>(attempt), reason);
+        for (const session::AttemptId attempt : change.discounted)
+            markInvalid(database, static_cast<std::int64_t>(attempt), change.reason);
+        insertOrderSteps(database, rows_.session_id, rows_.segment_id, change.steps);
         transaction.commit();
         return Done{};
     });

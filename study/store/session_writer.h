@@ -37,7 +37,7 @@ public:
     void appendEvent(const session::Event& event) override;
     Result<Done> finishAttempt(session::AttemptId attempt, const session::AttemptEnd& end) override;
     Result<Done> storeQuestionnaire(const session::QuestionnaireRun& run) override;
-    Result<Done> invalidateAttempt(session::AttemptId attempt, const std::string& reason) override;
+    Result<Done> reorder(const session::Reordering& change) override;
     Result<Done> addNote(const std::string& author, const std::string& text, std::int64_t t_ns) override;
     /// A session is stored as complete only if also every planned main trial has a valid attempt that ended by its own
     /// rules; else it is aborted and its slot free again.
@@ -46,6 +46,7 @@ public:
 private:
     struct OpenAttempt {
         session::AttemptId id{};
+        std::int64_t trial_index = 0;
         std::int64_t start_ns = 0;
         std::vector<TickRecord> pending;  // not yet handed to the writer thread
         measures::PeriodClock clock;      // up to the last record that was handed over

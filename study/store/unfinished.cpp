@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "core/base/tick_record.h"
+#include "study/store/order_rows.h"
 #include "study/store/sqlite.h"
 
 namespace passung::store {
@@ -105,6 +106,7 @@ Unfinished readUnfinished(const Database& database, const std::string& session_i
     session.station = find.text(8);
     find.reset();
     readTrials(database, session);
+    session.steps = readOrderSteps(database, session.session_id);
     readForms(database, session);
     return session;
 }

@@ -23,6 +23,7 @@ struct Unfinished {
     std::int64_t used_ns = 0;     // session time up to there
     std::vector<design::PlannedTrial> trials;
     std::vector<session::StoredAttempt> attempts;  // ascending by time
+    std::vector<session::OrderStep> steps;         // the same
     std::vector<session::StoredForm> forms;        // the same
 };
 

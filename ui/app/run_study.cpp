@@ -102,14 +102,13 @@ public:
         auto writer = store_.resumeSession(start, session.used_ns);
         if (!writer) return writer.errors();
 
-        auto resumed = session::resumption(plan_, session.trials, session.attempts, session.crashed, session.forms);
+        auto resumed =
+            session::resumption(plan_, session.trials, session.attempts, session.crashed, session.forms, session.steps);
         resumed.start_ns = session.used_ns;
         (*writer)->appendEvent(
             {.attempt = {}, .t_ns = session.used_ns, .source = "session", .event = "session_resumed"});
-        for (const session::AttemptId attempt : resumed.discounted) {
-            const auto done = (*writer)->invalidateAttempt(attempt, "done again after an interruption");
-            if (!done) return done.errors();
-        }
+        resumed.change.reason = "done again after an interruption";
+        if (const auto done = (*writer)->reorder(resumed.change); !done) return done.errors();
         return perform({plan_, session.trials, session.participant, plan_.seed, measured(), session.ordinal,
                         options_.wait, std::move(resumed)},
                        apparatus, **writer);

@@ -54,12 +54,30 @@ TEST(Agenda, GoesBackTrialByTrialInTheOrderInWhichTheyEnded) {
     agenda.end(Then::Done);
     agenda.end(Then::Done);
     EXPECT_EQ(agenda.last(), 2u);
-    agenda.goBack();
+    agenda.bring(agenda.last());
     EXPECT_EQ(rest(agenda), (Order{2, 0}));
-    agenda.goBack();
+    agenda.bring(agenda.last());
     EXPECT_EQ(rest(agenda), (Order{1, 2, 0}));
     EXPECT_FALSE(agenda.canGoBack());
     EXPECT_EQ(agenda.finished(), 0u);
+}
+
+TEST(Agenda, WhatIsNotNeededIsPassedOverAndComesAtItsPlaceWhenItIs) {
+    // Truth: closed form
+    Agenda agenda(plan({4, 1}));
+    const auto leaveOut = [&](std::int64_t index) {
+        agenda.leaveOut([&](const design::PlannedTrial& trial) { return trial.trial_index == index; });
+    };
+    leaveOut(1);
+    agenda.end(Then::RepeatAtBlockEnd);
+    EXPECT_EQ(rest(agenda), (Order{2, 3, 0, 4}));
+    EXPECT_EQ(agenda.toDo().size(), 4u);
+    EXPECT_EQ(agenda.finished(), 0u);
+    EXPECT_EQ(agenda.leftOut(), 1u);
+    leaveOut(-1);
+    EXPECT_EQ(rest(agenda), (Order{1, 2, 3, 0, 4}));
+    agenda.leaveOut([](const design::PlannedTrial&) { return true; });
+    EXPECT_TRUE(agenda.empty());
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ public:
         forms.push_back(run.form.id());
         return Done{};
     }
-    Result<Done> invalidateAttempt(AttemptId, const std::string&) override { return Done{}; }
+    Result<Done> reorder(const Reordering&) override { return Done{}; }
     Result<Done> addNote(const std::string&, const std::string&, std::int64_t) override { return Done{}; }
     Result<Done> finishSession(bool, std::int64_t) override { return Done{}; }
 };

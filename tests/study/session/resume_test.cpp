@@ -32,7 +32,7 @@ protected:
         attempts_.push_back({AttemptId{static_cast<std::int64_t>(attempts_.size() + 1)}, place, number, outcome,
                              valid && outcome.has_value()});
     }
-    Resumption resumed(bool crashed = true) const { return resumption(plan_, trials_, attempts_, crashed); }
+    Resumption resumed(bool crashed = true) const { return resumption(plan_, trials_, attempts_, crashed, {}, steps_); }
     static Order rest(Agenda agenda) {
         Order order;
         for (; !agenda.empty(); agenda.end(Then::Done)) order.push_back(agenda.next());
@@ -42,6 +42,7 @@ protected:
     protocol::StudyPlan plan_;
     std::vector<design::PlannedTrial> trials_;
     std::vector<StoredAttempt> attempts_;
+    std::vector<OrderStep> steps_;
 };
 
 TEST_F(ResumeTest, GoesOnWithTheTrialThatCrashed) {
@@ -78,8 +79,8 @@ TEST_F(ResumeTest, KnowsWhatWasFinishedAndWhichFormsWereStoredSince) {
     EXPECT_EQ(with().answered.size(), 4u) << "before the first trial";
 }
 
-TEST_F(ResumeTest, AnAbortedAttemptIsCutOffOnlyWhereSomebodyEndedTheSession) {
-    // Truth: closed form: an attempt that aborted by itself is over in the uninterrupted session too.
+TEST_F(ResumeTest, OfAnOlderProgramAnAbortedAttemptIsCutOffOnlyWhereSomebodyEndedTheSession) {
+    // Truth: closed form: no step tells of it. One that aborted by itself was over in the uninterrupted session too.
     had(0, Outcome::Aborted, false);
     EXPECT_EQ(rest(resumed(true).agenda).front(), 1u);
     EXPECT_EQ(rest(resumed(false).agenda).front(), 0u);
@@ -105,11 +106,49 @@ TEST_F(ResumeTest, TheProtocolMayWantPracticeOrTheBlockAnew) {
     had(4, std::nullopt);
     plan_.resume.redo_practice = true;
     EXPECT_EQ(rest(resumed().agenda), (Order{0, 1, 4, 5}));
-    EXPECT_EQ(resumed().discounted, (std::vector<AttemptId>{AttemptId{2}, AttemptId{1}}));
+    EXPECT_EQ(resumed().change.discounted, (std::vector<AttemptId>{AttemptId{2}, AttemptId{1}}));
     plan_.resume = {.restart_block = true};
     EXPECT_EQ(rest(resumed().agenda), (Order{2, 3, 4, 5}));
-    EXPECT_EQ(resumed().discounted, (std::vector<AttemptId>{AttemptId{4}, AttemptId{3}}));
+    EXPECT_EQ(resumed().change.discounted, (std::vector<AttemptId>{AttemptId{4}, AttemptId{3}}));
     EXPECT_FALSE(resumed().past[2].counting);
+}
+
+TEST_F(ResumeTest, WhatTheStepsTellGoesBeforeTheProtocol) {
+    // Truth: closed form: trial 0 was stopped and is done again, 1 is left out, 2 is gone back to.
+    had(0, Outcome::Aborted, false);
+    had(2, Outcome::Success, false);
+    const auto by = Decider::Experimenter;
+    steps_ = {{0, Then::RepeatNow, by, AttemptId{1}}, {1, Then::Done, by, {}}};
+    steps_.push_back({2, Then::Done, Decider::Protocol, AttemptId{2}});
+    steps_.push_back({2, Then::RepeatNow, by, {}});
+    EXPECT_EQ(rest(resumed().agenda), (Order{2, 0, 3, 4, 5}));
+    EXPECT_EQ(resumed().past[0].judged, 0);
+    EXPECT_EQ(resumed().past[2].judged, 1);
+    EXPECT_TRUE(resumed().change.steps.empty()) << "all is told already";
+    EXPECT_TRUE(resumed().finished.empty());
+}
+
+TEST_F(ResumeTest, OfAnAttemptMadeInvalidWhenNoSessionRanTheProtocolDecides) {
+    // Truth: closed form
+    had(0, Outcome::Success, false);
+    steps_ = {{0, Then::Done, Decider::Protocol, AttemptId{1}}};
+    EXPECT_EQ(rest(resumed().agenda), (Order{1, 2, 3, 4, 5}));
+    plan_.blocks[0].on_invalid = Repeat::AtBlockEnd;
+    EXPECT_EQ(rest(resumed().agenda), (Order{1, 0, 2, 3, 4, 5}));
+    steps_[0].decided_by = Decider::Experimenter;
+    EXPECT_EQ(rest(resumed().agenda), (Order{1, 2, 3, 4, 5})) << "left out while it ran";
+}
+
+TEST_F(ResumeTest, WhereNothingIsLeftWhatTheSessionLacksIsOffered) {
+    // Truth: closed form: of the main block 3 was left out and 4 does not count; 0, of practice, is let be.
+    for (const std::size_t place : {0, 1, 2, 4}) had(place, Outcome::Success, place != 0 && place != 4);
+    steps_ = {{3, Then::Done, Decider::Experimenter, {}}};
+    for (const StoredAttempt& attempt : attempts_)
+        steps_.push_back({static_cast<std::int64_t>(attempt.place), Then::Done, Decider::Protocol, attempt.id});
+    EXPECT_EQ(rest(resumed().agenda), Order{5});
+    had(5, Outcome::Success);
+    EXPECT_EQ(rest(resumed().agenda), (Order{3, 4}));
+    EXPECT_EQ(resumed().change.steps.size(), 3u) << "that 5 ended, and both offers";
 }
 
 TEST_F(ResumeTest, ASessionThatIsTooOldDoesNotGoOn) {

@@ -87,37 +87,42 @@ private:
 
 class RememberingSink : public TrialSink {
 public:
-    explicit RememberingSink(Log& log) : log_(log) {}
+    explicit RememberingSink(Log& log) : log_(&log) {}
 
     std::size_t fail_start_at = SIZE_MAX, fail_finish_at = SIZE_MAX;  // index of the attempt
     std::vector<AttemptStart> starts;
     std::vector<AttemptEnd> ends;
+    std::vector<AttemptId> ended;  // one for each of them
     std::vector<Event> events;
     std::vector<std::pair<AttemptId, std::string>> invalidated;
+    std::vector<OrderStep> steps;
     std::vector<std::string> notes;
     std::map<AttemptId, std::vector<std::int64_t>> ticks;
     std::optional<bool> complete;
     std::int64_t session_end_ns = 0;
 
     Result<AttemptId> startAttempt(const AttemptStart& start) override {
-        log_.push_back("startAttempt");
+        log_->push_back("startAttempt");
         if (starts.size() == fail_start_at) return Error{"the database is locked", {}, 0, 0, {}, {}};
         starts.push_back(start);
         return AttemptId{static_cast<std::int64_t>(starts.size())};
     }
     void appendRecords(AttemptId attempt, std::span<const TickRecord> records) override {
-        if (log_.back() != "appendRecords") log_.push_back("appendRecords");
+        if (log_->back() != "appendRecords") log_->push_back("appendRecords");
         for (const TickRecord& record : records) ticks[attempt].push_back(record.tick);
     }
     void appendEvent(const Event& event) override { events.push_back(event); }
-    Result<Done> finishAttempt(AttemptId, const AttemptEnd& end) override {
-        log_.push_back("finishAttempt");
+    Result<Done> finishAttempt(AttemptId attempt, const AttemptEnd& end) override {
+        log_->push_back("finishAttempt");
         if (ends.size() == fail_finish_at) return Error{"the disk is full", {}, 0, 0, {}, {}};
         ends.push_back(end);
+        ended.push_back(attempt);
+        steps.push_back({starts.back().trial_index, end.then, end.decided_by, attempt});
         return Done{};
     }
-    Result<Done> invalidateAttempt(AttemptId attempt, const std::string& reason) override {
-        invalidated.emplace_back(attempt, reason);
+    Result<Done> reorder(const Reordering& change) override {
+        for (const AttemptId attempt : change.discounted) invalidated.emplace_back(attempt, change.reason);
+        steps.insert(steps.end(), change.steps.begin(), change.steps.end());
         return Done{};
     }
     Result<Done> addNote(const std::string& author, const std::string& text, std::int64_t) override {
@@ -125,18 +130,18 @@ public:
         return Done{};
     }
     Result<Done> storeQuestionnaire(const QuestionnaireRun& run) override {
-        log_.push_back("storeQuestionnaire " + run.form.planned.definition.key);
+        log_->push_back("storeQuestionnaire " + run.form.planned.definition.key);
         return Done{};
     }
     Result<Done> finishSession(bool all, std::int64_t end_ns) override {
-        log_.push_back("finishSession");
+        log_->push_back("finishSession");
         complete = all;
         session_end_ns = end_ns;
         return Done{};
     }
 
 private:
-    Log& log_;
+    Log* log_;
 };
 
 /// `count` ticks; the hand reaches the start pose at `start`, the tip rests on the bore's ground from `inserted` on.

@@ -164,6 +164,29 @@ TEST_F(StaircasesTest, AnAttemptThatDoesNotCountTellsNothing) {
     EXPECT_EQ(sink_.ends[1].staircase->positive, false);
 }
 
+TEST_F(StaircasesTest, ATrialThatGivesItsTrackNoAnswerIsRepeatedUpToTheMaximum) {
+    // Truth: closed form: ticks are lost in the first attempts at the first two trials, in all three at the third; no
+    // rule of the block repeats them. The track that lacks the third's answer never finishes.
+    const auto lost = [] {
+        Records records = trialOf('1');
+        records.erase(records.begin() + 300);
+        return records;
+    };
+    plan_.staircases[0].catch_trials = 0;
+    trials_.resize(16);
+    std::deque<Records> scripts(24, trialOf('1'));
+    for (const std::size_t i : {0, 1, 2, 18, 19}) scripts[i] = lost();
+    apparatus_.scripts = scripts;
+    Session session({plan_, trials_, "P001", 7, false}, apparatus_, sink_, {});
+    ASSERT_TRUE(session.run());
+    std::vector<std::int64_t> ends;
+    for (std::size_t i = 16; i < sink_.starts.size(); ++i)
+        ends.push_back(sink_.starts[i].trial_index * 10 + sink_.starts[i].attempt_no);
+    EXPECT_EQ(ends, (std::vector<std::int64_t>{2, 12, 22, 23}));
+    EXPECT_FALSE(session.isWhole());
+    EXPECT_EQ(sink_.complete, false);
+}
+
 TEST_F(StaircasesTest, AnAnswerThatIsTakenBackIsForgotten) {
     // Truth: closed form: the track asks for what it had asked for before.
     Staircases staircases(plan_, "P001", 7, 1);
