@@ -33,6 +33,7 @@ void sweepProxy(const TickModel& model, TickState& state, TickFrame& frame) noex
     double reach = nextReach(model, state);
     double repair = kRepair * model.finest_cell;
     ProxyWay way(model);
+    const double between = std::max(margins.relieve, overlap(state));
     bool arrived = false, whole = false;  // whole: the last step was all that was allowed
     for (int sweep = 0; sweep <= kSweeps; ++sweep) {
         const Motion wanted = unconstrainedMotion(model, state.X_WG, frame.X_WH);
@@ -42,7 +43,9 @@ void sweepProxy(const TickModel& model, TickState& state, TickFrame& frame) noex
         if (arrived) break;
         const double accepted = std::max(margins.accept, before + 0.1 * margins.keep);
         if (sweep < kSweeps && state.room > path) {
-            if (way.bentBy(wanted) > margins.relieve) break;
+            if (!way.goesOn(model, wanted, path)) break;
+            if (way.bentBy(wanted) > margins.relieve && cutsCorner(model, state, frame, X_before, frame.X_WH, between))
+                break;
             frame.iterations = static_cast<std::uint32_t>(sweep + 1);
             arrived = arriveFreely(model, state, frame, path, reach, accepted);
             if (arrived) break;
@@ -59,16 +62,21 @@ void sweepProxy(const TickModel& model, TickState& state, TickFrame& frame) noex
         const bool on_the_way = whole && before <= margins.relieve;
         arrived = step < (on_the_way ? std::max(kEnough * model.finest_cell, kRest * way.length()) : kStill);
         if (arrived && sweep == 0) state.rubbing = allowed.rubbing;
-        // Round a bend it goes on in the next tick.
-        const bool bends = way.bentBy(share * allowed.u) > margins.relieve;
-        arrived = arrived || (on_the_way && bends);
-        if (arrived || bends) break;
+        const bool stops = !way.goesOn(model, share * allowed.u, step);
+        arrived = arrived || (on_the_way && stops);
+        if (arrived || stops) break;
         if (sweep == kSweeps) break;
         frame.iterations = static_cast<std::uint32_t>(sweep + 1);
+        const Pose X_here = state.X_WG;
         const double made =
             makeStep(model, state, frame, share * allowed.u, next_reach, std::max(next_reach, path), accepted);
         if (made == 0.0) break;
         way.add(made * share * allowed.u);
+        if (way.bentBy(Motion::Zero()) > margins.relieve &&
+            cutsCorner(model, state, frame, X_before, state.X_WG, between)) {
+            look(model, state, frame, X_here, reach, reach);
+            break;
+        }
         if (made == 1.0) state.rubbing = allowed.rubbing;
         repair = std::max(0.0, repair - std::max(0.0, before - overlap(state)));
         whole = made * share == 1.0;

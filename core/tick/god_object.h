@@ -24,8 +24,8 @@ namespace passung::tick {
 /// nothing is left that is allowed: at most kSweeps times. A step that ends with more overlap than kAccepted is halved;
 /// one with more than kRelieved is followed by another, whose rows ask for it (b_i > 0).
 ///
-/// Round a bend the way goes on in the next tick: the straight line between two ticks' poses, which is what others see
-/// of it, lies within kRelieved of it (proxy_way.h) and is as free as the way itself.
+/// Round a bend the way goes on in the next tick, unless it is fast: the straight line between two ticks' poses, which
+/// is what others see of it, lies within kRelieved of it (proxy_way.h) and is as free as the way itself.
 ///
 /// Repair. A start in overlap is no special case: what is in overlap has to come to φ ≥ -max(keep, d - kRepair · s), d
 /// the deepest overlap when the tick begins. The deepest points come out first, at kRepair · s a tick, so that the

@@ -92,6 +92,7 @@ void moveProxy(const TickModel& model, TickState& state, TickFrame& frame) noexc
     const double left = leftOf(model, overlap(state));
     double reach = nextReach(model, state);
     ProxyWay way(model);
+    const double between = std::max(model.margins.relieve, overlap(state));
     bool arrived = false;
     for (int sub_step = 0; sub_step < kSubSteps; ++sub_step) {
         const Motion wanted = unconstrainedMotion(model, state.X_WG, frame.X_WH);
@@ -101,7 +102,12 @@ void moveProxy(const TickModel& model, TickState& state, TickFrame& frame) noexc
         frame.iterations = static_cast<std::uint32_t>(sub_step + 1);
         const Pose X_here = state.X_WG;
         const double accepted = std::max(model.margins.accept, overlap(state));
-        if (state.room > path && way.bentBy(wanted) > model.margins.relieve) break;
+        if (state.room > path) {
+            if (!way.goesOn(model, wanted, path)) break;
+            if (way.bentBy(wanted) > model.margins.relieve &&
+                cutsCorner(model, state, frame, X_before, frame.X_WH, between))
+                break;
+        }
         // Nothing in the way: arrive.
         arrived = state.room > path && arriveFreely(model, state, frame, path, reach, accepted);
         if (arrived) break;
@@ -114,7 +120,7 @@ void moveProxy(const TickModel& model, TickState& state, TickFrame& frame) noexc
         if (arrived) state.rubbing = allowed.rubbing;  // at rest
         if (arrived) break;
         if (step_path > known) u *= known / step_path;
-        if (way.bentBy(u) > model.margins.relieve) break;  // round a bend it goes on in the next tick
+        if (!way.goesOn(model, u, step_path)) break;
         const double next_reach = std::clamp(kReachGrowth * std::min(step_path, path), reach, kLongestStep * s);
         bool good = false, whole = step_path <= known;
         for (int half = 0; half <= kHalvings; ++half, u *= 0.5) {
@@ -126,10 +132,14 @@ void moveProxy(const TickModel& model, TickState& state, TickFrame& frame) noexc
             frame.status |= kStepRejected;
             whole = false;
         }
+        if (good) {
+            way.add(unconstrainedMotion(model, X_here, state.X_WG));
+            good = way.bentBy(Motion::Zero()) <= model.margins.relieve ||
+                   !cutsCorner(model, state, frame, X_before, state.X_WG, between);
+        }
         arrived = good && whole;  // the whole constrained motion was made
         if (!good) look(model, state, frame, X_here, next_reach, next_reach);
         if (!good || whole) break;
-        way.add(unconstrainedMotion(model, X_here, state.X_WG));
         reach = next_reach;
     }
     if (!arrived) frame.status |= kIterationLimit;

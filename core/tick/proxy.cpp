@@ -94,6 +94,16 @@ void look(const TickModel& model, TickState& state, TickFrame& frame, const Pose
     state.room = std::max(reach, answer.lower_bound);
 }
 
+double overlapBetween(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_from, const Pose& X_to,
+                      double share) noexcept {
+    const Pose X{X_from.q.slerp(share, X_to.q), X_from.p + share * (X_to.p - X_from.p)};
+    state.scratch.clear();
+    const QueryRequest request{.collect_below = -1e300, .facing = model.contact.two_way, .edges = true};
+    const QueryAnswer answer = queryObstacles(model, X, request, state.workspace, state.scratch);
+    account(answer, frame);
+    return std::max(0.0, -answer.phi);
+}
+
 void lookAround(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_WG) noexcept {
     const double reach = kLongestStep * model.finest_cell;
     look(model, state, frame, X_WG, reach, reach);

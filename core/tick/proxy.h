@@ -33,6 +33,11 @@ bool isInside(const ContactPoint& contact) noexcept;
 void look(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_WG, double reach,
           double search) noexcept;
 
+/// Of the deepest point at the pose `share` of the way between two [m], ≥ 0; the proxy and what is known of it stay.
+/// rt-safe.
+double overlapBetween(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_from, const Pose& X_to,
+                      double share) noexcept;
+
 /// What is asked around the proxy when nothing is known of it yet: all contacts that any step could reach, and where
 /// there is none the proof of it. rt-safe.
 void lookAround(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_WG) noexcept;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/tick/proxy.h"
+
 namespace passung::tick {
 
 ProxyWay::ProxyWay(const TickModel& model) noexcept : turn_scale_(model.shell->reach() / model.metric_radius) {}
@@ -31,6 +33,20 @@ double ProxyWay::bentBy(const Motion& next) const noexcept {
         farthest = std::max(farthest, (joint_[i] - share * line).norm());
     }
     return farthest;
+}
+
+bool ProxyWay::goesOn(const TickModel& model, const Motion& next, double length) const noexcept {
+    const double bend = bentBy(next), s = model.finest_cell;
+    return bend <= model.margins.relieve || (length > kLongestStep * s && bend <= kBent * s);
+}
+
+bool cutsCorner(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_from, const Pose& X_to,
+                double accepted) noexcept {
+    for (int place = 1; place <= kPlaces; ++place) {
+        const double share = static_cast<double>(place) / (kPlaces + 1);
+        if (overlapBetween(model, state, frame, X_from, X_to, share) > accepted) return true;
+    }
+    return false;
 }
 
 }  // namespace passung::tick

@@ -7,12 +7,17 @@
 
 namespace passung::tick {
 
+inline constexpr double kBent = 0.25;  // of a fast way in one tick, per cell
+inline constexpr int kPlaces = 7;
+
 /// The way of a proxy within one tick, straight from joint to joint, in a metric in which no point of the held part
 /// moves farther than √2 times it.
 ///
 /// What others see of it is the straight line between its ends, which knows nothing of what the way goes round. No
 /// place of that line is farther from the way than the joint that is farthest from it: the way's foot on it comes past
-/// every place, and the distance from a line is greatest at a joint.
+/// every place, and the distance from a line is greatest at a joint. So round a bend of more than the margin `relieve`
+/// a proxy goes on in the next tick; but where it has more than half a cell to go, because the hand is fast, in this
+/// one, up to a bend of kBent, if the line does not overlap at kPlaces places.
 class ProxyWay {
 public:
     explicit ProxyWay(const TickModel& model) noexcept;
@@ -21,6 +26,8 @@ public:
     double length() const noexcept { return length_; }
     /// How far from the way the straight line would lie if the way ended after `next`.
     double bentBy(const Motion& next) const noexcept;
+    /// Whether it may go on with `next`, the beginning of a motion of `length`.
+    bool goesOn(const TickModel& model, const Motion& next, double length) const noexcept;
 
 private:
     static constexpr std::size_t kMostJoints = 16;
@@ -30,5 +37,10 @@ private:
     std::array<Motion, kMostJoints> joint_;
     std::size_t joints_ = 0;
 };
+
+/// True if the straight line from `X_from`, where the tick began, to `X_to` overlaps by more than `accepted` at one of
+/// kPlaces places between its ends; for ways that bend and yet go on. rt-safe.
+bool cutsCorner(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_from, const Pose& X_to,
+                double accepted) noexcept;
 
 }  // namespace passung::tick
