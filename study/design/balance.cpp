@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "study/design/permutations.h"
-#include "study/design/williams.h"
 
 namespace passung::design {
 namespace {
@@ -39,21 +38,32 @@ std::string nameOf(const Design& design, const Wheel& wheel) {
 
 }  // namespace
 
-std::vector<std::string> balanceLines(const Design& design, std::span<const std::size_t> slots) {
-    std::vector<std::string> lines;
+std::vector<WheelBalance> balancesOf(const Design& design, std::span<const std::size_t> slots) {
+    std::vector<WheelBalance> all;
     const auto wheels = wheelsOf(design);
     for (std::size_t w = 0; w < wheels.size() && !slots.empty(); ++w) {
         if (wheels[w].items < 2) continue;
         const auto rows = rowsWith(wheels[w]);
         Square taken;
         for (const std::size_t slot : slots) taken.push_back(rows[rowOf(wheels, w, slot)]);
-        const Balance balance = balanceOf(taken);
-        const bool assigned = wheels[w].what == Wheel::What::Assignment;
-        const bool even = balance.positions.even() && (assigned || balance.neighbours.even());
-        lines.push_back(fmt::format("{} ({} rows): {} counts {}{}{}", nameOf(design, wheels[w]), rows.size(),
-                                    assigned ? "pair" : "position", rangeText(balance.positions),
-                                    assigned ? "" : ", neighbour counts " + rangeText(balance.neighbours),
-                                    even ? "" : ", not balanced"));
+        WheelBalance of{wheels[w], rows.size(), balanceOf(taken)};
+        of.even =
+            of.counts.positions.even() && (wheels[w].what == Wheel::What::Assignment || of.counts.neighbours.even());
+        all.push_back(of);
+    }
+    return all;
+}
+
+std::size_t evenNumber(const Design& design) { return sequencesOf(design) * groupsOf(design).size(); }
+
+std::vector<std::string> balanceLines(const Design& design, std::span<const std::size_t> slots) {
+    std::vector<std::string> lines;
+    for (const WheelBalance& of : balancesOf(design, slots)) {
+        const bool assigned = of.wheel.what == Wheel::What::Assignment;
+        lines.push_back(fmt::format("{} ({} rows): {} counts {}{}{}", nameOf(design, of.wheel), of.rows,
+                                    assigned ? "pair" : "position", rangeText(of.counts.positions),
+                                    assigned ? "" : ", neighbour counts " + rangeText(of.counts.neighbours),
+                                    of.even ? "" : ", not balanced"));
     }
     return lines;
 }

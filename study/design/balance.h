@@ -5,8 +5,23 @@
 #include <vector>
 
 #include "study/design/design.h"
+#include "study/design/williams.h"
 
 namespace passung::design {
+
+/// How even the orders of some slots are in one thing that takes turns.
+struct WheelBalance {
+    Wheel wheel;
+    std::size_t rows = 0;  // of the wheel's list of orders
+    Balance counts;        // of an assignment `positions` alone, which are its pairs
+    bool even = false;
+};
+
+/// Of everything that takes turns, for participants with these slots; none without slots.
+std::vector<WheelBalance> balancesOf(const Design& design, std::span<const std::size_t> slots);
+
+/// How many participants show all rows in all groups equally often.
+std::size_t evenNumber(const Design& design);
 
 /// How even the orders of the participants with these slots are: a line for everything that takes turns, with smallest
 /// and largest counts of positions and direct neighbours (of an assignment: of its pairs).

@@ -11,6 +11,7 @@
 #include "study/protocol/duration.h"
 #include "study/protocol/participant.h"
 #include "study/protocol/planned_questionnaires.h"
+#include "study/session/order_rows.h"
 #include "study/session/participant_order.h"
 #include "study/session/staircase_text.h"
 
@@ -106,30 +107,17 @@ std::string questionnairesText(const protocol::StudyPlan& plan) {
 
 /// One participant's session: the condition numbers of each pass, blocks parted by |, catch trials marked with a star;
 /// passes that repeat the one before are counted.
-std::string orderText(const protocol::StudyPlan& plan, const std::vector<design::PlannedTrial>& trials) {
+std::string orderText(const std::vector<OrderedBlock>& order) {
     std::string text;
-    for (std::size_t next = 0; next < trials.size();) {
-        const auto block = trials[next].block_index;
-        const bool one_pass = plan.blocks[static_cast<std::size_t>(block)].order == protocol::BlockOrder::Shuffled;
+    for (const OrderedBlock& block : order) {
         std::vector<std::string> passes;
-        std::vector<int> times;
-        while (next < trials.size() && trials[next].block_index == block) {
-            const int repetition = trials[next].repetition;
-            std::string pass;
-            for (; next < trials.size() && trials[next].block_index == block &&
-                   (one_pass || trials[next].repetition == repetition);
-                 ++next)
-                pass += fmt::format("{}{}{}", pass.empty() ? "" : " ", trials[next].condition + 1,
-                                    trials[next].phase == "catch" ? "*" : "");
-            if (!passes.empty() && passes.back() == pass) {
-                ++times.back();
-                continue;
-            }
-            passes.push_back(std::move(pass));
-            times.push_back(1);
+        for (const OrderedPass& pass : block.passes) {
+            std::string& written = passes.emplace_back();
+            for (const OrderedTrial& trial : pass.trials)
+                written += fmt::format("{}{}{}", written.empty() ? "" : " ", trial.condition + 1,
+                                       trial.catch_trial ? "*" : "");
+            if (pass.times > 1) written += fmt::format(" (x{})", pass.times);
         }
-        for (std::size_t i = 0; i < passes.size(); ++i)
-            if (times[i] > 1) passes[i] += fmt::format(" (x{})", times[i]);
         text += fmt::format("{}{}", text.empty() ? "" : " | ", fmt::join(passes, ", "));
     }
     return text;
@@ -140,11 +128,6 @@ bool isPlainSquare(const design::Design& design) {
     const auto wheels = design::wheelsOf(design);
     return wheels.size() == 1 && wheels[0].what == design::Wheel::What::Conditions && !wheels[0].factor &&
            wheels[0].order == design::Order::Williams && design::groupsOf(design).size() == 1;
-}
-
-/// How many participants make the design even.
-std::size_t wholeNumber(const design::Design& design) {
-    return design::sequencesOf(design) * design::groupsOf(design).size();
 }
 
 /// The code that the program gives the i-th participant, from 0.
@@ -159,10 +142,10 @@ std::string codeOf(std::size_t i, std::size_t stations) {
 
 std::string describeBalance(const protocol::StudyPlan& plan, const std::vector<DesignPlace>& places) {
     const auto design = protocol::designOf(plan);
-    if (places.empty() || wholeNumber(design) < 2) return "";
+    if (places.empty() || design::evenNumber(design) < 2) return "";
     const auto groups = protocol::groupNames(plan);
     std::string text = fmt::format("{}; all rows and groups meet equally often with multiples of {}.\n",
-                                   design::counted(places.size(), "participant"), wholeNumber(design));
+                                   design::counted(places.size(), "participant"), design::evenNumber(design));
     for (std::size_t group = 0; group < groups.size(); ++group) {
         std::vector<std::size_t> slots;
         for (const DesignPlace& place : places)
@@ -178,7 +161,7 @@ std::vector<std::string> planWarnings(const protocol::StudyPlan& plan) {
     std::vector<std::string> warnings = plan.warnings;
     if (plan.conditions.empty()) return warnings;
     const auto design = protocol::designOf(plan);
-    const std::size_t whole = wholeNumber(design);
+    const std::size_t whole = design::evenNumber(design);
     if (static_cast<std::size_t>(plan.participants) % whole != 0)
         warnings.push_back(fmt::format(
             "study.participants = {} is not a multiple of the {}: orders will not be balanced", plan.participants,
@@ -208,7 +191,8 @@ Result<std::string> describePlan(const protocol::StudyPlan& plan, int participan
             const auto trials = planTrials(plan, places[i], code, session);
             if (!trials) return trials.errors();
             text += fmt::format("  {}{}{}  {}\n", code, groups.size() > 1 ? " " + groups[places[i].group] : "",
-                                sessions > 1 ? fmt::format(", session {}", session) : "", orderText(plan, *trials));
+                                sessions > 1 ? fmt::format(", session {}", session) : "",
+                                orderText(orderOf(plan, *trials)));
             auto& most = longest[static_cast<std::size_t>(session - 1)];
             most = std::max(most, protocol::longestDuration(plan, *trials));
             count += trials->size();
