@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 
 namespace passung::protocol {
 
@@ -16,6 +17,12 @@ const char* participantKindName(ParticipantKind kind) {
             break;
     }
     return "simulated";
+}
+
+std::optional<ParticipantKind> participantKindNamed(std::string_view name) {
+    for (const auto kind : {ParticipantKind::Real, ParticipantKind::Pilot, ParticipantKind::Simulated})
+        if (name == participantKindName(kind)) return kind;
+    return std::nullopt;
 }
 
 const std::vector<std::string>& participantKindNames() {
@@ -48,6 +55,13 @@ std::optional<ParticipantKind> kindOfCode(std::string_view code) {
 
 std::string participantCode(ParticipantKind kind, std::int64_t number) {
     return fmt::format("{}{:03}", codeLetter(kind), number);
+}
+
+std::int64_t participantNumber(std::string_view code) {
+    const std::size_t digits = code.find_last_not_of("0123456789") + 1;
+    std::int64_t number = 0;
+    std::from_chars(code.data() + digits, code.data() + code.size(), number);
+    return number;
 }
 
 bool isParticipantCode(std::string_view code) {

@@ -12,6 +12,8 @@ namespace passung::protocol {
 enum class ParticipantKind { Real, Pilot, Simulated };
 const char* participantKindName(ParticipantKind kind);  // "real", "pilot", "simulated": as stored
 
+std::optional<ParticipantKind> participantKindNamed(std::string_view name);
+
 /// The names of all kinds.
 const std::vector<std::string>& participantKindNames();
 
@@ -23,6 +25,9 @@ std::optional<ParticipantKind> kindOfCode(std::string_view code);
 
 /// "P001" for number 1; grows beyond three digits.
 std::string participantCode(ParticipantKind kind, std::int64_t number);
+
+/// The number at the end of a code: 12 of P012.
+std::int64_t participantNumber(std::string_view code);
 
 /// A code names files: a capital letter first, a digit last, only capital letters, digits, '_' and '-' between, at most
 /// 32 characters.

@@ -1,6 +1,5 @@
 #include "study/store/participant_rows.h"
 
-#include <charconv>
 #include <stdexcept>
 
 #include "study/store/audit.h"
@@ -19,7 +18,7 @@ void refuseCodeOfNoStation(const std::string& code, protocol::ParticipantKind ki
 
 void refuseErasedCode(const Database& database, const std::string& code, protocol::ParticipantKind kind) {
     const std::int64_t to = erasedCodesTo(database, kind);
-    if (codeNumber(code) <= to)
+    if (protocol::participantNumber(code) <= to)
         throw std::runtime_error("participant code " + code +
                                  " may be that of somebody who was erased: take one with a number above " +
                                  std::to_string(to));
@@ -29,13 +28,6 @@ void refuseErasedCode(const Database& database, const std::string& code, protoco
 
 std::string codeStart(protocol::ParticipantKind kind, const Station& station) {
     return protocol::codeLetter(kind) + (station.count > 1 ? station.name : "");
-}
-
-std::int64_t codeNumber(const std::string& code) {
-    const std::size_t digits = code.find_last_not_of("0123456789") + 1;
-    std::int64_t number = 0;
-    std::from_chars(code.data() + digits, code.data() + code.size(), number);
-    return number;
 }
 
 bool insertParticipant(const Database& database, const std::string& code, protocol::ParticipantKind wanted,

@@ -9,9 +9,6 @@
 
 namespace passung::store {
 
-/// The number at the end of a code: 12 of P012.
-std::int64_t codeNumber(const std::string& code);
-
 /// What the codes of this kind begin with at the station: P; of several stations PB.
 std::string codeStart(protocol::ParticipantKind kind, const Station& station);
 

@@ -94,6 +94,7 @@ struct ParticipantRow {
     std::optional<std::int64_t> replicate;
     std::optional<std::string> place_sha256;  // the protocol that the place is of
     std::int64_t sessions = 0;
+    std::optional<std::string> standing_by;  // what last changed the status: "withdraw", "exclude", "readmit"
 };
 
 /// A text that people are asked to agree to.

@@ -192,7 +192,9 @@ Result<std::vector<ParticipantRow>> StoreReader::participants() const {
             database_->prepare(
                 "SELECT p.participant_id, p.kind, p.status, p.status_reason, p.created_utc, d.between_group, "
                 "d.sequence_index, d.replicate, d.protocol_sha256, "
-                "(SELECT count(*) FROM session s WHERE s.participant_id=p.participant_id) "
+                "(SELECT count(*) FROM session s WHERE s.participant_id=p.participant_id), "
+                "(SELECT a.action FROM audit a WHERE json_extract(a.detail_json, '$.participant')=p.participant_id "
+                "AND a.action IN('withdraw', 'exclude', 'readmit') ORDER BY a.audit_id DESC LIMIT 1) "
                 "FROM participant p LEFT JOIN design_slot d USING(participant_id) ORDER BY p.participant_id"),
             [](const Statement& row) {
                 return ParticipantRow{row.text(0),
@@ -204,7 +206,8 @@ Result<std::vector<ParticipantRow>> StoreReader::participants() const {
                                       row.optionalInteger(6),
                                       row.optionalInteger(7),
                                       row.optionalText(8),
-                                      row.integer(9)};
+                                      row.integer(9),
+                                      row.optionalText(10)};
             });
     });
 }
@@ -215,6 +218,10 @@ Result<std::vector<ConsentClauseRow>> StoreReader::consentClauses() const {
 
 Result<std::vector<ConsentRow>> StoreReader::consents() const {
     return guarded(path_, [&] { return readConsents(*database_); });
+}
+
+Result<std::int64_t> StoreReader::erasedCodesTo(protocol::ParticipantKind kind) const {
+    return guarded(path_, [&] { return store::erasedCodesTo(*database_, kind); });
 }
 
 Result<AuditReport> StoreReader::audit() const {

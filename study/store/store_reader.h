@@ -7,6 +7,7 @@
 
 #include "core/base/result.h"
 #include "core/base/tick_record.h"
+#include "study/protocol/participant.h"
 #include "study/protocol/study_plan.h"
 #include "study/store/rows.h"
 
@@ -37,6 +38,8 @@ public:
     Result<std::vector<ParticipantRow>> participants() const;
     Result<std::vector<ConsentClauseRow>> consentClauses() const;  // protocols as above, clauses as they are asked
     Result<std::vector<ConsentRow>> consents() const;              // by participant
+    /// The highest number that a code of this kind had when somebody was last erased: nobody gets one up to it again.
+    Result<std::int64_t> erasedCodesTo(protocol::ParticipantKind kind) const;
     Result<AuditReport> audit() const;
     Result<std::vector<SessionRow>> sessions() const;
     Result<std::vector<AttemptRow>> attempts() const;
