@@ -130,6 +130,7 @@ void writeSamples(const store::StoreReader& reader, const StudyData& study, cons
                                     return gzip(samplesCsv(ticks, signals));
                                 })});
         }
+        if (options.cancelled && options.cancelled()) writer.fail({Error{.message = "the export was cancelled"}});
         if (options.progress) {
             options.progress(static_cast<double>(i + 1) / static_cast<double>(study.attempts.size()));
         }

@@ -13,6 +13,8 @@ struct ExportOptions {
     bool samples = true;  // every recorded tick: some 100 kB per second of a trial
     /// Called now and then with the share that is done, 0 … 1.
     std::function<void(double)> progress;
+    /// Asked as often: true ends the export, which then leaves nothing; empty: never.
+    std::function<bool()> cancelled = {};
 };
 
 struct ExportReport {
