@@ -49,13 +49,15 @@ double Camera::metresPerPixel(double height_px) const {
     return 2.0 * (X_WC.p - centre).norm() * std::tan(0.5 * opening) / height_px;
 }
 
-Pose shownPose(const DrawnScene& scene, const TickRecord& record) {
-    const bool proxy = scene.shown == protocol::ShownPose::Proxy;
+Pose poseOf(const DrawnScene& scene, const TickRecord& record, protocol::ShownPose which) {
+    const bool proxy = which == protocol::ShownPose::Proxy;
     const auto& p = proxy ? record.proxy_position_m : record.hand_position_m;
     const auto& q = proxy ? record.proxy_quaternion : record.hand_quaternion;
     const Eigen::Quaternionf rotation(q[0], q[1], q[2], q[3]);
     return {rotation.cast<double>().normalized(), Vec3(p[0], p[1], p[2]) + scene.held_offset};
 }
+
+Pose shownPose(const DrawnScene& scene, const TickRecord& record) { return poseOf(scene, record, scene.shown); }
 
 Result<std::shared_ptr<const ShadedMesh>> SceneArtist::surfaceOf(const model::PartSpec& part) {
     std::string key;

@@ -43,6 +43,8 @@ struct DrawnScene {
     Camera camera;
 };
 
+/// Where either pose of the held part is drawn in a tick.
+Pose poseOf(const DrawnScene& scene, const TickRecord& record, protocol::ShownPose which);
 /// Where the held part is drawn in a tick.
 Pose shownPose(const DrawnScene& scene, const TickRecord& record);
 

@@ -47,6 +47,13 @@ Vec3 outermost(const ShadedMesh& mesh, const Pose& X_W, const Vec3& way) {
     return X_W * middle + length * way;
 }
 
+void drawForce(ParticipantView& view, const DrawnScene& scene, const TickRecord& record) {
+    const Vec3 force(record.force_N[0], record.force_N[1], record.force_N[2]);
+    view.arrow = force.norm() >= kLeastForce;
+    view.arrow_way = kArrowPerNewton * force;
+    if (view.arrow) view.arrow_from = outermost(*scene.parts[scene.held].mesh, view.X_WHeld, force.normalized());
+}
+
 }  // namespace
 
 ParticipantView participantView(const Run& run, bool feels) {
@@ -70,10 +77,21 @@ ParticipantView participantView(const Run& run, bool feels) {
     const bool task = view.screen == ParticipantScreen::Task;
     if (task && scene->cues.visual)
         view.cue = std::min(1.0, static_cast<double>(record.hand_depth_m) / scene->cues.full_depth);
-    const Vec3 force(record.force_N[0], record.force_N[1], record.force_N[2]);
-    view.arrow = task && !feels && force.norm() >= kLeastForce;
-    view.arrow_way = kArrowPerNewton * force;
-    if (view.arrow) view.arrow_from = outermost(*scene->parts[scene->held].mesh, view.X_WHeld, force.normalized());
+    if (task && !feels) drawForce(view, *scene, record);
+    return view;
+}
+
+ParticipantView playbackView(const DrawnScene& scene, const TickRecord& record) {
+    ParticipantView view;
+    view.screen = (record.status & kEngaged) != 0 ? ParticipantScreen::Task : ParticipantScreen::ToStart;
+    view.scene = true;
+    view.X_WHeld = shownPose(scene, record);
+    view.start_mark = true;
+    view.X_WStart =
+        poseOf(scene, record,
+               scene.shown == protocol::ShownPose::Proxy ? protocol::ShownPose::Device : protocol::ShownPose::Proxy);
+    if (scene.cues.visual) view.cue = std::min(1.0, static_cast<double>(record.hand_depth_m) / scene.cues.full_depth);
+    drawForce(view, scene, record);
     return view;
 }
 

@@ -1,0 +1,206 @@
+#include "ui/presenter/roster.h"
+
+#include <gtest/gtest.h>
+
+#include "study/store/participant_desk.h"
+#include "tests/study/store/fake_study.h"
+#include "ui/presenter/leaving.h"
+
+namespace passung {
+namespace {
+
+using namespace presenter;
+using fake::require;
+using protocol::ParticipantKind;
+
+const store::Actor kActor{"experimenter", "2001-02-03T04:05:06.000Z"};
+
+protocol::StudyPlan planWithConsent() {
+    protocol::StudyPlan plan = fake::makePlan();
+    plan.consent = {{"data_use", true, {{"de", "Auswertung?"}, {"en", "Analysis?"}}},
+                    {"photos", false, {{"de", "Fotos?"}, {"en", "Photos?"}}}};
+    return plan;
+}
+
+/// A study with people in every state.
+class RosterOf : public testing::Test {
+protected:
+    RosterOf() {
+        store_ = fake::openStore(folder_ / "s.db");
+        sha256_ = require(store_->importProtocol(plan_));
+    }
+
+    void enrol(const std::string& code, ParticipantKind kind = ParticipantKind::Real) {
+        store::ParticipantDesk desk(*store_, kActor);
+        require(desk.enrol(code, kind, "2001-02-03T04:05:06.000Z"));
+    }
+
+    void consent(const std::string& code) {
+        store::ParticipantDesk desk(*store_, kActor);
+        require(desk.decide(code, {}, "en", store::Consent::Yes));
+    }
+
+    /// A session of two trials, one attempt each as far as it gets.
+    void session(const std::string& code, bool whole) {
+        require(store_->assignSlot(sha256_, code));
+        store::SessionStart start;
+        start.protocol_sha256 = sha256_;
+        start.participant = code;
+        start.ordinal = require(store_->nextOrdinal(code));
+        start.seed = plan_.seed;
+        start.session_id = store::sessionId("fake", code, start.ordinal, start.seed);
+        start.device.name = "sigma7";
+        const auto writer = require(store_->createSession(start, fake::makeTrials(plan_, 2)));
+        for (int trial = 0; trial < (whole ? 2 : 1); ++trial) require(fake::writeAttempt(*writer, trial, 100));
+        require(writer->finishSession(whole, 1'000'000'000));
+    }
+
+    Roster roster() const { return require(readRoster(plan_, require(store::StoreReader::open(folder_ / "s.db")))); }
+
+    fake::TempFolder folder_;
+    protocol::StudyPlan plan_ = planWithConsent();
+    std::unique_ptr<store::Store> store_;
+    std::string sha256_;
+};
+
+TEST_F(RosterOf, SaysOfEverybodyWhatTheyDidAndAgreedTo) {
+    // Truth: invariant, the study as it was made here.
+    for (const char* code : {"P001", "P002", "P003"}) enrol(code);
+    enrol("T001", ParticipantKind::Pilot);
+    consent("P001");
+    session("P001", true);
+    consent("P002");
+    session("P002", false);
+    store::ParticipantDesk desk(*store_, kActor);
+    require(desk.decide("P003", {"photos"}, "de", store::Consent::No));
+
+    const Roster all = roster();
+    ASSERT_EQ(all.people.size(), 4u);
+    const RosterPerson& first = *all.find("P001");
+    EXPECT_EQ(first.complete(), 1);
+    EXPECT_EQ(first.interrupted(), 0);
+    EXPECT_EQ(first.attempts(), 2);
+    EXPECT_EQ(first.consent, (std::vector{Decision::Yes, Decision::Yes}));
+    EXPECT_EQ(whyNotStart(all, first, false), PersonWhy::AllDone);
+    EXPECT_EQ(whyNotResume(first, false), PersonWhy::NothingInterrupted);
+    const RosterPerson& second = *all.find("P002");
+    EXPECT_EQ(second.interrupted(), 1);
+    ASSERT_NE(second.resumable(), nullptr);
+    EXPECT_EQ(second.resumable()->state, presenter::SessionState::Aborted);
+    EXPECT_EQ(whyNotResume(second, false), PersonWhy::Possible);
+    EXPECT_EQ(whyNotResume(second, true), PersonWhy::SessionRuns);
+    const RosterPerson& third = *all.find("P003");
+    EXPECT_EQ(third.consent, (std::vector{Decision::NotAsked, Decision::No}));
+    EXPECT_EQ(whyNotStart(all, third, false), PersonWhy::Possible);
+    EXPECT_EQ(all.find("T001")->kind, ParticipantKind::Pilot);
+
+    // With another wording nobody has agreed to it.
+    plan_.consent[0].texts = {{"en", "All of it?"}};
+    EXPECT_EQ(roster().find("P001")->consent[0], Decision::OtherWords);
+}
+
+TEST_F(RosterOf, ProposesCodesByTheStoresRulesAndRefusesOthersWithAReason) {
+    // Truth: independent program, the store's own rules.
+    EXPECT_EQ(proposedCode(emptyRoster(plan_), ParticipantKind::Real), "P001");
+    for (const char* code : {"P001", "P002", "P003"}) enrol(code);
+    for (const auto kind : {ParticipantKind::Real, ParticipantKind::Pilot})
+        EXPECT_EQ(proposedCode(roster(), kind), require(store_->nextCode(kind)));
+    store::ParticipantDesk desk(*store_, kActor);
+    require(desk.erase("P003"));
+    EXPECT_EQ(proposedCode(roster(), ParticipantKind::Real), "P004");
+    EXPECT_EQ(require(store_->nextCode(ParticipantKind::Real)), "P004");
+
+    const Roster all = roster();
+    const struct {
+        const char* code;
+        CodeWhy why;
+    } cases[] = {{"P004", CodeWhy::Possible},    {"PB17", CodeWhy::Possible},    {"P001", CodeWhy::Taken},
+                 {"T001", CodeWhy::WrongLetter}, {"P003", CodeWhy::MayBeErased}, {"", CodeWhy::NotACode},
+                 {"p004", CodeWhy::NotACode},    {"P", CodeWhy::NotACode}};
+    for (const auto& each : cases) {
+        EXPECT_EQ(whyNotEnrol(all, each.code, ParticipantKind::Real), each.why) << each.code;
+        EXPECT_EQ(static_cast<bool>(desk.enrol(each.code, ParticipantKind::Real, "")), each.why == CodeWhy::Possible)
+            << each.code;
+    }
+}
+
+TEST_F(RosterOf, ShowsThePlacesOfTheDesignAndHowEvenTheyAre) {
+    // Truth: closed form. A Williams square of 4 has 4 rows; with all of them every position counts once.
+    for (int i = 1; i <= 4; ++i) {
+        const std::string code = "P00" + std::to_string(i);
+        enrol(code);
+        consent(code);
+        session(code, true);
+        const Roster all = roster();
+        ASSERT_EQ(all.places.size(), 4u);
+        EXPECT_EQ(std::count_if(all.places.begin(), all.places.end(), [](const auto& p) { return !p.owner.empty(); }),
+                  i);
+        EXPECT_EQ(all.balance.even_number, 4u);
+        ASSERT_EQ(all.balance.groups.size(), 1u);
+        ASSERT_EQ(all.balance.groups[0].wheels.size(), 1u);
+        EXPECT_EQ(all.balance.groups[0].wheels[0].even, i == 4);
+        EXPECT_EQ(all.balance.groups[0].wheels[0].counts.positions.high, 1);
+        EXPECT_EQ(all.balance.groups[0].wheels[0].counts.positions.low, i == 4 ? 1 : 0);
+    }
+}
+
+TEST_F(RosterOf, WhoLeavesIsAskedAboutTwiceAndToldWhatItDoes) {
+    // Truth: invariant, the store's own rules.
+    enrol("P001");
+    consent("P001");
+    session("P001", false);
+    LeavingDialog dialog;
+    dialog.open(*roster().find("P001"));
+    EXPECT_FALSE(dialog.confirm("P001", false)) << "without the second question";
+    EXPECT_EQ(dialog.whyNotChoose(Scope::Dismiss, "", false), PersonWhy::NeedsReason);
+    EXPECT_EQ(dialog.whyNotChoose(Scope::Erase, "", true), PersonWhy::SessionRuns);
+    dialog.choose(Scope::Erase, "");
+    EXPECT_EQ(dialog.leaving().sessions, 1);
+    EXPECT_EQ(dialog.leaving().attempts, 1);
+    EXPECT_FALSE(dialog.confirm("P002", false)) << "the wrong code";
+    EXPECT_EQ(dialog.whyNotConfirm("P002", false), PersonWhy::NeedsCode);
+    dialog.back();
+    dialog.choose(Scope::Dismiss, "fell asleep");
+    const auto leaving = dialog.confirm("", false);
+    ASSERT_TRUE(leaving);
+    EXPECT_EQ(dialog.step(), LeavingDialog::Step::Closed);
+
+    store::ParticipantDesk desk(*store_, kActor);
+    require(desk.exclude("P001", leaving->reason));
+    Roster all = roster();
+    EXPECT_EQ(all.find("P001")->standing, Standing::Excluded);
+    EXPECT_EQ(all.find("P001")->reason, "fell asleep");
+    EXPECT_EQ(whyNotStart(all, *all.find("P001"), false), PersonWhy::TakesNoPart);
+    EXPECT_EQ(whyNotReadmit(*all.find("P001"), "", false), PersonWhy::NeedsReason);
+    EXPECT_EQ(whyNotReadmit(*all.find("P001"), "was awake", false), PersonWhy::Possible);
+    dialog.open(*all.find("P001"));
+    EXPECT_EQ(dialog.whyNotChoose(Scope::Stop, "", false), PersonWhy::OutAlready);
+    require(desk.readmit("P001", "was awake"));
+    require(desk.exclude("P001", "", "withdraw"));
+    all = roster();
+    EXPECT_EQ(all.find("P001")->standing, Standing::WithdrawnWithData);
+    EXPECT_EQ(whyNotReadmit(*all.find("P001"), "was awake", false), PersonWhy::OwnWish);
+    EXPECT_FALSE(desk.readmit("P001", "was awake"));
+}
+
+TEST_F(RosterOf, APlaceIsFreedExceptByWhoCompletedAndOnlyStops) {
+    // Truth: independent program: whether the store has the place free afterwards.
+    for (const bool whole : {false, true}) {
+        for (const Scope scope : {Scope::Stop, Scope::Exclude}) {
+            const std::string code = proposedCode(roster(), ParticipantKind::Real);
+            enrol(code);
+            consent(code);
+            session(code, whole);
+            if (!whole) require(store_->assignSlot(sha256_, code));  // the session's end gave it back
+            LeavingDialog dialog;
+            dialog.open(*roster().find(code));
+            dialog.choose(scope, "");
+            store::ParticipantDesk desk(*store_, kActor);
+            require(scope == Scope::Stop ? desk.withdraw(code, "") : desk.exclude(code, "", "withdraw"));
+            EXPECT_EQ(dialog.leaving().frees_place, !roster().find(code)->place) << code;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace passung

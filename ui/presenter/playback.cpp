@@ -1,0 +1,71 @@
+#include "ui/presenter/playback.h"
+
+#include <algorithm>
+
+namespace passung::presenter {
+
+Playback::Playback(std::vector<TickRecord> records, std::shared_ptr<const DrawnScene> scene)
+    : records_(std::move(records)), scene_(std::move(scene)) {
+    double time = 0.0;
+    bool engaged = false;
+    for (const TickRecord& record : records_) {
+        if (!times_.empty()) time += record.periods * kTickSeconds;
+        times_.push_back(time);
+        if (!engaged && (record.status & kEngaged) != 0) {
+            engaged = true;
+            go_ = time;
+        }
+    }
+}
+
+void Playback::seek(double time) {
+    time_ = std::clamp(time, 0.0, length());
+    const auto after = std::upper_bound(times_.begin(), times_.end(), time_);
+    at_ = after == times_.begin() ? 0 : static_cast<std::size_t>(after - times_.begin()) - 1;
+}
+
+void Playback::play(bool plays) {
+    if (plays && time_ >= length()) seek(0.0);
+    plays_ = plays;
+}
+
+bool Playback::pass(double seconds) {
+    if (!plays_) return false;
+    seek(time_ + speed_ * seconds);
+    if (time_ >= length()) plays_ = false;
+    return true;
+}
+
+template <class Value>
+std::vector<Trace::Span> Playback::columnsOf(std::size_t columns, const Value& value) const {
+    std::vector<Trace::Span> spans(columns);
+    std::vector<bool> met(columns, false);
+    for (std::size_t i = 0; i < records_.size(); ++i) {
+        const double share = length() > 0.0 ? times_[i] / length() : 0.0;
+        const auto column = std::min(columns - 1, static_cast<std::size_t>(share * static_cast<double>(columns)));
+        const auto v = static_cast<float>(value(records_[i]));
+        Trace::Span& span = spans[column];
+        span = met[column] ? Trace::Span{std::min(span.low, v), std::max(span.high, v)} : Trace::Span{v, v};
+        met[column] = true;
+    }
+    // Fewer ticks than columns: what was newest holds.
+    for (std::size_t column = 1; column < columns; ++column)
+        if (!met[column]) spans[column] = spans[column - 1];
+    return spans;
+}
+
+std::vector<Trace::Span> Playback::forces(std::size_t columns) const { return columnsOf(columns, forceOf); }
+
+std::vector<Trace::Span> Playback::depths(std::size_t columns) const {
+    return columnsOf(columns, [](const TickRecord& r) { return 1e3 * static_cast<double>(r.hand_depth_m); });
+}
+
+std::vector<Trace::Span> Playback::overlaps(std::size_t columns) const {
+    return columnsOf(columns, [](const TickRecord& r) { return 1e3 * static_cast<double>(r.proxy_depth_m); });
+}
+
+double forceOf(const TickRecord& record) {
+    return static_cast<double>(Eigen::Vector3f(record.force_N[0], record.force_N[1], record.force_N[2]).norm());
+}
+
+}  // namespace passung::presenter

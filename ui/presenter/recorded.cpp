@@ -1,0 +1,68 @@
+#include "ui/presenter/recorded.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace passung::presenter {
+
+Result<Recorded> readRecorded(const store::StoreReader& reader) {
+    auto data = exporter::readStudy(reader);
+    if (!data) return data.errors();
+    Recorded recorded{*std::move(data), {}, {}};
+    const auto& attempts = recorded.data.attempts;
+    for (const store::MeasureRow& row : recorded.data.measures)
+        if (std::any_of(attempts.begin(), attempts.end(),
+                        [&](const auto& a) { return a.measures.contains(row.measure); }))
+            recorded.measures.push_back({row.measure, row.label, row.unit});
+    for (const char* kind : {"real", "pilot", "simulated"})
+        if (std::any_of(attempts.begin(), attempts.end(), [&](const auto& a) { return a.kind == kind; }))
+            recorded.kinds.emplace_back(kind);
+    return recorded;
+}
+
+std::vector<const store::AttemptRow*> attemptsOf(const Recorded& recorded, const std::string& session_id) {
+    std::vector<const store::AttemptRow*> found;
+    for (const store::AttemptRow& attempt : recorded.data.attempts)
+        if (attempt.session_id == session_id) found.push_back(&attempt);
+    std::stable_sort(found.begin(), found.end(), [](const auto* a, const auto* b) {
+        return std::pair(a->trial_index, a->attempt_no) < std::pair(b->trial_index, b->attempt_no);
+    });
+    return found;
+}
+
+FiveNumbers fiveNumbers(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    const auto quantile = [&values](double share) {
+        const double place = share * static_cast<double>(values.size() - 1);
+        const auto below = static_cast<std::size_t>(std::floor(place));
+        const std::size_t above = std::min(below + 1, values.size() - 1);
+        return values[below] + (place - std::floor(place)) * (values[above] - values[below]);
+    };
+    return {values.front(), quantile(0.25), quantile(0.5), quantile(0.75), values.back()};
+}
+
+std::vector<ConditionLook> lookAt(const Recorded& recorded, const std::string& measure, const std::string& kind) {
+    const auto cells = exporter::cellsOf(recorded.data);
+    std::vector<ConditionLook> looks;
+    for (const store::ConditionRow& row : recorded.data.conditions) {
+        ConditionLook look;
+        look.condition = row.condition;
+        bool met = false;
+        for (const exporter::Cell& cell : cells) {
+            if (cell.condition != &row || cell.kind != kind) continue;
+            met = true;
+            const auto values = exporter::valuesOf(cell.attempts, measure);
+            look.participants += values.empty() ? 0 : 1;
+            look.values.insert(look.values.end(), values.begin(), values.end());
+        }
+        if (!met) continue;
+        if (recorded.data.protocols.size() > 1)
+            for (const store::ProtocolRow& protocol : recorded.data.protocols)
+                if (protocol.sha256 == row.protocol_sha256) look.version = protocol.version;
+        if (!look.values.empty()) look.numbers = fiveNumbers(look.values);
+        looks.push_back(std::move(look));
+    }
+    return looks;
+}
+
+}  // namespace passung::presenter

@@ -1,0 +1,206 @@
+#include "ui/presenter/roster.h"
+
+#include <algorithm>
+#include <map>
+
+#include "study/store/digest.h"
+
+namespace passung::presenter {
+
+namespace {
+
+using protocol::ParticipantKind;
+
+constexpr ParticipantKind kKinds[] = {ParticipantKind::Real, ParticipantKind::Pilot, ParticipantKind::Simulated};
+
+Standing standingOf(const store::ParticipantRow& row) {
+    if (row.status == "withdrawn") return Standing::Withdrawn;
+    if (row.status != "excluded") return Standing::TakesPart;
+    return row.standing_by == "withdraw" ? Standing::WithdrawnWithData : Standing::Excluded;
+}
+
+SessionState stateNamed(const std::optional<std::string>& end) {
+    if (!end) return SessionState::Open;
+    return *end == "complete"  ? SessionState::Complete
+           : *end == "crashed" ? SessionState::Crashed
+                               : SessionState::Aborted;
+}
+
+Decision decisionNamed(const std::string& decision) {
+    return decision == "yes" ? Decision::Yes : decision == "no" ? Decision::No : Decision::Withdrawn;
+}
+
+/// `rows`: of one participant, in the order of deciding.
+Decision decisionOn(const protocol::ConsentClause& clause, const std::vector<const store::ConsentRow*>& rows) {
+    Decision latest = Decision::NotAsked;
+    for (const store::ConsentRow* row : rows) {
+        if (row->clause != clause.clause) continue;
+        const bool same_words = std::any_of(clause.texts.begin(), clause.texts.end(), [&](const auto& text) {
+            return store::sha256Hex(text.second) == row->text_sha256;
+        });
+        if (same_words)
+            latest = decisionNamed(row->decision);
+        else if (latest == Decision::NotAsked)
+            latest = Decision::OtherWords;
+    }
+    return latest;
+}
+
+/// At least as many as are planned, and on to the last one that is taken.
+void fillPlaces(const protocol::StudyPlan& plan, Roster& roster) {
+    std::vector<const RosterPerson*> owners;
+    for (const RosterPerson& person : roster.people)
+        if (person.kind == ParticipantKind::Real && person.place) owners.push_back(&person);
+    std::size_t count = static_cast<std::size_t>(std::max(plan.participants, 1));
+    std::size_t found = 0;
+    do {
+        found = 0;
+        roster.places.clear();
+        for (const session::DesignPlace& at : session::firstPlaces(plan, count)) {
+            RosterPlace place{at, {}, false};
+            for (const RosterPerson* owner : owners)
+                if (owner->place->slot == at.slot && owner->place->group == at.group) {
+                    place.owner = owner->code;
+                    place.done = owner->complete() > 0;
+                    ++found;
+                }
+            roster.places.push_back(std::move(place));
+        }
+        count *= 2;
+    } while (found < owners.size() && count < 100'000);  // another version's places may never be met
+    while (roster.places.size() > static_cast<std::size_t>(std::max(plan.participants, 1)) &&
+           roster.places.back().owner.empty())
+        roster.places.pop_back();
+    std::vector<session::DesignPlace> taken;
+    for (const RosterPerson* owner : owners) taken.push_back(*owner->place);
+    roster.balance = designBalance(plan, taken);
+}
+
+RosterPerson personOf(const store::ParticipantRow& row, const Roster& roster, std::size_t sequences) {
+    RosterPerson person;
+    person.code = row.participant_id;
+    person.enrolled_utc = row.created_utc;
+    person.kind = protocol::participantKindNamed(row.kind).value_or(ParticipantKind::Simulated);
+    person.standing = standingOf(row);
+    person.reason = row.status_reason.value_or("");
+    const auto group = std::find(roster.groups.begin(), roster.groups.end(), row.group.value_or(""));
+    if (row.sequence_index && group != roster.groups.end())
+        person.place = session::DesignPlace{
+            static_cast<std::size_t>(*row.replicate) * sequences + static_cast<std::size_t>(*row.sequence_index),
+            static_cast<std::size_t>(group - roster.groups.begin())};
+    return person;
+}
+
+}  // namespace
+
+std::int64_t RosterPerson::attempts() const {
+    std::int64_t count = 0;
+    for (const RosterSession& session : sessions) count += session.attempts;
+    return count;
+}
+
+int RosterPerson::complete() const {
+    return static_cast<int>(std::count_if(sessions.begin(), sessions.end(),
+                                          [](const auto& s) { return s.state == SessionState::Complete; }));
+}
+
+int RosterPerson::interrupted() const { return static_cast<int>(sessions.size()) - complete(); }
+
+const RosterSession* RosterPerson::resumable() const {
+    return sessions.empty() || sessions.back().state == SessionState::Complete ? nullptr : &sessions.back();
+}
+
+const RosterPerson* Roster::find(const std::string& code) const {
+    const auto found =
+        std::find_if(people.begin(), people.end(), [&](const auto& person) { return person.code == code; });
+    return found == people.end() ? nullptr : &*found;
+}
+
+Roster emptyRoster(const protocol::StudyPlan& plan) {
+    Roster roster;
+    roster.clauses = plan.consent;
+    roster.groups = protocol::groupNames(plan);
+    roster.sessions = protocol::sessionsOf(plan);
+    fillPlaces(plan, roster);
+    return roster;
+}
+
+Result<Roster> readRoster(const protocol::StudyPlan& plan, const store::StoreReader& reader) {
+    const auto protocols = reader.protocols();
+    if (!protocols) return protocols.errors();
+    const auto people = reader.participants();
+    if (!people) return people.errors();
+    const auto consents = reader.consents();
+    if (!consents) return consents.errors();
+    const auto sessions = reader.sessions();
+    if (!sessions) return sessions.errors();
+    const auto forms = reader.questionnaireRuns();
+    if (!forms) return forms.errors();
+
+    Roster roster = emptyRoster(plan);
+    const std::string sha256 = store::sha256Hex(plan.source_text);
+    roster.other_version =
+        std::none_of(protocols->begin(), protocols->end(), [&](const auto& row) { return row.sha256 == sha256; });
+    for (const ParticipantKind kind : kKinds) {
+        const auto erased = reader.erasedCodesTo(kind);
+        if (!erased) return erased.errors();
+        roster.erased_to[static_cast<std::size_t>(kind)] = *erased;
+    }
+    std::map<std::string, std::vector<const store::ConsentRow*>> decided;
+    for (const auto& row : *consents) decided[row.participant_id].push_back(&row);
+    const std::size_t sequences = design::sequencesOf(protocol::designOf(plan));
+    for (const auto& row : *people) {
+        RosterPerson person = personOf(row, roster, sequences);
+        for (const auto& clause : plan.consent) person.consent.push_back(decisionOn(clause, decided[person.code]));
+        for (const auto& session : *sessions)
+            if (session.participant_id == person.code)
+                person.sessions.push_back({session.session_id, session.started_utc, static_cast<int>(session.ordinal),
+                                           stateNamed(session.end_state), session.planned_trials, session.attempts,
+                                           session.valid_attempts});
+        std::sort(person.sessions.begin(), person.sessions.end(),
+                  [](const auto& a, const auto& b) { return a.ordinal < b.ordinal; });
+        person.forms = std::count_if(forms->begin(), forms->end(), [&](const auto& form) {
+            return form.participant_id == person.code && form.completed_utc;
+        });
+        roster.people.push_back(std::move(person));
+    }
+    fillPlaces(plan, roster);
+    return roster;
+}
+
+PersonWhy whyNotStart(const Roster& roster, const RosterPerson& person, bool session_runs) {
+    if (session_runs) return PersonWhy::SessionRuns;
+    if (person.standing != Standing::TakesPart) return PersonWhy::TakesNoPart;
+    if (person.kind == ParticipantKind::Simulated) return PersonWhy::Simulated;
+    return person.complete() >= roster.sessions ? PersonWhy::AllDone : PersonWhy::Possible;
+}
+
+PersonWhy whyNotResume(const RosterPerson& person, bool session_runs) {
+    if (session_runs) return PersonWhy::SessionRuns;
+    if (person.standing != Standing::TakesPart) return PersonWhy::TakesNoPart;
+    if (person.kind == ParticipantKind::Simulated) return PersonWhy::Simulated;
+    return person.resumable() == nullptr ? PersonWhy::NothingInterrupted : PersonWhy::Possible;
+}
+
+PersonWhy whyNotReadmit(const RosterPerson& person, const std::string& reason, bool session_runs) {
+    if (session_runs) return PersonWhy::SessionRuns;
+    if (person.standing != Standing::Excluded)
+        return person.standing == Standing::TakesPart ? PersonWhy::NotOut : PersonWhy::OwnWish;
+    return reason.empty() ? PersonWhy::NeedsReason : PersonWhy::Possible;
+}
+
+CodeWhy whyNotEnrol(const Roster& roster, const std::string& code, ParticipantKind kind) {
+    if (!protocol::isParticipantCode(code)) return CodeWhy::NotACode;
+    if (protocol::kindOfCode(code) != kind) return CodeWhy::WrongLetter;
+    if (roster.find(code) != nullptr) return CodeWhy::Taken;
+    return protocol::participantNumber(code) <= roster.erased_to[static_cast<std::size_t>(kind)] ? CodeWhy::MayBeErased
+                                                                                                 : CodeWhy::Possible;
+}
+
+std::string proposedCode(const Roster& roster, ParticipantKind kind) {
+    std::int64_t number = roster.erased_to[static_cast<std::size_t>(kind)] + 1;
+    while (roster.find(protocol::participantCode(kind, number)) != nullptr) ++number;
+    return protocol::participantCode(kind, number);
+}
+
+}  // namespace passung::presenter

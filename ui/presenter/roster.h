@@ -1,0 +1,102 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "study/protocol/participant.h"
+#include "study/protocol/study_plan.h"
+#include "study/session/participant_order.h"
+#include "study/store/store_reader.h"
+#include "ui/presenter/design_balance.h"
+
+namespace passung::presenter {
+
+/// WithdrawnWithData: their data counts nowhere either. Excluded: by the experimenter.
+enum class Standing { TakesPart, Withdrawn, WithdrawnWithData, Excluded };
+
+/// What somebody last decided on a clause. OtherWords: on a text that the protocol no longer has.
+enum class Decision { NotAsked, OtherWords, Yes, No, Withdrawn };
+
+/// Open: it runs, or its program was killed and nobody has opened the database since.
+enum class SessionState { Open, Complete, Aborted, Crashed };
+
+struct RosterSession {
+    std::string id, started_utc;
+    int ordinal = 1;
+    SessionState state = SessionState::Open;
+    std::int64_t planned = 0, attempts = 0, valid = 0;
+};
+
+struct RosterPerson {
+    std::string code, enrolled_utc;
+    protocol::ParticipantKind kind = protocol::ParticipantKind::Real;
+    Standing standing = Standing::TakesPart;
+    std::string reason;  // of the standing
+    std::optional<session::DesignPlace> place;
+    std::vector<Decision> consent;        // by clause
+    std::vector<RosterSession> sessions;  // by ordinal
+    std::int64_t forms = 0;               // questionnaires that were answered
+
+    std::int64_t attempts() const;
+    int complete() const;
+    /// Sessions that ended before their last trial.
+    int interrupted() const;
+    /// The session that can be gone on with; null: none.
+    const RosterSession* resumable() const;
+};
+
+/// A place of the design; real participants take them in this order.
+struct RosterPlace {
+    session::DesignPlace at;
+    std::string owner;  // empty: free
+    bool done = false;  // its owner completed a session
+};
+
+/// Who takes part in a study, as an experimenter looks after them.
+struct Roster {
+    std::vector<protocol::ConsentClause> clauses;
+    std::vector<std::string> groups;
+    std::vector<RosterPerson> people;  // by code
+    std::vector<RosterPlace> places;
+    DesignBalance balance;                    // of the real participants who have a place
+    int sessions = 1;                         // of each participant
+    bool other_version = false;               // the database holds the study, but not this version of it
+    std::array<std::int64_t, 3> erased_to{};  // by kind: codes up to this number are not given again
+
+    const RosterPerson* find(const std::string& code) const;
+};
+
+/// Of a study without a database: nobody is enrolled.
+Roster emptyRoster(const protocol::StudyPlan& plan);
+Result<Roster> readRoster(const protocol::StudyPlan& plan, const store::StoreReader& reader);
+
+/// Why something cannot be done with a participant now.
+enum class PersonWhy {
+    Possible,
+    SessionRuns,         // any, on this computer
+    TakesNoPart,         // withdrawn or excluded
+    Simulated,           // a person at the mouse cannot stand in
+    AllDone,             // every session is complete
+    NothingInterrupted,  // to resume
+    NotOut,              // takes part already
+    OwnWish,             // who withdrew is not taken back
+    OutAlready,          // of the study
+    NeedsReason,
+    NeedsCode,  // the code is to be typed to confirm
+};
+PersonWhy whyNotStart(const Roster& roster, const RosterPerson& person, bool session_runs);
+PersonWhy whyNotResume(const RosterPerson& person, bool session_runs);
+PersonWhy whyNotReadmit(const RosterPerson& person, const std::string& reason, bool session_runs);
+
+/// Why a code cannot be enrolled.
+enum class CodeWhy { Possible, NotACode, WrongLetter, Taken, MayBeErased };
+CodeWhy whyNotEnrol(const Roster& roster, const std::string& code, protocol::ParticipantKind kind);
+
+/// The first code that may be given to the next participant of this kind.
+std::string proposedCode(const Roster& roster, protocol::ParticipantKind kind);
+
+}  // namespace passung::presenter
