@@ -28,15 +28,25 @@ model::SceneSpec smallScene() {
     return spec;
 }
 
-std::string verdictOf(const LoopCheck& check) {
+LoopFitness fitnessOf(const LoopCheck& check) {
     const double share =
         static_cast<double>(check.missed) / static_cast<double>(std::max<std::int64_t>(1, check.ticks));
+    if (share <= kFewMissed) return check.scheduling.fifo ? LoopFitness::Studies : LoopFitness::StudiesIfAlone;
+    return share <= kManyMissed ? LoopFitness::TryOuts : LoopFitness::Nothing;
+}
+
+std::string verdictOf(const LoopCheck& check) {
     const std::string counted = fmt::format("{} of {} cycles were missed", check.missed, check.ticks + check.missed);
-    if (share <= kFewMissed && check.scheduling.fifo) return "fit for studies: " + counted;
-    if (share <= kFewMissed) {
-        return "good now, but without real-time scheduling another program can spoil it: " + counted;
+    switch (check.fitness) {
+        case LoopFitness::Studies:
+            return "fit for studies: " + counted;
+        case LoopFitness::StudiesIfAlone:
+            return "good now, but without real-time scheduling another program can spoil it: " + counted;
+        case LoopFitness::TryOuts:
+            return "fit for trying out, not for studies: " + counted;
+        case LoopFitness::Nothing:
+            break;
     }
-    if (share <= kManyMissed) return "fit for trying out, not for studies: " + counted;
     return "not fit: " + counted + "; close other programs, grant real-time scheduling, or use another machine";
 }
 
@@ -67,8 +77,9 @@ LoopCheck checkLoop(double seconds) {
     check.p999_us = thread.lateness().quantileMicroseconds(0.999);
     check.max_us = thread.lateness().maxMicroseconds();
     check.compute_p99_us = cycle.timing().quantileMicroseconds(0.99);
+    check.fitness = fitnessOf(check);
     check.verdict = verdictOf(check);
-    check.fit = check.verdict.starts_with("fit for studies");
+    check.fit = check.fitness == LoopFitness::Studies;
     return check;
 }
 

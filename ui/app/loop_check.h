@@ -6,6 +6,9 @@
 
 namespace passung::app {
 
+/// What a loop is good for: studies; studies as long as nothing else runs, without real-time scheduling; trying out.
+enum class LoopFitness { Studies, StudiesIfAlone, TryOuts, Nothing };
+
 /// How well this machine keeps 1 kHz.
 struct LoopCheck {
     loop::Scheduling scheduling;
@@ -13,8 +16,9 @@ struct LoopCheck {
     std::int64_t missed = 0;                                 // cycles that did not happen in time
     double p50_us = 0, p99_us = 0, p999_us = 0, max_us = 0;  // how late cycles began
     double compute_p99_us = 0;                               // of the tick itself
-    std::string verdict;                                     // for a person
-    bool fit = false;                                        // fit for a study with people
+    LoopFitness fitness = LoopFitness::Nothing;
+    std::string verdict;  // for a person
+    bool fit = false;     // fit for a study with people
 };
 
 /// Runs the real loop with a small scene on the simulated device for `seconds`.

@@ -1,5 +1,7 @@
 #include "ui/app/stability_report.h"
 
+#include <algorithm>
+
 #include "core/base/tick_record.h"
 
 namespace passung::app {
@@ -54,6 +56,11 @@ SceneWall rotationWall(const DeviceDescription& device, const model::SceneSpec& 
         wall.bounds = rotationBounds(*device.mechanism, scene.contact.rotational_damping,
                                      device.delay_ticks + scene.limits.delay_ticks);
     return wall;
+}
+
+const DeviceDescription* deviceNamed(const std::string& name, std::span<const DeviceDescription> devices) {
+    const auto found = std::find_if(devices.begin(), devices.end(), [&](const auto& d) { return d.name == name; });
+    return found == devices.end() ? nullptr : &*found;
 }
 
 }  // namespace passung::app

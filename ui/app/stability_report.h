@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+#include <string>
+
 #include "core/base/device_description.h"
 #include "core/loop/stability.h"
 #include "core/model/scene_spec.h"
@@ -25,5 +28,8 @@ struct SceneWall {
 };
 SceneWall translationWall(const DeviceDescription& device, const model::SceneSpec& scene);
 SceneWall rotationWall(const DeviceDescription& device, const model::SceneSpec& scene);
+
+/// Null: there is none of this name.
+const DeviceDescription* deviceNamed(const std::string& name, std::span<const DeviceDescription> devices);
 
 }  // namespace passung::app

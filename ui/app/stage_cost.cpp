@@ -2,11 +2,13 @@
 
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "core/loop/timing.h"
 #include "core/tick/obstacle_query.h"
 #include "core/tick/step.h"
+#include "study/protocol/plan_json.h"
 
 namespace passung::app {
 
@@ -54,7 +56,40 @@ private:
     bool counted_ = false;
 };
 
+/// Geometry, resolution, method; stiffness, limits, task and display change no cost.
+std::string costKey(protocol::Condition condition) {
+    condition.device.clear();
+    condition.shown = protocol::ShownPose::Proxy;
+    condition.task = {};
+    condition.comparison.reset();
+    condition.cues = {};
+    condition.secondary = {};
+    condition.timed_by = protocol::TimedBy::Program;
+    model::ContactSpec& contact = condition.scene.contact;
+    contact.stiffness = contact.rotational_stiffness = contact.area_stiffness = contact.penalty_stiffness = 1.0;
+    contact.tool_mass = contact.tool_inertia = 1.0;
+    contact.damping = contact.rotational_damping = 0.0;
+    model::OutputLimits limits;
+    limits.delay_ticks = condition.scene.limits.delay_ticks;
+    condition.scene.limits = limits;
+    std::string meshes;  // in full: files of one name in two folders differ
+    for (const auto& part : condition.scene.parts)
+        if (const auto* mesh = std::get_if<model::MeshFile>(&part.geometry)) meshes += mesh->path + '\n';
+    return protocol::paramsJson(condition) + meshes;
+}
+
 }  // namespace
+
+std::vector<std::vector<const protocol::Condition*>> costGroups(const protocol::StudyPlan& plan) {
+    std::vector<std::vector<const protocol::Condition*>> groups;
+    std::map<std::string, std::size_t> places;
+    for (const auto& condition : plan.conditions) {
+        const auto [place, fresh] = places.try_emplace(costKey(condition), groups.size());
+        if (fresh) groups.emplace_back();
+        groups[place->second].push_back(&condition);
+    }
+    return groups;
+}
 
 std::vector<StageCost> measureStages(const model::Scene& scene) {
     tick::TickModel model = tick::makeModel(scene);

@@ -1,11 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <span>
 
 #include "study/protocol/document.h"
-#include "study/protocol/plan_json.h"
 #include "study/protocol/protocol_reader.h"
 #include "study/protocol/scene_reader.h"
 #include "study/session/plan_text.h"
@@ -55,11 +53,6 @@ Result<Done> printStages(const model::SceneSpec& spec, model::PartCache& cache) 
     return Done{};
 }
 
-const DeviceDescription* findDevice(const std::string& name, std::span<const DeviceDescription> devices) {
-    const auto found = std::find_if(devices.begin(), devices.end(), [&](const auto& d) { return d.name == name; });
-    return found == devices.end() ? nullptr : &*found;
-}
-
 /// A line of the stiffness of a scene: how far it is from what its device bears, by the model of its mechanism.
 void printWall(const std::string& what, std::size_t width, const char* unit, double maximum,
                const app::SceneWall& wall) {
@@ -104,32 +97,9 @@ void explainStability(const protocol::StudyPlan& plan, std::span<const DeviceDes
     for (const auto& condition : conditions) width = std::max(width, condition.name.size());
     printStabilityHead(width);
     for (const auto& condition : conditions)
-        if (const auto* device = findDevice(condition.device, devices))
+        if (const auto* device = app::deviceNamed(condition.device, devices))
             printStability(condition.name, width, *device, condition.scene);
     for (const auto& stable : plan.stable_stiffness) fmt::print("  {}: {}\n", stable.device, stable.origin);
-}
-
-/// Everything that decides which stages run and what they cost: geometry, resolution, method. Conditions that agree in
-/// it share a table; stiffness, limits, task and display change no cost.
-std::string costKey(protocol::Condition condition) {
-    condition.device.clear();
-    condition.shown = protocol::ShownPose::Proxy;
-    condition.task = {};
-    condition.comparison.reset();
-    condition.cues = {};
-    condition.secondary = {};
-    condition.timed_by = protocol::TimedBy::Program;
-    model::ContactSpec& contact = condition.scene.contact;
-    contact.stiffness = contact.rotational_stiffness = contact.area_stiffness = contact.penalty_stiffness = 1.0;
-    contact.tool_mass = contact.tool_inertia = 1.0;
-    contact.damping = contact.rotational_damping = 0.0;
-    model::OutputLimits limits;
-    limits.delay_ticks = condition.scene.limits.delay_ticks;
-    condition.scene.limits = limits;
-    std::string meshes;  // in full: files of one name in two folders differ
-    for (const auto& part : condition.scene.parts)
-        if (const auto* mesh = std::get_if<model::MeshFile>(&part.geometry)) meshes += mesh->path + '\n';
-    return protocol::paramsJson(condition) + meshes;
 }
 
 /// What accuracy = "auto" picks here, or what the study's database keeps; printed with what was measured.
@@ -163,14 +133,7 @@ Result<Done> explainAccuracy(const std::string& database, protocol::StudyPlan& p
 
 Result<Done> explainEffects(const protocol::StudyPlan& plan, model::PartCache& cache) {
     fmt::print("\nEffects, their cost measured on this machine in sliding contact\n");
-    std::vector<std::vector<const protocol::Condition*>> groups;  // as the protocol lists their first
-    std::map<std::string, std::size_t> places;
-    for (const auto& condition : plan.conditions) {
-        const auto [place, fresh] = places.try_emplace(costKey(condition), groups.size());
-        if (fresh) groups.emplace_back();
-        groups[place->second].push_back(&condition);
-    }
-    for (const auto& conditions : groups) {
+    for (const auto& conditions : app::costGroups(plan)) {
         fmt::print("\n  conditions");
         for (const auto* condition : conditions)
             fmt::print(" {}{}", condition->name, condition == conditions.back() ? "" : ",");
@@ -193,7 +156,7 @@ int explain(const ExplainOptions& options) {
         const auto spec = protocol::readSceneOnDevice(*text, options.file, app::knownDevices());
         if (!spec) return fail(spec.errors());
         const auto done = printStages(spec->scene, cache);
-        if (const auto* device = findDevice(spec->device, app::knownDevices())) {
+        if (const auto* device = app::deviceNamed(spec->device, app::knownDevices())) {
             printStabilityHead(device->name.size());
             printStability(device->name, device->name.size(), *device, spec->scene);
             fmt::print("  {}: {}\n", device->name, device->stability_source);

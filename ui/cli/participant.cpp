@@ -8,9 +8,8 @@
 #include "study/protocol/protocol_reader.h"
 #include "study/store/participant_desk.h"
 #include "study/store/store_reader.h"
-#include "ui/app/known_copies.h"
 #include "ui/app/run_study.h"
-#include "ui/app/wall_clock.h"
+#include "ui/app/study_desk.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 #include "ui/cli/places.h"
@@ -20,25 +19,12 @@ namespace passung::cli {
 
 namespace {
 
-protocol::ParticipantKind kindNamed(const std::string& name) {
-    for (const auto kind : {protocol::ParticipantKind::Real, protocol::ParticipantKind::Pilot})
-        if (protocol::participantKindName(kind) == name) return kind;
-    return protocol::ParticipantKind::Simulated;
-}
-
-/// Opens the database, lets `work` do its part at the desk, prints errors. The database has to be there unless
-/// `create`.
+/// What `work` does at the study's desk as an exit code. The database has to be there unless `create`.
 int atTheDesk(const ParticipantOptions& options, bool create,
               const std::function<Result<Done>(store::Store&, store::ParticipantDesk&)>& work) {
     const auto station = stationOf(options.station);
     if (!station) return fail(station.errors());
-    auto open = app::openOptionsNow();
-    open.station = *station;
-    open.create = create;
-    const auto opened = store::Store::open(options.database, open);
-    if (!opened.store) return fail(opened.errors);
-    store::ParticipantDesk desk(*opened.store, {options.by, open.now_utc});
-    const auto done = work(*opened.store, desk);
+    const auto done = app::atTheDesk({options.database, options.by, *station, create}, work);
     return done ? 0 : fail(done.errors());
 }
 
@@ -65,17 +51,9 @@ int enrolParticipant(const ParticipantOptions& options) {
     return atTheDesk(options, plan.has_value(), [&](store::Store& store, store::ParticipantDesk& desk) -> Result<Done> {
         if (plan)
             if (const auto imported = store.importProtocol(*plan); !imported) return imported.errors();
-        const auto kind = kindNamed(options.kind);
-        std::string code = options.code;
-        if (code.empty()) {
-            const auto next = store.nextCode(kind);
-            if (!next) return next.errors();
-            code = *next;
-        }
-        const bool simulated = kind == protocol::ParticipantKind::Simulated;
-        const auto clock = simulated ? store::UtcClock::virtualEpoch() : store::UtcClock::wall(app::unixMilliseconds());
-        if (const auto done = desk.enrol(code, kind, clock.at(0)); !done) return done;
-        fmt::print("{}: {} participant, enrolled\n", code, options.kind);
+        const auto code = app::enrolAt(store, desk, *protocol::participantKindNamed(options.kind), options.code);
+        if (!code) return code.errors();
+        fmt::print("{}: {} participant, enrolled\n", *code, options.kind);
         return Done{};
     });
 }
@@ -118,25 +96,27 @@ int decideConsent(const ParticipantOptions& options) {
 }
 
 int withdrawParticipant(const ParticipantOptions& options) {
-    return atTheDesk(options, false, [&](store::Store&, store::ParticipantDesk& desk) -> Result<Done> {
-        if (options.scope != "erase") {
-            const auto done = options.scope == "stop" ? desk.withdraw(options.code, options.reason)
-                                                      : desk.exclude(options.code, options.reason, "withdraw");
-            if (!done) return done;
-            fmt::print("{}: withdrawn; {}\n", options.code,
-                       options.scope == "stop" ? "the data stays in the analysis" : "the data counts nowhere any more");
-            return Done{};
-        }
-        const auto copies = app::knownCopies(options.database, options.code);
-        const auto surrogate = desk.erase(options.code);
-        if (!surrogate) return surrogate.errors();
-        fmt::print("{}: erased from {}; the audit says {} in its place\n", options.code, options.database, *surrogate);
-        for (const std::string& copy : copies) fmt::print("delete this copy too: {}\n", copy);
-        fmt::print(
-            "and whatever copies of the database and exports lie elsewhere; erase them as well in the databases of "
-            "other stations and in those merged from this one, and push to PostgreSQL again\n");
-        return Done{};
-    });
+    const auto station = stationOf(options.station);
+    if (!station) return fail(station.errors());
+    presenter::Leaving leaving;
+    leaving.code = options.code;
+    leaving.reason = options.reason;
+    leaving.scope = options.scope == "stop"      ? presenter::Scope::Stop
+                    : options.scope == "exclude" ? presenter::Scope::Exclude
+                                                 : presenter::Scope::Erase;
+    const auto left = app::leave({options.database, options.by, *station}, leaving);
+    if (!left) return fail(left.errors());
+    if (leaving.scope != presenter::Scope::Erase) {
+        fmt::print("{}: withdrawn; {}\n", options.code,
+                   options.scope == "stop" ? "the data stays in the analysis" : "the data counts nowhere any more");
+        return 0;
+    }
+    fmt::print("{}: erased from {}; the audit says {} in its place\n", options.code, options.database, left->surrogate);
+    for (const std::string& copy : left->copies) fmt::print("delete this copy too: {}\n", copy);
+    fmt::print(
+        "and whatever copies of the database and exports lie elsewhere; erase them as well in the databases of other "
+        "stations and in those merged from this one, and push to PostgreSQL again\n");
+    return 0;
 }
 
 int excludeParticipant(const ParticipantOptions& options) {

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "study/store/participant_desk.h"
+#include "study/store/store.h"
+#include "ui/presenter/leaving.h"
+
+namespace passung::app {
+
+/// Who acts at which study's database.
+struct DeskAccess {
+    std::string database;
+    std::string by = "experimenter";
+    store::Station station = {};
+    bool create = false;  // else the database has to be there
+};
+
+/// Opens the database, lets `work` do its part and closes it.
+Result<Done> atTheDesk(const DeskAccess& access,
+                       const std::function<Result<Done>(store::Store&, store::ParticipantDesk&)>& work);
+
+/// Enrols somebody; no code: the first that is free. Returns the code.
+Result<std::string> enrolAt(store::Store& store, store::ParticipantDesk& desk, protocol::ParticipantKind kind,
+                            std::string code);
+
+/// What came of somebody's leaving.
+struct Left {
+    std::string surrogate;            // of whoever was erased, in the audit
+    std::vector<std::string> copies;  // known ones that still hold them
+};
+Result<Left> leave(const DeskAccess& access, const presenter::Leaving& leaving);
+
+/// The database of a study's real sessions, beside the folder of those of try-outs, which never hold any.
+std::string studyDatabase(const std::string& tryouts, const std::string& study);
+
+}  // namespace passung::app
