@@ -12,7 +12,8 @@ Window {
     minimumWidth: 1180
     minimumHeight: 760
     color: look.ground
-    property int page: 0
+    property string page: app.page // "studies", "participants", "session", "data"
+    onPageChanged: app.page = page
     onClosing: Qt.quit()
 
     Shortcut {
@@ -48,7 +49,7 @@ Window {
         sequence: "Ctrl+N"
         enabled: run.known
         onActivated: {
-            window.page = 1;
+            window.page = "session";
             runPage.focusNote();
         }
     }
@@ -95,22 +96,30 @@ Window {
                 font.weight: Font.DemiBold
             }
             Repeater {
-                model: [qsTr("Studies"), qsTr("Session")]
+                model: [["studies", qsTr("Studies")], ["participants", qsTr("Participants")], ["session", qsTr("Session")], ["data", qsTr("Data")]]
                 ActionButton {
-                    required property string modelData
+                    id: tab
+                    required property var modelData
                     required property int index
-                    objectName: "page" + index
-                    text: modelData
-                    enabled: index === 0 || run.known
-                    opacity: window.page === index ? 1 : 0.75
-                    font.weight: window.page === index ? Font.DemiBold : Font.Normal
+                    readonly property bool current: window.page === modelData[0]
+                    objectName: "page-" + modelData[0]
+                    text: modelData[1]
+                    Accessible.role: Accessible.PageTab
+                    enabled: modelData[0] !== "session" || run.known
+                    opacity: current ? 1 : 0.75
+                    font.weight: current ? Font.DemiBold : Font.Normal
                     background: Rectangle {
                         radius: 7
-                        color: window.page === parent.index ? look.raised : "transparent"
-                        border.width: parent.visualFocus ? 2 : 0
+                        color: tab.current ? look.raised : "transparent"
+                        border.width: tab.visualFocus ? 2 : 0
                         border.color: look.accent
                     }
-                    onClicked: window.page = index
+                    onClicked: window.page = modelData[0]
+                    Shortcut {
+                        sequence: "Ctrl+" + (tab.index + 1)
+                        enabled: tab.enabled
+                        onActivated: tab.clicked()
+                    }
                 }
             }
             Item {
@@ -137,15 +146,25 @@ Window {
         }
 
         StudiesPage {
-            id: studiesPage
-            visible: window.page === 0
+            visible: window.page === "studies"
             Layout.fillWidth: true
             Layout.fillHeight: true
-            onBegun: window.page = 1
+            onBegun: window.page = "session"
+        }
+        ParticipantsPage {
+            visible: window.page === "participants"
+            Layout.fillWidth: true
+            Layout.fillHeight: true
+            onBegun: window.page = "session"
+        }
+        DataPage {
+            visible: window.page === "data"
+            Layout.fillWidth: true
+            Layout.fillHeight: true
         }
         RunPage {
             id: runPage
-            visible: window.page === 1
+            visible: window.page === "session"
             Layout.fillWidth: true
             Layout.fillHeight: true
         }

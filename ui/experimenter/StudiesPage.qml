@@ -4,11 +4,15 @@ import QtQuick.Layouts
 // The studies that there are, and what the chosen one consists of.
 RowLayout {
     id: page
-    property int chosen: 0
+    readonly property int chosen: studies.chosen
     readonly property var cards: studies.cards
     readonly property var card: cards.length > chosen ? cards[chosen] : null
+    property int part: 0
+    readonly property string whyNotRun: !card || !card.sound ? qsTr("The study has problems.") : run.running ? qsTr("A session is running.") : ""
     signal begun
     spacing: 16
+    onChosenChanged: if (part === 4)
+        part = 0
 
     Panel {
         title: qsTr("STUDIES")
@@ -26,7 +30,7 @@ RowLayout {
             activeFocusOnTab: true
             keyNavigationEnabled: true
             onCurrentIndexChanged: if (currentIndex >= 0)
-                page.chosen = currentIndex
+                studies.chosen = currentIndex
             delegate: Rectangle {
                 id: cardItem
                 required property var modelData
@@ -71,7 +75,7 @@ RowLayout {
                 MouseArea {
                     anchors.fill: parent
                     onClicked: {
-                        page.chosen = cardItem.index;
+                        studies.chosen = cardItem.index;
                         list.currentIndex = cardItem.index;
                         list.forceActiveFocus();
                     }
@@ -84,18 +88,15 @@ RowLayout {
         Layout.fillWidth: true
         Layout.fillHeight: true
         pad: 28
-        Flickable {
+        ColumnLayout {
             anchors.fill: parent
-            anchors.bottomMargin: actions.height + 24
-            contentHeight: sheet.height
-            clip: true
+            spacing: 20
             visible: page.card !== null
-            Column {
-                id: sheet
-                width: parent.width
-                spacing: 22
+            RowLayout {
+                Layout.fillWidth: true
+                spacing: 16
                 Column {
-                    width: parent.width
+                    Layout.fillWidth: true
                     spacing: 6
                     Say {
                         width: parent.width
@@ -110,133 +111,83 @@ RowLayout {
                         text: page.card && page.card.sound ? qsTr("%1, version %2 · %3").arg(page.card.name).arg(page.card.version).arg(page.card.device) : ""
                     }
                 }
-                Row {
-                    visible: page.card && page.card.sound
-                    spacing: 44
-                    Figure {
-                        name: qsTr("Conditions")
-                        value: page.card ? page.card.conditions : ""
-                    }
-                    Figure {
-                        name: qsTr("Trials")
-                        value: page.card ? page.card.trials : ""
-                        unit: page.card && page.card.sessions > 1 ? qsTr("in the first of %1 sessions").arg(page.card.sessions) : ""
-                    }
-                    Figure {
-                        name: qsTr("At most")
-                        value: page.card ? page.card.minutes : ""
-                        unit: qsTr("min")
-                    }
-                    Figure {
-                        name: qsTr("Participants")
-                        value: page.card ? page.card.participants : ""
-                    }
-                }
-                Column {
-                    visible: page.card && page.card.factors.length > 0
-                    width: parent.width
-                    spacing: 12
-                    Say {
-                        text: qsTr("WHAT IS VARIED")
-                        quiet: true
-                        font.pixelSize: 12
-                        font.weight: Font.DemiBold
-                        font.letterSpacing: 0.4
-                    }
-                    Repeater {
-                        model: page.card ? page.card.factors : []
-                        RowLayout {
-                            id: factorRow
-                            required property var modelData
-                            width: sheet.width
-                            spacing: 8
-                            Say {
-                                Layout.preferredWidth: 170
-                                Layout.alignment: Qt.AlignTop
-                                Layout.topMargin: 4
-                                text: factorRow.modelData.name
-                            }
-                            Flow {
-                                Layout.fillWidth: true
-                                spacing: 8
-                                Repeater {
-                                    model: factorRow.modelData.levels
-                                    Chip {
-                                        required property string modelData
-                                        text: modelData
-                                    }
-                                }
-                            }
-                        }
-                    }
-                }
-                Column {
-                    visible: page.card && page.card.questionnaires.length > 0
-                    width: parent.width
-                    spacing: 12
-                    Say {
-                        text: qsTr("WHAT IS ASKED")
-                        quiet: true
-                        font.pixelSize: 12
-                        font.weight: Font.DemiBold
-                        font.letterSpacing: 0.4
-                    }
-                    Flow {
-                        width: parent.width
-                        spacing: 8
-                        Repeater {
-                            model: page.card ? page.card.questionnaires : []
-                            Chip {
-                                required property string modelData
-                                text: modelData
-                            }
-                        }
-                    }
-                }
-                Repeater { // what is wrong, and what should be known
-                    model: page.card ? page.card.problems.concat(page.card.warnings) : []
-                    RowLayout {
-                        required property string modelData
-                        required property int index
-                        width: sheet.width
-                        spacing: 10
-                        Lamp {
-                            Layout.alignment: Qt.AlignTop
-                            Layout.topMargin: 3
-                            tone: parent.index < page.card.problems.length ? "bad" : "wait"
-                        }
-                        Say {
-                            Layout.fillWidth: true
-                            text: parent.modelData
-                            wrapMode: Text.WordWrap
-                        }
+                ActionButton {
+                    objectName: "reload"
+                    Layout.alignment: Qt.AlignTop
+                    text: qsTr("Read again")
+                    keyName: "F6"
+                    onClicked: studies.reload()
+                    Shortcut {
+                        sequence: "F6"
+                        enabled: page.visible
+                        onActivated: studies.reload()
                     }
                 }
             }
-        }
-        Row {
-            id: actions
-            anchors.bottom: parent.bottom
-            spacing: 12
-            ActionButton {
-                objectName: "tryOut"
-                kind: "main"
-                tall: true
-                text: qsTr("Try it with the mouse")
-                why: !page.card || !page.card.sound ? qsTr("The study has problems.") : run.running ? qsTr("A session is running.") : ""
-                onClicked: {
-                    studies.tryOut(page.chosen, false);
-                    page.begun();
+            Choice {
+                objectName: "part"
+                name: qsTr("Part of the study")
+                options: [qsTr("Overview"), qsTr("Design"), qsTr("Tick and stiffness"), qsTr("Accuracy"), qsTr("Protocol")]
+                chosen: page.part
+                onPicked: index => page.part = index
+            }
+            Item {
+                Layout.fillWidth: true
+                Layout.fillHeight: true
+                StudyOverview {
+                    anchors.fill: parent
+                    visible: page.part === 0
+                    card: page.card
+                    onIssueOpened: index => {
+                        details.openIssue(index);
+                        page.part = 4;
+                    }
+                }
+                DesignView {
+                    anchors.fill: parent
+                    visible: page.part === 1
+                }
+                TickView {
+                    anchors.fill: parent
+                    visible: page.part === 2
+                }
+                AccuracyView {
+                    anchors.fill: parent
+                    visible: page.part === 3
+                }
+                SourceView {
+                    anchors.fill: parent
+                    visible: page.part === 4
                 }
             }
-            ActionButton {
-                objectName: "watch"
-                tall: true
-                text: qsTr("Watch a simulated participant")
-                why: !page.card || !page.card.sound ? qsTr("The study has problems.") : run.running ? qsTr("A session is running.") : ""
-                onClicked: {
-                    studies.tryOut(page.chosen, true);
-                    page.begun();
+            RowLayout {
+                spacing: 12
+                ActionButton {
+                    objectName: "tryOut"
+                    kind: "main"
+                    tall: true
+                    text: qsTr("Try it with the mouse")
+                    why: page.whyNotRun
+                    onClicked: {
+                        studies.tryOut(page.chosen, false);
+                        page.begun();
+                    }
+                }
+                ActionButton {
+                    objectName: "watch"
+                    tall: true
+                    text: qsTr("Watch a simulated participant")
+                    why: page.whyNotRun
+                    onClicked: {
+                        studies.tryOut(page.chosen, true);
+                        page.begun();
+                    }
+                }
+                Say {
+                    Layout.fillWidth: true
+                    quiet: true
+                    font.pixelSize: 12
+                    text: page.whyNotRun
                 }
             }
         }

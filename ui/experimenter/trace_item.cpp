@@ -3,7 +3,8 @@
 #include <QtQuick/QSGFlatColorMaterial>
 #include <QtQuick/QSGGeometryNode>
 #include <algorithm>
-#include <cmath>
+
+#include "ui/presenter/axis.h"
 
 namespace passung::experimenter {
 
@@ -11,14 +12,6 @@ namespace {
 
 constexpr double kLeastTop = 0.5;
 constexpr float kStroke = 1.6f;  // thickness of what does not change [px]
-
-/// The smallest of 1, 2, 5 × 10^n that is at least `value`.
-double roundScale(double value) {
-    const double ten = std::pow(10.0, std::floor(std::log10(value)));
-    for (const double step : {1.0, 2.0, 5.0})
-        if (step * ten >= value) return step * ten;
-    return 10.0 * ten;
-}
 
 }  // namespace
 
@@ -29,7 +22,7 @@ TraceItem::TraceItem(QQuickItem* parent) : QQuickItem(parent) {
 
 void TraceItem::show(const presenter::Trace& trace) {
     spans_ = trace.spans();
-    const double top = roundScale(std::max(kLeastTop, 1.08 * trace.peak()));
+    const double top = presenter::roundScale(std::max(kLeastTop, 1.08 * trace.peak()));
     if (top != top_) {
         top_ = top;
         emit changed();

@@ -10,6 +10,8 @@
 #include <QtQuick/QSGRendererInterface>
 #include <stdexcept>
 
+#include "ui/experimenter/strip_item.h"
+
 namespace passung::window {
 
 namespace {
@@ -33,18 +35,27 @@ bool drawsInSoftware() {
 App::App(const AppOptions& options)
     : look_(options.dark),
       desk_(options.data),
-      studies_(desk_, options.protocols),
+      memory_(QString::fromStdString(options.data) + "/windows.ini", QSettings::IniFormat),
+      studies_(desk_, options.protocols, options.data),
+      roster_(desk_, studies_),
+      records_(desk_, studies_),
+      details_(desk_, studies_),
       run_(desk_),
       screen_(desk_, 0),
       mirror_(desk_, kMirrorEvery),
       places_(QString::fromStdString(options.data) + "/windows.ini") {
     look_.setScale(options.text_scale);
     setLanguage(options.language);
+    remember();
     qmlRegisterType<experimenter::TraceItem>("Passung", 1, 0, "TraceItem");
+    qmlRegisterType<experimenter::StripItem>("Passung", 1, 0, "StripItem");
     QQmlContext& context = *engine_.rootContext();
     context.setContextProperty("app", this);
     context.setContextProperty("look", &look_);
     context.setContextProperty("studies", &studies_);
+    context.setContextProperty("roster", &roster_);
+    context.setContextProperty("records", &records_);
+    context.setContextProperty("details", &details_);
     context.setContextProperty("run", &run_);
     context.setContextProperty("screenView", &screen_);
     context.setContextProperty("mirrorView", &mirror_);
@@ -105,6 +116,21 @@ void App::keepPlaces() {
     places_.keep("participant", *participant_);
 }
 
+void App::remember() {
+    page_ = memory_.value("page", "studies").toString();
+    if (page_ == "session") page_ = "studies";  // there is none yet
+    roster_.setProperty("experimenter", memory_.value("experimenter").toString());
+    connect(&roster_, &RosterModel::experimenterChanged, this,
+            [this] { memory_.setValue("experimenter", roster_.experimenter()); });
+}
+
+void App::setPage(const QString& page) {
+    if (page == page_) return;
+    page_ = page;
+    memory_.setValue("page", page);
+    emit pageChanged();
+}
+
 void App::setLanguage(const QString& language) {
     if (language == language_) return;
     language_ = language;
@@ -113,6 +139,9 @@ void App::setLanguage(const QString& language) {
         QCoreApplication::installTranslator(&translator_);
     engine_.retranslate();
     studies_.retranslate();
+    roster_.retranslate();
+    records_.retranslate();
+    details_.retranslate();
     run_.retranslate();
     screen_.retranslate();
     emit languageChanged();

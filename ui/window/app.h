@@ -1,17 +1,21 @@
 #pragma once
 
 #include <QtCore/QObject>
+#include <QtCore/QSettings>
 #include <QtCore/QTranslator>
 #include <QtQml/QQmlApplicationEngine>
 #include <QtQuick/QQuickWindow>
 #include <string>
 
+#include "ui/window/data_model.h"
 #include "ui/window/desk.h"
 #include "ui/window/look.h"
 #include "ui/window/places.h"
+#include "ui/window/roster_model.h"
 #include "ui/window/run_model.h"
 #include "ui/window/screen.h"
 #include "ui/window/studies.h"
+#include "ui/window/study_model.h"
 
 namespace passung::window {
 
@@ -27,6 +31,7 @@ struct AppOptions {
 class App : public QObject {
     Q_OBJECT
     Q_PROPERTY(QString language READ language WRITE setLanguage NOTIFY languageChanged)
+    Q_PROPERTY(QString page READ page WRITE setPage NOTIFY pageChanged)  // of the experimenter's window
 
 public:
     explicit App(const AppOptions& options);
@@ -35,7 +40,14 @@ public:
     QString language() const { return language_; }
     void setLanguage(const QString& language);
 
+    QString page() const { return page_; }
+    void setPage(const QString& page);
+
     Desk& desk() { return desk_; }
+    Studies& studies() { return studies_; }
+    RosterModel& roster() { return roster_; }
+    DataModel& records() { return records_; }
+    StudyModel& details() { return details_; }
     Look& look() { return look_; }
     Screen& screen() { return screen_; }
     QQuickWindow* experimenter() const { return experimenter_; }
@@ -43,18 +55,24 @@ public:
 
 signals:
     void languageChanged();
+    void pageChanged();
 
 private:
     void watchGraphics();
     void placeParticipant();
     void keepPlaces();
+    void remember();
 
     Look look_;
     Desk desk_;
+    QSettings memory_;  // of what the next start finds as it was
     Studies studies_;
+    RosterModel roster_;
+    DataModel records_;
+    StudyModel details_;
     RunModel run_;
     Screen screen_, mirror_;
-    QString language_;
+    QString language_, page_;
     QTranslator translator_;
     QQmlApplicationEngine engine_;  // last: the windows go before what they show
     QQuickWindow* experimenter_ = nullptr;

@@ -4,6 +4,7 @@
 
 #include "study/protocol/protocol_reader.h"
 #include "ui/app/run_study.h"
+#include "ui/app/study_desk.h"
 
 namespace passung::window {
 
@@ -41,11 +42,33 @@ QVariantMap cardMap(const presenter::StudyCard& card) {
 
 }  // namespace
 
-Studies::Studies(Desk& desk, const std::string& folder) : desk_(desk) {
-    for (const std::string& file : presenter::studyFilesBelow(folder))
+Studies::Studies(Desk& desk, const std::string& folder, std::string tryouts)
+    : desk_(desk), folder_(folder), tryouts_(std::move(tryouts)) {
+    reload();
+}
+
+void Studies::reload() {
+    cards_.clear();
+    for (const std::string& file : presenter::studyFilesBelow(folder_))
         cards_.push_back(presenter::cardOf(
             file, protocol::readProtocol(file, app::knownDevices(), app::knownMeasures()), app::knownDevices()));
+    if (chosen_ >= static_cast<int>(cards_.size())) chosen_ = 0;
+    emit changed();
+    emit chosenChanged();
 }
+
+void Studies::choose(int card) {
+    if (card == chosen_ || card < 0 || card >= static_cast<int>(cards_.size())) return;
+    chosen_ = card;
+    emit chosenChanged();
+}
+
+const presenter::StudyCard* Studies::card() const {
+    return cards_.empty() ? nullptr : &cards_[static_cast<std::size_t>(chosen_)];
+}
+
+std::string Studies::database() const { return card() ? app::studyDatabase(tryouts_, card()->name) : std::string(); }
+std::string Studies::tryOuts() const { return card() ? tryouts_ + "/" + card()->name + ".db" : std::string(); }
 
 QVariantList Studies::cards() const {
     QVariantList all;

@@ -92,7 +92,7 @@ TEST_F(Windows, KeysStopContinueAndLeaveOutTrialsInEitherLanguage) {
     waitFor(RunState::Running);
     EXPECT_EQ(run().view().number, 2);
     picture(app_->participant(), "participant_de_light");
-    click("page0");
+    click("page-studies");
     picture(app_->experimenter(), "studies_de_light");
 }
 

@@ -2,6 +2,36 @@
 <!DOCTYPE TS>
 <TS version="2.1" language="de_DE">
 <context>
+    <name>AccuracyView</name>
+    <message>
+        <source>Error over time of every measured setting</source>
+        <translation>Fehler über der Zeit jeder gemessenen Einstellung</translation>
+    </message>
+    <message>
+        <source>time of a query, 99 % below [µs]</source>
+        <translation>Zeit einer Abfrage, 99 % darunter [µs]</translation>
+    </message>
+    <message>
+        <source>error of the depth, 99 % below [µm]</source>
+        <translation>Fehler der Tiefe, 99 % darunter [µm]</translation>
+    </message>
+    <message>
+        <source>Large dots: none is both faster and more exact. Ring: picked for this study. Stroke: the budget.</source>
+        <translation>Große Punkte: Keine Einstellung ist zugleich schneller und genauer. Ring: für diese Studie gewählt. Strich: das Budget.</translation>
+    </message>
+</context>
+<context>
+    <name>AttemptList</name>
+    <message>
+        <source>Attempts</source>
+        <translation>Versuche</translation>
+    </message>
+    <message>
+        <source>attempt %1</source>
+        <translation>Versuch %1</translation>
+    </message>
+</context>
+<context>
     <name>Console</name>
     <message>
         <source>Studies</source>
@@ -23,12 +53,426 @@
         <source>Dark</source>
         <translation>Dunkel</translation>
     </message>
+    <message>
+        <source>Participants</source>
+        <translation>Versuchspersonen</translation>
+    </message>
+    <message>
+        <source>Data</source>
+        <translation>Daten</translation>
+    </message>
+</context>
+<context>
+    <name>DataPage</name>
+    <message>
+        <source>Which data</source>
+        <translation>Welche Daten</translation>
+    </message>
+    <message>
+        <source>Study</source>
+        <translation>Studie</translation>
+    </message>
+    <message>
+        <source>Try-outs</source>
+        <translation>Proben</translation>
+    </message>
+    <message>
+        <source>Other file</source>
+        <translation>Andere Datei</translation>
+    </message>
+    <message>
+        <source>Path of a database, then Enter</source>
+        <translation>Pfad einer Datenbank, dann Eingabetaste</translation>
+    </message>
+    <message>
+        <source>Reading …</source>
+        <translation>Wird gelesen …</translation>
+    </message>
+    <message>
+        <source>Nothing is recorded here yet.</source>
+        <translation>Hier ist noch nichts aufgezeichnet.</translation>
+    </message>
+    <message>
+        <source>SESSIONS</source>
+        <translation>SITZUNGEN</translation>
+    </message>
+    <message>
+        <source>ATTEMPTS</source>
+        <translation>VERSUCHE</translation>
+    </message>
+    <message>
+        <source>QUICK LOOK</source>
+        <translation>SCHNELLER BLICK</translation>
+    </message>
+    <message>
+        <source>EXPORT</source>
+        <translation>EXPORT</translation>
+    </message>
+</context>
+<context>
+    <name>DesignView</name>
+    <message>
+        <source>Reading …</source>
+        <translation>Wird gelesen …</translation>
+    </message>
+    <message>
+        <source>The study has problems.</source>
+        <translation>Die Studie hat Fehler.</translation>
+    </message>
+    <message>
+        <source>ORDERS</source>
+        <translation>REIHENFOLGEN</translation>
+    </message>
+    <message>
+        <source>Orders</source>
+        <translation>Reihenfolgen</translation>
+    </message>
+    <message>
+        <source>Blocks stand apart; ×n: the same pass n times; a frame marks catch trials.</source>
+        <translation>Blöcke stehen getrennt; ×n: derselbe Durchlauf n-mal; ein Rahmen kennzeichnet Fangdurchgänge.</translation>
+    </message>
+    <message>
+        <source>CONDITIONS</source>
+        <translation>BEDINGUNGEN</translation>
+    </message>
+    <message>
+        <source>Conditions</source>
+        <translation>Bedingungen</translation>
+    </message>
+    <message>
+        <source>BLOCKS</source>
+        <translation>BLÖCKE</translation>
+    </message>
+</context>
+<context>
+    <name>Enrolment</name>
+    <message>
+        <source>Kind</source>
+        <translation>Art</translation>
+    </message>
+    <message>
+        <source>Person</source>
+        <translation>Person</translation>
+    </message>
+    <message>
+        <source>Pilot</source>
+        <translation>Pilot</translation>
+    </message>
+    <message>
+        <source>Code</source>
+        <translation>Code</translation>
+    </message>
+    <message>
+        <source>Enrol</source>
+        <translation>Aufnehmen</translation>
+    </message>
+    <message>
+        <source>Reading …</source>
+        <translation>Wird gelesen …</translation>
+    </message>
+</context>
+<context>
+    <name>ExportView</name>
+    <message>
+        <source>Folder</source>
+        <translation>Ordner</translation>
+    </message>
+    <message>
+        <source>with every tick</source>
+        <translation>mit jedem Takt</translation>
+    </message>
+    <message>
+        <source>Cancel</source>
+        <translation>Abbrechen</translation>
+    </message>
+    <message>
+        <source>Export</source>
+        <translation>Exportieren</translation>
+    </message>
+    <message>
+        <source>Export: %1 %</source>
+        <translation>Export: %1 %</translation>
+    </message>
+    <message>
+        <source>%1 %</source>
+        <translation>%1 %</translation>
+    </message>
+    <message>
+        <source>CSV tables with a codebook; the same data gives the same bytes. An earlier export in the folder is replaced, a folder with other files is refused.</source>
+        <translation>CSV-Tabellen mit Codebuch; gleiche Daten ergeben gleiche Bytes. Ein früherer Export im Ordner wird ersetzt, ein Ordner mit anderen Dateien abgelehnt.</translation>
+    </message>
+    <message>
+        <source>Open the folder</source>
+        <translation>Ordner öffnen</translation>
+    </message>
+</context>
+<context>
+    <name>LeavingView</name>
+    <message>
+        <source>How does the part of %1 end?</source>
+        <translation>Wie endet die Teilnahme von %1?</translation>
+    </message>
+    <message>
+        <source>AT THEIR WISH</source>
+        <translation>AUF EIGENEN WUNSCH</translation>
+    </message>
+    <message>
+        <source>Take part no more</source>
+        <translation>Keine weitere Teilnahme</translation>
+    </message>
+    <message>
+        <source>What is there stays and counts in the analysis.</source>
+        <translation>Was da ist, bleibt und zählt in der Auswertung.</translation>
+    </message>
+    <message>
+        <source>Data is not to be used</source>
+        <translation>Daten sollen nicht verwendet werden</translation>
+    </message>
+    <message>
+        <source>What is there stays and counts nowhere.</source>
+        <translation>Was da ist, bleibt und zählt nirgends.</translation>
+    </message>
+    <message>
+        <source>Erase everything</source>
+        <translation>Alles löschen</translation>
+    </message>
+    <message>
+        <source>No byte of this participant remains in the database.</source>
+        <translation>Kein Byte dieser Person bleibt in der Datenbank.</translation>
+    </message>
+    <message>
+        <source>AT THE EXPERIMENTER&apos;S DECISION</source>
+        <translation>ENTSCHEIDUNG DER VERSUCHSLEITUNG</translation>
+    </message>
+    <message>
+        <source>Exclude</source>
+        <translation>Ausschließen</translation>
+    </message>
+    <message>
+        <source>What is there stays and counts nowhere; this can be taken back.</source>
+        <translation>Was da ist, bleibt und zählt nirgends; das lässt sich zurücknehmen.</translation>
+    </message>
+    <message>
+        <source>Reason, without names</source>
+        <translation>Grund, ohne Namen</translation>
+    </message>
+    <message>
+        <source>Erase %1?</source>
+        <translation>%1 löschen?</translation>
+    </message>
+    <message>
+        <source>%1 leaves the study?</source>
+        <translation>%1 verlässt die Studie?</translation>
+    </message>
+    <message>
+        <source>Type %1 to confirm</source>
+        <translation>Zum Bestätigen %1 eintippen</translation>
+    </message>
+    <message>
+        <source>Continue …</source>
+        <translation>Weiter …</translation>
+    </message>
+    <message>
+        <source>Erase for good</source>
+        <translation>Endgültig löschen</translation>
+    </message>
+    <message>
+        <source>Yes, end their part</source>
+        <translation>Ja, Teilnahme beenden</translation>
+    </message>
+    <message>
+        <source>Back</source>
+        <translation>Zurück</translation>
+    </message>
+    <message>
+        <source>Cancel</source>
+        <translation>Abbrechen</translation>
+    </message>
+</context>
+<context>
+    <name>LookView</name>
+    <message>
+        <source>Measure</source>
+        <translation>Maß</translation>
+    </message>
+    <message>
+        <source>Kind of participants</source>
+        <translation>Art der Versuchspersonen</translation>
+    </message>
+    <message>
+        <source>median (quartiles), n</source>
+        <translation>Median (Quartile), n</translation>
+    </message>
+    <message>
+        <source>%1 trials, participants: %2</source>
+        <translation>%1 Durchgänge, Versuchspersonen: %2</translation>
+    </message>
 </context>
 <context>
     <name>Participant</name>
     <message>
         <source>Passung – participant</source>
         <translation>Passung – Versuchsperson</translation>
+    </message>
+</context>
+<context>
+    <name>ParticipantsPage</name>
+    <message>
+        <source>Experimenter (initials)</source>
+        <translation>Versuchsleitung (Kürzel)</translation>
+    </message>
+    <message>
+        <source>PARTICIPANTS</source>
+        <translation>VERSUCHSPERSONEN</translation>
+    </message>
+    <message>
+        <source>PLACES IN THE DESIGN</source>
+        <translation>PLÄTZE IM VERSUCHSPLAN</translation>
+    </message>
+    <message>
+        <source>%1 of %2 taken</source>
+        <translation>%1 von %2 vergeben</translation>
+    </message>
+</context>
+<context>
+    <name>PersonView</name>
+    <message>
+        <source>Choose a participant to see sessions and consent.</source>
+        <translation>Wählen Sie jemanden aus, um Sitzungen und Einwilligung zu sehen.</translation>
+    </message>
+    <message>
+        <source>enrolled %1</source>
+        <translation>aufgenommen %1</translation>
+    </message>
+    <message>
+        <source>SESSIONS</source>
+        <translation>SITZUNGEN</translation>
+    </message>
+    <message>
+        <source>Session %1</source>
+        <translation>Sitzung %1</translation>
+    </message>
+    <message>
+        <source>valid attempts of planned trials: %1</source>
+        <translation>gültige Versuche von geplanten Durchgängen: %1</translation>
+    </message>
+    <message>
+        <source>none yet</source>
+        <translation>noch keine</translation>
+    </message>
+    <message>
+        <source>CONSENT</source>
+        <translation>EINWILLIGUNG</translation>
+    </message>
+    <message>
+        <source>Agreed</source>
+        <translation>Zugestimmt</translation>
+    </message>
+    <message>
+        <source>Declined</source>
+        <translation>Abgelehnt</translation>
+    </message>
+    <message>
+        <source>Withdrawn</source>
+        <translation>Zurückgezogen</translation>
+    </message>
+    <message>
+        <source>A session is running.</source>
+        <translation>Eine Sitzung läuft.</translation>
+    </message>
+    <message>
+        <source>Reading …</source>
+        <translation>Wird gelesen …</translation>
+    </message>
+    <message>
+        <source>Record here what was signed on paper; who has not been asked is asked when the session begins.</source>
+        <translation>Tragen Sie hier ein, was auf Papier unterschrieben wurde; wer noch nicht gefragt wurde, wird zu Beginn der Sitzung gefragt.</translation>
+    </message>
+    <message>
+        <source>TAKE BACK THE EXCLUSION</source>
+        <translation>AUSSCHLUSS ZURÜCKNEHMEN</translation>
+    </message>
+    <message>
+        <source>Reason</source>
+        <translation>Grund</translation>
+    </message>
+    <message>
+        <source>Readmit</source>
+        <translation>Wieder aufnehmen</translation>
+    </message>
+    <message>
+        <source>Resume the session</source>
+        <translation>Sitzung fortsetzen</translation>
+    </message>
+    <message>
+        <source>Start a new session instead</source>
+        <translation>Stattdessen neue Sitzung beginnen</translation>
+    </message>
+    <message>
+        <source>Start the session</source>
+        <translation>Sitzung beginnen</translation>
+    </message>
+    <message>
+        <source>End their part …</source>
+        <translation>Teilnahme beenden …</translation>
+    </message>
+</context>
+<context>
+    <name>PlacesView</name>
+    <message>
+        <source>Place %1: %2</source>
+        <translation>Platz %1: %2</translation>
+    </message>
+    <message>
+        <source>free</source>
+        <translation>frei</translation>
+    </message>
+</context>
+<context>
+    <name>RosterList</name>
+    <message>
+        <source>Code</source>
+        <translation>Code</translation>
+    </message>
+    <message>
+        <source>Kind</source>
+        <translation>Art</translation>
+    </message>
+    <message>
+        <source>Sessions</source>
+        <translation>Sitzungen</translation>
+    </message>
+    <message>
+        <source>Consent</source>
+        <translation>Einwilligung</translation>
+    </message>
+    <message>
+        <source>Place</source>
+        <translation>Platz</translation>
+    </message>
+    <message>
+        <source>State</source>
+        <translation>Stand</translation>
+    </message>
+    <message>
+        <source>Participants</source>
+        <translation>Versuchspersonen</translation>
+    </message>
+    <message>
+        <source>%1 of %2 sessions</source>
+        <translation>%1 von %2 Sitzungen</translation>
+    </message>
+    <message>
+        <source>%1 of %2</source>
+        <translation>%1 von %2</translation>
+    </message>
+    <message>
+        <source>%1 broken off</source>
+        <translation>%1 abgebrochen</translation>
+    </message>
+    <message>
+        <source>Nobody is enrolled yet.</source>
+        <translation>Noch ist niemand aufgenommen.</translation>
     </message>
 </context>
 <context>
@@ -163,6 +607,39 @@
     </message>
 </context>
 <context>
+    <name>SessionList</name>
+    <message>
+        <source>Sessions</source>
+        <translation>Sitzungen</translation>
+    </message>
+    <message>
+        <source>Session %1</source>
+        <translation>Sitzung %1</translation>
+    </message>
+</context>
+<context>
+    <name>SourceView</name>
+    <message>
+        <source>The place is in the clipboard. “Read again” checks the file once you have changed it.</source>
+        <translation>Die Stelle ist in der Zwischenablage. „Neu lesen“ prüft die Datei, wenn Sie sie geändert haben.</translation>
+    </message>
+    <message>
+        <source>Text of the protocol</source>
+        <translation>Text des Protokolls</translation>
+    </message>
+</context>
+<context>
+    <name>StageTable</name>
+    <message>
+        <source>%1 µs a tick</source>
+        <translation>%1 µs je Takt</translation>
+    </message>
+    <message>
+        <source>%1: %2 µs, 99 % below %3 µs; %4</source>
+        <translation>%1: %2 µs, 99 % unter %3 µs; %4</translation>
+    </message>
+</context>
+<context>
     <name>StudiesPage</name>
     <message>
         <source>STUDIES</source>
@@ -176,6 +653,64 @@
         <source>%1, version %2 · %3</source>
         <translation>%1, Fassung %2 · %3</translation>
     </message>
+    <message>
+        <source>Try it with the mouse</source>
+        <translation>Mit der Maus ausprobieren</translation>
+    </message>
+    <message>
+        <source>The study has problems.</source>
+        <translation>Die Studie hat Mängel.</translation>
+    </message>
+    <message>
+        <source>A session is running.</source>
+        <translation>Es läuft eine Sitzung.</translation>
+    </message>
+    <message>
+        <source>Watch a simulated participant</source>
+        <translation>Simulierter Person zusehen</translation>
+    </message>
+    <message>
+        <source>Problems: %1</source>
+        <translation>Mängel: %1</translation>
+    </message>
+    <message>
+        <source>Read again</source>
+        <translation>Neu lesen</translation>
+    </message>
+    <message>
+        <source>Part of the study</source>
+        <translation>Teil der Studie</translation>
+    </message>
+    <message>
+        <source>Overview</source>
+        <translation>Überblick</translation>
+    </message>
+    <message>
+        <source>Design</source>
+        <translation>Versuchsplan</translation>
+    </message>
+    <message>
+        <source>Tick and stiffness</source>
+        <translation>Takt und Steifigkeit</translation>
+    </message>
+    <message>
+        <source>Accuracy</source>
+        <translation>Genauigkeit</translation>
+    </message>
+    <message>
+        <source>Protocol</source>
+        <translation>Protokoll</translation>
+    </message>
+</context>
+<context>
+    <name>StudyBar</name>
+    <message>
+        <source>Study</source>
+        <translation>Studie</translation>
+    </message>
+</context>
+<context>
+    <name>StudyOverview</name>
     <message>
         <source>Conditions</source>
         <translation>Bedingungen</translation>
@@ -201,6 +736,46 @@
         <translation>Versuchspersonen</translation>
     </message>
     <message>
+        <source>CHECKS</source>
+        <translation>PRÜFUNGEN</translation>
+    </message>
+    <message>
+        <source>The protocol is sound.</source>
+        <translation>Das Protokoll ist in Ordnung.</translation>
+    </message>
+    <message>
+        <source>The loop runs for ten seconds …</source>
+        <translation>Die Schleife läuft zehn Sekunden …</translation>
+    </message>
+    <message>
+        <source>Loop on this machine: %1</source>
+        <translation>Schleife auf diesem Rechner: %1</translation>
+    </message>
+    <message>
+        <source>Whether this machine keeps 1 kHz has not been checked.</source>
+        <translation>Ob dieser Rechner 1 kHz hält, ist noch nicht geprüft.</translation>
+    </message>
+    <message>
+        <source>Check the loop</source>
+        <translation>Schleife prüfen</translation>
+    </message>
+    <message>
+        <source>Cycle late by, median</source>
+        <translation>Zyklus verspätet um, Median</translation>
+    </message>
+    <message>
+        <source>worst</source>
+        <translation>schlechtester</translation>
+    </message>
+    <message>
+        <source>Cycles missed</source>
+        <translation>Verpasste Zyklen</translation>
+    </message>
+    <message>
+        <source>of %1</source>
+        <translation>von %1</translation>
+    </message>
+    <message>
         <source>WHAT IS VARIED</source>
         <translation>WAS VARIIERT WIRD</translation>
     </message>
@@ -208,25 +783,547 @@
         <source>WHAT IS ASKED</source>
         <translation>WAS GEFRAGT WIRD</translation>
     </message>
+</context>
+<context>
+    <name>TickView</name>
     <message>
-        <source>Try it with the mouse</source>
-        <translation>Mit der Maus ausprobieren</translation>
+        <source>STIFFNESS AGAINST THE DEVICE&apos;S BORDER</source>
+        <translation>STEIFIGKEIT GEGEN DIE GRENZE DES GERÄTS</translation>
     </message>
     <message>
-        <source>The study has problems.</source>
-        <translation>Die Studie hat Mängel.</translation>
+        <source>A bar ends at the stiffness that the hand feels; the thin stroke is the device&apos;s “max”, the right edge its border of stability by the model of its mechanism.</source>
+        <translation>Ein Balken endet bei der Steifigkeit, die die Hand spürt; der dünne Strich ist das „max“ des Geräts, der rechte Rand seine Stabilitätsgrenze nach dem Modell seiner Mechanik.</translation>
+    </message>
+    <message>
+        <source>No condition displays a force.</source>
+        <translation>Keine Bedingung zeigt eine Kraft.</translation>
+    </message>
+    <message>
+        <source>STAGES OF THE TICK, IN SLIDING CONTACT ON THIS MACHINE</source>
+        <translation>STUFEN DES TAKTS, BEI GLEITENDEM KONTAKT AUF DIESEM RECHNER</translation>
+    </message>
+    <message>
+        <source>Measuring …</source>
+        <translation>Wird gemessen …</translation>
+    </message>
+    <message>
+        <source>Measure again</source>
+        <translation>Neu messen</translation>
+    </message>
+    <message>
+        <source>Measure here</source>
+        <translation>Hier messen</translation>
+    </message>
+    <message>
+        <source>Only what a scene names is built and called. Measuring builds each scene, presses its held part two millimetres into the nearest obstacle and takes the time of every stage over 2000 ticks.</source>
+        <translation>Nur was eine Szene nennt, wird gebaut und aufgerufen. Die Messung baut jede Szene, drückt das gehaltene Teil zwei Millimeter in das nächste Hindernis und misst die Zeit jeder Stufe über 2000 Takte.</translation>
+    </message>
+</context>
+<context>
+    <name>WallRow</name>
+    <message>
+        <source> of %1</source>
+        <translation> von %1</translation>
+    </message>
+    <message>
+        <source>what the device bears is not known</source>
+        <translation>was das Gerät trägt, ist nicht bekannt</translation>
+    </message>
+    <message>
+        <source>stable: %1 % of the border</source>
+        <translation>stabil: %1 % der Grenze</translation>
+    </message>
+    <message>
+        <source>✕ unstable by the model</source>
+        <translation>✕ instabil nach dem Modell</translation>
+    </message>
+</context>
+<context>
+    <name>data</name>
+    <message>
+        <source>crashed</source>
+        <translation>abgestürzt</translation>
+    </message>
+    <message>
+        <source>%1: %2 attempts in %3 files</source>
+        <translation>%1: %2 Versuche in %3 Dateien</translation>
+    </message>
+    <message>
+        <source>The export was cancelled; nothing was written.</source>
+        <translation>Der Export wurde abgebrochen; nichts wurde geschrieben.</translation>
+    </message>
+</context>
+<context>
+    <name>roster</name>
+    <message>
+        <source>%1 is enrolled.</source>
+        <translation>%1 ist aufgenommen.</translation>
+    </message>
+    <message>
+        <source>%1: the decision on “%2” is stored.</source>
+        <translation>%1: Die Entscheidung zu „%2“ ist gespeichert.</translation>
+    </message>
+    <message>
+        <source>%1 takes part again.</source>
+        <translation>%1 nimmt wieder teil.</translation>
+    </message>
+    <message>
+        <source>%1 has left the study.</source>
+        <translation>%1 hat die Studie verlassen.</translation>
+    </message>
+    <message>
+        <source>Delete these copies too: %1</source>
+        <translation>Löschen Sie auch diese Kopien: %1</translation>
+    </message>
+    <message>
+        <source>Conditions</source>
+        <translation>Bedingungen</translation>
+    </message>
+    <message>
+        <source>Conditions within %1</source>
+        <translation>Bedingungen innerhalb von %1</translation>
+    </message>
+    <message>
+        <source>Levels of %1</source>
+        <translation>Stufen von %1</translation>
+    </message>
+    <message>
+        <source>Assignment of %1</source>
+        <translation>Zuordnung von %1</translation>
+    </message>
+    <message>
+        <source>%1 (%2 rows): each pair %3 times</source>
+        <translation>%1 (%2 Zeilen): jedes Paar %3-mal</translation>
+    </message>
+    <message>
+        <source>%1 (%2 rows): each position %3 times, each neighbour %4 times</source>
+        <translation>%1 (%2 Zeilen): jede Position %3-mal, jede Nachbarschaft %4-mal</translation>
+    </message>
+    <message>
+        <source>balanced</source>
+        <translation>ausgewogen</translation>
+    </message>
+    <message>
+        <source>not balanced yet</source>
+        <translation>noch nicht ausgewogen</translation>
+    </message>
+    <message>
+        <source>person</source>
+        <translation>Person</translation>
+    </message>
+    <message>
+        <source>pilot</source>
+        <translation>Pilot</translation>
+    </message>
+    <message>
+        <source>simulated</source>
+        <translation>simuliert</translation>
+    </message>
+    <message>
+        <source>takes part</source>
+        <translation>nimmt teil</translation>
+    </message>
+    <message>
+        <source>withdrawn</source>
+        <translation>zurückgezogen</translation>
+    </message>
+    <message>
+        <source>withdrawn with data</source>
+        <translation>mit Daten zurückgezogen</translation>
+    </message>
+    <message>
+        <source>excluded</source>
+        <translation>ausgeschlossen</translation>
+    </message>
+    <message>
+        <source>not asked yet</source>
+        <translation>noch nicht gefragt</translation>
+    </message>
+    <message>
+        <source>decided on an earlier text</source>
+        <translation>über früheren Text entschieden</translation>
+    </message>
+    <message>
+        <source>agreed</source>
+        <translation>zugestimmt</translation>
+    </message>
+    <message>
+        <source>declined</source>
+        <translation>abgelehnt</translation>
+    </message>
+    <message>
+        <source>open</source>
+        <translation>offen</translation>
+    </message>
+    <message>
+        <source>complete</source>
+        <translation>vollständig</translation>
+    </message>
+    <message>
+        <source>interrupted</source>
+        <translation>unterbrochen</translation>
+    </message>
+    <message>
+        <source>interrupted by a crash</source>
+        <translation>durch Absturz unterbrochen</translation>
     </message>
     <message>
         <source>A session is running.</source>
-        <translation>Es läuft eine Sitzung.</translation>
+        <translation>Eine Sitzung läuft.</translation>
     </message>
     <message>
-        <source>Watch a simulated participant</source>
-        <translation>Simulierter Person zusehen</translation>
+        <source>They take part no more.</source>
+        <translation>Diese Person nimmt nicht mehr teil.</translation>
     </message>
     <message>
-        <source>Problems: %1</source>
-        <translation>Mängel: %1</translation>
+        <source>Simulated participants are run from the command line.</source>
+        <translation>Simulierte Versuchspersonen laufen über die Befehlszeile.</translation>
+    </message>
+    <message>
+        <source>All their sessions are complete.</source>
+        <translation>Alle Sitzungen sind vollständig.</translation>
+    </message>
+    <message>
+        <source>No session was interrupted.</source>
+        <translation>Keine Sitzung wurde unterbrochen.</translation>
+    </message>
+    <message>
+        <source>They take part.</source>
+        <translation>Diese Person nimmt teil.</translation>
+    </message>
+    <message>
+        <source>They withdrew; only they could take that back.</source>
+        <translation>Die Person hat sich zurückgezogen; nur sie könnte das rückgängig machen.</translation>
+    </message>
+    <message>
+        <source>They are out of the study already.</source>
+        <translation>Diese Person ist schon ausgeschieden.</translation>
+    </message>
+    <message>
+        <source>Give a reason.</source>
+        <translation>Geben Sie einen Grund an.</translation>
+    </message>
+    <message>
+        <source>Type the code to confirm.</source>
+        <translation>Tippen Sie zum Bestätigen den Code ein.</translation>
+    </message>
+    <message>
+        <source>A code begins with a capital letter and ends with a digit; capitals, digits, - and _ between.</source>
+        <translation>Ein Code beginnt mit einem Großbuchstaben und endet mit einer Ziffer; dazwischen Großbuchstaben, Ziffern, - und _.</translation>
+    </message>
+    <message>
+        <source>Codes of pilots begin with T.</source>
+        <translation>Codes von Piloten beginnen mit T.</translation>
+    </message>
+    <message>
+        <source>Codes of persons begin with P.</source>
+        <translation>Codes von Personen beginnen mit P.</translation>
+    </message>
+    <message>
+        <source>This code is enrolled already.</source>
+        <translation>Dieser Code ist schon vergeben.</translation>
+    </message>
+    <message>
+        <source>Somebody who was erased may have had this code.</source>
+        <translation>Diesen Code kann jemand gehabt haben, der gelöscht wurde.</translation>
+    </message>
+    <message>
+        <source>%1 sessions, %2 attempts, %3 questionnaires</source>
+        <translation>%1 Sitzungen, %2 Versuche, %3 Fragebögen</translation>
+    </message>
+    <message>
+        <source>Takes part no more; consent ends.</source>
+        <translation>Nimmt nicht mehr teil; die Einwilligung endet.</translation>
+    </message>
+    <message>
+        <source>Nothing is deleted: %1 stay and count in the analysis.</source>
+        <translation>Nichts wird gelöscht: %1 bleiben und zählen in der Auswertung.</translation>
+    </message>
+    <message>
+        <source>Takes part no more; consent ends. Cannot be taken back.</source>
+        <translation>Nimmt nicht mehr teil; die Einwilligung endet. Lässt sich nicht zurücknehmen.</translation>
+    </message>
+    <message>
+        <source>Takes part no more. Can be taken back.</source>
+        <translation>Nimmt nicht mehr teil. Lässt sich zurücknehmen.</translation>
+    </message>
+    <message>
+        <source>Nothing is deleted: %1 stay and count nowhere.</source>
+        <translation>Nichts wird gelöscht: %1 bleiben und zählen nirgends.</translation>
+    </message>
+    <message>
+        <source>Deleted for good: %1, every recorded tick, every consent and note of %2.</source>
+        <translation>Endgültig gelöscht: %1, jeder aufgezeichnete Takt, jede Einwilligung und Notiz von %2.</translation>
+    </message>
+    <message>
+        <source>The audit keeps that somebody was erased, not who.</source>
+        <translation>Das Protokoll behält, dass jemand gelöscht wurde, nicht wer.</translation>
+    </message>
+    <message>
+        <source>Backups and exports elsewhere are yours to delete.</source>
+        <translation>Sicherungen und Exporte an anderen Orten müssen Sie selbst löschen.</translation>
+    </message>
+    <message>
+        <source>Their place in the design is free for the next participant.</source>
+        <translation>Der Platz im Versuchsplan ist für die nächste Person frei.</translation>
+    </message>
+    <message>
+        <source>Group %1, participants: %2</source>
+        <translation>Gruppe %1, Versuchspersonen: %2</translation>
+    </message>
+    <message>
+        <source>Even with multiples of %1 participants; %2 are planned.</source>
+        <translation>Ausgewogen bei Vielfachen von %1 Versuchspersonen; geplant sind %2.</translation>
+    </message>
+</context>
+<context>
+    <name>stages</name>
+    <message>
+        <source>input guard</source>
+        <translation>Eingangswächter</translation>
+    </message>
+    <message>
+        <source>always: a device may lie, stall or vanish</source>
+        <translation>immer: Ein Gerät kann lügen, stocken oder verschwinden</translation>
+    </message>
+    <message>
+        <source>energy account</source>
+        <translation>Energiekonto</translation>
+    </message>
+    <message>
+        <source>always: what the controller takes in and gives out at the handle is recorded</source>
+        <translation>immer: Was der Regler am Griff aufnimmt und abgibt, wird aufgezeichnet</translation>
+    </message>
+    <message>
+        <source>start gate</source>
+        <translation>Startschranke</translation>
+    </message>
+    <message>
+        <source>start_gate is set: contact begins when the hand holds the start pose</source>
+        <translation>start_gate ist gesetzt: Kontakt beginnt, wenn die Hand die Startpose hält</translation>
+    </message>
+    <message>
+        <source>free hand</source>
+        <translation>freie Hand</translation>
+    </message>
+    <message>
+        <source>the scene has no obstacle</source>
+        <translation>die Szene hat kein Hindernis</translation>
+    </message>
+    <message>
+        <source>contacts at the hand</source>
+        <translation>Kontakte an der Hand</translation>
+    </message>
+    <message>
+        <source>contact.method is penalty: forces come from the overlap at the device&apos;s own pose; contact.two_way: of the held part&apos;s points and of the obstacles&apos; points</source>
+        <translation>contact.method ist penalty: Kräfte entstehen aus der Überlappung an der Pose des Geräts; contact.two_way: der Punkte des gehaltenen Teils und der Hindernisse</translation>
+    </message>
+    <message>
+        <source>contact.method is penalty: forces come from the overlap at the device&apos;s own pose</source>
+        <translation>contact.method ist penalty: Kräfte entstehen aus der Überlappung an der Pose des Geräts</translation>
+    </message>
+    <message>
+        <source>penalty wrench</source>
+        <translation>Penalty-Kraft</translation>
+    </message>
+    <message>
+        <source>turns the overlap into force and torque by contact.variant</source>
+        <translation>macht aus der Überlappung Kraft und Moment nach contact.variant</translation>
+    </message>
+    <message>
+        <source>proxy correction</source>
+        <translation>Proxy-Korrektur</translation>
+    </message>
+    <message>
+        <source>contact.method is god_object_heuristic: steps #1 and #2, contacts at the last proxy and relief of its overlap; contact.two_way: here and below of the held part&apos;s points and of the obstacles&apos; points</source>
+        <translation>contact.method ist god_object_heuristic: Schritte #1 und #2, Kontakte am letzten Proxy und Abbau seiner Überlappung; contact.two_way: hier und unten der Punkte des gehaltenen Teils und der Hindernisse</translation>
+    </message>
+    <message>
+        <source>contact.method is god_object_heuristic: steps #1 and #2, contacts at the last proxy and relief of its overlap</source>
+        <translation>contact.method ist god_object_heuristic: Schritte #1 und #2, Kontakte am letzten Proxy und Abbau seiner Überlappung</translation>
+    </message>
+    <message>
+        <source>proxy motion</source>
+        <translation>Proxy-Bewegung</translation>
+    </message>
+    <message>
+        <source>steps #3 and #4: the proxy follows the hand as far as the contacts let it</source>
+        <translation>Schritte #3 und #4: Der Proxy folgt der Hand, soweit die Kontakte es zulassen</translation>
+    </message>
+    <message>
+        <source>proxy sweep</source>
+        <translation>Proxy-Schwenk</translation>
+    </message>
+    <message>
+        <source>contact.method is god_object: the proxy follows the hand as far as all contacts within reach let it; contact.two_way: of the held part&apos;s points and of the obstacles&apos; points</source>
+        <translation>contact.method ist god_object: Der Proxy folgt der Hand, soweit alle Kontakte in Reichweite es zulassen; contact.two_way: der Punkte des gehaltenen Teils und der Hindernisse</translation>
+    </message>
+    <message>
+        <source>contact.method is god_object: the proxy follows the hand as far as all contacts within reach let it</source>
+        <translation>contact.method ist god_object: Der Proxy folgt der Hand, soweit alle Kontakte in Reichweite es zulassen</translation>
+    </message>
+    <message>
+        <source>proxy filter</source>
+        <translation>Proxy-Filter</translation>
+    </message>
+    <message>
+        <source>contact.proxy_filter_hz is set: a low-pass of the proxy in contact</source>
+        <translation>contact.proxy_filter_hz ist gesetzt: Tiefpass des Proxys im Kontakt</translation>
+    </message>
+    <message>
+        <source>proxy record</source>
+        <translation>Proxy-Aufzeichnung</translation>
+    </message>
+    <message>
+        <source>overlap and contacts at the proxy, for the record</source>
+        <translation>Überlappung und Kontakte am Proxy, für die Aufzeichnung</translation>
+    </message>
+    <message>
+        <source>hand depth</source>
+        <translation>Handtiefe</translation>
+    </message>
+    <message>
+        <source>the overlap at the device&apos;s pose is measured and recorded</source>
+        <translation>die Überlappung an der Pose des Geräts wird gemessen und aufgezeichnet</translation>
+    </message>
+    <message>
+        <source>virtual coupling</source>
+        <translation>virtuelle Kopplung</translation>
+    </message>
+    <message>
+        <source>spring and damper between proxy and hand</source>
+        <translation>Feder und Dämpfer zwischen Proxy und Hand</translation>
+    </message>
+    <message>
+        <source>contact transients</source>
+        <translation>Kontakttransienten</translation>
+    </message>
+    <message>
+        <source>effects.transients is set: a decaying vibration is added at every impact</source>
+        <translation>effects.transients ist gesetzt: Bei jedem Aufprall kommt eine abklingende Schwingung hinzu</translation>
+    </message>
+    <message>
+        <source>contact shares</source>
+        <translation>Kontaktanteile</translation>
+    </message>
+    <message>
+        <source>always: the energy account is kept for each obstacle too</source>
+        <translation>immer: Das Energiekonto wird auch für jedes Hindernis geführt</translation>
+    </message>
+    <message>
+        <source>output delay</source>
+        <translation>Ausgangsverzögerung</translation>
+    </message>
+    <message>
+        <source>device.delay_ticks is set</source>
+        <translation>device.delay_ticks ist gesetzt</translation>
+    </message>
+    <message>
+        <source>passivity controller</source>
+        <translation>Passivitätsregler</translation>
+    </message>
+    <message>
+        <source>effects.passivity_controller is set: a damper takes back energy that was given out</source>
+        <translation>effects.passivity_controller ist gesetzt: Ein Dämpfer nimmt abgegebene Energie zurück</translation>
+    </message>
+    <message>
+        <source>no wrench</source>
+        <translation>keine Kraft</translation>
+    </message>
+    <message>
+        <source>feedback.kinesthetic is false: contact is computed, nothing is displayed</source>
+        <translation>feedback.kinesthetic ist false: Kontakt wird gerechnet, nichts wird dargestellt</translation>
+    </message>
+    <message>
+        <source>output limits</source>
+        <translation>Ausgangsgrenzen</translation>
+    </message>
+    <message>
+        <source>always, last: finite, within the device&apos;s limits, rising slowly enough</source>
+        <translation>immer, zuletzt: endlich, innerhalb der Grenzen des Geräts, langsam genug steigend</translation>
+    </message>
+</context>
+<context>
+    <name>study</name>
+    <message>
+        <source>Williams square</source>
+        <translation>Williams-Quadrat</translation>
+    </message>
+    <message>
+        <source>all orders</source>
+        <translation>alle Reihenfolgen</translation>
+    </message>
+    <message>
+        <source>each pass in random order</source>
+        <translation>jeder Durchlauf in zufälliger Reihenfolge</translation>
+    </message>
+    <message>
+        <source>all trials shuffled</source>
+        <translation>alle Durchgänge gemischt</translation>
+    </message>
+    <message>
+        <source>as listed</source>
+        <translation>wie aufgeführt</translation>
+    </message>
+    <message>
+        <source>staircase</source>
+        <translation>Staircase-Verfahren</translation>
+    </message>
+    <message>
+        <source>passes: %1</source>
+        <translation>Durchläufe: %1</translation>
+    </message>
+    <message>
+        <source>session %1</source>
+        <translation>Sitzung %1</translation>
+    </message>
+    <message>
+        <source>after %1 s of rest</source>
+        <translation>nach %1 s Pause</translation>
+    </message>
+    <message>
+        <source>At most %1 min a participant: every trial to its time-out, shortest rests.</source>
+        <translation>Höchstens %1 min je Person: jeder Durchgang bis zum Zeitlimit, kürzeste Pausen.</translation>
+    </message>
+    <message>
+        <source>This study picks its accuracy by itself when its first session begins: every setting is then measured on this machine and kept here.</source>
+        <translation>Diese Studie wählt ihre Genauigkeit selbst, wenn die erste Sitzung beginnt: Jede Einstellung wird dann auf diesem Rechner gemessen und hier aufbewahrt.</translation>
+    </message>
+    <message>
+        <source>Nothing was measured. With contact.accuracy = &quot;auto&quot; and contact.accuracy_budget_us in the protocol the first session measures every setting and picks the finest that fits; the command “passung accuracy” draws the same picture for any two parts.</source>
+        <translation>Nichts wurde gemessen. Mit contact.accuracy = "auto" und contact.accuracy_budget_us im Protokoll misst die erste Sitzung jede Einstellung und wählt die feinste, die passt; der Befehl „passung accuracy“ zeichnet dasselbe Bild für zwei beliebige Teile.</translation>
+    </message>
+    <message>
+        <source>Budget %1 µs: %2, tolerance %3 µm, spacing %4 mm – %5 µs, error %6 µm</source>
+        <translation>Budget %1 µs: %2, Toleranz %3 µm, Abstand %4 mm – %5 µs, Fehler %6 µm</translation>
+    </message>
+    <message>
+        <source>Fit for studies.</source>
+        <translation>Geeignet für Studien.</translation>
+    </message>
+    <message>
+        <source>Good now, but without real-time scheduling another program can spoil it.</source>
+        <translation>Jetzt gut, aber ohne Echtzeit-Priorität kann ein anderes Programm stören.</translation>
+    </message>
+    <message>
+        <source>Fit for trying out, not for studies.</source>
+        <translation>Geeignet zum Ausprobieren, nicht für Studien.</translation>
+    </message>
+    <message>
+        <source>Not fit: close other programs, grant real-time scheduling, or use another machine.</source>
+        <translation>Nicht geeignet: Schließen Sie andere Programme, erlauben Sie Echtzeit-Priorität oder nehmen Sie einen anderen Rechner.</translation>
+    </message>
+    <message>
+        <source>The study has problems.</source>
+        <translation>Die Studie hat Fehler.</translation>
+    </message>
+    <message>
+        <source>A session is running.</source>
+        <translation>Eine Sitzung läuft.</translation>
+    </message>
+    <message>
+        <source>Measuring …</source>
+        <translation>Wird gemessen …</translation>
     </message>
 </context>
 <context>

@@ -1,0 +1,70 @@
+import QtQuick
+
+// The attempts of the selected session; one that is opened is shown again.
+ListView {
+    id: list
+    objectName: "attempts"
+    clip: true
+    activeFocusOnTab: true
+    keyNavigationEnabled: true
+    model: records.attempts
+    Accessible.role: Accessible.List
+    Accessible.name: qsTr("Attempts")
+    delegate: Rectangle {
+        id: line
+        required property var modelData
+        required property int index
+        objectName: "attempt-" + index
+        width: list.width
+        height: 40
+        radius: 6
+        color: ListView.isCurrentItem && list.activeFocus ? look.raised : "transparent"
+        readonly property color tint: modelData.tone === "good" ? look.good : modelData.tone === "wait" ? look.care : look.bad
+        Accessible.role: Accessible.ListItem
+        Accessible.name: modelData.trial + " " + modelData.condition + " " + modelData.word
+        Say {
+            x: 2
+            width: 30
+            anchors.verticalCenter: parent.verticalCenter
+            horizontalAlignment: Text.AlignRight
+            quiet: true
+            font.family: look.digits
+            font.pixelSize: 13
+            text: line.modelData.trial
+        }
+        Rectangle {
+            x: 42
+            width: 4
+            height: 24
+            radius: 2
+            anchors.verticalCenter: parent.verticalCenter
+            color: line.tint
+        }
+        Column {
+            x: 56
+            width: line.width - x - time.width - 14
+            anchors.verticalCenter: parent.verticalCenter
+            Say {
+                width: parent.width
+                font.pixelSize: 13
+                text: line.modelData.condition
+            }
+            Say {
+                width: parent.width
+                quiet: true
+                font.pixelSize: 11
+                text: [line.modelData.block, line.modelData.attempt > 1 ? qsTr("attempt %1").arg(line.modelData.attempt) : "", line.modelData.word, line.modelData.reason].filter(s => s !== "").join(" · ")
+            }
+        }
+        Say {
+            id: time
+            anchors.right: parent.right
+            anchors.rightMargin: 8
+            anchors.verticalCenter: parent.verticalCenter
+            quiet: true
+            font.family: look.digits
+            font.pixelSize: 13
+            text: line.modelData.seconds >= 0 ? line.modelData.seconds.toFixed(1) + " s" : ""
+        }
+    }
+}

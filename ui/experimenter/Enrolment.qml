@@ -1,0 +1,67 @@
+import QtQuick
+import QtQuick.Layouts
+
+// Enrols the next participant: which kind, and the code that is proposed.
+RowLayout {
+    id: form
+    property bool pilot: false
+    property bool typed: false // the code is somebody's own
+    readonly property string why: roster.known ? (roster.people, roster.whyNotEnrol(code.text, pilot)) : ""
+    spacing: 12
+    height: 38
+
+    function propose() {
+        typed = false;
+        code.text = roster.proposedCode(pilot);
+    }
+
+    Connections {
+        target: roster
+        function onChanged() {
+            if (!form.typed)
+                code.text = roster.proposedCode(form.pilot);
+        }
+    }
+    Component.onCompleted: propose()
+
+    Choice {
+        objectName: "kind"
+        name: qsTr("Kind")
+        options: [qsTr("Person"), qsTr("Pilot")]
+        chosen: form.pilot ? 1 : 0
+        onPicked: index => {
+            form.pilot = index === 1;
+            form.propose();
+        }
+    }
+    TextBox {
+        id: code
+        objectName: "code"
+        implicitWidth: 130
+        placeholderText: qsTr("Code")
+        font.family: look.digits
+        maximumLength: 32
+        onTextEdited: form.typed = true
+        onAccepted: enrol.clicked()
+    }
+    ActionButton {
+        id: enrol
+        objectName: "enrol"
+        text: qsTr("Enrol")
+        kind: "main"
+        why: !roster.known || roster.busy ? qsTr("Reading …") : form.why
+        onClicked: if (why === "") {
+            roster.enrol(code.text, form.pilot);
+            form.typed = false;
+        }
+    }
+    Say {
+        objectName: "whyNotEnrol"
+        Layout.fillWidth: true
+        quiet: true
+        font.pixelSize: 12
+        wrapMode: Text.WordWrap
+        maximumLineCount: 2
+        text: form.why
+    }
+}

@@ -1,0 +1,73 @@
+import QtQuick
+import QtQuick.Layouts
+
+// Writes the whole database as tables.
+ColumnLayout {
+    id: view
+    spacing: 10
+    RowLayout {
+        Layout.fillWidth: true
+        spacing: 12
+        TextBox {
+            id: folder
+            objectName: "exportFolder"
+            Layout.fillWidth: true
+            placeholderText: qsTr("Folder")
+            property bool own: false // typed by somebody
+            text: records.proposedFolder
+            onTextEdited: own = true
+            Connections {
+                target: records
+                function onChanged() {
+                    if (!folder.own)
+                        folder.text = records.proposedFolder;
+                }
+            }
+        }
+        Tick {
+            id: samples
+            objectName: "exportSamples"
+            text: qsTr("with every tick")
+            checked: true
+        }
+        ActionButton {
+            objectName: "export"
+            text: records.exporting ? qsTr("Cancel") : qsTr("Export")
+            kind: records.exporting ? "plain" : "main"
+            onClicked: records.exporting ? records.cancelExport() : records.exportTo(folder.text, samples.checked)
+        }
+    }
+    Rectangle { // progress
+        Layout.fillWidth: true
+        implicitHeight: 4
+        radius: 2
+        color: look.edge
+        opacity: records.exporting ? 1 : 0
+        Accessible.role: Accessible.ProgressBar
+        Accessible.name: qsTr("Export: %1 %").arg(Math.round(100 * records.exported))
+        Rectangle {
+            height: parent.height
+            radius: 2
+            width: parent.width * records.exported
+            color: look.accent
+        }
+    }
+    RowLayout {
+        Layout.fillWidth: true
+        spacing: 12
+        Say {
+            Layout.fillWidth: true
+            quiet: true
+            font.pixelSize: 12
+            wrapMode: Text.WordWrap
+            maximumLineCount: 2
+            text: records.exporting ? qsTr("%1 %").arg(Math.round(100 * records.exported)) : qsTr("CSV tables with a codebook; the same data gives the same bytes. An earlier export in the folder is replaced, a folder with other files is refused.")
+        }
+        ActionButton {
+            objectName: "openFolder"
+            visible: records.lastFolder !== ""
+            text: qsTr("Open the folder")
+            onClicked: Qt.openUrlExternally("file://" + records.lastFolder)
+        }
+    }
+}

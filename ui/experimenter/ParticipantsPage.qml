@@ -1,0 +1,74 @@
+import QtQuick
+import QtQuick.Layouts
+
+// Who takes part in the chosen study: places, sessions, consent; enrolling, starting, leaving.
+ColumnLayout {
+    id: page
+    signal begun
+    spacing: 16
+
+    StudyBar {
+        Layout.fillWidth: true
+        told: roster.told
+        failed: roster.failed
+        TextBox {
+            objectName: "experimenter"
+            implicitWidth: 220
+            placeholderText: qsTr("Experimenter (initials)")
+            text: roster.experimenter
+            maximumLength: 40
+            onTextEdited: roster.experimenter = text
+        }
+    }
+
+    RowLayout {
+        Layout.fillWidth: true
+        Layout.fillHeight: true
+        spacing: 16
+        ColumnLayout {
+            Layout.fillWidth: true
+            Layout.fillHeight: true
+            spacing: 16
+            Panel {
+                title: qsTr("PARTICIPANTS")
+                extra: roster.people.length
+                Layout.fillWidth: true
+                Layout.fillHeight: true
+                RosterList {
+                    anchors.fill: parent
+                    anchors.bottomMargin: enrolment.height + 12
+                }
+                Enrolment {
+                    id: enrolment
+                    anchors.left: parent.left
+                    anchors.right: parent.right
+                    anchors.bottom: parent.bottom
+                }
+            }
+            Panel {
+                title: qsTr("PLACES IN THE DESIGN")
+                extra: qsTr("%1 of %2 taken").arg(roster.places.filter(p => p.owner !== "").length).arg(roster.places.length)
+                Layout.fillWidth: true
+                Layout.preferredHeight: 212
+                PlacesView {
+                    anchors.fill: parent
+                }
+            }
+        }
+        Panel {
+            Layout.preferredWidth: 420
+            Layout.maximumWidth: 420
+            Layout.fillHeight: true
+            pad: 22
+            PersonView {
+                anchors.fill: parent
+                visible: !roster.leaving.open
+                onBegun: page.begun()
+            }
+            LeavingView {
+                anchors.fill: parent
+                visible: roster.leaving.open
+            }
+        }
+    }
+}

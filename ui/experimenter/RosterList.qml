@@ -1,0 +1,131 @@
+import QtQuick
+import QtQuick.Layouts
+
+// The participants, a line each.
+Item {
+    id: roll
+    readonly property var widths: [92, 84, 130, 96, 84] // code, kind, sessions, consent, place
+    Row {
+        id: head
+        x: 30
+        visible: roster.people.length > 0
+        Repeater {
+            model: [qsTr("Code"), qsTr("Kind"), qsTr("Sessions"), qsTr("Consent"), qsTr("Place"), qsTr("State")]
+            Say {
+                required property string modelData
+                required property int index
+                width: index < roll.widths.length ? roll.widths[index] : 200
+                quiet: true
+                font.pixelSize: 12
+                text: modelData
+            }
+        }
+    }
+    ListView {
+        id: list
+        objectName: "roster"
+        anchors.fill: parent
+        anchors.topMargin: 24
+        anchors.leftMargin: -6
+        anchors.rightMargin: -6
+        clip: true
+        activeFocusOnTab: true
+        keyNavigationEnabled: true
+        model: roster.people
+        Accessible.role: Accessible.List
+        Accessible.name: qsTr("Participants")
+        onModelChanged: currentIndex = roster.people.findIndex(p => p.code === roster.selected)
+        Keys.onUpPressed: pick(Math.max(0, currentIndex - 1))
+        Keys.onDownPressed: pick(Math.min(count - 1, currentIndex + 1))
+        function pick(index) {
+            if (index < 0 || index >= count)
+                return;
+            roster.selected = roster.people[index].code;
+            forceActiveFocus();
+        }
+        delegate: Rectangle {
+            id: line
+            required property var modelData
+            required property int index
+            readonly property bool chosen: modelData.code === roster.selected
+            objectName: "person-" + modelData.code
+            width: list.width
+            height: 40
+            radius: 6
+            color: chosen ? look.raised : "transparent"
+            border.width: chosen && list.activeFocus ? 2 : 0
+            border.color: look.accent
+            opacity: modelData.takesPart ? 1 : 0.6
+            Accessible.role: Accessible.ListItem
+            Accessible.name: [modelData.code, modelData.kind, modelData.standing, qsTr("%1 of %2 sessions").arg(modelData.complete).arg(modelData.of)].join(", ")
+            Lamp {
+                x: 10
+                anchors.verticalCenter: parent.verticalCenter
+                tone: !line.modelData.takesPart ? "bad" : line.modelData.complete >= line.modelData.of ? "good" : line.modelData.interrupted > 0 ? "wait" : "rest"
+            }
+            Row {
+                x: 36
+                anchors.verticalCenter: parent.verticalCenter
+                Say {
+                    width: roll.widths[0]
+                    text: line.modelData.code
+                    font.family: look.digits
+                    font.pixelSize: 15
+                    font.weight: Font.DemiBold
+                }
+                Say {
+                    width: roll.widths[1]
+                    text: line.modelData.kind
+                    font.pixelSize: 13
+                }
+                Say {
+                    width: roll.widths[2]
+                    font.pixelSize: 13
+                    text: qsTr("%1 of %2").arg(line.modelData.complete).arg(line.modelData.of) + (line.modelData.interrupted > 0 ? " · " + qsTr("%1 broken off").arg(line.modelData.interrupted) : "")
+                }
+                Row {
+                    width: roll.widths[3]
+                    spacing: 4
+                    Repeater {
+                        model: line.modelData.consent
+                        Mark {
+                            required property var modelData
+                            sign: modelData.sign
+                            tone: modelData.tone
+                        }
+                    }
+                    Say {
+                        visible: line.modelData.consent.length === 0
+                        quiet: true
+                        text: "–"
+                    }
+                }
+                Say {
+                    width: roll.widths[4]
+                    font.pixelSize: 13
+                    font.family: look.digits
+                    quiet: line.modelData.place === ""
+                    text: line.modelData.place === "" ? "–" : line.modelData.place
+                }
+                Say {
+                    width: Math.max(0, line.width - 522)
+                    font.pixelSize: 13
+                    quiet: true
+                    text: line.modelData.standing + (line.modelData.reason !== "" ? " · " + line.modelData.reason : "")
+                }
+            }
+            MouseArea {
+                anchors.fill: parent
+                onClicked: list.pick(line.index)
+            }
+        }
+    }
+    Say {
+        objectName: "nobody"
+        anchors.centerIn: parent
+        visible: roster.known && roster.people.length === 0
+        quiet: true
+        font.pixelSize: 16
+        text: qsTr("Nobody is enrolled yet.")
+    }
+}

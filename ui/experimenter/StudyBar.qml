@@ -1,0 +1,37 @@
+import QtQuick
+import QtQuick.Layouts
+
+// Which study a page is about, what came of the last action, and what else stands at its right.
+RowLayout {
+    id: bar
+    property string told
+    property bool failed: false
+    default property alias more: extras.data
+    spacing: 16
+    Picker {
+        objectName: "study"
+        implicitWidth: 372
+        name: qsTr("Study")
+        model: studies.cards
+        textRole: "title"
+        currentIndex: studies.chosen
+        onActivated: index => studies.chosen = index
+    }
+    Lamp {
+        visible: bar.told !== ""
+        tone: bar.failed ? "bad" : "good"
+    }
+    Say {
+        objectName: "told"
+        Layout.fillWidth: true
+        text: bar.told
+        wrapMode: Text.Wrap
+        maximumLineCount: 2
+        font.pixelSize: 13
+        Accessible.role: Accessible.AlertMessage
+    }
+    Row {
+        id: extras
+        spacing: 12
+    }
+}

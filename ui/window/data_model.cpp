@@ -1,0 +1,244 @@
+#include "ui/window/data_model.h"
+
+#include <QtCore/QCoreApplication>
+#include <QtCore/QStandardPaths>
+#include <algorithm>
+#include <filesystem>
+
+#include "analysis/export/export.h"
+#include "ui/presenter/axis.h"
+#include "ui/window/data_words.h"
+
+namespace passung::window {
+
+using presenter::Recorded;
+
+namespace {
+
+using Found = std::shared_ptr<Recorded>;  // shared: through the event loop; null: no database
+
+QString text(const std::string& s) { return QString::fromStdString(s); }
+
+Result<Found> readFrom(const std::string& database) {
+    if (!std::filesystem::exists(database)) return Found();
+    const auto reader = store::StoreReader::open(database);
+    if (!reader) return reader.errors();
+    auto recorded = presenter::readRecorded(*reader);
+    if (!recorded) return recorded.errors();
+    return std::make_shared<Recorded>(*std::move(recorded));
+}
+
+QVariantList numbers(const std::vector<double>& values) {
+    QVariantList all;
+    for (const double value : values) all.append(value);
+    return all;
+}
+
+QVariantMap lookMap(const presenter::ConditionLook& look) {
+    const presenter::FiveNumbers& n = look.numbers;
+    return {{"condition", text(look.version.empty() ? look.condition : look.condition + " (" + look.version + ")")},
+            {"participants", static_cast<int>(look.participants)},
+            {"n", static_cast<int>(look.values.size())},
+            {"values", numbers(look.values)},
+            {"box", numbers(look.values.empty() ? std::vector<double>{}
+                                                : std::vector{n.least, n.lower, n.median, n.upper, n.most})}};
+}
+
+}  // namespace
+
+DataModel::DataModel(Desk& desk, Studies& studies) : desk_(desk), studies_(studies) {
+    connect(&studies_, &Studies::chosenChanged, this, [this] {
+        told_.clear();
+        refresh();
+    });
+    connect(&desk_, &Desk::happened, this, [this] {
+        const bool runs = desk_.run().view().isRunning();
+        if (ran_ && !runs) refresh();
+        ran_ = runs;
+    });
+    refresh();
+}
+
+QString DataModel::database() const {
+    return source_ == 2 ? file_ : text(source_ == 1 ? studies_.tryOuts() : studies_.database());
+}
+
+void DataModel::setSource(int source) {
+    if (source == source_) return;
+    source_ = source;
+    told_.clear();
+    refresh();
+}
+
+void DataModel::setFile(const QString& file) {
+    if (file == file_) return;
+    file_ = file;
+    if (source_ == 2) refresh();
+}
+
+void DataModel::refresh() {
+    const int asked = ++asked_;
+    worker_.run([database = database().toStdString()] { return readFrom(database); },
+                [this, asked](Result<Found> found) {
+                    if (asked != asked_) return;
+                    recorded_.reset();
+                    failed_ = !found;
+                    if (!found)
+                        told_ = text(toString(found.errors().front()));
+                    else if (*found)
+                        recorded_ = std::make_unique<Recorded>(std::move(**found));
+                    if (attempts().isEmpty()) session_.clear();
+                    if (session_.empty() && recorded_ && !recorded_->data.sessions.empty())
+                        session_ = recorded_->data.sessions.back().session_id;
+                    if (!recorded_ || measure_ >= static_cast<int>(recorded_->measures.size())) measure_ = 0;
+                    if (!recorded_ || kind_ >= static_cast<int>(recorded_->kinds.size())) kind_ = 0;
+                    emit changed();
+                });
+    emit changed();
+}
+
+QVariantList DataModel::sessions() const {
+    QVariantList all;
+    if (!recorded_) return all;
+    for (const store::SessionRow& row : recorded_->data.sessions) {
+        const bool whole = row.end_state == "complete";
+        all.append(QVariantMap{{"id", text(row.session_id)},
+                               {"participant", text(row.participant_id)},
+                               {"ordinal", static_cast<int>(row.ordinal)},
+                               {"kind", kindText(row.kind)},
+                               {"date", row.epoch == "virtual" ? QString() : text(row.started_utc.substr(0, 10))},
+                               {"device", text(row.device)},
+                               {"word", endWord(row.end_state)},
+                               {"tone", whole           ? "good"
+                                        : row.end_state ? "wait"
+                                                        : "rest"},
+                               {"trials", QStringLiteral("%1 / %2").arg(row.valid_attempts).arg(row.planned_trials)}});
+    }
+    return all;
+}
+
+void DataModel::setSession(const QString& session) {
+    if (session == this->session()) return;
+    session_ = session.toStdString();
+    emit changed();
+}
+
+QVariantList DataModel::attempts() const {
+    QVariantList all;
+    if (!recorded_) return all;
+    for (const store::AttemptRow* row : presenter::attemptsOf(*recorded_, session_)) {
+        const auto time = row->measures.find("completion_time_s");
+        const bool good = row->valid && row->outcome == "success";
+        all.append(QVariantMap{{"id", static_cast<qlonglong>(row->attempt_id)},
+                               {"trial", static_cast<int>(row->trial_index) + 1},
+                               {"attempt", static_cast<int>(row->attempt_no)},
+                               {"block", text(row->block)},
+                               {"condition", text(row->presented_condition)},
+                               {"word", outcomeWord(row->outcome, row->valid)},
+                               {"reason", text(row->invalid_reason.value_or(""))},
+                               {"tone", good                                      ? "good"
+                                        : row->valid && row->outcome == "timeout" ? "wait"
+                                                                                  : "bad"},
+                               {"seconds", time != row->measures.end() ? time->second
+                                           : row->end_ns ? 1e-9 * static_cast<double>(*row->end_ns - row->start_ns)
+                                                         : -1.0}});
+    }
+    return all;
+}
+
+QVariantList DataModel::measures() const {
+    QVariantList all;
+    if (recorded_)
+        for (const auto& measure : recorded_->measures)
+            all.append(
+                QVariantMap{{"name", text(measure.name)},
+                            {"label", text(measure.label) + (measure.unit.empty() || measure.unit == "1"
+                                                                 ? QString()
+                                                                 : QStringLiteral(" [%1]").arg(text(measure.unit)))}});
+    return all;
+}
+
+void DataModel::setMeasure(int measure) {
+    if (measure == measure_ || measure < 0) return;
+    measure_ = measure;
+    emit changed();
+}
+
+QStringList DataModel::kinds() const {
+    QStringList all;
+    if (recorded_)
+        for (const auto& kind : recorded_->kinds) all.append(kindText(kind));
+    return all;
+}
+
+void DataModel::setKind(int kind) {
+    if (kind == kind_ || kind < 0) return;
+    kind_ = kind;
+    emit changed();
+}
+
+QVariantMap DataModel::look() const {
+    if (!recorded_ || recorded_->measures.empty() || recorded_->kinds.empty()) return {};
+    const auto& measure = recorded_->measures[static_cast<std::size_t>(measure_)];
+    const auto looks = presenter::lookAt(*recorded_, measure.name, recorded_->kinds[static_cast<std::size_t>(kind_)]);
+    QVariantList rows;
+    double low = INFINITY, high = -INFINITY;
+    for (const auto& look : looks) {
+        rows.append(lookMap(look));
+        if (look.values.empty()) continue;
+        low = std::min(low, look.numbers.least);
+        high = std::max(high, look.numbers.most);
+    }
+    if (!(low <= high)) low = high = 0.0;
+    if (low > 0.0 && low < 0.5 * high) low = 0.0;  // a scale that begins at nothing, where that costs little room
+    return {{"rows", rows}, {"marks", numbers(presenter::axisMarks(low, high, 6))}};
+}
+
+QString DataModel::proposedFolder() const {
+    const QString documents = QStandardPaths::writableLocation(QStandardPaths::DocumentsLocation);
+    const presenter::StudyCard* card = studies_.card();
+    return documents + "/passung-export/" + (card != nullptr ? text(card->name) : QStringLiteral("study"));
+}
+
+void DataModel::exportTo(const QString& folder, bool samples) {
+    if (exporting_ || !recorded_ || folder.trimmed().isEmpty()) return;
+    exporting_ = true;
+    exported_ = 0.0;
+    cancelled_ = false;
+    last_folder_.clear();
+    told_.clear();
+    exporter::ExportOptions options;
+    options.samples = samples;
+    options.cancelled = [this] { return cancelled_.load(); };
+    options.progress = [this](double share) {
+        QMetaObject::invokeMethod(
+            this,
+            [this, share] {
+                exported_ = share;
+                emit exportChanged();
+            },
+            Qt::QueuedConnection);
+    };
+    const QString to = folder.trimmed();
+    worker_.run(
+        [database = database().toStdString(), out = to.toStdString(), options]() -> Result<exporter::ExportReport> {
+            const auto reader = store::StoreReader::open(database);
+            if (!reader) return reader.errors();
+            std::error_code problem;  // shows when the folder is begun
+            std::filesystem::create_directories(std::filesystem::path(out).parent_path(), problem);
+            return exporter::exportAll(*reader, out, options);
+        },
+        [this, to](const Result<exporter::ExportReport>& report) {
+            exporting_ = false;
+            failed_ = !report;
+            if (report) last_folder_ = to;
+            told_ = report       ? exportedLine(to, report->attempts, report->files)
+                    : cancelled_ ? cancelledLine()
+                                 : text(toString(report.errors().front()));
+            emit changed();
+            emit exportChanged();
+        });
+    emit exportChanged();
+}
+
+}  // namespace passung::window

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <QtCore/QObject>
+#include <QtCore/QVariant>
+#include <atomic>
+#include <memory>
+#include <string>
+
+#include "ui/presenter/recorded.h"
+#include "ui/window/desk.h"
+#include "ui/window/studies.h"
+#include "ui/window/worker.h"
+
+namespace passung::window {
+
+/// What the chosen study's databases hold, for QML: sessions, attempts, a quick look, export.
+class DataModel : public QObject {
+    Q_OBJECT
+    Q_PROPERTY(int source READ source WRITE setSource NOTIFY changed)  // 0: the study's, 1: its try-outs, 2: `file`
+    Q_PROPERTY(QString file READ file WRITE setFile NOTIFY changed)
+    Q_PROPERTY(QString database READ database NOTIFY changed)
+    Q_PROPERTY(bool there READ there NOTIFY changed)  // the database exists
+    Q_PROPERTY(bool busy READ busy NOTIFY changed)
+    Q_PROPERTY(QString told READ told NOTIFY changed)
+    Q_PROPERTY(bool failed READ failed NOTIFY changed)
+    Q_PROPERTY(QVariantList sessions READ sessions NOTIFY changed)
+    Q_PROPERTY(QString session READ session WRITE setSession NOTIFY changed)  // id of the selected one
+    Q_PROPERTY(QVariantList attempts READ attempts NOTIFY changed)            // of it
+    Q_PROPERTY(QVariantList measures READ measures NOTIFY changed)
+    Q_PROPERTY(int measure READ measure WRITE setMeasure NOTIFY changed)
+    Q_PROPERTY(QStringList kinds READ kinds NOTIFY changed)
+    Q_PROPERTY(int kind READ kind WRITE setKind NOTIFY changed)
+    Q_PROPERTY(QVariantMap look READ look NOTIFY changed)
+    Q_PROPERTY(bool exporting READ exporting NOTIFY exportChanged)
+    Q_PROPERTY(double exported READ exported NOTIFY exportChanged)  // share
+    Q_PROPERTY(QString proposedFolder READ proposedFolder NOTIFY changed)
+    Q_PROPERTY(QString lastFolder READ lastFolder NOTIFY exportChanged)  // of a finished export
+
+public:
+    DataModel(Desk& desk, Studies& studies);
+    ~DataModel() override { cancelled_ = true; }
+
+    int source() const { return source_; }
+    void setSource(int source);
+    QString file() const { return file_; }
+    void setFile(const QString& file);
+    QString database() const;
+    bool there() const { return recorded_ != nullptr; }
+    bool busy() const { return worker_.busy(); }
+    QString told() const { return told_; }
+    bool failed() const { return failed_; }
+    QVariantList sessions() const;
+    QString session() const { return QString::fromStdString(session_); }
+    void setSession(const QString& session);
+    QVariantList attempts() const;
+    QVariantList measures() const;
+    int measure() const { return measure_; }
+    void setMeasure(int measure);
+    QStringList kinds() const;
+    int kind() const { return kind_; }
+    void setKind(int kind);
+    QVariantMap look() const;
+    bool exporting() const { return exporting_; }
+    double exported() const { return exported_; }
+    QString proposedFolder() const;
+    QString lastFolder() const { return last_folder_; }
+
+    Q_INVOKABLE void refresh();
+    Q_INVOKABLE void exportTo(const QString& folder, bool samples);
+    Q_INVOKABLE void cancelExport() { cancelled_ = true; }
+    void retranslate() { emit changed(); }
+
+signals:
+    void changed();
+    void exportChanged();
+
+private:
+    Desk& desk_;
+    Studies& studies_;
+    int source_ = 0;
+    QString file_, told_, last_folder_;
+    bool failed_ = false, ran_ = false, exporting_ = false;
+    double exported_ = 0.0;
+    std::atomic<bool> cancelled_{false};
+    std::unique_ptr<presenter::Recorded> recorded_;
+    std::string session_;
+    int measure_ = 0, kind_ = 0;
+    int asked_ = 0;  // readings so far: an answer to an earlier one is old
+    Worker worker_;  // last: what it calls is there until it ends
+};
+
+}  // namespace passung::window

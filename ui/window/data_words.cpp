@@ -1,0 +1,48 @@
+#include "ui/window/data_words.h"
+
+#include <QtCore/QCoreApplication>
+
+#include "study/measures/measures.h"
+#include "ui/presenter/run.h"
+#include "ui/window/roster_words.h"
+#include "ui/window/words.h"
+
+namespace passung::window {
+
+namespace {
+
+QString said(const char* text) { return QCoreApplication::translate("data", text); }
+
+}  // namespace
+
+QString kindText(const std::string& kind) {
+    const auto known = protocol::participantKindNamed(kind);
+    return known ? kindWord(*known) : QString::fromStdString(kind);
+}
+
+QString endWord(const std::optional<std::string>& end_state) {
+    using presenter::SessionState;
+    if (!end_state) return sessionWord(SessionState::Open);
+    return sessionWord(*end_state == "complete"  ? SessionState::Complete
+                       : *end_state == "crashed" ? SessionState::Crashed
+                                                 : SessionState::Aborted);
+}
+
+QString outcomeWord(const std::string& outcome, bool valid) {
+    using presenter::RowState;
+    if (outcome == "running") return rowWord(RowState::Running);
+    if (outcome == "crashed") return said(QT_TRANSLATE_NOOP("data", "crashed"));
+    if (outcome == "aborted") return rowWord(RowState::Aborted);
+    if (!valid) return rowWord(RowState::Invalid);
+    return rowWord(outcome == "success"   ? RowState::Success
+                   : outcome == "timeout" ? RowState::Timeout
+                                          : RowState::Failure);
+}
+
+QString exportedLine(const QString& folder, std::size_t attempts, std::size_t files) {
+    return said(QT_TRANSLATE_NOOP("data", "%1: %2 attempts in %3 files")).arg(folder).arg(attempts).arg(files);
+}
+
+QString cancelledLine() { return said(QT_TRANSLATE_NOOP("data", "The export was cancelled; nothing was written.")); }
+
+}  // namespace passung::window

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <QtCore/QString>
+#include <optional>
+#include <string>
+
+namespace passung::window {
+
+// What a database's words mean, in the language of the windows.
+
+QString kindText(const std::string& kind);
+QString endWord(const std::optional<std::string>& end_state);
+QString outcomeWord(const std::string& outcome, bool valid);
+QString exportedLine(const QString& folder, std::size_t attempts, std::size_t files);
+QString cancelledLine();
+
+}  // namespace passung::window

@@ -1,0 +1,327 @@
+#include "ui/window/roster_model.h"
+
+#include <QtCore/QCoreApplication>
+#include <filesystem>
+
+#include "study/protocol/protocol_reader.h"
+#include "ui/app/run_study.h"
+#include "ui/window/roster_words.h"
+
+namespace passung::window {
+
+using presenter::PersonWhy;
+using presenter::Roster;
+using presenter::RosterPerson;
+using protocol::ParticipantKind;
+
+namespace {
+
+QString said(const char* text) { return QCoreApplication::translate("roster", text); }
+
+QString text(const std::string& s) { return QString::fromStdString(s); }
+
+/// "2026-11-22 05:44" of a time as it is stored.
+QString minute(const std::string& utc) { return text(utc.substr(0, 16)).replace('T', ' '); }
+
+ParticipantKind kindOf(bool pilot) { return pilot ? ParticipantKind::Pilot : ParticipantKind::Real; }
+
+Result<Roster> readFrom(const std::string& protocol, const std::string& database) {
+    const auto plan = protocol::readProtocol(protocol, app::knownDevices(), app::knownMeasures());
+    if (!plan) return plan.errors();
+    if (!std::filesystem::exists(database)) return presenter::emptyRoster(*plan);
+    const auto reader = store::StoreReader::open(database);
+    if (!reader) return reader.errors();
+    return presenter::readRoster(*plan, *reader);
+}
+
+QVariantMap sessionMap(const presenter::RosterSession& session) {
+    const bool whole = session.state == presenter::SessionState::Complete;
+    return {{"name", QString::number(session.ordinal)},
+            {"date", minute(session.started_utc)},
+            {"word", sessionWord(session.state)},
+            {"tone", whole ? "good" : "wait"},
+            {"trials", QStringLiteral("%1 / %2").arg(session.valid).arg(session.planned)}};
+}
+
+QVariantMap personMap(const Roster& roster, const RosterPerson& person) {
+    QVariantList consent;
+    for (const presenter::Decision decision : person.consent)
+        consent.append(QVariantMap{{"sign", decisionSign(decision)},
+                                   {"word", decisionWord(decision)},
+                                   {"tone", decision == presenter::Decision::Yes          ? "good"
+                                            : decision == presenter::Decision::NotAsked   ? "rest"
+                                            : decision == presenter::Decision::OtherWords ? "wait"
+                                                                                          : "bad"}});
+    const bool takes_part = person.standing == presenter::Standing::TakesPart;
+    QString place;
+    if (person.place) {
+        place = QString::number(person.place->slot + 1);
+        if (roster.groups.size() > 1) place += QStringLiteral(" · ") + text(roster.groups[person.place->group]);
+    }
+    return {{"code", text(person.code)},
+            {"kind", kindWord(person.kind)},
+            {"standing", standingWord(person.standing)},
+            {"takesPart", takes_part},
+            {"excluded", person.standing == presenter::Standing::Excluded},
+            {"reason", text(person.reason)},
+            {"enrolled", minute(person.enrolled_utc)},
+            {"place", place},
+            {"complete", person.complete()},
+            {"interrupted", person.interrupted()},
+            {"of", roster.sessions},
+            {"consent", consent}};
+}
+
+}  // namespace
+
+RosterModel::RosterModel(Desk& desk, Studies& studies) : desk_(desk), studies_(studies) {
+    connect(&studies_, &Studies::chosenChanged, this, [this] {
+        roster_.reset();
+        selected_.clear();
+        told_.clear();
+        dialog_.close();
+        refresh();
+    });
+    connect(&desk_, &Desk::happened, this, [this] {
+        if (sessionRuns() != ran_ && !sessionRuns()) refresh();
+        if (sessionRuns() != ran_) emit changed();
+        ran_ = sessionRuns();
+    });
+    refresh();
+}
+
+QString RosterModel::database() const { return text(studies_.database()); }
+
+const RosterPerson* RosterModel::person_() const { return roster_ ? roster_->find(selected_) : nullptr; }
+
+std::string RosterModel::by() const {
+    const std::string name = experimenter_.trimmed().toStdString();
+    return name.empty() ? "experimenter" : name;
+}
+
+void RosterModel::refresh() {
+    const presenter::StudyCard* card = studies_.card();
+    if (card == nullptr || !card->sound) {
+        roster_.reset();
+        emit changed();
+        return;
+    }
+    const int asked = ++asked_;
+    worker_.run([protocol = card->path, database = studies_.database()] { return readFrom(protocol, database); },
+                [this, asked](Result<Roster> roster) {
+                    if (asked != asked_) return;
+                    if (roster) {
+                        roster_ = *std::move(roster);
+                        if (person_() == nullptr) selected_.clear();
+                    } else {
+                        tell(roster.errors(), {});
+                    }
+                    emit changed();
+                });
+    emit changed();
+}
+
+void RosterModel::tell(const Result<Done>& came, const QString& done) {
+    failed_ = !came;
+    told_ = came ? done : text(toString(came.errors().front()));
+}
+
+void RosterModel::act(const Work& work, const QString& done) {
+    const presenter::StudyCard* card = studies_.card();
+    if (card == nullptr || sessionRuns()) return;
+    app::DeskAccess access{.database = studies_.database(), .by = by(), .create = true};
+    worker_.run(
+        [work, access, protocol = card->path]() -> Result<Done> {
+            const auto plan = protocol::readProtocol(protocol, app::knownDevices(), app::knownMeasures());
+            if (!plan) return plan.errors();
+            std::error_code problem;  // shows when the database is opened
+            std::filesystem::create_directories(std::filesystem::path(access.database).parent_path(), problem);
+            return app::atTheDesk(access, [&](store::Store& store, store::ParticipantDesk& desk) -> Result<Done> {
+                if (const auto imported = store.importProtocol(*plan); !imported) return imported.errors();
+                return work(store, desk, *plan);
+            });
+        },
+        [this, done](const Result<Done>& came) {
+            tell(came, done);
+            refresh();
+        });
+    emit changed();
+}
+
+QStringList RosterModel::clauses() const {
+    QStringList names;
+    if (roster_)
+        for (const auto& clause : roster_->clauses) names.append(text(clause.clause));
+    return names;
+}
+
+QVariantList RosterModel::people() const {
+    QVariantList all;
+    if (roster_)
+        for (const RosterPerson& person : roster_->people) all.append(personMap(*roster_, person));
+    return all;
+}
+
+QVariantMap RosterModel::person() const {
+    const RosterPerson* person = person_();
+    if (person == nullptr) return {};
+    QVariantMap map = personMap(*roster_, *person);
+    QVariantList sessions;
+    for (const auto& session : person->sessions) sessions.append(sessionMap(session));
+    map["sessions"] = sessions;
+    map["whyNotStart"] = whyNot(presenter::whyNotStart(*roster_, *person, sessionRuns()));
+    map["whyNotResume"] = whyNot(presenter::whyNotResume(*person, sessionRuns()));
+    map["canResume"] = person->resumable() != nullptr;
+    return map;
+}
+
+void RosterModel::select(const QString& code) {
+    if (code == selected()) return;
+    selected_ = code.toStdString();
+    dialog_.close();
+    emit changed();
+}
+
+QVariantList RosterModel::places() const {
+    QVariantList all;
+    if (!roster_) return all;
+    for (const auto& place : roster_->places)
+        all.append(
+            QVariantMap{{"name", QString::number(place.at.slot + 1)},
+                        {"group", roster_->groups.size() > 1 ? text(roster_->groups[place.at.group]) : QString()},
+                        {"owner", text(place.owner)},
+                        {"done", place.done}});
+    return all;
+}
+
+QStringList RosterModel::balance() const { return roster_ ? balanceLines(roster_->balance) : QStringList(); }
+
+QString RosterModel::proposedCode(bool pilot) const {
+    return roster_ ? text(presenter::proposedCode(*roster_, kindOf(pilot))) : QString();
+}
+
+QString RosterModel::whyNotEnrol(const QString& code, bool pilot) const {
+    if (!roster_) return {};
+    if (sessionRuns()) return whyNot(PersonWhy::SessionRuns);
+    return whyNot(presenter::whyNotEnrol(*roster_, code.toStdString(), kindOf(pilot)), kindOf(pilot));
+}
+
+void RosterModel::enrol(const QString& code, bool pilot) {
+    if (!whyNotEnrol(code, pilot).isEmpty()) return;
+    selected_ = code.toStdString();
+    act(
+        [code = selected_, kind = kindOf(pilot)](store::Store& store, store::ParticipantDesk& desk,
+                                                 const protocol::StudyPlan&) -> Result<Done> {
+            const auto enrolled = app::enrolAt(store, desk, kind, code);
+            if (!enrolled) return enrolled.errors();
+            return Done{};
+        },
+        said(QT_TRANSLATE_NOOP("roster", "%1 is enrolled.")).arg(code));
+}
+
+bool RosterModel::start(bool resume) {
+    const RosterPerson* person = person_();
+    if (person == nullptr || studies_.card() == nullptr || !begin) return false;
+    const PersonWhy why = resume ? presenter::whyNotResume(*person, sessionRuns())
+                                 : presenter::whyNotStart(*roster_, *person, sessionRuns());
+    if (why != PersonWhy::Possible) return false;
+    begin({studies_.card()->path, studies_.database(), person->code, by(), resume ? person->resumable()->id : ""});
+    return true;
+}
+
+void RosterModel::decide(int clause, const QString& decision) {
+    const RosterPerson* person = person_();
+    if (person == nullptr || clause < 0 || clause >= static_cast<int>(roster_->clauses.size())) return;
+    const auto& asked = roster_->clauses[static_cast<std::size_t>(clause)];
+    const auto answer = decision == "yes"  ? store::Consent::Yes
+                        : decision == "no" ? store::Consent::No
+                                           : store::Consent::Withdrawn;
+    act(
+        [code = person->code, name = asked.clause, language = asked.texts.front().first, answer](
+            store::Store&, store::ParticipantDesk& desk, const protocol::StudyPlan&) -> Result<Done> {
+            const auto decided = desk.decide(code, {name}, language, answer);
+            if (!decided) return decided.errors();
+            return Done{};
+        },
+        said(QT_TRANSLATE_NOOP("roster", "%1: the decision on “%2” is stored.")).arg(selected(), text(asked.clause)));
+}
+
+QString RosterModel::whyNotReadmit(const QString& reason) const {
+    const RosterPerson* person = person_();
+    if (person == nullptr) return {};
+    return whyNot(presenter::whyNotReadmit(*person, reason.trimmed().toStdString(), sessionRuns()));
+}
+
+void RosterModel::readmit(const QString& reason) {
+    if (person_() == nullptr || !whyNotReadmit(reason).isEmpty()) return;
+    act(
+        [code = selected_, why = reason.trimmed().toStdString()](store::Store&, store::ParticipantDesk& desk,
+                                                                 const protocol::StudyPlan&) -> Result<Done> {
+            const auto placed = desk.readmit(code, why);
+            if (!placed) return placed.errors();
+            return Done{};
+        },
+        said(QT_TRANSLATE_NOOP("roster", "%1 takes part again.")).arg(selected()));
+}
+
+QVariantMap RosterModel::leaving() const {
+    using Step = presenter::LeavingDialog::Step;
+    const bool confirms = dialog_.step() == Step::Confirm;
+    return {{"open", dialog_.step() != Step::Closed},
+            {"confirms", confirms},
+            {"code", text(dialog_.code())},
+            {"erases", confirms && dialog_.leaving().scope == presenter::Scope::Erase},
+            {"lines", confirms ? leavingLines(dialog_.leaving()) : QStringList()}};
+}
+
+void RosterModel::openLeaving() {
+    if (person_() == nullptr) return;
+    dialog_.open(*person_());
+    emit changed();
+}
+
+void RosterModel::closeLeaving() {
+    dialog_.close();
+    emit changed();
+}
+
+QString RosterModel::whyNotChoose(int scope, const QString& reason) const {
+    return whyNot(
+        dialog_.whyNotChoose(static_cast<presenter::Scope>(scope), reason.trimmed().toStdString(), sessionRuns()));
+}
+
+void RosterModel::chooseLeaving(int scope, const QString& reason) {
+    if (!whyNotChoose(scope, reason).isEmpty()) return;
+    dialog_.choose(static_cast<presenter::Scope>(scope), reason.trimmed().toStdString());
+    emit changed();
+}
+
+void RosterModel::backLeaving() {
+    dialog_.back();
+    emit changed();
+}
+
+QString RosterModel::whyNotConfirm(const QString& typed) const {
+    return whyNot(dialog_.whyNotConfirm(typed.trimmed().toStdString(), sessionRuns()));
+}
+
+void RosterModel::confirmLeaving(const QString& typed) {
+    const auto leaving = dialog_.confirm(typed.trimmed().toStdString(), sessionRuns());
+    if (!leaving) return;
+    const app::DeskAccess access{.database = studies_.database(), .by = by()};
+    worker_.run(
+        [access, what = *leaving] { return app::leave(access, what); },
+        [this, what = *leaving](const Result<app::Left>& left) {
+            tell(left ? Result<Done>(Done{}) : Result<Done>(left.errors()),
+                 said(QT_TRANSLATE_NOOP("roster", "%1 has left the study.")).arg(text(what.code)));
+            if (left && !left->copies.empty()) {
+                QStringList copies;
+                for (const auto& copy : left->copies) copies.append(text(copy));
+                told_ += " " + said(QT_TRANSLATE_NOOP("roster", "Delete these copies too: %1")).arg(copies.join(", "));
+            }
+            refresh();
+        });
+    emit changed();
+}
+
+}  // namespace passung::window

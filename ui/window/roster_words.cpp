@@ -1,0 +1,223 @@
+#include "ui/window/roster_words.h"
+
+#include <QtCore/QCoreApplication>
+#include <QtCore/QStringList>
+
+namespace passung::window {
+
+using presenter::CodeWhy;
+using presenter::Decision;
+using presenter::PersonWhy;
+using presenter::Scope;
+using presenter::SessionState;
+using presenter::Standing;
+using protocol::ParticipantKind;
+
+namespace {
+
+QString said(const char* text) { return QCoreApplication::translate("roster", text); }
+
+QString range(const design::CountRange& range) { return QString::fromStdString(design::rangeText(range)); }
+
+QString wheelName(const design::WheelBalance& of, const std::vector<std::string>& factors) {
+    const QString factor = of.wheel.factor ? QString::fromStdString(factors[*of.wheel.factor]) : QString();
+    switch (of.wheel.what) {
+        case design::Wheel::What::Conditions:
+            return factor.isEmpty() ? said(QT_TRANSLATE_NOOP("roster", "Conditions"))
+                                    : said(QT_TRANSLATE_NOOP("roster", "Conditions within %1")).arg(factor);
+        case design::Wheel::What::Levels:
+            return said(QT_TRANSLATE_NOOP("roster", "Levels of %1")).arg(factor);
+        case design::Wheel::What::Assignment:
+            break;
+    }
+    return said(QT_TRANSLATE_NOOP("roster", "Assignment of %1")).arg(factor);
+}
+
+QString balanceLine(const design::WheelBalance& of, const std::vector<std::string>& factors) {
+    const bool assigned = of.wheel.what == design::Wheel::What::Assignment;
+    const QString name = wheelName(of, factors);
+    const QString counts =
+        assigned ? said(QT_TRANSLATE_NOOP("roster", "%1 (%2 rows): each pair %3 times"))
+                       .arg(name)
+                       .arg(of.rows)
+                       .arg(range(of.counts.positions))
+                 : said(QT_TRANSLATE_NOOP("roster", "%1 (%2 rows): each position %3 times, each neighbour %4 times"))
+                       .arg(name)
+                       .arg(of.rows)
+                       .arg(range(of.counts.positions), range(of.counts.neighbours));
+    return counts + QStringLiteral(" – ") +
+           (of.even ? said(QT_TRANSLATE_NOOP("roster", "balanced"))
+                    : said(QT_TRANSLATE_NOOP("roster", "not balanced yet")));
+}
+
+}  // namespace
+
+QString kindWord(ParticipantKind kind) {
+    switch (kind) {
+        case ParticipantKind::Real:
+            return said(QT_TRANSLATE_NOOP("roster", "person"));
+        case ParticipantKind::Pilot:
+            return said(QT_TRANSLATE_NOOP("roster", "pilot"));
+        case ParticipantKind::Simulated:
+            break;
+    }
+    return said(QT_TRANSLATE_NOOP("roster", "simulated"));
+}
+
+QString standingWord(Standing standing) {
+    switch (standing) {
+        case Standing::TakesPart:
+            return said(QT_TRANSLATE_NOOP("roster", "takes part"));
+        case Standing::Withdrawn:
+            return said(QT_TRANSLATE_NOOP("roster", "withdrawn"));
+        case Standing::WithdrawnWithData:
+            return said(QT_TRANSLATE_NOOP("roster", "withdrawn with data"));
+        case Standing::Excluded:
+            break;
+    }
+    return said(QT_TRANSLATE_NOOP("roster", "excluded"));
+}
+
+QString decisionWord(Decision decision) {
+    switch (decision) {
+        case Decision::NotAsked:
+            return said(QT_TRANSLATE_NOOP("roster", "not asked yet"));
+        case Decision::OtherWords:
+            return said(QT_TRANSLATE_NOOP("roster", "decided on an earlier text"));
+        case Decision::Yes:
+            return said(QT_TRANSLATE_NOOP("roster", "agreed"));
+        case Decision::No:
+            return said(QT_TRANSLATE_NOOP("roster", "declined"));
+        case Decision::Withdrawn:
+            break;
+    }
+    return said(QT_TRANSLATE_NOOP("roster", "withdrawn"));
+}
+
+QString decisionSign(Decision decision) {
+    switch (decision) {
+        case Decision::NotAsked:
+            return QStringLiteral("·");
+        case Decision::OtherWords:
+            return QStringLiteral("?");
+        case Decision::Yes:
+            return QStringLiteral("✓");
+        case Decision::No:
+        case Decision::Withdrawn:
+            break;
+    }
+    return QStringLiteral("✕");
+}
+
+QString sessionWord(SessionState state) {
+    switch (state) {
+        case SessionState::Open:
+            return said(QT_TRANSLATE_NOOP("roster", "open"));
+        case SessionState::Complete:
+            return said(QT_TRANSLATE_NOOP("roster", "complete"));
+        case SessionState::Aborted:
+            return said(QT_TRANSLATE_NOOP("roster", "interrupted"));
+        case SessionState::Crashed:
+            break;
+    }
+    return said(QT_TRANSLATE_NOOP("roster", "interrupted by a crash"));
+}
+
+QString whyNot(PersonWhy why) {
+    switch (why) {
+        case PersonWhy::Possible:
+            return {};
+        case PersonWhy::SessionRuns:
+            return said(QT_TRANSLATE_NOOP("roster", "A session is running."));
+        case PersonWhy::TakesNoPart:
+            return said(QT_TRANSLATE_NOOP("roster", "They take part no more."));
+        case PersonWhy::Simulated:
+            return said(QT_TRANSLATE_NOOP("roster", "Simulated participants are run from the command line."));
+        case PersonWhy::AllDone:
+            return said(QT_TRANSLATE_NOOP("roster", "All their sessions are complete."));
+        case PersonWhy::NothingInterrupted:
+            return said(QT_TRANSLATE_NOOP("roster", "No session was interrupted."));
+        case PersonWhy::NotOut:
+            return said(QT_TRANSLATE_NOOP("roster", "They take part."));
+        case PersonWhy::OwnWish:
+            return said(QT_TRANSLATE_NOOP("roster", "They withdrew; only they could take that back."));
+        case PersonWhy::OutAlready:
+            return said(QT_TRANSLATE_NOOP("roster", "They are out of the study already."));
+        case PersonWhy::NeedsReason:
+            return said(QT_TRANSLATE_NOOP("roster", "Give a reason."));
+        case PersonWhy::NeedsCode:
+            break;
+    }
+    return said(QT_TRANSLATE_NOOP("roster", "Type the code to confirm."));
+}
+
+QString whyNot(CodeWhy why, ParticipantKind kind) {
+    switch (why) {
+        case CodeWhy::Possible:
+            return {};
+        case CodeWhy::NotACode:
+            return said(QT_TRANSLATE_NOOP(
+                "roster",
+                "A code begins with a capital letter and ends with a digit; capitals, digits, - and _ between."));
+        case CodeWhy::WrongLetter:
+            return kind == ParticipantKind::Pilot ? said(QT_TRANSLATE_NOOP("roster", "Codes of pilots begin with T."))
+                                                  : said(QT_TRANSLATE_NOOP("roster", "Codes of persons begin with P."));
+        case CodeWhy::Taken:
+            return said(QT_TRANSLATE_NOOP("roster", "This code is enrolled already."));
+        case CodeWhy::MayBeErased:
+            break;
+    }
+    return said(QT_TRANSLATE_NOOP("roster", "Somebody who was erased may have had this code."));
+}
+
+QStringList leavingLines(const presenter::Leaving& leaving) {
+    const QString stock = said(QT_TRANSLATE_NOOP("roster", "%1 sessions, %2 attempts, %3 questionnaires"))
+                              .arg(leaving.sessions)
+                              .arg(leaving.attempts)
+                              .arg(leaving.forms);
+    QStringList lines;
+    switch (leaving.scope) {
+        case Scope::Stop:
+            lines << said(QT_TRANSLATE_NOOP("roster", "Takes part no more; consent ends."))
+                  << said(QT_TRANSLATE_NOOP("roster", "Nothing is deleted: %1 stay and count in the analysis."))
+                         .arg(stock);
+            break;
+        case Scope::Exclude:
+        case Scope::Dismiss:
+            lines << (leaving.scope == Scope::Exclude
+                          ? said(QT_TRANSLATE_NOOP("roster", "Takes part no more; consent ends. Cannot be taken back."))
+                          : said(QT_TRANSLATE_NOOP("roster", "Takes part no more. Can be taken back.")))
+                  << said(QT_TRANSLATE_NOOP("roster", "Nothing is deleted: %1 stay and count nowhere.")).arg(stock);
+            break;
+        case Scope::Erase:
+            lines << said(QT_TRANSLATE_NOOP("roster",
+                                            "Deleted for good: %1, every recorded tick, every consent and "
+                                            "note of %2."))
+                         .arg(stock, QString::fromStdString(leaving.code))
+                  << said(QT_TRANSLATE_NOOP("roster", "The audit keeps that somebody was erased, not who."))
+                  << said(QT_TRANSLATE_NOOP("roster", "Backups and exports elsewhere are yours to delete."));
+            break;
+    }
+    if (leaving.frees_place)
+        lines << said(QT_TRANSLATE_NOOP("roster", "Their place in the design is free for the next participant."));
+    return lines;
+}
+
+QStringList balanceLines(const presenter::DesignBalance& balance) {
+    QStringList lines;
+    for (const auto& group : balance.groups) {
+        if (group.participants == 0) continue;
+        if (balance.groups.size() > 1)
+            lines << said(QT_TRANSLATE_NOOP("roster", "Group %1, participants: %2"))
+                         .arg(QString::fromStdString(group.group))
+                         .arg(group.participants);
+        for (const auto& wheel : group.wheels) lines << balanceLine(wheel, balance.factors);
+    }
+    if (balance.even_number > 1)
+        lines << said(QT_TRANSLATE_NOOP("roster", "Even with multiples of %1 participants; %2 are planned."))
+                     .arg(balance.even_number)
+                     .arg(balance.planned);
+    return lines;
+}
+
+}  // namespace passung::window

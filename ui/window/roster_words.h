@@ -1,0 +1,25 @@
+#pragma once
+
+#include <QtCore/QString>
+
+#include "ui/presenter/leaving.h"
+#include "ui/presenter/roster.h"
+
+namespace passung::window {
+
+// What a roster means, in the language of the windows.
+
+QString kindWord(protocol::ParticipantKind kind);
+QString standingWord(presenter::Standing standing);
+QString decisionWord(presenter::Decision decision);
+/// A sign that tells decisions apart without colour.
+QString decisionSign(presenter::Decision decision);
+QString sessionWord(presenter::SessionState state);
+QString whyNot(presenter::PersonWhy why);
+QString whyNot(presenter::CodeWhy why, protocol::ParticipantKind kind);
+/// What a participant's leaving does, a sentence each.
+QStringList leavingLines(const presenter::Leaving& leaving);
+/// How even the orders are, a line for everything that takes turns.
+QStringList balanceLines(const presenter::DesignBalance& balance);
+
+}  // namespace passung::window

@@ -1,0 +1,160 @@
+#include "ui/window/study_words.h"
+
+#include <QtCore/QCoreApplication>
+#include <QtCore/QStringList>
+#include <cmath>
+
+#include "ui/window/words.h"
+
+namespace passung::window {
+
+namespace {
+
+QString said(const char* text) { return QCoreApplication::translate("study", text); }
+
+QString orderWord(protocol::BlockOrder order) {
+    switch (order) {
+        case protocol::BlockOrder::Williams:
+            return said(QT_TRANSLATE_NOOP("study", "Williams square"));
+        case protocol::BlockOrder::Permutations:
+            return said(QT_TRANSLATE_NOOP("study", "all orders"));
+        case protocol::BlockOrder::Random:
+            return said(QT_TRANSLATE_NOOP("study", "each pass in random order"));
+        case protocol::BlockOrder::Shuffled:
+            return said(QT_TRANSLATE_NOOP("study", "all trials shuffled"));
+        case protocol::BlockOrder::Listed:
+            break;
+    }
+    return said(QT_TRANSLATE_NOOP("study", "as listed"));
+}
+
+/// What the core calls its stages and why it runs them: looked up by the very words.
+[[maybe_unused]] constexpr const char* kStages[] = {
+    QT_TRANSLATE_NOOP("stages", "input guard"),
+    QT_TRANSLATE_NOOP("stages", "always: a device may lie, stall or vanish"),
+    QT_TRANSLATE_NOOP("stages", "energy account"),
+    QT_TRANSLATE_NOOP("stages", "always: what the controller takes in and gives out at the handle is recorded"),
+    QT_TRANSLATE_NOOP("stages", "start gate"),
+    QT_TRANSLATE_NOOP("stages", "start_gate is set: contact begins when the hand holds the start pose"),
+    QT_TRANSLATE_NOOP("stages", "free hand"),
+    QT_TRANSLATE_NOOP("stages", "the scene has no obstacle"),
+    QT_TRANSLATE_NOOP("stages", "contacts at the hand"),
+    QT_TRANSLATE_NOOP("stages",
+                      "contact.method is penalty: forces come from the overlap at the device's own pose; "
+                      "contact.two_way: of the held part's points and of the obstacles' points"),
+    QT_TRANSLATE_NOOP("stages", "contact.method is penalty: forces come from the overlap at the device's own pose"),
+    QT_TRANSLATE_NOOP("stages", "penalty wrench"),
+    QT_TRANSLATE_NOOP("stages", "turns the overlap into force and torque by contact.variant"),
+    QT_TRANSLATE_NOOP("stages", "proxy correction"),
+    QT_TRANSLATE_NOOP("stages",
+                      "contact.method is god_object_heuristic: steps #1 and #2, contacts at the last proxy and relief "
+                      "of its overlap; contact.two_way: here and below of the held part's points and of the obstacles' "
+                      "points"),
+    QT_TRANSLATE_NOOP("stages",
+                      "contact.method is god_object_heuristic: steps #1 and #2, contacts at the last proxy and relief "
+                      "of its overlap"),
+    QT_TRANSLATE_NOOP("stages", "proxy motion"),
+    QT_TRANSLATE_NOOP("stages", "steps #3 and #4: the proxy follows the hand as far as the contacts let it"),
+    QT_TRANSLATE_NOOP("stages", "proxy sweep"),
+    QT_TRANSLATE_NOOP(
+        "stages",
+        "contact.method is god_object: the proxy follows the hand as far as all contacts within reach let "
+        "it; contact.two_way: of the held part's points and of the obstacles' points"),
+    QT_TRANSLATE_NOOP(
+        "stages",
+        "contact.method is god_object: the proxy follows the hand as far as all contacts within reach let "
+        "it"),
+    QT_TRANSLATE_NOOP("stages", "proxy filter"),
+    QT_TRANSLATE_NOOP("stages", "contact.proxy_filter_hz is set: a low-pass of the proxy in contact"),
+    QT_TRANSLATE_NOOP("stages", "proxy record"),
+    QT_TRANSLATE_NOOP("stages", "overlap and contacts at the proxy, for the record"),
+    QT_TRANSLATE_NOOP("stages", "hand depth"),
+    QT_TRANSLATE_NOOP("stages", "the overlap at the device's pose is measured and recorded"),
+    QT_TRANSLATE_NOOP("stages", "virtual coupling"),
+    QT_TRANSLATE_NOOP("stages", "spring and damper between proxy and hand"),
+    QT_TRANSLATE_NOOP("stages", "contact transients"),
+    QT_TRANSLATE_NOOP("stages", "effects.transients is set: a decaying vibration is added at every impact"),
+    QT_TRANSLATE_NOOP("stages", "contact shares"),
+    QT_TRANSLATE_NOOP("stages", "always: the energy account is kept for each obstacle too"),
+    QT_TRANSLATE_NOOP("stages", "output delay"),
+    QT_TRANSLATE_NOOP("stages", "device.delay_ticks is set"),
+    QT_TRANSLATE_NOOP("stages", "passivity controller"),
+    QT_TRANSLATE_NOOP("stages", "effects.passivity_controller is set: a damper takes back energy that was given out"),
+    QT_TRANSLATE_NOOP("stages", "no wrench"),
+    QT_TRANSLATE_NOOP("stages", "feedback.kinesthetic is false: contact is computed, nothing is displayed"),
+    QT_TRANSLATE_NOOP("stages", "output limits"),
+    QT_TRANSLATE_NOOP("stages", "always, last: finite, within the device's limits, rising slowly enough"),
+};
+
+}  // namespace
+
+QString blockWords(const presenter::BlockLine& block, std::size_t sessions) {
+    QStringList words{phaseWord(protocol::phaseName(block.phase))};
+    words << (block.adaptive ? said(QT_TRANSLATE_NOOP("study", "staircase")) : orderWord(block.order));
+    if (!block.adaptive) words << said(QT_TRANSLATE_NOOP("study", "passes: %1")).arg(block.repetitions);
+    if (sessions > 1) words << said(QT_TRANSLATE_NOOP("study", "session %1")).arg(block.session);
+    if (block.rest_s > 0.0) words << said(QT_TRANSLATE_NOOP("study", "after %1 s of rest")).arg(block.rest_s);
+    return words.join(QStringLiteral(", "));
+}
+
+QString durationLine(const std::vector<double>& minutes) {
+    QStringList each;
+    for (const double m : minutes) each << QString::number(std::ceil(m));
+    return said(
+               QT_TRANSLATE_NOOP("study", "At most %1 min a participant: every trial to its time-out, shortest rests."))
+        .arg(each.join(QStringLiteral(" + ")));
+}
+
+QString stageWord(const std::string& text) { return QCoreApplication::translate("stages", text.c_str()); }
+
+QString accuracyHint(bool asked_for) {
+    if (asked_for)
+        return said(QT_TRANSLATE_NOOP("study",
+                                      "This study picks its accuracy by itself when its first session begins: "
+                                      "every setting is then measured on this machine and kept here."));
+    return said(
+        QT_TRANSLATE_NOOP("study",
+                          "Nothing was measured. With contact.accuracy = \"auto\" and contact.accuracy_budget_us "
+                          "in the protocol the first session measures every setting and picks the finest that "
+                          "fits; the command “passung accuracy” draws the same picture for any two parts."));
+}
+
+QString pickLine(const presenter::AccuracyPoint& point, double budget_us) {
+    return said(QT_TRANSLATE_NOOP("study", "Budget %1 µs: %2, tolerance %3 µm, spacing %4 mm – %5 µs, error %6 µm"))
+        .arg(budget_us)
+        .arg(QString::fromStdString(point.mode))
+        .arg(point.tolerance_um, 0, 'g', 3)
+        .arg(point.spacing_mm, 0, 'g', 3)
+        .arg(point.time_us, 0, 'f', 1)
+        .arg(point.error_um, 0, 'f', 1);
+}
+
+QString loopVerdict(app::LoopFitness fitness) {
+    switch (fitness) {
+        case app::LoopFitness::Studies:
+            return said(QT_TRANSLATE_NOOP("study", "Fit for studies."));
+        case app::LoopFitness::StudiesIfAlone:
+            return said(
+                QT_TRANSLATE_NOOP("study", "Good now, but without real-time scheduling another program can spoil it."));
+        case app::LoopFitness::TryOuts:
+            return said(QT_TRANSLATE_NOOP("study", "Fit for trying out, not for studies."));
+        case app::LoopFitness::Nothing:
+            break;
+    }
+    return said(QT_TRANSLATE_NOOP(
+        "study", "Not fit: close other programs, grant real-time scheduling, or use another machine."));
+}
+
+QString whyNotMeasure(WhyNotMeasure why) {
+    switch (why) {
+        case WhyNotMeasure::NotSound:
+            return said(QT_TRANSLATE_NOOP("study", "The study has problems."));
+        case WhyNotMeasure::SessionRuns:
+            return said(QT_TRANSLATE_NOOP("study", "A session is running."));
+        case WhyNotMeasure::Measures:
+            break;
+    }
+    return said(QT_TRANSLATE_NOOP("study", "Measuring …"));
+}
+
+}  // namespace passung::window
