@@ -57,10 +57,10 @@ Item {
             objectName: "accuracyPlot"
             Layout.fillWidth: true
             Layout.fillHeight: true
-            readonly property real left: 64
+            readonly property real inset: 64
             readonly property real low: 40
             function xOf(v) {
-                return left + (v - view.facts.xLow) / (view.facts.xHigh - view.facts.xLow) * (width - left - 16);
+                return inset + (v - view.facts.xLow) / (view.facts.xHigh - view.facts.xLow) * (width - inset - 16);
             }
             function yOf(v) {
                 return (height - low) * (1 - (v - view.facts.yLow) / (view.facts.yHigh - view.facts.yLow));
@@ -89,9 +89,9 @@ Item {
                 model: view.there ? view.facts.yHigh - view.facts.yLow + 1 : 0
                 Rectangle {
                     required property int index
-                    x: plot.left
+                    x: plot.inset
                     y: plot.yOf(view.facts.yLow + index)
-                    width: plot.width - plot.left - 16
+                    width: plot.width - plot.inset - 16
                     height: 1
                     color: look.edge
                     Say {
@@ -142,7 +142,7 @@ Item {
             }
             Say {
                 anchors.bottom: parent.bottom
-                x: plot.left + (plot.width - plot.left - width) / 2
+                x: plot.inset + (plot.width - plot.inset - width) / 2
                 quiet: true
                 font.pixelSize: 12
                 text: qsTr("time of a query, 99 % below [µs]")

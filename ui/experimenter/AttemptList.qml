@@ -7,6 +7,7 @@ ListView {
     clip: true
     activeFocusOnTab: true
     keyNavigationEnabled: true
+    Keys.onReturnPressed: records.showAgain(currentIndex)
     model: records.attempts
     Accessible.role: Accessible.List
     Accessible.name: qsTr("Attempts")
@@ -18,7 +19,9 @@ ListView {
         width: list.width
         height: 40
         radius: 6
-        color: ListView.isCurrentItem && list.activeFocus ? look.raised : "transparent"
+        color: ListView.isCurrentItem ? look.raised : "transparent"
+        border.width: ListView.isCurrentItem && list.activeFocus ? 2 : 0
+        border.color: look.accent
         readonly property color tint: modelData.tone === "good" ? look.good : modelData.tone === "wait" ? look.care : look.bad
         Accessible.role: Accessible.ListItem
         Accessible.name: modelData.trial + " " + modelData.condition + " " + modelData.word
@@ -65,6 +68,14 @@ ListView {
             font.family: look.digits
             font.pixelSize: 13
             text: line.modelData.seconds >= 0 ? line.modelData.seconds.toFixed(1) + " s" : ""
+        }
+        MouseArea {
+            anchors.fill: parent
+            onClicked: {
+                list.currentIndex = line.index;
+                list.forceActiveFocus();
+            }
+            onDoubleClicked: records.showAgain(line.index)
         }
     }
 }

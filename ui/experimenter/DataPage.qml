@@ -27,7 +27,7 @@ ColumnLayout {
     }
 
     Item {
-        visible: !records.there
+        visible: !records.there && !replay.open
         Layout.fillWidth: true
         Layout.fillHeight: true
         Column {
@@ -49,8 +49,13 @@ ColumnLayout {
         }
     }
 
+    ReplayView {
+        visible: replay.open
+        Layout.fillWidth: true
+        Layout.fillHeight: true
+    }
     RowLayout {
-        visible: records.there
+        visible: records.there && !replay.open
         Layout.fillWidth: true
         Layout.fillHeight: true
         spacing: 16
@@ -76,7 +81,19 @@ ColumnLayout {
                 Layout.fillHeight: true
                 Layout.preferredHeight: 3
                 AttemptList {
+                    id: attempts
                     anchors.fill: parent
+                    anchors.bottomMargin: again.height + 12
+                }
+                ActionButton {
+                    id: again
+                    objectName: "again"
+                    anchors.bottom: parent.bottom
+                    width: parent.width
+                    text: qsTr("Replay the attempt")
+                    keyName: qsTr("Enter")
+                    why: attempts.currentIndex >= 0 ? "" : qsTr("Choose an attempt.")
+                    onClicked: records.showAgain(attempts.currentIndex)
                 }
             }
         }

@@ -11,10 +11,17 @@ ColumnLayout {
         Layout.fillWidth: true
         told: roster.told
         failed: roster.failed
+        Say {
+            anchors.verticalCenter: parent.verticalCenter
+            quiet: true
+            text: qsTr("Experimenter")
+            Accessible.ignored: true
+        }
         TextBox {
             objectName: "experimenter"
-            implicitWidth: 220
-            placeholderText: qsTr("Experimenter (initials)")
+            implicitWidth: 130
+            placeholderText: qsTr("Initials")
+            Accessible.name: qsTr("Experimenter (initials)")
             text: roster.experimenter
             maximumLength: 40
             onTextEdited: roster.experimenter = text
@@ -49,7 +56,7 @@ ColumnLayout {
                 title: qsTr("PLACES IN THE DESIGN")
                 extra: qsTr("%1 of %2 taken").arg(roster.places.filter(p => p.owner !== "").length).arg(roster.places.length)
                 Layout.fillWidth: true
-                Layout.preferredHeight: 212
+                Layout.preferredHeight: 178
                 PlacesView {
                     anchors.fill: parent
                 }

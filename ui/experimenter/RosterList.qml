@@ -65,9 +65,10 @@ Item {
             }
             Row {
                 x: 36
-                anchors.verticalCenter: parent.verticalCenter
                 Say {
                     width: roll.widths[0]
+                    height: line.height
+                    verticalAlignment: Text.AlignVCenter
                     text: line.modelData.code
                     font.family: look.digits
                     font.pixelSize: 15
@@ -75,16 +76,21 @@ Item {
                 }
                 Say {
                     width: roll.widths[1]
+                    height: line.height
+                    verticalAlignment: Text.AlignVCenter
                     text: line.modelData.kind
                     font.pixelSize: 13
                 }
                 Say {
                     width: roll.widths[2]
+                    height: line.height
+                    verticalAlignment: Text.AlignVCenter
                     font.pixelSize: 13
                     text: qsTr("%1 of %2").arg(line.modelData.complete).arg(line.modelData.of) + (line.modelData.interrupted > 0 ? " · " + qsTr("%1 broken off").arg(line.modelData.interrupted) : "")
                 }
                 Row {
                     width: roll.widths[3]
+                    anchors.verticalCenter: parent.verticalCenter
                     spacing: 4
                     Repeater {
                         model: line.modelData.consent
@@ -102,13 +108,17 @@ Item {
                 }
                 Say {
                     width: roll.widths[4]
+                    height: line.height
+                    verticalAlignment: Text.AlignVCenter
                     font.pixelSize: 13
                     font.family: look.digits
                     quiet: line.modelData.place === ""
                     text: line.modelData.place === "" ? "–" : line.modelData.place
                 }
                 Say {
-                    width: Math.max(0, line.width - 522)
+                    width: Math.max(0, line.width - 532)
+                    height: line.height
+                    verticalAlignment: Text.AlignVCenter
                     font.pixelSize: 13
                     quiet: true
                     text: line.modelData.standing + (line.modelData.reason !== "" ? " · " + line.modelData.reason : "")

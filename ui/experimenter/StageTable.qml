@@ -7,6 +7,7 @@ Column {
     property var table
     property real whole: 1 // of the costliest table [µs]
     spacing: 6
+    bottomPadding: 14
     RowLayout {
         width: parent.width
         spacing: 12

@@ -115,10 +115,10 @@ RowLayout {
                     objectName: "reload"
                     Layout.alignment: Qt.AlignTop
                     text: qsTr("Read again")
-                    keyName: "F6"
+                    keyName: qsTr("Ctrl+L")
                     onClicked: studies.reload()
                     Shortcut {
-                        sequence: "F6"
+                        sequence: "Ctrl+L"
                         enabled: page.visible
                         onActivated: studies.reload()
                     }

@@ -61,7 +61,7 @@ Flickable {
                 wrapMode: Text.WordWrap
                 text: details.told !== "" ? details.told : qsTr("Only what a scene names is built and called. Measuring builds each scene, presses its held part two millimetres into the nearest obstacle and takes the time of every stage over 2000 ticks.")
             }
-            Repeater {
+            Repeater { // by what is the same in their conditions
                 model: details.stages.tables
                 StageTable {
                     required property var modelData

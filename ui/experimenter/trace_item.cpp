@@ -20,9 +20,17 @@ TraceItem::TraceItem(QQuickItem* parent) : QQuickItem(parent) {
     connect(this, &TraceItem::changed, this, &QQuickItem::update);
 }
 
-void TraceItem::show(const presenter::Trace& trace) {
-    spans_ = trace.spans();
-    const double top = presenter::roundScale(std::max(kLeastTop, 1.08 * trace.peak()));
+void TraceItem::show(const presenter::Trace& trace) { take(trace.spans(), trace.peak()); }
+
+void TraceItem::show(std::vector<presenter::Trace::Span> spans) {
+    double peak = 0.0;
+    for (const auto& span : spans) peak = std::max(peak, static_cast<double>(span.high));
+    take(std::move(spans), peak);
+}
+
+void TraceItem::take(std::vector<presenter::Trace::Span> spans, double peak) {
+    spans_ = std::move(spans);
+    const double top = presenter::roundScale(std::max(kLeastTop, 1.08 * peak));
     if (top != top_) {
         top_ = top;
         emit changed();

@@ -18,6 +18,8 @@ public:
     explicit TraceItem(QQuickItem* parent = nullptr);
 
     void show(const presenter::Trace& trace);
+    /// As many stretches as a trace has at most, the oldest first.
+    void show(std::vector<presenter::Trace::Span> spans);
     /// What the upper edge stands for: 1, 2 or 5 times a power of ten.
     double full() const { return top_; }
 
@@ -28,6 +30,8 @@ protected:
     QSGNode* updatePaintNode(QSGNode* old, UpdatePaintNodeData*) override;
 
 private:
+    void take(std::vector<presenter::Trace::Span> spans, double peak);
+
     std::vector<presenter::Trace::Span> spans_;
     QColor color_{Qt::white};
     double top_ = 1.0;

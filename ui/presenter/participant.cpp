@@ -7,6 +7,10 @@ namespace passung::presenter {
 
 namespace {
 
+// Poses that differ by less look the same.
+constexpr double kApart = 0.05e-3;  // [m]
+constexpr double kTurned = 2e-3;    // [rad]
+
 ParticipantScreen screenOf(RunState state) {
     switch (state) {
         case RunState::Idle:
@@ -86,10 +90,10 @@ ParticipantView playbackView(const DrawnScene& scene, const TickRecord& record) 
     view.screen = (record.status & kEngaged) != 0 ? ParticipantScreen::Task : ParticipantScreen::ToStart;
     view.scene = true;
     view.X_WHeld = shownPose(scene, record);
-    view.start_mark = true;
-    view.X_WStart =
-        poseOf(scene, record,
-               scene.shown == protocol::ShownPose::Proxy ? protocol::ShownPose::Device : protocol::ShownPose::Proxy);
+    const bool proxy = scene.shown == protocol::ShownPose::Proxy;
+    view.X_WStart = poseOf(scene, record, proxy ? protocol::ShownPose::Device : protocol::ShownPose::Proxy);
+    view.start_mark =
+        (view.X_WStart.p - view.X_WHeld.p).norm() > kApart || view.X_WStart.q.angularDistance(view.X_WHeld.q) > kTurned;
     if (scene.cues.visual) view.cue = std::min(1.0, static_cast<double>(record.hand_depth_m) / scene.cues.full_depth);
     drawForce(view, scene, record);
     return view;

@@ -29,7 +29,8 @@ inline constexpr double kLeastForce = 0.15;
 ParticipantView participantView(const Run& run, bool feels);
 
 /// A recorded tick: what the participant saw, with the force as an arrow whoever felt it, and as a ghost in the start
-/// mark's place the held part's other pose: the hand's where the proxy was drawn, the proxy's where the hand was.
+/// mark's place the held part's other pose if it is another:
+/// the hand's where the proxy was drawn, the proxy's where the hand was.
 ParticipantView playbackView(const DrawnScene& scene, const TickRecord& record);
 
 }  // namespace passung::presenter

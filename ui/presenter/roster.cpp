@@ -76,7 +76,8 @@ void fillPlaces(const protocol::StudyPlan& plan, Roster& roster) {
     roster.balance = designBalance(plan, taken);
 }
 
-RosterPerson personOf(const store::ParticipantRow& row, const Roster& roster, std::size_t sequences) {
+RosterPerson personOf(const store::ParticipantRow& row, const Roster& roster, const std::string& sha256,
+                      std::size_t sequences) {
     RosterPerson person;
     person.code = row.participant_id;
     person.enrolled_utc = row.created_utc;
@@ -84,7 +85,7 @@ RosterPerson personOf(const store::ParticipantRow& row, const Roster& roster, st
     person.standing = standingOf(row);
     person.reason = row.status_reason.value_or("");
     const auto group = std::find(roster.groups.begin(), roster.groups.end(), row.group.value_or(""));
-    if (row.sequence_index && group != roster.groups.end())
+    if (row.sequence_index && row.place_sha256 == sha256 && group != roster.groups.end())
         person.place = session::DesignPlace{
             static_cast<std::size_t>(*row.replicate) * sequences + static_cast<std::size_t>(*row.sequence_index),
             static_cast<std::size_t>(group - roster.groups.begin())};
@@ -150,7 +151,7 @@ Result<Roster> readRoster(const protocol::StudyPlan& plan, const store::StoreRea
     for (const auto& row : *consents) decided[row.participant_id].push_back(&row);
     const std::size_t sequences = design::sequencesOf(protocol::designOf(plan));
     for (const auto& row : *people) {
-        RosterPerson person = personOf(row, roster, sequences);
+        RosterPerson person = personOf(row, roster, sha256, sequences);
         for (const auto& clause : plan.consent) person.consent.push_back(decisionOn(clause, decided[person.code]));
         for (const auto& session : *sessions)
             if (session.participant_id == person.code)

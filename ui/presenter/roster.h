@@ -35,11 +35,11 @@ struct RosterPerson {
     std::string code, enrolled_utc;
     protocol::ParticipantKind kind = protocol::ParticipantKind::Real;
     Standing standing = Standing::TakesPart;
-    std::string reason;  // of the standing
-    std::optional<session::DesignPlace> place;
-    std::vector<Decision> consent;        // by clause
-    std::vector<RosterSession> sessions;  // by ordinal
-    std::int64_t forms = 0;               // questionnaires that were answered
+    std::string reason;                         // of the standing
+    std::optional<session::DesignPlace> place;  // in this version's design
+    std::vector<Decision> consent;              // by clause
+    std::vector<RosterSession> sessions;        // by ordinal
+    std::int64_t forms = 0;                     // questionnaires that were answered
 
     std::int64_t attempts() const;
     int complete() const;

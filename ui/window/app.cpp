@@ -38,7 +38,7 @@ App::App(const AppOptions& options)
       memory_(QString::fromStdString(options.data) + "/windows.ini", QSettings::IniFormat),
       studies_(desk_, options.protocols, options.data),
       roster_(desk_, studies_),
-      records_(desk_, studies_),
+      records_(desk_, studies_, replay_),
       details_(desk_, studies_),
       run_(desk_),
       screen_(desk_, 0),
@@ -55,6 +55,7 @@ App::App(const AppOptions& options)
     context.setContextProperty("studies", &studies_);
     context.setContextProperty("roster", &roster_);
     context.setContextProperty("records", &records_);
+    context.setContextProperty("replay", &replay_);
     context.setContextProperty("details", &details_);
     context.setContextProperty("run", &run_);
     context.setContextProperty("screenView", &screen_);
@@ -62,6 +63,7 @@ App::App(const AppOptions& options)
     const bool software = drawsInSoftware();
     screen_.setSoftware(software);
     mirror_.setSoftware(software);
+    replay_.setSoftware(software);
     engine_.load(QUrl("qrc:/ui/experimenter/Console.qml"));
     engine_.load(QUrl("qrc:/ui/participant/Participant.qml"));
     for (QObject* root : engine_.rootObjects()) {

@@ -47,6 +47,7 @@ public:
     Studies& studies() { return studies_; }
     RosterModel& roster() { return roster_; }
     DataModel& records() { return records_; }
+    ReplayModel& replay() { return replay_; }
     StudyModel& details() { return details_; }
     Look& look() { return look_; }
     Screen& screen() { return screen_; }
@@ -68,6 +69,7 @@ private:
     QSettings memory_;  // of what the next start finds as it was
     Studies studies_;
     RosterModel roster_;
+    ReplayModel replay_;
     DataModel records_;
     StudyModel details_;
     RunModel run_;

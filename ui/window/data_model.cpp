@@ -28,6 +28,13 @@ Result<Found> readFrom(const std::string& database) {
     return std::make_shared<Recorded>(*std::move(recorded));
 }
 
+/// How long it took, where that was measured.
+int firstMeasure(const Recorded& recorded) {
+    const auto& all = recorded.measures;
+    const auto time = std::find_if(all.begin(), all.end(), [](const auto& m) { return m.name == "completion_time_s"; });
+    return time == all.end() ? 0 : static_cast<int>(time - all.begin());
+}
+
 QVariantList numbers(const std::vector<double>& values) {
     QVariantList all;
     for (const double value : values) all.append(value);
@@ -46,9 +53,11 @@ QVariantMap lookMap(const presenter::ConditionLook& look) {
 
 }  // namespace
 
-DataModel::DataModel(Desk& desk, Studies& studies) : desk_(desk), studies_(studies) {
+DataModel::DataModel(Desk& desk, Studies& studies, ReplayModel& replay)
+    : desk_(desk), studies_(studies), replay_(replay) {
     connect(&studies_, &Studies::chosenChanged, this, [this] {
         told_.clear();
+        replay_.close();
         refresh();
     });
     connect(&desk_, &Desk::happened, this, [this] {
@@ -67,6 +76,7 @@ void DataModel::setSource(int source) {
     if (source == source_) return;
     source_ = source;
     told_.clear();
+    replay_.close();
     refresh();
 }
 
@@ -90,7 +100,8 @@ void DataModel::refresh() {
                     if (attempts().isEmpty()) session_.clear();
                     if (session_.empty() && recorded_ && !recorded_->data.sessions.empty())
                         session_ = recorded_->data.sessions.back().session_id;
-                    if (!recorded_ || measure_ >= static_cast<int>(recorded_->measures.size())) measure_ = 0;
+                    if (recorded_ && measure_ >= static_cast<int>(recorded_->measures.size()))
+                        measure_ = firstMeasure(*recorded_);
                     if (!recorded_ || kind_ >= static_cast<int>(recorded_->kinds.size())) kind_ = 0;
                     emit changed();
                 });
@@ -144,6 +155,19 @@ QVariantList DataModel::attempts() const {
                                                          : -1.0}});
     }
     return all;
+}
+
+void DataModel::showAgain(int attempt) {
+    if (!recorded_) return;
+    const auto rows = presenter::attemptsOf(*recorded_, session_);
+    if (attempt < 0 || attempt >= static_cast<int>(rows.size())) return;
+    const store::AttemptRow& row = *rows[static_cast<std::size_t>(attempt)];
+    // The protocol's file is where its meshes are; a database from elsewhere has them beside it.
+    const presenter::StudyCard* card = studies_.card();
+    const std::string meshes =
+        source_ == 2 || card == nullptr ? "" : std::filesystem::path(card->path).parent_path().string();
+    again_ = row.attempt_id;
+    replay_.show(database().toStdString(), meshes, row.attempt_id, attemptTitle(row));
 }
 
 QVariantList DataModel::measures() const {
@@ -239,6 +263,14 @@ void DataModel::exportTo(const QString& folder, bool samples) {
             emit exportChanged();
         });
     emit exportChanged();
+}
+
+void DataModel::retranslate() {
+    told_.clear();  // said in the language before
+    if (recorded_)
+        for (const store::AttemptRow& row : recorded_->data.attempts)
+            if (row.attempt_id == again_) replay_.setTitle(attemptTitle(row));
+    emit changed();
 }
 
 }  // namespace passung::window

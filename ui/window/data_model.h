@@ -3,11 +3,13 @@
 #include <QtCore/QObject>
 #include <QtCore/QVariant>
 #include <atomic>
+#include <climits>
 #include <memory>
 #include <string>
 
 #include "ui/presenter/recorded.h"
 #include "ui/window/desk.h"
+#include "ui/window/replay_model.h"
 #include "ui/window/studies.h"
 #include "ui/window/worker.h"
 
@@ -37,7 +39,7 @@ class DataModel : public QObject {
     Q_PROPERTY(QString lastFolder READ lastFolder NOTIFY exportChanged)  // of a finished export
 
 public:
-    DataModel(Desk& desk, Studies& studies);
+    DataModel(Desk& desk, Studies& studies, ReplayModel& replay);
     ~DataModel() override { cancelled_ = true; }
 
     int source() const { return source_; }
@@ -66,9 +68,11 @@ public:
     QString lastFolder() const { return last_folder_; }
 
     Q_INVOKABLE void refresh();
+    /// Shows an attempt of the selected session once more.
+    Q_INVOKABLE void showAgain(int attempt);
     Q_INVOKABLE void exportTo(const QString& folder, bool samples);
     Q_INVOKABLE void cancelExport() { cancelled_ = true; }
-    void retranslate() { emit changed(); }
+    void retranslate();
 
 signals:
     void changed();
@@ -77,6 +81,7 @@ signals:
 private:
     Desk& desk_;
     Studies& studies_;
+    ReplayModel& replay_;
     int source_ = 0;
     QString file_, told_, last_folder_;
     bool failed_ = false, ran_ = false, exporting_ = false;
@@ -84,9 +89,10 @@ private:
     std::atomic<bool> cancelled_{false};
     std::unique_ptr<presenter::Recorded> recorded_;
     std::string session_;
-    int measure_ = 0, kind_ = 0;
-    int asked_ = 0;  // readings so far: an answer to an earlier one is old
-    Worker worker_;  // last: what it calls is there until it ends
+    std::int64_t again_ = 0;            // attempt that is shown again
+    int measure_ = INT_MAX, kind_ = 0;  // until something is read: none
+    int asked_ = 0;                     // readings so far: an answer to an earlier one is old
+    Worker worker_;                     // last: what it calls is there until it ends
 };
 
 }  // namespace passung::window

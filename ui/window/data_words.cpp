@@ -39,6 +39,15 @@ QString outcomeWord(const std::string& outcome, bool valid) {
                                           : RowState::Failure);
 }
 
+QString attemptTitle(const store::AttemptRow& row) {
+    return said(QT_TRANSLATE_NOOP("data", "%1 · session %2 · trial %3, attempt %4 · %5"))
+        .arg(QString::fromStdString(row.participant_id))
+        .arg(row.session_ordinal)
+        .arg(row.trial_index + 1)
+        .arg(row.attempt_no)
+        .arg(QString::fromStdString(row.presented_condition));
+}
+
 QString exportedLine(const QString& folder, std::size_t attempts, std::size_t files) {
     return said(QT_TRANSLATE_NOOP("data", "%1: %2 attempts in %3 files")).arg(folder).arg(attempts).arg(files);
 }

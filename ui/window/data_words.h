@@ -4,12 +4,15 @@
 #include <optional>
 #include <string>
 
+#include "study/store/rows.h"
+
 namespace passung::window {
 
 // What a database's words mean, in the language of the windows.
 
 QString kindText(const std::string& kind);
 QString endWord(const std::optional<std::string>& end_state);
+QString attemptTitle(const store::AttemptRow& row);
 QString outcomeWord(const std::string& outcome, bool valid);
 QString exportedLine(const QString& folder, std::size_t attempts, std::size_t files);
 QString cancelledLine();

@@ -324,4 +324,9 @@ void RosterModel::confirmLeaving(const QString& typed) {
     emit changed();
 }
 
+void RosterModel::retranslate() {
+    told_.clear();  // said in the language before
+    emit changed();
+}
+
 }  // namespace passung::window

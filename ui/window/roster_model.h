@@ -82,7 +82,7 @@ public:
     Q_INVOKABLE QString whyNotConfirm(const QString& typed) const;
     Q_INVOKABLE void confirmLeaving(const QString& typed);
 
-    void retranslate() { emit changed(); }
+    void retranslate();
 
 signals:
     void changed();

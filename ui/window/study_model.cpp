@@ -35,8 +35,11 @@ std::vector<ConditionWall> wallsOf(const protocol::StudyPlan& plan) {
         const DeviceDescription* device = app::deviceNamed(condition.device, app::knownDevices());
         if (device == nullptr || !condition.scene.display_wrench || condition.timed_by != protocol::TimedBy::Program)
             continue;
-        ConditionWall wall{condition.name, device->label, condition.scene.contact.stiffness,
-                           device->stable_stiffness_N_per_m};
+        ConditionWall wall;
+        wall.condition = condition.name;
+        wall.device = device->label;
+        wall.displayed = condition.scene.contact.stiffness;
+        wall.most = device->stable_stiffness_N_per_m;
         if (device->mechanism) {
             const app::SceneWall felt = app::translationWall(*device, condition.scene);
             wall.displayed = felt.stiffness;

@@ -4,6 +4,7 @@
 
 #include "tests/study/store/fake_study.h"
 #include "ui/presenter/axis.h"
+#include "ui/presenter/participant.h"
 #include "ui/presenter/playback.h"
 
 namespace passung {
@@ -121,6 +122,33 @@ TEST(Playback, KeepsEveryPeakInItsColumns) {
         EXPECT_EQ(spans.back().high, 100.0f);
         EXPECT_NEAR(playback.depths(columns).back().high, 100.0f, 1e-3);
     }
+}
+
+TEST(Playback, ShowsTheOtherPoseAsAGhostWhereItIsAnother) {
+    // Truth: closed form: what is drawn is the protocol's choice, the ghost is the rest.
+    DrawnScene scene;
+    scene.parts.resize(1);
+    auto cube = std::make_shared<ShadedMesh>();
+    cube->low_mm = {-10.0f, -10.0f, -10.0f};
+    cube->high_mm = {10.0f, 10.0f, 10.0f};
+    scene.parts[0].mesh = cube;
+    TickRecord record;
+    record.hand_quaternion = record.proxy_quaternion = {1.0f, 0.0f, 0.0f, 0.0f};
+    record.proxy_position_m = {0.0f, 0.0f, 0.002f};
+    record.force_N = {0.0f, 0.0f, 2.0f};
+    ParticipantView view = playbackView(scene, record);
+    EXPECT_NEAR(view.X_WHeld.p.z(), 0.002, 1e-9);
+    EXPECT_TRUE(view.start_mark);
+    EXPECT_NEAR(view.X_WStart.p.z(), 0.0, 1e-9);
+    EXPECT_TRUE(view.arrow) << "whoever felt it";
+    EXPECT_NEAR(view.arrow_from.z(), 0.012, 1e-9) << "at the drawn part's top";
+    EXPECT_NEAR(view.arrow_way.z(), 2.0 * kArrowPerNewton, 1e-12);
+    scene.shown = protocol::ShownPose::Device;
+    view = playbackView(scene, record);
+    EXPECT_NEAR(view.X_WHeld.p.z(), 0.0, 1e-9);
+    EXPECT_NEAR(view.X_WStart.p.z(), 0.002, 1e-9);
+    record.proxy_position_m = {};
+    EXPECT_FALSE(playbackView(scene, record).start_mark) << "both are the same";
 }
 
 }  // namespace

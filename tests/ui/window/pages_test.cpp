@@ -1,14 +1,21 @@
+#include <QtGui/QClipboard>
 #include <fstream>
+#include <set>
 
+#include "analysis/export/export.h"
+#include "core/model/scene.h"
+#include "core/tick/tick_model.h"
 #include "study/protocol/protocol_reader.h"
 #include "study/store/store_reader.h"
 #include "tests/ui/cli/small_study.h"
 #include "tests/ui/window/windows.h"
 #include "ui/app/study_desk.h"
+#include "ui/window/study_words.h"
 
 namespace passung {
 namespace {
 
+using test::heldPart;
 using test::pixelsLike;
 
 /// The experimenter's pages, about a small study of its own.
@@ -17,7 +24,21 @@ protected:
     Pages() {
         std::filesystem::create_directories(folder_ / "protocols/small");
         protocols_ = folder_ / "protocols";
-        std::ofstream(protocols_ + "/small/study.toml") << test::smallStudy() << kConsent;
+        write(test::smallStudy() + kConsent);
+    }
+
+    void write(const std::string& study) const { std::ofstream(protocols_ + "/small/study.toml") << study; }
+
+    void SetUp() override {
+        Windows::SetUp();
+        app_->experimenter()->requestActivate();
+        waitFor([&] { return app_->experimenter()->isActive(); });
+    }
+
+    /// Lists make their lines with the next picture.
+    void click(const char* name) {
+        waitFor([&] { return item(app_->experimenter(), name) != nullptr; });
+        Windows::click(name);
     }
 
     static constexpr const char* kConsent = R"(
@@ -60,9 +81,9 @@ text.de = "Sie nehmen teil."
         waitFor([&] { return !app_->roster().busy() && !app_->records().busy(); });
     }
 
-    QString textOf(const char* name) const {
+    std::string textOf(const char* name) const {
         const QQuickItem* found = item(app_->experimenter(), name);
-        return found != nullptr ? found->property("text").toString() : QString("(not shown)");
+        return found != nullptr ? found->property("text").toString().toStdString() : "(not shown)";
     }
     bool enabled(const char* name) const {
         const QQuickItem* found = item(app_->experimenter(), name);
@@ -140,8 +161,14 @@ TEST_F(Pages, SomebodyIsEnrolledOnceConsentsIsExcludedReadmittedAndErased) {
     shot("participants_de_light");
 }
 
+/// The checksums of an export's files.
+std::string sumsOf(const std::string& folder) {
+    std::ifstream file(folder + "/SHA256SUMS");
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
 TEST_F(Pages, RecordedSessionsAreLookedAtAndExported) {
-    // Truth: independent program: the export of the page and that of the command line are the same bytes.
+    // Truth: invariant: the page writes the bytes that an export of the same data has.
     perform(2);
     click("page-data");
     app_->records().refresh();
@@ -153,10 +180,170 @@ TEST_F(Pages, RecordedSessionsAreLookedAtAndExported) {
     click("export");
     waitFor([&] { return !app_->records().exporting(); });
     EXPECT_FALSE(app_->records().failed()) << app_->records().told().toStdString();
-    EXPECT_TRUE(std::filesystem::exists(folder_ / "out/SHA256SUMS"));
+    ASSERT_TRUE(exporter::exportAll(reader(), folder_ / "other"));
+    EXPECT_EQ(sumsOf(folder_ / "out"), sumsOf(folder_ / "other"));
+    EXPECT_NE(sumsOf(folder_ / "out"), "");
     click("language");
     click("theme");
     shot("data_de_light");
+}
+
+TEST_F(Pages, AnAttemptIsShownOnceMoreWithItsForceAndItsTime) {
+    // Truth: independent program: the ticks as the store's reader has them.
+    std::string tight = test::fairStudy();  // so that nobody gets in without touching
+    tight.replace(tight.find("bore_diameter = 22"), 18, "bore_diameter = 20.4");
+    write(tight);
+    app_->studies().reload();
+    perform(1);
+    click("page-data");
+    app_->records().refresh();
+    settle();
+    // The tick with the strongest force towards the eye, which looks from the front, above: such an arrow is not
+    // hidden.
+    const QVariantList rows = app_->records().attempts();
+    qsizetype which = 0;
+    float towards_eye = 0.0f, force = 0.0f;
+    std::size_t at = 0;
+    for (qsizetype row = 0; row < rows.size(); ++row) {
+        const auto ticks = reader().records(rows[row].toMap()["id"].toLongLong());
+        ASSERT_TRUE(ticks);
+        for (std::size_t i = 0; i < ticks->size(); ++i) {
+            const auto& f = (*ticks)[i].force_N;
+            if (f[2] - f[1] <= towards_eye) continue;
+            towards_eye = f[2] - f[1], force = std::hypot(f[0], f[1], f[2]);
+            which = row, at = i;
+        }
+    }
+    ASSERT_GT(towards_eye, 0.2f);
+    click(QStringLiteral("attempt-%1").arg(which).toLatin1().constData());
+    click("again");
+    waitFor([&] { return app_->replay().there() || !app_->replay().told().isEmpty(); });
+    ASSERT_EQ(app_->replay().told().toStdString(), "");
+    const auto records = reader().records(rows[which].toMap()["id"].toLongLong());
+    EXPECT_NEAR(app_->replay().length(), 1e-3 * static_cast<double>(records->size() - 1), 1e-9);
+    const QQuickItem* slider = item(app_->experimenter(), "time");
+    ASSERT_NE(slider, nullptr);
+    click("time");  // the middle
+    EXPECT_NEAR(app_->replay().time(), 0.5 * app_->replay().length(), 0.05 * app_->replay().length());
+    app_->replay().seek(1e-3 * static_cast<double>(at));
+    EXPECT_NEAR(app_->replay().force(), static_cast<double>(force), 1e-6);
+    const QQuickItem* scene = item(app_->experimenter(), "replayScene");
+    ASSERT_NE(scene, nullptr);
+    const QRect area = scene->mapRectToScene(scene->boundingRect()).toRect();
+    const QImage contact = shot("replay").copy(area);
+    EXPECT_GT(heldPart(contact).x(), 0.0) << "the held part is not drawn";
+    const int arrow = pixelsLike(contact, QColor("#d55e00"), 20);
+    app_->replay().seek(0.0);
+    const int none = pixelsLike(shot("replay_start").copy(area), QColor("#d55e00"), 20);
+    EXPECT_GT(arrow, none + 10) << "the force is not drawn";
+    click("speed");
+    click("play");
+    waitFor([&] { return !app_->replay().plays(); });
+    EXPECT_EQ(app_->replay().time(), app_->replay().length());
+    click("language");
+    click("theme");
+    shot("replay_de_light");
+    click("closeReplay");
+    EXPECT_NE(item(app_->experimenter(), "attempts"), nullptr);
+}
+
+TEST_F(Pages, AMistakeIsShownAtItsLineUntilItIsRepaired) {
+    // Truth: closed form, the line that the mistake was written to.
+    const std::string sound = test::smallStudy();
+    const std::string file = protocols_ + "/small/study.toml";
+    write("passung = 1\n[study]\nname = \"small\"\nversion = 1\n" + sound.substr(sound.find("seed")));
+    app_->studies().reload();
+    const QVariantList issues = app_->details().issues();
+    ASSERT_FALSE(issues.isEmpty());
+    EXPECT_EQ(issues[0].toMap()["place"].toString().toStdString(), "study.toml:4:11");
+    EXPECT_FALSE(enabled("tryOut"));
+    shot("studies_mistake");
+    click("issue-0");
+    EXPECT_EQ(app_->details().source()["line"].toInt(), 4);
+    EXPECT_EQ(QGuiApplication::clipboard()->text().toStdString(), file + ":4");
+    EXPECT_GT(pixelsLike(shot("studies_source"), app_->look().bad(), 8), 30) << "the line is not marked";
+    write(sound);
+    click("reload");
+    EXPECT_TRUE(app_->details().issues().isEmpty());
+    EXPECT_TRUE(enabled("tryOut"));
+}
+
+struct StageText {
+    std::string name, reason;
+};
+
+/// Of every stage that a scene with everything in it has, with each method.
+std::vector<StageText> stageTexts() {
+    std::vector<StageText> all;
+    model::PartCache cache;
+    for (const auto method :
+         {model::ContactMethod::Penalty, model::ContactMethod::GodObjectHeuristic, model::ContactMethod::GodObject}) {
+        for (const bool two_way : {false, true}) {
+            model::SceneSpec spec;
+            spec.parts.push_back({.name = "ball",
+                                  .geometry = model::Sphere{0.02},
+                                  .X_WP = {Quat::Identity(), Vec3(0.0, 0.0, 0.03)},
+                                  .held = true});
+            spec.parts.push_back({.name = "table",
+                                  .geometry = model::Box{0.06, 0.06, 0.02},
+                                  .X_WP = {Quat::Identity(), Vec3(0.0, 0.0, -0.01)}});
+            spec.contact.cell = 2e-3;
+            spec.contact.method = method;
+            spec.contact.two_way = two_way;
+            spec.contact.proxy_filter = 50.0;
+            spec.record_hand_depth = true;
+            spec.start_gate.hold_ticks = 10;
+            spec.limits.delay_ticks = 1;
+            spec.effects.passivity_damping = 1.0;
+            spec.effects.transients.amplitude = 1.0;
+            spec.display_wrench = false;
+            const auto scene = model::buildScene(spec, cache);
+            if (!scene) throw std::runtime_error(toString(scene.errors().front()));
+            for (const auto& stage : tick::makeModel(*scene).stages) all.push_back({stage.name, stage.reason});
+        }
+    }
+    return all;
+}
+
+TEST_F(Pages, TheDesignIsExpandedAndStagesAreMeasuredInEitherLanguage) {
+    // Truth: independent program: passung explain's orders, here by the numbers that they are made of.
+    waitFor([&] { return !app_->details().design().isEmpty(); });
+    const QVariantList orders = app_->details().design()["orders"].toList();
+    ASSERT_EQ(orders.size(), 4);
+    // A Williams square of two: 1 2 and 2 1, three times each.
+    std::set<std::string> rows;
+    for (const QVariant& order : orders) {
+        const QVariantList passes = order.toMap()["blocks"].toList()[0].toMap()["passes"].toList();
+        ASSERT_EQ(passes.size(), 1);
+        EXPECT_EQ(passes[0].toMap()["times"].toInt(), 3);
+        std::string row;
+        for (const QVariant& trial : passes[0].toMap()["trials"].toList())
+            row += std::to_string(trial.toMap()["condition"].toInt());
+        rows.insert(row);
+    }
+    EXPECT_EQ(rows, (std::set<std::string>{"12", "21"}));
+    app_->experimenter()->requestActivate();
+    const auto open = [&](int part) {
+        QQuickItem* choice = item(app_->experimenter(), "part");
+        QMetaObject::invokeMethod(choice, "picked", Q_ARG(int, part));
+    };
+    open(1);
+    shot("studies_design");
+    open(2);
+    click("measureStages");
+    waitFor([&] { return !app_->details().stages()["measuring"].toBool(); });
+    EXPECT_EQ(app_->details().stages()["tables"].toList().size(), 2) << "penalty and god object";
+    shot("studies_tick");
+    click("language");
+    for (const StageText& stage : stageTexts()) {
+        EXPECT_NE(window::stageWord(stage.name).toStdString(), stage.name);
+        EXPECT_NE(window::stageWord(stage.reason).toStdString(), stage.reason);
+    }
+    shot("studies_tick_de");
+    open(3);
+    EXPECT_NE(textOf("accuracyHint"), "");
+    click("theme");
+    shot("studies_accuracy_de_light");
 }
 
 }  // namespace

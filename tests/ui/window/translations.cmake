@@ -6,7 +6,10 @@ configure_file(${ROOT}/ui/window/texts/passung_de.ts ${TEMP}/passung_de.ts COPYO
 execute_process(COMMAND ${LUPDATE} -silent -locations none
   ${ROOT}/ui/window ${ROOT}/ui/experimenter ${ROOT}/ui/participant -ts ${TEMP}/passung_de.ts
   COMMAND_ERROR_IS_FATAL ANY)
-file(STRINGS ${TEMP}/passung_de.ts lines REGEX "<source>|<translation")
+file(READ ${TEMP}/passung_de.ts text)
+# One list item a line, whatever the lines contain.
+string(REGEX REPLACE "[][;\\]" "_" text "${text}")
+string(REPLACE "\n" ";" lines "${text}")
 set(count 0)
 foreach(line IN LISTS lines)
   if(line MATCHES "<source>(.*)</source>")

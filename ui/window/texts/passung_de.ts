@@ -101,6 +101,18 @@
         <translation>VERSUCHE</translation>
     </message>
     <message>
+        <source>Replay the attempt</source>
+        <translation>Versuch wiedergeben</translation>
+    </message>
+    <message>
+        <source>Enter</source>
+        <translation>Eingabe</translation>
+    </message>
+    <message>
+        <source>Choose an attempt.</source>
+        <translation>Wählen Sie einen Versuch.</translation>
+    </message>
+    <message>
         <source>QUICK LOOK</source>
         <translation>SCHNELLER BLICK</translation>
     </message>
@@ -318,6 +330,14 @@
 <context>
     <name>ParticipantsPage</name>
     <message>
+        <source>Experimenter</source>
+        <translation>Versuchsleitung</translation>
+    </message>
+    <message>
+        <source>Initials</source>
+        <translation>Kürzel</translation>
+    </message>
+    <message>
         <source>Experimenter (initials)</source>
         <translation>Versuchsleitung (Kürzel)</translation>
     </message>
@@ -426,6 +446,61 @@
     <message>
         <source>free</source>
         <translation>frei</translation>
+    </message>
+</context>
+<context>
+    <name>ReplayView</name>
+    <message>
+        <source>Reading …</source>
+        <translation>Wird gelesen …</translation>
+    </message>
+    <message>
+        <source>Solid: the proxy, as it was drawn. Pale: the hand. Arrow: the force on the hand.</source>
+        <translation>Voll: der Proxy, wie er gezeichnet wurde. Blass: die Hand. Pfeil: die Kraft auf die Hand.</translation>
+    </message>
+    <message>
+        <source>Solid: the hand, as it was drawn. Pale: the proxy. Arrow: the force on the hand.</source>
+        <translation>Voll: die Hand, wie sie gezeichnet wurde. Blass: der Proxy. Pfeil: die Kraft auf die Hand.</translation>
+    </message>
+    <message>
+        <source>THE WHOLE ATTEMPT</source>
+        <translation>DER GANZE VERSUCH</translation>
+    </message>
+    <message>
+        <source>Force on the hand</source>
+        <translation>Kraft auf die Hand</translation>
+    </message>
+    <message>
+        <source>Depth of the hand in the material</source>
+        <translation>Tiefe der Hand im Material</translation>
+    </message>
+    <message>
+        <source>Overlap of the proxy</source>
+        <translation>Überlappung des Proxys</translation>
+    </message>
+    <message>
+        <source>Pause</source>
+        <translation>Pause</translation>
+    </message>
+    <message>
+        <source>Play</source>
+        <translation>Abspielen</translation>
+    </message>
+    <message>
+        <source>Space</source>
+        <translation>Leertaste</translation>
+    </message>
+    <message>
+        <source>Time in the attempt</source>
+        <translation>Zeit im Versuch</translation>
+    </message>
+    <message>
+        <source>Speed</source>
+        <translation>Tempo</translation>
+    </message>
+    <message>
+        <source>Close</source>
+        <translation>Schließen</translation>
     </message>
 </context>
 <context>
@@ -678,6 +753,10 @@
         <translation>Neu lesen</translation>
     </message>
     <message>
+        <source>Ctrl+L</source>
+        <translation>Strg+L</translation>
+    </message>
+    <message>
         <source>Part of the study</source>
         <translation>Teil der Studie</translation>
     </message>
@@ -843,6 +922,10 @@
     <message>
         <source>crashed</source>
         <translation>abgestürzt</translation>
+    </message>
+    <message>
+        <source>%1 · session %2 · trial %3, attempt %4 · %5</source>
+        <translation>%1 · Sitzung %2 · Durchgang %3, Versuch %4 · %5</translation>
     </message>
     <message>
         <source>%1: %2 attempts in %3 files</source>

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <QtCore/QObject>
+#include <QtCore/QVariant>
+#include <QtGui/QColor>
+#include <QtGui/QQuaternion>
+#include <QtGui/QVector3D>
+#include <QtQuick3D/QQuick3DGeometry>
+#include <map>
+#include <memory>
+
+#include "ui/presenter/participant.h"
+
+namespace passung::window {
+
+/// A scene and what stands and moves in it, for QML. Millimetres.
+class SceneModel : public QObject {
+    Q_OBJECT
+    Q_PROPERTY(bool software MEMBER software_ NOTIFY sceneChanged)  // no graphics card draws
+    Q_PROPERTY(bool heavy MEMBER heavy_ NOTIFY sceneChanged)        // many triangles
+
+    Q_PROPERTY(QVariantList parts MEMBER parts_ NOTIFY sceneChanged)
+    Q_PROPERTY(QQuick3DGeometry* heldGeometry MEMBER held_geometry_ NOTIFY sceneChanged)
+    Q_PROPERTY(QVariantList marks MEMBER marks_ NOTIFY sceneChanged)
+    Q_PROPERTY(QVector3D groundPosition MEMBER ground_position_ NOTIFY sceneChanged)
+    Q_PROPERTY(double radius MEMBER radius_ NOTIFY sceneChanged)
+    Q_PROPERTY(QVector3D cameraPosition MEMBER camera_position_ NOTIFY sceneChanged)
+    Q_PROPERTY(QQuaternion cameraRotation MEMBER camera_rotation_ NOTIFY sceneChanged)
+    Q_PROPERTY(QQuaternion lightRotation MEMBER light_rotation_ NOTIFY sceneChanged)
+    Q_PROPERTY(double cameraOpening MEMBER camera_opening_ NOTIFY sceneChanged)
+    Q_PROPERTY(double cameraNear MEMBER camera_near_ NOTIFY sceneChanged)
+    Q_PROPERTY(double cameraFar MEMBER camera_far_ NOTIFY sceneChanged)
+
+    Q_PROPERTY(QVector3D heldPosition READ heldPosition NOTIFY frame)
+    Q_PROPERTY(QQuaternion heldRotation READ heldRotation NOTIFY frame)
+    Q_PROPERTY(bool startMark READ startMark NOTIFY frame)
+    Q_PROPERTY(QVector3D startPosition READ startPosition NOTIFY frame)
+    Q_PROPERTY(QQuaternion startRotation READ startRotation NOTIFY frame)
+    Q_PROPERTY(double cue READ cue NOTIFY frame)
+    Q_PROPERTY(bool arrow READ arrow NOTIFY frame)
+    Q_PROPERTY(QVector3D arrowPosition READ arrowPosition NOTIFY frame)
+    Q_PROPERTY(QQuaternion arrowRotation READ arrowRotation NOTIFY frame)
+    Q_PROPERTY(double arrowLength READ arrowLength NOTIFY frame)
+
+public:
+    SceneModel();
+    ~SceneModel() override;
+
+    void setSoftware(bool software);
+    void show(const presenter::DrawnScene& scene);
+    void show(const presenter::ParticipantView& view);
+    const presenter::ParticipantView& view() const { return view_; }
+
+    QVector3D heldPosition() const;
+    QQuaternion heldRotation() const;
+    bool startMark() const { return view_.start_mark; }
+    QVector3D startPosition() const;
+    QQuaternion startRotation() const;
+    double cue() const { return view_.cue; }
+    bool arrow() const { return view_.arrow; }
+    QVector3D arrowPosition() const;
+    QQuaternion arrowRotation() const;
+    double arrowLength() const;
+    /// The held part's colour, towards red with the collision cue.
+    Q_INVOKABLE QColor heldColor(const QColor& plain) const;
+
+signals:
+    void sceneChanged();
+    void frame();
+
+private:
+    QQuick3DGeometry* geometryOf(const std::shared_ptr<const presenter::ShadedMesh>& mesh);
+
+    presenter::ParticipantView view_;
+    // A surface stays as long as this: QML may still draw the scene before.
+    std::map<std::shared_ptr<const presenter::ShadedMesh>, std::unique_ptr<QQuick3DGeometry>> geometries_;
+    bool software_ = false, heavy_ = false;
+    QVariantList parts_, marks_;
+    QQuick3DGeometry* held_geometry_ = nullptr;
+    QVector3D ground_position_, camera_position_;
+    QQuaternion camera_rotation_, light_rotation_;
+    double radius_ = 100.0, camera_opening_ = 30.0, camera_near_ = 1.0, camera_far_ = 1000.0;
+};
+
+}  // namespace passung::window
