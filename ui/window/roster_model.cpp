@@ -169,8 +169,11 @@ QVariantMap RosterModel::person() const {
     QVariantList sessions;
     for (const auto& session : person->sessions) sessions.append(sessionMap(session));
     map["sessions"] = sessions;
-    map["whyNotStart"] = whyNot(presenter::whyNotStart(*roster_, *person, sessionRuns()));
-    map["whyNotResume"] = whyNot(presenter::whyNotResume(*person, sessionRuns()));
+    const QString nobody =
+        begin ? QString()
+              : said(QT_TRANSLATE_NOOP("roster", "This version runs try-outs only: no sessions with people."));
+    map["whyNotStart"] = begin ? whyNot(presenter::whyNotStart(*roster_, *person, sessionRuns())) : nobody;
+    map["whyNotResume"] = begin ? whyNot(presenter::whyNotResume(*person, sessionRuns())) : nobody;
     map["canResume"] = person->resumable() != nullptr;
     return map;
 }

@@ -1158,6 +1158,10 @@
         <source>Even with multiples of %1 participants; %2 are planned.</source>
         <translation>Ausgewogen bei Vielfachen von %1 Versuchspersonen; geplant sind %2.</translation>
     </message>
+    <message>
+        <source>This version runs try-outs only: no sessions with people.</source>
+        <translation>Diese Version führt nur Proben durch, keine Sitzungen mit Personen.</translation>
+    </message>
 </context>
 <context>
     <name>stages</name>
