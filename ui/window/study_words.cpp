@@ -45,6 +45,12 @@ QString orderWord(protocol::BlockOrder order) {
     QT_TRANSLATE_NOOP("stages", "contact.method is penalty: forces come from the overlap at the device's own pose"),
     QT_TRANSLATE_NOOP("stages", "penalty wrench"),
     QT_TRANSLATE_NOOP("stages", "turns the overlap into force and torque by contact.variant"),
+    QT_TRANSLATE_NOOP("stages", "penalty tool"),
+    QT_TRANSLATE_NOOP(
+        "stages", "contact.coupling is virtual: a tool with mass between the hand's spring and the contacts' penalty"),
+    QT_TRANSLATE_NOOP("stages",
+                      "contact.coupling is quasi_static: a tool where the hand's spring and the contacts' penalty "
+                      "balance"),
     QT_TRANSLATE_NOOP("stages", "proxy correction"),
     QT_TRANSLATE_NOOP("stages",
                       "contact.method is god_object_heuristic: steps #1 and #2, contacts at the last proxy and relief "

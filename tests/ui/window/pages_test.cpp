@@ -276,8 +276,15 @@ struct StageText {
 std::vector<StageText> stageTexts() {
     std::vector<StageText> all;
     model::PartCache cache;
-    for (const auto method :
-         {model::ContactMethod::Penalty, model::ContactMethod::GodObjectHeuristic, model::ContactMethod::GodObject}) {
+    using model::ContactMethod;
+    using model::PenaltyCoupling;
+    const std::pair<ContactMethod, PenaltyCoupling> methods[] = {
+        {ContactMethod::Penalty, PenaltyCoupling::Direct},
+        {ContactMethod::Penalty, PenaltyCoupling::QuasiStatic},
+        {ContactMethod::Penalty, PenaltyCoupling::Virtual},
+        {ContactMethod::GodObjectHeuristic, PenaltyCoupling::Direct},
+        {ContactMethod::GodObject, PenaltyCoupling::Direct}};
+    for (const auto& [method, coupling] : methods) {
         for (const bool two_way : {false, true}) {
             model::SceneSpec spec;
             spec.parts.push_back({.name = "ball",
@@ -289,6 +296,7 @@ std::vector<StageText> stageTexts() {
                                   .X_WP = {Quat::Identity(), Vec3(0.0, 0.0, -0.01)}});
             spec.contact.cell = 2e-3;
             spec.contact.method = method;
+            spec.contact.coupling = coupling;
             spec.contact.two_way = two_way;
             spec.contact.proxy_filter = 50.0;
             spec.record_hand_depth = true;

@@ -1329,6 +1329,18 @@
         <source>always, last: finite, within the device&apos;s limits, rising slowly enough</source>
         <translation>immer, zuletzt: endlich, innerhalb der Grenzen des Geräts, langsam genug steigend</translation>
     </message>
+    <message>
+        <source>penalty tool</source>
+        <translation>Penalty-Werkzeug</translation>
+    </message>
+    <message>
+        <source>contact.coupling is virtual: a tool with mass between the hand&apos;s spring and the contacts&apos; penalty</source>
+        <translation>contact.coupling ist virtual: ein Werkzeug mit Masse zwischen der Feder der Hand und dem Penalty der Kontakte</translation>
+    </message>
+    <message>
+        <source>contact.coupling is quasi_static: a tool where the hand&apos;s spring and the contacts&apos; penalty balance</source>
+        <translation>contact.coupling ist quasi_static: ein Werkzeug dort, wo die Feder der Hand und der Penalty der Kontakte im Gleichgewicht sind</translation>
+    </message>
 </context>
 <context>
     <name>study</name>
