@@ -47,7 +47,7 @@ Item {
                     }
                     Say {
                         text: parent.modelData
-                        font.pixelSize: 13
+                        font.pixelSize: look.scale * 13
                     }
                 }
             }
@@ -79,7 +79,7 @@ Item {
                         anchors.horizontalCenter: parent.horizontalCenter
                         y: parent.height + 4
                         quiet: true
-                        font.pixelSize: 11
+                        font.pixelSize: look.scale * 11
                         font.family: look.digits
                         text: view.decade(view.facts.xLow + parent.index)
                     }
@@ -98,7 +98,7 @@ Item {
                         anchors.verticalCenter: parent.verticalCenter
                         x: -width - 8
                         quiet: true
-                        font.pixelSize: 11
+                        font.pixelSize: look.scale * 11
                         font.family: look.digits
                         text: view.decade(view.facts.yLow + parent.index)
                     }
@@ -144,7 +144,7 @@ Item {
                 anchors.bottom: parent.bottom
                 x: plot.inset + (plot.width - plot.inset - width) / 2
                 quiet: true
-                font.pixelSize: 12
+                font.pixelSize: look.scale * 12
                 text: qsTr("time of a query, 99 % below [µs]")
             }
             Say {
@@ -152,7 +152,7 @@ Item {
                 x: -width / 2 + 8
                 y: (plot.height - plot.low) / 2 - height / 2
                 quiet: true
-                font.pixelSize: 12
+                font.pixelSize: look.scale * 12
                 text: qsTr("error of the depth, 99 % below [µm]")
             }
         }
@@ -164,14 +164,14 @@ Item {
                 Say {
                     required property string modelData
                     width: parent.width
-                    font.pixelSize: 13
+                    font.pixelSize: look.scale * 13
                     text: modelData
                 }
             }
             Say {
                 width: parent.width
                 quiet: true
-                font.pixelSize: 12
+                font.pixelSize: look.scale * 12
                 text: qsTr("Large dots: none is both faster and more exact. Ring: picked for this study. Stroke: the budget.")
             }
         }

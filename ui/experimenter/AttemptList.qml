@@ -17,7 +17,7 @@ ListView {
         required property int index
         objectName: "attempt-" + index
         width: list.width
-        height: 40
+        height: look.scale * 40
         radius: 6
         color: ListView.isCurrentItem ? look.raised : "transparent"
         border.width: ListView.isCurrentItem && list.activeFocus ? 2 : 0
@@ -32,13 +32,13 @@ ListView {
             horizontalAlignment: Text.AlignRight
             quiet: true
             font.family: look.digits
-            font.pixelSize: 13
+            font.pixelSize: look.scale * 13
             text: line.modelData.trial
         }
         Rectangle {
             x: 42
             width: 4
-            height: 24
+            height: look.scale * 24
             radius: 2
             anchors.verticalCenter: parent.verticalCenter
             color: line.tint
@@ -49,13 +49,13 @@ ListView {
             anchors.verticalCenter: parent.verticalCenter
             Say {
                 width: parent.width
-                font.pixelSize: 13
+                font.pixelSize: look.scale * 13
                 text: line.modelData.condition
             }
             Say {
                 width: parent.width
                 quiet: true
-                font.pixelSize: 11
+                font.pixelSize: look.scale * 11
                 text: [line.modelData.block, line.modelData.attempt > 1 ? qsTr("attempt %1").arg(line.modelData.attempt) : "", line.modelData.word, line.modelData.reason].filter(s => s !== "").join(" · ")
             }
         }
@@ -66,7 +66,7 @@ ListView {
             anchors.verticalCenter: parent.verticalCenter
             quiet: true
             font.family: look.digits
-            font.pixelSize: 13
+            font.pixelSize: look.scale * 13
             text: line.modelData.seconds >= 0 ? line.modelData.seconds.toFixed(1) + " s" : ""
         }
         MouseArea {

@@ -9,7 +9,7 @@ Rectangle {
     property string name
     signal picked(int index)
     implicitWidth: row.implicitWidth + 6
-    implicitHeight: 38
+    implicitHeight: look.scale * 38
     radius: 8
     color: look.ground
     border.color: look.edge

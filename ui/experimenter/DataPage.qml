@@ -20,7 +20,7 @@ ColumnLayout {
         TextBox {
             objectName: "file"
             visible: records.source === 2
-            implicitWidth: 300
+            implicitWidth: look.scale * 300
             placeholderText: qsTr("Path of a database, then Enter")
             onAccepted: records.file = text.trim()
         }
@@ -37,13 +37,13 @@ ColumnLayout {
                 objectName: "noData"
                 anchors.horizontalCenter: parent.horizontalCenter
                 text: records.busy ? qsTr("Reading …") : qsTr("Nothing is recorded here yet.")
-                font.pixelSize: 20
+                font.pixelSize: look.scale * 20
                 quiet: true
             }
             Say {
                 anchors.horizontalCenter: parent.horizontalCenter
                 quiet: true
-                font.pixelSize: 12
+                font.pixelSize: look.scale * 12
                 text: records.database
             }
         }
@@ -60,8 +60,8 @@ ColumnLayout {
         Layout.fillHeight: true
         spacing: 16
         ColumnLayout {
-            Layout.preferredWidth: 372
-            Layout.maximumWidth: 372
+            Layout.preferredWidth: look.scale * 372
+            Layout.maximumWidth: look.scale * 372
             Layout.fillHeight: true
             spacing: 16
             Panel {
@@ -112,7 +112,7 @@ ColumnLayout {
             Panel {
                 title: qsTr("EXPORT")
                 Layout.fillWidth: true
-                Layout.preferredHeight: 148
+                Layout.preferredHeight: look.scale * 148
                 ExportView {
                     anchors.fill: parent
                 }

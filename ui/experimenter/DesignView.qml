@@ -46,34 +46,34 @@ Item {
                 delegate: Row {
                     id: order
                     required property var modelData
-                    height: 26
+                    height: look.scale * 26
                     spacing: 0
                     onWidthChanged: orders.widest = Math.max(orders.widest, width)
                     Say {
-                        width: 62
-                        height: 24
+                        width: look.scale * 62
+                        height: look.scale * 24
                         verticalAlignment: Text.AlignVCenter
                         text: order.modelData.code
                         font.family: look.digits
-                        font.pixelSize: 13
+                        font.pixelSize: look.scale * 13
                         font.weight: Font.DemiBold
                     }
                     Say {
-                        width: visible ? 96 : 0
-                        height: 24
+                        width: visible ? look.scale * 96 : 0
+                        height: look.scale * 24
                         visible: order.modelData.group !== ""
                         verticalAlignment: Text.AlignVCenter
                         quiet: true
-                        font.pixelSize: 12
+                        font.pixelSize: look.scale * 12
                         text: order.modelData.group
                     }
                     Say {
-                        width: visible ? 30 : 0
-                        height: 24
+                        width: visible ? look.scale * 30 : 0
+                        height: look.scale * 24
                         visible: order.modelData.session > 0
                         verticalAlignment: Text.AlignVCenter
                         quiet: true
-                        font.pixelSize: 12
+                        font.pixelSize: look.scale * 12
                         text: order.modelData.session + "."
                     }
                     Repeater {
@@ -94,8 +94,8 @@ Item {
                                         model: pass.modelData.trials
                                         Rectangle {
                                             required property var modelData
-                                            width: 24
-                                            height: 24
+                                            width: look.scale * 24
+                                            height: look.scale * 24
                                             radius: 4
                                             color: view.tint(modelData.condition)
                                             border.width: modelData.caught ? 2 : 0
@@ -105,17 +105,17 @@ Item {
                                                 text: parent.modelData.condition
                                                 color: look.text
                                                 font.family: look.digits
-                                                font.pixelSize: 12
+                                                font.pixelSize: look.scale * 12
                                             }
                                         }
                                     }
                                     Say {
                                         visible: pass.modelData.times > 1
-                                        height: 24
+                                        height: look.scale * 24
                                         verticalAlignment: Text.AlignVCenter
                                         leftPadding: 2
                                         quiet: true
-                                        font.pixelSize: 12
+                                        font.pixelSize: look.scale * 12
                                         text: "×" + pass.modelData.times
                                     }
                                 }
@@ -127,7 +127,7 @@ Item {
             Say {
                 Layout.fillWidth: true
                 quiet: true
-                font.pixelSize: 12
+                font.pixelSize: look.scale * 12
                 wrapMode: Text.WordWrap
                 text: view.there ? qsTr("Blocks stand apart; ×n: the same pass n times; a frame marks catch trials.") + " " + details.design.duration : ""
             }
@@ -139,7 +139,7 @@ Item {
                     Say {
                         required property string modelData
                         width: parent.width
-                        font.pixelSize: 12
+                        font.pixelSize: look.scale * 12
                         wrapMode: Text.WordWrap
                         text: modelData
                     }
@@ -147,8 +147,8 @@ Item {
             }
         }
         ColumnLayout {
-            Layout.preferredWidth: 300
-            Layout.maximumWidth: 300
+            Layout.preferredWidth: look.scale * 300
+            Layout.maximumWidth: look.scale * 300
             Layout.fillHeight: true
             spacing: 10
             Heading {
@@ -171,8 +171,8 @@ Item {
                     width: ListView.view.width
                     spacing: 10
                     Rectangle {
-                        implicitWidth: 24
-                        implicitHeight: 24
+                        implicitWidth: look.scale * 24
+                        implicitHeight: look.scale * 24
                         radius: 4
                         color: view.tint(condition.index + 1)
                         Text {
@@ -180,12 +180,12 @@ Item {
                             text: condition.index + 1
                             color: look.text
                             font.family: look.digits
-                            font.pixelSize: 12
+                            font.pixelSize: look.scale * 12
                         }
                     }
                     Say {
                         Layout.fillWidth: true
-                        font.pixelSize: 13
+                        font.pixelSize: look.scale * 13
                         text: condition.modelData
                     }
                 }
@@ -205,12 +205,12 @@ Item {
                         Say {
                             width: parent.width
                             text: blockLine.modelData.name
-                            font.pixelSize: 13
+                            font.pixelSize: look.scale * 13
                         }
                         Say {
                             width: parent.width
                             quiet: true
-                            font.pixelSize: 12
+                            font.pixelSize: look.scale * 12
                             wrapMode: Text.WordWrap
                             text: blockLine.modelData.words
                         }

@@ -8,7 +8,7 @@ RowLayout {
     property bool typed: false // the code is somebody's own
     readonly property string why: roster.known ? (roster.people, roster.whyNotEnrol(code.text, pilot)) : ""
     spacing: 12
-    height: 38
+    height: look.scale * 38
 
     function propose() {
         typed = false;
@@ -37,7 +37,7 @@ RowLayout {
     TextBox {
         id: code
         objectName: "code"
-        implicitWidth: 130
+        implicitWidth: look.scale * 130
         placeholderText: qsTr("Code")
         font.family: look.digits
         maximumLength: 32
@@ -59,7 +59,7 @@ RowLayout {
         objectName: "whyNotEnrol"
         Layout.fillWidth: true
         quiet: true
-        font.pixelSize: 12
+        font.pixelSize: look.scale * 12
         wrapMode: Text.WordWrap
         maximumLineCount: 2
         text: form.why

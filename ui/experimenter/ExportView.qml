@@ -58,7 +58,7 @@ ColumnLayout {
         Say {
             Layout.fillWidth: true
             quiet: true
-            font.pixelSize: 12
+            font.pixelSize: look.scale * 12
             wrapMode: Text.WordWrap
             maximumLineCount: 2
             text: records.exporting ? qsTr("%1 %").arg(Math.round(100 * records.exported)) : qsTr("CSV tables with a codebook; the same data gives the same bytes. An earlier export in the folder is replaced, a folder with other files is refused.")

@@ -3,7 +3,7 @@ import QtQuick
 // The name of a section.
 Say {
     quiet: true
-    font.pixelSize: 12
+    font.pixelSize: look.scale * 12
     font.weight: Font.DemiBold
     font.letterSpacing: 0.4
     Accessible.role: Accessible.Heading

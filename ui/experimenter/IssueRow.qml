@@ -39,7 +39,7 @@ T.AbstractButton {
                 text: row.place
                 color: look.accent
                 font.family: look.digits
-                font.pixelSize: 13
+                font.pixelSize: look.scale * 13
                 font.underline: row.hovered
                 Accessible.ignored: true
             }

@@ -20,7 +20,7 @@ Item {
         Say {
             Layout.fillWidth: true
             text: qsTr("How does the part of %1 end?").arg(view.state_.code)
-            font.pixelSize: 20
+            font.pixelSize: look.scale * 20
             font.weight: Font.DemiBold
             wrapMode: Text.WordWrap
         }
@@ -82,7 +82,7 @@ Item {
         Say {
             Layout.fillWidth: true
             text: view.state_.erases ? qsTr("Erase %1?").arg(view.state_.code) : qsTr("%1 leaves the study?").arg(view.state_.code)
-            font.pixelSize: 20
+            font.pixelSize: look.scale * 20
             font.weight: Font.DemiBold
             wrapMode: Text.WordWrap
         }
@@ -122,7 +122,7 @@ Item {
         Say {
             Layout.fillWidth: true
             quiet: true
-            font.pixelSize: 12
+            font.pixelSize: look.scale * 12
             wrapMode: Text.WordWrap
             visible: text !== ""
             text: view.state_.confirms ? confirm.why : next.why

@@ -7,8 +7,8 @@ Item {
     id: view
     readonly property var marks: records.look.marks !== undefined ? records.look.marks : [0, 1]
     readonly property var rows: records.look.rows !== undefined ? records.look.rows : []
-    readonly property int names: 250 // room for conditions [px]
-    readonly property int figures: 170
+    readonly property int names: look.scale * 250 // room for conditions [px]
+    readonly property int figures: look.scale * 170
 
     RowLayout {
         id: head
@@ -17,7 +17,7 @@ Item {
         Picker {
             objectName: "measure"
             Layout.fillWidth: true
-            Layout.maximumWidth: 460
+            Layout.maximumWidth: look.scale * 460
             name: qsTr("Measure")
             model: records.measures
             textRole: "label"
@@ -42,7 +42,7 @@ Item {
         }
         Say {
             quiet: true
-            font.pixelSize: 12
+            font.pixelSize: look.scale * 12
             text: qsTr("median (quartiles), n")
         }
     }
@@ -68,7 +68,7 @@ Item {
                     anchors.bottom: parent.bottom
                     x: -width / 2
                     quiet: true
-                    font.pixelSize: 11
+                    font.pixelSize: look.scale * 11
                     font.family: look.digits
                     text: Number(parent.modelData.toPrecision(6)).toString()
                 }
@@ -98,7 +98,7 @@ Item {
                 width: view.names - 16
                 anchors.verticalCenter: parent.verticalCenter
                 text: row.modelData.condition
-                font.pixelSize: 13
+                font.pixelSize: look.scale * 13
             }
             StripItem {
                 x: view.names
@@ -120,13 +120,13 @@ Item {
                     id: numbers
                     width: parent.width
                     font.family: look.digits
-                    font.pixelSize: 13
+                    font.pixelSize: look.scale * 13
                     text: row.modelData.box.length === 5 ? row.modelData.box[2].toPrecision(3) + " (" + row.modelData.box[1].toPrecision(3) + "–" + row.modelData.box[3].toPrecision(3) + ")" : "–"
                 }
                 Say {
                     width: parent.width
                     quiet: true
-                    font.pixelSize: 11
+                    font.pixelSize: look.scale * 11
                     text: qsTr("%1 trials, participants: %2").arg(row.modelData.n).arg(row.modelData.participants)
                 }
             }

@@ -6,8 +6,8 @@ Rectangle {
     property string sign
     property string tone: "rest"
     readonly property color tint: tone === "good" ? look.good : tone === "wait" ? look.care : tone === "bad" ? look.bad : look.dim
-    implicitWidth: 20
-    implicitHeight: 20
+    implicitWidth: look.scale * 20
+    implicitHeight: look.scale * 20
     radius: 5
     color: "transparent"
     border.width: 1
@@ -16,7 +16,7 @@ Rectangle {
         anchors.centerIn: parent
         text: mark.sign
         color: mark.tint
-        font.pixelSize: 12
+        font.pixelSize: look.scale * 12
         font.weight: Font.DemiBold
         Accessible.ignored: true
     }

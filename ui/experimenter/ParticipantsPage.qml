@@ -19,7 +19,7 @@ ColumnLayout {
         }
         TextBox {
             objectName: "experimenter"
-            implicitWidth: 130
+            implicitWidth: look.scale * 130
             placeholderText: qsTr("Initials")
             Accessible.name: qsTr("Experimenter (initials)")
             text: roster.experimenter
@@ -56,15 +56,15 @@ ColumnLayout {
                 title: qsTr("PLACES IN THE DESIGN")
                 extra: qsTr("%1 of %2 taken").arg(roster.places.filter(p => p.owner !== "").length).arg(roster.places.length)
                 Layout.fillWidth: true
-                Layout.preferredHeight: 178
+                Layout.preferredHeight: look.scale * 178
                 PlacesView {
                     anchors.fill: parent
                 }
             }
         }
         Panel {
-            Layout.preferredWidth: 420
-            Layout.maximumWidth: 420
+            Layout.preferredWidth: look.scale * 420
+            Layout.maximumWidth: look.scale * 420
             Layout.fillHeight: true
             pad: 22
             PersonView {

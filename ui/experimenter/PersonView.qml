@@ -34,7 +34,7 @@ Item {
                     objectName: "personCode"
                     text: view.there ? view.who.code : ""
                     font.family: look.digits
-                    font.pixelSize: 30
+                    font.pixelSize: look.scale * 30
                     font.weight: Font.DemiBold
                 }
                 Say {
@@ -73,12 +73,12 @@ Item {
                         Say {
                             Layout.fillWidth: true
                             quiet: true
-                            font.pixelSize: 12
+                            font.pixelSize: look.scale * 12
                             text: session.modelData.word + " · " + session.modelData.date
                         }
                         Say {
                             font.family: look.digits
-                            font.pixelSize: 13
+                            font.pixelSize: look.scale * 13
                             text: session.modelData.trials
                             Accessible.name: qsTr("valid attempts of planned trials: %1").arg(text)
                         }
@@ -118,7 +118,7 @@ Item {
                             }
                             Say {
                                 quiet: true
-                                font.pixelSize: 12
+                                font.pixelSize: look.scale * 12
                                 text: clause.modelData.word
                             }
                         }
@@ -129,8 +129,8 @@ Item {
                                 model: [["yes", qsTr("Agreed")], ["no", qsTr("Declined")], ["withdrawn", qsTr("Withdrawn")]]
                                 ActionButton {
                                     required property var modelData
-                                    implicitHeight: 30
-                                    font.pixelSize: 12
+                                    implicitHeight: look.scale * 30
+                                    font.pixelSize: look.scale * 12
                                     text: modelData[1]
                                     objectName: "consent-" + clause.index + "-" + modelData[0]
                                     Accessible.name: roster.clauses[clause.index] + ": " + text
@@ -144,7 +144,7 @@ Item {
                 Say {
                     width: parent.width
                     quiet: true
-                    font.pixelSize: 12
+                    font.pixelSize: look.scale * 12
                     wrapMode: Text.WordWrap
                     visible: view.there && view.who.takesPart
                     text: qsTr("Record here what was signed on paper; who has not been asked is asked when the session begins.")
@@ -190,7 +190,7 @@ Item {
             Layout.fillWidth: true
             visible: text !== ""
             quiet: true
-            font.pixelSize: 12
+            font.pixelSize: look.scale * 12
             wrapMode: Text.WordWrap
             text: view.there ? (view.who.canResume ? view.who.whyNotResume : view.who.whyNotStart) : ""
         }

@@ -5,12 +5,12 @@ import QtQuick.Templates as T
 T.ComboBox {
     id: picker
     property string name
-    implicitWidth: 260
-    implicitHeight: 38
+    implicitWidth: look.scale * 260
+    implicitHeight: look.scale * 38
     leftPadding: 14
     rightPadding: 34
     font.family: look.family
-    font.pixelSize: 14
+    font.pixelSize: look.scale * 14
     activeFocusOnTab: true
     Accessible.role: Accessible.ComboBox
     Accessible.name: name
@@ -39,7 +39,7 @@ T.ComboBox {
         required property var modelData
         required property int index
         width: picker.width - 8
-        implicitHeight: 34
+        implicitHeight: look.scale * 34
         leftPadding: 12
         rightPadding: 12
         highlighted: picker.highlightedIndex === index

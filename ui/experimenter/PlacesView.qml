@@ -18,8 +18,8 @@ Flickable {
                     id: place
                     required property var modelData
                     readonly property bool taken: modelData.owner !== ""
-                    width: 64
-                    height: 40
+                    width: look.scale * 64
+                    height: look.scale * 40
                     radius: 6
                     color: taken ? (modelData.done ? look.accent : look.raised) : "transparent"
                     border.width: taken && !modelData.done ? 2 : 1
@@ -29,22 +29,22 @@ Flickable {
                     Accessible.name: qsTr("Place %1: %2").arg(modelData.name).arg(taken ? modelData.owner : qsTr("free"))
                     Say {
                         anchors.horizontalCenter: parent.horizontalCenter
-                        y: 4
+                        y: look.scale * 4
                         text: place.taken ? place.modelData.owner : qsTr("free")
                         color: place.taken ? place.ink : look.dim
-                        font.pixelSize: 12
+                        font.pixelSize: look.scale * 12
                         font.family: place.taken ? look.digits : look.family
                         font.weight: place.taken ? Font.DemiBold : Font.Normal
                         Accessible.ignored: true
                     }
                     Say {
                         anchors.horizontalCenter: parent.horizontalCenter
-                        y: 21
+                        y: look.scale * 21
                         width: Math.min(implicitWidth, place.width - 6)
                         text: place.modelData.name + (place.modelData.group !== "" ? " · " + place.modelData.group : "")
                         color: place.taken ? place.ink : look.dim
                         opacity: 0.8
-                        font.pixelSize: 11
+                        font.pixelSize: look.scale * 11
                         Accessible.ignored: true
                     }
                 }
@@ -59,7 +59,7 @@ Flickable {
                     required property string modelData
                     width: sheet.width
                     quiet: true
-                    font.pixelSize: 12
+                    font.pixelSize: look.scale * 12
                     text: modelData
                     wrapMode: Text.WordWrap
                 }

@@ -52,7 +52,7 @@ T.RadioButton {
             Say {
                 width: parent.width
                 quiet: true
-                font.pixelSize: 12
+                font.pixelSize: look.scale * 12
                 wrapMode: Text.WordWrap
                 text: option.meaning
                 Accessible.ignored: true

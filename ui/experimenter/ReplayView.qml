@@ -54,7 +54,7 @@ ColumnLayout {
                 y: 14
                 width: parent.width - 36
                 text: replay.title
-                font.pixelSize: 13
+                font.pixelSize: look.scale * 13
                 font.weight: Font.DemiBold
             }
             Say {
@@ -63,14 +63,14 @@ ColumnLayout {
                 anchors.bottomMargin: 14
                 visible: replay.there
                 quiet: true
-                font.pixelSize: 12
+                font.pixelSize: look.scale * 12
                 text: replay.drawsProxy ? qsTr("Solid: the proxy, as it was drawn. Pale: the hand. Arrow: the force on the hand.") : qsTr("Solid: the hand, as it was drawn. Pale: the proxy. Arrow: the force on the hand.")
             }
         }
         Panel {
             title: qsTr("THE WHOLE ATTEMPT")
-            Layout.preferredWidth: 470
-            Layout.maximumWidth: 470
+            Layout.preferredWidth: look.scale * 470
+            Layout.maximumWidth: look.scale * 470
             Layout.fillHeight: true
             ColumnLayout {
                 anchors.fill: parent
@@ -101,7 +101,7 @@ ColumnLayout {
     }
     Panel {
         Layout.fillWidth: true
-        implicitHeight: 70
+        implicitHeight: look.scale * 70
         RowLayout {
             anchors.fill: parent
             spacing: 16
@@ -127,10 +127,10 @@ ColumnLayout {
             }
             Say {
                 objectName: "replayTime"
-                Layout.preferredWidth: 150
+                Layout.preferredWidth: look.scale * 150
                 horizontalAlignment: Text.AlignRight
                 font.family: look.digits
-                font.pixelSize: 16
+                font.pixelSize: look.scale * 16
                 text: replay.time.toFixed(2) + " / " + replay.length.toFixed(2) + " s"
             }
             Choice {

@@ -4,7 +4,7 @@ import QtQuick.Layouts
 // The participants, a line each.
 Item {
     id: roll
-    readonly property var widths: [92, 84, 130, 96, 84] // code, kind, sessions, consent, place
+    readonly property var widths: [92, 84, 130, 96, 84].map(w => look.scale * w) // code, kind, sessions, consent, place
     Row {
         id: head
         x: 30
@@ -16,7 +16,7 @@ Item {
                 required property int index
                 width: index < roll.widths.length ? roll.widths[index] : 200
                 quiet: true
-                font.pixelSize: 12
+                font.pixelSize: look.scale * 12
                 text: modelData
             }
         }
@@ -25,7 +25,7 @@ Item {
         id: list
         objectName: "roster"
         anchors.fill: parent
-        anchors.topMargin: 24
+        anchors.topMargin: look.scale * 24
         anchors.leftMargin: -6
         anchors.rightMargin: -6
         clip: true
@@ -50,7 +50,7 @@ Item {
             readonly property bool chosen: modelData.code === roster.selected
             objectName: "person-" + modelData.code
             width: list.width
-            height: 40
+            height: look.scale * 40
             radius: 6
             color: chosen ? look.raised : "transparent"
             border.width: chosen && list.activeFocus ? 2 : 0
@@ -71,7 +71,7 @@ Item {
                     verticalAlignment: Text.AlignVCenter
                     text: line.modelData.code
                     font.family: look.digits
-                    font.pixelSize: 15
+                    font.pixelSize: look.scale * 15
                     font.weight: Font.DemiBold
                 }
                 Say {
@@ -79,13 +79,13 @@ Item {
                     height: line.height
                     verticalAlignment: Text.AlignVCenter
                     text: line.modelData.kind
-                    font.pixelSize: 13
+                    font.pixelSize: look.scale * 13
                 }
                 Say {
                     width: roll.widths[2]
                     height: line.height
                     verticalAlignment: Text.AlignVCenter
-                    font.pixelSize: 13
+                    font.pixelSize: look.scale * 13
                     text: qsTr("%1 of %2").arg(line.modelData.complete).arg(line.modelData.of) + (line.modelData.interrupted > 0 ? " · " + qsTr("%1 broken off").arg(line.modelData.interrupted) : "")
                 }
                 Row {
@@ -110,16 +110,16 @@ Item {
                     width: roll.widths[4]
                     height: line.height
                     verticalAlignment: Text.AlignVCenter
-                    font.pixelSize: 13
+                    font.pixelSize: look.scale * 13
                     font.family: look.digits
                     quiet: line.modelData.place === ""
                     text: line.modelData.place === "" ? "–" : line.modelData.place
                 }
                 Say {
-                    width: Math.max(0, line.width - 532)
+                    width: Math.max(0, line.width - 46 - roll.widths.reduce((sum, w) => sum + w, 0))
                     height: line.height
                     verticalAlignment: Text.AlignVCenter
-                    font.pixelSize: 13
+                    font.pixelSize: look.scale * 13
                     quiet: true
                     text: line.modelData.standing + (line.modelData.reason !== "" ? " · " + line.modelData.reason : "")
                 }
@@ -135,7 +135,7 @@ Item {
         anchors.centerIn: parent
         visible: roster.known && roster.people.length === 0
         quiet: true
-        font.pixelSize: 16
+        font.pixelSize: look.scale * 16
         text: qsTr("Nobody is enrolled yet.")
     }
 }

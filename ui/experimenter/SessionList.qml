@@ -25,7 +25,7 @@ ListView {
         readonly property bool chosen: modelData.id === records.session
         objectName: "session-" + modelData.participant + "-" + modelData.ordinal
         width: list.width
-        height: 46
+        height: look.scale * 46
         radius: 6
         color: chosen ? look.raised : "transparent"
         border.width: chosen && list.activeFocus ? 2 : 0
@@ -49,7 +49,7 @@ ListView {
             Say {
                 width: parent.width
                 quiet: true
-                font.pixelSize: 11
+                font.pixelSize: look.scale * 11
                 text: [line.modelData.kind, line.modelData.word, line.modelData.date].filter(s => s !== "").join(" · ")
             }
         }
@@ -60,7 +60,7 @@ ListView {
             anchors.verticalCenter: parent.verticalCenter
             quiet: true
             font.family: look.digits
-            font.pixelSize: 13
+            font.pixelSize: look.scale * 13
             text: line.modelData.trials
         }
         MouseArea {

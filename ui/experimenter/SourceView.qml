@@ -11,7 +11,7 @@ ColumnLayout {
         Layout.fillWidth: true
         objectName: "sourcePlace"
         quiet: true
-        font.pixelSize: 12
+        font.pixelSize: look.scale * 12
         font.family: look.digits
         elide: Text.ElideLeft
         text: details.source.file + (details.source.line > 0 ? ":" + details.source.line : "")
@@ -20,7 +20,7 @@ ColumnLayout {
         Layout.fillWidth: true
         visible: details.source.line > 0
         quiet: true
-        font.pixelSize: 12
+        font.pixelSize: look.scale * 12
         text: qsTr("The place is in the clipboard. “Read again” checks the file once you have changed it.")
     }
     Rectangle {
@@ -59,7 +59,7 @@ ColumnLayout {
                 required property int index
                 readonly property bool marked: index + 1 === details.source.line
                 width: list.width
-                height: 20
+                height: look.scale * 20
                 color: marked ? Qt.rgba(look.bad.r, look.bad.g, look.bad.b, 0.22) : "transparent"
                 Accessible.role: Accessible.ListItem
                 Accessible.name: modelData
@@ -77,7 +77,7 @@ ColumnLayout {
                     text: line.index + 1
                     color: look.dim
                     font.family: look.digits
-                    font.pixelSize: 12
+                    font.pixelSize: look.scale * 12
                 }
                 Text {
                     x: 58
@@ -88,7 +88,7 @@ ColumnLayout {
                     text: line.modelData
                     color: look.text
                     font.family: look.digits
-                    font.pixelSize: 13
+                    font.pixelSize: look.scale * 13
                 }
             }
         }

@@ -15,12 +15,12 @@ Column {
             Layout.fillWidth: true
             text: list.table.conditions
             font.weight: Font.DemiBold
-            font.pixelSize: 13
+            font.pixelSize: look.scale * 13
         }
         Say {
             text: qsTr("%1 µs a tick").arg(list.table.sum.toFixed(1))
             font.family: look.digits
-            font.pixelSize: 13
+            font.pixelSize: look.scale * 13
         }
     }
     Repeater {
@@ -33,13 +33,13 @@ Column {
             Accessible.role: Accessible.StaticText
             Accessible.name: qsTr("%1: %2 µs, 99 % below %3 µs; %4").arg(modelData.name).arg(modelData.median.toFixed(1)).arg(modelData.p99.toFixed(1)).arg(modelData.reason)
             Say {
-                Layout.preferredWidth: 170
-                Layout.maximumWidth: 170
-                font.pixelSize: 13
+                Layout.preferredWidth: look.scale * 170
+                Layout.maximumWidth: look.scale * 170
+                font.pixelSize: look.scale * 13
                 text: stage.modelData.name
             }
             Rectangle {
-                Layout.preferredWidth: 160
+                Layout.preferredWidth: look.scale * 160
                 implicitHeight: 8
                 radius: 3
                 color: look.raised
@@ -58,16 +58,16 @@ Column {
                 }
             }
             Say {
-                Layout.preferredWidth: 120
+                Layout.preferredWidth: look.scale * 120
                 horizontalAlignment: Text.AlignRight
                 font.family: look.digits
-                font.pixelSize: 12
+                font.pixelSize: look.scale * 12
                 text: stage.modelData.median.toFixed(1) + " · " + stage.modelData.p99.toFixed(1) + " µs"
             }
             Say {
                 Layout.fillWidth: true
                 quiet: true
-                font.pixelSize: 12
+                font.pixelSize: look.scale * 12
                 wrapMode: Text.WordWrap
                 text: stage.modelData.reason
             }

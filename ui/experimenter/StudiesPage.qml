@@ -17,7 +17,7 @@ RowLayout {
     Panel {
         title: qsTr("STUDIES")
         extra: page.cards.length
-        Layout.preferredWidth: 372
+        Layout.preferredWidth: look.scale * 372
         Layout.fillHeight: true
         ListView {
             id: list
@@ -54,14 +54,14 @@ RowLayout {
                     Say {
                         width: parent.width
                         text: cardItem.modelData.title
-                        font.pixelSize: 15
+                        font.pixelSize: look.scale * 15
                         font.weight: Font.DemiBold
                         wrapMode: Text.WordWrap
                     }
                     Say {
                         width: parent.width
                         quiet: true
-                        font.pixelSize: 12
+                        font.pixelSize: look.scale * 12
                         text: cardItem.modelData.sound ? qsTr("%1 conditions · %2 trials · %3 participants").arg(cardItem.modelData.conditions).arg(cardItem.modelData.trials).arg(cardItem.modelData.participants) : qsTr("Problems: %1").arg(cardItem.modelData.problems.length)
                     }
                 }
@@ -101,7 +101,7 @@ RowLayout {
                     Say {
                         width: parent.width
                         text: page.card ? page.card.title : ""
-                        font.pixelSize: 28
+                        font.pixelSize: look.scale * 28
                         font.weight: Font.DemiBold
                         wrapMode: Text.WordWrap
                     }
@@ -186,7 +186,7 @@ RowLayout {
                 Say {
                     Layout.fillWidth: true
                     quiet: true
-                    font.pixelSize: 12
+                    font.pixelSize: look.scale * 12
                     text: page.whyNotRun
                 }
             }

@@ -10,7 +10,7 @@ RowLayout {
     spacing: 16
     Picker {
         objectName: "study"
-        implicitWidth: 372
+        implicitWidth: look.scale * 372
         name: qsTr("Study")
         model: studies.cards
         textRole: "title"
@@ -27,7 +27,7 @@ RowLayout {
         text: bar.told
         wrapMode: Text.Wrap
         maximumLineCount: 2
-        font.pixelSize: 13
+        font.pixelSize: look.scale * 13
         Accessible.role: Accessible.AlertMessage
     }
     Row {

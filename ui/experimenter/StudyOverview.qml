@@ -116,7 +116,7 @@ Flickable {
                     width: sheet.width
                     spacing: 8
                     Say {
-                        Layout.preferredWidth: 170
+                        Layout.preferredWidth: look.scale * 170
                         Layout.alignment: Qt.AlignTop
                         Layout.topMargin: 4
                         text: factorRow.modelData.name

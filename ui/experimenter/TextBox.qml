@@ -4,8 +4,8 @@ import QtQuick.Templates as T
 // A line of text to type.
 T.TextField {
     id: box
-    implicitHeight: 38
-    implicitWidth: 200
+    implicitHeight: look.scale * 38
+    implicitWidth: look.scale * 200
     leftPadding: 12
     rightPadding: 12
     verticalAlignment: TextInput.AlignVCenter
@@ -14,7 +14,7 @@ T.TextField {
     selectedTextColor: look.onAccent
     placeholderTextColor: look.dim
     font.family: look.family
-    font.pixelSize: 14
+    font.pixelSize: look.scale * 14
     selectByMouse: true
     activeFocusOnTab: true
     opacity: enabled ? 1 : 0.5

@@ -4,7 +4,7 @@ import QtQuick.Templates as T
 // Something to be or not.
 T.CheckBox {
     id: tick
-    implicitHeight: 38
+    implicitHeight: look.scale * 38
     implicitWidth: word.implicitWidth + 34
     focusPolicy: Qt.StrongFocus
     Accessible.role: Accessible.CheckBox
@@ -13,7 +13,7 @@ T.CheckBox {
     indicator: Rectangle {
         anchors.verticalCenter: parent.verticalCenter
         width: 20
-        height: 20
+        height: look.scale * 20
         radius: 5
         color: look.raised
         border.width: tick.visualFocus ? 2 : 1

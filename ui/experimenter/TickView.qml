@@ -19,7 +19,7 @@ Flickable {
             Say {
                 width: parent.width
                 quiet: true
-                font.pixelSize: 12
+                font.pixelSize: look.scale * 12
                 wrapMode: Text.WordWrap
                 text: qsTr("A bar ends at the stiffness that the hand feels; the thin stroke is the device's “max”, the right edge its border of stability by the model of its mechanism.")
             }

@@ -4,8 +4,8 @@ import QtQuick.Templates as T
 // A point in time.
 T.Slider {
     id: slider
-    implicitHeight: 30
-    implicitWidth: 200
+    implicitHeight: look.scale * 30
+    implicitWidth: look.scale * 200
     focusPolicy: Qt.StrongFocus
     Accessible.role: Accessible.Slider
     background: Rectangle {

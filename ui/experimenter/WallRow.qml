@@ -11,17 +11,17 @@ RowLayout {
     Accessible.role: Accessible.StaticText
     Accessible.name: wall.condition + ": " + verdict.text
     Column {
-        Layout.preferredWidth: 250
-        Layout.maximumWidth: 250
+        Layout.preferredWidth: look.scale * 250
+        Layout.maximumWidth: look.scale * 250
         Say {
             width: parent.width
-            font.pixelSize: 13
+            font.pixelSize: look.scale * 13
             text: row.wall.condition
         }
         Say {
             width: parent.width
             quiet: true
-            font.pixelSize: 11
+            font.pixelSize: look.scale * 11
             text: row.wall.device
         }
     }
@@ -49,19 +49,19 @@ RowLayout {
         }
     }
     Column {
-        Layout.preferredWidth: 230
-        Layout.maximumWidth: 230
+        Layout.preferredWidth: look.scale * 230
+        Layout.maximumWidth: look.scale * 230
         Say {
             width: parent.width
             font.family: look.digits
-            font.pixelSize: 13
+            font.pixelSize: look.scale * 13
             text: Math.round(row.wall.stiffness) + " N/m" + (row.wall.border > 0 ? qsTr(" of %1").arg(Math.round(row.wall.border)) : "")
         }
         Say {
             id: verdict
             width: parent.width
             color: row.tint
-            font.pixelSize: 11
+            font.pixelSize: look.scale * 11
             text: !row.wall.known ? qsTr("what the device bears is not known") : row.wall.stable ? qsTr("stable: %1 % of the border").arg(Math.round(100 * row.wall.stiffness / row.edge)) : qsTr("✕ unstable by the model")
         }
     }

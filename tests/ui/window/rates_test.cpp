@@ -146,7 +146,7 @@ TEST_F(Rates, OfAHeavyPartInBothWindows) {
         app_->desk().start(plan(), app::LiveHand::Simulated);
         waitFor([&] { return item(app_->participant(), "scene") != nullptr; });
         item(app_->participant(), "scene")->setProperty("shadows", shadows);
-        click("page1");
+        click("page-session");
         waitFor(RunState::Running);
         const QObject context;
         QObject::connect(app_->participant(), &QQuickWindow::frameSwapped, &context, [&] { ++pictures; });

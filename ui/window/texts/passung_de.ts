@@ -1390,7 +1390,7 @@
     </message>
     <message>
         <source>Nothing was measured. With contact.accuracy = &quot;auto&quot; and contact.accuracy_budget_us in the protocol the first session measures every setting and picks the finest that fits; the command “passung accuracy” draws the same picture for any two parts.</source>
-        <translation>Nichts wurde gemessen. Mit contact.accuracy = "auto" und contact.accuracy_budget_us im Protokoll misst die erste Sitzung jede Einstellung und wählt die feinste, die passt; der Befehl „passung accuracy“ zeichnet dasselbe Bild für zwei beliebige Teile.</translation>
+        <translation>Nichts wurde gemessen. Mit contact.accuracy = &quot;auto&quot; und contact.accuracy_budget_us im Protokoll misst die erste Sitzung jede Einstellung und wählt die feinste, die passt; der Befehl „passung accuracy“ zeichnet dasselbe Bild für zwei beliebige Teile.</translation>
     </message>
     <message>
         <source>Budget %1 µs: %2, tolerance %3 µm, spacing %4 mm – %5 µs, error %6 µm</source>
