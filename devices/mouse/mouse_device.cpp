@@ -30,6 +30,7 @@ Vec3 shortened(const Vec3& v, double longest) noexcept {
 
 DeviceDescription mouseDescription(const simulated::DeviceParams& preset) {
     DeviceDescription description = simulated::describe(preset);
+    description.name = "mouse";
     description.label += ", moved by mouse and keyboard";
     return description;
 }

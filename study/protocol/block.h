@@ -18,6 +18,10 @@ const char* blockOrderName(BlockOrder order);  // "williams", "permutations", "r
 
 enum class Repeat { Never, Now, AtBlockEnd };
 
+/// Who ends a rest that has lasted long enough.
+enum class RestEnds { ByTime, ByParticipant, ByExperimenter };
+const char* restEndsName(RestEnds ends);  // "time", "participant", "experimenter"
+
 struct Block {
     std::string name;
     Phase phase = Phase::Main;
@@ -28,8 +32,9 @@ struct Block {
     BlockOrder blocked_order = BlockOrder::Williams;
     std::vector<design::Constraint> constraints = {};
     design::CatchPlan catches = {};
-    int session = 1;                    // of each participant's, from 1
-    double rest = 0.0;                  // [s] at least so long is rested before it
+    int session = 1;    // of each participant's, from 1
+    double rest = 0.0;  // [s] at least so long is rested before it
+    RestEnds rest_ends = RestEnds::ByTime;
     bool adaptive = false;              // a staircase governs its trials
     std::size_t first_condition = 0;    // its own conditions begin here, parallel to the shared ones; 0: it takes those
     Repeat on_failure = Repeat::Never;  // of a trial that ended by its own rules without success

@@ -25,6 +25,12 @@ BlockOrder orderNamed(const std::string& name) {
     return BlockOrder::Williams;
 }
 
+RestEnds restEndsNamed(const std::string& name) {
+    for (const RestEnds ends : {RestEnds::ByParticipant, RestEnds::ByExperimenter})
+        if (name == restEndsName(ends)) return ends;
+    return RestEnds::ByTime;
+}
+
 std::string unknownWord(const char* what, const std::string& word, const std::vector<std::string_view>& known) {
     if (const auto close = closestWord(word, known))
         return fmt::format("unknown {}; did you mean \"{}\"?", what, *close);
@@ -145,6 +151,8 @@ std::vector<Block> readBlocks(const std::vector<Node>& tables, const std::vector
         block.trials = static_cast<int>(read.integer("trials"));
         block.session = static_cast<int>(read.integer("session"));
         block.rest = read.number("rest_s");
+        block.rest_ends = restEndsNamed(read.text("rest_ends"));
+        if (read.has("rest_ends") && !(block.rest > 0.0)) read.fail("rest_ends", "is for blocks with rest_s");
         if (read.has("name") && !names.insert(block.name).second) read.fail("name", "two blocks have this name");
         readBlocked(read, factors, block);
         readCatches(read, block);

@@ -23,6 +23,8 @@ void readFeedback(const Node& table, Condition& condition, Errors& errors) {
     const TableReader read(table, {"feedback"}, "feedback", errors);
     condition.scene.display_wrench = read.boolean("kinesthetic");
     condition.shown = read.text("shown_pose") == "device" ? ShownPose::Device : ShownPose::Proxy;
+    for (const ShownResult result : {ShownResult::Outcome, ShownResult::Time})
+        if (read.text("result") == shownResultName(result)) condition.result = result;
     Cues& cues = condition.cues;
     cues.masking_noise = read.boolean("masking_noise");
     cues.full_depth = read.number("cue_full_depth_mm");

@@ -75,6 +75,7 @@ constexpr std::array kStudyKeys{
     Key{"block", "catch_to", Integer, atLeast(1), "", "(the last)", "Last such position."},
     Key{"block", "session", Integer, from(1, 100), "", "1", "Which of a participant's sessions has the block; all blocks of one before those of the next."},
     Key{"block", "rest_s", Number, from(0, 86400), "", "0", "At least so long is rested before the block."},
+    Key{"block", "rest_ends", Choice, kAny, "time|participant|experimenter", "time", "What ends that rest: its time, or then the participant or the experimenter, where a window or a command can say so."},
     Key{"block", "trials", Integer, atLeast(1), "", "(all)", "Only the first so many conditions of each pass."},
     Key{"block", "on_failure", Choice, kAny, "never|repeat_now|repeat_at_block_end", "never", "What follows an attempt that ended by the trial's own rules without success."},
     Key{"block", "on_timeout", Choice, kAny, "never|repeat_now|repeat_at_block_end", "(as `on_failure`)", "Likewise after a time-out. An attempt that is repeated does not count."},

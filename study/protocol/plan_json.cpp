@@ -211,6 +211,7 @@ std::string blockJson(const Block& block) {
         .integer("trials", block.trials)
         .integer("session", block.session)
         .number("rest_s", block.rest)
+        .text("rest_ends", restEndsName(block.rest_ends))
         .text("on_failure", repeatName(block.on_failure))
         .text("on_timeout", repeatName(block.on_timeout))
         .text("on_invalid", repeatName(block.on_invalid))
@@ -312,6 +313,7 @@ std::string paramsJson(const Condition& condition) {
     JsonObject json;
     json.text("device", condition.device)
         .text("shown_pose", condition.shown == ShownPose::Proxy ? "proxy" : "device")
+        .text("result", shownResultName(condition.result))
         .json("parts", listOf(scene.parts, partJson))
         .json("contact", contactJson(condition))
         .json("limits", limitsJson(scene.limits))

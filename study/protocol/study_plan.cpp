@@ -34,6 +34,30 @@ const char* blockOrderName(BlockOrder order) {
     return "";
 }
 
+const char* restEndsName(RestEnds ends) {
+    switch (ends) {
+        case RestEnds::ByTime:
+            return "time";
+        case RestEnds::ByParticipant:
+            return "participant";
+        case RestEnds::ByExperimenter:
+            return "experimenter";
+    }
+    return "";
+}
+
+const char* shownResultName(ShownResult result) {
+    switch (result) {
+        case ShownResult::None:
+            return "none";
+        case ShownResult::Outcome:
+            return "outcome";
+        case ShownResult::Time:
+            return "time";
+    }
+    return "";
+}
+
 const char* momentName(Moment moment) {
     switch (moment) {
         case Moment::SessionStart:

@@ -35,6 +35,10 @@ struct Factor {
 
 enum class ShownPose { Proxy, Device };  // what the display draws for the held part
 
+/// What a participant is told of a trial that is over: nothing, how it ended, and how long it took.
+enum class ShownResult { None, Outcome, Time };
+const char* shownResultName(ShownResult result);  // "none", "outcome", "time"
+
 /// What a participant is given to feel and see beside the force; each command is a number from 0 to 1, computed from
 /// the recorded ticks by measures::CueSignals.
 struct Cues {
@@ -67,6 +71,7 @@ struct Condition {
     std::optional<model::SceneSpec> comparison;  // of a discrimination_pair: the other interval's scene
     std::optional<StaircaseLevel> stimulus;      // none: no staircase chose anything in it
     ShownPose shown = ShownPose::Proxy;
+    ShownResult result = ShownResult::None;
     Cues cues;
     TimedBy timed_by = TimedBy::Program;
     SecondaryTask secondary;

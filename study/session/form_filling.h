@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "study/session/answer_sheet.h"
 #include "study/session/questionnaire_source.h"
 
 namespace passung::session {
@@ -21,7 +22,7 @@ public:
     /// The item that is shown. @pre not atEnd()
     const questionnaire::Item& item() const { return items()[form_.order[shown_]]; }
     /// What was answered to it; missing if nothing yet. @pre not atEnd()
-    const questionnaire::Answer& answer() const { return answers_[form_.order[shown_]].answer; }
+    const questionnaire::Answer& answer() const { return sheet_.answer(form_.order[shown_]); }
     const Form& form() const { return form_; }
 
     /// Answers the item that is shown and shows the next one. A missing answer leaves it out. Returns what is wrong
@@ -32,7 +33,7 @@ public:
     bool back(std::int64_t now_ms);
 
     /// @pre atEnd()
-    FilledForm filled(std::string answered_by) const { return {answers_, std::move(answered_by)}; }
+    FilledForm filled(std::string answered_by) const { return {sheet_.answers(), std::move(answered_by)}; }
 
 private:
     const std::vector<questionnaire::Item>& items() const { return form_.planned.definition.items; }
@@ -40,8 +41,7 @@ private:
 
     Form form_;
     std::size_t shown_ = 0;
-    std::vector<ItemAnswer> answers_;           // by item
-    std::vector<std::int64_t> first_shown_ms_;  // by item; -1: not yet
+    AnswerSheet sheet_;
 };
 
 }  // namespace passung::session

@@ -21,12 +21,14 @@ struct PageRead {
     std::optional<std::int64_t> reading_ms;  // from showing the page to its acknowledgement; empty: not measured
 };
 
-/// Who shows instructions and hears when they were read.
+/// Who shows instructions and hears when they were read; and who rests.
 class InstructionReader {
 public:
     virtual ~InstructionReader() = default;
     /// Nothing while somebody reads. Called again and again with the same page, returns quickly.
     virtual std::optional<PageRead> read(const Page& page) = 0;
+    /// A rest has lasted its least time: true once the person wants to go on. Called again and again, returns quickly.
+    virtual bool goesOn() { return true; }
 };
 
 }  // namespace passung::session

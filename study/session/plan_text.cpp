@@ -71,6 +71,8 @@ std::string blockText(const protocol::StudyPlan& plan, const design::Design& des
         text += fmt::format(", {} a pass", design::counted(block.catches.trials, "catch trial"));
     if (protocol::sessionsOf(plan) > 1) text += fmt::format(", session {}", block.session);
     if (block.rest > 0.0) text += fmt::format(", after at least {:.6g} s of rest", block.rest);
+    if (block.rest_ends != protocol::RestEnds::ByTime)
+        text += fmt::format(" that the {} ends", protocol::restEndsName(block.rest_ends));
     if (!block.constraints.empty())
         text += fmt::format(", {}: {:.3g} % of plain shuffles keep to them",
                             design::counted(block.constraints.size(), "constraint"),

@@ -87,32 +87,6 @@ SessionState Session::advance() {
     return state_;
 }
 
-/// True while a questionnaire is open, or after it failed.
-bool Session::asksQuestionnaire() {
-    if (setup_.plan.questionnaires.empty()) return false;
-    const auto open = desk_.ask(agenda_.toDo(), session_ns_);
-    if (!open) fail("questionnaire", open.errors());
-    return !open || *open;
-}
-
-/// A piece of the rest before the next trial's block; false if there is nothing to rest any more.
-bool Session::rest() {
-    if (rested_for_ != agenda_.next()) {
-        rested_for_ = agenda_.next();
-        const auto block = static_cast<std::size_t>(trial().block_index);
-        const bool first = trial().trial_in_block == 0 && block < setup_.plan.blocks.size();
-        rest_left_ = first ? std::llround(setup_.plan.blocks[block].rest / kTickSeconds) : 0;
-        if (rest_left_ > 0) note("rest_started", "block", trial().block);
-    }
-    if (rest_left_ == 0) return false;
-    const std::int64_t step = std::min(rest_left_, kTicksPerRest);
-    apparatus_.wait(step);
-    session_ns_ += step * kTickNanoseconds;
-    rest_left_ -= step;
-    if (rest_left_ == 0) note("rest_ended", "block", trial().block);
-    return true;
-}
-
 /// What a staircase chooses for the next trial; nothing if none governs it.
 std::optional<StaircaseStep> Session::nextStep() const {
     if (!staircases_.governs(trial())) return std::nullopt;
@@ -124,39 +98,6 @@ const protocol::Condition& Session::conditionOf(const std::optional<StaircaseSte
     const std::size_t shown = step ? step->condition : trial().condition;
     PASSUNG_ASSERT(shown < setup_.plan.conditions.size());
     return setup_.plan.conditions[shown];
-}
-
-/// The device under `key`, with the stable stiffness that the study keeps for it.
-protocol::JsonObject Session::stableStiffnessOf(const char* key, const std::string& device) const {
-    protocol::JsonObject payload;
-    payload.text(key, device);
-    for (const protocol::StableStiffness& stable : setup_.plan.stable_stiffness)
-        if (stable.device == device)
-            payload.number("stable_stiffness_N_per_m", stable.linear)
-                .number("stable_rotational_stiffness_Nm_per_rad", stable.rotational)
-                .text("origin", stable.origin);
-    return payload;
-}
-
-/// Notes that another device comes into use, and what is known of its stability; true if that is waited for.
-bool Session::swapsDevice() {
-    const std::string& device = conditionOf(nextStep()).device;
-    const bool first = device_in_use_.empty(), other = !first && device_in_use_ != device;
-    device_in_use_ = device;
-    if (other) {
-        note("swap_device", stableStiffnessOf("to", device).str());
-        swapping_ = true;
-        if (setup_.waits) {
-            state_ = SessionState::Paused;
-            return true;
-        }
-    }
-    const bool swapped = std::exchange(swapping_, false);
-    if (swapped) note("device_swapped", protocol::JsonObject().text("to", device).str());
-    if ((first || swapped) && setup_.calibrated_utc)
-        note("device_calibration",
-             stableStiffnessOf("device", device).text("calibrated_utc", setup_.calibrated_utc(device)).str());
-    return false;
 }
 
 /// Trials of a staircase whose tracks are all finished.

@@ -41,7 +41,8 @@ public:
     Session& operator=(const Session&) = delete;
 
     /// One bounded piece of work: look whether a due questionnaire is filled, rest for kTicksPerRest before a block
-    /// that asks for it (events rest_started, rest_ended), have another device than the last trial's put in place
+    /// that asks for it (events rest_started, rest_ended; a session whose setup waits for commands is Paused where the
+    /// experimenter ends the rest), have another device than the last trial's put in place
     /// (events swap_device and device_swapped; between them a session whose setup waits for commands is Paused until
     /// the experimenter says Continue), look whether the instructions before the next trial are read, begin it, watch
     /// the running one for kTicksPerLook, or close the session; nothing in Ready and Paused. Whatever is to be done to
@@ -72,6 +73,9 @@ public:
     /// The device that is to be put in place while the session is Paused; empty: it waits for none.
     std::string awaitedDevice() const { return state_ == SessionState::Paused && swapping_ ? device_in_use_ : ""; }
 
+    /// How long the running rest still has to last [periods]; nothing if there is none.
+    std::optional<std::int64_t> restLeft() const { return resting_ ? std::optional(rest_left_) : std::nullopt; }
+
     /// Why the session failed; empty unless state() is Failed.
     const Errors& errors() const { return errors_; }
 
@@ -97,6 +101,7 @@ private:
 
     const design::PlannedTrial& trial() const { return agenda_.trial(agenda_.next()); }
     bool rest();
+    bool isResting(const protocol::Block& block);
     bool swapsDevice();
     protocol::JsonObject stableStiffnessOf(const char* key, const std::string& device) const;
     std::optional<StaircaseStep> nextStep() const;
@@ -155,6 +160,8 @@ private:
     std::optional<std::size_t> last_;        // place of the newest attempt that ended
     std::optional<std::size_t> rested_for_;  // place of the trial that a rest was last looked for
     std::int64_t rest_left_ = 0;             // [periods] of the running rest
+    bool resting_ = false;                   // until whoever ends the rest has done so
+    bool rest_told_ = false;                 // the experimenter was asked to
     std::string device_in_use_;              // of the last trial, or being swapped to
     bool swapping_ = false;                  // until the first trial on it begins
     std::int64_t session_ns_;                // at tick 0 of the running or next attempt

@@ -10,7 +10,9 @@ namespace {
 constexpr std::string_view kAttemptColumns =
     "SELECT a.attempt_id, s.session_id, s.participant_id, pa.kind, "
     "coalesce((SELECT d.between_group FROM design_slot d WHERE d.participant_id=s.participant_id), 'all'), s.ordinal, "
-    "s.station, coalesce(json_extract(a.params_json, '$.device'), json_extract(g.device_json, '$.name')), "
+    // A mouse stands for the device that the condition names.
+    "s.station, CASE json_extract(g.device_json, '$.name') WHEN 'mouse' THEN 'mouse' ELSE "
+    "coalesce(json_extract(a.params_json, '$.device'), json_extract(g.device_json, '$.name')) END, "
     "t.block_index, t.block, t.phase, t.trial_index, "
     "t.trial_in_block, t.repetition, a.attempt_no, c.condition, c.levels_json, a.start_ns, a.end_ns, a.outcome, "
     // Whoever is excluded counts nowhere; their rows stay as they are.

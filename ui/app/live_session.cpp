@@ -1,6 +1,7 @@
 #include "ui/app/live_session.h"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <filesystem>
 #include <utility>
@@ -26,11 +27,25 @@ sound::SoundPlan soundOf(const protocol::Condition& condition, std::uint64_t see
     return plan;
 }
 
+presenter::TrialBrief briefOf(const protocol::Condition& condition) {
+    presenter::TrialBrief brief;
+    brief.kind = static_cast<presenter::TrialBrief::Kind>(condition.task.form.index());
+    if (const auto* pair = std::get_if<protocol::DiscriminationPairTask>(&condition.task.form))
+        brief.question = pair->question;
+    brief.timed_by = condition.timed_by;
+    brief.result = condition.result;
+    return brief;
+}
+
 }  // namespace
 
 LiveSession::LiveSession(protocol::StudyPlan plan, LiveOptions options)
     : plan_(std::move(plan)), options_(std::move(options)) {
-    plan_.questionnaires.clear();
+    if (options_.try_out) {
+        plan_.questionnaires.clear();
+        plan_.instructions.clear();
+        plan_.consent.clear();
+    }
     if (options_.sound != nullptr) screens_.push_back(&options_.sound->ring());
     thread_ = std::thread([this] { main(); });
 }
@@ -41,13 +56,6 @@ LiveSession::~LiveSession() {
 }
 
 void LiveSession::main() {
-    RunOptions run;
-    run.database = options_.database;
-    run.clock = Clock::RealTime;
-    run.backup = false;
-    run.wait = options_.waits;
-    run.performer = this;
-    run.interrupted = [this] { return ends_.load(); };
     RunListener listener;
     listener.trial = [this](const session::TrialProgress& trial) {
         tell(presenter::AttemptEnded{trial.trial.trial_index, trial.outcome, trial.valid, trial.invalid_reason,
@@ -60,14 +68,54 @@ void LiveSession::main() {
         std::error_code problem;  // shows when the database is opened
         const auto folder = std::filesystem::path(options_.database).parent_path();
         if (!folder.empty()) std::filesystem::create_directories(folder, problem);
-        const auto end = runStudy(plan_, run, listener);
-        if (!end) errors = end.errors();
+        const auto end = perform(listener);
+        if (!end && !aborted_) errors = end.errors();
     } catch (const std::exception& thrown) {
         errors.push_back({.message = thrown.what()});
     }
     if (cancelled_) errors.clear();  // that is what was asked for
     over();                          // also of a session that an exception ended
     tell(presenter::RunOver{whole, errors});
+}
+
+Result<RunEnd> LiveSession::perform(const RunListener& listener) {
+    RunOptions run;
+    run.database = options_.database;
+    run.participant = options_.participant;
+    run.station = options_.station;
+    run.clock = Clock::RealTime;
+    run.backup = !options_.try_out;
+    run.wait = options_.waits;
+    run.performer = this;
+    if (!options_.try_out) run.language = options_.language;
+    run.experimenter = options_.experimenter;
+    run.interrupted = [this] { return ends_.load(); };
+    if (!options_.try_out && kind() != protocol::ParticipantKind::Simulated)
+        run.ask_consent = [this](const auto& clause, const std::string& text) { return askConsent(clause, text); };
+    if (options_.resume.empty()) return runStudy(plan_, run, listener);
+    const auto folder = std::filesystem::path(plan_.source_path).parent_path();
+    return resumeStudy({options_.resume, folder.string()}, run, listener);
+}
+
+std::optional<bool> LiveSession::askConsent(const protocol::ConsentClause& clause, const std::string& text) {
+    return interview_.consent(clause, text, [this] { return ends_.load() || takesAbort(); });
+}
+
+/// Before the session begins it cannot take commands itself: only that it shall not.
+bool LiveSession::takesAbort() {
+    std::deque<session::Command> commands;
+    {
+        const std::lock_guard lock(mutex_);
+        commands.swap(commands_);
+    }
+    for (const session::Command& command : commands) {
+        const bool aborts = command.kind == session::CommandKind::Abort;
+        aborted_ = aborted_ || aborts;
+        session::Answer answer{aborts, "the session does not begin"};
+        if (!aborts) answer = {false, "the session has not begun", session::WhyNot::NotBegun};
+        tell(presenter::CommandAnswered{command, std::move(answer)});
+    }
+    return aborted_;
 }
 
 void LiveSession::command(session::Command command) {
@@ -87,7 +135,8 @@ void LiveSession::tell(presenter::News news) {
 }
 
 protocol::ParticipantKind LiveSession::kind() const {
-    return options_.hand == LiveHand::Mouse ? protocol::ParticipantKind::Pilot : protocol::ParticipantKind::Simulated;
+    if (options_.hand == LiveHand::Simulated) return protocol::ParticipantKind::Simulated;
+    return protocol::kindOfCode(options_.participant).value_or(options_.kind);
 }
 
 DeviceDescription LiveSession::describe(const simulated::DeviceParams& preset) const {
@@ -106,9 +155,9 @@ std::unique_ptr<loop::HapticDevice> LiveSession::device(const simulated::DeviceP
     return device;
 }
 
-void LiveSession::begins(session::Apparatus& apparatus, const std::string& participant,
-                         std::span<const design::PlannedTrial> trials) {
-    tell(presenter::SessionBegun{participant, {trials.begin(), trials.end()}});
+void LiveSession::begins(session::Apparatus& apparatus, const session::SessionSetup& setup) {
+    interview_.forget();
+    tell(presenter::SessionBegun{setup.participant, setup.trials});
     const std::lock_guard lock(mutex_);
     apparatus_ = &apparatus;
 }
@@ -119,7 +168,8 @@ void LiveSession::prepares(const protocol::Condition& condition, std::int64_t tr
     shown_ = {};
     shown_.drawn_pose = condition.shown == protocol::ShownPose::Proxy ? "proxy" : "device";
     if (heard.any()) shown_.sound = "silent";
-    presenter::AttemptPrepared prepared{trial_index, condition.name, nullptr, heard.any()};
+    interview_.forget();
+    presenter::AttemptPrepared prepared{trial_index, condition.name, nullptr, heard.any(), briefOf(condition)};
     if (auto scene = artist_.draw(condition)) prepared.scene = *scene;  // else the session fails at the same mesh
     tell(std::move(prepared));
 }
@@ -131,6 +181,15 @@ bool LiveSession::builds(double share) {
                      return command.kind == session::CommandKind::Abort;
                  });
     return !cancelled_;
+}
+
+/// The rest that runs, for the screen of who rests.
+std::optional<presenter::RestGlance> LiveSession::restOf(const session::Session& session) const {
+    const auto left = session.restLeft();
+    if (!left || session.agenda().empty()) return std::nullopt;
+    const auto block = static_cast<std::size_t>(session.agenda().trial(session.agenda().next()).block_index);
+    const double seconds = std::ceil(static_cast<double>(*left) * kTickSeconds);
+    return presenter::RestGlance{static_cast<std::int64_t>(seconds), plan_.blocks.at(block).rest_ends};
 }
 
 void LiveSession::look(session::Session& session) {
@@ -147,6 +206,8 @@ void LiveSession::look(session::Session& session) {
     if (!agenda.empty()) glance.next = agenda.next();
     for (std::size_t place = 0; place < agenda.planned(); ++place) glance.over.push_back(agenda.isOver(place));
     glance.can_go_back = agenda.canGoBack();
+    glance.rest = restOf(session);
+    glance.swaps_to = session.awaitedDevice();
     if (told_anything_ && glance == told_) return;
     told_anything_ = true;
     told_ = glance;

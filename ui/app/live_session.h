@@ -10,6 +10,7 @@
 
 #include "devices/mouse/pointer.h"
 #include "ui/app/frame_clock.h"
+#include "ui/app/interview.h"
 #include "ui/app/performer.h"
 #include "ui/app/run_study.h"
 #include "ui/presenter/session_news.h"
@@ -17,20 +18,26 @@
 
 namespace passung::app {
 
-/// Who takes part in a live session.
+/// Who moves the device in a live session.
 enum class LiveHand { Mouse, Simulated };
 
 struct LiveOptions {
-    std::string database;
+    std::string database = {};
     LiveHand hand = LiveHand::Mouse;
+    bool try_out = false;          // only the trials: no consent, instructions or questionnaires
+    std::string participant = {};  // code; empty: the next free one of `kind`
+    protocol::ParticipantKind kind = protocol::ParticipantKind::Pilot;  // with the mouse, where there is no code
+    std::string resume = {};      // id of the session that goes on; empty: a new one
+    std::string language = "en";  // of a new session; one of protocol::languagesOf()
+    std::string experimenter = {};
+    store::Station station = {};
     bool waits = false;                 // begins with the command Start
     FrameClock* frames = nullptr;       // of the participant's window; null: nobody measures its pictures
     sound::SoundFeed* sound = nullptr;  // what is to be heard; null: nothing
 };
 
-/// A study that runs in a thread of its own, for windows: they bring commands and take news and ticks, and never wait
-/// for it. A pilot participant moves the device by mouse and keyboard, or a simulated one is watched, in real time.
-/// A try-out: no questionnaires are asked.
+/// A study that runs in a thread of its own, for windows: they bring commands and answers, take news and ticks, and
+/// never wait for it. A person moves the device by mouse and keyboard, or a simulated one is watched, in real time.
 class LiveSession final : private Performer {
 public:
     LiveSession(protocol::StudyPlan plan, LiveOptions options);
@@ -42,6 +49,8 @@ public:
     std::vector<presenter::News> takeNews();
     /// The ticks since the last call, the oldest first, as many as fit; call until it returns 0.
     std::size_t takeTicks(std::span<loop::ScreenTick> into) { return screen_.take(into); }
+    /// Takes what the participant answers.
+    Interview& interview() { return interview_; }
     /// Where the mouse wants the held part.
     mouse::Pointer& pointer() { return pointer_; }
     /// How far the pointer may be ahead of the part [m], [rad]: as of the running attempt's device.
@@ -55,15 +64,19 @@ private:
     DeviceDescription describe(const simulated::DeviceParams& preset) const override;
     std::span<loop::ScreenRing* const> screens() override { return screens_; }
     session::Presentation presented(std::int64_t since_ns) override;
-    session::QuestionnaireSource* answers() override { return nullptr; }
-    void begins(session::Apparatus& apparatus, const std::string& participant,
-                std::span<const design::PlannedTrial> trials) override;
+    session::QuestionnaireSource* answers() override { return &interview_; }
+    session::InstructionReader* reader() override { return &interview_; }
+    void begins(session::Apparatus& apparatus, const session::SessionSetup& setup) override;
     void prepares(const protocol::Condition& condition, std::int64_t trial_index, std::uint64_t seed) override;
     bool builds(double share) override;
     void look(session::Session& session) override;
     void over() override;
 
     void main();
+    Result<RunEnd> perform(const RunListener& listener);
+    std::optional<bool> askConsent(const protocol::ConsentClause& clause, const std::string& text);
+    bool takesAbort();
+    std::optional<presenter::RestGlance> restOf(const session::Session& session) const;
     void tell(presenter::News news);
 
     protocol::StudyPlan plan_;
@@ -73,6 +86,8 @@ private:
     bool told_anything_ = false;
     bool cancelled_ = false;  // a build
     mouse::Pointer pointer_;
+    Interview interview_{[this](presenter::News news) { tell(std::move(news)); }};
+    bool aborted_ = false;  // before the session began
     std::atomic<double> reach_{0.0}, swing_{0.0};
     loop::ScreenRing screen_{4096};
     std::vector<loop::ScreenRing*> screens_{&screen_};

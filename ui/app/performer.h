@@ -1,13 +1,10 @@
 #pragma once
 
 #include <memory>
-#include <span>
-#include <vector>
 
 #include "core/loop/haptic_device.h"
 #include "core/loop/record_ring.h"
 #include "devices/simulated/presets.h"
-#include "study/design/trial_order.h"
 #include "study/protocol/participant.h"
 #include "study/protocol/study_plan.h"
 #include "study/session/apparatus.h"
@@ -34,9 +31,11 @@ public:
     /// Who answers questionnaires; may be null if the plan has none.
     virtual session::QuestionnaireSource* answers() = 0;
 
+    /// Who reads the instructions; may be null: then they are only logged.
+    virtual session::InstructionReader* reader() = 0;
+
     /// A session begins: `apparatus` may be halted at any time until over().
-    virtual void begins(session::Apparatus& apparatus, const std::string& participant,
-                        std::span<const design::PlannedTrial> trials) = 0;
+    virtual void begins(session::Apparatus& apparatus, const session::SessionSetup& setup) = 0;
     /// An attempt at this trial is about to begin, now its scene is built. `seed`: of the attempt.
     virtual void prepares(const protocol::Condition& condition, std::int64_t trial_index, std::uint64_t seed) = 0;
     /// Fields and shells of that scene are built; this share of them is done. False: nobody waits for it.

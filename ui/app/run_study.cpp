@@ -139,6 +139,7 @@ private:
         start.protocol_sha256 = sha256_;
         start.ordinal = ordinal;
         start.station = options_.station.name;
+        start.experimenter = options_.experimenter;
         start.language = options_.language;
         start.seed = plan_.seed;
         start.clock = clock;
@@ -169,20 +170,22 @@ private:
         // In virtual time nobody can say when a trial begins and ends.
         const bool simulates =
             kind() == protocol::ParticipantKind::Simulated && (options_.answers == nullptr || !measured());
-        if (kind() != protocol::ParticipantKind::Simulated) setup.answers = options_.performer->answers();
         SimulatedReader reader;
+        setup.reader = options_.reader != nullptr ? options_.reader : &reader;
+        if (kind() != protocol::ParticipantKind::Simulated) {
+            setup.answers = options_.performer->answers();
+            setup.reader = options_.performer->reader();
+        }
         setup.language = options_.language;
         if (measured())
             setup.calibrated_utc = [](const std::string& device) {
                 const auto when = calibratedAt(device);
                 return when ? store::UtcClock::wall(*when).at(0) : std::string();
             };
-        if (kind() == protocol::ParticipantKind::Simulated)
-            setup.reader = options_.reader != nullptr ? options_.reader : &reader;
         apparatus.perceiveBy(SimulatedPerception(plan_, code));
         SimulatedTimer timer(person::personOf(plan_.name, code, plan_.seed));
         if (simulates) setup.timer = &timer;  // else somebody is there to say it
-        if (options_.performer != nullptr) options_.performer->begins(apparatus, code, setup.trials);
+        if (options_.performer != nullptr) options_.performer->begins(apparatus, setup);
         struct Over {  // whatever is thrown: before the apparatus goes
             Performer* performer;
             ~Over() {
@@ -301,6 +304,12 @@ bool isPerson(const std::string& code) {
     return kind && *kind != protocol::ParticipantKind::Simulated;
 }
 
+/// Nobody is there to take part under this code: a person needs a device that a person can move.
+bool lacksDevice(const std::string& code, const Performer* performer) {
+    if (!isPerson(code)) return false;
+    return performer == nullptr || performer->kind() != protocol::kindOfCode(code);
+}
+
 /// Elsewhere the session would take a place of the design that is not its station's.
 Error otherStation(const store::Unfinished& session, const RunOptions& options) {
     const bool only = session.station == store::Station{}.name;
@@ -314,7 +323,7 @@ Error otherStation(const store::Unfinished& session, const RunOptions& options) 
 }  // namespace
 
 Result<RunEnd> runStudy(const protocol::StudyPlan& plan, RunOptions options, const RunListener& listener) {
-    if (isPerson(options.participant)) return missingDevices(plan, options.participant);
+    if (lacksDevice(options.participant, options.performer)) return missingDevices(plan, options.participant);
     const auto language = protocol::chooseLanguage(plan, options.language);
     if (!language) return language.errors();
     options.language = *language;
@@ -385,6 +394,7 @@ Result<RunEnd> resumeStudy(const ResumeOptions& resume, RunOptions options, cons
     if (!stored) return stored.errors();
     protocol::StudyPlan plan = **stored;
     if (const auto done = loadStoredQuestionnaires(*reader, *session, plan); !done) return done.errors();
+    if (lacksDevice(session->participant, options.performer)) return missingDevices(plan, session->participant);
     plan.seed = session->seed;
     options.clock = session->virtual_time ? Clock::Virtual : Clock::RealTime;
     options.language = session->language;

@@ -25,6 +25,7 @@ struct RunOptions {
     session::QuestionnaireSource* answers = nullptr;  // who answers questionnaires; nullptr: a simulated person
     session::InstructionReader* reader = nullptr;     // who reads instructions; nullptr: a simulated person
     AskConsent ask_consent;                           // empty: nobody is asked here
+    std::string experimenter;                         // who conducts the session; empty: not said
     Performer* performer = nullptr;                   // who takes part or watches; null: nobody
 };
 
@@ -48,7 +49,8 @@ struct RunListener {
 
 /// While a session runs, an experimenter may command it through CommandSocket.
 /// Performs the study with simulated participants on the simulated device, each a session of all planned trials, into
-/// the database; a participant whose code is that of a person is refused, for want of a device. Questionnaires may be
+/// the database; a participant whose code is that of a person is refused, for want of a device, unless the performer
+/// brings one for a participant of that kind. Questionnaires may be
 /// answered by somebody all the same: that is a rehearsal, and its data is marked simulated. Whatever was finished
 /// before an error stays in it. An interruption stores the running trial as aborted and closes the session as aborted,
 /// both with the reason "interrupted". What contact.accuracy = "auto" asks for is picked when the protocol first runs

@@ -26,6 +26,16 @@ Window {
         enabled: run.commands.start === ""
         onActivated: run.command("start")
     }
+    Shortcut { // of a trial that the experimenter times
+        sequence: "F6"
+        enabled: run.commands.done === ""
+        onActivated: run.command("done")
+    }
+    Shortcut {
+        sequence: "F7"
+        enabled: run.commands.failed === ""
+        onActivated: run.command("failed")
+    }
     Shortcut {
         sequence: "Ctrl+P"
         onActivated: {

@@ -281,6 +281,25 @@ ColumnLayout {
                             why: run.commands.skip
                             onClicked: run.command("skip", note.take())
                         }
+                        ActionButton { // of a trial that the experimenter times
+                            objectName: "done"
+                            visible: run.byHand
+                            Layout.fillWidth: true
+                            kind: "main"
+                            text: qsTr("Succeeded")
+                            keyName: "F6"
+                            why: run.commands.done
+                            onClicked: run.command("done")
+                        }
+                        ActionButton {
+                            objectName: "failed"
+                            visible: run.byHand
+                            Layout.fillWidth: true
+                            text: qsTr("Failed")
+                            keyName: "F7"
+                            why: run.commands.failed
+                            onClicked: run.command("failed")
+                        }
                     }
                     T.TextField {
                         id: note

@@ -169,7 +169,7 @@ RowLayout {
                     text: qsTr("Try it with the mouse")
                     why: page.whyNotRun
                     onClicked: {
-                        studies.tryOut(page.chosen, false);
+                        studies.tryOut(page.chosen, false, app.language);
                         page.begun();
                     }
                 }
@@ -179,7 +179,7 @@ RowLayout {
                     text: qsTr("Watch a simulated participant")
                     why: page.whyNotRun
                     onClicked: {
-                        studies.tryOut(page.chosen, true);
+                        studies.tryOut(page.chosen, true, app.language);
                         page.begun();
                     }
                 }

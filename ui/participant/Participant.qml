@@ -17,7 +17,10 @@ Window {
         requestActivate()
     onActiveChanged: if (!active)
         screenView.letGo()
-    onActiveFocusItemChanged: if (activeFocusItem !== hand) // the 3D view takes it
+    readonly property bool asked: form.shown || guide.reading || guide.resting
+    onActiveFocusItemChanged: if (!asked && activeFocusItem !== hand) // the 3D view takes it
+        hand.forceActiveFocus()
+    onAskedChanged: if (!asked)
         hand.forceActiveFocus()
 
     Scene3D {
@@ -33,7 +36,7 @@ Window {
         id: hand
         objectName: "hand"
         anchors.fill: parent
-        enabled: screenView.byMouse
+        enabled: guide.handling
         acceptedButtons: Qt.LeftButton | Qt.RightButton | Qt.MiddleButton
         hoverEnabled: true
         cursorShape: pressed ? Qt.ClosedHandCursor : Qt.OpenHandCursor
@@ -80,7 +83,7 @@ Window {
         anchors.horizontalCenter: parent.horizontalCenter
         anchors.top: screenView.drawn ? parent.top : undefined
         anchors.topMargin: 24
-        visible: screenView.line !== ""
+        visible: guide.line !== "" && !window.asked
         width: Math.min(lines.implicitWidth + 56, window.width - 40)
         height: lines.implicitHeight + 26
         radius: 10
@@ -92,7 +95,7 @@ Window {
             Text {
                 objectName: "line"
                 anchors.horizontalCenter: parent.horizontalCenter
-                text: screenView.line
+                text: guide.line
                 color: look.text
                 font.family: look.family
                 font.pixelSize: look.scale * (screenView.drawn ? 22 : 34)
@@ -104,11 +107,58 @@ Window {
                 anchors.horizontalCenter: parent.horizontalCenter
                 horizontalAlignment: Text.AlignHCenter
                 visible: text !== ""
-                text: screenView.hint
+                text: guide.hint
                 color: look.dim
                 font.family: look.family
                 font.pixelSize: look.scale * 15
             }
         }
+    }
+
+    Rectangle { // what came of the last trial
+        objectName: "result"
+        anchors.horizontalCenter: parent.horizontalCenter
+        y: 132
+        visible: guide.result !== "" && !window.asked
+        width: resultText.implicitWidth + 48
+        height: 44
+        radius: 22
+        color: guide.succeeded ? look.good : look.care
+        Words {
+            id: resultText
+            anchors.centerIn: parent
+            text: guide.result
+            color: look.onAccent
+            font.weight: Font.DemiBold
+        }
+    }
+    Row { // the answers to a pair's question
+        anchors.horizontalCenter: parent.horizontalCenter
+        anchors.bottom: parent.bottom
+        anchors.bottomMargin: 48
+        spacing: 32
+        Repeater {
+            model: guide.answers
+            BigButton {
+                required property string modelData
+                required property int index
+                objectName: "answer" + (index + 1)
+                text: (index + 1) + "   " + modelData
+                width: 240
+                height: 76
+                main: guide.answered === index + 1
+                focusPolicy: Qt.NoFocus
+                onPressed: guide.answer(index + 1, true)
+                onReleased: guide.answer(index + 1, false)
+            }
+        }
+    }
+    GuidePage {
+        anchors.fill: parent
+        visible: (guide.reading || guide.resting) && !form.shown
+    }
+    FormPage {
+        anchors.fill: parent
+        visible: form.shown
     }
 }

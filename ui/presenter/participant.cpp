@@ -17,6 +17,13 @@ ParticipantScreen screenOf(RunState state) {
         case RunState::Opening:
         case RunState::Ready:
             return ParticipantScreen::Welcome;
+        case RunState::Consenting:
+        case RunState::Answering:
+            return ParticipantScreen::Form;
+        case RunState::Reading:
+            return ParticipantScreen::Page;
+        case RunState::Resting:
+            return ParticipantScreen::Rest;
         case RunState::Preparing:
         case RunState::Between:
             return ParticipantScreen::Wait;
@@ -51,11 +58,32 @@ Vec3 outermost(const ShadedMesh& mesh, const Pose& X_W, const Vec3& way) {
     return X_W * middle + length * way;
 }
 
+/// What there is to do in the running trial, and in which interval of a pair.
+void lookIntoTrial(const Run& run, ParticipantView& view) {
+    using Phase = measures::PairWatch::Phase;
+    if (view.brief.timed_by != protocol::TimedBy::Program) {
+        const bool by_hand = view.brief.timed_by == protocol::TimedBy::Experimenter;
+        view.screen = by_hand ? ParticipantScreen::ByHand : ParticipantScreen::Idle;
+        return;
+    }
+    if (view.screen != ParticipantScreen::Task) return;
+    const Phase phase = run.pair() ? run.pair()->phase() : Phase::First;
+    if (view.brief.kind == TrialBrief::Kind::Pair) view.interval = phase == Phase::First ? 1 : 2;
+    if (phase == Phase::Question || phase == Phase::Answered) view.screen = ParticipantScreen::Question;
+    if (phase == Phase::Between) view.screen = ParticipantScreen::ToStart;
+}
+
 void drawForce(ParticipantView& view, const DrawnScene& scene, const TickRecord& record) {
     const Vec3 force(record.force_N[0], record.force_N[1], record.force_N[2]);
     view.arrow = force.norm() >= kLeastForce;
     view.arrow_way = kArrowPerNewton * force;
     if (view.arrow) view.arrow_from = outermost(*scene.parts[scene.held].mesh, view.X_WHeld, force.normalized());
+}
+
+bool hasScene(ParticipantScreen screen) {
+    return screen == ParticipantScreen::Wait || screen == ParticipantScreen::ToStart ||
+           screen == ParticipantScreen::Task || screen == ParticipantScreen::Question ||
+           screen == ParticipantScreen::Pause;
 }
 
 }  // namespace
@@ -64,24 +92,25 @@ ParticipantView participantView(const Run& run, bool feels) {
     const RunView& state = run.view();
     ParticipantView view;
     view.screen = screenOf(state.state);
+    if (view.screen == ParticipantScreen::Pause && !state.swaps_to.empty()) view.screen = ParticipantScreen::Swap;
     if (state.planned > 0) view.share = static_cast<double>(state.finished) / static_cast<double>(state.planned);
+    view.brief = run.brief();
+    view.rest = state.rest;
+    view.result = run.result();
+    view.begun = state.state == RunState::Running;
+    if (view.screen == ParticipantScreen::ToStart || view.screen == ParticipantScreen::Task) lookIntoTrial(run, view);
     const auto& scene = run.scene();
-    if (!scene || view.screen == ParticipantScreen::Welcome || view.screen == ParticipantScreen::Thanks) return view;
-    view.scene = true;
+    if (!scene || !hasScene(view.screen)) return view;
+    view.scene = view.screen != ParticipantScreen::Wait || view.brief.timed_by == protocol::TimedBy::Program;
     view.X_WStart = scene->parts[scene->held].X_W;
     view.X_WHeld = view.X_WStart;
     view.start_mark = view.screen == ParticipantScreen::ToStart;
     if (!run.last()) return view;
-    const TickRecord& record = *run.last();
-    // Between the intervals of a pair the hand has to come back.
-    if (view.screen == ParticipantScreen::Task && (record.status & kEngaged) == 0)
-        view.screen = ParticipantScreen::ToStart;
-    view.start_mark = view.screen == ParticipantScreen::ToStart;
-    view.X_WHeld = shownPose(*scene, record);
-    const bool task = view.screen == ParticipantScreen::Task;
-    if (task && scene->cues.visual)
-        view.cue = std::min(1.0, static_cast<double>(record.hand_depth_m) / scene->cues.full_depth);
-    if (task && !feels) drawForce(view, *scene, record);
+    view.X_WHeld = shownPose(*scene, *run.last());
+    if (view.screen != ParticipantScreen::Task) return view;
+    if (scene->cues.visual)
+        view.cue = std::min(1.0, static_cast<double>(run.last()->hand_depth_m) / scene->cues.full_depth);
+    if (!feels) drawForce(view, *scene, *run.last());
     return view;
 }
 

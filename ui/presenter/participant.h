@@ -5,7 +5,21 @@
 namespace passung::presenter {
 
 /// What the participant is to do now.
-enum class ParticipantScreen { Welcome, Wait, ToStart, Task, Pause, Thanks };
+enum class ParticipantScreen {
+    Welcome,
+    Form,     // consent or a questionnaire
+    Page,     // of instructions
+    Wait,     // for the next trial
+    ToStart,  // the hand takes the start pose
+    Task,
+    Question,  // of a pair: which interval?
+    ByHand,    // real parts: the experimenter times the trial
+    Idle,      // nothing is handled: the trial lasts its time
+    Rest,
+    Swap,  // another device comes into use
+    Pause,
+    Thanks,
+};
 
 /// What the participant sees; nothing of it tells more than the condition lets them know.
 struct ParticipantView {
@@ -18,6 +32,11 @@ struct ParticipantView {
     bool arrow = false;                                        // of the force, for who cannot feel it
     Vec3 arrow_from = Vec3::Zero(), arrow_way = Vec3::Zero();  // world [m]
     double share = 0.0;                                        // of the session's trials that are over
+    TrialBrief brief;                                          // of the running or last trial
+    int interval = 0;                                          // of a pair, 1 or 2; 0: none
+    bool begun = false;                                        // ByHand: the clock runs
+    std::optional<RestGlance> rest;
+    std::optional<TrialResult> result;  // of the last trial
 };
 
 /// Length of the arrow per force [m/N].

@@ -1,6 +1,8 @@
 #include "ui/presenter/run.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace passung::presenter {
 
@@ -30,13 +32,15 @@ bool hasEnded(RowState state) { return state >= RowState::Success && state != Ro
 
 Why RunView::why(CommandKind kind) const {
     if (!isRunning() || state == RunState::Opening) return Why::NoSession;
+    if (state == RunState::Consenting) return kind == CommandKind::Abort ? Why::Possible : Why::NotBegun;
     const bool paused = state == RunState::Paused || state == RunState::Stopped;
     const bool in_trial = state == RunState::ToStart || state == RunState::Running || state == RunState::Preparing;
     const bool something_ended =
         std::any_of(rows.begin(), rows.end(), [](const TrialRow& row) { return row.attempts > 0; });
     switch (kind) {
         case CommandKind::Start:
-            return state == RunState::Ready ? Why::Possible : Why::BegunAlready;
+            if (state == RunState::Ready || (by_hand && state == RunState::ToStart)) return Why::Possible;
+            return Why::BegunAlready;
         case CommandKind::Continue:
             return paused ? Why::Possible : Why::NotPaused;
         case CommandKind::Pause:
@@ -53,7 +57,9 @@ Why RunView::why(CommandKind kind) const {
             return number > 0 ? Why::Possible : Why::NothingLeft;
         case CommandKind::Done:
         case CommandKind::Failed:
-            return in_trial ? Why::Possible : Why::NoTrial;
+            if (!in_trial) return Why::NoTrial;
+            if (!by_hand) return Why::NoTrial;
+            return state == RunState::Running ? Why::Possible : Why::ClockNotStarted;
         case CommandKind::Note:
         case CommandKind::Abort:
         case CommandKind::Stop:
@@ -74,6 +80,9 @@ void Run::take(const News& news) {
         [this](const auto& what) {
             using What = std::decay_t<decltype(what)>;
             if constexpr (std::is_same_v<What, SessionBegun>) begin(what);
+            if constexpr (std::is_same_v<What, FormDue>) ask(what.form, std::nullopt);
+            if constexpr (std::is_same_v<What, PageDue>) ask(nullptr, what);
+            if constexpr (std::is_same_v<What, AskedDone>) ask(nullptr, std::nullopt);
             if constexpr (std::is_same_v<What, AttemptPrepared>) prepare(what);
             if constexpr (std::is_same_v<What, BuildProgress>) view_.built = what.share;
             if constexpr (std::is_same_v<What, SessionGlance>) glance(what);
@@ -99,7 +108,26 @@ void Run::begin(const SessionBegun& begun) {
     ++view_.rows_changed;
 }
 
+void Run::ask(std::shared_ptr<const FormRequest> form, std::optional<PageDue> page) {
+    form_ = std::move(form);
+    page_ = std::move(page);
+    if (session_ == SessionState::BetweenTrials) view_.state = between();
+}
+
+/// What goes on while no trial does.
+RunState Run::between() const {
+    if (form_) return form_->consent ? RunState::Consenting : RunState::Answering;
+    if (page_) return RunState::Reading;
+    if (view_.rest) return RunState::Resting;
+    return view_.planned > 0 ? RunState::Between : RunState::Opening;
+}
+
 void Run::prepare(const AttemptPrepared& prepared) {
+    form_.reset();
+    page_.reset();
+    brief_ = prepared.brief;
+    view_.by_hand = brief_.timed_by == protocol::TimedBy::Experimenter;
+    pair_.reset();
     view_.state = RunState::Preparing;
     view_.number = prepared.trial_index + 1;
     view_.condition = prepared.condition;
@@ -117,6 +145,9 @@ void Run::prepare(const AttemptPrepared& prepared) {
 
 void Run::glance(const SessionGlance& glance) {
     view_.built.reset();
+    session_ = glance.state;
+    view_.rest = glance.rest;
+    view_.swaps_to = glance.swaps_to;
     switch (glance.state) {
         case SessionState::Ready:
             view_.state = RunState::Ready;
@@ -128,7 +159,7 @@ void Run::glance(const SessionGlance& glance) {
             view_.state = started_ >= 0.0 ? RunState::Running : RunState::ToStart;
             break;
         case SessionState::BetweenTrials:
-            view_.state = RunState::Between;
+            view_.state = between();
             break;
         case SessionState::Complete:
         case SessionState::Failed:
@@ -156,6 +187,10 @@ void Run::glance(const SessionGlance& glance) {
 void Run::end(const AttemptEnded& ended) {
     const auto place = static_cast<std::size_t>(ended.trial_index);
     if (place >= view_.rows.size()) return;
+    result_.reset();
+    if (brief_.result != protocol::ShownResult::None && ended.outcome != measures::Outcome::Aborted)
+        result_ = {ended.outcome == measures::Outcome::Success,
+                   brief_.result == protocol::ShownResult::Time ? ended.trial_time_s : std::nullopt};
     TrialRow& row = view_.rows[place];
     row.state = rowStateOf(ended);
     row.time_s = ended.trial_time_s;
@@ -173,10 +208,14 @@ void Run::answer(const CommandAnswered& answered) {
         if (view_.state == RunState::Paused) view_.state = RunState::Stopped;
     }
     if (answered.command.kind == CommandKind::Continue) stopped_ = false;
+    if (answered.command.kind == CommandKind::Start && session_ == SessionState::InTrial) startClock();
 }
 
 void Run::finish(const RunOver& over) {
     view_.built.reset();
+    form_.reset();
+    page_.reset();
+    view_.rest.reset();
     view_.state = over.complete ? RunState::Complete : RunState::Incomplete;
     view_.number = 0;
     view_.pauses_after = false;
@@ -201,17 +240,25 @@ void Run::take(std::span<const TickRecord> records) {
     if (!records.empty()) judgeLoop();
 }
 
+void Run::startClock() {
+    started_ = time_;
+    result_.reset();
+    if (view_.state == RunState::ToStart || view_.state == RunState::Preparing) view_.state = RunState::Running;
+}
+
 void Run::watch(const TickRecord& record) {
     if (record.tick == 0 || (last_ && record.tick <= last_->tick)) {  // another attempt
         time_ = 0.0;
         started_ = -1.0;
+        pair_.reset();
         ticks_ = 0;
         view_.loop.missed = 0;
     }
     time_ += record.periods * kTickSeconds;
-    if ((record.status & kEngaged) != 0 && started_ < 0.0) {
-        started_ = time_;
-        if (view_.state == RunState::ToStart || view_.state == RunState::Preparing) view_.state = RunState::Running;
+    if ((record.status & kEngaged) != 0 && started_ < 0.0 && !view_.by_hand) startClock();
+    if (started_ >= 0.0 && brief_.kind == TrialBrief::Kind::Pair) {
+        if (!pair_) pair_.emplace();
+        pair_->follow(record, std::llround(time_ / kTickSeconds));
     }
     view_.trial_s = started_ < 0.0 ? 0.0 : time_ - started_;
     view_.force_N =

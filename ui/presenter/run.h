@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "study/measures/pair_watch.h"
 #include "ui/presenter/session_news.h"
 #include "ui/presenter/trace.h"
 
@@ -12,13 +13,17 @@ namespace passung::presenter {
 
 /// What goes on, as the largest line on the experimenter's screen says it.
 enum class RunState {
-    Idle,       // no session
-    Opening,    // database and study
-    Preparing,  // the next trial's scene is built
-    ToStart,    // the hand is on its way to the start pose
-    Running,    // the trial
-    Between,    // trials
-    Ready,      // waits for Start
+    Idle,        // no session
+    Opening,     // database and study
+    Preparing,   // the next trial's scene is built
+    ToStart,     // the hand is on its way to the start pose
+    Running,     // the trial
+    Between,     // trials
+    Consenting,  // the participant decides on a clause of consent
+    Reading,     // the participant reads instructions
+    Answering,   // the participant fills a questionnaire
+    Resting,
+    Ready,  // waits for Start
     Paused,
     Stopped,  // paused by an emergency stop: motors are off
     Complete,
@@ -56,6 +61,12 @@ struct LoopView {
     bool known = false;
 };
 
+/// What came of a trial, for the participant.
+struct TrialResult {
+    bool success = false;
+    std::optional<double> time_s;  // if that is told as well
+};
+
 struct RunView {
     RunState state = RunState::Idle;
     std::string study, participant;
@@ -64,7 +75,10 @@ struct RunView {
     std::string condition;
     bool pauses_after = false;  // the running trial
     bool can_go_back = false;
-    double trial_s = 0.0;  // since the go
+    bool by_hand = false;            // the experimenter times the running trial
+    std::optional<RestGlance> rest;  // that runs
+    std::string swaps_to;            // device that comes into use now; else empty
+    double trial_s = 0.0;            // since the go
     std::vector<TrialRow> rows;
     std::int64_t rows_changed = 0;  // counts up whenever a row does
     LoopView loop;
@@ -97,6 +111,14 @@ public:
     const std::shared_ptr<const DrawnScene>& scene() const { return scene_; }
     /// The newest tick of the running attempt.
     const std::optional<TickRecord>& last() const { return last_; }
+    /// What the participant is asked or reads now; null: nothing.
+    const std::shared_ptr<const FormRequest>& form() const { return form_; }
+    const std::optional<PageDue>& page() const { return page_; }
+    const TrialBrief& brief() const { return brief_; }
+    /// Of a pair: where it is; nothing before its first interval.
+    const std::optional<measures::PairWatch>& pair() const { return pair_; }
+    /// What the participant may know of the trial that ended last; nothing once the next one begins.
+    const std::optional<TrialResult>& result() const { return result_; }
 
 private:
     void begin(const SessionBegun& begun);
@@ -107,8 +129,17 @@ private:
     void finish(const RunOver& over);
     void watch(const TickRecord& record);
     void judgeLoop();
+    void ask(std::shared_ptr<const FormRequest> form, std::optional<PageDue> page);
+    RunState between() const;
+    void startClock();
 
     RunView view_;
+    session::SessionState session_ = session::SessionState::BetweenTrials;
+    std::shared_ptr<const FormRequest> form_;
+    std::optional<PageDue> page_;
+    TrialBrief brief_;
+    std::optional<measures::PairWatch> pair_;
+    std::optional<TrialResult> result_;
     std::vector<std::string> conditions_;  // names
     std::shared_ptr<const DrawnScene> scene_;
     std::optional<TickRecord> last_;

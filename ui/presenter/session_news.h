@@ -13,6 +13,7 @@
 #include "study/session/command.h"
 #include "study/session/session.h"
 #include "ui/presenter/drawn_scene.h"
+#include "ui/presenter/form.h"
 
 namespace passung::presenter {
 
@@ -24,17 +25,45 @@ struct SessionBegun {
     std::vector<design::PlannedTrial> trials;
 };
 
+/// Clauses of consent, instructions and questionnaires, each until the participant has answered or read it.
+struct FormDue {
+    std::shared_ptr<const FormRequest> form;  // shared_ptr: windows keep it as long as they like
+};
+struct PageDue {
+    std::int64_t number = 0;  // tells it from every other page of the run
+    std::string text;
+    std::string picture;  // file; empty: none
+};
+struct AskedDone {};
+
+/// What a participant has to know of a trial beside its scene.
+struct TrialBrief {
+    enum class Kind { Insertion, Passage, Contour, Placement, Pair };  // as in protocol::Task::form
+    Kind kind = Kind::Insertion;
+    std::string question = {};  // of a pair
+    protocol::TimedBy timed_by = protocol::TimedBy::Program;
+    protocol::ShownResult result = protocol::ShownResult::None;
+};
+
 /// An attempt is about to begin; its scene is built now.
 struct AttemptPrepared {
     std::int64_t trial_index = 0;
     std::string condition;
     std::shared_ptr<const DrawnScene> scene;  // shared_ptr: windows draw it as long as they like
     bool sound = false;                       // there is something to be heard
+    TrialBrief brief = {};
 };
 
 /// Models of that scene's parts are built, which takes long the first time: this share of them is done.
 struct BuildProgress {
     double share = 0.0;
+};
+
+/// Of a rest, told once a second.
+struct RestGlance {
+    std::int64_t seconds = 0;  // that it has to last yet, rounded up
+    protocol::RestEnds ends = protocol::RestEnds::ByTime;
+    friend bool operator==(const RestGlance&, const RestGlance&) = default;
 };
 
 /// How things stand; told whenever something of it has changed.
@@ -43,6 +72,8 @@ struct SessionGlance {
     std::optional<std::size_t> next;  // place in the plan of the running or next trial; none: nothing is left
     std::vector<bool> over;           // by place in the plan
     bool can_go_back = false;
+    std::optional<RestGlance> rest = {};
+    std::string swaps_to = {};  // the device that comes into use now; else empty
     friend bool operator==(const SessionGlance&, const SessionGlance&) = default;
 };
 
@@ -66,7 +97,7 @@ struct RunOver {
     Errors errors;
 };
 
-using News =
-    std::variant<SessionBegun, AttemptPrepared, BuildProgress, SessionGlance, AttemptEnded, CommandAnswered, RunOver>;
+using News = std::variant<SessionBegun, FormDue, PageDue, AskedDone, AttemptPrepared, BuildProgress, SessionGlance,
+                          AttemptEnded, CommandAnswered, RunOver>;
 
 }  // namespace passung::presenter

@@ -41,12 +41,15 @@ App::App(const AppOptions& options)
       records_(desk_, studies_, replay_),
       details_(desk_, studies_),
       run_(desk_),
+      form_(desk_, speech_),
+      guide_(desk_, speech_),
       screen_(desk_, 0),
       mirror_(desk_, kMirrorEvery),
       places_(QString::fromStdString(options.data) + "/windows.ini") {
     look_.setScale(options.text_scale);
     setLanguage(options.language);
     remember();
+    connect(&desk_, &Desk::opened, this, [this] { speech_.speak(desk_.language()); });
     qmlRegisterType<experimenter::TraceItem>("Passung", 1, 0, "TraceItem");
     qmlRegisterType<experimenter::StripItem>("Passung", 1, 0, "StripItem");
     QQmlContext& context = *engine_.rootContext();
@@ -58,6 +61,8 @@ App::App(const AppOptions& options)
     context.setContextProperty("replay", &replay_);
     context.setContextProperty("details", &details_);
     context.setContextProperty("run", &run_);
+    context.setContextProperty("form", &form_);
+    context.setContextProperty("guide", &guide_);
     context.setContextProperty("screenView", &screen_);
     context.setContextProperty("mirrorView", &mirror_);
     const bool software = drawsInSoftware();
@@ -146,6 +151,9 @@ void App::setLanguage(const QString& language) {
     details_.retranslate();
     run_.retranslate();
     screen_.retranslate();
+    if (!desk_.run().view().isRunning()) speech_.speak(language_.toStdString());
+    form_.retranslate();
+    guide_.retranslate();
     emit languageChanged();
 }
 

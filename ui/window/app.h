@@ -9,6 +9,8 @@
 
 #include "ui/window/data_model.h"
 #include "ui/window/desk.h"
+#include "ui/window/form_model.h"
+#include "ui/window/guide.h"
 #include "ui/window/look.h"
 #include "ui/window/places.h"
 #include "ui/window/roster_model.h"
@@ -51,6 +53,7 @@ public:
     StudyModel& details() { return details_; }
     Look& look() { return look_; }
     Screen& screen() { return screen_; }
+    FormModel& form() { return form_; }
     QQuickWindow* experimenter() const { return experimenter_; }
     QQuickWindow* participant() const { return participant_; }
 
@@ -73,6 +76,9 @@ private:
     DataModel records_;
     StudyModel details_;
     RunModel run_;
+    Speech speech_;
+    FormModel form_;
+    Guide guide_;
     Screen screen_, mirror_;
     QString language_, page_;
     QTranslator translator_;

@@ -19,17 +19,34 @@ Desk::Desk(std::string data) : data_(std::move(data)) {
 
 Desk::~Desk() = default;
 
-void Desk::start(const protocol::StudyPlan& plan, app::LiveHand hand) {
+void Desk::start(const protocol::StudyPlan& plan, app::LiveOptions options) {
     live_.reset();
-    hand_ = hand;
+    hand_ = options.hand;
+    language_ = options.language;
     run_.open(plan);
     drawn_ = nullptr;
-    live_ = std::make_unique<app::LiveSession>(
-        plan, app::LiveOptions{
-                  .database = data_ + "/" + plan.name + ".db", .hand = hand, .frames = &frames_, .sound = &sound_});
+    options.frames = &frames_;
+    options.sound = &sound_;
+    live_ = std::make_unique<app::LiveSession>(plan, std::move(options));
     timer_.start();
     emit opened();
     emit happened();
+}
+
+void Desk::tryOut(const protocol::StudyPlan& plan, app::LiveHand hand, const std::string& language) {
+    start(plan, {.database = data_ + "/" + plan.name + ".db", .hand = hand, .try_out = true, .language = language});
+}
+
+void Desk::handIn(const std::string& form, session::FilledForm filled) {
+    if (live_) live_->interview().handIn(form, std::move(filled));
+}
+
+void Desk::pageRead(std::int64_t page, std::int64_t read_ms) {
+    if (live_) live_->interview().pageRead(page, read_ms);
+}
+
+void Desk::goOn() {
+    if (live_) live_->interview().goOn();
 }
 
 void Desk::command(session::Command command) {

@@ -21,7 +21,10 @@ public:
     explicit Desk(std::string data);
     ~Desk() override;
 
-    void start(const protocol::StudyPlan& plan, app::LiveHand hand);
+    /// A session of the study: a new one, or one that goes on.
+    void start(const protocol::StudyPlan& plan, app::LiveOptions options);
+    /// Only the trials, into a database of its own.
+    void tryOut(const protocol::StudyPlan& plan, app::LiveHand hand, const std::string& language);
     void command(session::Command command);
     /// The participant's window shows this from now on; a running trial that nobody sees is paused.
     void setDisplay(presenter::Display display);
@@ -34,6 +37,13 @@ public:
     /// Where the mouse wants the held part; null: nobody moves it by mouse.
     mouse::Pointer* pointer();
     bool byMouse() const { return live_ && hand_ == app::LiveHand::Mouse; }
+    /// That the participant is spoken to in.
+    const std::string& language() const { return language_; }
+
+    // What the participant answers, read and wants.
+    void handIn(const std::string& form, session::FilledForm filled);
+    void pageRead(std::int64_t page, std::int64_t read_ms);
+    void goOn();
 
     /// The pictures of the participant's window.
     app::FrameClock& frames() { return frames_; }
@@ -55,6 +65,7 @@ private:
     std::unique_ptr<Speaker> speaker_;  // once something is to be heard
     std::unique_ptr<app::LiveSession> live_;
     app::LiveHand hand_ = app::LiveHand::Mouse;
+    std::string language_ = "en";
     presenter::Run run_;
     const void* drawn_ = nullptr;  // scene that the windows know
     QTimer timer_;

@@ -37,9 +37,13 @@ QString RunModel::tone() const {
     switch (view().state) {
         case RunState::ToStart:
         case RunState::Running:
+        case RunState::Consenting:
+        case RunState::Reading:
+        case RunState::Answering:
             return QStringLiteral("go");
         case RunState::Ready:
         case RunState::Paused:
+        case RunState::Resting:
             return QStringLiteral("wait");
         case RunState::Stopped:
         case RunState::Failed:

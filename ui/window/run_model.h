@@ -26,6 +26,7 @@ class RunModel : public QObject {
     Q_PROPERTY(bool displayGone READ displayGone NOTIFY changed)   // the participant sees nothing
     Q_PROPERTY(QString sound READ sound NOTIFY measured)           // of this trial; empty: it has none
     Q_PROPERTY(QVariantMap commands READ commands NOTIFY changed)  // by name: why not; empty: possible
+    Q_PROPERTY(bool byHand READ byHand NOTIFY changed)             // the experimenter times the trial
     Q_PROPERTY(QVariantList rows READ rows NOTIFY rowsChanged)
     Q_PROPERTY(int currentRow READ currentRow NOTIFY rowsChanged)
     Q_PROPERTY(double seconds READ seconds NOTIFY measured)
@@ -45,6 +46,7 @@ public:
     QString tone() const;
     QString line() const;
     QString detail() const;
+    bool byHand() const { return view().by_hand && running(); }
     QString study() const { return QString::fromStdString(view().study); }
     QString participant() const { return QString::fromStdString(view().participant); }
     double share() const;

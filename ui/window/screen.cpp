@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "ui/window/words.h"
-
 namespace passung::window {
 
 namespace {
@@ -81,9 +79,6 @@ bool Screen::shown() const {
     const presenter::RunView& run = desk_.run().view();
     return run.state != presenter::RunState::Idle && run.display != presenter::Display::Closed;
 }
-
-QString Screen::line() const { return participantLine(view().screen); }
-QString Screen::hint() const { return participantHint(view().screen, desk_.byMouse()); }
 
 void Screen::takeScene() {
     const auto scene = desk_.run().scene();

@@ -16,8 +16,6 @@ class Screen : public SceneModel {
     Q_PROPERTY(bool fullScreen MEMBER full_screen_ NOTIFY stateChanged)
     Q_PROPERTY(bool drawn READ drawn NOTIFY stateChanged)  // the scene
     Q_PROPERTY(bool byMouse READ byMouse NOTIFY stateChanged)
-    Q_PROPERTY(QString line READ line NOTIFY stateChanged)
-    Q_PROPERTY(QString hint READ hint NOTIFY stateChanged)
     Q_PROPERTY(double share READ share NOTIFY stateChanged)
 
 public:
@@ -30,8 +28,6 @@ public:
     bool shown() const;
     bool drawn() const { return view().scene; }
     bool byMouse() const { return desk_.byMouse(); }
-    QString line() const;
-    QString hint() const;
     double share() const { return view().share; }
 
     Q_INVOKABLE void drag(double right, double down, double height, int buttons, int modifiers);

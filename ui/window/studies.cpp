@@ -76,10 +76,10 @@ QVariantList Studies::cards() const {
     return all;
 }
 
-void Studies::tryOut(int card, bool simulated) {
+void Studies::tryOut(int card, bool simulated, const QString& language) {
     const auto& path = cards_.at(static_cast<std::size_t>(card)).path;
     const auto plan = protocol::readProtocol(path, app::knownDevices(), app::knownMeasures());
-    if (plan) desk_.start(*plan, simulated ? app::LiveHand::Simulated : app::LiveHand::Mouse);
+    if (plan) desk_.tryOut(*plan, simulated ? app::LiveHand::Simulated : app::LiveHand::Mouse, language.toStdString());
 }
 
 }  // namespace passung::window

@@ -26,7 +26,7 @@ public:
     /// Reads all protocols again.
     Q_INVOKABLE void reload();
     /// Runs the study of this card with a pilot at the mouse, or with a simulated participant to look at.
-    Q_INVOKABLE void tryOut(int card, bool simulated);
+    Q_INVOKABLE void tryOut(int card, bool simulated, const QString& language);
     void retranslate() { emit changed(); }
 
     /// The chosen study; null: there is none.

@@ -5,7 +5,6 @@
 namespace passung::window {
 
 using presenter::Display;
-using presenter::ParticipantScreen;
 using presenter::RowState;
 using presenter::RunState;
 using presenter::RunView;
@@ -33,6 +32,14 @@ QString stateLine(const RunView& view) {
             return trial(QT_TRANSLATE_NOOP("words", "Trial %1 of %2 is running"));
         case RunState::Between:
             return said(QT_TRANSLATE_NOOP("words", "Between trials"));
+        case RunState::Consenting:
+            return said(QT_TRANSLATE_NOOP("words", "The participant decides on consent"));
+        case RunState::Reading:
+            return said(QT_TRANSLATE_NOOP("words", "The participant reads instructions"));
+        case RunState::Answering:
+            return said(QT_TRANSLATE_NOOP("words", "The participant answers a questionnaire"));
+        case RunState::Resting:
+            return said(QT_TRANSLATE_NOOP("words", "The participant rests"));
         case RunState::Ready:
             return said(QT_TRANSLATE_NOOP("words", "Ready to start"));
         case RunState::Paused:
@@ -62,7 +69,19 @@ QString stateDetail(const RunView& view) {
         case RunState::ToStart:
         case RunState::Running:
             return QString::fromStdString(view.condition);
+        case RunState::Resting:
+            if (view.rest && view.rest->seconds > 0)
+                return said(QT_TRANSLATE_NOOP("words", "at least %1 s more")).arg(view.rest->seconds);
+            return said(QT_TRANSLATE_NOOP("words", "the participant may go on"));
+        case RunState::Answering:
+        case RunState::Consenting:
+        case RunState::Reading:
+            return {};
         case RunState::Paused:
+            if (!view.swaps_to.empty())
+                return said(QT_TRANSLATE_NOOP("words", "change to the device %1, then continue"))
+                    .arg(QString::fromStdString(view.swaps_to));
+            [[fallthrough]];
         case RunState::Stopped:
         case RunState::Between:
             if (view.number > 0) return said(QT_TRANSLATE_NOOP("words", "next: trial %1")).arg(view.number);
@@ -197,44 +216,6 @@ QString answerLine(const presenter::CommandAnswered& answered) {
             break;
     }
     return said(QT_TRANSLATE_NOOP("words", "Motors are off; the session is paused."));
-}
-
-QString participantLine(ParticipantScreen screen) {
-    switch (screen) {
-        case ParticipantScreen::Welcome:
-            return said(QT_TRANSLATE_NOOP("words", "Welcome"));
-        case ParticipantScreen::Wait:
-            return said(QT_TRANSLATE_NOOP("words", "One moment"));
-        case ParticipantScreen::ToStart:
-            return said(QT_TRANSLATE_NOOP("words", "Move to the start"));
-        case ParticipantScreen::Task:
-            return said(QT_TRANSLATE_NOOP("words", "Bring the part to the ring"));
-        case ParticipantScreen::Pause:
-            return said(QT_TRANSLATE_NOOP("words", "Pause"));
-        case ParticipantScreen::Thanks:
-            break;
-    }
-    return said(QT_TRANSLATE_NOOP("words", "Thank you!"));
-}
-
-QString participantHint(ParticipantScreen screen, bool by_mouse) {
-    switch (screen) {
-        case ParticipantScreen::Welcome:
-            return said(QT_TRANSLATE_NOOP("words", "It begins in a moment."));
-        case ParticipantScreen::ToStart:
-            return said(QT_TRANSLATE_NOOP("words", "Hold the part still where its pale image is."));
-        case ParticipantScreen::Task:
-            if (!by_mouse) return {};
-            return said(QT_TRANSLATE_NOOP(
-                "words", "Drag: move · wheel or Shift + drag: depth · right button or Ctrl + drag: turn"));
-        case ParticipantScreen::Pause:
-            return said(QT_TRANSLATE_NOOP("words", "You may let go. It goes on when the experimenter says so."));
-        case ParticipantScreen::Thanks:
-            return said(QT_TRANSLATE_NOOP("words", "That was all. Please tell the experimenter."));
-        case ParticipantScreen::Wait:
-            break;
-    }
-    return {};
 }
 
 QString soundLine(const std::optional<sound::SoundOutput>& output) {

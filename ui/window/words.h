@@ -3,7 +3,6 @@
 #include <QtCore/QString>
 #include <optional>
 
-#include "ui/presenter/participant.h"
 #include "ui/presenter/run.h"
 #include "ui/sound/sound_feed.h"
 
@@ -19,8 +18,6 @@ QString rowSign(presenter::RowState state);
 QString whyNot(presenter::Why why);
 /// What came of a command.
 QString answerLine(const presenter::CommandAnswered& answered);
-QString participantLine(presenter::ParticipantScreen screen);
-QString participantHint(presenter::ParticipantScreen screen, bool by_mouse);
 QString soundLine(const std::optional<sound::SoundOutput>& output);
 QString phaseWord(const std::string& phase);
 

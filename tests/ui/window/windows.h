@@ -9,7 +9,6 @@
 #include <QtTest/QTest>
 #include <cmath>
 #include <cstdlib>
-#include <functional>
 #include <memory>
 
 #include "tests/support/temp_folder.h"
@@ -69,15 +68,13 @@ protected:
 
     const presenter::Run& run() const { return app_->desk().run(); }
 
-    QQuickItem* item(QQuickWindow* in, const char* name) const {
-        std::function<QQuickItem*(QQuickItem*)> find = [&](QQuickItem* below) -> QQuickItem* {
-            if (below->objectName() == name && below->isVisible()) return below;
-            for (QQuickItem* child : below->childItems())
-                if (QQuickItem* found = find(child)) return found;
-            return nullptr;
-        };
-        return find(in->contentItem());
+    QQuickItem* item(QQuickItem* below, const char* name) const {
+        if (below->objectName() == name && below->isVisible()) return below;
+        for (QQuickItem* child : below->childItems())
+            if (QQuickItem* found = item(child, name)) return found;
+        return nullptr;
     }
+    QQuickItem* item(QQuickWindow* in, const char* name) const { return item(in->contentItem(), name); }
 
     void click(QQuickWindow* in, const char* name) {
         QQuickItem* target = item(in, name);

@@ -1,0 +1,166 @@
+#include "ui/window/guide.h"
+
+#include <QtCore/QCoreApplication>
+
+namespace passung::window {
+
+using Screen = presenter::ParticipantScreen;
+using Kind = presenter::TrialBrief::Kind;
+
+Guide::Guide(Desk& desk, Speech& speech) : desk_(desk), speech_(speech) {
+    connect(&desk_, &Desk::happened, this, &Guide::look);
+    connect(&desk_, &Desk::frame, this, [this] {
+        const auto view = presenter::participantView(desk_.run(), !desk_.byMouse());
+        if (view.screen != view_.screen || view.interval != view_.interval) look();
+    });
+}
+
+void Guide::look() {
+    view_ = presenter::participantView(desk_.run(), !desk_.byMouse());
+    if (view_.screen != Screen::Question) pressed_ = 0;
+    if (const auto& page = desk_.run().page(); page && reading() && page->number != page_) {
+        page_ = page->number;
+        page_clock_.start();
+    }
+    emit changed();
+}
+
+bool Guide::handling() const {
+    return desk_.byMouse() &&
+           (view_.screen == Screen::ToStart || view_.screen == Screen::Task || view_.screen == Screen::Question ||
+            view_.screen == Screen::Idle || view_.screen == Screen::ByHand || view_.screen == Screen::Wait);
+}
+
+QString Guide::taskLine() const {
+    switch (view_.brief.kind) {
+        case Kind::Insertion:
+            return speech_(QT_TRANSLATE_NOOP("participant", "Put the part into the opening"));
+        case Kind::Passage:
+            return speech_(QT_TRANSLATE_NOOP("participant", "Move the part through the passage"));
+        case Kind::Contour:
+            return speech_(QT_TRANSLATE_NOOP("participant", "Follow the line"));
+        case Kind::Placement:
+            return speech_(QT_TRANSLATE_NOOP("participant", "Bring the part to its place"));
+        case Kind::Pair:
+            break;
+    }
+    return view_.interval == 1 ? speech_(QT_TRANSLATE_NOOP("participant", "Feel the part: first"))
+                               : speech_(QT_TRANSLATE_NOOP("participant", "Feel the part: second"));
+}
+
+QString Guide::line() const {
+    switch (view_.screen) {
+        case Screen::Form:
+        case Screen::Page:
+            return {};
+        case Screen::Welcome:
+            return speech_(QT_TRANSLATE_NOOP("participant", "Welcome"));
+        case Screen::Wait:
+            return speech_(QT_TRANSLATE_NOOP("participant", "One moment"));
+        case Screen::ToStart:
+            return speech_(QT_TRANSLATE_NOOP("participant", "Move to the start"));
+        case Screen::Task:
+            return taskLine();
+        case Screen::Question:
+            return QString::fromStdString(view_.brief.question);
+        case Screen::ByHand:
+            return view_.begun ? speech_(QT_TRANSLATE_NOOP("participant", "Go"))
+                               : speech_(QT_TRANSLATE_NOOP("participant", "Take the real part"));
+        case Screen::Idle:
+            return speech_(QT_TRANSLATE_NOOP("participant", "Leave the device at rest"));
+        case Screen::Rest:
+            return speech_(QT_TRANSLATE_NOOP("participant", "Rest"));
+        case Screen::Swap:
+            return speech_(QT_TRANSLATE_NOOP("participant", "Another device"));
+        case Screen::Pause:
+            return speech_(QT_TRANSLATE_NOOP("participant", "Pause"));
+        case Screen::Thanks:
+            break;
+    }
+    return speech_(QT_TRANSLATE_NOOP("participant", "Thank you!"));
+}
+
+QString Guide::hint() const {
+    switch (view_.screen) {
+        case Screen::Welcome:
+            return speech_(QT_TRANSLATE_NOOP("participant", "It begins in a moment."));
+        case Screen::ToStart:
+            return speech_(QT_TRANSLATE_NOOP("participant", "Hold the part still where its pale image is."));
+        case Screen::Task:
+            if (!desk_.byMouse()) return {};
+            if (view_.brief.kind == Kind::Placement)
+                return speech_(QT_TRANSLATE_NOOP("participant",
+                                                 "Drag: move · Shift: depth · Ctrl: turn · space bar: it is there"));
+            return speech_(QT_TRANSLATE_NOOP(
+                "participant", "Drag: move · wheel or Shift + drag: depth · right button or Ctrl + drag: turn"));
+        case Screen::ByHand:
+            if (view_.begun) return speech_(QT_TRANSLATE_NOOP("participant", "The experimenter stops the time."));
+            return speech_(QT_TRANSLATE_NOOP("participant", "The experimenter says when to begin."));
+        case Screen::Idle:
+            return speech_(QT_TRANSLATE_NOOP("participant", "Answer the signals only."));
+        case Screen::Rest:
+            if (restSeconds() > 0 || !view_.rest) return {};
+            if (mayGoOn()) return speech_(QT_TRANSLATE_NOOP("participant", "Go on when you are ready."));
+            return speech_(QT_TRANSLATE_NOOP("participant", "It goes on in a moment."));
+        case Screen::Swap:
+            return speech_(
+                QT_TRANSLATE_NOOP("participant", "The experimenter sets it up. Please keep your hands away from it."));
+        case Screen::Pause:
+            return speech_(
+                QT_TRANSLATE_NOOP("participant", "You may let go. It goes on when the experimenter says so."));
+        case Screen::Thanks:
+            return speech_(QT_TRANSLATE_NOOP("participant", "That was all. Please tell the experimenter."));
+        case Screen::Form:
+        case Screen::Page:
+        case Screen::Wait:
+        case Screen::Question:
+            break;
+    }
+    return {};
+}
+
+QString Guide::result() const {
+    const bool shown = view_.screen == Screen::Wait || view_.screen == Screen::ToStart;
+    if (!view_.result || !shown) return {};
+    const QString how = view_.result->success ? speech_(QT_TRANSLATE_NOOP("participant", "Success"))
+                                              : speech_(QT_TRANSLATE_NOOP("participant", "Not this time"));
+    return view_.result->time_s ? how + QStringLiteral(" · %1 s").arg(speech_.number(*view_.result->time_s, 1)) : how;
+}
+
+QString Guide::pageText() const {
+    const auto& page = desk_.run().page();
+    return page ? QString::fromStdString(page->text).trimmed() : QString();
+}
+
+QUrl Guide::pagePicture() const {
+    const auto& page = desk_.run().page();
+    return page && !page->picture.empty() ? QUrl::fromLocalFile(QString::fromStdString(page->picture)) : QUrl();
+}
+
+bool Guide::mayGoOn() const {
+    return resting() && view_.rest->seconds == 0 && view_.rest->ends == protocol::RestEnds::ByParticipant;
+}
+
+QString Guide::goOnWord() const {
+    return reading() ? speech_(QT_TRANSLATE_NOOP("participant", "Understood"))
+                     : speech_(QT_TRANSLATE_NOOP("participant", "Go on"));
+}
+
+QStringList Guide::answers() const {
+    if (view_.screen != Screen::Question) return {};
+    return {speech_(QT_TRANSLATE_NOOP("participant", "The first")),
+            speech_(QT_TRANSLATE_NOOP("participant", "The second"))};
+}
+
+void Guide::goOn() {
+    if (reading()) desk_.pageRead(page_, page_clock_.elapsed());
+    if (mayGoOn()) desk_.goOn();
+}
+
+void Guide::answer(int interval, bool down) {
+    if (mouse::Pointer* pointer = desk_.pointer()) pointer->press(down ? static_cast<std::uint32_t>(interval) : 0u);
+    if (down) pressed_ = interval;
+    emit changed();
+}
+
+}  // namespace passung::window
