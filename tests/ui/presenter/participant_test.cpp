@@ -33,7 +33,7 @@ protected:
         auto scene = std::make_shared<DrawnScene>();
         scene->parts.resize(1);
         scene->parts[0].mesh = std::make_shared<const ShadedMesh>();
-        run_.take(AttemptPrepared{0, "a", scene, brief});
+        run_.take(AttemptPrepared{0, "a", scene, false, brief});
         run_.take(glance(SessionState::InTrial));
     }
     void tick(int count, bool engaged, std::uint32_t buttons = 0) {

@@ -121,7 +121,7 @@ TEST_F(Rates, OfAHeavyPartInBothWindows) {
     ASSERT_GE(triangles_, kTriangles);
     const auto withoutWindows = [&](const std::string& database) {
         const Spent spent;
-        app::LiveSession session(plan(), {.database = database, .hand = app::LiveHand::Simulated});
+        app::LiveSession session(plan(), {.database = database, .hand = app::LiveHand::Simulated, .try_out = true});
         std::array<loop::ScreenTick, 256> ticks;
         for (bool over = false; !over;) {
             while (session.takeTicks(ticks) > 0) {
@@ -143,7 +143,7 @@ TEST_F(Rates, OfAHeavyPartInBothWindows) {
     for (const bool shadows : {false, true}) {
         open("en", true);
         int pictures = 0, mirrored = 0;
-        app_->desk().start(plan(), app::LiveHand::Simulated);
+        app_->desk().tryOut(plan(), app::LiveHand::Simulated, "en");
         waitFor([&] { return item(app_->participant(), "scene") != nullptr; });
         item(app_->participant(), "scene")->setProperty("shadows", shadows);
         click("page-session");
