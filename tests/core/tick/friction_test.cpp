@@ -192,8 +192,8 @@ std::vector<ContactPoint> tightFit(Random& random, int kind, int count) {
 }
 
 TEST(Friction, HoldsInATightFitOfManyContacts) {
-    // Truth: invariant. However many contacts rub, the motion is finite and no longer than the wanted one, since standing
-    // still is allowed; where a balance is found no contact is entered by more than the problem's tolerance.
+    // Truth: invariant. However many contacts rub, the motion is finite and no longer than the wanted one, since
+    // standing still is allowed; where a balance is found no contact is entered by more than the problem's tolerance.
     Random random(20);
     int settled = 0;
     constexpr int kRuns = 150;
