@@ -37,7 +37,8 @@ TEST(Recorded, LooksAtWhatCountsPerConditionAndNeverMixesKinds) {
         const auto store = fake::openStore(folder / "s.db");
         const auto writer = fake::beginSession(*store, "S001", 8);
         for (int trial = 0; trial < 8; ++trial) require(fake::writeAttempt(*writer, trial, 50));
-        require(writer->invalidateAttempt(session::AttemptId{2}, "the phone rang"));  // trial 1, condition 1
+        require(writer->reorder(
+            {.discounted = {session::AttemptId{2}}, .reason = "the phone rang", .steps = {}}));  // trial 1, condition 1
         require(writer->finishSession(true, 100'000'000'000));
     }
     const auto recorded = require(readRecorded(require(store::StoreReader::open(folder / "s.db"))));
