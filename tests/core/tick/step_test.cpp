@@ -111,8 +111,9 @@ TEST(Step, GodObjectOverlapsFarLessThanPenaltyOnTheSamePath) {
             ASSERT_EQ(out.frame.status & kContactCap, 0u) << "tick " << i;
             limits += (out.frame.status & kIterationLimit) != 0 ? 1 : 0;
         }
-        // The path jumps by 3 mm once: a way that bends too much for one tick.
-        EXPECT_LE(limits, method == model::ContactMethod::GodObject ? 3 : 0);
+        // The path jumps by 3 mm once, and a way round a bend is gone on with in the next tick: now and then, never
+        // for long.
+        EXPECT_LE(limits, kTicks / 500);
     }
     EXPECT_GT(deepest[0], 0.3e-3);
     EXPECT_LT(deepest[1], 0.05 * 0.5e-3 + 1e-6);

@@ -162,7 +162,7 @@ TEST_F(TimedTrial, ASecondaryTaskIsScoredAndScoredAlikeAgain) {
 }
 
 TEST_F(TimedTrial, InstructionsAreLoggedAtTheirMoments) {
-    // Truth: closed form
+    // Truth: closed form. Nobody is there to show them.
     plan_.blocks = {{.name = "first"}, {.name = "second"}};
     plan_.instructions = {{protocol::ShowAt::SessionEnd, "", "thanks", ""},
                           {protocol::ShowAt::SessionStart, "", "welcome", "start.png"},
@@ -176,7 +176,7 @@ TEST_F(TimedTrial, InstructionsAreLoggedAtTheirMoments) {
     ASSERT_TRUE(session_->run());
     std::vector<std::string> shown;
     for (const Event& event : sink_.events)
-        if (event.event == "instruction") shown.push_back(event.payload_json + std::to_string(event.t_ns / kMs));
+        if (event.event == "instruction_not_shown") shown.push_back(event.payload_json + std::to_string(event.t_ns / kMs));
     ASSERT_EQ(shown.size(), 3u);
     EXPECT_NE(shown[0].find("welcome"), std::string::npos);
     EXPECT_NE(shown[0].find("start.png"), std::string::npos);
