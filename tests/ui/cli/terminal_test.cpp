@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <regex>
 #include <thread>
 
 #include "study/store/sqlite.h"
@@ -90,6 +91,15 @@ moment = "after_block"
     Ended run(const std::string& typed, const std::vector<std::string>& arguments) const {
         writeText(folder_ / ".in", typed);
         return runProgram(folder_.path(), arguments);
+    }
+    /// The arguments of a rehearsal in German, for which the questionnaire gets German texts.
+    std::vector<std::string> inGerman() const {
+        const std::string ask = std::regex_replace(readText(folder_ / "ask.toml"),
+                                                   std::regex(R"(\{ en = ("[^"]*") \})"), "{ en = $1, de = $1 }");
+        writeText(folder_ / "ask.toml", std::regex_replace(ask, std::regex(R"(\["en"\])"), R"(["en", "de"])"));
+        auto arguments = rehearse_;
+        arguments.insert(arguments.end(), {"--language", "de"});
+        return arguments;
     }
     std::string query(const std::string& sql) const {
         return store::Database(folder_ / "s.db", store::OpenMode::ReadOnly).text(sql);
@@ -202,8 +212,7 @@ moment = "session_end"
 text = "thanks"
 )";
     writeText(folder_ / "study.toml", study);
-    auto german = rehearse_;
-    german.insert(german.end(), {"--language", "de"});
+    const auto german = inGerman();
     const Ended ended = run("ja\nnein\nx\n\n5\n1\nfine\n\n\n", german);
     ASSERT_EQ(ended.exit_code, 0) << ended.err << ended.out;
     for (const char* shown : {"Dürfen wir die Daten auswerten?", "Willkommen.", "Enter alone goes on", "Danke."})
@@ -228,8 +237,7 @@ TEST_F(TerminalTest, ResumedSessionsKeepTheirLanguage) {
     for (std::size_t at = 0; (at = study.find("text = { en = \"May we", at)) != std::string::npos; at += 12)
         study.insert(at + 9, "de = \"Ja?\", ");
     writeText(folder_ / "study.toml", study);
-    auto german = rehearse_;
-    german.insert(german.end(), {"--language", "de"});
+    const auto german = inGerman();
     EXPECT_EQ(run("ja\nja\n5\n", german).exit_code, 1) << "the terminal ended";
     const Ended resumed = run("5\n1\nfine\n\n\n", {"resume", "s.db", "--answers", "participant"});
     ASSERT_EQ(resumed.exit_code, 0) << resumed.err << resumed.out;
