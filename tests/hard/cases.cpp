@@ -7,9 +7,8 @@
 #include <numbers>
 #include <vector>
 
-#include "core/loop/stability.h"
-#include "devices/simulated/device_dynamics.h"
 #include "tests/hard/case.h"
+#include "tests/hard/device_cases.h"
 #include "tests/hard/figures.h"
 #include "tests/hard/paths.h"
 #include "tests/hard/truth_cases.h"
@@ -134,6 +133,9 @@ SceneSpec pinSolids(SceneSpec spec) {
 }
 
 Drive roundPeg(const SceneSpec& spec, std::uint64_t seed) { return pegPush(spec, seed, 20 * kDegree); }
+Drive pegInHand(const SceneSpec& spec, std::uint64_t seed) {
+    return inHand(*simulated::findPreset("sigma7"), heldPart(spec).X_WP, roundPeg(spec, seed));
+}
 Drive meshPeg(const SceneSpec& spec, std::uint64_t seed) { return roundPeg(roundSolids(spec), seed); }
 Drive shapedPeg(const SceneSpec& spec, std::uint64_t seed) { return pegPush(spec, seed, 1 * kDegree); }
 
@@ -192,14 +194,6 @@ Drive slide(const SceneSpec& spec, std::uint64_t, double depth_mm) {
     };
 }
 
-/// Pressed by 2 mm, leaning a little, and held.
-Drive press(const SceneSpec& spec, std::uint64_t) {
-    Walk walk(heldPart(spec).X_WP);
-    const Pose start = walk.last();
-    walk.to({(rotationFromVector(Vec3(0.02, 0.05, 0.1)) * start.q).normalized(), start.p - Vec3(0, 0, 4e-3)}, 0.02);
-    return walk.drive(Pose{});
-}
-
 /// Slides, and now and then the loop wakes late by 1, 5 and 50 ms: those ticks are missing.
 Drive missTicks(const SceneSpec& spec, std::uint64_t) {
     return [inner = slide(spec, 0, 2.0), late = std::int64_t{0}](std::int64_t tick, const tick::TickOutput*) mutable {
@@ -225,83 +219,7 @@ Drive lie(const SceneSpec& spec, std::uint64_t) {
     };
 }
 
-// ---- a device in the loop -------------------------------------------------------------------------------------------
-
-/// Every preset with a delay of 0 to 3 ticks, at 0.95 times its own border.
-struct Station {
-    const simulated::DeviceParams* preset;
-    int delay;
-};
-
-Station stationOf(std::uint64_t seed) {
-    const auto& presets = simulated::presets();
-    if (seed == 0) return {simulated::findPreset("sigma7"), 0};  // as the scene's file says
-    return {&presets[((seed - 1) / 4) % presets.size()], static_cast<int>((seed - 1) % 4)};
-}
-
-simulated::DeviceParams paramsOf(const Station& station) {
-    simulated::DeviceParams params = *station.preset;
-    params.delay_ticks = station.delay;
-    return params;
-}
-
-void atTheBorder(SceneSpec& spec, std::uint64_t seed) {
-    const simulated::DeviceParams p = paramsOf(stationOf(seed));
-    const loop::SampledWall wall{.mass = p.mass.value,
-                                 .damping = p.damping.value,
-                                 .virtual_damping = p.recommended_damping.value,
-                                 .period = kTickSeconds,
-                                 .delay_ticks = p.delay_ticks};
-    spec.contact.stiffness = 0.95 * stableStiffnessBorder(wall);
-    spec.contact.damping = p.recommended_damping.value;
-    spec.contact.rotational_stiffness = 0.0;
-    spec.contact.rotational_damping = 0.0;
-    spec.limits.max_force = p.max_force.value;
-    spec.limits.max_torque = p.max_torque.value;
-    spec.limits.max_force_rate = p.max_force_rate.value;
-    spec.limits.actuates_torque = p.actuated_degrees == 6;
-}
-
-Drive pressedHandle(const SceneSpec& spec, std::uint64_t seed) {
-    const simulated::DeviceParams params = paramsOf(stationOf(seed));
-    simulated::DeviceDynamics dynamics(params, heldPart(spec).X_WP);
-    dynamics.place(heldPart(spec).X_WP, {{0, 0, -0.1}, Vec3::Zero()});
-    simulated::HandCoupling hand;
-    hand.attached = true;
-    hand.F_D_B.force = Vec3(0, 0, -0.3 * params.max_force.value);
-    return [=](std::int64_t, const tick::TickOutput* last) mutable {
-        if (last != nullptr) {
-            dynamics.command(last->F_D_B);
-            dynamics.advance(hand);
-        }
-        return DeviceReading{dynamics.readPose()};
-    };
-}
-
 // ---- judgements -----------------------------------------------------------------------------------------------------
-
-/// Swing of the handle in the last second above that in the second one, encoder steps excepted [µm]: the largest of
-/// such a step keeps it swinging by some of them.
-Judgement swingGrowth(const Run& run) {
-    const auto swing = [&](std::size_t first) {
-        double low = 1e300, high = -1e300;
-        for (std::size_t i = first; i < first + 1000; ++i) {
-            low = std::min(low, run.ticks[i].device.p.z());
-            high = std::max(high, run.ticks[i].device.p.z());
-        }
-        return high - low;
-    };
-    double quantum = 0.0;
-    for (const simulated::DeviceParams& p : simulated::presets())
-        if (p.max_force.value == run.spec.limits.max_force) quantum = std::max(quantum, p.quantum.value);
-    const double late = swing(run.ticks.size() - 1000);
-    Judgement result{kUm * (late - swing(1000) - 3.0 * quantum)};
-    if (late > 1e-3) result.broken = fmt::format("swings by {:.3g} mm", 1e3 * late);
-    bool touches = false;
-    for (const Tick& t : run.ticks) touches = touches || t.sent.force.z() > 0.0;
-    if (!touches) result.broken = "no contact";
-    return result;
-}
 
 /// The proxy's speed when it leaves the overlap it began with [m/s].
 Judgement kick(const Run& run) {
@@ -320,21 +238,6 @@ Judgement kick(const Run& run) {
     end.ticks.assign(run.ticks.end() - 10, run.ticks.end());
     const double left = deepestOverlap(end);
     if (left > run.spec.contact.tolerance) result.broken = fmt::format("{:.3g} um of overlap stay", kUm * left);
-    return result;
-}
-
-/// Motion of the proxy from the first second on [µm].
-Judgement drift(const Run& run) {
-    Judgement result;
-    const Pose& there = run.ticks[1000].proxy;
-    double gained = 0.0;
-    for (std::size_t i = 1000; i < run.ticks.size(); ++i) {
-        const Tick& t = run.ticks[i];
-        result.value = std::max(result.value, kUm * ((t.proxy.p - there.p).norm() +
-                                                     0.02 * rotationVector(t.proxy.q * there.q.conjugate()).norm()));
-        gained = std::max(gained, run.ticks[1000].energy - t.energy);
-    }
-    if (gained > 1e-9) result.broken = fmt::format("{:.3g} J given out at rest", gained);
     return result;
 }
 
@@ -372,7 +275,9 @@ Judgement insertedOfHuge(const Run& run) {
 
 constexpr unsigned kGods = 0b110;
 constexpr const char* kOverlap = "deepest overlap";
+constexpr const char* kRatio = "deepest overlap per the penalty's on the same path";
 constexpr const char* kCrossed = "poses in which FCL finds the sheet in the tool less the tolerance";
+constexpr double kRatioMark = 0.01;
 constexpr double kPegMark = 2.0, kMeshMark = 10.0,
                  kFieldMark = 20.0;  // µm: of closed-form pegs; the scenes' tolerance_um
 
@@ -389,6 +294,10 @@ std::span<const Case> cases() {
             {"peg_100um", "peg_100um", kOverlap, "um", kPegMark, 1, 20, 2.5, 60, roundPeg, insertedUm, anywhere},
             {"peg_50um", "peg_50um", kOverlap, "um", kPegMark, 1, 20, 2.5, 60, roundPeg, insertedUm, anywhere},
             {"peg_10um", "peg_10um", kOverlap, "um", kPegMark, 1, 20, 2.5, 60, roundPeg, insertedUm, anywhere},
+            {"peg_100um_ratio", "peg_100um", kRatio, "", kRatioMark, 1, 5, 2, 60, pegInHand, overlapPerPenalty,
+             anywhere},
+            {"peg_50um_ratio", "peg_50um", kRatio, "", kRatioMark, 1, 5, 2, 60, pegInHand, overlapPerPenalty, anywhere},
+            {"peg_10um_ratio", "peg_10um", kRatio, "", kRatioMark, 1, 5, 2, 60, pegInHand, overlapPerPenalty, anywhere},
             {"peg_rough", "peg_rough", kOverlap, "um", kPegMark, 1, 20, 2.5, 60, roundPeg, overlapUm, anywhere},
             {"peg_4mm", "peg_4mm", kOverlap, "um", kPegMark, 1, 20, 2.5, 60, roundPeg, insertedUm, anywhere},
             {"peg_mesh", "peg_mesh", kOverlap, "um", kMeshMark, 1, 20, 2.5, 60, meshPeg, insertedUm, anywhere, kGods,
@@ -417,19 +326,15 @@ std::span<const Case> cases() {
              kGods, false, cubeSolid},
             {"mesh_crossing", "mesh_crossing", kOverlap, "um", kFieldMark, 1, 5, 2, 10, rubCube, overlapUm, nullptr,
              kGods, false, cubeSolid},
-            {"border_stiffness", "ball_sigma7", "growth of the handle's swing at 0.95 of the border, delay 0-3", "um",
-             0, 25, 25, 3, 8, pressedHandle, swingGrowth, atTheBorder, 0b111},
             {"missed_ticks", "table", kOverlap, "um", kFieldMark, 1, 1, 2, 20, missTicks, overlapUm},
             {"lying_device", "table", "force above the limit or without a sample", "N", 0, 1, 1, 3, 30, lie,
              forceOfLies},
-            {"rest", "table", "drift of the proxy", "um", 1e-3, 1, 1, 10, 1000, press, drift},
             {"thousand_contacts", "thousand_contacts", kOverlap, "um", kFieldMark, 1, 1, 0.6, 10, push<3, 2, 2>,
              overlapOfMany},
             {"hundred_patches", "hundred_patches", kOverlap, "um", kFieldMark, 1, 1, 0.6, 10, push<3, 2, 2>, overlapUm,
              nullptr, kGods, false, pinSolids},
         };
-        const auto truth = truthCases();
-        all.insert(all.end(), truth.begin(), truth.end());
+        for (const auto& more : {deviceCases(), truthCases()}) all.insert(all.end(), more.begin(), more.end());
         return all;
     }();
     return kCases;

@@ -137,4 +137,19 @@ Judgement insertedUm(const Run& run) {
     return result;
 }
 
+Judgement overlapPerPenalty(const Run& run) {
+    model::SceneSpec spec = run.spec;
+    spec.contact.method = model::ContactMethod::Penalty;
+    const auto again = [&](std::int64_t tick, const tick::TickOutput*) {
+        return run.readings[static_cast<std::size_t>(tick)];
+    };
+    auto penalty = runScene(spec, again, static_cast<std::int64_t>(run.readings.size()));
+    if (!penalty) return {.broken = toString(penalty.errors().front())};
+    penalty->solids = run.solids;
+    const double ours = deepestOverlap(run), theirs = deepestOverlap(*penalty);
+    Judgement result{ours / theirs};
+    if (!(theirs > 0.1e-3)) result.broken = fmt::format("the penalty overlaps by {:.3g} um only", kUm * theirs);
+    return result;
+}
+
 }  // namespace passung::hard

@@ -34,4 +34,7 @@ Judgement overlapUm(const Run& run);
 Judgement crossingCount(const Run& run);
 Judgement insertedUm(const Run& run);  // overlap, and at least 19/20 of the bore's depth reached
 
+/// The deepest overlap per that of the penalty at the same stiffness on the same device path.
+Judgement overlapPerPenalty(const Run& run);
+
 }  // namespace passung::hard
