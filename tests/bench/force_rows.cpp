@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/base/random.h"
 #include "core/tick/obstacle_query.h"
@@ -12,6 +13,7 @@
 #include "study/person/simulated_person.h"
 #include "study/protocol/protocol_reader.h"
 #include "tests/bench/stopwatch.h"
+#include "tests/hard/figures.h"
 #include "ui/app/disk_store.h"
 #include "ui/app/loop_apparatus.h"
 #include "ui/app/run_study.h"
@@ -50,7 +52,9 @@ namespace passung::bench {
 
 namespace {
 
-constexpr double kUs = 1e6, kUm = 1e6;
+constexpr double kUs = 1e6, kUm = 1e6, kOverlapMark = 0.01;
+constexpr double kFineTolerance = 5e-6;
+constexpr const char* kFine = "5 um, both ways";
 constexpr std::int64_t kTicks = 12'000, kFewTicks = 3'000;
 constexpr std::size_t kMostContacts = 200;
 constexpr const char* kParticipant = "P01";
@@ -173,12 +177,25 @@ Row rowOf(const char* method, const std::string& settings, bool ours, std::size_
     return {.group = kForceGroup, .method = method, .settings = settings, .ours = ours, .samples = samples};
 }
 
-Row depthRow(const char* method, const std::string& settings, const std::vector<TickRecord>& records, bool ours) {
-    std::vector<double> depths;
-    for (const TickRecord& record : records)
-        if (record.contacts > 0) depths.push_back(kUm * static_cast<double>(record.proxy_depth_m));
-    Row row = rowOf(method, settings, ours, depths.size());
-    if (!depths.empty()) row.depth_um = summarise(depths);
+/// Both methods on the device path of `records`, as the hard cases run and judge a path.
+Result<Row> overlapRow(const std::string& settings, model::SceneSpec scene, const std::vector<TickRecord>& records) {
+    const hard::Drive drive = [&](std::int64_t tick, const tick::TickOutput*) {
+        return tick::readingOf(records[static_cast<std::size_t>(tick)]);
+    };
+    const auto deepest = [&](model::ContactMethod method) -> Result<double> {
+        scene.contact.method = method;
+        const auto run = hard::runScene(scene, drive, static_cast<std::int64_t>(records.size()));
+        if (!run) return run.errors();
+        return kUm * hard::deepestOverlap(*run);
+    };
+    const auto ours = deepest(model::ContactMethod::GodObject), penalty = deepest(model::ContactMethod::Penalty);
+    if (!ours) return ours.errors();
+    if (!penalty) return penalty.errors();
+    Row row = rowOf(kOverlapMethod, fmt::format("{}; {:.3g} um : {:.4g} um", settings, *ours, *penalty), true,
+                    records.size());
+    row.depth_um = summarise({*ours});
+    row.figure = *penalty > 0.0 ? *ours / *penalty : std::numeric_limits<double>::infinity();
+    row.figure_mark = kOverlapMark;
     return row;
 }
 
@@ -187,7 +204,7 @@ Row depthRow(const char* method, const std::string& settings, const std::vector<
 Result<std::vector<Row>> forceRows(const std::string& protocol, const Extent& extent) {
     std::vector<Row> rows;
     bool wanted = false;
-    for (const char* method : {kQpMethod, kForceMethod, kTickMethod, kDepthMethod, kPenaltyDepthMethod})
+    for (const char* method : {kQpMethod, kForceMethod, kTickMethod, kOverlapMethod})
         wanted = wanted || extent.wanted(kForceGroup, method);
     if (!wanted) return rows;
     const auto plan = protocol::readProtocol(protocol, app::knownDevices(), app::knownMeasures());
@@ -199,8 +216,6 @@ Result<std::vector<Row>> forceRows(const std::string& protocol, const Extent& ex
         if (condition.scene.contact.method != model::ContactMethod::Penalty) continue;
         std::string settings = condition.name;
         if (const auto at = settings.find("penalty/"); at != std::string::npos) settings.erase(at, 8);
-        const auto penalty = perform(*plan, condition, ticks);
-        if (!penalty) return penalty.errors();
         condition.scene.contact.method = model::ContactMethod::GodObject;
         const auto records = perform(*plan, condition, ticks);
         if (!records) return records.errors();
@@ -218,8 +233,15 @@ Result<std::vector<Row>> forceRows(const std::string& protocol, const Extent& ex
         timed(kForceMethod, given(replay.times(true, extent.repetitions)));
         if (replay.queries() == 0) return Error{.message = "no query of the tick was seen: it has another name now"};
         timed(kTickMethod, given(replay.times(false, extent.repetitions)));
-        rows.push_back(depthRow(kDepthMethod, settings, *records, true));
-        rows.push_back(depthRow(kPenaltyDepthMethod, settings, *penalty, false));
+        model::SceneSpec fine = condition.scene;
+        fine.contact.cell = 0.0;
+        fine.contact.tolerance = kFineTolerance;
+        fine.contact.two_way = true;
+        for (const auto& [spec, how] : {std::pair{condition.scene, "as the study has it"}, std::pair{fine, kFine}}) {
+            const auto overlap = overlapRow(settings + ", " + how, spec, *records);
+            if (!overlap) return overlap.errors();
+            rows.push_back(*overlap);
+        }
         if (extent.few_settings) break;
     }
     return rows;

@@ -35,7 +35,6 @@ double falseContacts(const Row& row) { return row.contacts_mean; }
 double memory(const Row& row) { return row.memory_MB; }
 double order(const Row& row) { return row.order; }
 double p999Time(const Row& row) { return row.time_us.p999; }
-double deepest(const Row& row) { return row.depth_um.max; }
 
 bool always(const Row&) { return true; }
 bool isMotion(const Row& row) { return row.method == kQpMethod; }
@@ -100,22 +99,6 @@ Mark orderOf(const std::vector<Row>& rows, const char* method, const char* name,
     });
     Mark mark = figureOf(row != rows.end() ? &*row : nullptr, order, name, limit, "");
     mark.at_least = true;
-    return mark;
-}
-
-/// The overlap of the god object over that of the penalty in the same scene, where it is worst.
-Mark overlapMark(const std::vector<Row>& rows) {
-    Mark mark{.name = "forces: overlap over the penalty's, deepest", .limit = 0.01, .note = "no row counts"};
-    for (const Row& ours : rows) {
-        if (ours.group != kForceGroup || ours.method != kDepthMethod) continue;
-        for (const Row& penalty : rows) {
-            if (penalty.group != kForceGroup || penalty.method != kPenaltyDepthMethod ||
-                penalty.settings != ours.settings || deepest(ours) / deepest(penalty) <= mark.value)
-                continue;
-            mark.value = deepest(ours) / deepest(penalty);
-            mark.note = fmt::format("{:.3g} : {:.4g} um, {}", deepest(ours), deepest(penalty), ours.settings);
-        }
-    }
     return mark;
 }
 
@@ -206,7 +189,6 @@ std::vector<Mark> judge(const std::vector<Row>& rows) {
     force(isForce, medianTime, "forces: tick without field samples, median", 15.0);
     force(isForce, p999Time, "forces: tick without field samples, p99.9", 60.0);
     force(isTick, p999Time, "forces: whole tick, p99.9", 150.0);
-    marks.push_back(overlapMark(rows));
     for (const Row& row : rows) {
         if (std::isnan(row.figure)) continue;
         marks.push_back({.name = row.group + ": " + row.method,

@@ -57,28 +57,35 @@ TEST(BenchMarks, AreMetAtAFiftiethOfTheTime) {
 }
 
 TEST(BenchMarks, JudgeForcesByTheirWorstScene) {
-    // Truth: closed form. Of two scenes the worse one counts; an overlap of 5 um is 1/100 of 500 um, and more of 400.
-    const auto mark = [](double time, double penalty_um, const std::string& name) {
+    // Truth: closed form. Of two scenes the worse one counts; of overlaps each has a mark of its own.
+    const auto judged = [](double time, double overlap) {
         std::vector<Row> rows;
         for (const double share : {0.5, 1.0}) {
             Row tick{.group = kForceGroup, .method = kTickMethod, .settings = std::to_string(share), .ours = true};
             tick.time_us.p999 = share * time;
-            Row ours{.group = kForceGroup, .method = kDepthMethod, .settings = tick.settings, .ours = true};
-            ours.depth_um.max = 5.0;
-            Row penalty{.group = kForceGroup, .method = kPenaltyDepthMethod, .settings = tick.settings};
-            penalty.depth_um.max = penalty_um / share;
-            rows.insert(rows.end(), {tick, ours, penalty});
+            Row part{.group = kForceGroup, .method = kOverlapMethod, .settings = tick.settings, .ours = true};
+            part.figure = share * overlap;
+            part.figure_mark = 0.01;
+            rows.insert(rows.end(), {tick, part});
         }
-        for (const Mark& each : judge(rows))
-            if (each.name == name) return each;
-        return Mark{};
+        return judge(rows);
     };
-    const std::string whole = "forces: whole tick, p99.9", overlap = "forces: overlap over the penalty's, deepest";
-    EXPECT_TRUE(mark(150.0, 500.0, whole).met());
-    EXPECT_FALSE(mark(151.0, 500.0, whole).met());
-    EXPECT_TRUE(mark(150.0, 500.0, overlap).met());
-    EXPECT_NEAR(mark(150.0, 400.0, overlap).value, 0.0125, 1e-12);
-    EXPECT_FALSE(mark(150.0, 400.0, overlap).met());
+    const auto whole = [&](double time) {
+        for (const Mark& each : judged(time, 0.0))
+            if (each.name == "forces: whole tick, p99.9") return each.met();
+        return false;
+    };
+    const auto overlaps = [&](double overlap) {
+        int met = 0;
+        for (const Mark& each : judged(1.0, overlap))
+            met += each.met() && each.name == std::string(kForceGroup) + ": " + kOverlapMethod ? 1 : 0;
+        return met;
+    };
+    EXPECT_TRUE(whole(150.0));
+    EXPECT_FALSE(whole(151.0));
+    EXPECT_EQ(overlaps(0.01), 2);
+    EXPECT_EQ(overlaps(0.011), 1);
+    EXPECT_EQ(overlaps(0.021), 0);
 }
 
 TEST(BenchMarks, DoNotCountASpeedWithoutItsAccuracy) {
