@@ -6,10 +6,11 @@ namespace passung::presenter {
 
 Playback::Playback(std::vector<TickRecord> records, std::shared_ptr<const DrawnScene> scene)
     : records_(std::move(records)), scene_(std::move(scene)) {
-    double time = 0.0;
+    std::int64_t cycles = 0;  // exact, unlike a sum of times
     bool engaged = false;
     for (const TickRecord& record : records_) {
-        if (!times_.empty()) time += record.periods * kTickSeconds;
+        if (!times_.empty()) cycles += record.periods;
+        const double time = static_cast<double>(cycles) * kTickSeconds;
         times_.push_back(time);
         if (!engaged && (record.status & kEngaged) != 0) {
             engaged = true;
