@@ -108,7 +108,7 @@ ColumnLayout {
                     id: trial
                     required property var modelData
                     width: trials.width
-                    height: look.scale * 42
+                    height: Math.max(look.scale * 42, words.height + 10)
                     radius: 6
                     color: modelData.tone === "go" ? look.raised : "transparent"
                     readonly property color tint: modelData.tone === "good" ? look.good : modelData.tone === "bad" ? look.bad : modelData.tone === "wait" ? look.care : modelData.tone === "go" ? look.accent : look.dim
@@ -134,12 +134,14 @@ ColumnLayout {
                         font.pixelSize: look.scale * 15
                     }
                     Column {
+                        id: words
                         x: 66
                         width: trial.width - x - time.width - 12
                         anchors.verticalCenter: parent.verticalCenter
                         Say {
                             width: parent.width
                             text: trial.modelData.condition
+                            wrapMode: Text.Wrap
                             font.pixelSize: look.scale * 13
                         }
                         Say {
