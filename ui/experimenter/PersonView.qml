@@ -202,7 +202,7 @@ Item {
             kind: "main"
             text: qsTr("Resume the session")
             why: view.there ? view.who.whyNotResume : ""
-            onClicked: if (roster.start(true))
+            onClicked: if (roster.start(true, app.language))
                 view.begun()
         }
         ActionButton {
@@ -212,7 +212,7 @@ Item {
             kind: tall ? "main" : "plain"
             text: view.there && view.who.canResume ? qsTr("Start a new session instead") : qsTr("Start the session")
             why: view.there ? view.who.whyNotStart : ""
-            onClicked: if (roster.start(false))
+            onClicked: if (roster.start(false, app.language))
                 view.begun()
         }
         ActionButton {

@@ -1,8 +1,10 @@
 #include "ui/window/roster_model.h"
 
 #include <QtCore/QCoreApplication>
+#include <algorithm>
 #include <filesystem>
 
+#include "study/protocol/language.h"
 #include "study/protocol/protocol_reader.h"
 #include "ui/app/run_study.h"
 #include "ui/window/roster_words.h"
@@ -169,11 +171,8 @@ QVariantMap RosterModel::person() const {
     QVariantList sessions;
     for (const auto& session : person->sessions) sessions.append(sessionMap(session));
     map["sessions"] = sessions;
-    const QString nobody =
-        begin ? QString()
-              : said(QT_TRANSLATE_NOOP("roster", "This version runs try-outs only: no sessions with people."));
-    map["whyNotStart"] = begin ? whyNot(presenter::whyNotStart(*roster_, *person, sessionRuns())) : nobody;
-    map["whyNotResume"] = begin ? whyNot(presenter::whyNotResume(*person, sessionRuns())) : nobody;
+    map["whyNotStart"] = whyNot(presenter::whyNotStart(*roster_, *person, sessionRuns()));
+    map["whyNotResume"] = whyNot(presenter::whyNotResume(*person, sessionRuns()));
     map["canResume"] = person->resumable() != nullptr;
     return map;
 }
@@ -222,13 +221,29 @@ void RosterModel::enrol(const QString& code, bool pilot) {
         said(QT_TRANSLATE_NOOP("roster", "%1 is enrolled.")).arg(code));
 }
 
-bool RosterModel::start(bool resume) {
+bool RosterModel::start(bool resume, const QString& language) {
     const RosterPerson* person = person_();
-    if (person == nullptr || studies_.card() == nullptr || !begin) return false;
+    if (person == nullptr || studies_.card() == nullptr) return false;
     const PersonWhy why = resume ? presenter::whyNotResume(*person, sessionRuns())
                                  : presenter::whyNotStart(*roster_, *person, sessionRuns());
     if (why != PersonWhy::Possible) return false;
-    begin({studies_.card()->path, studies_.database(), person->code, by(), resume ? person->resumable()->id : ""});
+    const auto plan = protocol::readProtocol(studies_.card()->path, app::knownDevices(), app::knownMeasures());
+    if (!plan) {
+        tell(plan.errors(), {});
+        emit changed();
+        return false;
+    }
+    app::LiveOptions options;
+    options.database = studies_.database();
+    options.participant = person->code;
+    options.kind = person->kind;
+    if (resume) options.resume = person->resumable()->id;
+    const auto languages = protocol::languagesOf(*plan);
+    const bool spoken = std::find(languages.begin(), languages.end(), language.toStdString()) != languages.end();
+    options.language = spoken ? language.toStdString() : languages.front();
+    options.experimenter = by();
+    options.waits = true;
+    desk_.start(*plan, std::move(options));
     return true;
 }
 

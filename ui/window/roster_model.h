@@ -16,15 +16,6 @@
 
 namespace passung::window {
 
-/// A real session that is asked for.
-struct SessionAsked {
-    std::string study;  // protocol file
-    std::string database;
-    std::string participant;
-    std::string experimenter;
-    std::string resumes;  // id of the session to go on with; empty: a new one
-};
-
 /// Who takes part in the chosen study, for QML. The database is read and written in a thread of its own.
 class RosterModel : public QObject {
     Q_OBJECT
@@ -45,9 +36,6 @@ class RosterModel : public QObject {
 public:
     RosterModel(Desk& desk, Studies& studies);
 
-    /// Who begins a session when it is asked for.
-    std::function<void(const SessionAsked&)> begin;
-
     bool busy() const { return worker_.busy(); }
     bool known() const { return roster_.has_value(); }
     QString database() const;
@@ -67,8 +55,9 @@ public:
     Q_INVOKABLE QString proposedCode(bool pilot) const;
     Q_INVOKABLE QString whyNotEnrol(const QString& code, bool pilot) const;
     Q_INVOKABLE void enrol(const QString& code, bool pilot);
-    /// False: it may not begin now.
-    Q_INVOKABLE bool start(bool resume);
+    /// Begins the selected participant's next session, or goes on with their last; it waits for Start. False: it may
+    /// not be now. `language`: that they are spoken to in, where the study's texts have it.
+    Q_INVOKABLE bool start(bool resume, const QString& language);
     /// `decision`: "yes", "no", "withdrawn", as the person said or signed.
     Q_INVOKABLE void decide(int clause, const QString& decision);
     Q_INVOKABLE QString whyNotReadmit(const QString& reason) const;

@@ -31,14 +31,7 @@ protected:
 
     void SetUp() override {
         Windows::SetUp();
-        app_->experimenter()->requestActivate();
-        waitFor([&] { return app_->experimenter()->isActive(); });
-    }
-
-    /// Lists make their lines with the next picture.
-    void click(const char* name) {
-        waitFor([&] { return item(app_->experimenter(), name) != nullptr; });
-        Windows::click(name);
+        activate(app_->experimenter());
     }
 
     static constexpr const char* kConsent = R"(
@@ -48,7 +41,7 @@ text.en = "You take part."
 text.de = "Sie nehmen teil."
 )";
 
-    std::string database() const { return app::studyDatabase(folder_ / "data", "small"); }
+    std::string database() const { return app::studyDatabase(data_, "small"); }
 
     store::StoreReader reader() const {
         auto opened = store::StoreReader::open(database());
@@ -68,17 +61,6 @@ text.de = "Sie nehmen teil."
         options.backup = false;
         const auto end = app::runStudy(*plan, options, {});
         ASSERT_TRUE(end) << toString(end.errors().front());
-    }
-
-    void type(const char* into, const char* text) {
-        click(into);
-        QTest::keyClick(app_->experimenter(), Qt::Key_A, Qt::ControlModifier);
-        for (const char* c = text; *c != 0; ++c) QTest::keyClick(app_->experimenter(), *c);
-    }
-
-    /// Waits for the database to be read or written.
-    void settle() {
-        waitFor([&] { return !app_->roster().busy() && !app_->records().busy(); });
     }
 
     std::string textOf(const char* name) const {
@@ -161,6 +143,39 @@ TEST_F(Pages, SomebodyIsEnrolledOnceConsentsIsExcludedReadmittedAndErased) {
     shot("participants_de_light");
 }
 
+TEST_F(Pages, ASessionIsBegunBrokenOffAndGoneOnWith) {
+    // Truth: invariant. What the page begins is what the database holds.
+    pressKey(Qt::Key_2, Qt::ControlModifier);
+    settle();
+    type("experimenter", "AB");
+    click("enrol");
+    settle();
+    click("consent-0-yes");
+    settle();
+    click("startSession");
+    waitFor(presenter::RunState::Ready);
+    EXPECT_NE(item(app_->experimenter(), "stateLine"), nullptr) << "the page of the session is shown";
+    app_->desk().command({.kind = session::CommandKind::Start});
+    waitFor([&] { return run().view().state == presenter::RunState::ToStart; });
+    app_->desk().command({.kind = session::CommandKind::Abort});
+    waitFor(presenter::RunState::Incomplete);
+    click("page-participants");
+    settle();
+    EXPECT_TRUE(enabled("resume"));
+    shot("participants_broken_off");
+    const auto first = reader().sessions();
+    ASSERT_TRUE(first && first->size() == 1);
+    EXPECT_EQ((*first)[0].participant_id, "P001");
+    EXPECT_EQ((*first)[0].kind, "real");
+    EXPECT_EQ((*first)[0].experimenter, "AB");
+    click("resume");
+    waitFor([&] { return run().view().number > 0 || !run().view().isRunning(); });
+    EXPECT_TRUE(run().view().isRunning()) << run().view().failure;
+    const auto second = reader().sessions();
+    ASSERT_TRUE(second && second->size() == 1) << "it is the same session";
+    EXPECT_EQ((*second)[0].segments, 2);
+}
+
 /// The checksums of an export's files.
 std::string sumsOf(const std::string& folder) {
     std::ifstream file(folder + "/SHA256SUMS");
@@ -225,7 +240,7 @@ TEST_F(Pages, AnAttemptIsShownOnceMoreWithItsForceAndItsTime) {
     ASSERT_NE(slider, nullptr);
     click("time");  // the middle
     EXPECT_NEAR(app_->replay().time(), 0.5 * app_->replay().length(), 0.05 * app_->replay().length());
-    app_->replay().seek(1e-3 * static_cast<double>(at));
+    app_->replay().seek(static_cast<double>(at) * kTickSeconds);
     EXPECT_NEAR(app_->replay().force(), static_cast<double>(force), 1e-6);
     const QQuickItem* scene = item(app_->experimenter(), "replayScene");
     ASSERT_NE(scene, nullptr);

@@ -44,7 +44,7 @@ protected:
     void open(const char* language, bool dark) {
         app_.reset();
         app_ = std::make_unique<window::App>(
-            window::AppOptions{.protocols = protocols_, .data = folder_ / "data", .language = language, .dark = dark});
+            window::AppOptions{.protocols = protocols_, .data = data_, .language = language, .dark = dark});
         waitFor([&] { return app_->experimenter()->isExposed(); });
     }
 
@@ -76,13 +76,40 @@ protected:
     }
     QQuickItem* item(QQuickWindow* in, const char* name) const { return item(in->contentItem(), name); }
 
+    /// Puts everything where the next picture would have it.
+    static void layOut(QQuickItem* below) {
+        below->ensurePolished();
+        for (QQuickItem* child : below->childItems()) layOut(child);
+    }
+
     void click(QQuickWindow* in, const char* name) {
         QQuickItem* target = item(in, name);
         ASSERT_NE(target, nullptr) << name;
+        layOut(in->contentItem());
         const QPointF centre = target->mapToScene({target->width() / 2, target->height() / 2});
         QTest::mouseClick(in, Qt::LeftButton, {}, centre.toPoint());
     }
-    void click(const char* name) { click(app_->experimenter(), name); }
+    /// Lists make their lines with the next picture.
+    void click(const char* name) {
+        waitFor([&] { return item(app_->experimenter(), name) != nullptr; });
+        click(app_->experimenter(), name);
+    }
+
+    void activate(QQuickWindow* window) {
+        window->requestActivate();
+        waitFor([&] { return window->isExposed() && window->isActive(); });
+    }
+
+    void type(const char* into, const char* text) {
+        click(into);
+        QTest::keyClick(app_->experimenter(), Qt::Key_A, Qt::ControlModifier);
+        for (const char* c = text; *c != 0; ++c) QTest::keyClick(app_->experimenter(), *c);
+    }
+
+    /// Waits for the database to be read or written.
+    void settle() {
+        waitFor([&] { return !app_->roster().busy() && !app_->records().busy(); });
+    }
 
     /// Drags by `step` again and again; a trial that ends meanwhile takes the part back to its start.
     template <class Condition>
@@ -109,6 +136,7 @@ protected:
 
     TempFolder folder_;
     std::string protocols_ = PASSUNG_SOURCE_DIR "/protocols";  // of the list of studies
+    std::string data_ = folder_ / "data";
     std::unique_ptr<window::App> app_;
 };
 

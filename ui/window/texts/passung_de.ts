@@ -1166,10 +1166,6 @@
         <source>Even with multiples of %1 participants; %2 are planned.</source>
         <translation>Ausgewogen bei Vielfachen von %1 Versuchspersonen; geplant sind %2.</translation>
     </message>
-    <message>
-        <source>This version runs try-outs only: no sessions with people.</source>
-        <translation>Diese Version führt nur Proben durch, keine Sitzungen mit Personen.</translation>
-    </message>
 </context>
 <context>
     <name>stages</name>
@@ -1513,15 +1509,15 @@
     </message>
     <message>
         <source>Welcome</source>
-        <translation type="unfinished">Willkommen</translation>
+        <translation>Willkommen</translation>
     </message>
     <message>
         <source>One moment</source>
-        <translation type="unfinished">Einen Moment</translation>
+        <translation>Einen Moment</translation>
     </message>
     <message>
         <source>Move to the start</source>
-        <translation type="unfinished">Zum Start bewegen</translation>
+        <translation>Zum Start bewegen</translation>
     </message>
     <message>
         <source>Go</source>
@@ -1545,19 +1541,19 @@
     </message>
     <message>
         <source>Pause</source>
-        <translation type="unfinished">Pause</translation>
+        <translation>Pause</translation>
     </message>
     <message>
         <source>Thank you!</source>
-        <translation type="unfinished">Vielen Dank!</translation>
+        <translation>Vielen Dank!</translation>
     </message>
     <message>
         <source>It begins in a moment.</source>
-        <translation type="unfinished">Gleich geht es los.</translation>
+        <translation>Gleich geht es los.</translation>
     </message>
     <message>
         <source>Hold the part still where its pale image is.</source>
-        <translation type="unfinished">Halten Sie das Teil ruhig dort, wo sein blasses Bild ist.</translation>
+        <translation>Halten Sie das Teil ruhig dort, wo sein blasses Bild ist.</translation>
     </message>
     <message>
         <source>Drag: move · Shift: depth · Ctrl: turn · space bar: it is there</source>
@@ -1565,7 +1561,7 @@
     </message>
     <message>
         <source>Drag: move · wheel or Shift + drag: depth · right button or Ctrl + drag: turn</source>
-        <translation type="unfinished">Ziehen: bewegen · Rad oder Umschalt + Ziehen: Tiefe · rechte Taste oder Strg + Ziehen: drehen</translation>
+        <translation>Ziehen: bewegen · Rad oder Umschalt + Ziehen: Tiefe · rechte Taste oder Strg + Ziehen: drehen</translation>
     </message>
     <message>
         <source>The experimenter stops the time.</source>
@@ -1593,11 +1589,11 @@
     </message>
     <message>
         <source>You may let go. It goes on when the experimenter says so.</source>
-        <translation type="unfinished">Sie dürfen loslassen. Es geht weiter, wenn die Versuchsleitung es sagt.</translation>
+        <translation>Sie dürfen loslassen. Es geht weiter, wenn die Versuchsleitung es sagt.</translation>
     </message>
     <message>
         <source>That was all. Please tell the experimenter.</source>
-        <translation type="unfinished">Das war alles. Bitte sagen Sie der Versuchsleitung Bescheid.</translation>
+        <translation>Das war alles. Bitte sagen Sie der Versuchsleitung Bescheid.</translation>
     </message>
     <message>
         <source>Not this time</source>
