@@ -17,6 +17,27 @@ target_include_directories(passung_flags INTERFACE
   $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/passung>)
 target_compile_features(passung_flags INTERFACE cxx_std_20)
 
+# With PASSUNG_PRECOMPILE what most files include is parsed once, for rooms and for tests; builds without it show that
+# each file still includes what it uses. Code with Qt is compiled otherwise (-fPIC) and cannot share what was parsed.
+set(PASSUNG_COMMON_HEADERS <Eigen/Geometry> <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory>
+  <optional> <set> <span> <string> <string_view> <variant> <vector>)
+
+# passung_precompile_headers(passung_room_headers LINK passung_flags HEADERS <vector>): a target that parses them.
+function(passung_precompile_headers target)
+  cmake_parse_arguments(PCH "" "" "LINK;HEADERS" ${ARGN})
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/${target}.cpp CONTENT "")
+  add_library(${target} STATIC ${PROJECT_BINARY_DIR}/${target}.cpp)
+  target_link_libraries(${target} PRIVATE ${PCH_LINK})
+  target_precompile_headers(${target} PRIVATE ${PCH_HEADERS})
+endfunction()
+
+# passung_reuse_headers(TARGET passung_room_headers "what TARGET links")
+function(passung_reuse_headers target headers links)
+  if(PASSUNG_PRECOMPILE AND NOT links MATCHES "Qt6::|passung::ui_window")
+    target_precompile_headers(${target} REUSE_FROM ${headers})
+  endif()
+endfunction()
+
 function(passung_room room)
   cmake_parse_arguments(ROOM "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
   string(REPLACE "/" "_" name ${room})
@@ -24,4 +45,5 @@ function(passung_room room)
   add_library(passung::${name} ALIAS passung_${name})
   set_target_properties(passung_${name} PROPERTIES EXPORT_NAME ${name})
   target_link_libraries(passung_${name} PUBLIC passung_flags ${ROOM_LINK} PRIVATE ${ROOM_PRIVATE_LINK})
+  passung_reuse_headers(passung_${name} passung_room_headers "${ROOM_LINK};${ROOM_PRIVATE_LINK}")
 endfunction()
