@@ -57,4 +57,19 @@ std::vector<std::string> conditionWarnings(std::span<const Condition> conditions
     return warnings;
 }
 
+std::vector<std::string> blockWarnings(const StudyPlan& plan) {
+    std::vector<std::string> warnings;
+    for (std::size_t i = 0; i < plan.blocks.size(); ++i) {
+        const Block& block = plan.blocks[i];
+        const bool governed = std::any_of(plan.staircases.begin(), plan.staircases.end(),
+                                          [i](const Staircase& staircase) { return staircase.block == i; });
+        if (block.phase != Phase::Main || block.on_invalid != Repeat::Never || governed) continue;
+        warnings.push_back(
+            fmt::format("block.on_invalid = \"never\": after one attempt that does not count its participant cannot "
+                        "complete the session; block: {}",
+                        block.name));
+    }
+    return warnings;
+}
+
 }  // namespace passung::protocol

@@ -89,6 +89,7 @@ public:
         tidy(errors_);
         if (errors_.empty()) {
             plan_.warnings = conditionWarnings(std::span(plan_.conditions).first(plannedConditions(plan_)));
+            for (std::string& warning : blockWarnings(plan_)) plan_.warnings.push_back(std::move(warning));
             plan_.expanded_json = expandedJson(plan_);
         }
         return {std::move(plan_), std::move(errors_)};

@@ -225,6 +225,20 @@ TEST(ProtocolReader, WarnsOfPenaltiesThatNoStiffnessLimits) {
     EXPECT_TRUE(god->warnings.empty()) << "the god object does not use the variant";
 }
 
+TEST(ProtocolReader, WarnsOfMainBlocksThatDoNotRepeatWhatDoesNotCount) {
+    // Truth: invariant: a whole session needs an attempt that counts at every main trial, and at none of practice.
+    const std::string text = kHead + kScene + kTask + kFactors + kBlock;
+    EXPECT_EQ(read(text)->blocks[0].on_invalid, Repeat::AtBlockEnd) << "unless the protocol says otherwise";
+    const auto never = read(text + "on_invalid = \"never\"\n");
+    ASSERT_TRUE(never);
+    ASSERT_EQ(never->warnings.size(), 1u);
+    EXPECT_TRUE(never->warnings[0].starts_with("block.on_invalid = \"never\"")) << never->warnings[0];
+    EXPECT_TRUE(never->warnings[0].ends_with("block: main")) << never->warnings[0];
+    const auto practice = read(text + "[[block]]\nname = \"warm_up\"\nphase = \"practice\"\non_invalid = \"never\"\n");
+    ASSERT_TRUE(practice);
+    EXPECT_TRUE(practice->warnings.empty());
+}
+
 TEST(ProtocolReader, WarnsOfFrictionThatThePenaltyDoesNotRender) {
     // Truth: invariant: a key without effect is told, and only where it has none.
     std::string rough = kScene;
