@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
+#include <map>
 #include <utility>
 
 #include "core/base/random.h"
+#include "study/protocol/json.h"
 #include "study/questionnaire/presented_order.h"
 #include "study/session/questionnaire_moments.h"
 
@@ -32,20 +35,43 @@ QuestionnaireDesk::QuestionnaireDesk(const protocol::StudyPlan& plan, DeskKey ke
                                      TrialSink& sink)
     : plan_(plan), key_(std::move(key)), source_(source), sink_(sink) {}
 
-void QuestionnaireDesk::remember(FinishedTrial trial) {
-    finished_.push_back(std::move(trial));
-    answered_.clear();
+void QuestionnaireDesk::remember(FinishedTrial trial) { finished_.push_back(std::move(trial)); }
+
+void QuestionnaireDesk::forget(const design::PlannedTrial& trial) {
+    std::erase_if(finished_, [&](const FinishedTrial& f) { return f.trial.trial_index == trial.trial_index; });
+    for (const std::string& id : formsAbout(trial)) {
+        answered_.erase(id);
+        if (id != shown_) continue;
+        shown_.clear();
+        source_->withdraw();
+    }
 }
 
-void QuestionnaireDesk::resume(std::vector<FinishedTrial> finished, std::vector<std::string> answered) {
+void QuestionnaireDesk::resume(std::vector<FinishedTrial> finished, std::span<const design::PlannedTrial> to_do,
+                               const std::vector<StoredForm>& forms) {
     finished_ = std::move(finished);
-    answered_ = std::move(answered);
+    std::map<std::string, std::int64_t> begun_ns;  // the newest trial of those that a form is about
+    for (const FinishedTrial& trial : finished_)
+        for (const std::string& id : formsAbout(trial.trial)) begun_ns[id] = std::max(begun_ns[id], trial.begun_ns);
+    for (const design::PlannedTrial& trial : to_do)
+        for (const std::string& id : formsAbout(trial)) begun_ns[id] = std::numeric_limits<std::int64_t>::max();
+    for (const StoredForm& form : forms) {
+        const auto begun = begun_ns.find(form.id);
+        if (begun == begun_ns.end() || form.t_ns > begun->second) answered_.insert(form.id);
+    }
+}
+
+std::set<std::string> QuestionnaireDesk::formsAbout(const design::PlannedTrial& trial) const {
+    std::set<std::string> ids;
+    for (const Occasion& occasion : occasionsAbout(plan_, trial))
+        ids.insert(formId(occasion, textOf(occasion, plan_.questionnaires[occasion.questionnaire], key_.ordinal)));
+    return ids;
 }
 
 std::optional<Form> QuestionnaireDesk::nextDue(std::span<const design::PlannedTrial> to_do) const {
     for (const Occasion& due : occasionsBetween(plan_, finished_.empty() ? nullptr : &finished_.back().trial, to_do)) {
         Form form = formOf(due);
-        if (std::find(answered_.begin(), answered_.end(), form.id()) == answered_.end()) return form;
+        if (answered_.count(form.id()) == 0) return form;
     }
     return std::nullopt;
 }
@@ -55,13 +81,27 @@ Result<bool> QuestionnaireDesk::ask(std::span<const design::PlannedTrial> to_do,
     if (!form) return false;
     if (source_ == nullptr || form->planned.definition.items.empty())
         return faultOf(*form, source_ == nullptr ? "nobody is there to answer it" : "its file has not been read");
+    noteShown(*form, session_ns);
     auto filled = source_->fill(*form);
     if (!filled) return true;
     if (!key_.timing_measured)
         for (ItemAnswer& answer : filled->answers) answer.response_ms.reset();
     if (const auto stored = store(*form, *filled, session_ns); !stored) return stored.errors();
-    answered_.push_back(form->id());
+    answered_.insert(form->id());
+    shown_.clear();
     return isDue(to_do);
+}
+
+/// The first time that it is.
+void QuestionnaireDesk::noteShown(const Form& form, std::int64_t session_ns) {
+    if (std::exchange(shown_, form.id()) == form.id()) return;
+    sink_.appendEvent(
+        {.attempt = {},
+         .t_ns = session_ns,
+         .source = "session",
+         .event = "questionnaire_shown",
+         .payload_json =
+             protocol::JsonObject().text("questionnaire", form.planned.definition.key).text("form", form.id()).str()});
 }
 
 Form QuestionnaireDesk::formOf(const Occasion& occasion) const {

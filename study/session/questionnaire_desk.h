@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,12 +39,18 @@ public:
     /// A trial is over; forms may ask about it from now on.
     void remember(FinishedTrial trial);
 
-    /// Goes on where an earlier run of the session was cut off: its trials that are over, and the ids of the forms that
-    /// were filled since the last of them.
-    void resume(std::vector<FinishedTrial> finished, std::vector<std::string> answered);
+    /// The trial is to be done again: what was answered about it will be asked again afterwards.
+    void forget(const design::PlannedTrial& trial);
+
+    /// Goes on where an earlier run of the session was cut off: its trials that are over, those that are not, and the
+    /// forms that were filled. A form about a trial that was begun again since then does not count.
+    void resume(std::vector<FinishedTrial> finished, std::span<const design::PlannedTrial> to_do,
+                const std::vector<StoredForm>& forms);
 
 private:
     std::optional<Form> nextDue(std::span<const design::PlannedTrial> to_do) const;
+    std::set<std::string> formsAbout(const design::PlannedTrial& trial) const;  // ids
+    void noteShown(const Form& form, std::int64_t session_ns);
     Form formOf(const Occasion& occasion) const;
     Result<Done> store(const Form& form, const FilledForm& filled, std::int64_t session_ns);
 
@@ -52,7 +59,8 @@ private:
     QuestionnaireSource* source_;
     TrialSink& sink_;
     std::vector<FinishedTrial> finished_;
-    std::vector<std::string> answered_;  // ids of the forms that are stored since
+    std::set<std::string> answered_;  // ids of the forms that are stored and count
+    std::string shown_;               // id of the form that is shown; empty: none
 };
 
 }  // namespace passung::session

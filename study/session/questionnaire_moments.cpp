@@ -28,21 +28,39 @@ bool isOfBlock(const protocol::PlannedQuestionnaire& planned, const design::Plan
     return planned.block == trial.block;
 }
 
+/// After `trial` and what ends with it. Nothing of a moment before, or of another block.
+std::optional<Occasion> occasionAfter(const protocol::PlannedQuestionnaire& planned,
+                                      const design::PlannedTrial& trial) {
+    if (planned.moment == Moment::SessionEnd) return Occasion{};
+    if (!isOfBlock(planned, trial)) return std::nullopt;
+    switch (planned.moment) {
+        case Moment::AfterTrial:
+            return Occasion{0, trial.block_index, trial.trial_index, trial.condition};
+        case Moment::AfterCondition:
+            return Occasion{0, trial.block_index, {}, trial.condition};
+        case Moment::AfterBlock:
+            return Occasion{0, trial.block_index, {}, {}};
+        case Moment::SessionEnd:
+        case Moment::SessionStart:
+        case Moment::BeforeBlock:
+            break;
+    }
+    return std::nullopt;
+}
+
 /// Nothing if the moment is not now.
 std::optional<Occasion> occasionOf(const protocol::PlannedQuestionnaire& planned, const design::PlannedTrial* before,
                                    Trials to_do) {
     const design::PlannedTrial* after = to_do.empty() ? nullptr : &to_do.front();
-    const bool after_block = before != nullptr && isOfBlock(planned, *before);
     switch (planned.moment) {
         case Moment::AfterTrial:
-            if (after_block) return Occasion{0, before->block_index, before->trial_index, before->condition};
+            if (before != nullptr) return occasionAfter(planned, *before);
             break;
         case Moment::AfterCondition:
-            if (after_block && endsCondition(*before, to_do))
-                return Occasion{0, before->block_index, {}, before->condition};
+            if (before != nullptr && endsCondition(*before, to_do)) return occasionAfter(planned, *before);
             break;
         case Moment::AfterBlock:
-            if (after_block && endsBlock(*before, to_do)) return Occasion{0, before->block_index, {}, {}};
+            if (before != nullptr && endsBlock(*before, to_do)) return occasionAfter(planned, *before);
             break;
         case Moment::SessionEnd:
             if (after == nullptr) return Occasion{};
@@ -73,6 +91,17 @@ std::vector<Occasion> occasionsBetween(const protocol::StudyPlan& plan, const de
             due.push_back(*occasion);
         }
     return due;
+}
+
+std::vector<Occasion> occasionsAbout(const protocol::StudyPlan& plan, const design::PlannedTrial& trial) {
+    std::vector<Occasion> about;
+    for (std::size_t i = 0; i < plan.questionnaires.size(); ++i) {
+        auto occasion = occasionAfter(plan.questionnaires[i], trial);
+        if (!occasion) continue;
+        occasion->questionnaire = i;
+        about.push_back(*occasion);
+    }
+    return about;
 }
 
 bool isAbout(const protocol::StudyPlan& plan, const Occasion& occasion, const design::PlannedTrial& trial) {

@@ -15,6 +15,9 @@ namespace passung::session {
 std::vector<Occasion> occasionsBetween(const protocol::StudyPlan& plan, const design::PlannedTrial* before,
                                        std::span<const design::PlannedTrial> to_do);
 
+/// Those whose answers are about the trial: it, its condition and block, and the session up to its end.
+std::vector<Occasion> occasionsAbout(const protocol::StudyPlan& plan, const design::PlannedTrial& trial);
+
 /// Does a form of this occasion ask about the trial?
 bool isAbout(const protocol::StudyPlan& plan, const Occasion& occasion, const design::PlannedTrial& trial);
 

@@ -18,6 +18,7 @@ namespace passung::session {
 struct FinishedTrial {
     design::PlannedTrial trial;
     std::vector<measures::Value> measures;
+    std::int64_t begun_ns = 0;  // session time
 };
 
 /// When a questionnaire is asked, and about what.
@@ -29,6 +30,11 @@ struct Occasion {
     friend bool operator==(const Occasion&, const Occasion&) = default;
 };
 
+/// What tells a form from every other one of the session, in this run of the program and later ones.
+inline std::string formId(const Occasion& occasion, const std::string& occasion_text) {
+    return std::to_string(occasion.questionnaire) + "|" + occasion_text;
+}
+
 /// A questionnaire as it is to be shown.
 struct Form {
     const protocol::PlannedQuestionnaire& planned;
@@ -37,8 +43,7 @@ struct Form {
     std::vector<std::size_t> order;            // items as presented
     std::vector<const FinishedTrial*> trials;  // that it is about: of the trial, condition, block or session before it
 
-    /// What tells it from every other form of the session, in this run of the program and later ones.
-    std::string id() const { return std::to_string(occasion.questionnaire) + "|" + occasion_text; }
+    std::string id() const { return formId(occasion, occasion_text); }
 };
 
 struct ItemAnswer {
@@ -59,6 +64,14 @@ public:
     /// The answers; nothing while the person is still at it. Called again and again with the same form, returns
     /// quickly.
     virtual std::optional<FilledForm> fill(const Form& form) = 0;
+    /// The form of the last call is not to be filled now: whoever shows it takes it away.
+    virtual void withdraw() {}
+};
+
+/// A questionnaire that an earlier part of the session stored.
+struct StoredForm {
+    std::string id;         // Form::id()
+    std::int64_t t_ns = 0;  // session time
 };
 
 /// A form with its answers and scores, to be stored.

@@ -154,7 +154,7 @@ bool lacks(const Staircases& staircases, const design::PlannedTrial& trial, cons
 }
 
 Resumption resumption(const protocol::StudyPlan& plan, std::vector<design::PlannedTrial> trials,
-                      const std::vector<StoredAttempt>& attempts, bool crashed, const std::vector<StoredForm>& forms,
+                      const std::vector<StoredAttempt>& attempts, bool crashed, std::vector<StoredForm> forms,
                       const std::vector<OrderStep>& steps) {
     const std::size_t planned = trials.size();
     Resumption result{Agenda(std::move(trials)), std::vector<Past>(planned)};
@@ -180,14 +180,11 @@ Resumption resumption(const protocol::StudyPlan& plan, std::vector<design::Plann
         const auto& discounted = result.change.discounted;
         return std::find(discounted.begin(), discounted.end(), told.attempt) != discounted.end();
     });
-    std::int64_t since = -1;
     for (const std::size_t place : result.agenda.over()) {
         if (newest[place] == nullptr) continue;  // left out
-        result.finished.push_back({result.agenda.trial(place), newest[place]->measures});
-        since = newest[place]->start_ns;
+        result.finished.push_back({result.agenda.trial(place), newest[place]->measures, newest[place]->start_ns});
     }
-    for (const StoredForm& form : forms)
-        if (form.t_ns > since) result.answered.push_back(form.id);
+    result.forms = std::move(forms);
     return result;
 }
 

@@ -40,12 +40,6 @@ struct StoredAttempt {
     std::optional<StoredStep> step = {};  // none: no track was told anything
 };
 
-/// A questionnaire that an earlier part of the session stored.
-struct StoredForm {
-    std::string id;         // Form::id()
-    std::int64_t t_ns = 0;  // session time
-};
-
 /// Where an interrupted session goes on.
 struct Resumption {
     Agenda agenda;
@@ -54,7 +48,7 @@ struct Resumption {
     std::optional<std::size_t> last = {};      // place of the newest attempt that ended
     std::int64_t start_ns = 0;                 // session time that the earlier parts took
     std::vector<FinishedTrial> finished = {};  // trials that are over and stay so, in time
-    std::vector<std::string> answered = {};    // ids of the forms that were stored since the last of them
+    std::vector<StoredForm> forms = {};        // that were stored
     std::vector<ToldStep> steps = {};          // what staircases were told by attempts that count
 };
 
@@ -70,11 +64,10 @@ bool lacks(const Staircases& staircases, const design::PlannedTrial& trial, cons
 /// uninterrupted session, the interrupted one again, and then the protocol's [resume] adds what is to be done anew.
 /// Where nothing is left but the session is not whole, what it lacks is offered again. Attempts of which no step tells
 /// are of older programs, or crashed; of those the protocol decides. `crashed`: the program was killed; else the
-/// session was ended by somebody, in the middle of the newest attempt if that is aborted. A questionnaire is asked
-/// again unless it is among `forms` and the trial before it stays over.
+/// session was ended by somebody, in the middle of the newest attempt if that is aborted.
 Resumption resumption(const protocol::StudyPlan& plan, std::vector<design::PlannedTrial> trials,
-                      const std::vector<StoredAttempt>& attempts, bool crashed,
-                      const std::vector<StoredForm>& forms = {}, const std::vector<OrderStep>& steps = {});
+                      const std::vector<StoredAttempt>& attempts, bool crashed, std::vector<StoredForm> forms = {},
+                      const std::vector<OrderStep>& steps = {});
 
 /// Why a session that was interrupted so long ago must not go on; nothing if it may.
 std::optional<std::string> tooOld(const protocol::ResumePolicy& policy, double age_s);

@@ -72,6 +72,11 @@ std::optional<session::FilledForm> Interview::fill(const session::Form& form) {
     return std::move(filled->second);
 }
 
+void Interview::withdraw() {
+    forget();
+    tell_(presenter::AskedDone{});
+}
+
 std::optional<session::PageRead> Interview::read(const session::Page& page) {
     if (std::exchange(page_, page.id) != page.id) ask(presenter::PageDue{++pages_, page.text, page.picture});
     const auto read = take(read_);

@@ -29,6 +29,7 @@ public:
     std::optional<bool> consent(const protocol::ConsentClause& clause, const std::string& text,
                                 const std::function<bool()>& stop);
     std::optional<session::FilledForm> fill(const session::Form& form) override;
+    void withdraw() override;
     std::optional<session::PageRead> read(const session::Page& page) override;
     bool goesOn() override;
 

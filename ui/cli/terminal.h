@@ -33,6 +33,7 @@ public:
         : terminal_(terminal), answered_by_(std::move(answered_by)) {}
 
     std::optional<session::FilledForm> fill(const session::Form& form) override;
+    void withdraw() override { filling_.reset(); }
 
 private:
     void begin(const session::Form& form);

@@ -32,7 +32,9 @@ public:
     std::vector<std::string> occasions;
     std::vector<std::vector<std::size_t>> orders;
     std::vector<std::size_t> trials;
+    int withdrawn = 0;
 
+    void withdraw() override { ++withdrawn; }
     std::optional<FilledForm> fill(const Form& form) override {
         if (looked_++ < looks) return std::nullopt;
         looked_ = 0;
@@ -53,11 +55,11 @@ public:
     std::vector<double> scores;
     std::vector<std::int64_t> times;
     std::optional<std::int64_t> response_ms;
-    std::vector<std::string> forms;
+    std::vector<std::string> forms, events;
     bool full = false;
     Result<AttemptId> startAttempt(const AttemptStart&) override { return AttemptId{1}; }
     void appendRecords(AttemptId, std::span<const TickRecord>) override {}
-    void appendEvent(const Event&) override {}
+    void appendEvent(const Event& event) override { events.push_back(event.event); }
     Result<Done> finishAttempt(AttemptId, const AttemptEnd&) override { return Done{}; }
     Result<Done> storeQuestionnaire(const QuestionnaireRun& run) override {
         if (full) return Error{"the disk is full"};
@@ -134,7 +136,7 @@ TEST_F(QuestionnaireDeskTest, AsksAgainWhatWasNotStoredBeforeAnInterruption) {
     whole.remember({trials_[1], {}});
     EXPECT_TRUE(*whole.ask(from(2), 0));
     auto resumed = desk(&person_);
-    resumed.resume({{trials_[0], {}}, {trials_[1], {}}}, {sink_.forms[1]});
+    resumed.resume({{trials_[0], {}}, {trials_[1], {}}}, {}, {{sink_.forms[0], 1}, {sink_.forms[1], 1}});
     EXPECT_TRUE(resumed.isDue(from(2)));
     EXPECT_FALSE(*resumed.ask(from(2), 0));
     EXPECT_FALSE(resumed.isDue(from(2)));
@@ -142,8 +144,76 @@ TEST_F(QuestionnaireDeskTest, AsksAgainWhatWasNotStoredBeforeAnInterruption) {
     EXPECT_EQ(person_.occasions.back(), "second 1|after_block|0||");
     EXPECT_EQ(person_.trials.back(), 2u) << "about the trials before the interruption too";
     auto not_stored = desk(&person_);
-    not_stored.resume({{trials_[0], {}}, {trials_[1], {}}}, {});
+    not_stored.resume({{trials_[0], {}}, {trials_[1], {}}}, {}, {});
     EXPECT_TRUE(*not_stored.ask(from(2), 0)) << "both";
+}
+
+TEST_F(QuestionnaireDeskTest, ASessionThatGoesOnAsksAgainAboutTrialsThatWereBegunAgain) {
+    // Truth: closed form: an attempt takes 10 ns, its form comes right after it and before the next begins. Trial 0 was
+    // begun at 0 and, after its form, again at 10; the form of trial 1 and the block's came at 30.
+    auto before = desk(&person_);
+    before.remember({trials_[0], {}});
+    static_cast<void>(before.ask(from(1), 10));
+    before.remember({trials_[1], {}});
+    static_cast<void>(before.ask(from(2), 30));
+    static_cast<void>(before.ask(from(2), 30));
+    ASSERT_EQ(sink_.forms.size(), 3u);
+    std::vector<StoredForm> stored = {{sink_.forms[0], 10}, {sink_.forms[1], 30}, {sink_.forms[2], 30}};
+    const auto asked = [&](std::vector<FinishedTrial> finished, std::size_t next) {
+        person_.occasions.clear();
+        auto resumed = desk(&person_);
+        resumed.resume(std::move(finished), from(next), stored);
+        while (*resumed.ask(from(next), 40)) {
+        }
+        return person_.occasions.size();
+    };
+    EXPECT_EQ(asked({{trials_[0], {}, 0}, {trials_[1], {}, 20}}, 2), 0u);
+    EXPECT_EQ(asked({{trials_[1], {}, 0}, {trials_[0], {}, 10}}, 2), 1u) << "what was asked about trial 0 is older";
+    stored.push_back({sink_.forms[0], 20});
+    EXPECT_EQ(asked({{trials_[1], {}, 0}, {trials_[0], {}, 10}}, 2), 0u) << "but not if it was asked again";
+    EXPECT_EQ(asked({{trials_[0], {}, 0}}, 1), 0u);
+    stored.erase(stored.begin());
+    EXPECT_EQ(asked({{trials_[1], {}, 30}, {trials_[0], {}, 0}}, 2), 1u) << "the block's: trial 1 was begun since";
+}
+
+TEST_F(QuestionnaireDeskTest, WhoGoesBackIsAskedAgainAboutThatTrialOnly) {
+    // Truth: closed form: forms after each of two trials and after their block; then trial 1 is gone back to.
+    auto asking = desk(&person_);
+    for (std::size_t i = 0; i < 2; ++i) {
+        asking.remember({trials_[i], {}});
+        while (*asking.ask(from(i + 1), 0)) {
+        }
+    }
+    person_.occasions.clear(), person_.trials.clear();
+    asking.forget(trials_[1]);
+    EXPECT_FALSE(asking.isDue(from(1))) << "nothing before it is done again";
+    asking.remember({trials_[1], {}});
+    while (*asking.ask(from(2), 0)) {
+    }
+    EXPECT_EQ(person_.occasions, (std::vector<std::string>{"first 1|after_trial|0|1|1", "second 1|after_block|0||"}));
+    EXPECT_EQ(person_.trials, (std::vector<std::size_t>{1, 2})) << "about its newest attempt only";
+    asking.forget(trials_[1]);
+    asking.forget(trials_[0]);
+    EXPECT_FALSE(asking.isDue(from(0)));
+    asking.remember({trials_[0], {}});
+    EXPECT_TRUE(asking.isDue(from(1)));
+}
+
+TEST_F(QuestionnaireDeskTest, WhoGoesBackWhileAFormIsOpenIsToldToTakeItAway) {
+    // Truth: invariant: the form comes anew when the trial is over again, and each time that it does is an event.
+    person_.looks = 1;
+    auto asking = desk(&person_);
+    asking.remember({trials_[0], {}});
+    EXPECT_TRUE(*asking.ask(from(1), 0));
+    asking.forget(trials_[0]);
+    EXPECT_EQ(person_.withdrawn, 1);
+    EXPECT_FALSE(*asking.ask(from(0), 0));
+    asking.remember({trials_[0], {}});
+    asking.forget(trials_[1]);
+    EXPECT_EQ(person_.withdrawn, 1) << "no form was open";
+    while (*asking.ask(from(1), 0)) {
+    }
+    EXPECT_EQ(sink_.events, (std::vector<std::string>{"questionnaire_shown", "questionnaire_shown"}));
 }
 
 TEST_F(QuestionnaireDeskTest, NoResponseTimeIsKeptInVirtualTime) {
