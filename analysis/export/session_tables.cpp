@@ -14,6 +14,7 @@ Table makeEvents(const StudyData& study) {
          {"kind", "Real person, pilot or simulated participant", "", "text", "", 1, protocol::participantKindNames()},
          {"session", "Number of the participant's session, from 1", "", "integer", "", 1, {}},
          {"t_s", "Time from the session's start", "s", "number", "", 1, {}},
+         {"t_utc", "When, by the session's epoch (see sessions.csv)", "", "time", "", 1, {}},
          {"trial_index", "Trial that it belongs to", "", "integer", "", 1, {}},
          {"attempt_no", "Attempt that it belongs to", "", "integer", "", 1, {}},
          {"source", "Who reported it", "", "text", "", 1, {}},
@@ -22,7 +23,7 @@ Table makeEvents(const StudyData& study) {
         {}};
     for (const store::EventRow& event : study.events) {
         table.rows.push_back({event.participant_id, event.kind, cell(event.session_ordinal), secondsCell(event.t_ns),
-                              cell(event.trial_index), cell(event.attempt_no), event.source, event.event,
+                              event.t_utc, cell(event.trial_index), cell(event.attempt_no), event.source, event.event,
                               event.payload_json});
     }
     return table;

@@ -1,16 +1,20 @@
 #include "study/store/note_rows.h"
 
+#include "study/store/event_rows.h"
+
 namespace passung::store {
 
 std::vector<NoteRow> readNotes(const Database& database) {
     // A note that was taken down during a session is a row of both tables: here it comes from its own.
     Statement row = database.prepare(
-        "SELECT s.participant_id AS participant, p.kind, s.ordinal AS ordinal, n.t_utc AS t, coalesce(n.author, ''), "
-        "'note', 1, n.text, NULL, NULL, NULL, 0 AS origin, n.note_id AS number "
-        "FROM note n JOIN session s USING(session_id) JOIN participant p USING(participant_id) "
-        "UNION ALL "
-        "SELECT s.participant_id, p.kind, s.ordinal, "
-        "strftime('%Y-%m-%dT%H:%M:%fZ', g.utc_zero, printf('+%.9f seconds', e.t_ns * 1e-9)), e.source, "
+        std::string("SELECT s.participant_id AS participant, p.kind, s.ordinal AS ordinal, n.t_utc AS t, "
+                    "coalesce(n.author, ''), "
+                    "'note', 1, n.text, NULL, NULL, NULL, 0 AS origin, n.note_id AS number "
+                    "FROM note n JOIN session s USING(session_id) JOIN participant p USING(participant_id) "
+                    "UNION ALL "
+                    "SELECT s.participant_id, p.kind, s.ordinal, ") +
+        kEventUtc +
+        ", e.source, "
         "substr(e.event, 9), json_extract(e.payload_json, '$.accepted'), json_extract(e.payload_json, '$.text'), "
         "json_extract(e.payload_json, '$.refusal'), t.trial_index, a.attempt_no, 1, e.event_id "
         "FROM event e JOIN segment g USING(segment_id) JOIN session s USING(session_id) "

@@ -4,6 +4,7 @@
 
 #include "study/protocol/json.h"
 #include "study/store/digest.h"
+#include "study/store/event_rows.h"
 #include "study/store/sqlite.h"
 
 namespace passung::store {
@@ -100,7 +101,7 @@ void requireQuestionnaires(const Database& database, const std::string& protocol
 }
 
 void insertQuestionnaireRun(const Database& database, const std::string& session_id, std::int64_t segment_id,
-                            const session::QuestionnaireRun& run, const UtcClock& clock) {
+                            const session::QuestionnaireRun& run, const FormUtc& utc) {
     const session::Occasion& occasion = run.form.occasion;
     const PlannedQuestionnaire& planned = run.form.planned;
     const char* moment = protocol::momentName(planned.moment);
@@ -112,9 +113,11 @@ void insertQuestionnaireRun(const Database& database, const std::string& session
             "INSERT INTO questionnaire_run(session_id, questionnaire_sha256, moment, block_index, trial_id, "
             "condition_id, started_utc, completed_utc) VALUES(?1, ?2, ?3, ?4, (SELECT trial_id FROM trial_plan WHERE "
             "session_id=?1 AND trial_index=?5), (SELECT c.condition_id FROM condition c JOIN session s "
-            "USING(protocol_sha256) WHERE s.session_id=?1 AND c.position=?6), ?7, ?8)")
-        .bind(session_id, digestOf(planned), moment, occasion.block_index, occasion.trial_index, condition,
-              clock.at(run.started_ns), clock.at(run.completed_ns))
+            "USING(protocol_sha256) WHERE s.session_id=?1 AND c.position=?6), coalesce((SELECT "
+            "max(t_utc) FROM event WHERE segment_id=?9 AND event='questionnaire_shown' AND "
+            "json_extract(payload_json, '$.form')=?10), ?7), ?8)")
+        .bind(session_id, digestOf(planned), moment, occasion.block_index, occasion.trial_index, condition, utc.started,
+              utc.completed, segment_id, run.form.id())
         .run();
     const std::int64_t run_id = database.lastRowId();
     insertResponses(database, run_id, run);
@@ -125,12 +128,13 @@ void insertQuestionnaireRun(const Database& database, const std::string& session
                                     .text("form", run.form.id())
                                     .text("answered_by", run.filled.answered_by)
                                     .str();
-    database
-        .prepare(
-            "INSERT INTO event(segment_id, attempt_id, t_ns, source, event, payload_json) "
-            "VALUES(?, NULL, ?, 'session', 'questionnaire_answered', ?)")
-        .bind(segment_id, run.completed_ns, payload)
-        .run();
+    insertEvent(database, segment_id,
+                {.attempt = {},
+                 .t_ns = run.completed_ns,
+                 .source = "session",
+                 .event = "questionnaire_answered",
+                 .payload_json = payload},
+                utc.measured ? std::optional(utc.completed) : std::nullopt);
 }
 
 std::vector<QuestionnaireRunRow> readQuestionnaireRuns(const Database& database) {

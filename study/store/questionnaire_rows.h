@@ -7,7 +7,6 @@
 #include "study/protocol/study_plan.h"
 #include "study/session/questionnaire_source.h"
 #include "study/store/rows.h"
-#include "study/store/utc_clock.h"
 
 namespace passung::store {
 
@@ -21,9 +20,16 @@ void insertQuestionnaires(const Database& database, const protocol::StudyPlan& p
 void requireQuestionnaires(const Database& database, const std::string& protocol_sha256,
                            const protocol::StudyPlan& plan);
 
+/// When a questionnaire was filled.
+struct FormUtc {
+    std::string started;  // unless an event of the segment says when the form was shown
+    std::string completed;
+    bool measured = false;  // by the wall clock
+};
+
 /// One filled questionnaire with its answers, scores and event. @pre in a transaction
 void insertQuestionnaireRun(const Database& database, const std::string& session_id, std::int64_t segment_id,
-                            const session::QuestionnaireRun& run, const UtcClock& clock);
+                            const session::QuestionnaireRun& run, const FormUtc& utc);
 
 /// By participant and session, then as they were asked; answers as they were presented, scores by name.
 std::vector<QuestionnaireRunRow> readQuestionnaireRuns(const Database& database);

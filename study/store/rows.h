@@ -237,6 +237,7 @@ struct EventRow {
     std::string kind;
     std::int64_t session_ordinal = 1;
     std::int64_t t_ns = 0;
+    std::string t_utc;  // by the session's epoch
     std::optional<std::int64_t> trial_index;
     std::optional<std::int64_t> attempt_no;
     std::string source;

@@ -27,14 +27,15 @@ std::int64_t attemptHere(const Database& database, const std::string& session_id
 
 void insertEvent(const Database& database, const std::string& session_id,
                  const decltype(SessionRemarks::events)::value_type& row) {
-    const auto& [segment, key, t_ns, source, event, payload] = row;
+    const auto& [segment, key, t_ns, source, event, payload, t_utc] = row;
     std::optional<std::int64_t> attempt;
     if (key) attempt = attemptHere(database, session_id, *key);
     database
         .prepare(
-            "INSERT INTO main.event(segment_id, attempt_id, t_ns, source, event, payload_json) VALUES((SELECT "
-            "segment_id FROM main.segment WHERE session_id=? ORDER BY segment_id LIMIT 1 OFFSET ?), ?, ?, ?, ?, ?)")
-        .bind(session_id, segment, attempt, t_ns, source, event, payload)
+            "INSERT INTO main.event(segment_id, attempt_id, t_ns, source, event, payload_json, t_utc) "
+            "VALUES((SELECT segment_id FROM main.segment WHERE session_id=? ORDER BY segment_id LIMIT 1 OFFSET ?), "
+            "?, ?, ?, ?, ?, ?)")
+        .bind(session_id, segment, attempt, t_ns, source, event, payload, t_utc)
         .run();
 }
 
@@ -51,13 +52,13 @@ SessionRemarks remarksOf(const Database& database, const std::string& schema, co
     rows("SELECT t_utc, author, text FROM $.note WHERE session_id=?",
          [&](const Statement& row) { remarks.notes.emplace(row.text(0), optionalText(row, 1), row.text(2)); });
     rows(
-        "SELECT g.number, t.trial_index, a.attempt_no, e.t_ns, e.source, e.event, e.payload_json FROM (SELECT "
+        "SELECT g.number, t.trial_index, a.attempt_no, e.t_ns, e.source, e.event, e.payload_json, e.t_utc FROM (SELECT "
         "segment_id, row_number() OVER (ORDER BY segment_id) - 1 AS number FROM $.segment WHERE session_id=?) g "
         "JOIN $.event e USING(segment_id) LEFT JOIN $.attempt a ON a.attempt_id=e.attempt_id "
         "LEFT JOIN $.trial_plan t ON t.trial_id=a.trial_id",
         [&](const Statement& row) {
             remarks.events.emplace(row.integer(0), attemptKey(row, 1), row.integer(3), row.text(4), row.text(5),
-                                   optionalText(row, 6));
+                                   optionalText(row, 6), optionalText(row, 7));
         });
     rows(
         "SELECT t.trial_index, a.attempt_no, coalesce(a.invalid_reason, '') FROM $.attempt a "

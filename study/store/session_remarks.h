@@ -21,8 +21,9 @@ struct SessionRemarks {
     using AttemptKey = std::pair<std::int64_t, std::int64_t>;  // trial_index, attempt_no
 
     std::set<std::tuple<std::string, Text, std::string>> notes;  // t_utc, author, text
-    /// segment from 0, attempt, t_ns, source, event, payload
-    std::set<std::tuple<std::int64_t, std::optional<AttemptKey>, std::int64_t, std::string, std::string, Text>> events;
+    /// segment from 0, attempt, t_ns, source, event, payload, t_utc
+    std::set<std::tuple<std::int64_t, std::optional<AttemptKey>, std::int64_t, std::string, std::string, Text, Text>>
+        events;
     std::map<AttemptKey, std::string> invalid;  // with the reason
 };
 

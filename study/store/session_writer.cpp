@@ -2,7 +2,9 @@
 
 #include <array>
 
+#include "study/protocol/json.h"
 #include "study/store/contact_energy_rows.h"
+#include "study/store/event_rows.h"
 #include "study/store/hex_text.h"
 #include "study/store/order_rows.h"
 #include "study/store/presentation_rows.h"
@@ -77,7 +79,7 @@ void settleParticipant(const Database& database, const std::string& session_id, 
 }  // namespace
 
 SessionWriter::SessionWriter(WriterThread& thread, Rows rows, UtcClock clock)
-    : thread_(thread), rows_(std::move(rows)), clock_(clock) {}
+    : thread_(thread), rows_(std::move(rows)), clock_(std::move(clock)) {}
 
 SessionWriter::~SessionWriter() {
     // Jobs refer to this object: wait until none is left.
@@ -99,6 +101,23 @@ void SessionWriter::throwFailure() {
     if (failure_.empty()) return;
     const std::string failure = std::exchange(failure_, {});
     throw std::runtime_error("data could not be stored: " + failure);
+}
+
+std::string SessionWriter::stamp(std::int64_t t_ns) {
+    const UtcClock::Stamp stamp = clock_.stamp(t_ns);
+    if (!stamp.machine_utc.empty())
+        appendEvent({.attempt = {},
+                     .t_ns = t_ns,
+                     .source = "session",
+                     .event = "clock_set_back",
+                     .payload_json =
+                         protocol::JsonObject().text("machine_utc", stamp.machine_utc).text("utc", stamp.utc).str()});
+    return stamp.utc;
+}
+
+std::optional<std::string> SessionWriter::measuredStamp(std::int64_t t_ns) {
+    if (!clock_.runs()) return std::nullopt;
+    return stamp(t_ns);
 }
 
 Result<session::AttemptId> SessionWriter::startAttempt(const session::AttemptStart& start) {
@@ -182,16 +201,9 @@ void SessionWriter::appendRecords(session::AttemptId attempt, std::span<const Ti
 }
 
 void SessionWriter::appendEvent(const session::Event& event) {
-    postGuarded([this, event](const Database& database) {
-        std::optional<std::int64_t> attempt_id;
-        if (event.attempt) attempt_id = static_cast<std::int64_t>(*event.attempt);
+    postGuarded([this, event, utc = measuredStamp(event.t_ns)](const Database& database) {
         Transaction transaction(database, Durability::Normal);
-        database
-            .prepare(
-                "INSERT INTO event(segment_id, attempt_id, t_ns, source, event, payload_json) "
-                "VALUES(?, ?, ?, ?, ?, ?)")
-            .bind(rows_.segment_id, attempt_id, event.t_ns, event.source, event.event, event.payload_json)
-            .run();
+        insertEvent(database, rows_.segment_id, event, utc);
         transaction.commit();
     });
 }
@@ -233,10 +245,12 @@ Result<Done> SessionWriter::finishAttempt(session::AttemptId attempt, const sess
 }
 
 Result<Done> SessionWriter::storeQuestionnaire(const session::QuestionnaireRun& run) {
+    FormUtc utc{{}, stamp(run.completed_ns), clock_.runs()};
+    utc.started = clock_.runs() ? utc.completed : clock_.at(run.started_ns);
     return thread_.call([&](const Database& database) {
         throwFailure();
         Transaction transaction(database, Durability::Full);
-        insertQuestionnaireRun(database, rows_.session_id, rows_.segment_id, run, clock_);
+        insertQuestionnaireRun(database, rows_.session_id, rows_.segment_id, run, utc);
         transaction.commit();
         return Done{};
     });
@@ -254,15 +268,17 @@ Result<Done> SessionWriter::reorder(const session::Reordering& change) {
 }
 
 Result<Done> SessionWriter::addNote(const std::string& author, const std::string& text, std::int64_t t_ns) {
+    const std::string utc = stamp(t_ns);
     return thread_.call([&](const Database& database) {
         Transaction transaction(database, Durability::Full);
-        insertNote(database, {rows_.session_id, clock_.at(t_ns), author, text});
+        insertNote(database, {rows_.session_id, utc, author, text});
         transaction.commit();
         return Done{};
     });
 }
 
 Result<Done> SessionWriter::finishSession(bool complete, std::int64_t end_ns) {
+    const std::string ended_utc = stamp(end_ns);
     return thread_.call([&](const Database& database) {
         throwFailure();
         Transaction transaction(database, Durability::Full);
@@ -274,7 +290,7 @@ Result<Done> SessionWriter::finishSession(bool complete, std::int64_t end_ns) {
             .run();
         const bool whole = complete && isWhole(database, rows_.session_id);
         database.prepare("UPDATE session SET ended_utc=?, end_state=? WHERE session_id=?")
-            .bind(clock_.at(end_ns), whole ? "complete" : "aborted", rows_.session_id)
+            .bind(ended_utc, whole ? "complete" : "aborted", rows_.session_id)
             .run();
         database.prepare("UPDATE segment SET closed_clean=1 WHERE segment_id=?").bind(rows_.segment_id).run();
         settleParticipant(database, rows_.session_id, whole);

@@ -61,6 +61,9 @@ private:
     void throwFailure();
     template <class Work>
     void postGuarded(Work work);
+    /// UTC of what happens now; that the machine's clock was set back is an event.
+    std::string stamp(std::int64_t t_ns);
+    std::optional<std::string> measuredStamp(std::int64_t t_ns);  // none in virtual time
 
     WriterThread& thread_;
     Rows rows_;

@@ -129,7 +129,7 @@ SessionWriter::Rows insertSegment(const Database& database, const SessionStart& 
             "INSERT INTO segment(session_id, app_version, host, device_json, mono_zero_ns, utc_zero, started_utc) "
             "VALUES(?, ?, ?, ?, ?, ?, ?)")
         .bind(start.session_id, options.app_version, nullIfEmpty(start.host), device, start.mono_zero_ns,
-              start.clock.at(0), start.clock.at(begin_ns))
+              start.clock.at(0), UtcClock(start.clock).stamp(begin_ns).utc)
         .run();
     SessionWriter::Rows rows{start.session_id, database.lastRowId(), 0, std::nullopt};
     rows.tick_stream_id = insertStream(database, rows.segment_id, "tick", tickChannels());

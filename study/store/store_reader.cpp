@@ -4,6 +4,7 @@
 #include "study/store/attempt_rows.h"
 #include "study/store/audit.h"
 #include "study/store/consent_rows.h"
+#include "study/store/event_rows.h"
 #include "study/store/note_rows.h"
 #include "study/store/open_database.h"
 #include "study/store/questionnaire_rows.h"
@@ -264,27 +265,7 @@ Result<std::vector<NoteRow>> StoreReader::notes() const {
 }
 
 Result<std::vector<EventRow>> StoreReader::events() const {
-    return guarded(path_, [&] {
-        return readAll<EventRow>(
-            database_->prepare(
-                "SELECT s.participant_id, p.kind, s.ordinal, e.t_ns, t.trial_index, a.attempt_no, e.source, "
-                "e.event, e.payload_json FROM event e JOIN segment g USING(segment_id) "
-                "JOIN session s USING(session_id) JOIN participant p USING(participant_id) "
-                "LEFT JOIN attempt a ON a.attempt_id=e.attempt_id "
-                "LEFT JOIN trial_plan t USING(trial_id) "
-                "ORDER BY s.participant_id, s.ordinal, g.segment_id, e.t_ns, e.event_id"),
-            [](const Statement& row) {
-                return EventRow{row.text(0),
-                                row.text(1),
-                                row.integer(2),
-                                row.integer(3),
-                                row.optionalInteger(4),
-                                row.optionalInteger(5),
-                                row.text(6),
-                                row.text(7),
-                                row.text(8)};
-            });
-    });
+    return guarded(path_, [&] { return readEvents(*database_); });
 }
 
 Result<std::vector<DetectionRow>> StoreReader::detections() const {

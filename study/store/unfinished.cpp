@@ -73,6 +73,23 @@ void readForms(const Database& database, Unfinished& session) {
     while (forms.step()) session.forms.push_back({forms.text(0), forms.integer(1)});
 }
 
+/// The latest stamp of anything in the session. Such texts sort as their times.
+std::string latestUtc(const Database& database, const std::string& session_id) {
+    Statement find = database.prepare(
+        "SELECT max(t) FROM (SELECT max(g.started_utc) t FROM segment g WHERE g.session_id=?1 UNION ALL "
+        "SELECT max(e.t_utc) FROM event e JOIN segment g USING(segment_id) WHERE g.session_id=?1 UNION ALL "
+        "SELECT max(completed_utc) FROM questionnaire_run WHERE session_id=?1 UNION ALL "
+        "SELECT max(t_utc) FROM note WHERE session_id=?1)");
+    find.bind(session_id).step();
+    return find.text(0);
+}
+
+/// Days since the session's last sign of life: what session time ran on after the latest stamp of an event counts.
+constexpr const char* kAgeDays =
+    "julianday(?2) - max(julianday(g.utc_zero) + ?3 / 86400e9, coalesce((SELECT julianday(e.t_utc) + "
+    "(?3 - e.t_ns) / 86400e9 FROM event e JOIN segment h USING(segment_id) WHERE h.session_id=?1 AND e.t_utc IS NOT "
+    "NULL ORDER BY e.event_id DESC LIMIT 1), 0))";
+
 /// The latest time of anything in the session.
 std::int64_t usedTime(const Database& database, const std::string& session_id) {
     Statement find = database.prepare(
@@ -91,10 +108,12 @@ Unfinished readUnfinished(const Database& database, const std::string& session_i
     session.session_id = findSession(database, session_id);
     session.used_ns = usedTime(database, session.session_id);
     Statement find = database.prepare(
-        "SELECT s.participant_id, s.protocol_sha256, s.language, s.ordinal, s.seed, s.epoch='virtual', "
-        "s.end_state='crashed', (julianday(?2) - julianday(g.utc_zero)) * 86400.0, s.station FROM session s "
+        std::string("SELECT s.participant_id, s.protocol_sha256, s.language, s.ordinal, s.seed, s.epoch='virtual', "
+                    "s.end_state='crashed', (") +
+        kAgeDays +
+        ") * 86400.0, s.station FROM session s "
         "JOIN segment g USING(session_id) WHERE s.session_id=?1 ORDER BY g.segment_id DESC LIMIT 1");
-    find.bind(session.session_id, now_utc).step();
+    find.bind(session.session_id, now_utc, session.used_ns).step();
     session.participant = find.text(0);
     session.protocol_sha256 = find.text(1);
     session.language = find.text(2);
@@ -102,9 +121,10 @@ Unfinished readUnfinished(const Database& database, const std::string& session_i
     session.seed = static_cast<std::uint64_t>(find.integer(4));
     session.virtual_time = find.integer(5) != 0;
     session.crashed = find.integer(6) != 0;
-    if (!session.virtual_time) session.age_s = find.real(7) - static_cast<double>(session.used_ns) * 1e-9;
+    if (!session.virtual_time) session.age_s = find.real(7);
     session.station = find.text(8);
     find.reset();
+    if (!session.virtual_time) session.latest_utc = latestUtc(database, session.session_id);
     readTrials(database, session);
     session.steps = readOrderSteps(database, session.session_id);
     readForms(database, session);

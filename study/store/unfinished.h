@@ -20,6 +20,7 @@ struct Unfinished {
     bool virtual_time = true;
     bool crashed = true;          // its program was killed; else somebody ended it
     std::optional<double> age_s;  // by the wall clock since its last sign of life; none in virtual time
+    std::string latest_utc;       // the latest stamp of anything in it; empty in virtual time
     std::int64_t used_ns = 0;     // session time up to there
     std::vector<design::PlannedTrial> trials;
     std::vector<session::StoredAttempt> attempts;  // ascending by time

@@ -3,8 +3,28 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
+#include <utility>
 
 namespace passung::store {
+
+UtcClock UtcClock::running(Now now, std::int64_t used_ns, std::string not_before) {
+    UtcClock clock = wall(now() - used_ns / 1'000'000);
+    clock.now_ = std::move(now);
+    clock.latest_ = std::move(not_before);
+    return clock;
+}
+
+UtcClock::Stamp UtcClock::stamp(std::int64_t t_ns) {
+    if (!runs()) return {at(t_ns), {}};
+    Stamp stamp{wall(now_()).at(0), {}};
+    const bool was_behind = std::exchange(behind_, stamp.utc < latest_);  // such texts sort as their times
+    if (behind_) {
+        if (!was_behind) stamp.machine_utc = stamp.utc;
+        stamp.utc = latest_;
+    }
+    latest_ = stamp.utc;
+    return stamp;
+}
 
 std::string UtcClock::at(std::int64_t t_ns) const {
     using namespace std::chrono;

@@ -23,7 +23,6 @@
 #include "ui/app/simulated_answers.h"
 #include "ui/app/simulated_timer.h"
 #include "ui/app/stored_plans.h"
-#include "ui/app/wall_clock.h"
 
 namespace passung::app {
 
@@ -72,7 +71,7 @@ public:
         const int last = options_.participant.empty() ? protocol::sessionsOf(plan_) : *part;
         if (listener_.session) listener_.session(code, number, options_.simulated);
         for (int p = *part; p <= last; ++p)
-            if (auto end = session(code, {static_cast<std::size_t>(slot->number), slot->group}, p, clock);
+            if (auto end = session(code, {static_cast<std::size_t>(slot->number), slot->group}, p);
                 !end || *end == RunEnd::Interrupted)
                 return end;
         return RunEnd::Complete;
@@ -95,9 +94,7 @@ public:
         if (listener_.session) listener_.session(session.participant, 1, 1);
 
         LoopApparatus apparatus = apparatusOf(session.participant);
-        const store::UtcClock clock = measured()
-                                          ? store::UtcClock::wall(unixMilliseconds() - session.used_ns / 1'000'000)
-                                          : store::UtcClock::virtualEpoch();
+        const store::UtcClock clock = clockNow(session.used_ns, session.latest_utc);
         const auto start = startOf(session.session_id, session.participant, session.ordinal, clock, apparatus);
         auto writer = store_.resumeSession(start, session.used_ns);
         if (!writer) return writer.errors();
@@ -121,8 +118,9 @@ private:
         return options_.performer == nullptr ? protocol::ParticipantKind::Simulated : options_.performer->kind();
     }
 
-    store::UtcClock clockNow() const {
-        return measured() ? store::UtcClock::wall(unixMilliseconds()) : store::UtcClock::virtualEpoch();
+    store::UtcClock clockNow(std::int64_t used_ns = 0, const std::string& latest_utc = {}) const {
+        return measured() ? store::UtcClock::running(options_.now, used_ns, latest_utc)
+                          : store::UtcClock::virtualEpoch();
     }
 
     LoopApparatus apparatusOf(const std::string& code) const {
@@ -149,13 +147,12 @@ private:
         return start;
     }
 
-    Result<RunEnd> session(const std::string& code, const session::DesignPlace& place, int part,
-                           const store::UtcClock& clock) {
+    Result<RunEnd> session(const std::string& code, const session::DesignPlace& place, int part) {
         auto ordinal = store_.nextOrdinal(code);
         if (!ordinal) return ordinal.errors();
         LoopApparatus apparatus = apparatusOf(code);
         const auto start =
-            startOf(store::sessionId(plan_.name, code, *ordinal, plan_.seed), code, *ordinal, clock, apparatus);
+            startOf(store::sessionId(plan_.name, code, *ordinal, plan_.seed), code, *ordinal, clockNow(), apparatus);
         const auto trials = session::planTrials(plan_, place, code, part);
         if (!trials) return trials.errors();
         auto writer = store_.createSession(start, *trials);
@@ -267,7 +264,7 @@ const std::vector<std::string>& knownMeasures() {
 namespace {
 
 store::Store::Opened openForRun(const RunOptions& options, const RunListener& listener, bool create = true) {
-    auto with = openOptionsNow();
+    auto with = openOptionsNow(options.now());
     with.create = create;
     with.station = options.station;
     auto opened = store::Store::open(options.database, with);

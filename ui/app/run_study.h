@@ -9,6 +9,7 @@
 #include "study/store/store.h"
 #include "ui/app/loop_apparatus.h"
 #include "ui/app/person_at_desk.h"
+#include "ui/app/wall_clock.h"
 
 namespace passung::app {
 
@@ -27,6 +28,7 @@ struct RunOptions {
     AskConsent ask_consent;                           // empty: nobody is asked here
     std::string experimenter;                         // who conducts the session; empty: not said
     Performer* performer = nullptr;                   // who takes part or watches; null: nobody
+    store::UtcClock::Now now = unixMilliseconds;      // in real time; virtual time has none
 };
 
 /// How a run ended that met no error.

@@ -9,10 +9,10 @@ std::int64_t unixMilliseconds() {
     return std::chrono::duration_cast<std::chrono::milliseconds>(now).count();
 }
 
-store::OpenOptions openOptionsNow() {
+store::OpenOptions openOptionsNow(std::int64_t unix_ms) {
     store::OpenOptions options;
     options.app_version = PASSUNG_VERSION;
-    options.now_utc = store::UtcClock::wall(unixMilliseconds()).at(0);
+    options.now_utc = store::UtcClock::wall(unix_ms).at(0);
     return options;
 }
 

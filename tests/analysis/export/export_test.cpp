@@ -149,11 +149,13 @@ TEST_F(Export, EventsKeepHardTexts) {
     // Truth: closed form (what the fake study wrote)
     const fake::CsvFile events = csv("events.csv");
     ASSERT_EQ(events.rows.size(), 14u);
-    const auto note =
-        std::find_if(events.rows.begin(), events.rows.end(), [](const auto& row) { return row[6] == "experimenter"; });
-    ASSERT_NE(note, events.rows.end());
-    EXPECT_EQ((*note)[7], fake::kHardText);
-    EXPECT_EQ((*note)[4], "NA");
+    std::size_t note = 0;
+    while (note < events.rows.size() && events.at(note, "source") != "experimenter") ++note;
+    ASSERT_LT(note, events.rows.size());
+    EXPECT_EQ(events.at(note, "event"), fake::kHardText);
+    EXPECT_EQ(events.at(note, "trial_index"), "NA");
+    for (std::size_t i = 0; i < events.rows.size(); ++i)
+        EXPECT_EQ(events.at(i, "t_utc").substr(0, 10), "2000-01-01") << "by the epoch of virtual time";
 }
 
 TEST_F(Export, SamplesUnpackToTheRecordedTicks) {
