@@ -14,13 +14,15 @@ constexpr const char* kMissingClauses =
 
 }  // namespace
 
-void requireAdmission(const Database& database, const std::string& protocol_sha256, const std::string& participant) {
+void requireAdmission(const Database& database, const std::string& protocol_sha256, const std::string& participant,
+                      std::optional<protocol::ParticipantKind> newcomer) {
     Statement find = database.prepare("SELECT kind, status FROM participant WHERE participant_id=?");
-    if (!find.bind(participant).step()) throw std::runtime_error("participant " + participant + " is not enrolled");
-    const std::string status = find.text(1);
+    const bool enrolled = find.bind(participant).step();
+    if (!enrolled && !newcomer) throw std::runtime_error("participant " + participant + " is not enrolled");
+    const std::string status = enrolled ? find.text(1) : "";
     if (status == "excluded" || status == "withdrawn")
         throw std::runtime_error("participant " + participant + " is " + status + " and takes part no more");
-    if (find.text(0) == "simulated") return;
+    if ((enrolled ? find.text(0) : protocol::participantKindName(*newcomer)) == "simulated") return;
     std::string missing;
     Statement clauses = database.prepare(kMissingClauses);
     clauses.bind(protocol_sha256, participant);

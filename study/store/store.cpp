@@ -229,6 +229,14 @@ Result<Done> Store::keepAccuracy(const std::vector<AccuracyRow>& rows) {
     });
 }
 
+Result<Done> Store::checkAdmission(const std::string& protocol_sha256, const std::string& code,
+                                   protocol::ParticipantKind kind) {
+    return thread_->call([&](const Database& database) {
+        requireAdmission(database, protocol_sha256, code, kind);
+        return Done{};
+    });
+}
+
 Result<bool> Store::enrol(const std::string& code, protocol::ParticipantKind kind, const std::string& created_utc) {
     return thread_->call([&](const Database& database) {
         Transaction transaction(database);

@@ -99,6 +99,11 @@ public:
     /// mean in this database, for good. None in protocols from before revision 4.
     Result<std::vector<protocol::StableStiffness>> stableStiffness(const std::string& protocol_sha256);
 
+    /// May somebody of this kind, enrolled or not, begin a session of the protocol? Nothing is stored. Errors:
+    /// excluded, withdrawn, or a required clause of consent without a yes.
+    Result<Done> checkAdmission(const std::string& protocol_sha256, const std::string& code,
+                                protocol::ParticipantKind kind);
+
     /// True if the participant is new, false if already enrolled with this kind; another kind is an error, and so is a
     /// code that does not begin with the kind's letter (of several stations: with theirs behind it), or that an erased
     /// participant may have had.

@@ -56,6 +56,10 @@ public:
             if (!next) return next.errors();
             code = *next;
         }
+        // Whoever is not admitted leaves no trace; only a decision on consent that is asked for here needs a code
+        // first.
+        if (!options_.ask_consent)
+            if (const auto admitted = store_.checkAdmission(sha256_, code, kind()); !admitted) return admitted.errors();
         if (auto enrolled = store_.enrol(code, kind(), clock.at(0)); !enrolled) {
             return enrolled.errors();
         }
