@@ -176,7 +176,8 @@ TEST_F(TimedTrial, InstructionsAreLoggedAtTheirMoments) {
     ASSERT_TRUE(session_->run());
     std::vector<std::string> shown;
     for (const Event& event : sink_.events)
-        if (event.event == "instruction_not_shown") shown.push_back(event.payload_json + std::to_string(event.t_ns / kMs));
+        if (event.event == "instruction_not_shown")
+            shown.push_back(event.payload_json + std::to_string(event.t_ns / kMs));
     ASSERT_EQ(shown.size(), 3u);
     EXPECT_NE(shown[0].find("welcome"), std::string::npos);
     EXPECT_NE(shown[0].find("start.png"), std::string::npos);
