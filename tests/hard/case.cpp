@@ -12,6 +12,7 @@
 #include "core/tick/proxy.h"
 #include "core/tick/tick_model.h"
 #include "tests/hard/follow.h"
+#include "tests/hard/relaid.h"
 
 namespace passung::hard {
 
@@ -50,6 +51,24 @@ std::string commonFaults(const Run& run) {
     return {};
 }
 
+/// With the parts laid otherwise in their frames; the ticks are of the frames of `spec`.
+Result<Run> runRelaid(const model::SceneSpec& spec, std::uint64_t seed, double chord_error, const Drive& drive,
+                      std::int64_t ticks) {
+    const auto other = relaid(spec, seed, chord_error);
+    if (!other) return other.errors();
+    auto run = runScene(other->spec, drive, ticks);
+    if (!run) return run;
+    const Pose X_NH = other->X_HN.inverse();
+    for (Tick& t : run->ticks) {
+        const Vec3 from = t.device.p;
+        t.device = t.device * X_NH;
+        t.proxy = t.proxy * X_NH;
+        t.sent.torque += (from - t.device.p).cross(t.sent.force);
+    }
+    run->spec = run->solids = spec;
+    return run;
+}
+
 }  // namespace
 
 std::span<const std::pair<model::ContactMethod, const char*>> methods() {
@@ -82,7 +101,10 @@ Result<Run> runCase(const Case& c, model::ContactMethod method, std::uint64_t se
     if (!spec) return spec.errors();
     spec->contact.method = method;
     if (c.vary != nullptr && seed > 0) c.vary(*spec, seed);
-    auto run = runScene(*spec, c.drive(*spec, seed), std::llround((full ? c.full_seconds : c.seconds) / kTickSeconds));
+    const Drive drive = c.drive(*spec, seed);
+    const std::int64_t ticks = std::llround((full ? c.full_seconds : c.seconds) / kTickSeconds);
+    auto run = c.relaid_chord > 0.0 && seed > 0 ? runRelaid(*spec, seed, c.relaid_chord, drive, ticks)
+                                                : runScene(*spec, drive, ticks);
     if (run && c.solids != nullptr) run->solids = c.solids(*spec);
     return run;
 }

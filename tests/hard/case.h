@@ -45,6 +45,9 @@ struct Case {
     model::SceneSpec (*solids)(model::SceneSpec) = nullptr;  // Run::solids, of a scene with meshes
     // Of a case that is no run of a scene: gives its number; what has to do with scenes is then left out.
     Result<Measured> (*compute)() = nullptr;
+    // Of seeds above 0: the parts as meshes that lie otherwise in their frames (relaid.h), shapes with this chord error
+    // [m]. 0: not so.
+    double relaid_chord = 0.0;
 };
 
 /// The whole table; the order is that of the printed one.

@@ -24,7 +24,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 Pose worldOf(const SceneSpec& spec) { return fixedPart(spec).X_WP; }
 
-/// The whole scene turned and moved at random: no cell of a field lies as before.
+/// The whole scene turned and moved at random. (Fields turn with their parts: relaid.h.)
 void anywhere(SceneSpec& spec, std::uint64_t seed) {
     Random random(streamSeed("hard", "", "", "world", seed));
     const auto three = [&] { return Vec3(random.normal(), random.normal(), random.normal()); };
@@ -273,6 +273,19 @@ Judgement insertedOfHuge(const Run& run) {
     return result;
 }
 
+/// `c` with its parts laid otherwise in their frames by the seed.
+Case relaid(Case c, double chord_error = 2e-6) {
+    c.relaid_chord = chord_error;
+    return c;
+}
+
+/// Somewhere else, with the fields of `peg_mesh`.
+void coarser(SceneSpec& spec, std::uint64_t seed) {
+    anywhere(spec, seed);
+    spec.contact.tolerance = 10e-6;
+    spec.contact.cell = 0.0;
+}
+
 constexpr unsigned kGods = 0b110;
 constexpr const char* kOverlap = "deepest overlap";
 constexpr const char* kRatio = "deepest overlap per the penalty's on the same path";
@@ -300,8 +313,16 @@ std::span<const Case> cases() {
             {"peg_10um_ratio", "peg_10um", kRatio, "", kRatioMark, 1, 5, 2, 60, pegInHand, overlapPerPenalty, anywhere},
             {"peg_rough", "peg_rough", kOverlap, "um", kPegMark, 1, 20, 2.5, 60, roundPeg, overlapUm, anywhere},
             {"peg_4mm", "peg_4mm", kOverlap, "um", kPegMark, 1, 20, 2.5, 60, roundPeg, insertedUm, anywhere},
-            {"peg_mesh", "peg_mesh", kOverlap, "um", kMeshMark, 1, 20, 2.5, 60, meshPeg, insertedUm, anywhere, kGods,
-             false, roundSolids},
+            relaid({"peg_mesh", "peg_mesh", kOverlap, "um", kMeshMark, 2, 20, 2.5, 60, meshPeg, insertedUm, anywhere,
+                    kGods, false, roundSolids}),
+            relaid(
+                {"peg_mesh_50um", "peg_50um", kOverlap, "um", kMeshMark, 2, 20, 1.6, 60, roundPeg, insertedUm, coarser},
+                2.5e-6),
+            relaid(
+                {"peg_mesh_10um", "peg_10um", kOverlap, "um", kMeshMark, 2, 20, 1.6, 60, roundPeg, insertedUm, coarser},
+                0.5e-6),
+            relaid({"square_mesh", "square_peg", kOverlap, "um", kMeshMark, 2, 20, 1.6, 60, shapedPeg, insertedUm,
+                    coarser}),
             {"keyed_peg", "keyed_peg", kOverlap, "um", kPegMark, 1, 20, 2.5, 60, shapedPeg, insertedUm, anywhere},
             {"square_peg", "square_peg", kOverlap, "um", kPegMark, 1, 20, 2.5, 60, shapedPeg, insertedUm, anywhere},
             {"wedge", "wedge", kOverlap, "um", kFieldMark, 1, 10, 2, 20, push<20, 4, 20>, overlapUm, anywhere},

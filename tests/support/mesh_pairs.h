@@ -5,12 +5,12 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "analysis/truth/mesh_oracle.h"
 #include "core/base/random.h"
 #include "core/model/part.h"
+#include "tests/support/off_file.h"
 
 namespace passung::test {
 
@@ -28,12 +28,7 @@ inline model::TriangleMesh bumpyBall(double diameter) {
 inline model::Part meshPart(const model::TriangleMesh& mesh, const std::string& name, double cell, double spacing) {
     const auto path =
         std::filesystem::temp_directory_path() / ("passung_" + name + "_" + std::to_string(getpid()) + ".off");
-    std::ofstream out(path);
-    out.precision(17);
-    out << "OFF\n" << mesh.vertices.size() << " " << mesh.triangles.size() << " 0\n";
-    for (const Vec3& v : mesh.vertices) out << v.x() << " " << v.y() << " " << v.z() << "\n";
-    for (const auto& t : mesh.triangles) out << "3 " << t[0] << " " << t[1] << " " << t[2] << "\n";
-    out.close();
+    writeOff(path.string(), mesh);
     model::PartSpec spec;
     spec.name = name;
     spec.geometry = model::MeshFile{path.string(), 1.0};
