@@ -23,7 +23,7 @@ constexpr double kTurnTolerance = 0.1 * kAtRest / kUnsettled;
 static_assert(kTurnTolerance > std::numeric_limits<double>::epsilon() / ActiveSet::kIndependent);
 constexpr double kFarthestMix = 20.0;
 constexpr double kLongestGradient = 1.2;  // of an interpolated φ
-constexpr int kMostRounds = 200, kMostSteps = 1000;
+constexpr int kMostRounds = 200;
 
 }  // namespace
 

@@ -48,6 +48,8 @@ void noteHeld(const ConstrainedMotion& motion, TickState& state) noexcept {
     }
 }
 
+void note(int count, std::uint32_t& most) noexcept { most = std::max(most, static_cast<std::uint32_t>(count)); }
+
 }  // namespace
 
 Pose moved(const TickModel& model, const Pose& pose, const Motion& u) noexcept {
@@ -151,12 +153,15 @@ AllowedMotion allowedMotion(const TickModel& model, TickState& state, TickFrame&
     if (model.friction.empty()) {
         const ConstrainedMotion constrained = constrainMotion(wanted, around, likely);
         if (!constrained.converged) frame.status |= kIterationLimit;
+        note(constrained.iterations, frame.rows_taken);
         allowed.u = constrained.u;
         noteHeld(constrained, state);
         notePushes(model, state, constrained, allowed.rubbing);
     } else {
         const RubbedMotion rubbed = constrainWithFriction(wanted, around, model.friction, state.rubbing, likely);
         if (!rubbed.converged || !rubbed.motion.converged) frame.status |= kIterationLimit;
+        note(rubbed.motion.iterations, frame.rows_taken);
+        note(rubbed.sweeps, frame.friction_turns);
         allowed = {rubbed.motion.u, rubbed.patches};
         noteHeld(rubbed.motion, state);
         notePushes(model, state, rubbed.motion, rubbed.patches);

@@ -35,6 +35,8 @@ struct TickFrame {
     std::uint32_t contacts = 0;
     std::uint32_t iterations = 0;
     std::uint32_t nodes_visited = 0;
+    std::uint32_t rows_taken = 0;      // most contacts taken up or let go for one motion (constrained_motion.h)
+    std::uint32_t friction_turns = 0;  // most turns of one motion (friction_balance.h)
 };
 
 /// One step of the tick's work. `reason` says why this scene has it.

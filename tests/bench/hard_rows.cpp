@@ -20,8 +20,8 @@ Row rowOf(const hard::Case& c, const char* method, const hard::Measured& m) {
     row.figure_mark = c.mark;
     row.figure_unit = c.unit;
     if (!found.broken.empty()) row.settings += fmt::format(" ({:.4g} {}); {}", found.value, c.unit, found.broken);
-    row.settings += fmt::format("; tick p99.9 {:.0f} us, at most {} nodes, {} points, {} iterations", m.p999_us(),
-                                m.nodes, m.points, m.iterations);
+    row.settings += fmt::format("; tick p99.9 {:.0f} us, at most {} nodes, {} points, {} iterations, {} rows, {} turns",
+                                m.p999_us(), m.nodes, m.points, m.iterations, m.rows, m.turns);
     if (!m.us.empty()) row.time_us = summarise(m.us);
     return row;
 }

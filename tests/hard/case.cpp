@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "core/tick/friction_balance.h"
 #include "core/tick/god_object.h"
 #include "core/tick/god_object_heuristic.h"
 #include "core/tick/proxy.h"
@@ -20,20 +21,28 @@ namespace {
 
 struct Caps {
     std::uint32_t iterations, looks;  // of a tick
+    int rows, turns;                  // of a motion
 };
 
 /// Each look perhaps with a second one for its proof.
-Caps capsOf(model::ContactMethod method) {
-    if (method == model::ContactMethod::GodObject) return {tick::kSweeps, 2 * tick::kSweeps * (tick::kHalvings + 3)};
+Caps capsOf(const Run& run) {
+    const bool rubs = std::any_of(run.spec.parts.begin(), run.spec.parts.end(),
+                                  [](const model::PartSpec& part) { return part.friction > 0.0; });
+    // Without friction every motion is found before the cap. With it a tight fit may come to the cap, and then every
+    // solution of a turn, of which there are two at most, and the last one notices that by one more.
+    const int rows = rubs ? tick::kMostSteps + 2 * tick::kRubSweeps + 1 : tick::kMaxIterations - 1;
+    const int turns = rubs ? tick::kRubSweeps : 0;
+    if (run.spec.contact.method == model::ContactMethod::GodObject)
+        return {tick::kSweeps, 2 * tick::kSweeps * (tick::kHalvings + 3), rows, turns};
     // Corrections with their halvings, then per sub-step an arrival, its return and the halvings with their reliefs.
     const int sub_step = 3 + (tick::kHalvings + 1) * (1 + tick::kReliefs);
     const int looks = 2 * (1 + tick::kCorrections * (tick::kHalvings + 2) + tick::kSubSteps * sub_step);
-    return {tick::kSubSteps, static_cast<std::uint32_t>(looks)};
+    return {tick::kSubSteps, static_cast<std::uint32_t>(looks), rows, turns};
 }
 
 /// What holds in every case.
 std::string commonFaults(const Run& run) {
-    const Caps caps = capsOf(run.spec.contact.method);
+    const Caps caps = capsOf(run);
     const model::OutputLimits& limits = run.spec.limits;
     const double most_torque = limits.actuates_torque ? limits.max_torque : 0.0;
     for (std::size_t i = 0; i < run.ticks.size(); ++i) {
@@ -47,6 +56,8 @@ std::string commonFaults(const Run& run) {
         if (t.contacts > run.most_points) return fault("more points than the cap");
         if (t.iterations > caps.iterations) return fault("more sub-steps than the cap");
         if (t.nodes > caps.looks * run.all_nodes) return fault("more nodes than the cap");
+        if (static_cast<int>(t.rows) > caps.rows) return fault("a motion that took up more contacts than the cap");
+        if (static_cast<int>(t.turns) > caps.turns) return fault("more turns of friction than the cap");
     }
     return {};
 }
@@ -137,6 +148,8 @@ Result<Measured> measure(const Case& c, model::ContactMethod method, bool full) 
             result.nodes = std::max(result.nodes, t.nodes);
             result.points = std::max(result.points, t.contacts);
             result.iterations = std::max(result.iterations, t.iterations);
+            result.rows = std::max(result.rows, t.rows);
+            result.turns = std::max(result.turns, t.turns);
         }
     }
     return result;
@@ -145,10 +158,10 @@ Result<Measured> measure(const Case& c, model::ContactMethod method, bool full) 
 std::string describe(const Case& c, const char* method, const Measured& m) {
     return fmt::format(
         "{:6} {:28} {:20} {:>10.4g} <= {:<8.4g} {:5} {}{}{}; p99.9 {:.0f} us, {} nodes, {} points, {} "
-        "iterations, {} ticks\n",
+        "iterations, {} rows, {} turns, {} ticks\n",
         m.met(c) ? "met" : "MISSED", c.name, method, m.judgement.value, c.mark, c.unit, c.figure,
         m.judgement.broken.empty() ? "" : "; ", m.judgement.broken, m.p999_us(), m.nodes, m.points, m.iterations,
-        m.us.size());
+        m.rows, m.turns, m.us.size());
 }
 
 }  // namespace passung::hard

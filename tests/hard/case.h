@@ -22,8 +22,8 @@ struct Case;
 /// Over all seeds.
 struct Measured {
     Judgement judgement;
-    std::vector<double> us;  // processor time of every tick
-    std::uint32_t nodes = 0, points = 0, iterations = 0;
+    std::vector<double> us;                                                    // processor time of every tick
+    std::uint32_t nodes = 0, points = 0, iterations = 0, rows = 0, turns = 0;  // most of a tick
     double p999_us() const;
     bool met(const Case& c) const;
 };

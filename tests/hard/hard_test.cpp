@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "core/model/shape.h"
+#include "core/tick/constrained_motion.h"
+#include "core/tick/god_object.h"
 #include "tests/hard/case.h"
 #include "tests/hard/figures.h"
 #include "tests/hard/known_misses.h"
@@ -178,6 +180,28 @@ TEST(HardCases, NoClosedFormOfThePenaltyIsHeldByAWrenchThatIsALittleWrong) {
          {"a1_submerged_body", "a2_sphere_plane", "a3_box_plane", "a4_sphere_sphere", "a5_peg_offset"})
         plant(name, kWrong);
     plant("a13_cycle", kActive);
+}
+
+TEST(HardCases, NoTickBeyondACapPasses) {
+    // Truth: invariant. A sound run with one tick at or beyond each cap; and pins of which one is 10 um too low.
+    const Case* c = findCase("hundred_patches");
+    ASSERT_NE(c, nullptr);
+    const auto run = runCase(*c, model::ContactMethod::GodObject, 0, false);
+    ASSERT_TRUE(run);
+    EXPECT_EQ(judgeRun(*c, *run).broken, "");
+    const auto broken = [&](const auto& plant) {
+        auto spoilt = *run;
+        plant(spoilt.ticks[400]);
+        return judgeRun(*c, spoilt).broken;
+    };
+    EXPECT_NE(broken([](Tick& t) { t.nodes = 2'000'000'000; }).find("nodes"), std::string::npos);
+    EXPECT_NE(broken([](Tick& t) { t.contacts = 2'000'000'000; }).find("points"), std::string::npos);
+    EXPECT_NE(broken([](Tick& t) { t.iterations = tick::kSweeps + 1; }).find("sub-steps"), std::string::npos);
+    EXPECT_NE(broken([](Tick& t) { t.rows = tick::kMaxIterations; }).find("took up"), std::string::npos);
+    EXPECT_NE(broken([](Tick& t) { t.turns = 1; }).find("turns"), std::string::npos);
+    auto spoilt = *run;
+    spoilt.solids.parts.back().X_WP.p.z() -= 10e-6;
+    EXPECT_EQ(judgeRun(*c, spoilt).broken, "99 of 100 pins touched at once");
 }
 
 TEST(HardCases, KnownMissesNameCasesOfTheTable) {

@@ -57,6 +57,8 @@ Result<Run> runScene(const model::SceneSpec& spec, const Drive& drive, std::int6
                              .contacts = f.contacts,
                              .iterations = f.iterations,
                              .nodes = f.nodes_visited,
+                             .rows = f.rows_taken,
+                             .turns = f.friction_turns,
                              .us = static_cast<float>(us)});
     }
     return run;
