@@ -17,7 +17,7 @@ ListView {
         required property int index
         objectName: "attempt-" + index
         width: list.width
-        height: look.scale * 40
+        height: Math.max(look.scale * 40, words.height + 10)
         radius: 6
         color: ListView.isCurrentItem ? look.raised : "transparent"
         border.width: ListView.isCurrentItem && list.activeFocus ? 2 : 0
@@ -44,18 +44,21 @@ ListView {
             color: line.tint
         }
         Column {
+            id: words
             x: 56
             width: line.width - x - time.width - 14
             anchors.verticalCenter: parent.verticalCenter
             Say {
                 width: parent.width
                 font.pixelSize: look.scale * 13
+                wrapMode: Text.Wrap
                 text: line.modelData.condition
             }
             Say {
                 width: parent.width
                 quiet: true
                 font.pixelSize: look.scale * 11
+                wrapMode: Text.Wrap
                 text: [line.modelData.block, line.modelData.attempt > 1 ? qsTr("attempt %1").arg(line.modelData.attempt) : "", line.modelData.word, line.modelData.reason].filter(s => s !== "").join(" · ")
             }
         }

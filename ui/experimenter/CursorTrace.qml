@@ -34,6 +34,7 @@ Item {
         color: look.text
     }
     MouseArea {
+        objectName: "timeOnTrace" // by keys: the slider below
         anchors.fill: parent
         anchors.topMargin: 20
         enabled: replay.there

@@ -186,6 +186,7 @@ Item {
                     Say {
                         Layout.fillWidth: true
                         font.pixelSize: look.scale * 13
+                        wrapMode: Text.Wrap
                         text: condition.modelData
                     }
                 }

@@ -98,6 +98,7 @@ Item {
                 width: view.names - 16
                 anchors.verticalCenter: parent.verticalCenter
                 text: row.modelData.condition
+                wrapMode: Text.Wrap
                 font.pixelSize: look.scale * 13
             }
             StripItem {
@@ -125,6 +126,7 @@ Item {
                 }
                 Say {
                     width: parent.width
+                    visible: row.modelData.n > 0
                     quiet: true
                     font.pixelSize: look.scale * 11
                     text: qsTr("%1 trials, participants: %2").arg(row.modelData.n).arg(row.modelData.participants)

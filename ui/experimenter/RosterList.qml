@@ -4,7 +4,7 @@ import QtQuick.Layouts
 // The participants, a line each.
 Item {
     id: roll
-    readonly property var widths: [92, 84, 130, 96, 84].map(w => look.scale * w) // code, kind, sessions, consent, place
+    readonly property var widths: [92, 84, 170, 96, 84].map(w => look.scale * w) // code, kind, sessions, consent, place
     Row {
         id: head
         x: 30
@@ -121,7 +121,7 @@ Item {
                     verticalAlignment: Text.AlignVCenter
                     font.pixelSize: look.scale * 13
                     quiet: true
-                    text: line.modelData.standing + (line.modelData.reason !== "" ? " · " + line.modelData.reason : "")
+                    text: line.modelData.standing + (!line.modelData.takesPart && line.modelData.reason !== "" ? " · " + line.modelData.reason : "")
                 }
             }
             MouseArea {

@@ -25,7 +25,7 @@ ListView {
         readonly property bool chosen: modelData.id === records.session
         objectName: "session-" + modelData.participant + "-" + modelData.ordinal
         width: list.width
-        height: look.scale * 46
+        height: Math.max(look.scale * 46, words.height + 10)
         radius: 6
         color: chosen ? look.raised : "transparent"
         border.width: chosen && list.activeFocus ? 2 : 0
@@ -38,6 +38,7 @@ ListView {
             tone: line.modelData.tone
         }
         Column {
+            id: words
             x: 34
             width: line.width - x - trials.width - 18
             anchors.verticalCenter: parent.verticalCenter
@@ -50,6 +51,7 @@ ListView {
                 width: parent.width
                 quiet: true
                 font.pixelSize: look.scale * 11
+                wrapMode: Text.Wrap
                 text: [line.modelData.kind, line.modelData.word, line.modelData.date].filter(s => s !== "").join(" · ")
             }
         }

@@ -59,7 +59,7 @@ ColumnLayout {
                 required property int index
                 readonly property bool marked: index + 1 === details.source.line
                 width: list.width
-                height: look.scale * 20
+                height: words.height + 3
                 color: marked ? Qt.rgba(look.bad.r, look.bad.g, look.bad.b, 0.22) : "transparent"
                 Accessible.role: Accessible.ListItem
                 Accessible.name: modelData
@@ -80,10 +80,11 @@ ColumnLayout {
                     font.pixelSize: look.scale * 12
                 }
                 Text {
+                    id: words
                     x: 58
                     width: parent.width - x
                     anchors.verticalCenter: parent.verticalCenter
-                    elide: Text.ElideRight
+                    wrapMode: Text.Wrap
                     textFormat: Text.PlainText
                     text: line.modelData
                     color: look.text

@@ -10,7 +10,7 @@ RowLayout {
     spacing: 16
     Picker {
         objectName: "study"
-        implicitWidth: look.scale * 372
+        implicitWidth: Math.max(look.scale * 372, Math.min(look.scale * 560, implicitContentWidth + leftPadding + rightPadding))
         name: qsTr("Study")
         model: studies.cards
         textRole: "title"

@@ -36,7 +36,7 @@ Window {
         id: hand
         objectName: "hand"
         anchors.fill: parent
-        enabled: guide.handling
+        enabled: guide.handling && !window.asked
         acceptedButtons: Qt.LeftButton | Qt.RightButton | Qt.MiddleButton
         hoverEnabled: true
         cursorShape: pressed ? Qt.ClosedHandCursor : Qt.OpenHandCursor

@@ -317,7 +317,7 @@
     </message>
     <message>
         <source>%1 trials, participants: %2</source>
-        <translation>%1 Durchgänge, Versuchspersonen: %2</translation>
+        <translation>%1 Durchgänge, Personen: %2</translation>
     </message>
 </context>
 <context>
@@ -551,35 +551,7 @@
     </message>
 </context>
 <context>
-    <name>RunPage</name>
-    <message>
-        <source>TRIALS</source>
-        <translation>DURCHGÄNGE</translation>
-    </message>
-    <message>
-        <source>Trials</source>
-        <translation>Durchgänge</translation>
-    </message>
-    <message>
-        <source>PARTICIPANT&apos;S VIEW</source>
-        <translation>SICHT DER VERSUCHSPERSON</translation>
-    </message>
-    <message>
-        <source>LAST TEN SECONDS</source>
-        <translation>DIE LETZTEN ZEHN SEKUNDEN</translation>
-    </message>
-    <message>
-        <source>Force on the hand</source>
-        <translation>Kraft auf die Hand</translation>
-    </message>
-    <message>
-        <source>Depth of the hand in the material</source>
-        <translation>Tiefe der Hand im Material</translation>
-    </message>
-    <message>
-        <source>SESSION</source>
-        <translation>SITZUNG</translation>
-    </message>
+    <name>RunCommands</name>
     <message>
         <source>Start</source>
         <translation>Beginnen</translation>
@@ -613,6 +585,14 @@
         <translation>Strg+K</translation>
     </message>
     <message>
+        <source>Succeeded</source>
+        <translation>Gelungen</translation>
+    </message>
+    <message>
+        <source>Failed</source>
+        <translation>Misslungen</translation>
+    </message>
+    <message>
         <source>Note or reason</source>
         <translation>Notiz oder Grund</translation>
     </message>
@@ -639,6 +619,33 @@
     <message>
         <source>End the session</source>
         <translation>Sitzung beenden</translation>
+    </message>
+</context>
+<context>
+    <name>RunPage</name>
+    <message>
+        <source>TRIALS</source>
+        <translation>DURCHGÄNGE</translation>
+    </message>
+    <message>
+        <source>PARTICIPANT&apos;S VIEW</source>
+        <translation>SICHT DER VERSUCHSPERSON</translation>
+    </message>
+    <message>
+        <source>LAST TEN SECONDS</source>
+        <translation>DIE LETZTEN ZEHN SEKUNDEN</translation>
+    </message>
+    <message>
+        <source>Force on the hand</source>
+        <translation>Kraft auf die Hand</translation>
+    </message>
+    <message>
+        <source>Depth of the hand in the material</source>
+        <translation>Tiefe der Hand im Material</translation>
+    </message>
+    <message>
+        <source>SESSION</source>
+        <translation>SITZUNG</translation>
     </message>
     <message>
         <source>HAPTIC LOOP</source>
@@ -667,26 +674,6 @@
     <message>
         <source>Esc</source>
         <translation>Esc</translation>
-    </message>
-    <message>
-        <source>Attempts: %1</source>
-        <translation>Versuche: %1</translation>
-    </message>
-    <message>
-        <source>Open the participant&apos;s window</source>
-        <translation>Fenster der Versuchsperson öffnen</translation>
-    </message>
-    <message>
-        <source>Cancel</source>
-        <translation>Abbrechen</translation>
-    </message>
-    <message>
-        <source>Succeeded</source>
-        <translation>Gelungen</translation>
-    </message>
-    <message>
-        <source>Failed</source>
-        <translation>Misslungen</translation>
     </message>
 </context>
 <context>
@@ -720,6 +707,17 @@
     <message>
         <source>%1: %2 µs, 99 % below %3 µs; %4</source>
         <translation>%1: %2 µs, 99 % unter %3 µs; %4</translation>
+    </message>
+</context>
+<context>
+    <name>StateLine</name>
+    <message>
+        <source>Cancel</source>
+        <translation>Abbrechen</translation>
+    </message>
+    <message>
+        <source>Open the participant&apos;s window</source>
+        <translation>Fenster der Versuchsperson öffnen</translation>
     </message>
 </context>
 <context>
@@ -907,6 +905,17 @@
     </message>
 </context>
 <context>
+    <name>TrialList</name>
+    <message>
+        <source>Trials</source>
+        <translation>Durchgänge</translation>
+    </message>
+    <message>
+        <source>Attempts: %1</source>
+        <translation>Versuche: %1</translation>
+    </message>
+</context>
+<context>
     <name>WallRow</name>
     <message>
         <source> of %1</source>
@@ -942,6 +951,197 @@
     <message>
         <source>The export was cancelled; nothing was written.</source>
         <translation>Der Export wurde abgebrochen; nichts wurde geschrieben.</translation>
+    </message>
+</context>
+<context>
+    <name>participant</name>
+    <message>
+        <source>Your consent</source>
+        <translation>Ihre Einwilligung</translation>
+    </message>
+    <message>
+        <source>I agree</source>
+        <translation>Ich stimme zu</translation>
+    </message>
+    <message>
+        <source>I do not agree</source>
+        <translation>Ich stimme nicht zu</translation>
+    </message>
+    <message>
+        <source>%1 to %2</source>
+        <translation>%1 bis %2</translation>
+    </message>
+    <message>
+        <source>Which of the two mattered more?</source>
+        <translation>Was von beidem war wichtiger?</translation>
+    </message>
+    <message>
+        <source>Please enter a number.</source>
+        <translation>Bitte geben Sie eine Zahl ein.</translation>
+    </message>
+    <message>
+        <source>Please enter a number from %1 to %2.</source>
+        <translation>Bitte geben Sie eine Zahl von %1 bis %2 ein.</translation>
+    </message>
+    <message>
+        <source>Please decide first.</source>
+        <translation>Bitte entscheiden Sie sich zuerst.</translation>
+    </message>
+    <message>
+        <source>Not answered yet: %1. Going on once more leaves that out.</source>
+        <translation>Noch nicht beantwortet: %1. Noch einmal „Weiter“ lässt das aus.</translation>
+    </message>
+    <message>
+        <source>Back</source>
+        <translation>Zurück</translation>
+    </message>
+    <message>
+        <source>Done</source>
+        <translation>Fertig</translation>
+    </message>
+    <message>
+        <source>Next</source>
+        <translation>Weiter</translation>
+    </message>
+    <message>
+        <source>Page %1 of %2</source>
+        <translation>Seite %1 von %2</translation>
+    </message>
+    <message>
+        <source>Put the part into the opening</source>
+        <translation>Stecken Sie das Teil in die Öffnung</translation>
+    </message>
+    <message>
+        <source>Move the part through the passage</source>
+        <translation>Führen Sie das Teil durch die Engstelle</translation>
+    </message>
+    <message>
+        <source>Follow the line</source>
+        <translation>Folgen Sie der Linie</translation>
+    </message>
+    <message>
+        <source>Bring the part to its place</source>
+        <translation>Bringen Sie das Teil an seinen Platz</translation>
+    </message>
+    <message>
+        <source>Feel the part: first</source>
+        <translation>Ertasten Sie das Teil: zum ersten</translation>
+    </message>
+    <message>
+        <source>Feel the part: second</source>
+        <translation>Ertasten Sie das Teil: zum zweiten</translation>
+    </message>
+    <message>
+        <source>Welcome</source>
+        <translation>Willkommen</translation>
+    </message>
+    <message>
+        <source>One moment</source>
+        <translation>Einen Moment</translation>
+    </message>
+    <message>
+        <source>Move to the start</source>
+        <translation>Zum Start bewegen</translation>
+    </message>
+    <message>
+        <source>Go</source>
+        <translation>Los</translation>
+    </message>
+    <message>
+        <source>Take the real part</source>
+        <translation>Nehmen Sie das echte Teil</translation>
+    </message>
+    <message>
+        <source>Leave the device at rest</source>
+        <translation>Lassen Sie das Gerät ruhen</translation>
+    </message>
+    <message>
+        <source>Rest</source>
+        <translation>Ruhen Sie sich aus</translation>
+    </message>
+    <message>
+        <source>Another device</source>
+        <translation>Ein anderes Gerät</translation>
+    </message>
+    <message>
+        <source>Pause</source>
+        <translation>Pause</translation>
+    </message>
+    <message>
+        <source>Thank you!</source>
+        <translation>Vielen Dank!</translation>
+    </message>
+    <message>
+        <source>It begins in a moment.</source>
+        <translation>Gleich geht es los.</translation>
+    </message>
+    <message>
+        <source>Hold the part still where its pale image is.</source>
+        <translation>Halten Sie das Teil ruhig dort, wo sein blasses Bild ist.</translation>
+    </message>
+    <message>
+        <source>Drag: move · Shift: depth · Ctrl: turn · space bar: it is there</source>
+        <translation>Ziehen: bewegen · Umschalt: Tiefe · Strg: drehen · Leertaste: es ist da</translation>
+    </message>
+    <message>
+        <source>Drag: move · wheel or Shift + drag: depth · right button or Ctrl + drag: turn</source>
+        <translation>Ziehen: bewegen · Rad oder Umschalt + Ziehen: Tiefe · rechte Taste oder Strg + Ziehen: drehen</translation>
+    </message>
+    <message>
+        <source>The experimenter stops the time.</source>
+        <translation>Die Versuchsleitung stoppt die Zeit.</translation>
+    </message>
+    <message>
+        <source>The experimenter says when to begin.</source>
+        <translation>Die Versuchsleitung sagt, wann es losgeht.</translation>
+    </message>
+    <message>
+        <source>Answer the signals only.</source>
+        <translation>Antworten Sie nur auf die Signale.</translation>
+    </message>
+    <message>
+        <source>Go on when you are ready.</source>
+        <translation>Machen Sie weiter, wenn Sie bereit sind.</translation>
+    </message>
+    <message>
+        <source>It goes on in a moment.</source>
+        <translation>Gleich geht es weiter.</translation>
+    </message>
+    <message>
+        <source>The experimenter sets it up. Please keep your hands away from it.</source>
+        <translation>Die Versuchsleitung richtet es ein. Bitte halten Sie die Hände davon fern.</translation>
+    </message>
+    <message>
+        <source>You may let go. It goes on when the experimenter says so.</source>
+        <translation>Sie dürfen loslassen. Es geht weiter, wenn die Versuchsleitung es sagt.</translation>
+    </message>
+    <message>
+        <source>That was all. Please tell the experimenter.</source>
+        <translation>Das war alles. Bitte sagen Sie der Versuchsleitung Bescheid.</translation>
+    </message>
+    <message>
+        <source>Not this time</source>
+        <translation>Diesmal nicht</translation>
+    </message>
+    <message>
+        <source>Understood</source>
+        <translation>Verstanden</translation>
+    </message>
+    <message>
+        <source>Go on</source>
+        <translation>Weiter</translation>
+    </message>
+    <message>
+        <source>The first</source>
+        <translation>Das erste</translation>
+    </message>
+    <message>
+        <source>The second</source>
+        <translation>Das zweite</translation>
+    </message>
+    <message>
+        <source>Success</source>
+        <translation>Geschafft</translation>
     </message>
 </context>
 <context>
@@ -1427,197 +1627,6 @@
     <message>
         <source>Measuring …</source>
         <translation>Wird gemessen …</translation>
-    </message>
-</context>
-<context>
-    <name>participant</name>
-    <message>
-        <source>Your consent</source>
-        <translation>Ihre Einwilligung</translation>
-    </message>
-    <message>
-        <source>I agree</source>
-        <translation>Ich stimme zu</translation>
-    </message>
-    <message>
-        <source>I do not agree</source>
-        <translation>Ich stimme nicht zu</translation>
-    </message>
-    <message>
-        <source>%1 to %2</source>
-        <translation>%1 bis %2</translation>
-    </message>
-    <message>
-        <source>Which of the two mattered more?</source>
-        <translation>Was von beidem war wichtiger?</translation>
-    </message>
-    <message>
-        <source>Please enter a number.</source>
-        <translation>Bitte geben Sie eine Zahl ein.</translation>
-    </message>
-    <message>
-        <source>Please enter a number from %1 to %2.</source>
-        <translation>Bitte geben Sie eine Zahl von %1 bis %2 ein.</translation>
-    </message>
-    <message>
-        <source>Please decide first.</source>
-        <translation>Bitte entscheiden Sie sich zuerst.</translation>
-    </message>
-    <message>
-        <source>Not answered yet: %1. Going on once more leaves that out.</source>
-        <translation>Noch nicht beantwortet: %1. Noch einmal „Weiter“ lässt das aus.</translation>
-    </message>
-    <message>
-        <source>Back</source>
-        <translation>Zurück</translation>
-    </message>
-    <message>
-        <source>Done</source>
-        <translation>Fertig</translation>
-    </message>
-    <message>
-        <source>Next</source>
-        <translation>Weiter</translation>
-    </message>
-    <message>
-        <source>Page %1 of %2</source>
-        <translation>Seite %1 von %2</translation>
-    </message>
-    <message>
-        <source>Put the part into the opening</source>
-        <translation>Stecken Sie das Teil in die Öffnung</translation>
-    </message>
-    <message>
-        <source>Move the part through the passage</source>
-        <translation>Führen Sie das Teil durch die Engstelle</translation>
-    </message>
-    <message>
-        <source>Follow the line</source>
-        <translation>Folgen Sie der Linie</translation>
-    </message>
-    <message>
-        <source>Bring the part to its place</source>
-        <translation>Bringen Sie das Teil an seinen Platz</translation>
-    </message>
-    <message>
-        <source>Feel the part: first</source>
-        <translation>Ertasten Sie das Teil: zum ersten</translation>
-    </message>
-    <message>
-        <source>Feel the part: second</source>
-        <translation>Ertasten Sie das Teil: zum zweiten</translation>
-    </message>
-    <message>
-        <source>Welcome</source>
-        <translation>Willkommen</translation>
-    </message>
-    <message>
-        <source>One moment</source>
-        <translation>Einen Moment</translation>
-    </message>
-    <message>
-        <source>Move to the start</source>
-        <translation>Zum Start bewegen</translation>
-    </message>
-    <message>
-        <source>Go</source>
-        <translation>Los</translation>
-    </message>
-    <message>
-        <source>Take the real part</source>
-        <translation>Nehmen Sie das echte Teil</translation>
-    </message>
-    <message>
-        <source>Leave the device at rest</source>
-        <translation>Lassen Sie das Gerät ruhen</translation>
-    </message>
-    <message>
-        <source>Rest</source>
-        <translation>Ruhen Sie sich aus</translation>
-    </message>
-    <message>
-        <source>Another device</source>
-        <translation>Ein anderes Gerät</translation>
-    </message>
-    <message>
-        <source>Pause</source>
-        <translation>Pause</translation>
-    </message>
-    <message>
-        <source>Thank you!</source>
-        <translation>Vielen Dank!</translation>
-    </message>
-    <message>
-        <source>It begins in a moment.</source>
-        <translation>Gleich geht es los.</translation>
-    </message>
-    <message>
-        <source>Hold the part still where its pale image is.</source>
-        <translation>Halten Sie das Teil ruhig dort, wo sein blasses Bild ist.</translation>
-    </message>
-    <message>
-        <source>Drag: move · Shift: depth · Ctrl: turn · space bar: it is there</source>
-        <translation>Ziehen: bewegen · Umschalt: Tiefe · Strg: drehen · Leertaste: es ist da</translation>
-    </message>
-    <message>
-        <source>Drag: move · wheel or Shift + drag: depth · right button or Ctrl + drag: turn</source>
-        <translation>Ziehen: bewegen · Rad oder Umschalt + Ziehen: Tiefe · rechte Taste oder Strg + Ziehen: drehen</translation>
-    </message>
-    <message>
-        <source>The experimenter stops the time.</source>
-        <translation>Die Versuchsleitung stoppt die Zeit.</translation>
-    </message>
-    <message>
-        <source>The experimenter says when to begin.</source>
-        <translation>Die Versuchsleitung sagt, wann es losgeht.</translation>
-    </message>
-    <message>
-        <source>Answer the signals only.</source>
-        <translation>Antworten Sie nur auf die Signale.</translation>
-    </message>
-    <message>
-        <source>Go on when you are ready.</source>
-        <translation>Machen Sie weiter, wenn Sie bereit sind.</translation>
-    </message>
-    <message>
-        <source>It goes on in a moment.</source>
-        <translation>Gleich geht es weiter.</translation>
-    </message>
-    <message>
-        <source>The experimenter sets it up. Please keep your hands away from it.</source>
-        <translation>Die Versuchsleitung richtet es ein. Bitte halten Sie die Hände davon fern.</translation>
-    </message>
-    <message>
-        <source>You may let go. It goes on when the experimenter says so.</source>
-        <translation>Sie dürfen loslassen. Es geht weiter, wenn die Versuchsleitung es sagt.</translation>
-    </message>
-    <message>
-        <source>That was all. Please tell the experimenter.</source>
-        <translation>Das war alles. Bitte sagen Sie der Versuchsleitung Bescheid.</translation>
-    </message>
-    <message>
-        <source>Not this time</source>
-        <translation>Diesmal nicht</translation>
-    </message>
-    <message>
-        <source>Understood</source>
-        <translation>Verstanden</translation>
-    </message>
-    <message>
-        <source>Go on</source>
-        <translation>Weiter</translation>
-    </message>
-    <message>
-        <source>The first</source>
-        <translation>Das erste</translation>
-    </message>
-    <message>
-        <source>The second</source>
-        <translation>Das zweite</translation>
-    </message>
-    <message>
-        <source>Success</source>
-        <translation>Geschafft</translation>
     </message>
 </context>
 <context>
