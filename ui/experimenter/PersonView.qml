@@ -45,7 +45,7 @@ Item {
                 }
                 Say {
                     width: parent.width
-                    visible: view.there && view.who.reason !== ""
+                    visible: view.there && !view.who.takesPart && view.who.reason !== ""
                     quiet: true
                     wrapMode: Text.WordWrap
                     text: view.there ? view.who.reason : ""

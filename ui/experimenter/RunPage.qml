@@ -56,6 +56,12 @@ ColumnLayout {
                     shadows: false
                 }
                 Say {
+                    anchors.centerIn: parent
+                    visible: !mirrorView.drawn
+                    text: qsTr("No scene is shown now.")
+                    quiet: true
+                }
+                Say {
                     x: 18
                     y: 14
                     text: qsTr("PARTICIPANT'S VIEW")

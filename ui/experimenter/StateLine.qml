@@ -55,7 +55,7 @@ Rectangle {
             onClicked: run.openDisplay()
         }
         Say {
-            visible: run.running && run.built < 0 && !run.displayGone
+            visible: run.running && run.seconds > 0 && run.built < 0 && !run.displayGone
             text: run.seconds.toFixed(1) + " s"
             font.family: look.digits
             font.pixelSize: look.scale * 34

@@ -110,7 +110,7 @@ Window {
                 text: guide.hint
                 color: look.dim
                 font.family: look.family
-                font.pixelSize: look.scale * 15
+                font.pixelSize: look.scale * (screenView.drawn ? 15 : 20)
             }
         }
     }

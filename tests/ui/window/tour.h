@@ -2,8 +2,11 @@
 
 #include <functional>
 
+#include "study/protocol/protocol_reader.h"
 #include "tests/ui/window/asking_study.h"
 #include "tests/ui/window/windows.h"
+#include "ui/app/run_study.h"
+#include "ui/app/study_desk.h"
 
 namespace passung::test {
 
@@ -174,12 +177,16 @@ private:
     }
 
     void seeTrialByHand() {
-        waitFor([&] { return run().view().may(session::CommandKind::Skip); });
+        const auto isThere = [&] {
+            const auto state = run().view().state;
+            return state == presenter::RunState::ToStart || state == presenter::RunState::Running;
+        };
+        waitFor([&] { return isThere() || run().view().by_hand; });
         if (!run().view().by_hand) {
             activate(console_);
             pressKey(Qt::Key_K, Qt::ControlModifier);
         }
-        waitFor([&] { return run().view().by_hand; });
+        waitFor([&] { return run().view().by_hand && !app_->screen().drawn(); });
         see(console_, "console_session_by_hand");
         see(app_->participant(), "participant_by_hand");
         activate(console_);
@@ -191,16 +198,32 @@ private:
         see(console_, "console_participants_broken_off");
     }
 
+    /// A simulated participant's whole session.
+    void perform(const std::string& study) {
+        const auto plan =
+            protocol::readProtocol(protocols_ + "/" + study + "/study.toml", app::knownDevices(), app::knownMeasures());
+        ASSERT_TRUE(plan) << toString(plan.errors().front());
+        app::RunOptions options;
+        options.database = app::studyDatabase(data_, study);
+        options.simulated = 1;
+        options.backup = false;
+        const auto end = app::runStudy(*plan, options, {});
+        ASSERT_TRUE(end) << toString(end.errors().front());
+    }
+
     void seeData() {
+        perform("peg_in_hole");
         click("page-data");
         settle();
-        see(console_, "console_data_study");
         click("page-studies");
         click("study-peg_in_hole");
         click("page-data");
         pick("source", 1);
         settle();
-        click("attempt-0");
+        see(console_, "console_data_tryouts");
+        pick("source", 0);
+        settle();
+        click("attempt-2");
         see(console_, "console_data");
         click("again");
         waitFor([&] { return app_->replay().there() || !app_->replay().told().isEmpty(); });

@@ -675,6 +675,10 @@
         <source>Esc</source>
         <translation>Esc</translation>
     </message>
+    <message>
+        <source>No scene is shown now.</source>
+        <translation>Zurzeit wird keine Szene gezeigt.</translation>
+    </message>
 </context>
 <context>
     <name>SessionList</name>
