@@ -18,18 +18,30 @@
 //                         0 < beta < 2 and alpha < 2 beta (2 - beta)/(2 + beta).
 //          alpha, b -> 0: beta < 2 tan(pi/(4 (d + 1))).
 //          small values:  K = (b + B)/(T/2 + t_d), the linear rule.
+// Tool:    x the handle, y the tool, D = 1 - 1/z a difference from tick to tick, k the contact, M the tool's mass. The
+// tool
+//          goes where, by the implicit Euler rule, coupling, contact and inertia balance (core/tick/penalty_tool.h):
+//              (K + B D/T)(x - y) = (k + M D²/T²) y          the hand then feels u = (K + B D/T)(y - x) z^-d.
+//          With C = alpha + beta D and W = kappa + nu D², kappa = k T²/m, nu = M/m, u = -C W/(C + W) z^-d x m/T²: two
+//          springs in a row. Closing the loop as above and multiplying by z^(d+3):
+//              p(z) = (z - 1)(z - E) z^(d+1) (z² C + z² W) + (c1 z + c0) (z C)(z² W) = 0,   degree d + 5.
+//          Quasi-static: the tool has neither mass nor damper, K (x - y) = k y, so that what the hand feels is the wall
+//          above with k/(K + k) times both K and B.
+// Limits:  k -> infinity: the wall above, whatever M. M = k = 0: nothing is felt.
 // Invariant: scaling (m, b, B, K) by one factor, or T by s with b, B by 1/s and K by 1/s², changes nothing.
 #include "core/loop/stability.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <numbers>
 
 namespace passung::loop {
 namespace {
 
-constexpr int kMaxDegree = kMaxDeviceDelayTicks + 3;
+constexpr int kMaxDegree = kMaxDeviceDelayTicks + 5;
 
 // Coefficient i belongs to z^i.
 struct Polynomial {
@@ -44,16 +56,23 @@ bool inRange(const SampledWall& w) {
            w.delay_ticks <= kMaxDeviceDelayTicks;
 }
 
+/// A handle's numbers: see above.
+struct Handle {
+    double delta, E, c1, c0;
+};
+
+Handle handleOf(const SampledWall& w) {
+    const double delta = w.damping * w.period / w.mass, E = std::exp(-delta);
+    // The quotients lose digits for small delta; their series do not.
+    const bool small = delta < 1e-3;
+    return {delta, E, small ? 0.5 - delta / 6 + delta * delta / 24 : (delta - 1 + E) / (delta * delta),
+            small ? 0.5 - delta / 3 + delta * delta / 8 : (1 - E - delta * E) / (delta * delta)};
+}
+
 Polynomial characteristicPolynomial(const SampledWall& w) {
     const double alpha = w.stiffness * w.period * w.period / w.mass;
     const double beta = w.virtual_damping * w.period / w.mass;
-    const double delta = w.damping * w.period / w.mass;
-    const double E = std::exp(-delta);
-    // The quotients lose digits for small delta; their series do not.
-    const bool small = delta < 1e-3;
-    const double c1 = small ? 0.5 - delta / 6 + delta * delta / 24 : (delta - 1 + E) / (delta * delta);
-    const double c0 = small ? 0.5 - delta / 3 + delta * delta / 8 : (1 - E - delta * E) / (delta * delta);
-
+    const auto [delta, E, c1, c0] = handleOf(w);
     Polynomial p;
     p.degree = w.delay_ticks + 3;
     const auto d = static_cast<std::size_t>(w.delay_ticks);
@@ -63,6 +82,32 @@ Polynomial characteristicPolynomial(const SampledWall& w) {
     p.c[2] += c1 * (alpha + beta);
     p.c[1] += c0 * (alpha + beta) - c1 * beta;
     p.c[0] -= c0 * beta;
+    return p;
+}
+
+/// The product, times z^shift, added to `p`.
+template <std::size_t N, std::size_t M>
+void addProduct(const std::array<double, N>& a, const std::array<double, M>& b, std::size_t shift, Polynomial& p) {
+    for (std::size_t i = 0; i < N; ++i)
+        for (std::size_t k = 0; k < M; ++k) p.c[i + k + shift] += a[i] * b[k];
+}
+
+Polynomial characteristicPolynomial(const SampledTool& tool) {
+    const SampledWall& w = tool.wall;
+    const double square = w.period * w.period / w.mass;
+    const double alpha = w.stiffness * square, beta = w.virtual_damping * w.period / w.mass;
+    const double kappa = tool.contact_stiffness * square, nu = tool.tool_mass / w.mass;
+    const auto [delta, E, c1, c0] = handleOf(w);
+    // z² (C + W), and (z C)(z² W) times the handle's numerator
+    const std::array free{E, -(1 + E), 1.0};
+    const std::array sum{nu, -beta - 2 * nu, alpha + beta + kappa + nu};
+    const std::array coupling{-beta, alpha + beta};
+    const std::array contact{nu, -2 * nu, kappa + nu};
+    const std::array felt{c0 * coupling[0], c0 * coupling[1] + c1 * coupling[0], c1 * coupling[1]};
+    Polynomial p;
+    p.degree = w.delay_ticks + 5;
+    addProduct(free, sum, static_cast<std::size_t>(w.delay_ticks) + 1, p);
+    addProduct(felt, contact, 0, p);
     return p;
 }
 
@@ -86,33 +131,66 @@ bool isStable(const SampledWall& wall) {
     return inRange(wall) && rootsInsideUnitCircle(characteristicPolynomial(wall));
 }
 
-double stableStiffnessBorder(const SampledWall& wall) {
-    SampledWall probe = wall;
+namespace {
+
+/// Where a loop whose wall is `probe` stops being `stable` as its stiffness grows. In a stable monic polynomial of
+/// degree n no coefficient reaches 2^n, so that of a wall has a bound; without delay it lies below 100 m/T² (1 +
+/// delta), and delay only lowers it. The scan is geometric, since the stable stretch may be short.
+template <class Stable>
+double borderOf(SampledWall& probe, const Stable& stable) {
     probe.stiffness = 0;
     if (!inRange(probe)) return 0;
     const auto stableAt = [&](double K) {
         probe.stiffness = K;
-        return isStable(probe);
+        return stable();
     };
-    // In a stable monic polynomial of degree n no coefficient reaches 2^n, so K has a bound; without delay it lies
-    // below 100 m/T² (1 + delta), and delay only lowers it. The scan is geometric, since the stable stretch may be
-    // short.
     constexpr double kLowest = 1e-8, kGrowth = 1.02;
-    const double highest = 100.0 * (1 + wall.damping * wall.period / wall.mass);
-    const double unit = wall.mass / (wall.period * wall.period);
-    double stable = kLowest * unit;
-    if (!stableAt(stable)) return 0;
-    double unstable = stable;
-    while (unstable < highest * unit) {
-        unstable *= kGrowth;
-        if (!stableAt(unstable)) break;
-        stable = unstable;
+    const double unit = probe.mass / (probe.period * probe.period);
+    const double highest = 100.0 * (1 + probe.damping * probe.period / probe.mass);
+    double below = kLowest * unit;
+    if (!stableAt(below)) return 0;
+    double above = below;
+    while (true) {
+        if (!(above < highest * unit)) return std::numeric_limits<double>::infinity();
+        above *= kGrowth;
+        if (!stableAt(above)) break;
+        below = above;
     }
     for (int i = 0; i < 60; ++i) {
-        const double middle = 0.5 * (stable + unstable);
-        (stableAt(middle) ? stable : unstable) = middle;
+        const double middle = 0.5 * (below + above);
+        (stableAt(middle) ? below : above) = middle;
     }
-    return stable;
+    return below;
+}
+
+/// What the hand feels of a quasi-static coupling: two springs in a row.
+SampledWall inARow(const SampledTool& tool) {
+    SampledWall felt = tool.wall;
+    const double sum = felt.stiffness + tool.contact_stiffness;
+    const double share = sum > 0.0 ? tool.contact_stiffness / sum : 0.0;
+    felt.stiffness *= share;
+    felt.virtual_damping *= share;
+    return felt;
+}
+
+}  // namespace
+
+double stableStiffnessBorder(const SampledWall& wall) {
+    SampledWall probe = wall;
+    return borderOf(probe, [&] { return isStable(probe); });
+}
+
+bool isStable(const SampledTool& tool) {
+    const bool valid = inRange(tool.wall) && std::isfinite(tool.contact_stiffness) && tool.contact_stiffness >= 0 &&
+                       std::isfinite(tool.tool_mass) && tool.tool_mass >= 0;
+    if (!valid) return false;
+    if (tool.tool_mass == 0) return isStable(inARow(tool));
+    return rootsInsideUnitCircle(characteristicPolynomial(tool));
+}
+
+double stableStiffnessBorder(const SampledTool& tool) {
+    SampledTool probe = tool;
+    return borderOf(probe.wall, [&] { return isStable(probe); });
 }
 
 // The wall is passive iff for all 0 < theta <= pi

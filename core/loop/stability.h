@@ -27,6 +27,19 @@ bool isStable(const SampledWall& wall);
 /// [N/m]. 0 if already a very soft wall is unstable.
 double stableStiffnessBorder(const SampledWall& wall);
 
+/// The same wall felt through a tool: `wall`'s spring and damper are the coupling from handle to tool, and the tool, of
+/// `tool_mass`, is pressed against a spring of its own (core/tick/penalty_tool.h, linear: a contact that also pulls).
+struct SampledTool {
+    SampledWall wall;
+    double contact_stiffness = 10000.0;  // k between tool and wall [N/m], ≥ 0
+    double tool_mass = 0.05;             // M [kg], ≥ 0; 0: the quasi-static coupling, whose tool feels no damper
+};
+
+/// As isStable() and stableStiffnessBorder() of a wall; the border is that of the coupling's stiffness, and infinite if
+/// there is none below 100 m/T² (1 + b T/m): a contact that is soft enough is stable however it is coupled.
+bool isStable(const SampledTool& tool);
+double stableStiffnessBorder(const SampledTool& tool);
+
 /// The largest stiffness at which the wall can never give out energy [N/m]; 0 if there is none. Stricter than stable.
 double passiveStiffness(const SampledWall& wall);
 

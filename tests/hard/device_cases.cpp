@@ -54,18 +54,38 @@ simulated::DeviceParams paramsOf(const Station& station) {
     return params;
 }
 
-void atTheBorder(SceneSpec& spec, std::uint64_t seed) {
-    const simulated::DeviceParams p = paramsOf(stationOf(seed));
-    const loop::SampledWall wall{.mass = p.mass.value,
-                                 .damping = p.damping.value,
-                                 .virtual_damping = p.recommended_damping.value,
-                                 .period = kTickSeconds,
-                                 .delay_ticks = p.delay_ticks};
-    spec.contact.stiffness = 0.95 * stableStiffnessBorder(wall);
+loop::SampledWall wallOf(const simulated::DeviceParams& p) {
+    return {.mass = p.mass.value,
+            .damping = p.damping.value,
+            .virtual_damping = p.recommended_damping.value,
+            .period = kTickSeconds,
+            .delay_ticks = p.delay_ticks};
+}
+
+void feltBy(const simulated::DeviceParams& p, double stiffness, SceneSpec& spec) {
+    spec.contact.stiffness = stiffness;
     spec.contact.damping = p.recommended_damping.value;
     spec.contact.rotational_stiffness = 0.0;
     spec.contact.rotational_damping = 0.0;
     spec.limits = limitsOf(p, spec.limits);
+}
+
+void atTheBorder(SceneSpec& spec, std::uint64_t seed) {
+    const simulated::DeviceParams p = paramsOf(stationOf(seed));
+    feltBy(p, 0.95 * stableStiffnessBorder(wallOf(p)), spec);
+}
+
+/// The coupling of a virtual tool, a tenth as heavy as the handle, against contacts twice as stiff as a rigid wall's
+/// border.
+void atTheToolsBorder(SceneSpec& spec, std::uint64_t seed) {
+    const simulated::DeviceParams p = paramsOf(stationOf(seed));
+    const loop::SampledTool tool{.wall = wallOf(p),
+                                 .contact_stiffness = 2.0 * stableStiffnessBorder(wallOf(p)),
+                                 .tool_mass = 0.1 * p.mass.value};
+    feltBy(p, 0.95 * stableStiffnessBorder(tool), spec);
+    spec.contact.penalty_stiffness = tool.contact_stiffness;
+    spec.contact.tool_mass = tool.tool_mass;
+    spec.contact.tool_inertia = 0.1 * p.inertia.value;
 }
 
 Drive pressedHandle(const SceneSpec& spec, std::uint64_t seed) {
@@ -179,6 +199,8 @@ std::vector<Case> deviceCases() {
     return {
         {"border_stiffness", "ball_sigma7", "growth of the handle's swing at 0.95 of the border, delay 0-3", "um", 0,
          25, 25, 3, 8, pressedHandle, swingGrowth, atTheBorder, 0b111},
+        {"coupling_border", "coupled_ball", "the same through a virtual tool, at 0.95 of its own border", "um", 0, 25,
+         25, 3, 8, pressedHandle, swingGrowth, atTheToolsBorder, 0b001},
         {"rest", "table", "motion of handle and proxy at rest, held by a hand", "um", 1e-3, 8, 8, 6, 1000, press, drift,
          atRest, 0b111},
     };

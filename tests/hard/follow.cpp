@@ -52,6 +52,7 @@ std::string followFault(const Run& run) {
     DenseDistance way = denseDistance(run, spacing);
     int without_force = 0, in_the_air = 0, not_back = 0;
     bool touched = false;
+    const bool has_mass = run.spec.contact.coupling == model::PenaltyCoupling::Virtual;
     for (std::size_t i = 0; i < run.ticks.size(); i += kStride) {
         const Tick& t = run.ticks[i];
         if (t.status & kInputRejected) continue;
@@ -61,7 +62,7 @@ std::string followFault(const Run& run) {
         without_force = pressed && !sent ? without_force + 1 : 0;
         const double lag =
             (t.proxy.p - t.device.p).norm() + scale.reach * rotationVector(t.proxy.q * t.device.q.conjugate()).norm();
-        const bool away = lag >= scale.lag;
+        const bool away = lag >= scale.lag && !has_mass;
         in_the_air = away && proxy.least(t.proxy, scale.clear) >= scale.clear ? in_the_air + 1 : 0;
         const bool free = away && depth >= scale.clear;
         not_back = free && wayIsFree(way, t, scale.clear, run.spec.contact.tolerance) ? not_back + 1 : 0;

@@ -13,7 +13,8 @@ namespace passung::hard {
 ///   away   The proxy is r/1000 or more away from the device: it touches something, that is, has less room than c.
 ///   back   The same, the device's pose is free by c, and on the straight way to it the room grows from -tolerance on
 ///          at least in proportion: the proxy has gone there.
-/// Ticks without a usable sample are left out. Returns the first thing that does not hold; empty: all does.
+/// A virtual tool moves by its mass: of it only `touch` is asked. Ticks without a usable sample are left out. Returns
+/// the first thing that does not hold; empty: all does.
 std::string followFault(const Run& run);
 
 }  // namespace passung::hard

@@ -1,5 +1,7 @@
 #include "ui/app/stability_report.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/base/tick_record.h"
@@ -41,13 +43,46 @@ WallBounds rotationBounds(const DeviceMechanism& m, double damping, int delay_ti
                     m.coulomb_torque_Nm, m.rotational_quantum_rad);
 }
 
+bool feltThroughTool(const model::ContactSpec& contact) {
+    return contact.method == model::ContactMethod::Penalty && contact.coupling != model::PenaltyCoupling::Direct &&
+           contact.variant == model::PenaltyVariant::MaxNormalised;
+}
+
 SceneWall translationWall(const DeviceDescription& device, const model::SceneSpec& scene) {
     const double scale = scene.registration.scale;
     SceneWall wall{.stiffness = scale * scene.contact.stiffness, .bounds = {}};
-    if (device.mechanism)
-        wall.bounds = translationBounds(*device.mechanism, scale * scene.contact.damping,
-                                        device.delay_ticks + scene.limits.delay_ticks);
+    if (!device.mechanism) return wall;
+    const int delay = device.delay_ticks + scene.limits.delay_ticks;
+    wall.bounds = translationBounds(*device.mechanism, scale * scene.contact.damping, delay);
+    if (feltThroughTool(scene.contact)) {
+        const bool virtual_tool = scene.contact.coupling == model::PenaltyCoupling::Virtual;
+        wall.bounds.border =
+            stableStiffnessBorder(loop::SampledTool{.wall = {.mass = device.mechanism->mass_kg,
+                                                             .damping = device.mechanism->damping_Ns_per_m,
+                                                             .virtual_damping = scale * scene.contact.damping,
+                                                             .period = kTickSeconds,
+                                                             .delay_ticks = delay},
+                                                    .contact_stiffness = scale * scene.contact.penalty_stiffness,
+                                                    .tool_mass = virtual_tool ? scale * scene.contact.tool_mass : 0.0});
+    }
     return wall;
+}
+
+Errors beyondBorder(const protocol::StudyPlan& plan, std::span<const DeviceDescription> devices) {
+    Errors errors;
+    for (const protocol::Condition& condition : plan.conditions) {
+        const DeviceDescription* device = deviceNamed(condition.device, devices);
+        if (device == nullptr || condition.allow_unstable || !feltThroughTool(condition.scene.contact)) continue;
+        const SceneWall wall = translationWall(*device, condition.scene);
+        if (!device->mechanism || wall.stiffness < wall.bounds.border) continue;
+        errors.push_back({.message = fmt::format("must be below {:.4g} N/m, where {} is no longer stable through this "
+                                                 "coupling's tool; allow_unstable = true lifts this",
+                                                 wall.bounds.border, device->name),
+                          .file = plan.source_path,
+                          .key = "condition " + condition.name + ": contact.stiffness_N_per_m",
+                          .value = fmt::format("{:.6g}", wall.stiffness)});
+    }
+    return errors;
 }
 
 SceneWall rotationWall(const DeviceDescription& device, const model::SceneSpec& scene) {

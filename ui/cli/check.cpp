@@ -13,6 +13,7 @@
 #include "study/session/plan_text.h"
 #include "study/session/staircase_text.h"
 #include "ui/app/run_study.h"
+#include "ui/app/stability_report.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 
@@ -63,8 +64,8 @@ std::optional<int> checkQuestionnaire(const std::string& path) {
 int check(const CheckOptions& options) {
     if (const auto code = checkQuestionnaire(options.protocol)) return *code;
     auto [plan, errors] = protocol::examineProtocol(options.protocol, app::knownDevices(), app::knownMeasures());
-    const Errors of_meshes = checkMeshes(plan);
-    errors.insert(errors.end(), of_meshes.begin(), of_meshes.end());
+    for (const Errors& more : {checkMeshes(plan), app::beyondBorder(plan, app::knownDevices())})
+        errors.insert(errors.end(), more.begin(), more.end());
     if (!errors.empty()) return fail(errors);
     warn(options.protocol, session::planWarnings(plan));
     std::size_t trials = 0;

@@ -83,12 +83,15 @@ void printStability(const std::string& what, std::size_t width, const DeviceDesc
     printWall(what, width, "N/m", device.stable_stiffness_N_per_m, app::translationWall(device, scene));
     if (device.actuated_degrees >= 6 && scene.contact.rotational_stiffness > 0.0)
         printWall("", width, "Nm/rad", device.stable_rotational_stiffness_Nm_per_rad, app::rotationWall(device, scene));
-    if (scene.contact.coupling == model::PenaltyCoupling::QuasiStatic)
-        fmt::print("  {:<{}}  (coupled penalty: the most that the device feels, where contacts are hard)\n", "", width);
-    if (scene.contact.coupling == model::PenaltyCoupling::Virtual)
-        fmt::print(
-            "  {:<{}}  (of a rigid wall: the model leaves out the tool's mass of {:.4g} kg, which moves the border)\n",
-            "", width, scene.contact.tool_mass);
+    if (scene.contact.method != model::ContactMethod::Penalty ||
+        scene.contact.coupling == model::PenaltyCoupling::Direct)
+        return;
+    if (app::feltThroughTool(scene.contact))
+        fmt::print("  {:<{}}  (coupled penalty: N/m border of the coupling through its tool, contacts of {:.4g} N/m)\n",
+                   "", width, scene.contact.penalty_stiffness);
+    else
+        fmt::print("  {:<{}}  (coupled penalty: of a rigid wall; the tool and soft contacts move the border)\n", "",
+                   width);
 }
 
 void explainStability(const protocol::StudyPlan& plan, std::span<const DeviceDescription> devices) {

@@ -9,6 +9,7 @@
 #include "study/session/plan_text.h"
 #include "study/store/store_reader.h"
 #include "ui/app/run_study.h"
+#include "ui/app/stability_report.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 #include "ui/cli/station.h"
@@ -146,6 +147,8 @@ int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, con
 int run(const RunOptions& options) {
     auto plan = protocol::readProtocol(options.protocol, app::knownDevices(), app::knownMeasures());
     if (!plan) return fail(plan.errors());
+    const Errors unstable = app::beyondBorder(*plan, app::knownDevices());
+    if (!unstable.empty()) return fail(unstable);
     warn(options.protocol, session::planWarnings(*plan));
     if (options.seed) plan->seed = *options.seed;
 
