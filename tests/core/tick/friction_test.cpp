@@ -193,7 +193,8 @@ std::vector<ContactPoint> tightFit(Random& random, int kind, int count) {
 
 TEST(Friction, HoldsInATightFitOfManyContacts) {
     // Truth: invariant. However many contacts rub, the motion is finite and no longer than the wanted one, since
-    // standing still is allowed; where a balance is found no contact is entered by more than the problem's tolerance.
+    // standing still is allowed, and no patch bears more than its cone; where a balance is found no contact is entered
+    // by more than the problem's tolerance.
     Random random(20);
     int settled = 0;
     constexpr int kRuns = 150;
@@ -207,6 +208,10 @@ TEST(Friction, HoldsInATightFitOfManyContacts) {
             rub(wanted, manifold, {.at_rest = at_rest, .sliding = at_rest * random.uniform(0.5, 1.0)});
         settled += found.converged ? 1 : 0;
         ASSERT_LE(found.motion.u.norm(), wanted.norm() * (1.0 + 1e-6)) << run;
+        for (int i = 0; i < found.patches.count; ++i) {
+            const auto& patch = found.patches.patch[static_cast<std::size_t>(i)];
+            ASSERT_LE(patch.rub.norm(), at_rest * patch.pressure * (1.0 + 1e-6) + 1e-8 * wanted.norm()) << run;
+        }
         if (!found.converged) continue;
         const Vec3 turn = found.motion.u.tail<3>() / kRho;
         for (const ContactPoint& c : contacts) {
