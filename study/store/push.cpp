@@ -131,9 +131,11 @@ public:
         Statement running = database_.prepare(
             "SELECT participant_id || ', session ' || ordinal FROM session WHERE end_state IS NULL ORDER BY rowid");
         while (running.step()) report.unfinished.push_back(running.text(0));
-        Statement ended = database_.prepare("SELECT session_id FROM session WHERE end_state IS NOT NULL AND " + kKept +
-                                            " ORDER BY participant_id, ordinal");
-        while (ended.step()) pushSession(ended.text(0), sessions, tables, report);
+        Statement ended = database_.prepare(
+            "SELECT session_id, participant_id || ', session ' || ordinal FROM session WHERE end_state IS NOT NULL "
+            "AND " +
+            kKept + " ORDER BY participant_id, ordinal");
+        while (ended.step()) pushSession(ended.text(0), ended.text(1), sessions, tables, report);
         return report;
     }
 
@@ -260,8 +262,8 @@ private:
         work.exec_params(sql, pqxx::prepare::make_dynamic_params(parameters));
     }
 
-    void pushSession(const std::string& id, const std::vector<Copy>& copies, const std::vector<Table>& tables,
-                     PushReport& report) {
+    void pushSession(const std::string& id, const std::string& name, const std::vector<Copy>& copies,
+                     const std::vector<Table>& tables, PushReport& report) {
         const std::string digest = sessionDigest(database_, tables, "main", id);
         pqxx::work work(there_);
         const auto found = work.exec_params("SELECT digest FROM pushed_session WHERE session_id=$1", id);
@@ -270,6 +272,10 @@ private:
             return;
         }
         if (!found.empty()) refuseOtherTrials(work, id);
+        if (!found.empty() && hasMoreThere(work, id)) {
+            report.newer_there.push_back(name);
+            return;
+        }
         work.exec_params("DELETE FROM session WHERE session_id=$1", id);
         for (const Copy& copy : copies) {
             Statement rows = database_.prepare(copy.query);
@@ -294,6 +300,30 @@ private:
             if (!here.bind(id, row[0].as<std::int64_t>(), row[1].as<std::int64_t>(), std::string(row[2].c_str()))
                      .step())
                 throw std::runtime_error("session " + id + " has other trials there: its code stands for two people");
+    }
+
+    /// Was the session noted on, answered about or invalidated in a copy of the file that is newer than this one?
+    bool hasMoreThere(pqxx::work& work, const std::string& id) {
+        const auto lacks = [&](const std::string& there, const std::string& here) {
+            Statement find = database_.prepare(here);
+            const auto rows = work.exec_params(there, id);
+            return std::any_of(rows.begin(), rows.end(), [&](const auto& row) {
+                return !find.bind(id, row[0].template as<std::string>(), row[1].template as<std::string>(),
+                                  row[2].template as<std::string>())
+                            .step();
+            });
+        };
+        return lacks("SELECT t_utc, coalesce(author, ''), text FROM note WHERE session_id=$1",
+                     "SELECT 1 FROM note WHERE session_id=? AND t_utc=? AND coalesce(author, '')=? AND text=?") ||
+               lacks(
+                   "SELECT t_ns::text, event, coalesce(payload_json, '') FROM event WHERE session_id=$1",
+                   "SELECT 1 FROM event JOIN segment USING(segment_id) WHERE session_id=? AND t_ns=CAST(? AS INTEGER) "
+                   "AND event=? AND coalesce(payload_json, '')=?") ||
+               lacks(
+                   "SELECT t.trial_index::text, a.attempt_no::text, '0' FROM attempt a JOIN trial_plan t "
+                   "USING(session_id, trial_id) WHERE session_id=$1 AND a.valid=0",
+                   "SELECT 1 FROM attempt JOIN trial_plan USING(trial_id) WHERE session_id=? AND "
+                   "trial_index=CAST(? AS INTEGER) AND attempt_no=CAST(? AS INTEGER) AND valid=CAST(? AS INTEGER)");
     }
 
     const Database& database_;

@@ -13,6 +13,7 @@ struct PushReport {
     std::int64_t sessions = 0;               // added
     std::int64_t replaced = 0;               // had changed here since an earlier push
     std::int64_t known = 0;                  // there already
+    std::vector<std::string> newer_there;    // not pushed: there it has remarks that this file lacks
     std::vector<std::string> unfinished;     // left out: still running, or killed and not opened since
     std::vector<std::string> erased_there;   // codes: were erased here, and now there too
     std::vector<std::string> left_out;       // codes: were erased there, from another file
@@ -22,7 +23,7 @@ struct PushReport {
 /// Copies the study into the PostgreSQL database `to` (a connection URI or string of libpq), into a schema with the
 /// study's name that is made if it is not there. Tables are those of the file; rows of a session carry its session_id
 /// and are numbered within it, so that files of several stations do not collide. Each session is one transaction;
-/// pushing again copies only what is new or has changed, and places and people that are gone here are gone there.
+/// pushing again copies only what is new or has changed, never an older copy over a newer one, and places and people that are gone here are gone there.
 /// Refused is what mergeDatabases() refuses. Free places of the design stay here.
 Result<PushReport> pushDatabase(const std::string& path, const std::string& to);
 

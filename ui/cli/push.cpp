@@ -12,6 +12,11 @@ int push(const PushOptions& options) {
     if (!report) return fail(report.errors());
     for (const std::string& session : report->unfinished)
         fmt::print("{}: left out: it runs, or was killed and its database not opened since\n", session);
+    for (const std::string& session : report->newer_there)
+        fmt::print(stderr,
+                   "{}: error: {}: not pushed: there it has notes or decisions that this file lacks; push the newer "
+                   "copy, or passung merge of both\n",
+                   options.database, session);
     for (const std::string& code : report->erased_there)
         fmt::print(
             "{}: was erased here and is deleted there; VACUUM FULL takes the last bytes out of PostgreSQL's tables, "
@@ -25,7 +30,7 @@ int push(const PushOptions& options) {
         fmt::print("{}: have one place of the design; passung merge would part them\n", people);
     fmt::print("{}: {} sessions added, {} brought up to date, {} known\n", options.database, report->sessions,
                report->replaced, report->known);
-    return 0;
+    return report->newer_there.empty() ? 0 : 1;
 }
 
 }  // namespace passung::cli

@@ -110,6 +110,29 @@ TEST_F(Push, BringsAChangedSessionUpToDateAndLeavesOutARunningOne) {
     EXPECT_STREQ(ask("SELECT sum(valid) FROM attempt")[0][0].c_str(), "1");
 }
 
+TEST_F(Push, AnOlderCopyNeverTakesAwayWhatANewerOneBrought) {
+    // Truth: invariant: a note and an invalidation, each made in the file after it was copied, stay there; the newest
+    // file, and one with something of its own that lacks nothing, are pushed as ever.
+    const std::string path = folder_ / "s.db", copy = folder_ / "copy.db";
+    perform(path, "S001");
+    perform(path, "S002");
+    require(pushDatabase(path, server_->uri()));
+    std::filesystem::copy_file(path, copy);
+    require(fake::openStore(path)->addNote(1, "the screen flickered"));
+    EXPECT_EQ(require(pushDatabase(path, server_->uri())).replaced, 1);
+    const auto push_copy = [&] { return require(pushDatabase(copy, server_->uri())); };
+    EXPECT_EQ(push_copy().newer_there, std::vector<std::string>{"S001, session 1"});
+    EXPECT_EQ(push_copy().known, 1) << "the other one";
+    EXPECT_EQ(count("note"), 1);
+    require(fake::openStore(path)->invalidateAttempt(4, "was told"));
+    EXPECT_EQ(require(pushDatabase(path, server_->uri())).replaced, 1);
+    EXPECT_EQ(push_copy().newer_there.size(), 2u);
+    EXPECT_EQ(ask("SELECT count(*) FROM attempt WHERE valid=0")[0][0].as<int>(), 1);
+    require(fake::openStore(path)->addNote(4, "both"));
+    EXPECT_TRUE(require(pushDatabase(path, server_->uri())).newer_there.empty());
+    EXPECT_EQ(count("note"), 2);
+}
+
 TEST_F(Push, TakesFilesOfSeveralStationsButNoCodeForTwoPeople) {
     // Truth: invariant. Rows of both files have the same numbers.
     perform(folder_ / "a.db", "SA001");

@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <memory>
+#include <stdexcept>
 #include <thread>
 
 #include "study/store/sqlite.h"
@@ -37,6 +40,10 @@ const std::vector<Led> kScript = {{},         {"failed", {{"repeat", "--reason",
                                   {},         {},
                                   {"failed"}, {},
                                   {},         {}};
+
+/// Refusals that are over once the program has come to its next trial.
+constexpr std::array kNotYet = {"no session runs on it", "the session has begun already",
+                                "no trial runs that the experimenter times", "the trial's clock has not been started"};
 
 class CommandedSession {
 public:
@@ -94,9 +101,17 @@ private:
         return runProgram(console_.path(), words);
     }
 
-    /// Says it until the session is where it can be obeyed.
+    /// Says it until the session is where it can be obeyed; throws where waiting will not help.
     void say(const std::vector<std::string>& words) const {
-        while (tell(words).exit_code != 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        for (;;) {
+            const Ended ended = tell(words);
+            if (ended.exit_code == 0) return;
+            const bool comes = std::any_of(kNotYet.begin(), kNotYet.end(), [&](const char* not_yet) {
+                return ended.err.find(not_yet) != std::string::npos;
+            });
+            if (!comes) throw std::runtime_error(ended.err);
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
     }
 
     /// Obeyed is not yet stored: only an acknowledged attempt outlives a kill.
