@@ -35,7 +35,8 @@ int tellDatabase(const std::string& database, const Command& command) {
 
 int tellSession(const SessionOptions& options) {
     Command command;
-    command.kind = session::commandNamed(options.action).value_or(CommandKind::Note);  // main has checked it
+    command.kind =
+        session::commandNamed(options.action).value_or(CommandKind::Note);  // the command line has checked it
     command.text = options.text;
     if (options.attempt > 0) command.attempt = session::AttemptId{options.attempt};
     const bool needs_text = command.kind == CommandKind::Note || command.kind == CommandKind::Invalidate;
