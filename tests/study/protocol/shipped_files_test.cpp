@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <map>
 
 #include "devices/simulated/presets.h"
@@ -25,6 +27,23 @@ std::vector<std::string> knownMeasures() {
 
 Result<StudyPlan> readShipped(const std::string& name) {
     return readProtocol(PASSUNG_SOURCE_DIR "/protocols/" + name, knownDevices(), knownMeasures());
+}
+
+TEST(ShippedFiles, PegInHoleAsksForConsentInTwoLanguages) {
+    // Truth: closed form: what the study's own comments say.
+    const auto plan = readShipped("peg_in_hole/study.toml");
+    ASSERT_TRUE(plan) << toString(plan.errors()[0]);
+    std::string clauses;
+    for (const ConsentClause& clause : plan->consent) {
+        clauses += clause.clause + (clause.required ? " " : "? ");
+        ASSERT_EQ(clause.texts.size(), 2u) << clause.clause;
+        for (const auto& [language, text] : clause.texts) {
+            EXPECT_EQ(text.find_first_of("\n\\"), std::string::npos) << "one paragraph: " << text;
+            const bool umlauts = std::any_of(text.begin(), text.end(), [](char c) { return (c & 0x80) != 0; });
+            EXPECT_EQ(umlauts, language == "de") << text;
+        }
+    }
+    EXPECT_EQ(clauses, "taking_part data_use sharing? ");
 }
 
 double radialClearance(const Condition& condition) {

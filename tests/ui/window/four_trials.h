@@ -16,7 +16,7 @@ inline std::string textOf(const std::string& path) {
 }
 
 /// protocols/peg_in_hole with four of its conditions, without practice, with time enough for a hand that is slow and a
-/// machine that misses cycles; a trial that does not count is repeated. Its questionnaires as they are.
+/// machine that misses cycles; a trial that does not count is repeated. Its questionnaires as they are; no consent.
 inline std::string fourTrials() {
     std::string text = textOf(PASSUNG_SOURCE_DIR "/protocols/peg_in_hole/study.toml");
     const auto swap = [&text](const std::string& from, const std::string& to) {
@@ -37,6 +37,9 @@ inline std::string fourTrials() {
         "");
     swap("repetitions = 2", "repetitions = 1\non_invalid = \"repeat_at_block_end\"");
     swap("moment = \"after_condition\"", "moment = \"session_end\"");
+    const std::size_t consent = text.find("# ---- What people agree to");
+    if (consent == std::string::npos) throw std::runtime_error("protocols/peg_in_hole no longer asks for consent");
+    text.erase(consent, text.find("# Without `measures") - consent);
     return text + "\n[loop]\nmax_missed_share = 1\n";
 }
 
