@@ -23,8 +23,8 @@ struct PushReport {
 /// Copies the study into the PostgreSQL database `to` (a connection URI or string of libpq), into a schema with the
 /// study's name that is made if it is not there. Tables are those of the file; rows of a session carry its session_id
 /// and are numbered within it, so that files of several stations do not collide. Each session is one transaction;
-/// pushing again copies only what is new or has changed, never an older copy over a newer one, and places and people that are gone here are gone there.
-/// Refused is what mergeDatabases() refuses. Free places of the design stay here.
+/// pushing again copies only what is new or has changed, never an older copy over a newer one, and places and people
+/// that are gone here are gone there. Refused is what mergeDatabases() refuses. Free places of the design stay here.
 Result<PushReport> pushDatabase(const std::string& path, const std::string& to);
 
 }  // namespace passung::store

@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <map>
+#include <set>
 
 #include "core/base/random.h"
 #include "study/store/store_reader.h"
@@ -88,6 +91,55 @@ TEST(Slots, OfTwoStationsFillOneSquareTogether) {
             EXPECT_EQ(rows,
                       (std::map<std::int64_t, int>{{0, round / 2}, {1, round / 2}, {2, round / 2}, {3, round / 2}}));
         }
+    }
+}
+
+TEST(Slots, OfSeveralStationsStayBalancedWhenThreeInTenDropOut) {
+    // Truth: invariant. A station fills its own passes through the 2 groups × 4 rows, one after another: no two people
+    // who complete have one place, whoever enrols where in between; a station leaves at most its running pass open, so
+    // that no order has more than one completed session per station more than another; and none once all are full.
+    const protocol::StudyPlan plan = twoGroups(48);
+    for (const int stations : {2, 3, 5}) {
+        const fake::TempFolder folder;
+        std::vector<std::unique_ptr<Store>> stores;
+        for (int i = 0; i < stations; ++i) {
+            OpenOptions options = fake::options();
+            options.station = {std::string(1, static_cast<char>('A' + i)), i, stations};
+            stores.push_back(fake::openStore(folder / (options.station.name + ".db"), options));
+        }
+        Random random(static_cast<std::uint64_t>(stations));
+        std::map<std::pair<std::size_t, std::int64_t>, int> completed;
+        for (std::size_t group = 0; group < 2; ++group)
+            for (std::int64_t row = 0; row < 4; ++row) completed[{group, row}] = 0;
+        std::set<std::pair<std::size_t, std::int64_t>> places;
+        std::vector<int> done(stores.size());
+        int left = 0, worst = 0;
+        const auto imbalance = [&] {
+            const auto [least, most] = std::minmax_element(
+                completed.begin(), completed.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+            return most->second - least->second;
+        };
+        while (std::any_of(done.begin(), done.end(), [](int people) { return people < 16; })) {
+            const auto station = static_cast<std::size_t>(random.below(stores.size()));
+            if (done[station] == 16) continue;
+            Store& store = *stores[station];
+            const std::string sha = require(store.importProtocol(plan));
+            const std::string code = require(store.nextCode(protocol::ParticipantKind::Real));
+            require(store.enrol(code, protocol::ParticipantKind::Real, "2001-01-01T00:00:00.000Z"));
+            const Slot slot = require(store.assignSlot(sha, code));
+            const bool stays = random.uniform() >= 0.3;
+            hold(store, plan, sha, code, stays);
+            left += stays ? 0 : 1;
+            if (!stays) continue;
+            ++done[station], ++completed[{slot.group, slot.sequence_index}];
+            EXPECT_TRUE(places.insert({slot.group, slot.number}).second) << code << " has somebody else's place";
+            worst = std::max(worst, imbalance());
+        }
+        EXPECT_GE(left, 5) << "else nothing was tested";
+        EXPECT_LE(worst, stations);
+        EXPECT_EQ(imbalance(), 0);
+        std::printf("%d stations: %d of %d left; largest imbalance on the way %d, at the end %d\n", stations, left,
+                    left + 16 * stations, worst, imbalance());
     }
 }
 
