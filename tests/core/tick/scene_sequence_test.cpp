@@ -66,6 +66,18 @@ TEST(SceneSequence, OneSceneIsTheTickItself) {
     EXPECT_EQ(scenes.tick(), bench.state().tick);
 }
 
+TEST(SceneSequence, TheHashTellsOfWhatCameBeforeAChangeOfScenes) {
+    // Truth: invariant: two runs that differ in one tick of the first scene only end with different hashes.
+    const test::Bench soft(pressed(500.0)), hard(pressed(1000.0));
+    const auto hashAfter = [&](double x) {
+        tick::SceneSequence scenes(std::array{tick::SceneTurn{&soft.model(), 10}, tick::SceneTurn{&hard.model()}});
+        for (int k = 0; k < 40; ++k) scenes.step({k == 7 ? Pose{kPressed.q, kPressed.p + Vec3(x, 0, 0)} : kPressed});
+        return scenes.hash();
+    };
+    EXPECT_EQ(hashAfter(0.0), hashAfter(0.0));
+    EXPECT_NE(hashAfter(0.0), hashAfter(1e-4));
+}
+
 TEST(SceneSequence, AllocatesNothingWhenScenesChange) {
     // Truth: invariant, counted by interposed functions
     if (!support::RtGuard::available()) GTEST_SKIP() << "the sanitizer owns the interposed functions";
