@@ -7,6 +7,5 @@ home=$(mktemp -d)
 trap 'rm -rf -- "$home"' EXIT
 mkdir -p "$here/pictures"
 rm -f -- "$here/pictures/"*.png
-export HOME=/home/lab  # of whom the paths in the pictures are
 export LIBGL_ALWAYS_SOFTWARE=1 PASSUNG_PICTURES=$here/pictures XDG_RUNTIME_DIR=$home
 xvfb-run -a -s '-screen 0 1600x1000x24 +extension GLX' "$1"

@@ -27,6 +27,7 @@ QString stateLine(const RunView& view) {
         case RunState::Preparing:
             return trial(QT_TRANSLATE_NOOP("words", "Trial %1 of %2 is being prepared"));
         case RunState::ToStart:
+            if (view.by_hand) return trial(QT_TRANSLATE_NOOP("words", "Trial %1 of %2 waits for Start"));
             return trial(QT_TRANSLATE_NOOP("words", "Trial %1 of %2 waits for the start pose"));
         case RunState::Running:
             return trial(QT_TRANSLATE_NOOP("words", "Trial %1 of %2 is running"));

@@ -25,7 +25,13 @@ QImage beside(const QImage& left, const QImage& right) {
 
 class Pictures : public Tour {
 protected:
+    static constexpr int kWidth = 1280, kHeight = 800;
+
     void keep(QQuickWindow* of, const QString& name, bool dark) {
+        if (of->width() > kWidth) {
+            of->resize(kWidth, kHeight);
+            waitFor([&] { return of->width() == kWidth; });
+        }
         // Twice: what moves into its place has arrived by the second.
         of->grabWindow();
         QCoreApplication::processEvents();

@@ -51,8 +51,12 @@ protected:
         pressKey(key, modifiers);
     }
     void waitForTrial(std::int64_t number) {
-        waitFor([&] { return isOver() || (run().view().number == number && run().view().state == RunState::Running); });
-        ASSERT_FALSE(isOver()) << run().view().failure;
+        const auto& view = run().view();
+        waitFor([&] {
+            return isOver() || view.state == RunState::Answering ||
+                   (view.number == number && view.state == RunState::Running);
+        });
+        ASSERT_EQ(view.state, RunState::Running) << view.failure;
     }
     bool isOver() const { return run().view().state >= RunState::Complete; }
     int attempts(std::size_t trial) const { return run().view().rows[trial - 1].attempts; }
@@ -224,6 +228,7 @@ TEST_F(WholeSession, KilledResumedRepeatedInvalidatedAndStoppedItLeavesWhatARunW
     performTrial(4);
 
     waitForTrial(4);  // again; and an emergency
+    ASSERT_FALSE(HasFatalFailure());
     pressInConsole(Qt::Key_Escape);
     waitFor(RunState::Stopped);
     pressInConsole(Qt::Key_P, Qt::ControlModifier);

@@ -223,6 +223,7 @@ private:
         see(console_, "console_data_tryouts");
         pick("source", 0);
         settle();
+        type("exportFolder", "exports/peg_in_hole");
         click("attempt-2");
         see(console_, "console_data");
         click("again");

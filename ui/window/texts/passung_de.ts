@@ -1907,5 +1907,9 @@
         <source>change to the device %1, then continue</source>
         <translation>auf das Gerät %1 wechseln, dann fortsetzen</translation>
     </message>
+    <message>
+        <source>Trial %1 of %2 waits for Start</source>
+        <translation>Durchgang %1 von %2 wartet auf „Beginnen“</translation>
+    </message>
 </context>
 </TS>
