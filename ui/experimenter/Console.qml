@@ -155,28 +155,29 @@ Window {
             }
         }
 
-        StudiesPage {
-            visible: window.page === "studies"
+        Item { // what a page would like to measure is nothing to the line above it
             Layout.fillWidth: true
             Layout.fillHeight: true
-            onBegun: window.page = "session"
-        }
-        ParticipantsPage {
-            visible: window.page === "participants"
-            Layout.fillWidth: true
-            Layout.fillHeight: true
-            onBegun: window.page = "session"
-        }
-        DataPage {
-            visible: window.page === "data"
-            Layout.fillWidth: true
-            Layout.fillHeight: true
-        }
-        RunPage {
-            id: runPage
-            visible: window.page === "session"
-            Layout.fillWidth: true
-            Layout.fillHeight: true
+
+            StudiesPage {
+                visible: window.page === "studies"
+                anchors.fill: parent
+                onBegun: window.page = "session"
+            }
+            ParticipantsPage {
+                visible: window.page === "participants"
+                anchors.fill: parent
+                onBegun: window.page = "session"
+            }
+            DataPage {
+                visible: window.page === "data"
+                anchors.fill: parent
+            }
+            RunPage {
+                id: runPage
+                visible: window.page === "session"
+                anchors.fill: parent
+            }
         }
     }
 }

@@ -51,6 +51,7 @@ protected:
     void clickPart(int row, const char* name, double share = 0.5) {
         QQuickItem* target = part(row, name);
         ASSERT_NE(target, nullptr) << row << " " << name;
+        layOut(window()->contentItem());
         const QPointF at = target->mapToScene({share * target->width(), target->height() / 2});
         QTest::mouseClick(window(), Qt::LeftButton, {}, at.toPoint());
     }
