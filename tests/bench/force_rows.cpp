@@ -15,8 +15,8 @@
 #include "tests/bench/stopwatch.h"
 #include "tests/hard/figures.h"
 #include "ui/app/disk_store.h"
+#include "ui/app/known_names.h"
 #include "ui/app/loop_apparatus.h"
-#include "ui/app/run_study.h"
 
 namespace {
 

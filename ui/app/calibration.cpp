@@ -1,4 +1,5 @@
 #include "ui/app/calibration.h"
+#include "ui/app/known_names.h"
 
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -11,7 +12,6 @@
 #include "devices/simulated/device_dynamics.h"
 #include "study/protocol/protocol_reader.h"
 #include "ui/app/disk_store.h"
-#include "ui/app/run_study.h"
 
 namespace passung::app {
 

@@ -4,7 +4,6 @@
 #include <sys/utsname.h>
 
 #include <filesystem>
-#include <stdexcept>
 #include <thread>
 
 #include "devices/simulated/presets.h"
@@ -233,39 +232,6 @@ private:
     store::Store& store_;
     std::string sha256_;
 };
-
-}  // namespace
-
-const std::vector<DeviceDescription>& presetDevices() {
-    static const std::vector<DeviceDescription> devices = [] {
-        std::vector<DeviceDescription> all;
-        for (const auto& preset : simulated::presets()) all.push_back(simulated::describe(preset));
-        return all;
-    }();
-    return devices;
-}
-
-const std::vector<DeviceDescription>& knownDevices() {
-    static const std::vector<DeviceDescription> devices = [] {
-        const auto calibrated = withCalibrations(presetDevices());
-        if (calibrated) return *calibrated;
-        std::string lines;
-        for (const Error& error : calibrated.errors()) lines += (lines.empty() ? "" : "\n") + toString(error);
-        throw std::runtime_error(lines);
-    }();
-    return devices;
-}
-
-const std::vector<std::string>& knownMeasures() {
-    static const std::vector<std::string> names = [] {
-        std::vector<std::string> all;
-        for (const auto& definition : measures::definitions()) all.push_back(definition.name);
-        return all;
-    }();
-    return names;
-}
-
-namespace {
 
 store::Store::Opened openForRun(const RunOptions& options, const RunListener& listener, bool create = true) {
     auto with = openOptionsNow(options.now());

@@ -1,4 +1,5 @@
 #include "ui/app/stored_plans.h"
+#include "ui/app/known_names.h"
 
 #include <algorithm>
 
@@ -7,7 +8,6 @@
 #include "study/store/digest.h"
 #include "ui/app/auto_accuracy.h"
 #include "ui/app/calibration.h"
-#include "ui/app/run_study.h"
 
 namespace passung::app {
 

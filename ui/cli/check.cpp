@@ -12,7 +12,7 @@
 #include "study/session/participant_order.h"
 #include "study/session/plan_text.h"
 #include "study/session/staircase_text.h"
-#include "ui/app/run_study.h"
+#include "ui/app/known_names.h"
 #include "ui/app/stability_report.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"

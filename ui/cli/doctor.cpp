@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "ui/app/calibration.h"
+#include "ui/app/known_names.h"
 #include "ui/app/loop_check.h"
-#include "ui/app/run_study.h"
 #include "ui/app/stability_report.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"

@@ -12,7 +12,7 @@
 #include "ui/app/auto_accuracy.h"
 #include "ui/app/calibration.h"
 #include "ui/app/disk_store.h"
-#include "ui/app/run_study.h"
+#include "ui/app/known_names.h"
 #include "ui/app/stability_report.h"
 #include "ui/app/stage_cost.h"
 #include "ui/cli/commands.h"

@@ -8,7 +8,7 @@
 #include "study/protocol/protocol_reader.h"
 #include "study/store/participant_desk.h"
 #include "study/store/store_reader.h"
-#include "ui/app/run_study.h"
+#include "ui/app/known_names.h"
 #include "ui/app/study_desk.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"

@@ -11,7 +11,7 @@
 #include "study/protocol/protocol_reader.h"
 #include "study/session/plan_text.h"
 #include "ui/app/haptic_study.h"
-#include "ui/app/run_study.h"
+#include "ui/app/known_names.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 

@@ -3,11 +3,13 @@
 
 #include <csignal>
 #include <functional>
+#include <set>
 
 #include "analysis/export/summary.h"
 #include "study/protocol/protocol_reader.h"
 #include "study/session/plan_text.h"
 #include "study/store/store_reader.h"
+#include "ui/app/known_names.h"
 #include "ui/app/run_study.h"
 #include "ui/app/stability_report.h"
 #include "ui/cli/commands.h"
@@ -68,7 +70,8 @@ int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, con
         };
     }
     std::string code, participant;
-    std::size_t successes = 0, finished = 0, planned = 0, earlier = 0, invalid = 0;
+    std::set<std::int64_t> succeeded;  // trials, by the last attempt at each
+    std::size_t finished = 0, planned = 0, earlier = 0, invalid = 0;
     ProgressLine progress;
     app::RunListener listener;
     listener.recovered = [&](const store::RecoveryReport& report) { tellRecovery(what.database, report); };
@@ -83,16 +86,19 @@ int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, con
         code = who;
         participant = fmt::format("{} ({} of {})", code, number, of);
         progress.show(participant + ": preparing");
-        successes = finished = planned = earlier = invalid = 0;
+        succeeded.clear();
+        finished = planned = earlier = invalid = 0;
     };
     listener.trial = [&](const session::TrialProgress& trial) {
         if (finished == 0 && trial.finished > 0) earlier = trial.finished - 1;  // of a session that is resumed
         finished = trial.finished;
         planned = trial.planned;
         const bool counts = trial.valid && trial.outcome != measures::Outcome::Aborted;
-        successes += counts && trial.outcome == measures::Outcome::Success ? 1 : 0;
+        succeeded.erase(trial.trial.trial_index);
+        if (counts && trial.outcome == measures::Outcome::Success) succeeded.insert(trial.trial.trial_index);
         invalid += counts ? 0 : 1;
-        progress.show(fmt::format("{}: trial {} of {}, {} succeeded", participant, finished, trial.planned, successes));
+        progress.show(
+            fmt::format("{}: trial {} of {}, {} succeeded", participant, finished, trial.planned, succeeded.size()));
     };
     listener.state = [&](session::SessionState state) {
         progress.show("");
@@ -109,13 +115,14 @@ int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, con
     listener.session_over = [&](const std::string&, bool whole) {
         progress.show("");
         fmt::print("{}: {} trials{}, {} succeeded{}\n", participant, planned,
-                   earlier == 0 ? "" : fmt::format(", {} of them earlier", earlier), successes,
+                   earlier == 0 ? "" : fmt::format(", {} of them earlier", earlier), succeeded.size(),
                    invalid == 0 ? "" : fmt::format(", {} invalid", invalid));
         if (!whole) {
             fmt::print("{}: the session is not complete; its place in the design is free again\n", participant);
         }
         std::fflush(stdout);
-        successes = finished = planned = earlier = invalid = 0;  // of the participant's next session
+        succeeded.clear();
+        finished = planned = earlier = invalid = 0;  // of the participant's next session
     };
     if (acknowledge_fd >= 0) {
         listener.acknowledge = [&](session::AttemptId attempt, measures::Outcome outcome) {

@@ -8,7 +8,7 @@
 #include "devices/scripted/trajectory.h"
 #include "study/protocol/scene_reader.h"
 #include "ui/app/disk_store.h"
-#include "ui/app/run_study.h"
+#include "ui/app/known_names.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 

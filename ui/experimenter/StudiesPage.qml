@@ -62,7 +62,7 @@ RowLayout {
                         width: parent.width
                         quiet: true
                         font.pixelSize: look.scale * 12
-                        text: cardItem.modelData.sound ? qsTr("%1 conditions · %2 trials · %3 participants").arg(cardItem.modelData.conditions).arg(cardItem.modelData.trials).arg(cardItem.modelData.participants) : qsTr("Problems: %1").arg(cardItem.modelData.problems.length)
+                        text: cardItem.modelData.sound ? qsTr("Conditions: %1 · trials: %2 · participants: %3").arg(cardItem.modelData.conditions).arg(cardItem.modelData.trials).arg(cardItem.modelData.participants) : qsTr("Problems: %1").arg(cardItem.modelData.problems.length)
                     }
                 }
                 Lamp {

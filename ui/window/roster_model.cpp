@@ -6,7 +6,7 @@
 
 #include "study/protocol/language.h"
 #include "study/protocol/protocol_reader.h"
-#include "ui/app/run_study.h"
+#include "ui/app/known_names.h"
 #include "ui/window/roster_words.h"
 
 namespace passung::window {

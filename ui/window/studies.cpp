@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "study/protocol/protocol_reader.h"
-#include "ui/app/run_study.h"
+#include "ui/app/known_names.h"
 #include "ui/app/study_desk.h"
 
 namespace passung::window {

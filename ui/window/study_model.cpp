@@ -12,7 +12,7 @@
 #include "study/store/store_reader.h"
 #include "ui/app/auto_accuracy.h"
 #include "ui/app/disk_store.h"
-#include "ui/app/run_study.h"
+#include "ui/app/known_names.h"
 #include "ui/window/roster_words.h"
 #include "ui/window/study_words.h"
 

@@ -7,6 +7,7 @@
 #include "study/store/sqlite.h"
 #include "tests/study/store/fake_study.h"
 #include "tests/ui/cli/small_study.h"
+#include "ui/app/known_names.h"
 #include "ui/app/run_study.h"
 
 // The data of a session of an hour, every channel of every tick at 1 kHz. PASSUNG_LONG=1: all of it; else a minute.

@@ -1,4 +1,5 @@
 #include "ui/app/loop_apparatus.h"
+#include "ui/app/known_names.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +8,6 @@
 
 #include "study/protocol/protocol_reader.h"
 #include "tests/ui/cli/small_study.h"
-#include "ui/app/run_study.h"
 
 namespace passung::app {
 namespace {

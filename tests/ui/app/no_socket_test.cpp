@@ -6,6 +6,7 @@
 #include "tests/support/temp_folder.h"
 #include "tests/ui/cli/small_study.h"
 #include "ui/app/command_socket.h"
+#include "ui/app/known_names.h"
 #include "ui/app/run_study.h"
 
 namespace passung::test {

@@ -1,4 +1,5 @@
 #include "ui/app/run_study.h"
+#include "ui/app/known_names.h"
 
 #include <gtest/gtest.h>
 

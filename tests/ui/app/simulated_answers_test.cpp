@@ -1,10 +1,10 @@
 #include "ui/app/simulated_answers.h"
+#include "ui/app/known_names.h"
 
 #include <gtest/gtest.h>
 
 #include "study/protocol/protocol_reader.h"
 #include "ui/app/calibration.h"
-#include "ui/app/run_study.h"
 
 namespace passung::app {
 namespace {

@@ -1,4 +1,5 @@
 #include "ui/app/simulated_perception.h"
+#include "ui/app/known_names.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +9,6 @@
 #include "study/protocol/protocol_reader.h"
 #include "study/session/participant_order.h"
 #include "study/session/staircases.h"
-#include "ui/app/run_study.h"
 
 namespace passung::app {
 namespace {

@@ -10,6 +10,7 @@
 #include "tests/study/store/fake_study.h"
 #include "tests/study/store/faulty_disk.h"
 #include "tests/ui/cli/small_study.h"
+#include "ui/app/known_names.h"
 #include "ui/app/run_study.h"
 
 namespace passung::test {

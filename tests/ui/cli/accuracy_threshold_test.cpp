@@ -9,7 +9,7 @@
 #include "study/protocol/protocol_reader.h"
 #include "study/store/store_reader.h"
 #include "tests/ui/cli/program.h"
-#include "ui/app/run_study.h"
+#include "ui/app/known_names.h"
 #include "ui/app/simulated_perception.h"
 
 // The shipped study, at a size for every day: shorter intervals, fewer trials, two people.

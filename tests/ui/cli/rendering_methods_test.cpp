@@ -8,7 +8,7 @@
 #include "study/session/participant_order.h"
 #include "study/store/store_reader.h"
 #include "tests/ui/cli/program.h"
-#include "ui/app/run_study.h"
+#include "ui/app/known_names.h"
 
 namespace passung::test {
 namespace {

@@ -15,7 +15,7 @@
 #include "tests/analysis/export/csv_reader.h"
 #include "tests/ui/cli/program.h"
 #include "tests/ui/cli/small_study.h"
-#include "ui/app/run_study.h"
+#include "ui/app/known_names.h"
 
 namespace passung::test {
 namespace {

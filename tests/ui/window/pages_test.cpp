@@ -9,6 +9,7 @@
 #include "study/store/store_reader.h"
 #include "tests/ui/cli/small_study.h"
 #include "tests/ui/window/windows.h"
+#include "ui/app/known_names.h"
 #include "ui/app/study_desk.h"
 #include "ui/window/study_words.h"
 

@@ -13,6 +13,7 @@
 #include "study/store/sqlite.h"
 #include "tests/ui/window/four_trials.h"
 #include "tests/ui/window/windows.h"
+#include "ui/app/known_names.h"
 #include "ui/app/study_desk.h"
 #include "ui/presenter/pointer_motion.h"
 

@@ -5,6 +5,7 @@
 #include "study/protocol/protocol_reader.h"
 #include "tests/ui/window/asking_study.h"
 #include "tests/ui/window/windows.h"
+#include "ui/app/known_names.h"
 #include "ui/app/run_study.h"
 #include "ui/app/study_desk.h"
 

@@ -731,8 +731,8 @@
         <translation>STUDIEN</translation>
     </message>
     <message>
-        <source>%1 conditions · %2 trials · %3 participants</source>
-        <translation>%1 Bedingungen · %2 Durchgänge · %3 Personen</translation>
+        <source>Conditions: %1 · trials: %2 · participants: %3</source>
+        <translation>Bedingungen: %1 · Durchgänge: %2 · Versuchspersonen: %3</translation>
     </message>
     <message>
         <source>%1, version %2 · %3</source>
