@@ -200,6 +200,10 @@ Result<std::vector<AccuracyRow>> measureCandidates(const std::vector<AskedScene>
     std::vector<AccuracyRow> rows;
     const std::vector<double> spacings = defaultSpacings(candidates.length());
     const auto [least, most] = std::minmax_element(budgets.begin(), budgets.end());
+    const bool budgeted = std::all_of(scenes.begin(), scenes.end(), [](const AskedScene& scene) {
+        return std::all_of(scene.contacts.begin(), scene.contacts.end(),
+                           [](const model::ContactSpec& contact) { return contact.rendersAtHand(); });
+    });
     for (std::size_t i = 0; i < spacings.size(); ++i) {
         bool fits = false;
         for (std::size_t k = 0; k < kTolerances.size(); ++k) {
@@ -212,7 +216,7 @@ Result<std::vector<AccuracyRow>> measureCandidates(const std::vector<AskedScene>
                 rows.push_back(*row);
                 fits = fits || row->time.p99 <= *most;
                 for (const int nodes : kNodes) {
-                    if (rows.back().time.p99 <= *least) break;
+                    if (!budgeted || rows.back().time.p99 <= *least) break;
                     row = candidates.measure({mode, kTolerances[k], spacings[i], nodes});
                     if (!row) return row.errors();
                     rows.push_back(*row);

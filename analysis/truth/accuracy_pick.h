@@ -16,7 +16,8 @@ struct AskedScene {
 
 /// Measures on this machine what contact.accuracy = "auto" may pick for `scenes` and `budgets` [s] of a query:
 /// tolerances and spacings from coarse to fine, every mode, and node budgets where a query without one takes longer
-/// than the least budget; it ends with the first spacing at which every query takes longer than the largest. A scene's
+/// than the least budget (only if every scene renders at the hand: a proxy stops where a query ended early, and may
+/// never get into a bore); it ends with the first spacing at which every query takes longer than the largest. A scene's
 /// time is the sum over its obstacles; of each setting count the slowest time and the largest error of any scene and
 /// way of asking. Poses: see contactPath; times also at poses in between. `store`, if not null, keeps fields and points
 /// from run to run. Errors: a part cannot be built, an obstacle (in two-way contact also a held part) without an

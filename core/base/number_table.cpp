@@ -134,4 +134,13 @@ Result<NumberTable> readNumbers(const std::string& path, const std::vector<std::
     return table;
 }
 
+Errors firstFaults(Errors errors) {
+    constexpr std::size_t kShown = 5;
+    if (errors.size() <= kShown) return errors;
+    const std::size_t more = errors.size() - kShown;
+    errors.resize(kShown);
+    errors.back().message += "; " + std::to_string(more) + " more rows are wrong";
+    return errors;
+}
+
 }  // namespace passung

@@ -20,9 +20,11 @@ struct NumberTable {
 };
 
 /// Reads a CSV file with a header row. The columns of `required` must be there first and in this order, and hold
-/// numbers
-/// ("nan" and "inf" too); further ones are kept as text. Cells may be quoted as RFC 4180 says, but hold no line breaks.
-/// A byte order mark and empty lines are passed over. Errors name file, line, column and value.
+/// numbers ("nan" and "inf" too); further ones are kept as text. Cells may be quoted as RFC 4180 says, but hold no line
+/// breaks. A byte order mark and empty lines are passed over. Errors name file, line, column and value.
 Result<NumberTable> readNumbers(const std::string& path, const std::vector<std::string>& required);
+
+/// Of a table's faults the first five; the fifth then says how many more there are.
+Errors firstFaults(Errors errors);
 
 }  // namespace passung

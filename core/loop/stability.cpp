@@ -18,9 +18,9 @@
 //                         0 < beta < 2 and alpha < 2 beta (2 - beta)/(2 + beta).
 //          alpha, b -> 0: beta < 2 tan(pi/(4 (d + 1))).
 //          small values:  K = (b + B)/(T/2 + t_d), the linear rule.
-// Tool:    x the handle, y the tool, D = 1 - 1/z a difference from tick to tick, k the contact, M the tool's mass. The
-// tool
-//          goes where, by the implicit Euler rule, coupling, contact and inertia balance (core/tick/penalty_tool.h):
+// Tool:    x the handle, y the tool, D = 1 - 1/z a difference from tick to tick, k the contact, M the tool's mass.
+//          The tool goes where, by the implicit Euler rule, coupling, contact and inertia balance
+//          (core/tick/penalty_tool.h):
 //              (K + B D/T)(x - y) = (k + M D²/T²) y          the hand then feels u = (K + B D/T)(y - x) z^-d.
 //          With C = alpha + beta D and W = kappa + nu D², kappa = k T²/m, nu = M/m, u = -C W/(C + W) z^-d x m/T²: two
 //          springs in a row. Closing the loop as above and multiplying by z^(d+3):
@@ -191,6 +191,19 @@ bool isStable(const SampledTool& tool) {
 double stableStiffnessBorder(const SampledTool& tool) {
     SampledTool probe = tool;
     return borderOf(probe.wall, [&] { return isStable(probe); });
+}
+
+double stableStiffnessBorderUpTo(const SampledTool& tool) {
+    constexpr double kStep = 1.05, kSoftest = 1e-4;
+    SampledTool probe = tool;
+    double least = stableStiffnessBorder(tool);
+    for (double share = 1 / kStep; share > kSoftest; share /= kStep) {
+        probe.contact_stiffness = share * tool.contact_stiffness;
+        const double border = stableStiffnessBorder(probe);
+        if (std::isinf(border)) break;
+        least = std::min(least, border);
+    }
+    return least;
 }
 
 // The wall is passive iff for all 0 < theta <= pi

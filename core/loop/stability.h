@@ -40,6 +40,10 @@ struct SampledTool {
 bool isStable(const SampledTool& tool);
 double stableStiffnessBorder(const SampledTool& tool);
 
+/// The least of these borders over contacts as stiff as `contact_stiffness` and softer (scanned by 5 %, down to where
+/// none is left): it falls and rises with the contact's stiffness, and a contact is as soft as its place makes it.
+double stableStiffnessBorderUpTo(const SampledTool& tool);
+
 /// The largest stiffness at which the wall can never give out energy [N/m]; 0 if there is none. Stricter than stable.
 double passiveStiffness(const SampledWall& wall);
 

@@ -43,6 +43,7 @@ struct RubbedMotion {
 };
 
 inline constexpr int kRubSweeps = 30;
+inline constexpr int kMostSteps = 1000;  // rows that these take up in all
 
 /// The motion that the contacts leave to a body that is drawn along `wanted` by a spring, with friction.
 ///

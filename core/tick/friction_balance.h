@@ -26,8 +26,6 @@ namespace passung::tick {
 /// Limit cases: u = 0 is allowed, hence |u| ≤ |w|: nothing is thrown out of a groove. A groove that locks itself: at
 /// σ = 0 already u = 0. σ that does not settle in kRubSweeps turns: σ = 0, which obeys contacts and cone but lets what
 /// slips rise by up to μ |s|. Bounded by kMostRounds sets of cuts and kMostSteps rows taken up. rt-safe.
-inline constexpr int kMostSteps = 1000;
-
 class FrictionBalance {
 public:
     /// `plain`: the motion without friction.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/base/number_table.h"
 #include "core/base/tick_record.h"
@@ -42,7 +43,7 @@ Result<Trajectory> Trajectory::read(const std::string& path) {
         }
         trajectory.rows_.push_back(row);
     }
-    if (!errors.empty()) return errors;
+    if (!errors.empty()) return firstFaults(std::move(errors));
     return trajectory;
 }
 

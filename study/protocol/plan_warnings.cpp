@@ -63,11 +63,12 @@ std::vector<std::string> blockWarnings(const StudyPlan& plan) {
         const Block& block = plan.blocks[i];
         const bool governed = std::any_of(plan.staircases.begin(), plan.staircases.end(),
                                           [i](const Staircase& staircase) { return staircase.block == i; });
-        if (block.phase != Phase::Main || block.on_invalid != Repeat::Never || governed) continue;
+        const bool never = block.on_invalid == Repeat::Never;
+        if (block.phase != Phase::Main || governed || (!never && block.max_attempts > 1)) continue;
         warnings.push_back(
-            fmt::format("block.on_invalid = \"never\": after one attempt that does not count its participant cannot "
-                        "complete the session; block: {}",
-                        block.name));
+            fmt::format("block.{}: after one attempt that does not count the session is not "
+                        "complete unless the trial is repeated by hand or on resume; block: {}",
+                        never ? "on_invalid = \"never\"" : "max_attempts = 1", block.name));
     }
     return warnings;
 }

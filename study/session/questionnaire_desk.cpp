@@ -39,12 +39,7 @@ void QuestionnaireDesk::remember(FinishedTrial trial) { finished_.push_back(std:
 
 void QuestionnaireDesk::forget(const design::PlannedTrial& trial) {
     std::erase_if(finished_, [&](const FinishedTrial& f) { return f.trial.trial_index == trial.trial_index; });
-    for (const std::string& id : formsAbout(trial)) {
-        answered_.erase(id);
-        if (id != shown_) continue;
-        shown_.clear();
-        source_->withdraw();
-    }
+    for (const std::string& id : formsAbout(trial)) answered_.erase(id);
 }
 
 void QuestionnaireDesk::resume(std::vector<FinishedTrial> finished, std::span<const design::PlannedTrial> to_do,
@@ -78,6 +73,10 @@ std::optional<Form> QuestionnaireDesk::nextDue(std::span<const design::PlannedTr
 
 Result<bool> QuestionnaireDesk::ask(std::span<const design::PlannedTrial> to_do, std::int64_t session_ns) {
     const auto form = nextDue(to_do);
+    if (!shown_.empty() && (!form || form->id() != shown_)) {  // the experimenter went elsewhere
+        shown_.clear();
+        source_->withdraw();
+    }
     if (!form) return false;
     if (source_ == nullptr || form->planned.definition.items.empty())
         return faultOf(*form, source_ == nullptr ? "nobody is there to answer it" : "its file has not been read");

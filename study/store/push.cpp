@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <pqxx/pqxx>
+#include <set>
 
 #include "study/store/audit.h"
 #include "study/store/hex_text.h"
@@ -156,13 +157,21 @@ private:
         const auto left_out = compareWithThere(work, study, report);
         Statement people = database_.prepare("SELECT participant_id FROM participant");
         while (people.step())  // who gave a place back has it there no more
-            work.exec_params("DELETE FROM design_slot WHERE participant_id=$1", people.text(0));
+            if (decided_there_.count(people.text(0)) == 0)
+                work.exec_params("DELETE FROM design_slot WHERE participant_id=$1", people.text(0));
         for (const Copy& copy : study) {
+            const bool changes = copy.name == "participant" || copy.name == "design_slot";
+            const auto who = std::find_if(copy.columns.begin(), copy.columns.end(),
+                                          [](const TableColumn& column) { return column.name == "participant_id"; });
             Statement rows = database_.prepare(copy.query);
-            while (rows.step())
-                insert(work, copy, valuesOf(rows, copy.columns),
-                       copy.name == "participant" || copy.name == "design_slot");
+            while (rows.step()) {
+                const Values values = valuesOf(rows, copy.columns);
+                if (changes && decided_there_.count(*values[static_cast<std::size_t>(who - copy.columns.begin())]) > 0)
+                    continue;
+                insert(work, copy, values, changes);
+            }
         }
+        report.newer_there.assign(decided_there_.begin(), decided_there_.end());
         pushAudit(work, left_out);
         const auto shared = work.exec(
             "SELECT string_agg(participant_id, ', ' ORDER BY participant_id) FROM design_slot GROUP BY "
@@ -197,6 +206,11 @@ private:
                              erasedDetail(surrogate));
             report.erased_there.push_back(code);
         }
+        Statement decided = database_.prepare(
+            "SELECT json_extract(detail_json, '$.participant') AS code FROM temp.audit WHERE action IN('exclude', "
+            "'withdraw', 'readmit') AND hash NOT IN(SELECT hash FROM main.audit) AND code IN(SELECT participant_id "
+            "FROM main.participant)");
+        while (decided.step()) decided_there_.insert(decided.text(0));
         const auto left_out = erasedPeople(database_, "temp", "main");
         for (const auto& [code, surrogate] : left_out) report.left_out.push_back(code);
         for (const Copy& copy : copies) database_.execute("DROP TABLE temp." + copy.name);
@@ -328,6 +342,7 @@ private:
 
     const Database& database_;
     pqxx::connection there_;
+    std::set<std::string> decided_there_;  // codes that were excluded, withdrew or were readmitted in a newer copy
 };
 
 /// PostgreSQL's messages have several lines; the first says what is wrong.

@@ -13,7 +13,7 @@ struct PushReport {
     std::int64_t sessions = 0;               // added
     std::int64_t replaced = 0;               // had changed here since an earlier push
     std::int64_t known = 0;                  // there already
-    std::vector<std::string> newer_there;    // not pushed: there it has remarks that this file lacks
+    std::vector<std::string> newer_there;    // not pushed: sessions and codes of which it has rows that this file lacks
     std::vector<std::string> unfinished;     // left out: still running, or killed and not opened since
     std::vector<std::string> erased_there;   // codes: were erased here, and now there too
     std::vector<std::string> left_out;       // codes: were erased there, from another file

@@ -31,14 +31,16 @@ void insertNote(const Database& database, const Note& note) {
         .run();
 }
 
-void invalidateLater(const Database& database, std::int64_t attempt_id, const std::string& reason) {
+void invalidateLater(const Database& database, std::int64_t attempt_id, const std::string& reason,
+                     const std::string& now_utc) {
     markInvalid(database, attempt_id, "invalidated by the experimenter: " + reason);
     const std::string payload = protocol::JsonObject().boolean("accepted", true).text("text", reason).str();
     database
         .prepare(
-            "INSERT INTO event(segment_id, attempt_id, t_ns, source, event, payload_json) "
-            "SELECT segment_id, attempt_id, end_ns, ?, 'command_invalidate', ? FROM attempt WHERE attempt_id=?")
-        .bind(kExperimenter, payload, attempt_id)
+            "INSERT INTO event(segment_id, attempt_id, t_ns, source, event, payload_json, t_utc) "
+            "SELECT segment_id, attempt_id, end_ns, ?, 'command_invalidate', ?, CASE epoch WHEN 'wall' THEN ? END "
+            "FROM attempt JOIN segment USING(segment_id) JOIN session USING(session_id) WHERE attempt_id=?")
+        .bind(kExperimenter, payload, now_utc, attempt_id)
         .run();
 }
 

@@ -19,7 +19,8 @@ struct Note {
 void insertNote(const Database& database, const Note& note);
 
 /// markInvalid() after the session's end, with an event for it.
-void invalidateLater(const Database& database, std::int64_t attempt_id, const std::string& reason);
+void invalidateLater(const Database& database, std::int64_t attempt_id, const std::string& reason,
+                     const std::string& now_utc);
 
 /// A note about the newest session, or that of an attempt if `attempt_id` > 0. Simulated sessions get the time of their
 /// end for `now_utc`, so that no wall clock reaches their data.

@@ -320,7 +320,7 @@ Result<std::unique_ptr<SessionWriter>> Store::resumeSession(const SessionStart& 
 Result<Done> Store::invalidateAttempt(std::int64_t attempt_id, const std::string& reason) {
     return thread_->call([&](const Database& database) {
         Transaction transaction(database);
-        invalidateLater(database, attempt_id, reason);
+        invalidateLater(database, attempt_id, reason, options_.now_utc);
         transaction.commit();
         return Done{};
     });

@@ -19,8 +19,10 @@
 #include "ui/app/calibration.h"
 #include "ui/app/command_socket.h"
 #include "ui/app/disk_store.h"
+#include "ui/app/known_names.h"
 #include "ui/app/simulated_answers.h"
 #include "ui/app/simulated_timer.h"
+#include "ui/app/stability_report.h"
 #include "ui/app/stored_plans.h"
 
 namespace passung::app {
@@ -291,6 +293,7 @@ Error otherStation(const store::Unfinished& session, const RunOptions& options) 
 
 Result<RunEnd> runStudy(const protocol::StudyPlan& plan, RunOptions options, const RunListener& listener) {
     if (lacksDevice(options.participant, options.performer)) return missingDevices(plan, options.participant);
+    if (Errors unstable = beyondBorder(plan, knownDevices()); !unstable.empty()) return unstable;
     const auto language = protocol::chooseLanguage(plan, options.language);
     if (!language) return language.errors();
     options.language = *language;
@@ -337,6 +340,7 @@ Result<RunEnd> runStudy(const protocol::StudyPlan& plan, RunOptions options, con
     if (!kept_plan) return kept_plan.errors();
     if (listener.warned)
         for (const std::string& difference : stiffnessDifferences(plan, *kept_plan)) listener.warned(difference);
+    if (Errors unstable = beyondBorder(*kept_plan, knownDevices()); !unstable.empty()) return unstable;
     auto picked = withKeptAccuracy(*kept_plan, *sha256, *opened.store);
     if (!picked) return picked.errors();
     if (const auto done = protocol::loadQuestionnaires(*picked, protocol::readFile, options.language); !done)
@@ -362,6 +366,7 @@ Result<RunEnd> resumeStudy(const ResumeOptions& resume, RunOptions options, cons
     protocol::StudyPlan plan = **stored;
     if (const auto done = loadStoredQuestionnaires(*reader, *session, plan); !done) return done.errors();
     if (lacksDevice(session->participant, options.performer)) return missingDevices(plan, session->participant);
+    if (Errors unstable = beyondBorder(plan, knownDevices()); !unstable.empty()) return unstable;
     plan.seed = session->seed;
     options.clock = session->virtual_time ? Clock::Virtual : Clock::RealTime;
     options.language = session->language;

@@ -10,6 +10,9 @@ namespace passung::app {
 
 namespace {
 
+/// A contact so many times stiffer than a wall may be is as good as rigid.
+constexpr double kRigid = 100.0;
+
 WallBounds boundsOf(const loop::SampledWall& wall, double coulomb, double quantum) {
     // Beyond the longest delay that the model covers nothing is known to be stable: its functions give 0 then.
     const bool known = wall.delay_ticks <= loop::kMaxDeviceDelayTicks;
@@ -44,8 +47,7 @@ WallBounds rotationBounds(const DeviceMechanism& m, double damping, int delay_ti
 }
 
 bool feltThroughTool(const model::ContactSpec& contact) {
-    return contact.method == model::ContactMethod::Penalty && contact.coupling != model::PenaltyCoupling::Direct &&
-           contact.variant == model::PenaltyVariant::MaxNormalised;
+    return contact.method == model::ContactMethod::Penalty && contact.coupling != model::PenaltyCoupling::Direct;
 }
 
 SceneWall translationWall(const DeviceDescription& device, const model::SceneSpec& scene) {
@@ -56,14 +58,15 @@ SceneWall translationWall(const DeviceDescription& device, const model::SceneSpe
     wall.bounds = translationBounds(*device.mechanism, scale * scene.contact.damping, delay);
     if (feltThroughTool(scene.contact)) {
         const bool virtual_tool = scene.contact.coupling == model::PenaltyCoupling::Virtual;
-        wall.bounds.border =
-            stableStiffnessBorder(loop::SampledTool{.wall = {.mass = device.mechanism->mass_kg,
-                                                             .damping = device.mechanism->damping_Ns_per_m,
-                                                             .virtual_damping = scale * scene.contact.damping,
-                                                             .period = kTickSeconds,
-                                                             .delay_ticks = delay},
-                                                    .contact_stiffness = scale * scene.contact.penalty_stiffness,
-                                                    .tool_mass = virtual_tool ? scale * scene.contact.tool_mass : 0.0});
+        const bool bounded = scene.contact.variant == model::PenaltyVariant::MaxNormalised;
+        wall.bounds.border = stableStiffnessBorderUpTo(loop::SampledTool{
+            .wall = {.mass = device.mechanism->mass_kg,
+                     .damping = device.mechanism->damping_Ns_per_m,
+                     .virtual_damping = scale * scene.contact.damping,
+                     .period = kTickSeconds,
+                     .delay_ticks = delay},
+            .contact_stiffness = bounded ? scale * scene.contact.penalty_stiffness : kRigid * wall.bounds.border,
+            .tool_mass = virtual_tool ? scale * scene.contact.tool_mass : 0.0});
     }
     return wall;
 }
@@ -75,12 +78,15 @@ Errors beyondBorder(const protocol::StudyPlan& plan, std::span<const DeviceDescr
         if (device == nullptr || condition.allow_unstable || !feltThroughTool(condition.scene.contact)) continue;
         const SceneWall wall = translationWall(*device, condition.scene);
         if (!device->mechanism || wall.stiffness < wall.bounds.border) continue;
-        errors.push_back({.message = fmt::format("must be below {:.4g} N/m, where {} is no longer stable through this "
-                                                 "coupling's tool; allow_unstable = true lifts this",
-                                                 wall.bounds.border, device->name),
-                          .file = plan.source_path,
-                          .key = "condition " + condition.name + ": contact.stiffness_N_per_m",
-                          .value = fmt::format("{:.6g}", wall.stiffness)});
+        if (const auto value = fmt::format("{:.6g}", wall.stiffness);
+            std::none_of(errors.begin(), errors.end(), [&](const Error& error) { return error.value == value; }))
+            errors.push_back(
+                {.message = fmt::format("must be below {:.4g} N/m, where {} is no longer stable through this "
+                                        "coupling's tool; allow_unstable = true lifts this",
+                                        wall.bounds.border, device->name),
+                 .file = plan.source_path,
+                 .key = "condition " + condition.name + ": contact.stiffness_N_per_m",
+                 .value = fmt::format("{:.6g}", wall.stiffness)});
     }
     return errors;
 }

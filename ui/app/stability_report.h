@@ -27,14 +27,15 @@ struct SceneWall {
     double stiffness = 0.0;  // scale included: lengths of the scene are longer by it, forces are not
     WallBounds bounds;
 };
-/// A coupled penalty whose contacts are as stiff as `penalty_stiffness` says: translation's border is then the exact
-/// one through the tool. (With the other variants the stiffness depends on how many points touch; the wall counts as
-/// rigid.)
+/// A coupled penalty: translation's border is then the exact one through the tool, over all contacts that the scene can
+/// make: up to `penalty_stiffness`, or, with variants whose stiffness depends on how many points touch, up to a rigid
+/// one.
 bool feltThroughTool(const model::ContactSpec& contact);
 SceneWall translationWall(const DeviceDescription& device, const model::SceneSpec& scene);
 SceneWall rotationWall(const DeviceDescription& device, const model::SceneSpec& scene);
 
-/// Conditions whose coupling is stiffer than that, unless their protocol takes responsibility for it.
+/// Conditions whose coupling is stiffer than that, one for each stiffness, unless their protocol takes responsibility
+/// for it.
 Errors beyondBorder(const protocol::StudyPlan& plan, std::span<const DeviceDescription> devices);
 
 /// Null: there is none of this name.

@@ -322,8 +322,9 @@ private:
         addAccuracyCommand(units);
 
         sub = command("bench", "our queries beside other engines, time and error on the same poses", bench_, bench);
-        sub->add_option("--out", bench_.out, "CSV of all rows")->required();
-        sub->add_option("--filter", bench_.filter, "only rows whose group and method contain this text");
+        sub->add_option("--out", bench_.out, "CSV of all rows");
+        sub->add_option("--filter", bench_.filter,
+                        "only rows whose group and method contain this text: hard, forces, pieces, a mesh, an engine");
         sub->add_flag("--check", bench_.check, "compare with the marks; exit 1 if one is missed or not measured");
 
         sub = command("doctor", "devices, permissions and a check of the loop", doctor_, doctor);

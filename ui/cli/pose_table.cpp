@@ -1,5 +1,7 @@
 #include "ui/cli/pose_table.h"
 
+#include <utility>
+
 namespace passung::cli {
 
 Result<std::vector<Pose>> readPoses(const std::string& path, NumberTable& table) {
@@ -19,7 +21,7 @@ Result<std::vector<Pose>> readPoses(const std::string& path, NumberTable& table)
         pose.q.normalize();
         poses.push_back(pose);
     }
-    if (!errors.empty()) return errors;
+    if (!errors.empty()) return firstFaults(std::move(errors));
     table = std::move(*numbers);
     return poses;
 }

@@ -14,7 +14,7 @@ int push(const PushOptions& options) {
         fmt::print("{}: left out: it runs, or was killed and its database not opened since\n", session);
     for (const std::string& session : report->newer_there)
         fmt::print(stderr,
-                   "{}: error: {}: not pushed: there it has notes or decisions that this file lacks; push the newer "
+                   "{}: error: {}: not pushed: there are rows of it that this file lacks; push the newer "
                    "copy, or passung merge of both\n",
                    options.database, session);
     for (const std::string& code : report->erased_there)

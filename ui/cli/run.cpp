@@ -154,8 +154,6 @@ int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, con
 int run(const RunOptions& options) {
     auto plan = protocol::readProtocol(options.protocol, app::knownDevices(), app::knownMeasures());
     if (!plan) return fail(plan.errors());
-    const Errors unstable = app::beyondBorder(*plan, app::knownDevices());
-    if (!unstable.empty()) return fail(unstable);
     warn(options.protocol, session::planWarnings(*plan));
     if (options.seed) plan->seed = *options.seed;
 

@@ -52,12 +52,18 @@ TEST_F(BallOnCube, MeasuresEverySpacingForALargeBudgetAndOnlyTheCoarsestForNone)
     EXPECT_EQ(std::count_if(all->begin(), all->end(), [](const auto& row) { return row.setting.budget_nodes > 0; }), 0);
     EXPECT_LT(all->back().setting.spacing, 0.2 * coarsest);
     EXPECT_LT(all->back().force.mean, all->front().force.mean);
+    contact_.method = model::ContactMethod::Penalty;
     const auto first = measure({1e-12});
     ASSERT_TRUE(first);
     for (const AccuracyRow& row : *first) EXPECT_EQ(row.setting.spacing, coarsest);
     EXPECT_GT(std::count_if(first->begin(), first->end(), [](const auto& row) { return row.setting.budget_nodes > 0; }),
               0);
     EXPECT_EQ(pickFinest(*first, 1e-12), std::nullopt);
+    contact_.method = model::ContactMethod::GodObject;  // its proxy would stop where a query ended early
+    const auto whole = measure({1e-12});
+    ASSERT_TRUE(whole);
+    EXPECT_EQ(std::count_if(whole->begin(), whole->end(), [](const auto& row) { return row.setting.budget_nodes > 0; }),
+              0);
 }
 
 TEST_F(BallOnCube, TwoWayContactFindsWhatPokesBetweenTheHeldPartsPoints) {

@@ -54,5 +54,16 @@ TEST(Trajectory, RefusesTimesThatDoNotRiseAndRotationsThatAreNone) {
     EXPECT_TRUE(read("0,0,0,0,1,0,0,0\n"));
 }
 
+TEST(Trajectory, TellsTheFirstBadRowsAndHowManyMoreThereAre) {
+    // Truth: closed form: eight rotations that are none; a line each for five.
+    std::string rows;
+    for (int i = 0; i < 8; ++i) rows += std::to_string(i) + ",0,0,0,0.5,0,0,0\n";
+    const auto path = read(rows);
+    ASSERT_FALSE(path);
+    ASSERT_EQ(path.errors().size(), 5u);
+    EXPECT_EQ(path.errors()[0].message, "the quaternion's length must be 1 ± 0.001");
+    EXPECT_EQ(path.errors()[4].message, "the quaternion's length must be 1 ± 0.001; 3 more rows are wrong");
+}
+
 }  // namespace
 }  // namespace passung

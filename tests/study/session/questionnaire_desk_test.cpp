@@ -206,14 +206,34 @@ TEST_F(QuestionnaireDeskTest, WhoGoesBackWhileAFormIsOpenIsToldToTakeItAway) {
     asking.remember({trials_[0], {}});
     EXPECT_TRUE(*asking.ask(from(1), 0));
     asking.forget(trials_[0]);
-    EXPECT_EQ(person_.withdrawn, 1);
     EXPECT_FALSE(*asking.ask(from(0), 0));
+    EXPECT_EQ(person_.withdrawn, 1);
     asking.remember({trials_[0], {}});
     asking.forget(trials_[1]);
     EXPECT_EQ(person_.withdrawn, 1) << "no form was open";
     while (*asking.ask(from(1), 0)) {
     }
     EXPECT_EQ(sink_.events, (std::vector<std::string>{"questionnaire_shown", "questionnaire_shown"}));
+}
+
+TEST_F(QuestionnaireDeskTest, AFormOfTheNextBlockIsTakenAwayFromWhoGoesBackBeforeIt) {
+    // Truth: invariant: it is about no trial, and comes anew before its block.
+    plan_.questionnaires = {sixRatings("first", protocol::Moment::BeforeBlock)};
+    plan_.questionnaires[0].block = "next";
+    trials_.push_back({2, 1, "next", 0, "main", 0, 1});
+    person_.looks = 1;
+    auto asking = desk(&person_);
+    asking.remember({trials_[0], {}});
+    asking.remember({trials_[1], {}});
+    EXPECT_TRUE(*asking.ask(from(2), 0));
+    asking.forget(trials_[1]);
+    EXPECT_FALSE(*asking.ask(from(1), 0));
+    EXPECT_EQ(person_.withdrawn, 1);
+    asking.remember({trials_[1], {}});
+    while (*asking.ask(from(2), 0)) {
+    }
+    EXPECT_EQ(sink_.events, (std::vector<std::string>{"questionnaire_shown", "questionnaire_shown"}));
+    EXPECT_EQ(sink_.forms.size(), 1u);
 }
 
 TEST_F(QuestionnaireDeskTest, NoResponseTimeIsKeptInVirtualTime) {

@@ -133,6 +133,19 @@ TEST_F(Push, AnOlderCopyNeverTakesAwayWhatANewerOneBrought) {
     EXPECT_EQ(count("note"), 2);
 }
 
+TEST_F(Push, AnOlderCopyNeverTakesBackWhoWasExcluded) {
+    // Truth: invariant: the exclusion and the place that it freed stay as the newer file left them.
+    const std::string path = folder_ / "s.db", copy = folder_ / "copy.db";
+    perform(path, "S001");
+    require(pushDatabase(path, server_->uri()));
+    std::filesystem::copy_file(path, copy);
+    require(ParticipantDesk(*fake::openStore(path), {"e", "2001-02-01"}).exclude("S001", "asleep"));
+    EXPECT_TRUE(require(pushDatabase(path, server_->uri())).newer_there.empty());
+    EXPECT_EQ(require(pushDatabase(copy, server_->uri())).newer_there, std::vector<std::string>{"S001"});
+    EXPECT_STREQ(ask("SELECT status FROM participant")[0][0].c_str(), "excluded");
+    EXPECT_EQ(count("design_slot"), 0);
+}
+
 TEST_F(Push, TakesFilesOfSeveralStationsButNoCodeForTwoPeople) {
     // Truth: invariant. Rows of both files have the same numbers.
     perform(folder_ / "a.db", "SA001");

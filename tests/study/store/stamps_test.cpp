@@ -80,6 +80,20 @@ TEST_F(Stamps, CountPausesAndQuestionnaires) {
     EXPECT_EQ(events[1].t_utc, utc(1201));
 }
 
+TEST_F(Stamps, AnInvalidationAfterTheSessionIsOfWhenItWasSaid) {
+    // Truth: closed form: a trial, a pause of 20 min that session time does not know of, and an hour later the word.
+    {
+        const auto store = open();
+        const auto writer = begin(*store);
+        now_ms_ += 1200 * kSecond;
+        fake::require(fake::writeAttempt(*writer, 0, 50));
+        fake::require(writer->finishSession(true, 1 * kNs));
+    }
+    now_ms_ += 3600 * kSecond;
+    fake::require(open()->invalidateAttempt(1, "was told"));
+    EXPECT_EQ(text("SELECT t_utc FROM event WHERE event='command_invalidate'"), utc(4800));
+}
+
 TEST_F(Stamps, OfVirtualTimeAreNotStored) {
     // Truth: invariant: the reader derives them from session time, which is the same on every machine.
     const auto store = open();
