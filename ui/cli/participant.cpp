@@ -112,7 +112,8 @@ int withdrawParticipant(const ParticipantOptions& options) {
         return 0;
     }
     fmt::print("{}: erased from {}; the audit says {} in its place\n", options.code, options.database, left->surrogate);
-    for (const std::string& copy : left->copies) fmt::print("names {} too, delete it if it is a copy of this database: {}\n", options.code, copy);
+    for (const std::string& copy : left->copies)
+        fmt::print("names {} too, delete it if it is a copy of this database: {}\n", options.code, copy);
     fmt::print(
         "and whatever copies of the database and exports lie elsewhere; erase them as well in the databases of other "
         "stations and in those merged from this one, and push to PostgreSQL again\n");

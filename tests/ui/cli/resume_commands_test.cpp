@@ -17,7 +17,8 @@
 namespace passung::test {
 namespace {
 
-/// Trials with real parts, which the experimenter starts and ends: nothing goes on by itself.
+/// Trials with real parts, which the experimenter starts and ends: nothing goes on by itself, and a busy machine
+/// invalidates none.
 std::string timedStudy() {
     std::string text = smallStudy();
     const auto replace = [&](const std::string& from, const std::string& to) {
@@ -25,7 +26,8 @@ std::string timedStudy() {
     };
     replace("\"task.timeout_s\" = 0.4, \"contact.method\" = \"penalty\"", "\"task.timeout_s\" = 1000");
     replace("\"task.timeout_s\" = 20, \"contact.method\" = \"god_object_heuristic\"", "\"task.timeout_s\" = 1001");
-    replace("[task]\n", "[feedback]\nkinesthetic = false\n\n[task]\ntimed_by = \"experimenter\"\n");
+    replace("[task]\n",
+            "[loop]\nmax_missed_share = 1\n\n[feedback]\nkinesthetic = false\n\n[task]\ntimed_by = \"experimenter\"\n");
     return text;
 }
 
