@@ -61,6 +61,7 @@ RowLayout {
                     Say {
                         width: parent.width
                         quiet: true
+                        wrapMode: Text.Wrap
                         font.pixelSize: look.scale * 12
                         text: cardItem.modelData.sound ? qsTr("Conditions: %1 · trials: %2 · participants: %3").arg(cardItem.modelData.conditions).arg(cardItem.modelData.trials).arg(cardItem.modelData.participants) : qsTr("Problems: %1").arg(cardItem.modelData.problems.length)
                     }

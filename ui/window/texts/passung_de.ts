@@ -732,7 +732,7 @@
     </message>
     <message>
         <source>Conditions: %1 · trials: %2 · participants: %3</source>
-        <translation>Bedingungen: %1 · Durchgänge: %2 · Versuchspersonen: %3</translation>
+        <translation>Bedingungen: %1 · Durchgänge: %2 · Personen: %3</translation>
     </message>
     <message>
         <source>%1, version %2 · %3</source>
