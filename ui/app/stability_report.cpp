@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/base/tick_record.h"
 
@@ -24,16 +25,19 @@ WallBounds boundsOf(const loop::SampledWall& wall, double coulomb, double quantu
             .passive_undamped = passiveStiffness(undamped, coulomb, quantum)};
 }
 
+loop::SampledWall translationLoop(const DeviceMechanism& m, double damping, int delay_ticks) {
+    return {.mass = m.mass_kg,
+            .damping = m.damping_Ns_per_m,
+            .stiffness = 0,
+            .virtual_damping = damping,
+            .period = kTickSeconds,
+            .delay_ticks = delay_ticks};
+}
+
 }  // namespace
 
 WallBounds translationBounds(const DeviceMechanism& m, double damping, int delay_ticks) {
-    return boundsOf({.mass = m.mass_kg,
-                     .damping = m.damping_Ns_per_m,
-                     .stiffness = 0,
-                     .virtual_damping = damping,
-                     .period = kTickSeconds,
-                     .delay_ticks = delay_ticks},
-                    m.coulomb_force_N, m.quantum_m);
+    return boundsOf(translationLoop(m, damping, delay_ticks), m.coulomb_force_N, m.quantum_m);
 }
 
 WallBounds rotationBounds(const DeviceMechanism& m, double damping, int delay_ticks) {
@@ -60,11 +64,7 @@ SceneWall translationWall(const DeviceDescription& device, const model::SceneSpe
         const bool virtual_tool = scene.contact.coupling == model::PenaltyCoupling::Virtual;
         const bool bounded = scene.contact.variant == model::PenaltyVariant::MaxNormalised;
         wall.bounds.border = stableStiffnessBorderUpTo(loop::SampledTool{
-            .wall = {.mass = device.mechanism->mass_kg,
-                     .damping = device.mechanism->damping_Ns_per_m,
-                     .virtual_damping = scale * scene.contact.damping,
-                     .period = kTickSeconds,
-                     .delay_ticks = delay},
+            .wall = translationLoop(*device.mechanism, scale * scene.contact.damping, delay),
             .contact_stiffness = bounded ? scale * scene.contact.penalty_stiffness : kRigid * wall.bounds.border,
             .tool_mass = virtual_tool ? scale * scene.contact.tool_mass : 0.0});
     }
@@ -78,15 +78,16 @@ Errors beyondBorder(const protocol::StudyPlan& plan, std::span<const DeviceDescr
         if (device == nullptr || condition.allow_unstable || !feltThroughTool(condition.scene.contact)) continue;
         const SceneWall wall = translationWall(*device, condition.scene);
         if (!device->mechanism || wall.stiffness < wall.bounds.border) continue;
-        if (const auto value = fmt::format("{:.6g}", wall.stiffness);
-            std::none_of(errors.begin(), errors.end(), [&](const Error& error) { return error.value == value; }))
-            errors.push_back(
-                {.message = fmt::format("must be below {:.4g} N/m, where {} is no longer stable through this "
-                                        "coupling's tool; allow_unstable = true lifts this",
-                                        wall.bounds.border, device->name),
-                 .file = plan.source_path,
-                 .key = "condition " + condition.name + ": contact.stiffness_N_per_m",
-                 .value = fmt::format("{:.6g}", wall.stiffness)});
+        Error error{.message = fmt::format("must be below {:.4g} N/m, where {} is no longer stable through this "
+                                           "coupling's tool; allow_unstable = true lifts this",
+                                           wall.bounds.border, device->name),
+                    .file = plan.source_path,
+                    .key = "condition " + condition.name + ": contact.stiffness_N_per_m",
+                    .value = fmt::format("{:.6g}", wall.stiffness)};
+        const bool told = std::any_of(errors.begin(), errors.end(), [&](const Error& other) {
+            return other.message == error.message && other.value == error.value;
+        });
+        if (!told) errors.push_back(std::move(error));
     }
     return errors;
 }

@@ -34,8 +34,8 @@ bool feltThroughTool(const model::ContactSpec& contact);
 SceneWall translationWall(const DeviceDescription& device, const model::SceneSpec& scene);
 SceneWall rotationWall(const DeviceDescription& device, const model::SceneSpec& scene);
 
-/// Conditions whose coupling is stiffer than that, one for each stiffness, unless their protocol takes responsibility
-/// for it.
+/// Conditions whose coupling is stiffer than that, one for each stiffness and border, unless their protocol takes
+/// responsibility for it.
 Errors beyondBorder(const protocol::StudyPlan& plan, std::span<const DeviceDescription> devices);
 
 /// Null: there is none of this name.

@@ -17,7 +17,24 @@ double border(double m, double b, double B, double T, int d) {
 }
 
 // The wall in the time domain: the handle moves exactly under a force held for one tick.
-// Returns the largest |x| in the last tenth over the largest in the first tenth.
+/// The largest |x| in the last tenth of a swing over the largest in the first tenth.
+class Growth {
+public:
+    explicit Growth(int ticks) : ticks_(ticks) {}
+    /// False: it has grown beyond all measure.
+    bool note(int tick, double x) {
+        const double size = std::abs(x);
+        if (tick < ticks_ / 10) early_ = std::max(early_, size);
+        if (tick >= ticks_ - ticks_ / 10 || size > 1e6) late_ = std::max(late_, size);
+        return size <= 1e6;
+    }
+    double value() const { return late_ / early_; }
+
+private:
+    int ticks_;
+    double early_ = 0.0, late_ = 0.0;
+};
+
 double growth(const SampledWall& w, int ticks) {
     const double a = w.damping / w.mass;
     const double E = std::exp(-a * w.period);
@@ -25,7 +42,8 @@ double growth(const SampledWall& w, int ticks) {
     const double fv = a > 0 ? (1 - E) / w.damping : w.period / w.mass;
     const double fx = a > 0 ? (w.period - vx) / w.damping : w.period * w.period / (2 * w.mass);
     std::array<double, 32> past{};  // positions, newest first
-    double x = 1e-3, v = 0, early = 0, late = 0;
+    double x = 1e-3, v = 0;
+    Growth grown(ticks);
     past.fill(x);
     for (int k = 0; k < ticks; ++k) {
         for (std::size_t i = past.size() - 1; i > 0; --i) past[i] = past[i - 1];
@@ -34,11 +52,9 @@ double growth(const SampledWall& w, int ticks) {
         const double force = -w.stiffness * past[d] - w.virtual_damping * (past[d] - past[d + 1]) / w.period;
         x += vx * v + fx * force;
         v = E * v + fv * force;
-        if (k < ticks / 10) early = std::max(early, std::abs(x));
-        if (k >= ticks - ticks / 10) late = std::max(late, std::abs(x));
-        if (std::abs(x) > 1e6) return std::abs(x) / early;
+        if (!grown.note(k, x)) break;
     }
-    return late / early;
+    return grown.value();
 }
 
 /// The same in front of a tool that implicit Euler moves between coupling and contact.
@@ -47,7 +63,8 @@ double growth(const SampledTool& tool, int ticks) {
     const double a = w.damping / w.mass, E = std::exp(-a * w.period), T = w.period;
     const double vx = (1 - E) / a, fv = (1 - E) / w.damping, fx = (T - vx) / w.damping;
     std::array<double, 8> forces{};  // newest first
-    double x = 1e-3, v = 0, x_before = x, y = x, y_before = y, e_before = 0, early = 0, late = 0;
+    double x = 1e-3, v = 0, x_before = x, y = x, y_before = y, e_before = 0;
+    Growth grown(ticks);
     for (int k = 0; k < ticks; ++k) {
         const double B = w.virtual_damping / T, M = tool.tool_mass / (T * T);
         // K (x - y') + B (x - x_before - (y' - y)) - k y' + M ((y - y_before) - (y' - y)) = 0
@@ -63,11 +80,9 @@ double growth(const SampledTool& tool, int ticks) {
         const double force = forces[static_cast<std::size_t>(w.delay_ticks)];
         x += vx * v + fx * force;
         v = E * v + fv * force;
-        if (k < ticks / 10) early = std::max(early, std::abs(x));
-        if (k >= ticks - ticks / 10) late = std::max(late, std::abs(x));
-        if (std::abs(x) > 1e6) return std::abs(x) / early;
+        if (!grown.note(k, x)) break;
     }
-    return late / early;
+    return grown.value();
 }
 
 }  // namespace
