@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -25,6 +26,8 @@ class ContactManifold {
 public:
     explicit ContactManifold(std::size_t capacity = 0) : points_(capacity) {}
     void clear() noexcept { count_ = 0; }
+    /// Forgets all but the first `count`.
+    void keepFirst(std::size_t count) noexcept { count_ = std::min(count, count_); }
     /// False if full.
     bool tryPush(const ContactPoint& point) noexcept {
         if (count_ == points_.size()) return false;

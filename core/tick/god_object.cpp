@@ -1,6 +1,7 @@
 #include "core/tick/god_object.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/tick/proxy.h"
 #include "core/tick/proxy_way.h"
@@ -9,18 +10,83 @@ namespace passung::tick {
 
 namespace {
 
-/// Makes `u`, or as much of it as leaves no more overlap than `accepted`; the share made, 0 if the proxy stays.
-double makeStep(const TickModel& model, TickState& state, TickFrame& frame, const Motion& u, double reach,
-                double search, double accepted) noexcept {
-    const Pose X_here = state.X_WG;
-    double share = 1.0;
-    for (int half = 0; half <= kHalvings; ++half, share *= 0.5) {
-        look(model, state, frame, moved(model, X_here, share * u), reach, search);
-        if (overlap(state) <= accepted) return share;
-        frame.status |= kStepRejected;
+/// Where a step begins, and what is known there.
+struct Place {
+    Pose X_WG;
+    double reach, clearance, room;
+    std::size_t contacts;
+};
+
+Place placeOf(const TickState& state) noexcept {
+    return {state.X_WG, state.manifold_reach, state.clearance, state.room, state.manifold.size()};
+}
+
+/// From where a step ended in overlap back to where it began. Its contacts are those that `look` left in the scratch
+/// memory, which now holds what the step met.
+void takeBack(TickState& state, const Place& place) noexcept {
+    std::swap(state.manifold, state.scratch);
+    state.X_WG = place.X_WG;
+    state.manifold_reach = place.reach;
+    state.clearance = place.clearance;
+    state.room = place.room;
+}
+
+/// What the step `u` met and went more than `relieve` into, as contacts of the place where it began (cuts:
+/// god_object.h).
+void addCuts(const TickModel& model, TickState& state, const Pose& X_met, const Motion& u) noexcept {
+    const Surroundings here = surroundings(model, state);
+    const Pose back = state.X_WG * X_met.inverse();
+    for (const ContactPoint& met : state.scratch) {
+        if (!(met.phi < -model.margins.relieve)) continue;
+        ContactPoint cut = met;
+        cut.position = back * met.position;
+        cut.phi = met.phi - met.gradient.dot(here.wayOf(cut.position, u));
+        if (!state.manifold.tryPush(cut)) return;
     }
-    look(model, state, frame, X_here, reach, reach);
-    return 0.0;
+}
+
+struct Step {
+    Motion u = Motion::Zero();  // as made
+    FrictionPatches rubbing;
+    bool made = false;
+    bool whole = false;    // all that was allowed
+    bool halved = false;   // less, because even the last cuts did not keep it out
+    bool at_rest = false;  // nothing is allowed
+};
+
+/// Makes what is `allowed` of `wanted`, no farther than is `known`, so that it leaves no more overlap than `accepted`.
+Step makeStep(const TickModel& model, TickState& state, TickFrame& frame, const Motion& wanted,
+              const Surroundings& around, AllowedMotion allowed, double known, double reach, double search,
+              double accepted) noexcept {
+    const Place here = placeOf(state);
+    double share = 1.0;
+    for (int tried = 0; tried <= kCuts + kHalvings; ++tried) {
+        const double length = longestPath(model, allowed.u);
+        if (length < kStill) {
+            state.manifold.keepFirst(here.contacts);
+            return {.rubbing = allowed.rubbing, .at_rest = true};
+        }
+        const Motion u = share * (length > known ? known / length : 1.0) * allowed.u;
+        look(model, state, frame, moved(model, here.X_WG, u), reach, search);
+        if (overlap(state) <= accepted) {
+            return {.u = u,
+                    .rubbing = allowed.rubbing,
+                    .made = true,
+                    .whole = share == 1.0 && length <= known,
+                    .halved = share < 1.0};
+        }
+        frame.status |= kStepRejected;
+        const Pose X_met = state.X_WG;
+        takeBack(state, here);
+        if (tried < kCuts) {
+            addCuts(model, state, X_met, u);
+            allowed = allowedMotion(model, state, frame, wanted, around);
+        } else {
+            share *= 0.5;
+        }
+    }
+    state.manifold.keepFirst(here.contacts);
+    return {};
 }
 
 }  // namespace
@@ -55,31 +121,32 @@ void sweepProxy(const TickModel& model, TickState& state, TickFrame& frame) noex
         around.sunk_out = -std::max(margins.keep, before - repair);
         const AllowedMotion allowed = allowedMotion(model, state, frame, wanted, around);
         const double step = longestPath(model, allowed.u);
-        const double known = std::max(state.manifold_reach, state.room);
-        const double share = step > known ? known / step : 1.0;
         const double next_reach = std::clamp(kReachGrowth * std::min(step, path), reach, longest);
         // Contacts that held may be left behind by now, so that the way ends only where those of now leave nothing.
         const bool on_the_way = whole && before <= margins.relieve;
         arrived = step < (on_the_way ? std::max(kEnough * model.finest_cell, kRest * way.length()) : kStill);
         if (arrived && sweep == 0) state.rubbing = allowed.rubbing;
-        const bool stops = !way.goesOn(model, share * allowed.u, step);
+        const double known = std::max(state.manifold_reach, state.room);
+        const bool stops = !way.goesOn(model, (step > known ? known / step : 1.0) * allowed.u, step);
         arrived = arrived || (on_the_way && stops);
         if (arrived || stops) break;
         if (sweep == kSweeps) break;
         frame.iterations = static_cast<std::uint32_t>(sweep + 1);
         const Pose X_here = state.X_WG;
-        const double made =
-            makeStep(model, state, frame, share * allowed.u, next_reach, std::max(next_reach, path), accepted);
-        if (made == 0.0) break;
-        way.add(made * share * allowed.u);
+        const Step made = makeStep(model, state, frame, wanted, around, allowed, known, next_reach,
+                                   std::max(next_reach, path), accepted);
+        arrived = made.at_rest;
+        if (arrived && sweep == 0) state.rubbing = made.rubbing;
+        if (!made.made) break;
+        way.add(made.u);
         if (way.bentBy(Motion::Zero()) > margins.relieve &&
             cutsCorner(model, state, frame, X_before, state.X_WG, between)) {
             look(model, state, frame, X_here, reach, reach);
             break;
         }
-        if (made == 1.0) state.rubbing = allowed.rubbing;
+        if (!made.halved) state.rubbing = made.rubbing;
         repair = std::max(0.0, repair - std::max(0.0, before - overlap(state)));
-        whole = made * share == 1.0;
+        whole = made.whole;
         reach = next_reach;
     }
     if (!arrived) frame.status |= kIterationLimit;

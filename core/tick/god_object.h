@@ -21,8 +21,13 @@ namespace passung::tick {
 ///
 /// Sweep. a_i is true to first order only. A step therefore goes no farther than is known around the proxy (`reach`,
 /// more where free room is proven) and than half a cell, is looked at, and everything is set up anew from there, until
-/// nothing is left that is allowed: at most kSweeps times. A step that ends with more overlap than kAccepted is halved;
-/// one with more than kRelieved is followed by another, whose rows ask for it (b_i > 0).
+/// nothing is left that is allowed: at most kSweeps times. A step that ends with more than kRelieved is followed by
+/// another, whose rows ask for it (b_i > 0).
+///
+/// Cuts. A step u' that ends with more overlap than kAccepted is taken back, and what it went into becomes a row too,
+/// linearised where it was met:  φ' + a' · (u - u') ≥ b.  Beside a rim nothing else will do: the place of an edge that
+/// is deepest after the step lay beside the obstacle before it, or so far along the edge that no row asked for it, and
+/// the same step, halved or not, would be taken back tick after tick. After kCuts of them steps are halved.
 ///
 /// Round a bend the way goes on in the next tick, unless it is fast: the straight line between two ticks' poses, which
 /// is what others see of it, lies within kRelieved of it (proxy_way.h) and is as free as the way itself.
@@ -49,6 +54,7 @@ inline constexpr double kRepair = 0.2;      // of overlap that was there before,
 inline constexpr double kEnough = 0.002;    // of motion that is left after a step and not made, per cell
 inline constexpr double kRest = 0.5;        // the same, per way made
 inline constexpr int kSweeps = 16;
+inline constexpr int kCuts = 4;  // of one step
 
 /// Stage; those of proxy.h follow. rt-safe.
 void sweepProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept;

@@ -96,14 +96,15 @@ void look(const TickModel& model, TickState& state, TickFrame& frame, const Pose
     state.room = std::max(reach, answer.lower_bound);
 }
 
-double overlapBetween(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_from, const Pose& X_to,
-                      double share) noexcept {
+bool overlapsBetween(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_from, const Pose& X_to,
+                     double share, double accepted) noexcept {
     const Pose X{X_from.q.slerp(share, X_to.q), X_from.p + share * (X_to.p - X_from.p)};
     state.scratch.clear();
-    const QueryRequest request{.collect_below = -1e300, .facing = model.contact.two_way, .edges = true};
+    const QueryRequest request{
+        .collect_below = -1e300, .search_below = -accepted, .facing = model.contact.two_way, .edges = true};
     const QueryAnswer answer = queryObstacles(model, X, request, state.workspace, state.scratch);
     account(answer, frame);
-    return std::max(0.0, -answer.phi);
+    return answer.found;
 }
 
 void lookAround(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_WG) noexcept {

@@ -29,14 +29,15 @@ double overlap(const TickState& state) noexcept;
 bool isInside(const ContactPoint& contact) noexcept;
 
 /// Puts the proxy at `X_WG` and looks around: all contacts within `reach`, and up to `search` [m] how far the nearest
-/// one is if none is. Room beyond the reach is used without another look, so that it has to be proven.
+/// one is if none is. Room beyond the reach is used without another look, so that it has to be proven. Where it
+/// overlaps there, the scratch memory then holds what the manifold held before.
 void look(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_WG, double reach,
           double search) noexcept;
 
-/// Of the deepest point at the pose `share` of the way between two [m], ≥ 0; the proxy and what is known of it stay.
-/// rt-safe.
-double overlapBetween(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_from, const Pose& X_to,
-                      double share) noexcept;
+/// True if a point overlaps by more than `accepted` [m] at the pose `share` of the way between two; the proxy and what
+/// is known of it stay. rt-safe.
+bool overlapsBetween(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_from, const Pose& X_to,
+                     double share, double accepted) noexcept;
 
 /// What is asked around the proxy when nothing is known of it yet: all contacts that any step could reach, and where
 /// there is none the proof of it. rt-safe.

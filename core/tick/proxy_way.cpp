@@ -44,7 +44,7 @@ bool cutsCorner(const TickModel& model, TickState& state, TickFrame& frame, cons
                 double accepted) noexcept {
     for (int place = 1; place <= kPlaces; ++place) {
         const double share = static_cast<double>(place) / (kPlaces + 1);
-        if (overlapBetween(model, state, frame, X_from, X_to, share) > accepted) return true;
+        if (overlapsBetween(model, state, frame, X_from, X_to, share, accepted)) return true;
     }
     return false;
 }

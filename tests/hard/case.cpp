@@ -33,7 +33,7 @@ Caps capsOf(const Run& run) {
     const int rows = rubs ? tick::kMostSteps + 2 * tick::kRubSweeps + 1 : tick::kMaxIterations - 1;
     const int turns = rubs ? tick::kRubSweeps : 0;
     if (run.spec.contact.method == model::ContactMethod::GodObject)
-        return {tick::kSweeps, 2 * tick::kSweeps * (tick::kHalvings + 3), rows, turns};
+        return {tick::kSweeps, 2 * tick::kSweeps * (tick::kCuts + tick::kHalvings + 3), rows, turns};
     // Corrections with their halvings, then per sub-step an arrival, its return and the halvings with their reliefs.
     const int sub_step = 3 + (tick::kHalvings + 1) * (1 + tick::kReliefs);
     const int looks = 2 * (1 + tick::kCorrections * (tick::kHalvings + 2) + tick::kSubSteps * sub_step);
