@@ -17,7 +17,7 @@ std::deque<std::size_t>::const_iterator Agenda::first() const {
     return std::find_if(todo_.begin(), todo_.end(), [&](std::size_t place) { return !needless_[place]; });
 }
 
-std::vector<design::PlannedTrial> Agenda::toDo() const {
+std::vector<design::PlannedTrial> Agenda::remaining() const {
     std::vector<design::PlannedTrial> trials;
     for (const std::size_t place : todo_)
         if (!needless_[place]) trials.push_back(trials_[place]);

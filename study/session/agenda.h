@@ -25,7 +25,7 @@ public:
     std::size_t next() const { return *first(); }  // @pre not empty()
     const design::PlannedTrial& trial(std::size_t place) const { return trials_[place]; }
     /// All that are still to do, the next one first.
-    std::vector<design::PlannedTrial> toDo() const;
+    std::vector<design::PlannedTrial> remaining() const;
 
     /// The next trial has had an attempt, or (Done) is left out. RepeatAtBlockEnd: after what is left of its block.
     /// @pre not empty()

@@ -39,7 +39,7 @@ Session::Session(SessionSetup setup, Apparatus& apparatus, TrialSink& sink, Sess
       past_(setup_.resumed ? setup_.resumed->past : std::vector<Past>(setup_.trials.size())),
       last_(setup_.resumed ? setup_.resumed->last : std::nullopt),
       session_ns_(setup_.resumed ? setup_.resumed->start_ns : 0) {
-    if (setup_.resumed) desk_.resume(setup_.resumed->finished, agenda_.toDo(), setup_.resumed->forms);
+    if (setup_.resumed) desk_.resume(setup_.resumed->finished, agenda_.remaining(), setup_.resumed->forms);
     if (setup_.resumed)
         for (ToldStep& told : setup_.resumed->steps) staircases_.restore(std::move(told));
     leaveOutNeedless();

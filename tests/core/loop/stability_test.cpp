@@ -16,7 +16,6 @@ double border(double m, double b, double B, double T, int d) {
         {.mass = m, .damping = b, .stiffness = 0, .virtual_damping = B, .period = T, .delay_ticks = d});
 }
 
-// The wall in the time domain: the handle moves exactly under a force held for one tick.
 /// The largest |x| in the last tenth of a swing over the largest in the first tenth.
 class Growth {
 public:
@@ -35,6 +34,7 @@ private:
     double early_ = 0.0, late_ = 0.0;
 };
 
+/// Of a wall in the time domain: the handle moves exactly under a force held for one tick.
 double growth(const SampledWall& w, int ticks) {
     const double a = w.damping / w.mass;
     const double E = std::exp(-a * w.period);

@@ -71,7 +71,7 @@ TEST(Agenda, WhatIsNotNeededIsPassedOverAndComesAtItsPlaceWhenItIs) {
     leaveOut(1);
     agenda.end(Then::RepeatAtBlockEnd);
     EXPECT_EQ(rest(agenda), (Order{2, 3, 0, 4}));
-    EXPECT_EQ(agenda.toDo().size(), 4u);
+    EXPECT_EQ(agenda.remaining().size(), 4u);
     EXPECT_EQ(agenda.finished(), 0u);
     EXPECT_EQ(agenda.leftOut(), 1u);
     leaveOut(-1);
