@@ -53,9 +53,10 @@ set(libraries
   "Bullet   | ^(btBullet|Bullet)               | tests                                  | cpp"
   "OpenVDB  | ^openvdb/                        | tests                                  | cpp"
   "Qt       | ^Q[A-Zt]                         | ui/experimenter ui/participant ui/window tests | any"
+  "XCB      | ^xcb/                            | ui/window tests                        | cpp"
   "gbench   | ^benchmark/                      | tests                                  | cpp"
   "gtest    | ^g(test|mock)/                   | tests                                  | any"
-  "POSIX    | ^(sys|linux|arpa|netinet)/|^(unistd|pthread|sched|fcntl|poll|semaphore|signal|time|dlfcn|termios|malloc|pwd|grp)[.]h$ | core/loop devices study/store ui tests | cpp")
+  "POSIX    | ^(sys|linux|arpa|netinet)/|^(unistd|pthread|sched|fcntl|poll|semaphore|spawn|signal|time|dlfcn|termios|malloc|pwd|grp)[.]h$ | core/base core/loop devices study/store ui tests | cpp")
 
 # The tick: a positive list. What is not here allocates, locks, throws, waits or talks to the system.
 set(tick_standard_headers algorithm array atomic bit bitset cassert cfloat climits cmath compare concepts cstddef

@@ -1,5 +1,5 @@
 # cmake -DROOT=... -P texts.cmake: no absolute path of somebody's machine, no open end left as a note, and a room card
-# of at most 40 lines in every top folder. Prints every violation as file:line: message and fails.
+# of at most 40 lines in every top folder; every Text of the windows is plain. Prints every violation as file:line: message and fails.
 
 cmake_policy(VERSION 3.25)
 
@@ -36,6 +36,30 @@ foreach(file ${files})
     math(EXPR number "${number} + 1")
     if(line MATCHES "${forbidden}")
       list(APPEND faults "${path}:${number}: '${CMAKE_MATCH_0}' has no place in the sources")
+    endif()
+  endforeach()
+endforeach()
+
+# What stands in a file is shown as it stands: Text guesses at HTML if it is not told that it is plain.
+set(plain_next FALSE)
+foreach(file ${files})
+  if(NOT file MATCHES "[.]qml$")
+    continue()
+  endif()
+  file(RELATIVE_PATH path ${ROOT} ${file})
+  file(READ ${file} text)
+  string(REGEX REPLACE "[][;\\]" "_" text "${text}")
+  string(REPLACE "\n" ";" lines "${text}")
+  set(number 0)
+  set(plain_next FALSE)
+  foreach(line IN LISTS lines)
+    math(EXPR number "${number} + 1")
+    if(plain_next AND NOT line MATCHES "textFormat: Text.PlainText")
+      list(APPEND faults "${path}:${number}: a Text must begin with textFormat: Text.PlainText")
+    endif()
+    set(plain_next FALSE)
+    if(line MATCHES "(^|[ :])Text {" AND NOT line MATCHES "^ *//")
+      set(plain_next TRUE)
     endif()
   endforeach()
 endforeach()

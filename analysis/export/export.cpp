@@ -5,11 +5,16 @@
 #include <future>
 #include <thread>
 
+#include "analysis/export/analysis_table.h"
+#include "analysis/export/cell_tables.h"
 #include "analysis/export/codebook.h"
 #include "analysis/export/contact_energy_table.h"
 #include "analysis/export/export_folder.h"
 #include "analysis/export/gzip.h"
+#include "analysis/export/missing_table.h"
+#include "analysis/export/named_files.h"
 #include "analysis/export/note_table.h"
+#include "analysis/export/plan_file.h"
 #include "analysis/export/presentation_table.h"
 #include "analysis/export/questionnaire_tables.h"
 #include "analysis/export/samples.h"
@@ -25,8 +30,10 @@ namespace {
 constexpr const char* kSamplesPattern = "samples/*.csv.gz";
 
 std::vector<Table> makeTables(const StudyData& study) {
-    std::vector<Table> tables = {makeTrials(study), makeCells(study)};
-    for (Table& table : makeWide(study)) tables.push_back(std::move(table));
+    const std::vector<Cell> cells = cellsOf(study);
+    std::vector<Table> tables = {makeTrials(study), makeCells(study, cells)};
+    for (Table& table : makeWide(study, cells)) tables.push_back(std::move(table));
+    if (!study.analyses.empty()) tables.push_back(makeAnalyses(study, cells));
     tables.push_back(makeEvents(study));
     if (!study.notes.empty()) tables.push_back(makeNotes(study));
     tables.push_back(makeSessions(study));
@@ -45,6 +52,8 @@ std::vector<Table> makeTables(const StudyData& study) {
         tables.push_back(makeScoresWide(study));
         tables.push_back(makeReliability(study));
     }
+    if (!study.definitions.empty()) tables.push_back(makeQuestionnaireKeys(study));
+    tables.push_back(makeFiles(study));
     if (!study.accuracy.empty()) tables.push_back(makeAccuracy(study));
     return tables;
 }
@@ -68,12 +77,23 @@ std::string readmeText(const StudyData& study, const std::vector<Table>& tables,
         text += "| `" + table.file + "` | " + table.about + " |\n";
     }
     text +=
-        "| `protocol/` | The protocols, byte for byte; the name is the SHA-256 of the text. |\n"
+        "| `plan.json` | The plans as they ran: every condition, block and questionnaire with all that the protocol "
+        "leaves to a default. |\n"
+        "| `protocol/` | The protocols, byte for byte, with the files that they include in place; the name is the "
+        "SHA-256 "
+        "of the text. `files.csv` lists what else they name: questionnaires are here, of meshes and pictures the hash. "
+        "|\n"
         "| `SHA256SUMS` | For `sha256sum -c SHA256SUMS`. |\n\n"
         "Read in R: `trials <- read.csv(\"trials.csv\")`; in Python: `trials = pandas.read_csv(\"trials.csv\")`. "
-        "Analyse the rows with `valid` = 1 and `phase` = `main`; `cells_long.csv` and the wide tables count only "
-        "those that ended in success, failure or timeout, and of each participant one session per protocol: the "
-        "complete one, else the latest (`counted` = 1 in `sessions.csv`). `trials.csv` holds all sessions.\n";
+        "Analyse the rows with `counted` = 1; `not_counted_because` says of all others why. `cells_long.csv` has a row "
+        "for each participant, session, block and condition, a wide table one for each participant and session: "
+        "`wide_MEASURE.csv`, or `wide_MEASURE_BLOCK.csv` where the study has several main blocks. They count what "
+        "ended "
+        "in success, failure or timeout, and of each participant every complete session per protocol, else the "
+        "latest (`counted` = 1 in `sessions.csv`).\n\n"
+        "A time-out is no missing value: `time_s` is the time to success or to the end, `finished` says which, and the "
+        "cells hold its restricted mean, which keeps everybody. `analyses.csv` lists the analyses that the protocol "
+        "plans: file, column, model, and how many participants it keeps.\n";
     return text;
 }
 
@@ -146,11 +166,12 @@ Result<ExportReport> exportAll(const store::StoreReader& reader, const std::stri
     if (!study) return study.errors();
     std::vector<std::string> names;
     for (const store::ProtocolRow& protocol : study->protocols) names.push_back(protocol.name);
-    auto folder = ExportFolder::begin(out_dir, std::move(names));
+    auto folder = ExportFolder::begin(out_dir, std::move(names), options.group);
     if (!folder) return folder.errors();
 
     Writer writer(*folder);
     std::vector<Table> tables = makeTables(*study);
+    if (!reader.damages().empty()) tables.push_back(makeMissing(reader.damages()));
     for (const Table& table : tables) writer.write(table.file, toCsv(table));
     if (options.samples) {
         tables.push_back({kSamplesPattern,
@@ -159,9 +180,8 @@ Result<ExportReport> exportAll(const store::StoreReader& reader, const std::stri
                           sampleColumns(),
                           {}});
     }
-    for (const store::ProtocolRow& protocol : study->protocols) {
-        writer.write("protocol/" + protocol.sha256 + ".toml", protocol.source_text);
-    }
+    for (const ExportedFile& file : namedFiles(*study)) writer.write(file.path, file.bytes);
+    writer.write("plan.json", planJson(*study));
     tables.push_back(makeCodebook(tables));
     writer.write("codebook.csv", toCsv(tables.back()));
     writer.write("codebook.json", codebookJson(tables));
@@ -169,7 +189,7 @@ Result<ExportReport> exportAll(const store::StoreReader& reader, const std::stri
     if (options.samples) writeSamples(reader, *study, options, writer);
     if (writer.failed()) return writer.errors();
     if (const auto done = folder->complete(); !done) return done.errors();
-    return ExportReport{study->attempts.size(), writer.files() + 1};
+    return ExportReport{study->attempts.size(), writer.files() + 1, reader.damages().size()};
 }
 
 }  // namespace passung::exporter

@@ -11,6 +11,7 @@ namespace passung::exporter {
 
 struct ExportOptions {
     bool samples = true;  // every recorded tick: some 100 kB per second of a trial
+    bool group = false;   // let the group of this user read and write the files too, not this user alone
     /// Called now and then with the share that is done, 0 … 1.
     std::function<void(double)> progress;
     /// Asked as often: true ends the export, which then leaves nothing; empty: never.
@@ -20,12 +21,13 @@ struct ExportOptions {
 struct ExportReport {
     std::size_t attempts = 0;
     std::size_t files = 0;
+    std::size_t missing = 0;  // rows of missing.csv
 };
 
 /// Writes the whole study as files for people and statistics programs into the folder `out_dir`: tables as CSV (UTF-8,
 /// RFC 4180, LF, NA for missing), a codebook, the protocols, README.md and SHA256SUMS. The same data gives the same
-/// bytes. The folder appears complete or not at all; an earlier export in its place is replaced; a folder
-/// with any other file is refused.
+/// bytes. What the reader left out because it is damaged is listed in missing.csv. The folder appears complete or not
+/// at all; an earlier export in its place is replaced; a folder with any other file is refused.
 Result<ExportReport> exportAll(const store::StoreReader& reader, const std::string& out_dir,
                                const ExportOptions& options = {});
 

@@ -115,12 +115,13 @@ void removeAbandoned(const fs::path& folder) {
 
 }  // namespace
 
-ExportFolder::ExportFolder(fs::path folder, std::vector<std::string> studies)
-    : folder_(std::move(folder)), studies_(std::move(studies)) {}
+ExportFolder::ExportFolder(fs::path folder, std::vector<std::string> studies, bool group)
+    : folder_(std::move(folder)), studies_(std::move(studies)), group_(group) {}
 
 ExportFolder::ExportFolder(ExportFolder&& other) noexcept
     : folder_(std::move(other.folder_)),
       studies_(std::move(other.studies_)),
+      group_(other.group_),
       lock_(std::move(other.lock_)),
       workshop_(std::move(other.workshop_)),
       sums_(std::move(other.sums_)) {
@@ -132,7 +133,7 @@ ExportFolder::~ExportFolder() {
     if (!workshop_.empty()) fs::remove_all(workshop_, ignored);
 }
 
-Result<ExportFolder> ExportFolder::begin(const std::string& name, std::vector<std::string> studies) {
+Result<ExportFolder> ExportFolder::begin(const std::string& name, std::vector<std::string> studies, bool group) {
     const fs::path folder = plain(name);
     std::error_code error;
     if (folder.empty() || folder.filename() == "." || folder.filename() == "..") {
@@ -145,7 +146,7 @@ Result<ExportFolder> ExportFolder::begin(const std::string& name, std::vector<st
     if (mkdtemp(workshop.data()) == nullptr) {
         return folderError(workshop, "cannot be created: " + std::generic_category().message(errno));
     }
-    ExportFolder made(folder, std::move(studies));
+    ExportFolder made(folder, std::move(studies), group);
     made.workshop_ = workshop;
     if (auto lock = store::FolderLock::take(workshop)) made.lock_.emplace(std::move(*lock));
     if (!fs::create_directory(made.workshop_ / kNew, error)) {
@@ -166,10 +167,24 @@ Result<Done> ExportFolder::write(const std::string& path, std::string_view bytes
     return Done{};
 }
 
+/// The workshop keeps others out meanwhile.
+Result<Done> ExportFolder::closeToOthers() const {
+    const auto file = fs::perms::owner_read | fs::perms::owner_write |
+                      (group_ ? fs::perms::group_read | fs::perms::group_write : fs::perms::none);
+    const auto folder = file | fs::perms::owner_exec | (group_ ? fs::perms::group_exec : fs::perms::none);
+    std::error_code error;
+    fs::permissions(workshop_ / kNew, folder, error);
+    for (const auto& entry : fs::recursive_directory_iterator(workshop_ / kNew))
+        if (!error) fs::permissions(entry.path(), entry.is_directory() ? folder : file, error);
+    if (error) return folderError(workshop_ / kNew, "cannot be kept from others: " + error.message());
+    return Done{};
+}
+
 Result<Done> ExportFolder::complete() {
     std::string sums;
     for (const auto& [path, sum] : sums_) sums += sum + "  " + path + "\n";
     if (auto written = write("SHA256SUMS", sums); !written) return written;
+    if (auto closed = closeToOthers(); !closed) return closed;
 
     // Somebody may have put a file there meanwhile.
     if (auto checked = checkReplaceable(folder_, studies_); !checked) return checked;

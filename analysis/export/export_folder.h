@@ -18,8 +18,9 @@ namespace passung::exporter {
 class ExportFolder {
 public:
     /// Fails if `folder` exists and is neither empty nor an earlier export without further files, or if that export
-    /// is of none of `studies` (names). What an export of the same folder that was killed has left is removed.
-    static Result<ExportFolder> begin(const std::string& folder, std::vector<std::string> studies);
+    /// is of none of `studies` (names). What an export of the same folder that was killed has left is removed. Nobody
+    /// but this user, or with `group` this user's group too, may open what is written.
+    static Result<ExportFolder> begin(const std::string& folder, std::vector<std::string> studies, bool group = false);
     ~ExportFolder();
     ExportFolder(ExportFolder&& other) noexcept;
     ExportFolder& operator=(ExportFolder&&) = delete;
@@ -31,10 +32,12 @@ public:
     Result<Done> complete();
 
 private:
-    ExportFolder(std::filesystem::path folder, std::vector<std::string> studies);
+    ExportFolder(std::filesystem::path folder, std::vector<std::string> studies, bool group);
+    Result<Done> closeToOthers() const;
 
     std::filesystem::path folder_;
     std::vector<std::string> studies_;
+    bool group_;
     std::optional<store::FolderLock> lock_;  // of the workshop
     std::filesystem::path workshop_;         // holds the new files, then the replaced ones; empty: nothing to remove
     std::map<std::string, std::string> sums_;

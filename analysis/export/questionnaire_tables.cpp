@@ -4,11 +4,10 @@
 #include <map>
 #include <tuple>
 
+#include "analysis/export/cells.h"
+#include "analysis/export/counted_forms.h"
 #include "analysis/export/trial_tables.h"
 #include "study/protocol/participant.h"
-#include "study/protocol/questionnaire_reader.h"
-#include "study/protocol/questionnaire_texts.h"
-#include "study/questionnaire/cronbach_alpha.h"
 #include "study/questionnaire/scoring.h"
 
 namespace passung::exporter {
@@ -16,35 +15,6 @@ namespace {
 
 using questionnaire::Definition;
 using store::QuestionnaireRunRow;
-
-/// The instruments of the runs, each read once.
-class Definitions {
-public:
-    /// nullptr where this program cannot read the stored text.
-    const Definition* of(const QuestionnaireRunRow& run) {
-        const std::tuple key(run.definition_text, run.texts_text, run.language);
-        auto found = known_.find(key);
-        if (found == known_.end()) {
-            auto definition = protocol::readQuestionnaire(run.definition_text, run.questionnaire, run.language);
-            if (definition && run.texts_text)
-                definition = protocol::withTexts(*std::move(definition), *run.texts_text, run.questionnaire);
-            found = known_.emplace(key, definition ? std::optional(*std::move(definition)) : std::nullopt).first;
-        }
-        return found->second ? &*found->second : nullptr;
-    }
-
-    const questionnaire::Scale* scale(const QuestionnaireRunRow& run, const std::string& name) {
-        const Definition* definition = of(run);
-        const auto index = definition != nullptr ? questionnaire::scaleNamed(*definition, name) : std::nullopt;
-        return index ? &definition->scales[*index] : nullptr;
-    }
-
-private:
-    std::map<std::tuple<std::string, std::optional<std::string>, std::string>, std::optional<Definition>> known_;
-};
-
-/// Forms that enter means, in the order of the study's rows.
-using CountedRuns = std::vector<const QuestionnaireRunRow*>;
 
 /// Who was asked what, and when: columns that items and scores begin with.
 std::vector<Column> runColumns() {
@@ -100,22 +70,6 @@ std::vector<std::string> runCells(const QuestionnaireRunRow& run, const CountedR
             cell(std::binary_search(counted.begin(), counted.end(), &run))};
 }
 
-/// Of the counted sessions the newest form of each occasion: who goes back to a trial or block is asked again.
-CountedRuns countedRuns(const StudyData& study) {
-    const std::set<std::string> counted = countedSessions(study);
-    using Occasion = std::tuple<std::string, std::string, std::string, std::optional<std::int64_t>,
-                                std::optional<std::int64_t>, std::optional<std::string>>;
-    std::map<Occasion, const QuestionnaireRunRow*> newest;  // rows come as they were filled in
-    for (const QuestionnaireRunRow& run : study.questionnaires)
-        if (counted.count(run.session_id) != 0)
-            newest[{run.session_id, run.questionnaire, run.moment, run.block_index, run.trial_index, run.condition}] =
-                &run;
-    CountedRuns runs;
-    for (const auto& [occasion, run] : newest) runs.push_back(run);
-    std::sort(runs.begin(), runs.end());
-    return runs;
-}
-
 /// A column of the wide table; sorts by questionnaire, then as the session goes.
 struct WideColumn {
     std::string questionnaire, moment;
@@ -134,21 +88,6 @@ std::string columnName(const WideColumn& column) {
     std::string name = column.questionnaire + "." + column.scale + "." + column.moment;
     if (column.block) name += "." + *column.block;
     return column.condition ? name + "." + columnPart(*column.condition) : name;
-}
-
-/// The aligned answers to a scale's items; nothing if one is missing.
-std::optional<std::vector<double>> alignedAnswers(const Definition& definition, const questionnaire::Scale& scale,
-                                                  const QuestionnaireRunRow& run) {
-    std::vector<double> values;
-    for (const std::size_t i : scale.items) {
-        const questionnaire::Item& item = definition.items[i];
-        const auto found = std::find_if(run.responses.begin(), run.responses.end(),
-                                        [&](const auto& response) { return response.item == item.id; });
-        if (found == run.responses.end() || !found->value_num) return std::nullopt;
-        values.push_back(item.reversed ? item.response.low + item.response.high - *found->value_num
-                                       : *found->value_num);
-    }
-    return values;
 }
 
 }  // namespace
@@ -221,17 +160,18 @@ Table makeQuestionnaireScores(const StudyData& study) {
 Table makeScoresWide(const StudyData& study) {
     Table table{
         "scores_wide.csv",
-        "One row per participant and protocol, one column per scale and occasion: mean of the counted forms' "
+        "One row per participant, protocol and session, one column per scale and occasion: mean of the counted forms' "
         "scores.",
         {{"participant_id", "Code of the participant", "", "text", "", 1, {}},
          {"kind", "Real person, pilot or simulated participant", "", "text", "", 1, protocol::participantKindNames()},
+         {"session", "Number of the participant's session, from 1", "", "integer", "", 1, {}},
          {"protocol_sha256", "SHA-256 of the protocol's text", "", "text", "", 1, {}}},
         {}};
-    using Person = std::tuple<std::string, std::string, std::string>;
+    using Person = std::tuple<std::string, std::string, std::string, std::int64_t>;
     std::map<WideColumn, const QuestionnaireRunRow*> columns;
     std::map<Person, std::map<WideColumn, std::vector<double>>> people;
     for (const QuestionnaireRunRow* run : countedRuns(study)) {
-        auto& scores = people[{run->participant_id, run->kind, run->protocol_sha256}];
+        auto& scores = people[{run->participant_id, run->kind, run->protocol_sha256, run->session_ordinal}];
         for (const store::ScoreRow& score : run->scores) {
             const WideColumn column = wideColumn(*run, score.scale);
             columns.emplace(column, run);
@@ -259,57 +199,13 @@ Table makeScoresWide(const StudyData& study) {
                                  {}});
     }
     for (const auto& [person, scores] : people) {
-        const auto& [participant, kind, protocol] = person;
-        std::vector<std::string> row = {participant, kind, protocol};
+        const auto& [participant, kind, protocol, session] = person;
+        std::vector<std::string> row = {participant, kind, cell(session), protocol};
         for (const auto& [column, run] : columns) {
             const auto found = scores.find(column);
             row.push_back(found == scores.end() ? kMissing : cell(meanOf(found->second)));
         }
         table.rows.push_back(std::move(row));
-    }
-    return table;
-}
-
-Table makeReliability(const StudyData& study) {
-    Table table{
-        "questionnaire_reliability.csv",
-        "One row per scale of at least two items and moment: how well the items agree.",
-        {{"kind", "Real people, pilots or simulated participants", "", "text", "", 1, protocol::participantKindNames()},
-         {"questionnaire", "Key of the questionnaire", "", "text", "", 1, {}},
-         {"version", "Version of its items and texts", "", "text", "", 1, {}},
-         {"moment", "When it was asked", "", "text", "", 1, {}},
-         {"scale", "Name of the scale", "", "text", "", 1, {}},
-         {"n_forms", "Counted forms without a missing item in the scale", "", "integer", "", 1, {}},
-         {"n_items", "Items of the scale", "", "integer", "", 1, {}},
-         {"cronbach_alpha",
-          "Internal consistency; forms of one person count as if they were independent",
-          "",
-          "number",
-          "k/(k-1) (1 - sum of the items' variances / variance of their sum), k items",
-          1,
-          {}}},
-        {}};
-    using Key = std::tuple<std::string, std::string, std::string, std::string, std::string>;
-    std::map<Key, std::vector<std::vector<double>>> answers;
-    std::map<Key, std::size_t> items;
-    Definitions definitions;
-    for (const QuestionnaireRunRow* run : countedRuns(study)) {
-        const Definition* definition = definitions.of(*run);
-        if (definition == nullptr) continue;
-        for (const questionnaire::Scale& scale : definition->scales) {
-            using questionnaire::Formula;
-            const bool averages = scale.formula == Formula::Mean || scale.formula == Formula::Sum;
-            if (scale.items.size() < 2 || !averages) continue;
-            const Key key(run->kind, run->questionnaire, run->version, run->moment, scale.name);
-            items[key] = scale.items.size();
-            auto& rows = answers[key];
-            if (auto row = alignedAnswers(*definition, scale, *run)) rows.push_back(*std::move(row));
-        }
-    }
-    for (const auto& [key, rows] : answers) {
-        const auto& [kind, name, version, moment, scale] = key;
-        table.rows.push_back({kind, name, version, moment, scale, cell(static_cast<std::int64_t>(rows.size())),
-                              cell(static_cast<std::int64_t>(items[key])), cell(questionnaire::cronbachAlpha(rows))});
     }
     return table;
 }

@@ -32,8 +32,10 @@ public:
                 return;
             }
         }
+        // A program that knows doubles only must read the exact value of a float, not the double next to its decimal.
+        using Exact = std::conditional_t<std::is_same_v<Number, float>, double, Number>;
         std::array<char, 32> digits;
-        const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+        const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), Exact{value});
         text_.append(digits.data(), end);
         text_ += ',';
     }

@@ -150,6 +150,9 @@ Table makeTiming(const StudyData& study) {
           {}},
          {"dropped_samples", "Ticks that could not be recorded", "", "integer", "", 1, {}}},
         {}};
+    for (const store::MeasureRow& counter : study.counters)
+        table.columns.push_back(
+            {counter.measure, counter.label, "", "integer", counter.formula, counter.formula_version, {}});
     for (const store::AttemptRow& attempt : study.attempts) {
         if (!attempt.timing) continue;
         const store::TimingRow& t = *attempt.timing;
@@ -157,6 +160,10 @@ Table makeTiming(const StudyData& study) {
                               cell(attempt.trial_index), cell(attempt.attempt_no), t.loop, cell(t.ticks),
                               cell(t.mean_us), cell(t.sd_us), cell(t.p99_us), cell(t.p999_us), cell(t.max_us),
                               cell(t.overruns), cell(t.dropped_samples)});
+        for (const store::MeasureRow& counter : study.counters) {
+            const auto count = attempt.measures.find(counter.measure);
+            table.rows.back().push_back(count == attempt.measures.end() ? kMissing : cell(count->second));
+        }
     }
     return table;
 }

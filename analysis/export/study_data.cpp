@@ -1,11 +1,11 @@
 #include "analysis/export/study_data.h"
 
 #include <algorithm>
-#include <limits>
-#include <numeric>
 
 #include "analysis/export/staircase_tables.h"
 #include "analysis/export/trial_tables.h"
+#include "study/measures/measures.h"
+#include "study/measures/period_clock.h"
 
 namespace passung::exporter {
 namespace {
@@ -39,15 +39,42 @@ void take(Result<std::vector<Row>> rows, std::vector<Row>& target, Errors& error
     }
 }
 
+/// The tick of each trial's start. Periods and ticks are the same as long as no cycle was missed; where one was, the
+/// recorded ticks tell, and if one up to there is missing or cannot be read, nothing does.
+void findStartTicks(const store::StoreReader& reader, std::vector<store::AttemptRow>& attempts) {
+    for (store::AttemptRow& attempt : attempts) {
+        if (!attempt.trial_ns) continue;
+        const std::int64_t periods = (*attempt.trial_ns - attempt.start_ns + kTickNanoseconds / 2) / kTickNanoseconds;
+        const bool missed = !attempt.timing || attempt.timing->overruns > 0;
+        if (!missed) attempt.start_tick = periods;
+        if (!missed) continue;
+        const auto records = reader.records(attempt.attempt_id);
+        if (!records) continue;
+        measures::PeriodClock clock;
+        std::int64_t next = 0;
+        for (const TickRecord& record : *records) {
+            if (record.tick != next++) break;  // how many periods a missing record stands for is not known
+            if (clock.at(record) < periods) continue;
+            attempt.start_tick = record.tick;
+            break;
+        }
+    }
+}
+
 }  // namespace
 
 Result<StudyData> readStudy(const store::StoreReader& reader) {
     StudyData study;
+    study.damages = reader.damages();
     Errors errors;
     std::vector<store::FactorRow> factors;
     take(reader.protocols(), study.protocols, errors);
     take(reader.factors(), factors, errors);
     take(reader.conditions(), study.conditions, errors);
+    take(reader.plannedCells(), study.planned, errors);
+    take(reader.analyses(), study.analyses, errors);
+    take(reader.questionnaires(), study.definitions, errors);
+    take(reader.namedFiles(), study.files, errors);
     take(reader.measures(), study.measures, errors);
     take(reader.participants(), study.participants, errors);
     take(reader.sessions(), study.sessions, errors);
@@ -61,6 +88,12 @@ Result<StudyData> readStudy(const store::StoreReader& reader) {
     take(reader.accuracy(), study.accuracy, errors);
     if (!errors.empty()) return errors;
     std::erase_if(study.measures, [](const store::MeasureRow& measure) { return !measure.declared; });
+    const auto counter =
+        std::stable_partition(study.measures.begin(), study.measures.end(),
+                              [](const store::MeasureRow& measure) { return !measures::countsTicks(measure.measure); });
+    study.counters.assign(counter, study.measures.end());
+    study.measures.erase(counter, study.measures.end());
+    findStartTicks(reader, study.attempts);
     std::set<std::string> taken;
     for (const Column& column : fixedColumns()) taken.insert(column.name);
     for (const store::MeasureRow& measure : study.measures) taken.insert(measure.measure);
@@ -97,69 +130,6 @@ std::set<std::string> countedSessions(const StudyData& study) {
     for (const auto& [who, session] : latest)
         if (whole.count(who) == 0) ids.insert(session->session_id);
     return ids;
-}
-
-std::vector<Cell> cellsOf(const StudyData& study) {
-    const std::set<std::string> counted = countedSessions(study);
-    // participant, then the protocol's place in the list
-    std::map<std::pair<std::string, std::size_t>, std::vector<const store::AttemptRow*>> by_person;
-    for (const store::AttemptRow& attempt : study.attempts) {
-        const auto protocol =
-            std::find_if(study.protocols.begin(), study.protocols.end(),
-                         [&](const store::ProtocolRow& row) { return row.sha256 == attempt.protocol_sha256; });
-        by_person[{attempt.participant_id, static_cast<std::size_t>(protocol - study.protocols.begin())}].push_back(
-            &attempt);
-    }
-    const bool all_within = std::all_of(study.factors.begin(), study.factors.end(),
-                                        [](const FactorColumn& factor) { return factor.kind == "within"; });
-    std::set<std::string> apart;  // met in catch trials or those of a staircase only
-    const auto is_apart = [](const store::AttemptRow& a) { return a.phase == "catch" || a.phase == "adaptive"; };
-    for (const store::AttemptRow& attempt : study.attempts)
-        if (is_apart(attempt)) apart.insert(attempt.condition);
-    for (const store::AttemptRow& attempt : study.attempts)
-        if (!is_apart(attempt)) apart.erase(attempt.condition);
-    std::vector<Cell> cells;
-    for (const auto& [key, attempts] : by_person) {
-        const store::AttemptRow& first = *attempts.front();
-        for (const store::ConditionRow& condition : study.conditions) {
-            if (condition.protocol_sha256 != first.protocol_sha256 || apart.count(condition.condition) != 0) continue;
-            const bool met = std::any_of(attempts.begin(), attempts.end(), [&](const store::AttemptRow* attempt) {
-                return attempt->condition == condition.condition;
-            });
-            if (!met && !all_within) continue;
-            Cell cell{first.participant_id, first.kind, first.group, first.protocol_sha256, &condition, {}};
-            for (const store::AttemptRow* attempt : attempts) {
-                if (attempt->counts() && attempt->condition == condition.condition &&
-                    counted.count(attempt->session_id) != 0) {
-                    cell.attempts.push_back(attempt);
-                }
-            }
-            cells.push_back(std::move(cell));
-        }
-    }
-    return cells;
-}
-
-std::vector<double> valuesOf(const std::vector<const store::AttemptRow*>& attempts, const std::string& measure) {
-    std::vector<double> values;
-    for (const store::AttemptRow* attempt : attempts) {
-        if (const auto found = attempt->measures.find(measure); found != attempt->measures.end()) {
-            values.push_back(found->second);
-        }
-    }
-    return values;
-}
-
-double meanOf(const std::vector<double>& values) {
-    if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-double medianOf(std::vector<double> values) {
-    if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-    std::sort(values.begin(), values.end());
-    const std::size_t half = values.size() / 2;
-    return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2.0;
 }
 
 }  // namespace passung::exporter

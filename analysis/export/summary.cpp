@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "analysis/export/study_data.h"
+#include "analysis/export/cells.h"
 #include "study/protocol/participant.h"
 
 namespace passung::exporter {

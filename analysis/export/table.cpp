@@ -30,7 +30,7 @@ void appendLine(std::string& text, const Fields& fields, Text text_of) {
 
 std::string cell(std::int64_t value) { return std::to_string(value); }
 std::string cell(double value) { return shortest(value); }
-std::string cell(float value) { return shortest(value); }
+std::string cell(float value) { return shortest(static_cast<double>(value)); }
 std::string cell(bool value) { return value ? "1" : "0"; }
 std::string cell(const std::optional<std::string>& value) { return value.value_or(kMissing); }
 std::string cell(const std::optional<std::int64_t>& value) { return value ? cell(*value) : kMissing; }

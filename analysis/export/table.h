@@ -33,7 +33,7 @@ struct Table {
 std::string cell(std::int64_t value);
 /// The shortest decimal that reads back to the same number; NA if it is not finite.
 std::string cell(double value);
-std::string cell(float value);
+std::string cell(float value);  // as the double of the same value
 std::string cell(bool value);
 std::string cell(const std::optional<std::string>& value);
 std::string cell(const std::optional<std::int64_t>& value);

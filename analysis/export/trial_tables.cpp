@@ -1,22 +1,13 @@
 #include "analysis/export/trial_tables.h"
 
 #include <algorithm>
-#include <iterator>
+#include <map>
+#include <tuple>
 
 #include "study/protocol/participant.h"
 
 namespace passung::exporter {
 namespace {
-
-constexpr const char* kCounted =
-    "over the counted session's valid attempts of the main phase that ended in success, failure or timeout";
-
-std::vector<Column> whoColumns() {
-    return {
-        {"participant_id", "Code of the participant", "", "text", "", 1, {}},
-        {"kind", "Real person, pilot or simulated participant", "", "text", "", 1, protocol::participantKindNames()},
-        {"group", "Group of the between-subjects factors; all if there is none", "", "text", "", 1, {}}};
-}
 
 /// Columns of trials.csv before the factors.
 std::vector<Column> leadingColumns() {
@@ -32,7 +23,29 @@ std::vector<Column> leadingColumns() {
         {"trial_in_block", "Number of the trial in the block, from 0", "", "integer", "", 1, {}},
         {"repetition", "Pass through the block's conditions, from 1", "", "integer", "", 1, {}},
         {"attempt_no", "Number of the attempt at this trial, from 1", "", "integer", "", 1, {}},
+        {"order_sequence",
+         "Row of the counterbalancing that the participant has, from 0: sequence_index of participants.csv",
+         "",
+         "integer",
+         "",
+         1,
+         {}},
+        {"order_position",
+         "Place of the attempt among those of its block in this session as they were made, from 1; NA: not known, as "
+         "missing.csv lists an attempt of the session",
+         "",
+         "integer",
+         "",
+         1,
+         {}},
         {"condition", "Name of the condition: its levels joined by /", "", "text", "", 1, {}},
+        {"previous_condition",
+         "Condition of the attempt made before it in the same block; NA: there is none, or order_position is not known",
+         "",
+         "text",
+         "",
+         1,
+         {}},
     };
     columns.insert(columns.end(), more.begin(), more.end());
     return columns;
@@ -42,6 +55,14 @@ std::vector<Column> leadingColumns() {
 std::vector<Column> resultColumns() {
     return {
         {"start_s", "Start of the attempt, from the session's start", "s", "number", "", 1, {}},
+        {"start_tick",
+         "Tick of the attempt's samples at which the trial began: measures take the samples from there on; NA: it "
+         "never began, or cycles were missed and samples before it are missing",
+         "",
+         "integer",
+         "",
+         1,
+         {}},
         {"duration_s", "From the start of the attempt to its end", "s", "number", "end - start", 1, {}},
         {"outcome",
          "How the attempt ended; crashed: the program ended first; running: it has not ended yet",
@@ -52,6 +73,14 @@ std::vector<Column> resultColumns() {
          {"success", "failure", "timeout", "aborted", "crashed", "running"}},
         {"valid", "1 if the attempt may be analysed", "", "0/1", "", 1, {"0", "1"}},
         {"invalid_reason", "Why the attempt may not be analysed", "", "text", "", 1, {}},
+        {"counted",
+         "1 if cells_long.csv and the wide tables count the attempt",
+         "",
+         "0/1",
+         "valid = 1, phase = main, outcome success, failure or timeout, and counted = 1 of the session in sessions.csv",
+         1,
+         {"0", "1"}},
+        {"not_counted_because", "Why they do not count it; NA: they do", "", "text", "", 1, {}},
     };
 }
 
@@ -59,8 +88,10 @@ std::vector<Column> resultColumns() {
 std::vector<Column> closingColumns() {
     return {
         {"feedback_given",
-         "What the participant was given to feel, see and hear of contact, joined by +: kinesthetic (force), visual, "
-         "vibrotactile, audio, masking_noise; none",
+         "What reached the participant of the condition's feedback, joined by +: kinesthetic (force), visual, "
+         "vibrotactile, audio, masking_noise; none. Given is what a device rendered, a window drew or a loudspeaker "
+         "played at least once in the attempt, and to simulated participants what their senses were handed; where "
+         "nothing touched, neither force nor cue was. NA: not known, as of attempts that did not end",
          "",
          "text",
          "",
@@ -75,15 +106,6 @@ std::vector<Column> closingColumns() {
          "",
          1,
          {"program", "experimenter", "clock"}},
-        {"n_ticks", "Ticks that the haptic loop computed", "", "integer", "", 1, {}},
-        {"overruns",
-         "Cycles that were missed because an earlier one took too long; 0 in virtual time",
-         "",
-         "integer",
-         "",
-         1,
-         {}},
-        {"dropped_samples", "Ticks that were computed but could not be recorded", "", "integer", "", 1, {}},
         {"protocol_sha256", "SHA-256 of the protocol's text, see protocol/", "", "text", "", 1, {}},
         {"app_version", "Version of the program", "", "text", "", 1, {}},
     };
@@ -91,6 +113,138 @@ std::vector<Column> closingColumns() {
 
 void append(std::vector<Column>& columns, const std::vector<Column>& more) {
     columns.insert(columns.end(), more.begin(), more.end());
+}
+
+std::string feedbackOf(const store::AttemptRow& a) {
+    if (!a.delivered) return kMissing;
+    std::string text;
+    const auto add = [&](std::int64_t count, const char* name) {
+        if (count > 0) text += (text.empty() ? "" : "+") + std::string(name);
+    };
+    add(a.delivered->force, "kinesthetic");
+    add(a.delivered->visual, "visual");
+    add(a.delivered->vibration, "vibrotactile");
+    add(a.delivered->sound, "audio");
+    add(a.delivered->masking, "masking_noise");
+    return text.empty() ? "none" : text;
+}
+
+/// What a row says of its attempt's place in the session; nothing if other attempts may be missing.
+struct Course {
+    std::optional<std::int64_t> position;  // in the block, from 1
+    std::string previous = kMissing;
+};
+
+/// Parts of a session that go missing without its attempts.
+bool isBesideAttempts(const std::string& part) {
+    return part.starts_with("form ") || part.ends_with(", samples") || part.ends_with(", event") ||
+           part.ends_with(", order_step") || part == "note" || part == "later changes";
+}
+
+/// May attempts of the session be missing for what is damaged?
+bool mayLack(const store::AttemptRow& of, const std::vector<store::DamageRow>& damages) {
+    return std::any_of(damages.begin(), damages.end(), [&](const store::DamageRow& damage) {
+        if (isBesideAttempts(damage.part)) return false;
+        if (!damage.session_ordinal) return damage.part == "condition";
+        return damage.participant_id == of.participant_id && damage.session_ordinal == of.session_ordinal;
+    });
+}
+
+/// By attempt.
+std::map<std::int64_t, Course> coursesOf(const StudyData& study) {
+    std::vector<const store::AttemptRow*> made;
+    for (const store::AttemptRow& attempt : study.attempts) made.push_back(&attempt);
+    std::sort(made.begin(), made.end(), [](const auto* a, const auto* b) {
+        return std::tie(a->session_id, a->start_ns, a->attempt_id) <
+               std::tie(b->session_id, b->start_ns, b->attempt_id);
+    });
+    std::map<std::pair<std::string, std::int64_t>, std::pair<std::int64_t, const store::AttemptRow*>> blocks;
+    std::map<std::int64_t, Course> courses;
+    for (const store::AttemptRow* attempt : made) {
+        if (mayLack(*attempt, study.damages)) {
+            courses[attempt->attempt_id] = {};
+            continue;
+        }
+        auto& [count, last] = blocks[{attempt->session_id, attempt->block_index}];
+        courses[attempt->attempt_id] = {++count, last != nullptr ? last->condition : std::string(kMissing)};
+        last = attempt;
+    }
+    return courses;
+}
+
+/// Why the means leave the attempt out; nothing if they count it.
+std::optional<std::string> notCounted(const store::AttemptRow& a, const std::set<std::string>& excluded,
+                                      const std::set<std::string>& counted_sessions) {
+    if (excluded.count(a.participant_id) != 0) return "the participant is excluded";
+    if (a.phase != "main")
+        return a.phase == "adaptive" ? "trial of a staircase: see thresholds.csv"
+               : a.phase == "catch"  ? "catch trial"
+                                     : a.phase;
+    if (!a.valid) return "not valid: " + a.invalid_reason.value_or("no reason is stored");
+    if (!a.counts()) return a.outcome;
+    if (counted_sessions.count(a.session_id) == 0) return "a complete or later session of the participant counts";
+    return std::nullopt;
+}
+
+/// What all rows of trials.csv look up.
+class TrialRows {
+public:
+    explicit TrialRows(const StudyData& study)
+        : study_(study), courses_(coursesOf(study)), counted_(countedSessions(study)) {
+        for (const store::ParticipantRow& person : study.participants) {
+            if (person.status == "excluded") excluded_.insert(person.participant_id);
+            sequences_[person.participant_id] = person.sequence_index;
+        }
+    }
+
+    std::vector<std::string> row(const store::AttemptRow& a) const {
+        const Course& course = courses_.at(a.attempt_id);
+        const auto sequence = sequences_.find(a.participant_id);
+        std::vector<std::string> row = {a.participant_id,
+                                        a.kind,
+                                        a.group,
+                                        cell(a.session_ordinal),
+                                        a.station,
+                                        a.device,
+                                        cell(a.block_index),
+                                        a.block,
+                                        a.phase,
+                                        cell(a.trial_index),
+                                        cell(a.trial_in_block),
+                                        cell(a.repetition),
+                                        cell(a.attempt_no),
+                                        sequence == sequences_.end() ? kMissing : cell(sequence->second),
+                                        cell(course.position),
+                                        a.condition,
+                                        course.previous};
+        for (const FactorColumn& factor : study_.factors) row.push_back(levelOf(a.levels, factor.factor));
+        std::optional<std::int64_t> duration;
+        if (a.end_ns) duration = *a.end_ns - a.start_ns;
+        const auto because = notCounted(a, excluded_, counted_);
+        row.insert(row.end(), {secondsCell(a.start_ns), cell(a.start_tick), secondsCell(duration), a.outcome,
+                               cell(a.valid), cell(a.invalid_reason), cell(!because), cell(because)});
+        for (const store::MeasureRow& measure : study_.measures) {
+            const auto found = a.measures.find(measure.measure);
+            row.push_back(found == a.measures.end() ? kMissing : cell(found->second));
+        }
+        row.insert(row.end(), {feedbackOf(a), a.timed_by, a.protocol_sha256, a.app_version});
+        return row;
+    }
+
+private:
+    const StudyData& study_;
+    std::map<std::int64_t, Course> courses_;
+    std::set<std::string> counted_, excluded_;
+    std::map<std::string, std::optional<std::int64_t>> sequences_;
+};
+
+}  // namespace
+
+std::vector<Column> whoColumns() {
+    return {
+        {"participant_id", "Code of the participant", "", "text", "", 1, {}},
+        {"kind", "Real person, pilot or simulated participant", "", "text", "", 1, protocol::participantKindNames()},
+        {"group", "Group of the between-subjects factors; all if there is none", "", "text", "", 1, {}}};
 }
 
 void appendFactors(std::vector<Column>& columns, const StudyData& study) {
@@ -109,95 +263,6 @@ Column measureColumn(const store::MeasureRow& measure) {
             measure.formula_version,
             {}};
 }
-
-std::string feedbackOf(const store::AttemptRow& a) {
-    std::string text;
-    const auto add = [&](bool given, const char* name) {
-        if (given) text += (text.empty() ? "" : "+") + std::string(name);
-    };
-    add(a.kinesthetic, "kinesthetic");
-    add(a.cues.visual, "visual");
-    add(a.cues.vibration, "vibrotactile");
-    add(a.cues.sound, "audio");
-    add(a.cues.masking, "masking_noise");
-    return text.empty() ? "none" : text;
-}
-
-std::vector<std::string> trialRow(const StudyData& study, const store::AttemptRow& a) {
-    std::vector<std::string> row = {a.participant_id,
-                                    a.kind,
-                                    a.group,
-                                    cell(a.session_ordinal),
-                                    a.station,
-                                    a.device,
-                                    cell(a.block_index),
-                                    a.block,
-                                    a.phase,
-                                    cell(a.trial_index),
-                                    cell(a.trial_in_block),
-                                    cell(a.repetition),
-                                    cell(a.attempt_no),
-                                    a.condition};
-    for (const FactorColumn& factor : study.factors) row.push_back(levelOf(a.levels, factor.factor));
-    std::optional<std::int64_t> duration;
-    if (a.end_ns) duration = *a.end_ns - a.start_ns;
-    row.insert(row.end(),
-               {secondsCell(a.start_ns), secondsCell(duration), a.outcome, cell(a.valid), cell(a.invalid_reason)});
-    for (const store::MeasureRow& measure : study.measures) {
-        const auto found = a.measures.find(measure.measure);
-        row.push_back(found == a.measures.end() ? kMissing : cell(found->second));
-    }
-    row.insert(row.end(), {feedbackOf(a), a.timed_by});
-    if (a.timing) {
-        row.insert(row.end(), {cell(a.timing->ticks), cell(a.timing->overruns), cell(a.timing->dropped_samples)});
-    } else {
-        row.insert(row.end(), 3, kMissing);
-    }
-    row.insert(row.end(), {a.protocol_sha256, a.app_version});
-    return row;
-}
-
-/// What a participant's columns tell apart: the condition's name without the levels that a group or an assignment
-/// gives.
-std::string seenName(const StudyData& study, const store::ConditionRow& condition) {
-    std::string name;
-    bool all = true, first = true;
-    for (const auto& [factor, label] : condition.levels) {
-        const auto column = std::find_if(study.factors.begin(), study.factors.end(),
-                                         [&name = factor](const FactorColumn& c) { return c.factor == name; });
-        if (column != study.factors.end() && column->kind != "within") {
-            all = false;
-            continue;
-        }
-        name += (first ? "" : "/") + label;
-        first = false;
-    }
-    if (all) return condition.condition;
-    const auto own = condition.condition.rfind('@');  // of a block's own conditions
-    return name + (own == std::string::npos ? "" : condition.condition.substr(own));
-}
-
-/// Names of conditions of all protocols, in order, each with a column part of its own; catch trials have none.
-std::vector<std::pair<std::string, std::string>> conditionParts(const StudyData& study,
-                                                                const std::vector<Cell>& cells) {
-    std::vector<std::pair<std::string, std::string>> parts;
-    const auto has = [&](const std::string& text, auto member) {
-        return std::any_of(parts.begin(), parts.end(), [&](const auto& part) { return part.*member == text; });
-    };
-    using Part = std::pair<std::string, std::string>;
-    for (const store::ConditionRow& condition : study.conditions) {
-        const std::string name = seenName(study, condition);
-        const bool used = cells.empty() || std::any_of(cells.begin(), cells.end(),
-                                                       [&](const Cell& cell) { return cell.condition == &condition; });
-        if (!used || has(name, &Part::first)) continue;
-        std::string part = columnPart(name);
-        while (has(part, &Part::second)) part += '_';
-        parts.emplace_back(name, part);
-    }
-    return parts;
-}
-
-}  // namespace
 
 std::string columnPart(const std::string& condition) {
     std::string part = condition;
@@ -222,91 +287,9 @@ Table makeTrials(const StudyData& study) {
     append(table.columns, resultColumns());
     for (const store::MeasureRow& measure : study.measures) table.columns.push_back(measureColumn(measure));
     append(table.columns, closingColumns());
-    for (const store::AttemptRow& attempt : study.attempts) table.rows.push_back(trialRow(study, attempt));
+    const TrialRows rows(study);
+    for (const store::AttemptRow& attempt : study.attempts) table.rows.push_back(rows.row(attempt));
     return table;
-}
-
-Table makeCells(const StudyData& study) {
-    Table table{
-        "cells_long.csv", "One row per participant and condition: means, medians and counts.", whoColumns(), {}};
-    table.columns.push_back({"protocol_sha256", "SHA-256 of the protocol's text", "", "text", "", 1, {}});
-    table.columns.push_back({"condition", "Name of the condition", "", "text", "", 1, {}});
-    appendFactors(table.columns, study);
-    table.columns.push_back({"n_trials", "Attempts counted", "", "integer", std::string("count ") + kCounted, 1, {}});
-    table.columns.push_back({"n_success", "Attempts counted that succeeded", "", "integer", "", 1, {}});
-    table.columns.push_back({"success_share", "Share of success", "", "number", "n_success / n_trials", 1, {}});
-    for (const store::MeasureRow& measure : study.measures) {
-        const Column base = measureColumn(measure);
-        const auto add = [&](const std::string& what, const std::string& unit, const std::string& type) {
-            table.columns.push_back({base.name + "." + what,
-                                     base.label + ", " + what,
-                                     unit,
-                                     type,
-                                     what + " " + kCounted + " and have a value; value: " + base.formula,
-                                     base.formula_version,
-                                     {}});
-        };
-        add("mean", base.unit, "number");
-        add("median", base.unit, "number");
-        add("n", "", "integer");
-    }
-    for (const Cell& c : cellsOf(study)) {
-        std::vector<std::string> row = {c.participant_id, c.kind, c.group, c.protocol_sha256, c.condition->condition};
-        for (const FactorColumn& factor : study.factors) row.push_back(levelOf(c.condition->levels, factor.factor));
-        const auto trials = static_cast<std::int64_t>(c.attempts.size());
-        const std::int64_t successes = std::count_if(c.attempts.begin(), c.attempts.end(),
-                                                     [](const auto* attempt) { return attempt->outcome == "success"; });
-        row.insert(row.end(),
-                   {cell(trials), cell(successes),
-                    trials == 0 ? kMissing : cell(static_cast<double>(successes) / static_cast<double>(trials))});
-        for (const store::MeasureRow& measure : study.measures) {
-            const std::vector<double> values = valuesOf(c.attempts, measure.measure);
-            row.insert(row.end(),
-                       {cell(meanOf(values)), cell(medianOf(values)), cell(static_cast<std::int64_t>(values.size()))});
-        }
-        table.rows.push_back(std::move(row));
-    }
-    return table;
-}
-
-std::vector<Table> makeWide(const StudyData& study) {
-    const std::vector<Cell> cells = cellsOf(study);
-    const auto parts = conditionParts(study, cells);
-    std::vector<Table> tables;
-    for (const store::MeasureRow& measure : study.measures) {
-        const Column base = measureColumn(measure);
-        Table table{"wide_" + base.name + ".csv",
-                    "One row per participant, one column per condition: mean of " + base.name + ".",
-                    whoColumns(),
-                    {}};
-        table.columns.push_back({"protocol_sha256", "SHA-256 of the protocol's text", "", "text", "", 1, {}});
-        for (const auto& [condition, part] : parts) {
-            table.columns.push_back({base.name + "." + part,
-                                     base.label + ", " + condition,
-                                     base.unit,
-                                     "number",
-                                     std::string("mean ") + kCounted + " and have a value; value: " + base.formula,
-                                     base.formula_version,
-                                     {}});
-        }
-        for (std::size_t i = 0; i < cells.size();) {
-            const Cell& person = cells[i];
-            std::vector<std::string> row = {person.participant_id, person.kind, person.group, person.protocol_sha256};
-            row.resize(4 + parts.size(), kMissing);
-            for (; i < cells.size() && cells[i].participant_id == person.participant_id &&
-                   cells[i].protocol_sha256 == person.protocol_sha256;
-                 ++i) {
-                const auto place = std::find_if(parts.begin(), parts.end(), [&](const auto& part) {
-                    return part.first == seenName(study, *cells[i].condition);
-                });
-                row[4 + static_cast<std::size_t>(std::distance(parts.begin(), place))] =
-                    cell(meanOf(valuesOf(cells[i].attempts, base.name)));
-            }
-            table.rows.push_back(std::move(row));
-        }
-        tables.push_back(std::move(table));
-    }
-    return tables;
 }
 
 }  // namespace passung::exporter

@@ -14,13 +14,14 @@ std::string columnPart(const std::string& condition);
 /// The columns of trials.csv that every study has; factors and measures come in between.
 std::vector<Column> fixedColumns();
 
+/// Who it is about: the first columns of several tables.
+std::vector<Column> whoColumns();
+
+void appendFactors(std::vector<Column>& columns, const StudyData& study);
+
+Column measureColumn(const store::MeasureRow& measure);
+
 /// One row per attempt, whatever became of it.
 Table makeTrials(const StudyData& study);
-
-/// One row per participant and condition: means, medians and counts.
-Table makeCells(const StudyData& study);
-
-/// One table per measure, one row per participant, one column per condition.
-std::vector<Table> makeWide(const StudyData& study);
 
 }  // namespace passung::exporter

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "analysis/export/cells.h"
 #include "analysis/stats/anova.h"
 #include "analysis/stats/paired_t.h"
 #include "analysis/stats/rank_tests.h"
@@ -57,17 +58,37 @@ struct Person {
     }
 };
 
+/// The plan's first analysis of the measure by the factor.
+const protocol::Analysis* plannedAnalysis(const PlantedEffect& effect, const protocol::StudyPlan& plan) {
+    const auto found =
+        std::find_if(plan.analyses.begin(), plan.analyses.end(), [&](const protocol::Analysis& analysis) {
+            return analysis.outcome == effect.measure &&
+                   std::find(analysis.factors.begin(), analysis.factors.end(), effect.factor) != analysis.factors.end();
+        });
+    return found == plan.analyses.end() ? nullptr : &*found;
+}
+
+/// The block whose trials that analysis takes; empty: all.
+std::string plannedBlock(const PlantedEffect& effect, const protocol::StudyPlan& plan) {
+    const protocol::Analysis* analysis = plannedAnalysis(effect, plan);
+    return analysis != nullptr ? analysis->block : "";
+}
+
 std::vector<Person> peopleOf(const PlantedEffect& effect, const protocol::StudyPlan& plan,
                              const exporter::StudyData& study) {
     std::map<std::string, Person> people;
+    const std::string block = plannedBlock(effect, plan);
     for (const exporter::Cell& cell : exporter::cellsOf(study)) {
+        if (!block.empty() && cell.block != block) continue;
         const auto& levels = cell.condition->levels;
         Person& person = people[cell.participant_id];
         person.group.clear();
         for (const protocol::Factor& factor : plan.factors)
             if (factor.kind == FactorKind::Between) person.group += exporter::levelOf(levels, factor.name) + '\n';
-        person.means[exporter::levelOf(levels, effect.factor)].push_back(
-            exporter::meanOf(exporter::valuesOf(cell.attempts, effect.measure)));
+        const double value = exporter::valueOf(cell, effect.measure);
+        // Of several blocks those count that have the measure.
+        if (std::isfinite(value) || exporter::canHave(*cell.condition, effect.measure))
+            person.means[exporter::levelOf(levels, effect.factor)].push_back(value);
     }
     std::vector<Person> list;
     for (auto& [code, person] : people) list.push_back(std::move(person));
@@ -144,12 +165,8 @@ Result<std::string> chooseTest(const std::string& asked, const PlantedEffect& ef
     const protocol::Factor& factor = factorOf(effect, plan);
     const bool between = factor.kind == FactorKind::Between;
     std::string test = asked;
-    for (const protocol::Analysis& analysis : plan.analyses) {
-        const bool planned =
-            analysis.outcome == effect.measure &&
-            std::find(analysis.factors.begin(), analysis.factors.end(), effect.factor) != analysis.factors.end();
-        if (test.empty() && planned) test = analysis.test;
-    }
+    if (const protocol::Analysis* analysis = plannedAnalysis(effect, plan); test.empty() && analysis != nullptr)
+        test = analysis->test;
     if (test.empty()) test = between ? "welch_t" : "paired_t";
     const auto wrong = [&](const std::string& requirement) {
         return Error{

@@ -30,10 +30,11 @@ struct EffectTest {
     static constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The test of a virtual study. A participant's value at a level is the mean of their cells' means there; cells and
-/// means are those of the exports. paired_t, wilcoxon, welch_t and mann_whitney compare the effect's two levels;
-/// rm_anova, friedman and mixed_anova test the factor's main effect over all its levels, mixed_anova in the groups that
-/// all between factors make. Whoever has no value at one of these levels is left out.
+/// The test of a virtual study. A participant's value at a level is the mean of their cells' values there; cells and
+/// values are those of the exports, of the block that the planned analysis names. paired_t, wilcoxon, welch_t and
+/// mann_whitney compare the effect's two levels; rm_anova, friedman and mixed_anova test the factor's main effect over
+/// all its levels, mixed_anova in the groups that all between factors make. Whoever has no value at one of these levels
+/// is left out.
 EffectTest testEffect(const PlantedEffect& effect, const std::string& test, const protocol::StudyPlan& plan,
                       const exporter::StudyData& study);
 

@@ -5,6 +5,7 @@
 #include "core/base/random.h"
 #include "study/person/completion_time.h"
 #include "study/protocol/participant.h"
+#include "study/protocol/trial_types.h"
 #include "study/session/participant_order.h"
 
 namespace passung::power {
@@ -36,13 +37,16 @@ Result<Done> perform(const protocol::StudyPlan& plan, const std::string& code, c
         attempt.participant_id = code;
         attempt.kind = protocol::participantKindName(protocol::ParticipantKind::Simulated);
         attempt.session_ordinal = part;
+        attempt.block_index = trial.block_index;
+        attempt.block = trial.block;
         attempt.phase = trial.phase;
         attempt.trial_index = trial.trial_index;
         attempt.condition = study.conditions[trial.condition].condition;
         attempt.levels = study.conditions[trial.condition].levels;
         attempt.outcome = "success";
         attempt.valid = true;
-        attempt.measures[kModelMeasure] = person::completionTime(person, trial.trial_index, random);
+        const double time = person::completionTime(person, trial.trial_index, random);
+        for (const char* measure : kModelMeasures) attempt.measures[measure] = time;
         study.attempts.push_back(std::move(attempt));
     }
     study.sessions.push_back(std::move(session));
@@ -58,9 +62,13 @@ Result<exporter::StudyData> modelStudy(const protocol::StudyPlan& plan, int part
     for (const protocol::Factor& factor : plan.factors)
         study.factors.push_back({factor.name, factor.name, protocol::factorKindName(factor.kind), factor.unit, {}});
     for (const protocol::Condition& condition : std::span(plan.conditions).first(protocol::plannedConditions(plan)))
-        study.conditions.push_back({{}, condition.name, levelsOf(plan, condition)});
+        study.conditions.push_back({{},
+                                    condition.name,
+                                    levelsOf(plan, condition),
+                                    std::string(protocol::typeOf(condition.task).name),
+                                    condition.task.timeout});
     const auto count = static_cast<std::size_t>(participants);
-    const auto places = session::firstPlaces(plan, count, kind);
+    const auto places = session::firstPlaces(plan, count);
     for (std::size_t i = 0; i < count; ++i) {
         const std::string code = protocol::participantCode(kind, static_cast<std::int64_t>(i) + 1);
         for (int part = 1; part <= protocol::sessionsOf(plan); ++part)

@@ -52,8 +52,8 @@ std::vector<Pose> along(const std::vector<JudgedPose>& poses) {
 }
 
 /// The same poses as contact is both ways.
-Result<std::vector<JudgedPose>> judgedBothWays(const Pair& pair) {
-    const auto back = PairTruth::build(pair.held, pair.obstacle);
+Result<std::vector<JudgedPose>> judgedBothWays(const Pair& pair, model::BuildStore* store) {
+    const auto back = PairTruth::build(pair.held, pair.obstacle, store);
     if (!back) return back.errors();
     std::vector<JudgedPose> poses = pair.poses;
     model::parallelFor(poses.size(), [&](std::size_t i) {
@@ -64,8 +64,8 @@ Result<std::vector<JudgedPose>> judgedBothWays(const Pair& pair) {
 }
 
 Result<Pair> makePair(const model::PartSpec& obstacle, const model::PartSpec& held, bool two_way,
-                      const ProgressReport& report) {
-    const auto truth = PairTruth::build(obstacle, held);
+                      const ProgressReport& report, model::BuildStore* store) {
+    const auto truth = PairTruth::build(obstacle, held, store);
     if (!truth) return truth.errors();
     Pair pair{.obstacle = obstacle,
               .held = held,
@@ -79,7 +79,7 @@ Result<Pair> makePair(const model::PartSpec& obstacle, const model::PartSpec& he
                      .key = "part " + obstacle.name};
     pair.timed = along(pair.poses);
     if (!two_way) return pair;
-    auto both = judgedBothWays(pair);
+    auto both = judgedBothWays(pair, store);
     if (!both) return both.errors();
     pair.two_way_poses = std::move(*both);
     return pair;
@@ -108,17 +108,17 @@ void merge(AccuracyRow& row, const AccuracyRow& other, const Join& joined) {
 /// All scenes, asked one setting after the other.
 class Candidates {
 public:
-    explicit Candidates(model::BuildStore* store) : parts_(store) {}
+    explicit Candidates(model::BuildStore* store) : store_(store), parts_(store) {}
 
     Result<Done> addScene(const AskedScene& asked, const ProgressReport& report) {
         const auto& parts = asked.scene->parts;
         const auto held = std::find_if(parts.begin(), parts.end(), [](const auto& part) { return part.held; });
         const bool two_way = std::any_of(asked.contacts.begin(), asked.contacts.end(),
                                          [](const model::ContactSpec& contact) { return contact.two_way; });
-        Scene scene{{}, asked.contacts};
+        Scene scene{{}, asked.contacts, asked.both_ways};
         for (const model::PartSpec& part : parts) {
             if (part.held) continue;
-            auto pair = makePair(part, *held, two_way, report);
+            auto pair = makePair(part, *held, two_way, report, store_);
             if (!pair) return pair.errors();
             scene.pairs.push_back(std::move(*pair));
         }
@@ -137,8 +137,9 @@ public:
 
     Result<AccuracyRow> measure(const AccuracySetting& setting) {
         std::optional<AccuracyRow> all;
-        for (const Scene& scene : scenes_) {
-            for (const model::ContactSpec& contact : scene.contacts) {
+        for (Scene& scene : scenes_) {
+            for (model::ContactSpec contact : scene.contacts) {
+                if (!contact.two_way && scene.both_ways) contact.two_way = scene.both_ways(setting.spacing);
                 const auto sum = measureScene(setting, contact, scene.pairs);
                 if (!sum) return sum.errors();
                 if (all)
@@ -154,12 +155,18 @@ private:
     struct Scene {
         std::vector<Pair> pairs;
         std::vector<model::ContactSpec> contacts;
+        std::function<bool(double)> both_ways;
     };
 
     Result<AccuracyRow> measureScene(const AccuracySetting& setting, const model::ContactSpec& contact,
-                                     const std::vector<Pair>& pairs) {
+                                     std::vector<Pair>& pairs) {
         std::optional<AccuracyRow> sum;
-        for (const Pair& pair : pairs) {
+        for (Pair& pair : pairs) {
+            if (contact.two_way && pair.two_way_poses.empty()) {
+                auto both = judgedBothWays(pair, store_);
+                if (!both) return both.errors();
+                pair.two_way_poses = std::move(*both);
+            }
             const auto get = [&](const model::PartSpec& part) {
                 return parts_.get(part, {.field = !part.held || contact.two_way,
                                          .shell = part.held || contact.two_way,
@@ -180,6 +187,7 @@ private:
         return *sum;
     }
 
+    model::BuildStore* store_;
     model::PartCache parts_;
     std::vector<Scene> scenes_;
 };

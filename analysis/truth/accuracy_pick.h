@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -12,6 +13,8 @@ namespace passung::truth {
 struct AskedScene {
     const model::SceneSpec* scene;
     std::vector<model::ContactSpec> contacts;
+    std::function<bool(double spacing)> both_ways = {};  // is a contact that does not ask for both ways looked for both
+                                                         // ways, with points so far apart [m]? Empty: never
 };
 
 /// Measures on this machine what contact.accuracy = "auto" may pick for `scenes` and `budgets` [s] of a query:

@@ -15,27 +15,29 @@ constexpr std::size_t kQuickPieces = 20'000;
 constexpr double kDenseShare = 1.0 / 250;  // of SHELL's longest side: pieces of the dense sum
 constexpr double kCoarser = 2.0;           // a second sum, for the uncertainty of the first; a quick sum
 
-Result<model::Part> surfaceOf(const model::PartSpec& spec, double tolerance) {
-    auto part = model::buildPart(spec, {.tolerance = tolerance});
+Result<model::Part> surfaceOf(const model::PartSpec& spec, double tolerance, model::BuildStore* store) {
+    auto part = model::buildPart(spec, {.tolerance = tolerance}, store);
     if (part && part->mesh.triangles.empty()) return Error{.message = "has no triangles", .file = spec.name};
     return part;
 }
 
 }  // namespace
 
-Result<PairTruth> PairTruth::build(const model::PartSpec& field, const model::PartSpec& shell) {
-    auto truth = build(field, shell, kTolerance);
+Result<PairTruth> PairTruth::build(const model::PartSpec& field, const model::PartSpec& shell,
+                                   model::BuildStore* store) {
+    auto truth = build(field, shell, kTolerance, store);
     if (!truth || !(truth->field_.shape || truth->shell_.shape)) return truth;
-    auto rough = build(field, shell, kRoughTolerance);
+    auto rough = build(field, shell, kRoughTolerance, store);
     if (!rough) return rough.errors();
     truth->rough_ = std::make_unique<PairTruth>(std::move(*rough));
     return truth;
 }
 
-Result<PairTruth> PairTruth::build(const model::PartSpec& field, const model::PartSpec& shell, double tolerance) {
-    auto a = surfaceOf(field, tolerance);
+Result<PairTruth> PairTruth::build(const model::PartSpec& field, const model::PartSpec& shell, double tolerance,
+                                   model::BuildStore* store) {
+    auto a = surfaceOf(field, tolerance, store);
     if (!a) return a.errors();
-    auto b = surfaceOf(shell, tolerance);
+    auto b = surfaceOf(shell, tolerance, store);
     if (!b) return b.errors();
     if (!a->report.watertight)
         return Error{.message = "must be watertight to be FIELD: without an inside there is no true depth or force",

@@ -31,7 +31,8 @@ struct PoseTruth {
 class PairTruth {
 public:
     /// Errors: a part cannot be built; FIELD is not watertight, for there is no depth without an inside.
-    static Result<PairTruth> build(const model::PartSpec& field, const model::PartSpec& shell);
+    static Result<PairTruth> build(const model::PartSpec& field, const model::PartSpec& shell,
+                                   model::BuildStore* store = nullptr);
 
     /// @pre `X_FS` finite.
     PoseTruth at(const Pose& X_FS) const;
@@ -58,7 +59,8 @@ public:
     double lever() const { return lever_; }
 
 private:
-    static Result<PairTruth> build(const model::PartSpec& field, const model::PartSpec& shell, double tolerance);
+    static Result<PairTruth> build(const model::PartSpec& field, const model::PartSpec& shell, double tolerance,
+                                   model::BuildStore* store);
     PairTruth(model::Part field, model::Part shell);
     void addWrench(const Pose& X_FS, double edge, PoseTruth& truth) const;
     Solid solid() const { return {oracle_->a(), field_.shape ? &*field_.shape : nullptr, field_.chord_error}; }

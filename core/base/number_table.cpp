@@ -1,12 +1,17 @@
 #include "core/base/number_table.h"
 
 #include <charconv>
-#include <fstream>
+#include <sstream>
 #include <string_view>
+
+#include "core/base/regular_file.h"
 
 namespace passung {
 
 namespace {
+
+constexpr std::uintmax_t kMostTableBytes = std::uintmax_t{256} << 20;
+constexpr std::size_t kMostFaults = 1000;  // then reading ends: the rest is hardly better
 
 /// Length of the cell that `line` begins with: up to the next comma that is not within quotes.
 std::size_t cellLength(std::string_view line) {
@@ -41,7 +46,7 @@ bool readNumber(std::string_view text, double& value) {
     return problem == std::errc() && end == text.data() + text.size();
 }
 
-bool readLine(std::ifstream& file, std::string& line) {
+bool readLine(std::istream& file, std::string& line) {
     if (!std::getline(file, line)) return false;
     if (!line.empty() && line.back() == '\r') line.pop_back();
     return true;
@@ -108,8 +113,9 @@ std::string NumberTable::headerLine() const { return joined(columns); }
 std::string NumberTable::rowLine(std::size_t row) const { return joined(texts[row]); }
 
 Result<NumberTable> readNumbers(const std::string& path, const std::vector<std::string>& required) {
-    std::ifstream file(path);
-    if (!file) return Error{.message = "cannot be read", .file = path};
+    auto text = readRegularFile(path, kMostTableBytes);
+    if (!text) return text.errors();
+    std::istringstream file(std::move(*text));
     std::string line;
     if (!readLine(file, line)) return Error{.message = "is empty; a header row is required", .file = path};
     if (line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);  // the byte order mark that spreadsheets write
@@ -126,7 +132,7 @@ Result<NumberTable> readNumbers(const std::string& path, const std::vector<std::
                      .value = i < table.columns.size() ? table.columns[i] : "missing"};
     }
     RowReader reader(path, required.size(), table);
-    for (int number = 2; readLine(file, line); ++number) {
+    for (int number = 2; reader.errors.size() < kMostFaults && readLine(file, line); ++number) {
         if (!trimmed(line).empty()) reader.read(line, number);
     }
     if (!reader.errors.empty()) return reader.errors;

@@ -40,8 +40,8 @@ HapticCycle::HapticCycle(const tick::TickModel& model, HapticDevice& device, Rec
     : HapticCycle(std::array{tick::SceneTurn{&model}}, device, ring, show_proxy, screens) {}
 
 HapticCycle::HapticCycle(std::span<const tick::SceneTurn> turns, HapticDevice& device, RecordRing& ring,
-                         bool show_proxy, std::span<ScreenRing* const> screens)
-    : scenes_(turns), device_(device), ring_(ring), show_proxy_(show_proxy), screens_(screens) {}
+                         bool show_proxy, std::span<ScreenRing* const> screens, TickListener* listener)
+    : scenes_(turns), device_(device), ring_(ring), show_proxy_(show_proxy), screens_(screens), listener_(listener) {}
 
 void HapticCycle::run(std::uint32_t missed) noexcept {
     const std::int64_t tick = scenes_.tick();
@@ -57,8 +57,9 @@ void HapticCycle::run(std::uint32_t missed) noexcept {
     record.duration_ns = duration;
     ring_.tryPush(record);
     for (ScreenRing* screen : screens_) screen->tryPush({record, begin});
+    if (listener_ != nullptr) listener_->take(record);
 
-    if (tick == 0 || tick * kDisplayHz / 1000 != (tick - 1) * kDisplayHz / 1000) {
+    if (hasPicture(tick)) {
         const bool running = (output.frame.status & kEngaged) != 0;
         device_.show({tick, show_proxy_ ? output.X_WG : output.frame.X_WH, running});
     }

@@ -15,6 +15,18 @@ namespace passung::loop {
 
 inline constexpr std::int64_t kDisplayHz = 60;
 
+/// Does the display of a simulated person get a picture with this tick?
+constexpr bool hasPicture(std::int64_t tick) noexcept {
+    return tick == 0 || tick * kDisplayHz / 1000 != (tick - 1) * kDisplayHz / 1000;
+}
+
+/// Gets every tick once its wrench is commanded, in the loop's thread.
+class TickListener {
+public:
+    virtual ~TickListener() = default;
+    virtual void take(const TickRecord& record) noexcept = 0;  // rt-safe
+};
+
 /// The haptic cycle, whatever clock drives it: read the device, compute the tick, command the wrench, record.
 class HapticCycle {
 public:
@@ -24,7 +36,7 @@ public:
                 std::span<ScreenRing* const> screens = {});
     /// The same for scenes that are rendered one after the other.
     HapticCycle(std::span<const tick::SceneTurn> turns, HapticDevice& device, RecordRing& ring, bool show_proxy,
-                std::span<ScreenRing* const> screens = {});
+                std::span<ScreenRing* const> screens = {}, TickListener* listener = nullptr);
 
     /// One cycle. `missed`: cycles that were missed since the previous one, because it ended after its deadline; for
     /// the record, which else could not tell how much time lies between two ticks. rt-safe.
@@ -45,6 +57,7 @@ private:
     RecordRing& ring_;
     bool show_proxy_;
     std::span<ScreenRing* const> screens_;
+    TickListener* listener_;  // may be null
     TimingHistogram timing_;
 };
 

@@ -6,24 +6,29 @@
 
 #include <algorithm>
 #include <array>
+#include <assimp/IOStream.hpp>
+#include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <cstring>
+#include <exception>
 #include <filesystem>
-#include <fstream>
+#include <new>
 #include <optional>
 #include <string_view>
 #include <utility>
 
+#include "core/base/regular_file.h"
 #include "core/model/mesh_formats.h"
+#include "core/model/scene_file_limits.h"
 
 namespace passung::model {
 
 namespace {
 
-constexpr std::uintmax_t kMostBytes = std::uintmax_t{4} << 30;
 constexpr double kFarthest = 1e5;  // from the origin [m]
 
 Error fileError(const std::string& path, const std::string& message) {
@@ -137,31 +142,99 @@ bool appendNode(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d&
     return true;
 }
 
+/// A file in memory for assimp, to be read only.
+class FileInMemory final : public Assimp::IOStream {
+public:
+    explicit FileInMemory(std::string bytes) : bytes_(std::move(bytes)) {}
+    size_t Read(void* to, size_t size, size_t count) override {
+        const size_t whole = size == 0 ? 0 : std::min(count, (bytes_.size() - at_) / size);
+        std::memcpy(to, bytes_.data() + at_, whole * size);
+        at_ += whole * size;
+        return whole;
+    }
+    size_t Write(const void*, size_t, size_t) override { return 0; }
+    aiReturn Seek(size_t offset, aiOrigin origin) override {
+        const size_t from = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? at_ : bytes_.size();
+        if (offset > bytes_.size() - from) return aiReturn_FAILURE;
+        at_ = from + offset;
+        return aiReturn_SUCCESS;
+    }
+    size_t Tell() const override { return at_; }
+    size_t FileSize() const override { return bytes_.size(); }
+    void Flush() override {}
+
+private:
+    std::string bytes_;
+    size_t at_ = 0;
+};
+
+/// Lets assimp read regular files, of kMostMeshBytes together.
+class RegularFiles final : public Assimp::IOSystem {
+public:
+    bool Exists(const char* path) const override {
+        std::error_code none;
+        return std::filesystem::is_regular_file(path, none);
+    }
+    char getOsSeparator() const override { return '/'; }
+    Assimp::IOStream* Open(const char* path, const char* mode) override {
+        if (std::strchr(mode, 'r') == nullptr) return nullptr;
+        auto bytes = readRegularFile(path, left_);
+        if (!bytes) return nullptr;
+        left_ -= std::min(left_, bytes->size());
+        return new FileInMemory(std::move(*bytes));
+    }
+    void Close(Assimp::IOStream* file) override {
+        left_ += file->FileSize();
+        delete file;
+    }
+
+private:
+    std::uintmax_t left_ = kMostMeshBytes;
+};
+
+/// What speaks against giving the file to assimp.
+std::optional<Error> beyondLimits(std::string_view bytes, const std::string& path, const std::string& extension) {
+    if (extension == "3mf") return beyond3mfLimits(path, bytes.size());
+    return beyondGltfLimits(bytes, extension == "glb", path, [&](const std::string& uri) {
+        const auto named = std::filesystem::path(path).parent_path() / uri;
+        std::error_code failure;
+        const bool regular = std::filesystem::is_regular_file(named, failure);
+        const std::uintmax_t size = regular ? std::filesystem::file_size(named, failure) : 0;
+        return regular && !failure ? std::optional(size) : std::nullopt;
+    });
+}
+
 /// By assimp: the formats that are more than triangles. They may name other files, hence the path.
-Result<TriangleMesh> readScene(const std::string& path) {
+Result<TriangleMesh> readScene(std::string_view bytes, const std::string& path, const std::string& extension) {
+    if (const auto beyond = beyondLimits(bytes, path, extension)) return *beyond;
     Assimp::Importer importer;
-    const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
+    importer.SetIOHandler(new RegularFiles);  // the importer deletes it
+    const aiScene* scene = nullptr;
+    std::string why;
+    try {
+        scene = importer.ReadFile(path, aiProcess_Triangulate);
+        why = importer.GetErrorString();
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& thrown) {  // some of its readers throw what it does not catch
+        scene = nullptr;
+        why = thrown.what();
+    }
     if (scene == nullptr || scene->mRootNode == nullptr)
-        return fileError(path, std::string("must be a mesh that can be read: ") + importer.GetErrorString());
+        return fileError(path, "must be a mesh that can be read: " + (why.empty() ? "no reason is given" : why));
     TriangleMesh mesh;
     if (!appendNode(*scene, *scene->mRootNode, Eigen::Matrix4d::Identity(), mesh))
         return fileError(path, "every vertex must be finite and every triangle must name vertices that exist");
     return mesh;
 }
 
-/// The file, if it is one of at most kMostBytes.
+/// The file, if it is a regular one of at most kMostMeshBytes.
 Result<std::string> readBytes(const std::string& path) {
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) return fileError(path, "the mesh file does not exist");
-    std::ifstream file(path, std::ios::binary);
-    if (!std::filesystem::is_regular_file(path, ignored) || !file)
-        return fileError(path, "the mesh file must be a file that may be read");
-    const std::uintmax_t size = std::filesystem::file_size(path, ignored);
-    if (size == 0) return fileError(path, "the mesh file is empty");
-    if (size > kMostBytes) return fileError(path, "the mesh file must be smaller than 4 GiB");
-    std::string bytes(static_cast<std::size_t>(size), '\0');
-    if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
-        return fileError(path, "the mesh file must be a file that may be read");
+    auto bytes = readRegularFile(path, kMostMeshBytes);
+    if (!bytes) return fileError(path, "the mesh file must be one that may be read: " + bytes.errors()[0].message);
+    if (bytes->empty()) return fileError(path, "the mesh file is empty");
     return bytes;
 }
 
@@ -188,7 +261,7 @@ Result<TriangleMesh> readMesh(std::string_view bytes, const std::string& path, c
     if (extension == "off") return readOff(bytes, path);
     if (extension == "obj") return readObj(bytes, path);
     if (extension == "ply") return readPly(bytes, path);
-    if (extension == "gltf" || extension == "glb" || extension == "3mf") return readScene(path);
+    if (extension == "gltf" || extension == "glb" || extension == "3mf") return readScene(bytes, path, extension);
     return fileError(path, "the name of a mesh file must end in .stl, .obj, .ply, .off, .gltf, .glb or .3mf");
 }
 

@@ -11,6 +11,7 @@
 #include "core/base/random.h"
 #include "core/model/interpolation.h"
 #include "core/model/mesh_block.h"
+#include "core/model/mesh_source.h"
 #include "core/model/shape_bound.h"
 #include "core/model/triangle_tree.h"
 
@@ -237,7 +238,7 @@ Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs, BuildStore*
         part.report.format = kindName(*shape);
     } else {
         const auto& file = std::get<MeshFile>(spec.geometry);
-        auto imported = importMesh(file.path, file.metres_per_unit);
+        auto imported = importMesh(file, store);
         if (!imported) return imported.errors();
         part.mesh = std::move(imported->mesh);
         part.report = std::move(imported->report);

@@ -33,6 +33,10 @@ void TimedStore::keep(const std::string& name, std::string_view bytes) {
     store_->keep(timeName(name), sealed(name, writer.take()));
 }
 
+Result<ImportedMesh> TimedStore::importMesh(const std::string& path, double metres_per_unit) {
+    return model::importMesh(MeshFile{path, metres_per_unit}, store_);
+}
+
 double TimedStore::seconds() const {
     double sum = 0.0;
     for (const auto& [name, seconds] : seconds_) sum += seconds;

@@ -1,5 +1,7 @@
 #include "devices/mouse/pointer.h"
 
+#include <algorithm>
+
 namespace passung::mouse {
 
 namespace {
@@ -21,6 +23,23 @@ void Pointer::move(const Vec3& way, const Vec3& turn) {
     const std::lock_guard lock(mutex_);
     X_W_.p += way;
     X_W_.q = (rotationFromVector(turn) * X_W_.q).normalized();
+    box_.put(X_W_);
+}
+
+void Pointer::drive(const Vec3& speed, const Vec3& spin) {
+    const std::lock_guard lock(mutex_);
+    speed_ = speed;
+    spin_ = spin;
+    held_ = speed.isZero(0.0) && spin.isZero(0.0) ? 0.0 : kHeld;
+}
+
+void Pointer::pass(double seconds) {
+    const std::lock_guard lock(mutex_);
+    const double moved = std::min(seconds, held_);
+    if (!(moved > 0.0)) return;
+    held_ -= moved;
+    X_W_.p += moved * speed_;
+    X_W_.q = (rotationFromVector(moved * spin_) * X_W_.q).normalized();
     box_.put(X_W_);
 }
 

@@ -13,6 +13,8 @@ constexpr double kDt = kTickSeconds;
 constexpr double kPaceSpread = 0.1;      // of the natural logarithm of a trial's pace
 constexpr double kOffsetGain = 2.5;      // [1/s] against friction; × delay < 1/2 keeps it stable
 constexpr double kPressGain = 2.5;       // [1/s]
+constexpr double kWantedCue = 0.4;       // of a cue's full strength: so hard one presses by it
+constexpr double kCueSpeed = 6e-3;       // [m/s] for a whole cue too much; × delay / depth of a full cue < 1.5
 constexpr double kMostOffset = 15e-3;    // [m]
 constexpr double kMostTurnOffset = 0.1;  // [rad]
 
@@ -32,7 +34,7 @@ Arm::Arm(const HandParams& params, const VisibleTask& task, const HandRegistrati
       perception_(derived(seed, 1)),
       motor_(derived(seed, 2)),
       tremor_(params.tremor, params.mass, motor_),
-      senses_(params),
+      senses_(params, derived(seed, 4)),
       pace_(params.pace * std::exp(kPaceSpread * std::clamp(motor_.normal(), -2.5, 2.5))),
       lapse_(Random(derived(seed, 3)).uniform() < params.lapse_rate ? params.lapse_duration : 0.0) {
     PASSUNG_ASSERT(params.validate().empty());
@@ -66,6 +68,24 @@ double Arm::pressedHeight(double z, double force, double felt_z, double felt_for
     // Never lead by more than twice the force: a wall that vanishes must not be followed by a fall.
     const double lowest = felt_z - 2.0 * force / params_.stiffness;
     return std::max(z - speed * kDt, std::min(lowest, z));
+}
+
+bool Arm::touches(const Percept& percept) noexcept {
+    return percept.F_felt.force.norm() > kContactForce || percept.cue > 0.0 || percept.knock;
+}
+
+bool Arm::goesByCues(const Percept& percept) noexcept {
+    const bool felt = percept.F_felt.force.norm() >= kNothingFelt;
+    cued_ = !felt && (cued_ || percept.cue > 0.0);
+    return cued_;
+}
+
+double Arm::cuedHeight(double z, const Percept& percept) const noexcept {
+    return z + kCueSpeed * (percept.cue - kWantedCue) * kDt;
+}
+
+double Arm::pressure(const Percept& percept, double force, double felt_force) const noexcept {
+    return percept.cue > 0.0 ? std::max(felt_force, force * percept.cue / kWantedCue) : felt_force;
 }
 
 HandCoupling Arm::act(const Pose& X_BD, const Wrench& F_D_B) noexcept {

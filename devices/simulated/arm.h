@@ -18,12 +18,14 @@ public:
     Arm(const HandParams& params, const VisibleTask& task, const HandRegistration& registration, std::uint64_t seed);
 
     void see(const loop::DisplayedImage& image) noexcept override { senses_.see(image); }
+    void notice(const GivenCues& cues) noexcept override { senses_.notice(cues); }
     HandCoupling act(const Pose& X_BD, const Wrench& F_D_B) noexcept override;
     std::uint32_t buttons() const noexcept override { return buttons_; }
 
 protected:
     static constexpr double kStartDuration = 0.9;  // [s] reach for the start pose
     static constexpr double kContactForce = 0.7;   // [N] a touch is noticed
+    static constexpr double kNothingFelt = 0.2;    // [N] less is no force to speak of
 
     /// The first reach, to the start pose, is under way.
     virtual void begin() noexcept = 0;
@@ -41,6 +43,15 @@ protected:
     /// Height of the set-point over a surface for the next tick, so that `force` comes to be felt on it; `felt_z`,
     /// `felt_force`: height of the held part and force along the same axis.
     double pressedHeight(double z, double force, double felt_z, double felt_force) const noexcept;
+
+    /// Contact is felt, or told by a cue.
+    static bool touches(const Percept& percept) noexcept;
+    /// Cues alone tell of contact: no force to speak of is felt. Once they have, they are what is gone by.
+    bool goesByCues(const Percept& percept) noexcept;
+    /// As pressedHeight() where cues stand in for the force: slowly, until they are at kWantedCue.
+    double cuedHeight(double z, const Percept& percept) const noexcept;
+    /// `felt_force` when nobody wants to press harder than cues say they do: at kWantedCue that is `force`.
+    double pressure(const Percept& percept, double force, double felt_force) const noexcept;
 
     HandParams params_;
     VisibleTask task_;
@@ -63,6 +74,7 @@ protected:
     Vec3 offset_ = Vec3::Zero();  // added to it against friction, world axes [m]
     Vec3 turn_offset_ = Vec3::Zero();
     std::uint32_t buttons_ = 0;
+    bool cued_ = false;  // a cue has told of contact that was not felt
 };
 
 }  // namespace passung::simulated

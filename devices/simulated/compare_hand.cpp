@@ -24,7 +24,9 @@ constexpr double kTurns = 2.0 * std::numbers::pi;
 
 CompareHand::CompareHand(const HandParams& params, const VisibleTask& task, const HandRegistration& registration,
                          std::uint64_t seed)
-    : Arm(params, task, registration, seed), goal_(std::get<CompareGoal>(task_.goal)) {}
+    : Arm(params, task, registration, seed),
+      goal_(std::get<CompareGoal>(task_.goal)),
+      attention_(seed ^ fnv1a64("attention")) {}
 
 void CompareHand::enter(Phase phase) noexcept {
     phase_ = phase;
@@ -67,7 +69,7 @@ void CompareHand::choose(const Percept& percept) noexcept {
 void CompareHand::down(const Percept& percept) noexcept {
     p_TP_.z() -= pace_ * params_.descend_speed * kDt;
     X_WRef_.p = task_.X_WTarget * p_TP_;
-    if (percept.F_felt.force.norm() <= kContactForce) return;
+    if (!touches(percept)) return;
     touch_ = task_.X_WTarget.inverse() * percept.X_WFelt.p;
     enter(Phase::Feel);
 }
@@ -110,8 +112,8 @@ void CompareHand::endInterval() noexcept {
 }
 
 int CompareHand::answer() noexcept {
-    if (goal_.told_answer) return *goal_.told_answer;
-    if (impressions_[0] == impressions_[1]) return motor_.uniform() < 0.5 ? 1 : 2;
+    const bool attends = attention_.uniform() >= params_.lapse_rate;
+    if (!attends || impressions_[0] == impressions_[1]) return attention_.uniform() < 0.5 ? 1 : 2;
     return impressions_[0] > impressions_[1] ? 1 : 2;
 }
 

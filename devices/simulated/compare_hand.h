@@ -9,8 +9,8 @@ namespace passung::simulated {
 /// A hand that feels something twice and says in which interval there was more of it. In each interval it goes straight
 /// down onto the target; stiffness: it presses in slow waves and takes the slope of felt force over felt way;
 /// roughness: it strokes under even pressure and takes the root mean square of the felt force's changes. What an
-/// interval felt like is remembered with HandParams::feeling_error; an interval in which nothing was touched felt like
-/// nothing.
+/// interval felt like is remembered with HandParams::feeling_error; in a share of lapse_rate of the trials, and where
+/// both felt the same, the answer is left to chance; an interval in which nothing was touched felt like nothing.
 class CompareHand final : public Arm {
 public:
     /// @pre params.validate() is empty and task.goal is a CompareGoal.
@@ -30,6 +30,7 @@ private:
     int answer() noexcept;
 
     const CompareGoal& goal_;
+    Random attention_;  // lapses, and answers by chance
     Phase phase_ = Phase::ToStart;
     std::size_t intervals_ = 0;
     std::array<double, 2> impressions_{};

@@ -7,9 +7,13 @@
 // A handle at rest stays exactly where it is while the other forces do not exceed f_c (no creep).
 // What the hand puts into the handle follows from the mechanism's own balance, all of it exact for the substep:
 //     E += m_d (v_new² - v_old²)/2 + b u² h + D - F_motor u h,    D what dry friction took, M (u's v_new² - v_new²)/2.
+// Beyond the workspace, a ball of radius R about the base's origin, the mechanism's end stop pushes back along the
+// radius r with  k_s (|x| - R) + b_s max(0, v·r), never outwards; it counts as a motor's force in that balance.
+// Within the ball no bit is another than without it.
 // Limits: f_c = k = 0: v decays as exp(-b t/M) to O(h²); b = k = 0 with friction alone: stops after v² M/(2 f_c).
 #include "devices/simulated/device_dynamics.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/assert.h"
@@ -20,6 +24,8 @@ namespace {
 
 constexpr int kSubsteps = 4;
 constexpr double kStep = kTickSeconds / kSubsteps;
+constexpr double kStopStiffness = 20000.0;  // [N/m], proposed here: far stiffer than a hand
+constexpr double kStopDamping = 1.0;        // per sqrt(k m): half of critical, proposed here
 
 struct Axis {
     double mass, damping, coulomb;  // of the mechanism
@@ -45,6 +51,14 @@ Vec3 advanceVelocity(const Axis& a, const Vec3& motors, const Vec3& muscles, con
     from_hand += 0.5 * a.mass * (after - before) + kStep * a.damping * u.squaredNorm() +
                  0.5 * mass * (speed * speed - after) - kStep * motors.dot(u);
     return kStep * u;
+}
+
+/// Of the end stop; @pre x is outside the ball of `radius`.
+Vec3 endStop(const Vec3& x, const Vec3& v, double radius, double mass) noexcept {
+    const double distance = x.norm();
+    const Vec3 outward = x / distance;
+    const double damping = kStopDamping * std::sqrt(kStopStiffness * mass);
+    return -(kStopStiffness * (distance - radius) + damping * std::max(0.0, v.dot(outward))) * outward;
 }
 
 Vec3 rounded(const Vec3& v, double quantum) noexcept {
@@ -89,8 +103,10 @@ void DeviceDynamics::advance(const HandCoupling& hand) noexcept {
                        held * hand.inertia,   held * hand.rotational_damping,   held * hand.rotational_stiffness};
     const Wrench muscles{held * hand.F_D_B.force, held * hand.F_D_B.torque};
     for (int i = 0; i < kSubsteps; ++i) {
-        X_BD_.p +=
-            advanceVelocity(linear, acting_.force, muscles.force, hand.X_BSet.p - X_BD_.p, V_BD_B_.v, hand_energy_);
+        Vec3 motors = acting_.force;
+        if (X_BD_.p.squaredNorm() > params_.workspace_radius.value * params_.workspace_radius.value)
+            motors += endStop(X_BD_.p, V_BD_B_.v, params_.workspace_radius.value, linear.mass + linear.hand_mass);
+        X_BD_.p += advanceVelocity(linear, motors, muscles.force, hand.X_BSet.p - X_BD_.p, V_BD_B_.v, hand_energy_);
         if (params_.sensed_degrees == 6) {
             const Vec3 error = rotationVector(hand.X_BSet.q * X_BD_.q.conjugate());
             const Vec3 turn = advanceVelocity(angular, acting_.torque, muscles.torque, error, V_BD_B_.w, hand_energy_);

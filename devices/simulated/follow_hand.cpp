@@ -77,9 +77,11 @@ void FollowHand::follow(const Percept& percept) noexcept {
     const Vec3 force = X_WT.q.conjugate() * percept.F_felt.force;
     if (phase_ == Phase::Down) {
         height_ -= pace_ * params_.descend_speed * kDt;
-        if (force.norm() > kContactForce) enter(Phase::Follow);
+        if (touches(percept)) enter(Phase::Follow);
     } else {
-        height_ = pressedHeight(height_, goal_.force, felt.z(), force.z());
+        height_ = goesByCues(percept)
+                      ? cuedHeight(height_, percept)
+                      : pressedHeight(height_, goal_.force, felt.z(), pressure(percept, goal_.force, force.z()));
         way_ = std::min(way_ + pace_ * kSpeed * kDt, length_ + kBeyond);
         if (way_ >= length_ + kBeyond) phase_ = Phase::Done;
     }

@@ -19,15 +19,17 @@ namespace {
 constexpr double kDt = kTickSeconds;
 
 // Thresholds of judgement; proposed here.
-constexpr double kSettleDuration = 0.45;   // [s]
-constexpr double kPuzzled = 0.8;           // [s] longer look after a try that failed
-constexpr double kLiftDuration = 0.7;      // [s]
-constexpr double kLeftBehind = 10e-3;      // [m] the drawn part stays so far behind the hand ...
-constexpr double kNothingFelt = 0.2;       // [N] ... while so little is felt: it is seen to be held
+constexpr double kSettleDuration = 0.45;  // [s]
+constexpr double kPuzzled = 0.8;          // [s] longer look after a try that failed
+constexpr double kLiftDuration = 0.7;     // [s]
+constexpr double kLeftBehind = 10e-3;  // [m] the drawn part stays so far behind the hand, nothing felt: seen to be held
 constexpr double kClearlyInside = 4e-3;    // [m] seen below the mouth: no wall gives way that far
 constexpr double kDrop = 1e-3;             // [m] seen below the pressed level: it goes in
 constexpr double kCaughtForce = 0.8;       // [N] sideways: the tip is held by something
 constexpr double kStaysBack = 3e-3;        // [m] behind the spiral: a device with much friction is pushed harder
+constexpr double kSeenCaught = 2e-3;       // [m] the drawn part stays so far beside the hand, and cues tell of contact
+constexpr double kCuedJudgement = 0.5;     // of the usual time, where a cue tells of contact too
+constexpr double kCuedCare = 0.5;          // of the usual speed, where cues alone tell of contact
 constexpr double kCaughtTime = 0.12;       // [s] for so long
 constexpr double kCaughtPause = 0.6;       // [s] of searching before being caught counts (again)
 constexpr double kProgress = 0.4e-3;       // [m] seen progress that counts
@@ -80,6 +82,17 @@ bool Hand::seenHeld(const Percept& percept) const noexcept {
            -seenDepth(percept) - feltPosition(percept).z() > kLeftBehind;
 }
 
+// Who is told of contact looks where the part is and where the hand.
+bool Hand::seenCaught(const Percept& percept) const noexcept {
+    return percept.sees && (seenPosition(percept) - feltPosition(percept)).head<2>().norm() > kSeenCaught;
+}
+
+Vec3 Hand::seenPosition(const Percept& percept) const noexcept { return X_WM_.inverse() * percept.X_WSeen.p; }
+
+Vec3 Hand::seenTurn(const Percept& percept) const noexcept {
+    return rotationVector(percept.X_WSeen.q * q_goal_.conjugate());
+}
+
 Vec3 Hand::feltPosition(const Percept& percept) const noexcept { return X_WM_.inverse() * percept.X_WFelt.p; }
 
 Vec3 Hand::feltForce(const Percept& percept) const noexcept { return X_WM_.q.conjugate() * percept.F_felt.force; }
@@ -107,8 +120,11 @@ void Hand::placeReference(const Vec3& p_MP, const Vec3& turn) noexcept {
 }
 
 void Hand::pressWith(double force, const Percept& percept) noexcept {
-    if (!seenHeld(percept))
-        p_MP_.z() = pressedHeight(p_MP_.z(), force, feltPosition(percept).z(), feltForce(percept).z());
+    if (goesByCues(percept))
+        p_MP_.z() = cuedHeight(p_MP_.z(), percept);
+    else if (!seenHeld(percept))
+        p_MP_.z() = pressedHeight(p_MP_.z(), force, feltPosition(percept).z(),
+                                  pressure(percept, force, feltForce(percept).z()));
 }
 
 // ---- phases -----------------------------------------------------------------------------------------------------
@@ -142,7 +158,7 @@ void Hand::descend(const Percept& percept) noexcept {
     best_depth_ = -1.0;
     stalled_ = 0.0;
     stalls_ = 0;
-    if (feltForce(percept).norm() > kContactForce || seenHeld(percept)) enter(HandPhase::Press);
+    if (touches(percept) || seenHeld(percept)) enter(HandPhase::Press);
     if (seenDepth(percept) > kClearlyInside) enter(HandPhase::Insert);
 }
 
@@ -158,7 +174,7 @@ void Hand::press(const Percept& percept) noexcept {
     }
     if (depth > kClearlyInside) {
         enter(HandPhase::Insert);
-    } else if (stalled_ > params_.judgement + params_.visual_delay) {
+    } else if (stalled_ > (percept.cue > 0.0 ? kCuedJudgement : 1.0) * params_.judgement + params_.visual_delay) {
         baseline_ = depth;
         startSearch();
     }
@@ -180,14 +196,15 @@ void Hand::resumeSearch() noexcept {
 void Hand::search(const Percept& percept) noexcept {
     const double a = params_.search_pitch / (2.0 * std::numbers::pi);
     const double r = a * spiral_angle_;
-    spiral_angle_ += kDt * pace_ * params_.search_speed / std::hypot(r, a);
-    search_time_ += kDt;
     pressWith(params_.press_force, percept);
+    const double speed = (cued_ ? kCuedCare : 1.0) * params_.search_speed;
+    spiral_angle_ += kDt * pace_ * speed / std::hypot(r, a);
+    search_time_ += kDt;
     // After an interruption the tip first comes back to the spiral, no faster than it searches.
     const Vec3 spiral = centre_ + Vec3(r * std::cos(spiral_angle_), r * std::sin(spiral_angle_), 0.0);
     Vec3 step = spiral - p_MP_;
     step.z() = 0.0;
-    const double most = 2.0 * params_.search_speed * kDt;
+    const double most = 2.0 * speed * kDt;
     p_MP_ += step.norm() > most ? Vec3(step * (most / step.norm())) : step;
     const double tau = 2.0 * std::numbers::pi * search_time_;
     const Vec3 wobble = params_.search_tilt * Vec3(std::sin(1.3 * tau), std::sin(1.7 * tau), 0.0);
@@ -195,7 +212,8 @@ void Hand::search(const Percept& percept) noexcept {
     pushAcross(percept, X_WM_.q * Vec3::UnitZ(), kStaysBack);
 
     const double depth = seenDepth(percept);
-    const bool held = search_time_ > kCaughtPause && feltForce(percept).head<2>().norm() > kCaughtForce;
+    const bool held = search_time_ > kCaughtPause && (feltForce(percept).head<2>().norm() > kCaughtForce ||
+                                                      (cued_ && percept.cue > 0.0 && seenCaught(percept)));
     caught_ = held ? caught_ + kDt : 0.0;
     const double widest = std::min(params_.first_search_radius * (attempt_ + 1), params_.last_search_radius);
     if (depth > baseline_ + kDrop || caught_ > kCaughtTime) {
@@ -223,13 +241,17 @@ void Hand::insert(const Percept& percept) noexcept {
         return giveUp();
     }
     const double remaining = task_.insertion_depth + kExtraDepth - depth;
-    const double speed = std::clamp(kEndGain * remaining, kEndSpeed, pace_ * params_.insert_speed);
+    const bool told = goesByCues(percept) && percept.cue > 0.0;  // a wall that is not felt: go where the part is drawn
+    const double care = told ? kCuedCare : 1.0;
+    const double speed = care * std::clamp(kEndGain * remaining, kEndSpeed, pace_ * params_.insert_speed);
     const Vec3 felt = feltPosition(percept);
+    const Vec3 free = told && percept.sees ? seenPosition(percept) : felt;
+    const Vec3 free_turn = told && percept.sees ? seenTurn(percept) : feltTurn(percept);
     const double lowest = felt.z() - params_.insert_force / params_.stiffness;
     if (!seenHeld(percept)) p_MP_.z() = std::max(p_MP_.z() - speed * kDt, std::min(lowest, p_MP_.z()));
     // Giving way: the intention drifts to where the walls have put the part, which takes the side force away.
-    p_MP_.head<2>() += (kDt / kGiveWay) * (felt - p_MP_).head<2>();
-    turn_ += (kDt / kGiveWay) * (feltTurn(percept) - turn_);
+    p_MP_.head<2>() += (kDt / kGiveWay) * (free - p_MP_).head<2>();
+    turn_ += (kDt / kGiveWay) * (free_turn - turn_);
     offset_ -= (kDt / kGiveWay) * offset_;
     turn_offset_ -= (kDt / kGiveWay) * turn_offset_;
     placeReference(p_MP_, turn_);

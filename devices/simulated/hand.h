@@ -60,9 +60,12 @@ private:
     void placeReference(const Vec3& p_MP, const Vec3& turn) noexcept;
     double seenDepth(const Percept& percept) const noexcept;
     bool seenHeld(const Percept& percept) const noexcept;
+    bool seenCaught(const Percept& percept) const noexcept;
     Vec3 feltPosition(const Percept& percept) const noexcept;
     Vec3 feltForce(const Percept& percept) const noexcept;
     Vec3 feltTurn(const Percept& percept) const noexcept;
+    Vec3 seenPosition(const Percept& percept) const noexcept;
+    Vec3 seenTurn(const Percept& percept) const noexcept;
 
     HandPhase phase_ = HandPhase::ToStart;
 

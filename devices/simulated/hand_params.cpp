@@ -50,6 +50,11 @@ std::vector<Error> HandParams::validate() const {
     require(lapse_rate >= 0 && lapse_rate <= 1, "lapse_rate", lapse_rate, "must be 0 to 1");
     notNegative("lapse_duration", lapse_duration);
     notNegative("feeling_error", feeling_error);
+    for (const CueSense& cue : {visual_cue, vibration_cue, sound_cue}) {
+        positive("cue_threshold", cue.threshold);
+        delay("cue_delay", cue.delay);
+        notNegative("cue_noise", cue.noise);
+    }
     require(insert_force >= press_force, "insert_force", insert_force, "must be at least press_force");
     return errors;
 }

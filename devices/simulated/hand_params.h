@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <variant>
 #include <vector>
 
@@ -11,8 +10,7 @@ namespace passung::simulated {
 
 /// Two intervals are to be felt and compared.
 struct CompareGoal {
-    bool roughness = false;               // else stiffness
-    std::optional<int> told_answer = {};  // 1 or 2: what is answered whatever was felt
+    bool roughness = false;  // else stiffness
 };
 
 /// The held part is to be put to a pose that is drawn.
@@ -48,6 +46,13 @@ struct HandRegistration {
         const Pose X_BD = X_WB.inverse() * X_WH * X_DH.inverse();
         return {X_BD.q, X_BD.p / scale};
     }
+};
+
+/// A channel through which a cue of contact is perceived; see CueChannel.
+struct CueSense {
+    double threshold = 0.1;  // of the cue's full strength: what is weaker goes unnoticed, > 0
+    double delay = 0.25;     // from cue to reaction [s], 0 … kMaxSenseDelay
+    double noise = 0.2;      // of the strength: standard deviation of its natural logarithm, ≥ 0
 };
 
 /// A person's arm, senses and habits, as far as peg-in-hole needs them. SI units. The defaults are plausible for a calm
@@ -90,6 +95,11 @@ struct HandParams {
 
     // how wrongly something felt is compared: standard deviation of the natural logarithm of what an interval felt like
     double feeling_error = 0.15;  // ≥ 0
+
+    // cues beside the force
+    CueSense visual_cue = {};
+    CueSense vibration_cue = {};
+    CueSense sound_cue = {};
 
     /// Everything out of range; key = field.
     std::vector<Error> validate() const;

@@ -5,26 +5,31 @@
 
 #include "core/base/types.h"
 #include "core/loop/haptic_device.h"
+#include "devices/simulated/cue_channel.h"
 #include "devices/simulated/hand_params.h"
 
 namespace passung::simulated {
 
 /// What the person knows at one moment, all of it late.
 struct Percept {
-    Pose X_WFelt;       // where the own posture says the held part is
-    Wrench F_felt;      // on the hand, about the handle's origin, world axes
-    bool sees = false;  // an image has arrived
-    Pose X_WSeen;       // the held part as drawn
-    bool go = false;    // the trial has visibly started
+    Pose X_WFelt;        // where the own posture says the held part is
+    Wrench F_felt;       // on the hand, about the handle's origin, world axes
+    bool sees = false;   // an image has arrived
+    Pose X_WSeen;        // the held part as drawn
+    bool go = false;     // the trial has visibly started
+    double cue = 0.0;    // contact as colour and vibration tell of it, from 0 (they do not) to 1
+    bool knock = false;  // an impact is heard
 };
 
 /// Delays between the world and the person. rt-safe after construction.
 class HandSenses {
 public:
-    explicit HandSenses(const HandParams& params);
+    /// `cues`: seed of what is random in perceiving these.
+    HandSenses(const HandParams& params, std::uint64_t cues);
     /// One call per tick, before percept().
     void feel(const Pose& X_WH, const Wrench& F_W) noexcept;
     void see(const loop::DisplayedImage& image) noexcept;
+    void notice(const GivenCues& cues) noexcept;
     Percept percept() const noexcept;
 
 private:
@@ -44,6 +49,7 @@ private:
     std::array<Feeling, kMemory> feelings_{};
     std::array<Sight, kMemory> sights_{};
     std::int64_t sights_seen_ = 0;
+    CueChannel colour_, vibration_, sound_;
 };
 
 }  // namespace passung::simulated

@@ -40,7 +40,10 @@ void PlaceHand::choose(const Percept& percept) noexcept {
         }
         case Phase::Reach:
             X_WRef_ = reach_.at(t_);
-            if (t_ >= reach_.duration) enter(Phase::Look);
+            // Something is in the way, and only a cue says so: stop, go where the part is drawn, look again.
+            if (goesByCues(percept) && percept.cue > 0.0 && percept.sees)
+                X_WRef_.p += percept.X_WSeen.p - percept.X_WFelt.p;
+            if (t_ >= reach_.duration || (cued_ && percept.cue > 0.0)) enter(Phase::Look);
             break;
         case Phase::Look:
             removeOffset(percept);

@@ -36,7 +36,7 @@ struct DeviceParams {
     Sourced peak_force;                      // for moments [N]; information only
     Sourced peak_torque;                     // [N·m]
     Sourced max_force_rate;                  // of rising force [N/s], > 0
-    Sourced workspace_radius;                // about home [m]
+    Sourced workspace_radius;                // of a ball about the base's origin, where the end stops are [m]
     Sourced vendor_stiffness;                // largest the driver or maker recommends [N/m]
     Sourced vendor_rotational_stiffness;     // [N·m/rad]
     Sourced recommended_damping;             // of the wall, at which the stable stiffness is stated [N·s/m]

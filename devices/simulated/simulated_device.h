@@ -21,6 +21,9 @@ public:
     void command(const Wrench& F_D_B) noexcept override { dynamics_.command(F_D_B); }
     void show(const loop::DisplayedImage& image) noexcept override { hand_->see(image); }
 
+    /// Cues that the person is given beside the force, after each tick. rt-safe.
+    void notice(const GivenCues& cues) noexcept { hand_->notice(cues); }
+
     const TaskHand& hand() const noexcept { return *hand_; }
     const DeviceDynamics& dynamics() const noexcept { return dynamics_; }
 

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "core/loop/haptic_device.h"
+#include "devices/simulated/cue_channel.h"
 #include "devices/simulated/device_dynamics.h"
 #include "devices/simulated/hand_params.h"
 
@@ -17,6 +18,9 @@ public:
 
     /// A frame on the display.
     virtual void see(const loop::DisplayedImage& image) noexcept = 0;
+
+    /// What cues the person was given in the tick that is over; call in every tick in which any may be.
+    virtual void notice(const GivenCues& cues) noexcept = 0;
 
     /// One tick: posture and force in, what the arm does out. `F_D_B` as the motors give it.
     virtual HandCoupling act(const Pose& X_BD, const Wrench& F_D_B) noexcept = 0;

@@ -20,13 +20,15 @@ std::vector<std::size_t> levelsOf(const Design& design, const ConditionPlan& con
     return levels;
 }
 
-/// Combinations of within levels that the group sees, in the order of the conditions.
+/// Combinations of within levels that the group sees, in the order of the conditions; of a block: those that it has.
 std::vector<std::vector<std::size_t>> withinCells(const Design& design, const std::vector<std::size_t>& group,
-                                                  bool catches) {
+                                                  bool catches, const BlockPlan* block = nullptr) {
     std::vector<std::vector<std::size_t>> cells;
     std::set<std::vector<std::size_t>> seen;
-    for (const ConditionPlan& condition : design.conditions) {
+    for (std::size_t c = 0; c < design.conditions.size(); ++c) {
+        const ConditionPlan& condition = design.conditions[c];
         if (condition.catch_trial != catches || levelsOf(design, condition, FactorKind::Between) != group) continue;
+        if (block != nullptr && !hasCondition(*block, c)) continue;
         auto levels = levelsOf(design, condition, FactorKind::Within);
         if (seen.insert(levels).second) cells.push_back(std::move(levels));
     }
@@ -34,6 +36,31 @@ std::vector<std::vector<std::size_t>> withinCells(const Design& design, const st
 }
 
 }  // namespace
+
+bool hasCondition(const BlockPlan& block, std::size_t condition) {
+    return block.conditions.empty() ||
+           std::find(block.conditions.begin(), block.conditions.end(), condition) != block.conditions.end();
+}
+
+std::size_t numberIn(const BlockPlan& block, std::size_t condition) {
+    if (block.first_condition == 0 || block.conditions.empty()) return block.first_condition + condition;
+    const auto place = std::find(block.conditions.begin(), block.conditions.end(), condition);
+    PASSUNG_ASSERT(place != block.conditions.end());
+    return block.first_condition + static_cast<std::size_t>(place - block.conditions.begin());
+}
+
+Cells cellsOf(const BlockPlan& block, const Cells& cells) {
+    if (block.conditions.empty()) return cells;
+    Cells chosen;
+    for (const std::size_t condition : block.conditions) {
+        const auto isIn = [&](const auto& list) {
+            return std::find(list.begin(), list.end(), condition) != list.end();
+        };
+        if (isIn(cells.ordinary)) chosen.ordinary.push_back(condition);
+        if (isIn(cells.catches)) chosen.catches.push_back(condition);
+    }
+    return chosen;
+}
 
 std::size_t rowsOf(const Wheel& wheel) {
     if (wheel.items < 2) return 1;
@@ -51,11 +78,12 @@ std::vector<Wheel> wheelsOf(const Design& design) {
     const auto group = groupsOf(design).front();
     for (const BlockPlan& block : design.blocks) {
         std::map<std::size_t, std::size_t> parts;  // level, conditions
-        for (const ConditionPlan& condition : design.conditions) {
+        for (std::size_t c = 0; c < design.conditions.size(); ++c) {
+            const ConditionPlan& condition = design.conditions[c];
             if (condition.catch_trial || levelsOf(design, condition, FactorKind::Between) != group) continue;
-            if (block.blocked) parts[condition.levels[*block.blocked]] = 0;
+            if (block.blocked && hasCondition(block, c)) parts[condition.levels[*block.blocked]] = 0;
         }
-        const std::size_t cells = withinCells(design, group, false).size();
+        const std::size_t cells = withinCells(design, group, false, &block).size();
         if (block.blocked && isCounterbalanced(block.blocked_order))
             add({Wheel::What::Levels, block.blocked, block.blocked_order, parts.size()});
         if (isCounterbalanced(block.order))

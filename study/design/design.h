@@ -58,8 +58,15 @@ struct BlockPlan {
     std::vector<Constraint> constraints = {};  // of orders Random and Shuffled
     CatchPlan catches = {};
     int session = 1;                  // of the participant's sessions the one that has the block, from 1
-    std::size_t first_condition = 0;  // added to the number of every condition: the block has its own of each
+    std::size_t first_condition = 0;  // > 0: the block has its own of each of its conditions, from this number on
+    std::vector<std::size_t> conditions = {};  // that it has, in the order of Listed; empty: all
 };
+
+/// Does the block have this condition, in a pass or as a catch trial?
+bool hasCondition(const BlockPlan& block, std::size_t condition);
+
+/// The number of the condition among all of the study, the blocks' own ones included. @pre the block has it
+std::size_t numberIn(const BlockPlan& block, std::size_t condition);
 
 /// A study's design: what orders, groups and slots follow from.
 struct Design {
@@ -111,6 +118,9 @@ struct Cells {
     std::vector<std::size_t> catches;
 };
 Cells cellsOf(const Design& design, std::size_t group, std::size_t slot, std::string_view study, std::uint64_t seed);
+
+/// Of these what the block has, in the order in which it lists its conditions.
+Cells cellsOf(const BlockPlan& block, const Cells& cells);
 
 /// `cells` parted by the levels of `factor`, levels ascending; one part without a factor.
 std::vector<std::vector<std::size_t>> partedBy(const Design& design, std::optional<std::size_t> factor,

@@ -31,21 +31,27 @@ private:
         problems_.push_back({number_, key, item, std::move(message)});
     }
 
+    bool chooses() const { return !block_.conditions.empty(); }
+
     /// Every group, and in it every level of a blocked factor, has equally many conditions.
     bool checkParts() {
         const std::size_t groups = groupsOf(design_).size();
         for (std::size_t group = 0; group < groups; ++group) {
-            const auto cells = cellsOf(design_, group, 0, "", 0);
+            const auto cells = cellsOf(block_, cellsOf(design_, group, 0, "", 0));
             const auto parts = partedBy(design_, block_.blocked, cells.ordinary);
             if (parts.empty() || parts[0].empty()) {
-                report("order", "there are no conditions but those of catch trials");
+                report(chooses() ? "conditions" : "order", chooses()
+                                                               ? "leave a group without a condition"
+                                                               : "there are no conditions but those of catch trials");
                 return false;
             }
             if (group == 0) pass_ = parts[0].size(), levels_ = parts.size();
             const bool even = parts.size() == levels_ &&
                               std::all_of(parts.begin(), parts.end(), [&](const auto& p) { return p.size() == pass_; });
             if (even) continue;
-            report(block_.blocked ? "blocked" : "order",
+            report(block_.blocked ? "blocked"
+                   : chooses()    ? "conditions"
+                                  : "order",
                    block_.blocked ? "the levels of this factor have different numbers of conditions"
                                   : "the groups see different numbers of conditions");
             return false;
@@ -55,7 +61,8 @@ private:
 
     void checkSquares() {
         const auto check = [&](const char* key, Order order, std::size_t items, const char* what) {
-            if (order == Order::Williams && items < 2)
+            // One condition that a block has chosen for itself is its own order.
+            if (order == Order::Williams && items < 2 && !chooses())
                 report(key, fmt::format("a Williams square needs at least two {}", what));
             if (order == Order::Permutations && items > kMaxPermuted)
                 report(key, fmt::format("all orders of {} {} are too many; at most {}", items, what, kMaxPermuted));
@@ -68,7 +75,7 @@ private:
     void checkCatches() {
         const CatchPlan& plan = block_.catches;
         if (plan.trials == 0) return;
-        const auto cells = cellsOf(design_, 0, 0, "", 0);
+        const auto cells = cellsOf(block_, cellsOf(design_, 0, 0, "", 0));
         const auto parts = partedBy(design_, block_.blocked, cells.catches);
         if (cells.catches.empty() || parts.size() != levels_) {
             report("catch_trials", cells.catches.empty()

@@ -15,12 +15,27 @@
 namespace passung::design {
 namespace {
 
-/// Row of a counterbalanced wheel as numbers 0 … items-1.
-std::vector<std::size_t> turnOf(const Design& design, const Wheel& wheel, const SessionKey& key) {
+/// The row of pass `pass` (from 0) for whoever has row `row` in the first one: another row in every pass as long as
+/// there are any, so that nobody gets an order twice. In each pass the rows of all people are one rotation of those
+/// they had, which keeps the balance.
+///
+/// Even n: row r + pass of n. Its first entry is r + pass, the last one of the row before r + pass - 1 + n/2: equal
+/// only for n = 2. Odd n: forward in the first n rows, which end with r + (n + 1)/2, backward in the reversed ones,
+/// which begin with r + (n + 1)/2 and end with r; after n passes the other half. No condition follows itself inside a
+/// half.
+std::size_t rowOfPass(const Wheel& wheel, std::size_t row, std::size_t pass) {
+    const std::size_t n = wheel.items, rows = rowsOf(wheel);
+    if (wheel.order != Order::Williams || rows == n) return (row + pass) % rows;
+    const std::size_t half = (row / n + pass / n) % 2, step = pass % n;
+    return half * n + (row % n + (half == 0 ? step : n - step)) % n;
+}
+
+/// Row of a counterbalanced wheel in a pass as numbers 0 … items-1.
+std::vector<std::size_t> turnOf(const Design& design, const Wheel& wheel, const SessionKey& key, std::size_t pass) {
     const auto wheels = wheelsOf(design);
     const auto which = static_cast<std::size_t>(std::find(wheels.begin(), wheels.end(), wheel) - wheels.begin());
     PASSUNG_ASSERT(which < wheels.size());
-    const std::size_t row = rowOf(wheels, which, key.slot);
+    const std::size_t row = rowOfPass(wheel, rowOf(wheels, which, key.slot), pass);
     if (wheel.items < 2) return std::vector<std::size_t>(wheel.items, 0);
     if (wheel.order == Order::Permutations) return permutation(wheel.items, row);
     const auto phase = wheel.what == Wheel::What::Levels ? design.factors[*wheel.factor].name : std::string();
@@ -30,9 +45,10 @@ std::vector<std::size_t> turnOf(const Design& design, const Wheel& wheel, const 
     return turn;
 }
 
-/// 0 … items-1 in the order of the wheel; of other orders as listed.
-std::vector<std::size_t> arrange(const Design& design, const Wheel& wheel, const SessionKey& key) {
-    if (isCounterbalanced(wheel.order)) return turnOf(design, wheel, key);
+/// 0 … items-1 in the order of the wheel in a pass, from 0; of other orders as listed.
+std::vector<std::size_t> arrange(const Design& design, const Wheel& wheel, const SessionKey& key,
+                                 std::size_t pass = 0) {
+    if (isCounterbalanced(wheel.order)) return turnOf(design, wheel, key, pass);
     std::vector<std::size_t> listed(wheel.items);
     std::iota(listed.begin(), listed.end(), std::size_t{0});
     return listed;
@@ -66,7 +82,7 @@ Error noOrder(const BlockPlan& block, std::string_view participant) {
 }  // namespace
 
 std::vector<BlockPool> poolsOf(const Design& design, const BlockPlan& block, const SessionKey& key) {
-    const Cells cells = cellsOf(design, key.group, key.slot, key.study, key.seed);
+    const Cells cells = cellsOf(block, cellsOf(design, key.group, key.slot, key.study, key.seed));
     const auto parts = partedBy(design, block.blocked, cells.ordinary);
     const auto catch_parts = partedBy(design, block.blocked, cells.catches);
     std::vector<std::size_t> levels{0};
@@ -79,16 +95,21 @@ std::vector<BlockPool> poolsOf(const Design& design, const BlockPlan& block, con
     std::vector<BlockPool> pools;
     for (const std::size_t level : levels) {
         const auto& part = parts[level];
-        std::vector<std::size_t> pass;
-        for (const std::size_t i :
-             arrange(design, {Wheel::What::Conditions, block.blocked, block.order, part.size()}, key))
-            pass.push_back(part[i]);
+        const auto passOf = [&](int repetition) {
+            std::vector<std::size_t> pass;
+            for (const std::size_t i :
+                 arrange(design, {Wheel::What::Conditions, block.blocked, block.order, part.size()}, key,
+                         static_cast<std::size_t>(repetition - 1)))
+                pass.push_back(part[i]);
+            return pass;
+        };
         const auto& catches = catch_parts.empty() ? part : catch_parts[std::min(level, catch_parts.size() - 1)];
         if (block.order != Order::Shuffled) {
-            for (int r = 1; r <= block.repetitions; ++r) pools.push_back({pass, catches, r});
+            for (int r = 1; r <= block.repetitions; ++r) pools.push_back({passOf(r), catches, r});
             continue;
         }
         BlockPool all{{}, catches, 1};
+        const auto pass = passOf(1);
         for (int r = 0; r < block.repetitions; ++r) all.items.insert(all.items.end(), pass.begin(), pass.end());
         pools.push_back(std::move(all));
     }
@@ -147,7 +168,7 @@ Result<std::vector<PlannedTrial>> planSession(const Design& design, const Sessio
             for (const std::size_t condition : pool.items)
                 trials.push_back({static_cast<std::int64_t>(trials.size()), static_cast<std::int64_t>(b), block.name,
                                   trial_in_block++, design.conditions[condition].catch_trial ? "catch" : block.phase,
-                                  block.first_condition + condition,
+                                  numberIn(block, condition),
                                   block.order == Order::Shuffled ? ++seen[condition] : pool.repetition});
         }
     }

@@ -35,9 +35,10 @@ struct PlannedTrial {
 };
 
 /// The trials of one participant's session in order. Pure: equal arguments give equal plans, with every compiler.
-/// Counterbalanced blocks repeat the participant's row in every repetition and every block; random ones draw from the
-/// stream "trial_order" of (study, participant, block name), catch trials from "catch", so no draws move others.
-/// Constraints hold among the trials that are no catch trials. Errors: no order was found that keeps to them.
+/// Counterbalanced blocks begin with the participant's row, the same in every block, and take another row in every
+/// repetition, so that nobody gets an order twice before all rows are used; random ones draw from the stream
+/// "trial_order" of (study, participant, block name), catch trials from "catch", so no draws move others. Constraints
+/// hold among the trials that are no catch trials. Errors: no order was found that keeps to them.
 /// @pre problemsOf(design) is empty
 Result<std::vector<PlannedTrial>> planSession(const Design& design, const SessionKey& key);
 

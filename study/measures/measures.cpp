@@ -119,6 +119,11 @@ Optional trialTime(const Trial& trial) {
     return seconds(0, trial.end);
 }
 
+Optional finished(const Trial& trial) {
+    if (!trialTime(trial)) return std::nullopt;
+    return success(trial);
+}
+
 Optional approachTime(const Trial& trial) {
     const auto end = approachEnd(trial);
     if (!end) return std::nullopt;
@@ -230,6 +235,15 @@ std::vector<Measure> commonMeasures() {
           "ticks after the first, up to the second (1 each in virtual time, more after missed cycles)",
           2},
          trialTime},
+        {{"time_s", "Time to success, or to the end without one", "s",
+          "from the start tick to the end tick of every trial that started, however it ended: with finished = 1 the "
+          "time "
+          "that it took, with finished = 0 a time after which it was not done yet (censored); time: as for the trial "
+          "time"},
+         trialTime},
+        {{"finished", "Whether the time ended in success", "1",
+          "1 if the outcome is success, else 0: time_s is censored; empty where the trial never started"},
+         finished},
         {{"approach_time_s", "Approach time", "s",
           "from the start tick to the first contact tick, or to the engagement tick if that is earlier; contact tick: "
           "trial tick with |force| > 1e-6 N or |torque| > 1e-9 N m or contacts > 0, or with hand_depth_m > 0 where the "
@@ -349,12 +363,22 @@ const std::vector<Definition>& definitions() {
     return all;
 }
 
+bool isKnownUnwatched(std::string_view measure) {
+    const auto& all = measures();
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const Measure& m) { return m.definition.name == measure; });
+    if (found == all.end()) return true;  // of the secondary task
+    return found->compute == success || found->compute == trialTime || found->compute == finished;
+}
+
+bool countsTicks(std::string_view measure) { return measure.ends_with("_ticks"); }
+
 std::vector<Value> computeMeasures(std::span<const TickRecord> records, const TrialContext& context) {
     const Trial trial = cutTrial(records, context);
     std::vector<Value> values;
     values.reserve(definitions().size());
     for (const Measure& measure : measures()) {
-        const bool known = context.watched || measure.compute == success || measure.compute == trialTime;
+        const bool known = context.watched || isKnownUnwatched(measure.definition.name);
         Optional value = known ? measure.compute(trial) : std::nullopt;
         if (value && !std::isfinite(*value)) value.reset();
         values.push_back({measure.definition.name, value});

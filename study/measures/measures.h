@@ -78,10 +78,17 @@ struct Value {
     std::optional<double> value;  // empty: not defined for this trial (e.g. insertion time without insertion)
 };
 
+/// Is the measure known of a trial that no device feels? Those of the secondary task are, where there is one.
+bool isKnownUnwatched(std::string_view measure);
+
+/// Does the measure count ticks with a status bit: how the loop did, not what the person did?
+bool countsTicks(std::string_view measure);
+
 /// Every measure of one trial from its recorded ticks, in the order of definitions().
 /// `records` are in order of their ticks; those outside [start_tick, end_tick] are ignored. The formulas take them as
 /// consecutive: where records are missing, a step spans the gap; times count a missing tick as one period, sums over
-/// ticks leave it out. Of a trial that is not watched all but success, trial time and the secondary task's are empty.
+/// ticks leave it out. Of a trial that is not watched all but success, finished, its times and the secondary task's are
+/// empty: isKnownUnwatched().
 /// Only stored values enter, so every measure can be computed again from an export of the samples.
 std::vector<Value> computeMeasures(std::span<const TickRecord> records, const TrialContext& context);
 

@@ -13,7 +13,7 @@ namespace {
 using P = SimulatedPerson;
 
 // The order is part of the definition: a new trait goes to the end, so that known persons stay who they are.
-constexpr std::array<Trait, 22> kTraits = {{
+constexpr std::array<Trait, 32> kTraits = {{
     {"visual_delay", "s", "sight to reaction", &P::visual_delay, 0.15, 0.15, 0.32},
     {"haptic_delay", "s", "touch to reaction", &P::haptic_delay, 0.15, 0.09, 0.20},
     {"arm_mass", "kg", "at the handle", &P::arm_mass, 0.25, 0.3, 1.0},
@@ -39,6 +39,20 @@ constexpr std::array<Trait, 22> kTraits = {{
      0.7},
     {"reaction_load", "1", "how much longer that takes while a part touches", &P::reaction_load, 0.4, 0.05, 0.9},
     {"miss_rate", "1", "share of stimuli that go unnoticed, with nothing else to do", &P::miss_rate, 0.6, 0.005, 0.25},
+    {"feeling_error", "1", "of comparing: standard deviation of the logarithm of what an interval felt like",
+     &P::feeling_error, 0.3, 0.05, 0.3},
+    {"colour_threshold", "1", "of the visual cue: what is weaker, in parts of its full strength, goes unnoticed",
+     &P::colour_threshold, 0.3, 0.05, 0.4},
+    {"colour_delay", "s", "visual cue to reaction", &P::colour_delay, 0.15, 0.2, 0.42},
+    {"colour_noise", "1", "of the visual cue: standard deviation of the logarithm of its strength", &P::colour_noise,
+     0.3, 0.1, 0.6},
+    {"vibration_threshold", "1", "as colour_threshold, of the vibrotactile cue", &P::vibration_threshold, 0.3, 0.02,
+     0.3},
+    {"vibration_delay", "s", "vibrotactile cue to reaction", &P::vibration_delay, 0.15, 0.14, 0.35},
+    {"vibration_noise", "1", "as colour_noise, of the vibrotactile cue", &P::vibration_noise, 0.3, 0.1, 0.7},
+    {"knock_threshold", "1", "as colour_threshold, of the sound of an impact", &P::knock_threshold, 0.3, 0.03, 0.4},
+    {"knock_delay", "s", "that sound to reaction", &P::knock_delay, 0.15, 0.12, 0.3},
+    {"knock_noise", "1", "as colour_noise, of that sound", &P::knock_noise, 0.3, 0.1, 0.6},
 }};
 
 }  // namespace

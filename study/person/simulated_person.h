@@ -32,6 +32,16 @@ struct SimulatedPerson {
     double reaction_time = 0.38;
     double reaction_load = 0.3;
     double miss_rate = 0.04;
+    double feeling_error = 0.12;
+    double colour_threshold = 0.15;
+    double colour_delay = 0.28;
+    double colour_noise = 0.25;
+    double vibration_threshold = 0.08;
+    double vibration_delay = 0.22;
+    double vibration_noise = 0.30;
+    double knock_threshold = 0.10;
+    double knock_delay = 0.18;
+    double knock_noise = 0.25;
 
     /// N·s/m and N·m·s/rad from the ratios.
     double armDamping() const;

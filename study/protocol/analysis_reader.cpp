@@ -6,6 +6,7 @@
 #include <array>
 
 #include "study/protocol/table_reader.h"
+#include "study/protocol/trial_types.h"
 
 namespace passung::protocol {
 namespace {
@@ -24,7 +25,8 @@ constexpr std::array kTests{TestRule{"paired_t", 1, 1, 0, 0, 2, 2},
                             TestRule{"friedman", 1, 1, 0, 0, 3, kMany},
                             TestRule{"welch_t", 0, 0, 1, 1, 2, 2},
                             TestRule{"mann_whitney", 0, 0, 1, 1, 2, 2},
-                            TestRule{"mixed_anova", 1, kMany, 1, kMany, 2, kMany}};
+                            TestRule{"mixed_anova", 1, kMany, 1, kMany, 2, kMany},
+                            TestRule{"mean", 0, 0, 0, 0, 0, kMany}};
 
 std::string countText(std::size_t least, std::size_t most, const char* what) {
     if (most == 0) return fmt::format("no {} factor", what);
@@ -41,6 +43,7 @@ std::string testFault(const std::string& test, const std::vector<const Factor*>&
             std::count_if(factors.begin(), factors.end(), [&](const Factor* f) { return f->kind == kind; }));
     };
     const std::size_t within = ofKind(FactorKind::Within), between = ofKind(FactorKind::Between);
+    if (rule->most_within + rule->most_between == 0) return factors.empty() ? "" : "is for no factor";
     if (within < rule->least_within || within > rule->most_within || between < rule->least_between ||
         between > rule->most_between || within + between < factors.size())
         return fmt::format("is for {} and {}", countText(rule->least_within, rule->most_within, "within"),
@@ -56,39 +59,114 @@ std::string testFault(const std::string& test, const std::vector<const Factor*>&
     return "";
 }
 
-}  // namespace
+/// Reads one table.
+class AnalysisReader {
+public:
+    AnalysisReader(const Node& table, const StudyPlan& plan, const std::vector<std::string>& staircases, Errors& errors)
+        : table_(table), read_(table, {"analysis"}, "analysis", errors), plan_(plan), errors_(errors) {
+        before_ = errors.size();
+        readOutcome(staircases);
+        readBlock();
+        readFactors();
+        analysis_.test = read_.text("test");
+        if (errors.size() > before_ || !read_.has("test")) return;
+        if (factors_.empty() && analysis_.test != "mean" && analysis_.test != "lmm")
+            read_.fail("factors", fmt::format("required by the test {}", analysis_.test));
+        else if (const auto fault = testFault(analysis_.test, factors_); !fault.empty())
+            read_.fail("test", fault);
+    }
 
-std::vector<Analysis> readAnalyses(const std::vector<Node>& tables, const StudyPlan& plan, Errors& errors) {
-    std::vector<Analysis> analyses;
-    for (const Node& table : tables) {
-        const std::size_t before = errors.size();
-        const TableReader read(table, {"analysis"}, "analysis", errors);
-        Analysis analysis{read.text("outcome"), {}, read.text("test")};
-        if (read.has("outcome") &&
-            std::find(plan.measures.begin(), plan.measures.end(), analysis.outcome) == plan.measures.end()) {
-            const std::vector<std::string_view> known(plan.measures.begin(), plan.measures.end());
-            const auto close = closestWord(analysis.outcome, known);
-            read.fail("outcome", close ? fmt::format("is no measure of this study; did you mean \"{}\"?", *close)
-                                       : "is no measure of this study");
+    const Analysis& analysis() const { return analysis_; }
+
+private:
+    /// Nothing, or what is wrong with a name that is none of these.
+    static std::string unknown(const std::string& name, const std::vector<std::string>& names,
+                               const std::string& fault) {
+        if (std::find(names.begin(), names.end(), name) != names.end()) return "";
+        const std::vector<std::string_view> known(names.begin(), names.end());
+        const auto close = closestWord(name, known);
+        return close ? fmt::format("{}; did you mean \"{}\"?", fault, *close) : fault;
+    }
+
+    void readOutcome(const std::vector<std::string>& staircases) {
+        const bool outcome = table_.find("outcome") != nullptr, staircase = table_.find("staircase") != nullptr;
+        if (outcome == staircase)
+            return read_.fail(outcome ? "staircase" : "outcome",
+                              outcome ? "stands beside outcome: one of them is analysed" : "required, or staircase");
+        analysis_.outcome = read_.text("outcome");
+        analysis_.staircase = read_.text("staircase");
+        if (read_.has("outcome")) {
+            const auto fault = unknown(analysis_.outcome, plan_.measures, "is no measure of this study");
+            if (!fault.empty()) return read_.fail("outcome", fault);
+            if (analysis_.outcome.ends_with("_ticks"))
+                read_.fail("outcome",
+                           "counts ticks of the loop: it is in timing.csv, not among what trials are "
+                           "analysed by");
         }
-        if (read.has("factors") && read.items("factors").empty()) read.fail("factors", "names no factor");
-        std::vector<const Factor*> factors;
-        for (const Node& item : read.items("factors")) {
-            const auto factor = std::find_if(plan.factors.begin(), plan.factors.end(),
+        if (read_.has("staircase"))
+            if (const auto fault = unknown(analysis_.staircase, staircases, "the study has no staircase of this name");
+                !fault.empty())
+                read_.fail("staircase", fault);
+    }
+
+    void readBlock() {
+        if (!read_.has("block")) return;
+        analysis_.block = read_.text("block");
+        if (!analysis_.staircase.empty()) return read_.fail("block", "is decided by the staircase");
+        std::vector<std::string> names;
+        for (const Block& block : plan_.blocks) names.push_back(block.name);
+        if (const auto fault = unknown(analysis_.block, names, "the study has no block of this name"); !fault.empty())
+            return read_.fail("block", fault);
+        const auto block = std::find_if(plan_.blocks.begin(), plan_.blocks.end(),
+                                        [&](const Block& b) { return b.name == analysis_.block; });
+        if (block->phase != Phase::Main) read_.fail("block", "is practice, which enters no analysis");
+        checkType(*block);
+        if (block->adaptive) read_.fail("block", "has a staircase, whose trials enter no mean: name the staircase");
+    }
+
+    /// A measure that no trial of the block has.
+    void checkType(const Block& block) const {
+        const std::size_t first = block.first_condition > 0  ? block.first_condition
+                                  : block.conditions.empty() ? 0
+                                                             : block.conditions.front();
+        if (!errors_.empty() || first >= plan_.conditions.size()) return;  // else it may follow from another mistake
+        const TrialType* type = &typeOf(plan_.conditions[first].task);
+        if (measuresOf(std::span(&type, 1), std::span(&analysis_.outcome, 1)).empty())
+            read_.fail("outcome",
+                       fmt::format("a trial of the type {}, as in block {}, does not have it", type->name, block.name));
+    }
+
+    void readFactors() {
+        if (read_.has("factors") && read_.items("factors").empty()) read_.fail("factors", "names no factor");
+        for (const Node& item : read_.items("factors")) {
+            const auto factor = std::find_if(plan_.factors.begin(), plan_.factors.end(),
                                              [&](const Factor& f) { return f.name == item.text; });
             const bool twice =
-                std::find(analysis.factors.begin(), analysis.factors.end(), item.text) != analysis.factors.end();
-            if (factor == plan.factors.end() || twice)
-                errors.push_back(errorAt(item.place, "analysis.factors", valueText(item),
-                                         twice ? "is listed twice" : "the study has no factor of this name"));
+                std::find(analysis_.factors.begin(), analysis_.factors.end(), item.text) != analysis_.factors.end();
+            if (factor == plan_.factors.end() || twice)
+                errors_.push_back(errorAt(item.place, "analysis.factors", valueText(item),
+                                          twice ? "is listed twice" : "the study has no factor of this name"));
             else
-                factors.push_back(&*factor);
-            analysis.factors.push_back(item.text);
+                factors_.push_back(&*factor);
+            analysis_.factors.push_back(item.text);
         }
-        if (errors.size() == before)
-            if (const auto fault = testFault(analysis.test, factors); !fault.empty()) read.fail("test", fault);
-        analyses.push_back(std::move(analysis));
     }
+
+    const Node& table_;
+    TableReader read_;
+    const StudyPlan& plan_;
+    Errors& errors_;
+    std::size_t before_ = 0;
+    Analysis analysis_;
+    std::vector<const Factor*> factors_;
+};
+
+}  // namespace
+
+std::vector<Analysis> readAnalyses(const std::vector<Node>& tables, const StudyPlan& plan,
+                                   const std::vector<std::string>& staircases, Errors& errors) {
+    std::vector<Analysis> analyses;
+    for (const Node& table : tables) analyses.push_back(AnalysisReader(table, plan, staircases, errors).analysis());
     return analyses;
 }
 

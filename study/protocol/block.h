@@ -36,11 +36,14 @@ struct Block {
     double rest = 0.0;  // [s] at least so long is rested before it
     RestEnds rest_ends = RestEnds::ByTime;
     bool adaptive = false;              // a staircase governs its trials
-    std::size_t first_condition = 0;    // its own conditions begin here, parallel to the shared ones; 0: it takes those
+    std::size_t first_condition = 0;    // its own conditions begin here, parallel to those that it has of the shared
+                                        // ones; 0: it takes those
     Repeat on_failure = Repeat::Never;  // of a trial that ended by its own rules without success
     Repeat on_timeout = Repeat::Never;
     Repeat on_invalid = Repeat::Never;  // of a trial whose attempt does not count
     int max_attempts = 3;               // of a trial, however they end
+    /// Of the shared conditions those that it has, as it lists them, those of its catch trials last; empty: all.
+    std::vector<std::size_t> conditions = {};
 };
 
 }  // namespace passung::protocol

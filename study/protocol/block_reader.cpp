@@ -191,39 +191,45 @@ void checkBlocks(const std::vector<Node>& tables, const StudyPlan& plan, Errors&
     }
 }
 
-std::vector<Exclusion> readExclusions(const std::vector<Node>& tables, const std::vector<Factor>& factors,
-                                      Errors& errors) {
-    std::vector<Exclusion> exclusions;
-    for (const Node& table : tables) {
-        Exclusion exclusion(factors.size());
-        if (table.entries.empty()) errors.push_back(errorAt(table.place, "exclude", "", "names no factor"));
-        for (const Entry& entry : table.entries) {
-            const auto report = [&](const Place& place, std::string value, std::string message) {
-                errors.push_back(errorAt(place, "exclude." + entry.key, std::move(value), std::move(message)));
-            };
-            std::string fault;
-            const auto factor = findFactor(factors, entry.key, fault);
-            if (!factor) {
-                report(entry.place, "", fault);
-                continue;
-            }
-            if (factors[*factor].kind == FactorKind::Nuisance)
-                report(entry.place, "", "a nuisance factor's levels are assigned to every condition");
-            const bool text = entry.value.kind == Node::Kind::Text;
-            exclusion[*factor] = findLevel(factors[*factor], text ? entry.value.text : valueText(entry.value), fault);
-            if (!exclusion[*factor]) report(entry.value.place, valueText(entry.value), fault);
+LevelPattern readPattern(const Node& table, const std::string& path, const std::vector<Factor>& factors,
+                         Errors& errors) {
+    LevelPattern pattern(factors.size());
+    if (table.entries.empty()) errors.push_back(errorAt(table.place, path, "", "names no factor"));
+    for (const Entry& entry : table.entries) {
+        const auto report = [&](const Place& place, std::string value, std::string message) {
+            errors.push_back(errorAt(place, path + "." + entry.key, std::move(value), std::move(message)));
+        };
+        std::string fault;
+        const auto factor = findFactor(factors, entry.key, fault);
+        if (!factor) {
+            report(entry.place, "", fault);
+            continue;
         }
-        exclusions.push_back(std::move(exclusion));
+        if (factors[*factor].kind == FactorKind::Nuisance)
+            report(entry.place, "", "a nuisance factor's levels are assigned to every condition");
+        const bool text = entry.value.kind == Node::Kind::Text;
+        pattern[*factor] = findLevel(factors[*factor], text ? entry.value.text : valueText(entry.value), fault);
+        if (!pattern[*factor]) report(entry.value.place, valueText(entry.value), fault);
     }
+    return pattern;
+}
+
+bool matches(const LevelPattern& pattern, const std::vector<std::size_t>& levels) {
+    for (std::size_t f = 0; f < levels.size(); ++f)
+        if (pattern[f] && *pattern[f] != levels[f]) return false;
+    return true;
+}
+
+std::vector<LevelPattern> readExclusions(const std::vector<Node>& tables, const std::vector<Factor>& factors,
+                                         Errors& errors) {
+    std::vector<LevelPattern> exclusions;
+    for (const Node& table : tables) exclusions.push_back(readPattern(table, "exclude", factors, errors));
     return exclusions;
 }
 
-bool isExcluded(const std::vector<Exclusion>& exclusions, const std::vector<std::size_t>& levels) {
-    return std::any_of(exclusions.begin(), exclusions.end(), [&](const Exclusion& exclusion) {
-        for (std::size_t f = 0; f < levels.size(); ++f)
-            if (exclusion[f] && *exclusion[f] != levels[f]) return false;
-        return true;
-    });
+bool isExcluded(const std::vector<LevelPattern>& exclusions, const std::vector<std::size_t>& levels) {
+    return std::any_of(exclusions.begin(), exclusions.end(),
+                       [&](const LevelPattern& exclusion) { return matches(exclusion, levels); });
 }
 
 }  // namespace passung::protocol

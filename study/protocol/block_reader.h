@@ -14,14 +14,20 @@ std::vector<Block> readBlocks(const std::vector<Node>& tables, const std::vector
 /// @pre the plan is complete; its blocks were read from `tables`
 void checkBlocks(const std::vector<Node>& tables, const StudyPlan& plan, Errors& errors);
 
-/// Combinations of levels that a study leaves out, as it lists them: by factor, the level or nothing.
-using Exclusion = std::vector<std::optional<std::size_t>>;
+/// Some of the levels of a condition: by factor, the level or nothing.
+using LevelPattern = std::vector<std::optional<std::size_t>>;
 
-/// Reads the study's `exclude`.
-std::vector<Exclusion> readExclusions(const std::vector<Node>& tables, const std::vector<Factor>& factors,
-                                      Errors& errors);
+/// Reads `{ factor = level, ... }`; `path` names it in messages.
+LevelPattern readPattern(const Node& table, const std::string& path, const std::vector<Factor>& factors,
+                         Errors& errors);
+
+bool matches(const LevelPattern& pattern, const std::vector<std::size_t>& levels);
+
+/// Reads the study's `exclude`: combinations of levels that it leaves out.
+std::vector<LevelPattern> readExclusions(const std::vector<Node>& tables, const std::vector<Factor>& factors,
+                                         Errors& errors);
 
 /// True if one of them is about these levels.
-bool isExcluded(const std::vector<Exclusion>& exclusions, const std::vector<std::size_t>& levels);
+bool isExcluded(const std::vector<LevelPattern>& exclusions, const std::vector<std::size_t>& levels);
 
 }  // namespace passung::protocol

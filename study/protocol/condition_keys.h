@@ -19,7 +19,7 @@ inline constexpr std::array kConditionKeys{
 
     Key{"feedback", "result", KeyType::Choice, {}, "none|outcome|time", "none", "What the participant is told of a trial once it is over, until the next one begins: nothing, how it ended, or also how long it took."},
 
-    Key{"secondary", "stimulus", KeyType::Choice, {}, "none|visual|vibrotactile|audio", "none", "What is to be answered with a button; its command, 0 or 1, is a column of the exported samples, no transducer is driven yet. A block's or a level's `set` turns it on where it is wanted."},
+    Key{"secondary", "stimulus", KeyType::Choice, {}, "none|visual|vibrotactile|audio", "none", "What is to be answered with a button; its command, 0 or 1, is a column of the exported samples. Windows play audio; visual and vibrotactile have no output yet: check warns, and only simulated participants can run them. A block's or a level's `set` turns it on where it is wanted."},
     Key{"secondary", "interval_min_s", KeyType::Number, {0.1, 600}, "", "3", "Least time between two onsets; they are drawn uniformly, the first one counts from the attempt's first tick."},
     Key{"secondary", "interval_max_s", KeyType::Number, {0.1, 600}, "", "5", "Most time."},
     Key{"secondary", "stimulus_ms", KeyType::Number, {1, 10000}, "", "1000", "How long a stimulus lasts that is not answered."},

@@ -47,7 +47,28 @@ bool isLanguage(std::string_view text) {
     return text.size() == 2 && std::all_of(text.begin(), text.end(), [](char c) { return c >= 'a' && c <= 'z'; });
 }
 
-std::vector<ConsentClause> readConsent(const TableReader& root, Errors& errors) {
+std::optional<std::string> unfilledDate(std::string_view text) {
+    const auto letter = [](char c) { return c >= 'A' && c <= 'Z'; };
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (!letter(text[i]) || (i > 0 && letter(text[i - 1]))) continue;
+        // Groups of one letter each, such as YYYY-MM-DD or TT.MM.JJJJ.
+        std::size_t end = i, groups = 0;
+        while (end < text.size() && letter(text[end])) {
+            const std::size_t begin = end;
+            while (end < text.size() && text[end] == text[begin]) ++end;
+            if (end - begin < 2) break;
+            ++groups;
+            const bool more =
+                end + 1 < text.size() && std::string_view("-./").find(text[end]) != std::string_view::npos;
+            if (groups == 3 || !more || !letter(text[end + 1])) break;
+            ++end;
+        }
+        if (groups == 3) return std::string(text.substr(i, end - i));
+    }
+    return std::nullopt;
+}
+
+std::vector<ConsentClause> readConsent(const TableReader& root, Errors& errors, Errors& for_people) {
     std::vector<ConsentClause> clauses;
     std::vector<const Node*> tables;
     std::set<std::string> names;
@@ -61,7 +82,14 @@ std::vector<ConsentClause> readConsent(const TableReader& root, Errors& errors) 
         clause.required = read.boolean("required");
         if (named && !names.insert(clause.clause).second) read.fail("clause", "two clauses have this name");
         const Node* text = read.node("text");
-        if (text != nullptr) clause.texts = readTexts(*text, read.pathOf("text"), errors);
+        if (text != nullptr) {
+            clause.texts = readTexts(*text, read.pathOf("text"), errors);
+            for (const Entry& entry : text->entries)
+                if (const auto date = unfilledDate(entry.value.text))
+                    for_people.push_back(errorAt(entry.place, read.pathOf("text") + "." + entry.key,
+                                                 "\"" + *date + "\"",
+                                                 "is a placeholder: fill in the date before people are asked"));
+        }
         clauses.push_back(std::move(clause));
         tables.push_back(text != nullptr ? text : &table);
     }

@@ -4,11 +4,12 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <tuple>
 #include <utility>
+
+#include "core/base/printable.h"
+#include "core/base/regular_file.h"
+#include "study/protocol/text_limits.h"
 
 namespace passung::protocol {
 namespace {
@@ -68,6 +69,19 @@ Node convert(const toml::node& source, const std::string& file) {
     return node;
 }
 
+/// Reports keys and texts with control characters, which no file needs and a terminal would obey.
+void refuseControls(const Node& node, Errors& errors) {
+    constexpr const char* kRefused = "must hold no control characters";
+    if (node.kind == Node::Kind::Text && holdsControls(node.text))
+        errors.push_back(errorAt(node.place, "", valueText(node), kRefused));
+    for (const Node& item : node.items) refuseControls(item, errors);
+    for (const Entry& entry : node.entries) {
+        if (holdsControls(entry.key) || entry.key.find_first_of("\n\t") != std::string::npos)
+            errors.push_back(errorAt(entry.place, entry.key, "", kRefused));
+        refuseControls(entry.value, errors);
+    }
+}
+
 }  // namespace
 
 const Node* Node::find(std::string_view key) const {
@@ -104,9 +118,14 @@ Node emptyTable(const Place& place) {
 }
 
 Result<Node> parseDocument(const std::string& text, const std::string& file) {
+    if (const auto beyond = beyondLimits(text, file)) return *beyond;
     try {
         const auto table = toml::parse(std::string_view(text), std::string_view(file));
-        return convert(table, file);
+        Node document = convert(table, file);
+        Errors errors;
+        refuseControls(document, errors);
+        if (!errors.empty()) return errors;
+        return document;
     } catch (const toml::parse_error& error) {
         std::string_view description = error.description();
         constexpr std::string_view kPrefix = "Error while ";
@@ -115,15 +134,7 @@ Result<Node> parseDocument(const std::string& text, const std::string& file) {
     }
 }
 
-Result<std::string> readFile(const std::string& path) {
-    std::error_code ignored;
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream.is_open() || std::filesystem::is_directory(path, ignored))
-        return Error{.message = "cannot be opened", .file = path};
-    std::string text(std::istreambuf_iterator<char>(stream), {});
-    if (stream.bad()) return Error{.message = "cannot be read", .file = path};
-    return text;
-}
+Result<std::string> readFile(const std::string& path) { return readRegularFile(path); }
 
 std::string kindText(const Node& node) {
     switch (node.kind) {

@@ -19,6 +19,8 @@ constexpr std::array kReservedNames{
     "valid",           "invalid_reason", "n_ticks",     "overruns",     "app_version",    "protocol_sha256",
     "dropped_samples", "n_trials",       "n_success",   "success_share"};
 
+constexpr std::size_t kMostSegments = 8;  // of a path: each may make a table
+
 constexpr std::string_view kMissing = "NA";
 
 bool isScalar(const Node& node) {
@@ -186,6 +188,7 @@ void applyOverride(const Override& change, StudyTables& tables, Errors& errors) 
     const auto segments = splitPath(change.path);
     if (std::count(segments.begin(), segments.end(), "") > 0)
         return report("is no path of keys such as contact.method");
+    if (segments.size() > kMostSegments) return report(fmt::format("must have at most {} parts", kMostSegments));
     std::size_t next = 0;
     Node* table = &tables.scene;
     if (segments[0] == "task" || segments[0] == "feedback" || segments[0] == "secondary") {

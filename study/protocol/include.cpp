@@ -7,19 +7,22 @@
 #include <optional>
 #include <sstream>
 
+#include "study/protocol/condition_table.h"
+#include "study/protocol/text_limits.h"
+
 namespace passung::protocol {
 namespace {
 
-/// The file that a line includes, with the column of its name; nothing for any other line.
+/// The file that a line includes, with the column of its name.
 struct Directive {
     std::string file;
     int column = 1;
 };
 
-std::optional<Directive> directiveOf(const std::string& line) {
-    constexpr std::string_view kWord = "include";
-    if (!line.starts_with(kWord)) return std::nullopt;
-    std::size_t at = line.find_first_not_of(" \t", kWord.size());
+/// Of a line that says `word = "FILE"`; nothing for any other.
+std::optional<Directive> directiveOf(const std::string& line, std::string_view word) {
+    if (!line.starts_with(word)) return std::nullopt;
+    std::size_t at = line.find_first_not_of(" \t", word.size());
     if (at == std::string::npos || line[at] != '=') return std::nullopt;
     at = line.find_first_not_of(" \t", at + 1);
     if (at == std::string::npos || line[at] != '"') return std::nullopt;
@@ -30,6 +33,8 @@ std::optional<Directive> directiveOf(const std::string& line) {
     return Directive{line.substr(at + 1, end - at - 1), static_cast<int>(at) + 1};
 }
 
+constexpr int kMostIncludes = 256;
+
 /// Goes through one file and the files that it includes.
 class Includer {
 public:
@@ -39,9 +44,11 @@ public:
         open_.push_back(path);
         std::istringstream lines(text);
         std::string line;
-        for (int number = 1; std::getline(lines, line); ++number) {
-            if (const auto directive = directiveOf(line))
+        for (int number = 1; !full_ && std::getline(lines, line); ++number) {
+            if (const auto directive = directiveOf(line, "include"))
                 include(*directive, {path, number, directive->column});
+            else if (const auto table = directiveOf(line, "conditions"))
+                list(*table, {path, number, table->column});
             else
                 put(line, {path, number, 1});
         }
@@ -53,8 +60,33 @@ public:
 
 private:
     void put(const std::string& line, const Place& place) {
+        if (full_) return;
+        full_ = result_.text.size() + line.size() > kMostProtocolBytes;
+        if (full_)
+            return errors_.push_back(errorAt(place, "", "",
+                                             fmt::format("with all that it includes the text must be of "
+                                                         "at most {} MiB",
+                                                         kMostProtocolBytes >> 20)));
         result_.text += line + '\n';
         result_.lines.push_back(place);
+    }
+
+    /// The rows of a table in the place of its line.
+    void list(const Directive& directive, const Place& place) {
+        found_ = true;
+        const auto path = (std::filesystem::path(place.file).parent_path() / directive.file).string();
+        const auto text = readFile(path);
+        if (!text) {
+            errors_.push_back(
+                errorAt(place, "conditions", fmt::format("\"{}\"", directive.file), text.errors().front().message));
+            return;
+        }
+        const auto lines = conditionLines(*text, path, directive.file);
+        if (!lines) {
+            errors_.insert(errors_.end(), lines.errors().begin(), lines.errors().end());
+            return;
+        }
+        for (const ListedLine& line : *lines) put(line.text, {path, line.line, 1});
     }
 
     void include(const Directive& directive, const Place& place) {
@@ -65,6 +97,10 @@ private:
         if (directive.file.find('/') != std::string::npos)
             return report("must be a file in the study's folder, so that paths in it mean the same");
         const auto path = (std::filesystem::path(place.file).parent_path() / directive.file).string();
+        if (++count_ > kMostIncludes) {
+            full_ = true;
+            return report(fmt::format("is one more than the {} files that may be included", kMostIncludes));
+        }
         if (std::find(open_.begin(), open_.end(), path) != open_.end()) return report("includes itself");
         const auto text = readFile(path);
         if (!text) return report(text.errors().front().message);
@@ -76,6 +112,8 @@ private:
     IncludedText& result_;
     std::vector<std::string> open_;
     bool found_ = false;
+    bool full_ = false;  // nothing more is taken
+    int count_ = 0;      // of included files
     Errors errors_;
 };
 

@@ -13,9 +13,11 @@ struct IncludedText {
     std::vector<Place> lines;  // column 1; empty if nothing was included: text and file are the same then
 };
 
-/// Replaces each line `include = "FILE"` by the lines of FILE, which may include others. What is stored and what is
+/// Replaces each line `include = "FILE"` by the lines of FILE, which may include others, and each line
+/// `conditions = "TABLE.csv"` by the list that the table stands for (condition_table.h). What is stored and what is
 /// read is this text, so that it is all of the protocol. FILE is beside the study, so that paths in it mean the same.
-/// Errors, placed at the line: the file cannot be read, is in another folder, or includes itself.
+/// Errors, placed at the line: the file cannot be read, is in another folder, or includes itself; too many files,
+/// too large a text.
 Result<IncludedText> includeFiles(const std::string& text, const std::string& path);
 
 /// Moves a place in the text to where its line was written.

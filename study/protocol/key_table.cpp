@@ -13,6 +13,7 @@
 #include "study/protocol/scene_keys.h"
 #include "study/protocol/staircase_keys.h"
 #include "study/protocol/task_keys.h"
+#include "study/protocol/view_keys.h"
 
 namespace passung::protocol {
 namespace {
@@ -57,7 +58,7 @@ constexpr std::array kStudyKeys{
     Key{"level", "set", Table, kAny, "", "(its `value`)", "Several keys at once: { \"contact.method\" = \"penalty\", ... }."},
 
     Key{"feedback", "kinesthetic", Boolean, kAny, "", "true", "Forces are displayed. false: contact is computed and recorded as ever, but the device commands none."},
-    Key{"feedback", "cues", Texts, kAny, "", "(none)", "Beside the force: \"visual\", \"vibrotactile\", \"audio\". The command of each, from 0 to 1, follows from the recorded ticks and is a column of the exported samples; no transducer is driven yet."},
+    Key{"feedback", "cues", Texts, kAny, "", "(none)", "Beside the force: \"visual\", \"vibrotactile\", \"audio\". The command of each, from 0 to 1, follows from the recorded ticks and is a column of the exported samples. Windows draw the visual one and play the audio one; no device has an actuator for the vibrotactile one yet: check warns, and only simulated participants, who perceive cues through a channel of their own, can run it. feedback_given in trials.csv says what was delivered."},
     Key{"feedback", "cue_full_depth_mm", Number, above(0), "", "2", "Depth at the hand's pose at which the visual and the vibrotactile command are 1."},
     Key{"feedback", "cue_full_speed_mm_per_s", Number, above(0), "", "100", "Speed of the hand at an impact at which the audio command is 1."},
     Key{"feedback", "cue_sound_decay_ms", Number, aboveUpTo(0, 10000), "", "50", "Time in which the audio command falls to 37 % after an impact."},
@@ -66,9 +67,9 @@ constexpr std::array kStudyKeys{
     Key{"block", "name", Name, kAny, "", "!", "Unique."},
     Key{"block", "phase", Choice, kAny, "practice|main", "main", "Practice is stored and marked."},
     Key{"block", "repetitions", Integer, from(1, 1000), "", "1", "Passes through the order."},
-    Key{"block", "order", Choice, kAny, "williams|permutations|random|shuffled|listed", "williams", "The participant's row of a Williams square or of the list of all orders (at most 5 conditions), a new shuffle for every pass, all passes shuffled together, or as listed."},
+    Key{"block", "order", Choice, kAny, "williams|latin_square|permutations|random|shuffled|listed", "williams", "The participant's row of a Williams square (a Latin square that balances the condition before as well; `latin_square` means the same) or of the list of all orders (at most 5 conditions), a new shuffle for every pass, all passes shuffled together, or as listed."},
     Key{"block", "blocked", Text, kAny, "", "(none)", "Name of a within factor whose levels come one after the other, all repetitions of each: devices that take time to swap. `order` is of the conditions inside a level."},
-    Key{"block", "blocked_order", Choice, kAny, "williams|permutations|random|listed", "williams", "Order of these levels. With two squares the rows of the inner one change after a whole turn of the outer one, so that both are balanced together."},
+    Key{"block", "blocked_order", Choice, kAny, "williams|latin_square|permutations|random|listed", "williams", "Order of these levels. With two squares the rows of the inner one change after a whole turn of the outer one, so that both are balanced together."},
     Key{"block", "constraints", Tables, kAny, "", "(none)", "Rules that random and shuffled orders keep to; catch trials do not count."},
     Key{"block", "catch_trials", Integer, from(0, 1000), "", "0", "In every pass so many trials of the conditions whose level has `catch = true`, at random positions; their phase is catch."},
     Key{"block", "catch_from", Integer, atLeast(1), "", "1", "First position in the pass that a catch trial may have."},
@@ -86,11 +87,14 @@ constexpr std::array kStudyKeys{
     Key{"consent", "required", Boolean, kAny, "", "true", "Who does not say yes to it cannot take part. Simulated participants are not asked."},
     Key{"consent", "text", Table, kAny, "", "!", "What is asked, a text per language: `{ en = \"...\", de = \"...\" }`; every clause in the same languages. Until when data can be withdrawn belongs here."},
 
+    Key{"block", "conditions", Levels, kAny, "", "(all)", "Which conditions the block has, also the order of `listed`: names (\"penalty/max\"), or tables of some levels ({ method = \"penalty\" }) for all conditions with these. A line of its own `conditions = \"FILE.csv\"`: a table beside the study, factors in its first row, levels in every other; it becomes part of the stored text."},
     Key{"block", "set", Table, kAny, "", "(none)", "Keys that are different in this block, as a level's `set`: { \"task.timeout_s\" = 60 }. Its conditions are its own then: \"penalty/max@NAME\". A level of a factor that sets the same key is an error."},
 
-    Key{"analysis", "outcome", Text, kAny, "", "!", "A measure that the study stores."},
-    Key{"analysis", "factors", Texts, kAny, "", "!", "Names of factors."},
-    Key{"analysis", "test", Choice, kAny, "paired_t|wilcoxon|rm_anova|friedman|welch_t|mann_whitney|mixed_anova|lmm", "!", "Test, refused where it is not for these factors: paired_t, wilcoxon: one within factor of two levels; friedman: one of three or more; rm_anova: within factors; welch_t, mann_whitney: one between factor of two levels; mixed_anova: both kinds; lmm: any."},
+    Key{"analysis", "outcome", Text, kAny, "", "(of `staircase`)", "A measure that the study stores. Times that may end in a time-out: `time_s`, whose cells hold the restricted mean, so that nobody drops out."},
+    Key{"analysis", "staircase", Text, kAny, "", "(none)", "In place of `outcome`: the thresholds of this staircase, the mean over its tracks."},
+    Key{"analysis", "block", Text, kAny, "", "(each)", "Whose trials; left out: those of every main block that has the outcome, each by itself."},
+    Key{"analysis", "factors", Texts, kAny, "", "(none)", "Names of factors."},
+    Key{"analysis", "test", Choice, kAny, "paired_t|wilcoxon|rm_anova|friedman|welch_t|mann_whitney|mixed_anova|lmm|mean", "!", "Test, refused where it is not for these factors: paired_t, wilcoxon: one within factor of two levels; friedman: one of three or more; rm_anova: within factors; welch_t, mann_whitney: one between factor of two levels; mixed_anova: both kinds; lmm: any; mean, with its confidence interval: none."},
     Key{"resume", "max_age_h", Number, above(0), "", "24", "Hours after the interruption; later the session must not go on. Not of sessions in virtual time."},
     Key{"resume", "practice", Choice, kAny, "keep|redo", "keep", "`redo`: practice of the blocks before is done once more."},
     Key{"resume", "block", Choice, kAny, "continue|restart", "continue", "`restart`: the interrupted block begins anew; what it had no longer counts."},
@@ -112,9 +116,10 @@ constexpr std::array<Key, n + m> joined(const std::array<Key, n>& first, const s
     }(std::make_index_sequence<n>{}, std::make_index_sequence<m>{});
 }
 constexpr auto kKeys =
-    joined(joined(joined(joined(joined(kStudyKeys, kTaskKeys), scene_rows::kSceneKeys), kConditionKeys),
-                  staircase_rows::kStaircaseKeys),
-           kQuestionnaireKeys);
+    joined(joined(joined(joined(joined(joined(kStudyKeys, kTaskKeys), scene_rows::kSceneKeys), kConditionKeys),
+                         staircase_rows::kStaircaseKeys),
+                  kQuestionnaireKeys),
+           view_rows::kViewKeys);
 
 /// Tables in the order of the documentation: id, heading, sentence.
 struct TableInfo {
@@ -157,6 +162,7 @@ constexpr std::array kTables{
     TableInfo{"task.free_placement", "`[task]` of type `free_placement`", ""},
     TableInfo{"task.discrimination_pair", "`[task]` of type `discrimination_pair`", ""},
     TableInfo{"feedback", "`[feedback]`", ""},
+    TableInfo{"view", "`[view]`", "What the participant's window looks like, in all conditions: only this says so. It is stored with the protocol and\nlogged with each session that a window shows; what the experimenter chooses for the console changes nothing of it."},
     TableInfo{"secondary", "`[secondary]`", "In the manner of ISO 17488: onsets 3 to 5 s apart, responses from 100 to 2500 ms. Ours: intervals are uniform\nbetween the bounds and go on from an attempt's first tick; other presses are false alarms."},
     TableInfo{"text", "`[text.LANGUAGE]`", "A text for each name; a text that one language has, every one must have, and the clauses of consent too."},
     TableInfo{"instruction", "`[[instruction]]`", ""},
@@ -272,6 +278,7 @@ const Key* findKey(std::span<const std::string_view> tables, std::string_view na
 double unitsPerSi(std::string_view name) {
     if (name.ends_with("_um") || name.ends_with("_us")) return 1e6;
     if (name.ends_with("_mm") || name.ends_with("_mm_per_s") || name.ends_with("_ms")) return 1e3;
+    if (name.ends_with("_percent")) return 1e2;
     if (name.ends_with("_h")) return 1.0 / 3600.0;
     if (name.ends_with("_deg")) return 180.0 / 3.14159265358979323846;
     return 1.0;

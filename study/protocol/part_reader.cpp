@@ -13,6 +13,7 @@ namespace passung::protocol {
 namespace {
 
 constexpr double kMaxLength = 10.0;  // [m], of positions and edges: more is a slip in the unit
+constexpr double kMinLength = 1e-6;  // [m], of edges: less is none that a hand could feel
 
 const model::Shape kHarmless = model::Sphere{1.0};  // stands in after an error
 
@@ -104,6 +105,10 @@ model::Shape readShape(const Node& table, const std::string& path, double units,
     for (const Key& key : keys())
         if (key.table == id && read.has(key.name) && read.node(key.name)->number / units > kMaxLength)
             read.fail(key.name, fmt::format("must be at most {} m", kMaxLength));
+    for (const Key& key : keys())
+        if (key.table == id && key.name != "chamfer" && read.has(key.name) &&
+            read.node(key.name)->kind != Node::Kind::Text && read.node(key.name)->number / units < kMinLength)
+            read.fail(key.name, fmt::format("must be at least {} m", kMinLength));
     const double fitted = readDiameter(read, kind, units, errors);
     if (errors.size() > before) return kHarmless;
     const auto shape = buildShape(read, kind, units, fitted);
@@ -122,12 +127,9 @@ model::MeshFile readMesh(const TableReader& read, const Node& value, double unit
 }  // namespace
 
 double unitsPerMetre(const TableReader& read, double absent) {
-    const auto unit = read.text("unit");
-    if (unit == "um") return 1e6;
-    if (unit == "mm") return 1e3;
-    if (unit == "cm") return 1e2;
-    if (unit == "m") return 1.0;
-    if (unit == "in") return 1.0 / 0.0254;
+    const auto name = read.text("unit");
+    for (const LengthUnit& unit : kLengthUnits)
+        if (name == unit.name) return unit.per_metre;
     return absent;
 }
 

@@ -57,6 +57,12 @@ std::string participantCode(ParticipantKind kind, std::int64_t number) {
     return fmt::format("{}{:03}", codeLetter(kind), number);
 }
 
+std::string rehearsedCode(std::string_view code) {
+    std::string rehearsed(code);
+    if (kindOfCode(code)) rehearsed.front() = codeLetter(ParticipantKind::Real);
+    return rehearsed;
+}
+
 std::int64_t participantNumber(std::string_view code) {
     const std::size_t digits = code.find_last_not_of("0123456789") + 1;
     std::int64_t number = 0;

@@ -26,6 +26,14 @@ std::optional<ParticipantKind> kindOfCode(std::string_view code);
 /// "P001" for number 1; grows beyond three digits.
 std::string participantCode(ParticipantKind kind, std::int64_t number);
 
+/// The code whose random draws a participant shares: P001 for P001, T001 and S001. A rehearsal by pilots or simulated
+/// participants thus shows what the people of these numbers will get.
+std::string rehearsedCode(std::string_view code);
+
+/// Stratum of design::Allocation for the places of every kind, for the same reason: each kind has places of its own, in
+/// the order of the people's.
+inline constexpr const char* kAllocationStratum = "real";
+
 /// The number at the end of a code: 12 of P012.
 std::int64_t participantNumber(std::string_view code);
 

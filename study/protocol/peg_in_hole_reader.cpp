@@ -4,6 +4,7 @@
 
 #include "study/protocol/scene_parts.h"
 #include "study/protocol/table_reader.h"
+#include "study/protocol/trial_types.h"
 
 namespace passung::protocol {
 namespace {
@@ -12,6 +13,14 @@ template <class T>
 const T* shapeOf(const model::PartSpec& part) {
     const auto* shape = std::get_if<model::Shape>(&part.geometry);
     return shape != nullptr ? std::get_if<T>(shape) : nullptr;
+}
+
+/// Where other forms go.
+std::string otherTypes() {
+    std::vector<std::string_view> names;
+    for (const TrialType& type : trialTypes())
+        if (type.name != std::string_view("peg_in_hole")) names.push_back(type.name);
+    return fmt::format("every shape and mesh serves in the types {}", fmt::join(names, ", "));
 }
 
 /// The held peg; nullptr after reporting, where the held part's form is written, that it is none: success is judged by
@@ -25,7 +34,8 @@ const model::Peg* findPeg(const StudyTables& tables, const model::SceneSpec& sce
         const Node* shape = node.find("shape");
         const Node* form = shape != nullptr ? shape->find("kind") : node.find("mesh");
         errors.push_back(errorAt(form->place, fmt::format("part.{}.{}", held->name, shape ? "shape.kind" : "mesh"),
-                                 valueText(*form), "the held part must have the shape peg in a peg_in_hole task"));
+                                 valueText(*form),
+                                 "the held part must have the shape peg in a peg_in_hole task; " + otherTypes()));
     }
     return nullptr;
 }
@@ -34,7 +44,7 @@ const model::Peg* findPeg(const StudyTables& tables, const model::SceneSpec& sce
 const model::BorePlate* findBore(const TableReader& read, const model::PartSpec* target) {
     if (target == nullptr) return nullptr;
     const auto* plate = shapeOf<model::BorePlate>(*target);
-    if (plate == nullptr) read.fail("target", "must be a part with the shape bore_plate");
+    if (plate == nullptr) read.fail("target", "must be a part with the shape bore_plate; " + otherTypes());
     return plate;
 }
 

@@ -153,6 +153,16 @@ std::string textJson(const StudyText& text) {
     return json.str();
 }
 
+std::string clauseJson(const ConsentClause& clause) {
+    JsonObject texts;
+    for (const auto& [language, words] : clause.texts) texts.text(language, words);
+    return JsonObject()
+        .text("clause", clause.clause)
+        .boolean("required", clause.required)
+        .json("texts", texts.str())
+        .str();
+}
+
 std::string instructionJson(const Instruction& page) {
     return JsonObject()
         .text("moment", showAtName(page.moment))
@@ -164,12 +174,17 @@ std::string instructionJson(const Instruction& page) {
 
 std::string factorJson(const Factor& factor) {
     std::vector<std::string> levels;
-    for (const auto& level : factor.levels) levels.push_back(jsonText(level.label));
+    std::vector<std::string> catches;
+    for (const auto& level : factor.levels) {
+        levels.push_back(jsonText(level.label));
+        if (level.catch_trial) catches.push_back(jsonText(level.label));
+    }
     return JsonObject()
         .text("name", factor.name)
         .text("kind", factorKindName(factor.kind))
         .text("unit", factor.unit)
         .json("levels", jsonList(levels))
+        .json("catch_levels", jsonList(catches))
         .str();
 }
 
@@ -202,12 +217,53 @@ const char* repeatName(Repeat repeat) {
     return "";
 }
 
-std::string blockJson(const Block& block) {
+std::string constraintJson(const StudyPlan& plan, const design::Constraint& constraint) {
+    using design::Rule;
+    JsonObject json;
+    const bool of_level = constraint.rule == Rule::FirstNot || constraint.rule == Rule::PositionWindow;
+    json.text("rule", constraint.rule == Rule::MaxRun        ? "max_run"
+                      : constraint.rule == Rule::MinDistance ? "min_distance"
+                      : constraint.rule == Rule::FirstNot    ? "first_not"
+                                                             : "position_window");
+    if (constraint.factor) {
+        const Factor& factor = plan.factors[*constraint.factor];
+        json.text("factor", factor.name);
+        if (of_level) json.text("level", factor.levels[constraint.chosen].label);
+    }
+    if (!of_level) json.integer("count", static_cast<std::int64_t>(constraint.count));
+    if (constraint.rule == Rule::PositionWindow)
+        json.integer("from", static_cast<std::int64_t>(constraint.from))
+            .integer("to", static_cast<std::int64_t>(constraint.to));
+    return json.str();
+}
+
+/// Names of the conditions that the block has, its own ones where it has such.
+std::string conditionsJson(const StudyPlan& plan, const Block& block) {
+    std::vector<std::string> names;
+    const design::Design design = designOf(plan);
+    const design::BlockPlan& planned = design.blocks[static_cast<std::size_t>(&block - plan.blocks.data())];
+    for (std::size_t c = 0; c < design.conditions.size(); ++c)
+        if (design::hasCondition(planned, c) && (!design.conditions[c].catch_trial || block.catches.trials > 0))
+            names.push_back(jsonText(plan.conditions[design::numberIn(planned, c)].name));
+    return jsonList(names);
+}
+
+std::string blockJson(const StudyPlan& plan, const Block& block) {
+    std::vector<std::string> constraints;
+    for (const design::Constraint& constraint : block.constraints)
+        constraints.push_back(constraintJson(plan, constraint));
     return JsonObject()
         .text("name", block.name)
         .text("phase", phaseName(block.phase))
         .integer("repetitions", block.repetitions)
         .text("order", blockOrderName(block.order))
+        .json("conditions", conditionsJson(plan, block))
+        .text("blocked", block.blocked ? plan.factors[*block.blocked].name : "")
+        .text("blocked_order", block.blocked ? blockOrderName(block.blocked_order) : "")
+        .json("constraints", jsonList(constraints))
+        .integer("catch_trials", static_cast<std::int64_t>(block.catches.trials))
+        .integer("catch_from", static_cast<std::int64_t>(block.catches.from))
+        .integer("catch_to", static_cast<std::int64_t>(block.catches.to))
         .integer("trials", block.trials)
         .integer("session", block.session)
         .number("rest_s", block.rest)
@@ -290,6 +346,8 @@ std::string analysisJson(const Analysis& analysis) {
         .text("outcome", analysis.outcome)
         .json("factors", jsonList(factors))
         .text("test", analysis.test)
+        .text("block", analysis.block)
+        .text("staircase", analysis.staircase)
         .str();
 }
 
@@ -357,7 +415,8 @@ std::string expandedJson(const StudyPlan& plan) {
         .json("factors", listOf(plan.factors, factorJson))
         .json("conditions", listOf(plan.conditions, conditionJson))
         .integer("planned_conditions", static_cast<std::int64_t>(plannedConditions(plan)))
-        .json("blocks", listOf(plan.blocks, blockJson))
+        .number("max_session_s", plan.max_session)
+        .json("blocks", listOf(plan.blocks, [&](const Block& block) { return blockJson(plan, block); }))
         .json("staircases", jsonList(staircases))
         .json("questionnaires", listOf(plan.questionnaires, questionnaireJson))
         .json("resume", resumeJson(plan.resume))
@@ -366,9 +425,12 @@ std::string expandedJson(const StudyPlan& plan) {
         .json("rows", listOf(design::rowsOf(designOf(plan)), [](std::size_t rows) { return std::to_string(rows); }))
         .integer("sessions", sessionsOf(plan))
         .json("analyses", listOf(plan.analyses, analysisJson))
+        .json("languages", listOf(plan.languages, [](const std::string& language) { return jsonText(language); }))
+        .json("consent", listOf(plan.consent, clauseJson))
         .json("texts", listOf(plan.texts, textJson))
         .json("instructions", listOf(plan.instructions, instructionJson))
         .json("loop", JsonObject().number("max_missed_share", plan.max_missed_share).str())
+        .json("view", viewJson(plan.view))
         .json("stable_stiffness", listOf(plan.stable_stiffness, stableJson))
         .json("measures", listOf(plan.measures, [](const std::string& name) { return jsonText(name); }))
         .str();

@@ -3,9 +3,49 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <string_view>
 
 namespace passung::protocol {
+
+namespace {
+
+/// What conditions may have that nothing here can give a person.
+struct WithoutOutput {
+    bool (*has)(const Condition&);
+    const char* sentence;
+};
+
+constexpr std::array kWithoutOutput = {
+    WithoutOutput{
+        [](const Condition& c) { return c.cues.vibrotactile; },
+        "feedback.cues = [\"vibrotactile\"] can be given to simulated participants only: no device here has an "
+        "actuator for it"},
+    WithoutOutput{
+        [](const Condition& c) { return c.secondary.stimulus == Stimulus::Vibrotactile; },
+        "secondary.stimulus = \"vibrotactile\" can be given to simulated participants only: no device here has "
+        "an actuator for it"},
+    WithoutOutput{[](const Condition& c) { return c.secondary.stimulus == Stimulus::Visual; },
+                  "secondary.stimulus = \"visual\" can be given to simulated participants only: no window draws it"},
+};
+
+}  // namespace
+
+std::vector<std::string> cuesWithoutOutput(std::span<const Condition> conditions) {
+    std::vector<std::string> sentences;
+    for (const WithoutOutput& cue : kWithoutOutput) {
+        std::vector<std::string_view> names;
+        for (const Condition& condition : conditions)
+            if (cue.has(condition)) names.push_back(condition.name);
+        if (!names.empty())
+            sentences.push_back(fmt::format("{}; conditions: {}", cue.sentence, fmt::join(names, ", ")));
+    }
+    return sentences;
+}
+
+bool isForPeople(const StudyPlan& plan) {
+    return cuesWithoutOutput(std::span(plan.conditions).first(plannedConditions(plan))).empty();
+}
 
 std::vector<std::string> conditionWarnings(std::span<const Condition> conditions) {
     std::vector<std::string> warnings;
@@ -47,6 +87,7 @@ std::vector<std::string> conditionWarnings(std::span<const Condition> conditions
          });
     warn("friction of one side only has no effect: the held part rubs with another if neither has 0",
          [&](const Condition& condition) { return rubs(condition, true) != rubs(condition, false); });
+    for (std::string& sentence : cuesWithoutOutput(conditions)) warnings.push_back(std::move(sentence));
     warn("feedback.masking_noise = true covers the audio cue",
          [](const Condition& condition) { return condition.cues.masking_noise && condition.cues.audio; });
     warn("secondary.stimulus is a cue of the contact too: who answers one may mean the other", [](const auto& c) {

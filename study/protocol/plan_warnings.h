@@ -11,7 +11,14 @@ namespace passung::protocol {
 /// Sentences about what conditions allow and an experimenter should know, each with their names.
 std::vector<std::string> conditionWarnings(std::span<const Condition> conditions);
 
-/// The same about its main blocks. One that a staircase governs repeats what its tracks lack anyway.
+/// Sentences about cues that nothing here can give a person, each with the names of the conditions that have it; part
+/// of conditionWarnings(). Not empty: people and pilots cannot take part.
+std::vector<std::string> cuesWithoutOutput(std::span<const Condition> conditions);
+
+/// Can everything that the plan's cues ask for be given to a person here?
+bool isForPeople(const StudyPlan& plan);
+
+/// Such sentences about main blocks. One that a staircase governs repeats what its tracks lack anyway.
 std::vector<std::string> blockWarnings(const StudyPlan& plan);
 
 }  // namespace passung::protocol

@@ -5,21 +5,26 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 
 #include "study/protocol/analysis_reader.h"
+#include "study/protocol/block_conditions.h"
 #include "study/protocol/block_reader.h"
 #include "study/protocol/condition_extras.h"
 #include "study/protocol/consent_reader.h"
+#include "study/protocol/distinct_conditions.h"
 #include "study/protocol/duration.h"
 #include "study/protocol/factors.h"
+#include "study/protocol/felt_features.h"
 #include "study/protocol/include.h"
 #include "study/protocol/measures_reader.h"
 #include "study/protocol/plan_contents.h"
 #include "study/protocol/plan_json.h"
 #include "study/protocol/plan_warnings.h"
 #include "study/protocol/planned_questionnaires.h"
+#include "study/protocol/reach.h"
 #include "study/protocol/scene_node.h"
 #include "study/protocol/session_rules.h"
 #include "study/protocol/staircase_reader.h"
@@ -27,61 +32,50 @@
 #include "study/protocol/task_reader.h"
 #include "study/protocol/texts_reader.h"
 #include "study/protocol/trial_types.h"
+#include "study/protocol/view_reader.h"
 
 namespace passung::protocol {
 namespace {
 
 constexpr std::size_t kMaxConditions = 1000;
 
-/// Everything of a condition that can be felt or seen, as text; names of parts are none of it.
-std::string fingerprint(Condition condition) {
-    std::string meshes;
-    if (condition.comparison)
-        for (auto& part : condition.comparison->parts)
-            if (const auto* mesh = std::get_if<model::MeshFile>(&part.geometry)) meshes += mesh->path + '\n';
-    for (std::size_t i = 0; i < condition.scene.parts.size(); ++i) {
-        auto& part = condition.scene.parts[i];
-        if (part.name == condition.task.target) condition.task.target = std::to_string(i);
-        part.name.clear();
-        // In full: files of one name in two folders differ.
-        if (const auto* mesh = std::get_if<model::MeshFile>(&part.geometry)) meshes += mesh->path + '\n';
-    }
-    return paramsJson(condition) + meshes;
-}
-
 /// Reads one study file, step by step; every step adds to errors_. A step is left out only if what it would say follows
 /// from an error that is known already.
 class ProtocolReader {
 public:
     ProtocolReader(const Node& document, std::span<const DeviceDescription> devices,
-                   std::span<const std::string> known_measures)
+                   std::span<const std::string> known_measures, model::BuildStore* builds)
         : document_(document),
           devices_(devices),
           known_measures_(known_measures),
-          root_(document, {"protocol"}, "", errors_) {}
+          root_(document, {"protocol"}, "", errors_),
+          geometries_(builds) {}
 
     /// The plan as far as it can be read; complete if there are no errors.
     Examined read() {
         const bool study = isSound([&] { readStudy(); });
-        readConditions();
+        const bool few = readFactorTables();
         const bool blocks = isSound([&] { readBlockTables(); });
-        const bool staircases = isSound([&] {
+        staircases_sound_ = isSound([&] {
             staircases_ = readStaircases(root_.items("staircase"), root_.items("block"), factors_, known_measures_,
                                          plan_.blocks, errors_);
         });
+        if (few) readConditions();
         plan_.questionnaires = readQuestionnaires(root_.items("questionnaire"), plan_.blocks, errors_);
         readLoop();
         plan_.resume = readResume(root_, errors_);
-        plan_.consent = readConsent(root_, errors_);
+        plan_.view = readView(root_, errors_);
+        plan_.consent = readConsent(root_, errors_, for_people_);
         readTexts(root_, plan_, errors_);
-        const bool expands = levels_sound_ && !plan_.conditions.empty() && !plan_.blocks.empty();
-        const bool design = expands && study && blocks && staircases &&
+        const bool chosen = isSound([&] { chooseConditions(root_.items("block"), plan_.factors, plan_, errors_); });
+        const bool expands = levels_sound_ && chosen && !plan_.conditions.empty() && !plan_.blocks.empty();
+        const bool design = expands && study && blocks && staircases_sound_ &&
                             isSound([&] { checkBlocks(root_.items("block"), plan_, errors_); });
         if (expands) readBlockConditions();
         // A block may have another type of trial than the rest.
         plan_.measures = readMeasures(root_, tasks_sound_ ? &plan_ : nullptr, known_measures_, errors_);
-        plan_.analyses = readAnalyses(root_.items("analysis"), plan_, errors_);
-        if (expands && staircases) readStaircaseConditions();
+        plan_.analyses = readAnalyses(root_.items("analysis"), plan_, staircaseNames(), errors_);
+        if (expands && staircases_sound_) readStaircaseConditions();
         if (design && tasks_sound_) checkDuration();
         if (!root_.has("measures")) dropUnused();
         plan_.meshes = meshesOf(plan_, document_.place.file);
@@ -90,9 +84,12 @@ public:
         if (errors_.empty()) {
             plan_.warnings = conditionWarnings(std::span(plan_.conditions).first(plannedConditions(plan_)));
             for (std::string& warning : blockWarnings(plan_)) plan_.warnings.push_back(std::move(warning));
+            for (std::string& warning : warnings_)
+                if (std::find(plan_.warnings.begin(), plan_.warnings.end(), warning) == plan_.warnings.end())
+                    plan_.warnings.push_back(std::move(warning));
             plan_.expanded_json = expandedJson(plan_);
         }
-        return {std::move(plan_), std::move(errors_)};
+        return {std::move(plan_), std::move(errors_), std::move(for_people_)};
     }
 
 private:
@@ -130,31 +127,66 @@ private:
         return table;
     }
 
-    void readConditions() {
-        const Node* scene = findScene();
+    /// False if there are too many combinations to go on.
+    bool readFactorTables() {
         levels_sound_ = isSound([&] { factors_ = readFactors(root_.items("factor"), known_measures_, errors_); });
         std::size_t count = 1;
         for (const auto& factor : factors_) {
             plan_.factors.push_back(factor.factor);
             count = std::min(count * std::max<std::size_t>(1, factor.factor.levels.size()), kMaxConditions + 1);
         }
-        if (count > kMaxConditions)
-            return root_.fail("factor", fmt::format("more than {} combinations of levels", kMaxConditions));
-        std::vector<Exclusion> exclusions;
+        if (count <= kMaxConditions) return true;
+        root_.fail("factor", fmt::format("more than {} combinations of levels", kMaxConditions));
+        return false;
+    }
+
+    void readConditions() {
+        const Node* scene = findScene();
+        std::vector<LevelPattern> exclusions;
         const bool excluded =
             isSound([&] { exclusions = readExclusions(root_.items("exclude"), plan_.factors, errors_); });
         levels_sound_ = levels_sound_ && excluded;
         if (scene == nullptr) return;
         const std::size_t before = errors_.size();
+        const auto first = firstOfStaircase();
         for (auto& levels : combinations(factors_))
-            if (!isExcluded(exclusions, levels)) readCondition(*scene, std::move(levels), nullptr);
+            if (!isExcluded(exclusions, levels))
+                readCondition(*scene, std::move(levels), {nullptr, first ? &*first : nullptr, {}});
         plan_.shared_conditions = plan_.conditions.size();
         if (!levels_sound_ || errors_.size() > before) return;
         if (plan_.conditions.empty()) root_.fail("exclude", "leaves no condition");
         checkDistinct();
     }
 
-    /// Blocks with a `set` have conditions of their own: the shared ones with the keys that the block changes.
+    /// Where all that is shared is for staircases, the first level of the first one stands in what a condition is
+    /// before any is presented: the study need not write a value that never comes.
+    std::optional<Override> firstOfStaircase() const {
+        if (!staircases_sound_) return std::nullopt;
+        for (std::size_t b = 0; b < plan_.blocks.size() && b < root_.items("block").size(); ++b)
+            if (!plan_.blocks[b].adaptive && root_.items("block")[b].find("set") == nullptr) return std::nullopt;
+        for (const StaircaseContent& content : staircases_)
+            if (root_.items("block")[content.staircase.block].find("set") == nullptr) return content.change(0);
+        return std::nullopt;
+    }
+
+    /// Likewise in the own conditions of a block with a staircase.
+    std::optional<Override> firstOfStaircase(std::size_t block) const {
+        if (!staircases_sound_) return std::nullopt;
+        for (const StaircaseContent& content : staircases_)
+            if (content.staircase.block == block) return content.change(0);
+        return std::nullopt;
+    }
+
+    /// Of the shared conditions those that the block has.
+    std::vector<std::size_t> conditionsOf(const Block& block) const {
+        if (!block.conditions.empty()) return block.conditions;
+        std::vector<std::size_t> all(plan_.shared_conditions);
+        std::iota(all.begin(), all.end(), std::size_t{0});
+        return all;
+    }
+
+    /// Blocks with a `set` have conditions of their own: those that they have of the shared ones with the keys that the
+    /// block changes.
     void readBlockConditions() {
         const Node* scene = root_.node("scene");
         const auto& tables = root_.items("block");
@@ -169,12 +201,16 @@ private:
                                 errors_.push_back(errorAt(
                                     entry.place, "block." + plan_.blocks[b].name + ".set", entry.key,
                                     fmt::format("is changed by factor {}, whose level would win", factor.factor.name)));
-            if (plan_.conditions.size() + plan_.shared_conditions > kMaxConditions)
+            const auto conditions = conditionsOf(plan_.blocks[b]);
+            if (plan_.conditions.size() + conditions.size() > kMaxConditions)
                 return root_.fail("block",
                                   fmt::format("more than {} conditions with those that blocks change", kMaxConditions));
             plan_.blocks[b].first_condition = plan_.conditions.size();
-            for (std::size_t c = 0; c < plan_.shared_conditions; ++c)
-                readCondition(*scene, plan_.conditions[c].levels, &tables[b]);
+            const auto first = firstOfStaircase(b);
+            const std::size_t before = errors_.size();
+            for (const std::size_t c : conditions)
+                readCondition(*scene, plan_.conditions[c].levels, {&tables[b], first ? &*first : nullptr, {}});
+            nameBlock(before, plan_.blocks[b].name);
         }
     }
 
@@ -188,21 +224,44 @@ private:
             Staircase& staircase = content.staircase;
             const Block& block = plan_.blocks[staircase.block];
             const Node* own = block.first_condition > 0 ? &root_.items("block")[staircase.block] : nullptr;
-            for (std::size_t c = 0; c < plan_.shared_conditions; ++c) {
+            const std::size_t before = errors_.size();
+            for (const std::size_t c : conditionsOf(block)) {
                 staircase.first_variant.push_back(plan_.conditions.size());
+                presented_ = &content;
                 for (std::size_t level = 0; level < staircase.levels.size(); ++level) {
                     const Override step = content.change(level);
-                    readCondition(*scene, plan_.conditions[c].levels, own, &step,
-                                  fmt::format("@{}={:.6g}", staircase.name, staircase.levels[level]));
+                    readCondition(*scene, plan_.conditions[c].levels,
+                                  {own, &step, fmt::format("@{}={:.6g}", staircase.name, staircase.levels[level])});
                     plan_.conditions.back().stimulus = {plan_.staircases.size(), step.value->number};
                 }
             }
+            nameBlock(before, block.name);
             if (tasks_sound_) checkMeasure(content);
+            presented_ = nullptr;
             plan_.staircases.push_back(std::move(staircase));
         }
         if (plan_.conditions.size() > kMaxConditions)
             root_.fail("staircase", fmt::format("levels make more than {} conditions", kMaxConditions));
         plan_.first_variant = planned;
+    }
+
+    /// Says of the errors from `before` on whose trials they are about; what was said of all conditions is not said
+    /// again.
+    void nameBlock(std::size_t before, const std::string& block) {
+        const auto first = errors_.begin() + static_cast<std::ptrdiff_t>(before);
+        const Errors known(errors_.begin(), first);
+        const auto same = [](const Error& a, const Error& b) {
+            return a.file == b.file && a.line == b.line && a.column == b.column && a.key == b.key &&
+                   a.value == b.value && a.message == b.message;
+        };
+        errors_.erase(std::remove_if(first, errors_.end(),
+                                     [&](const Error& error) {
+                                         return std::any_of(known.begin(), known.end(),
+                                                            [&](const Error& other) { return same(error, other); });
+                                     }),
+                      errors_.end());
+        for (std::size_t i = before; i < errors_.size(); ++i)
+            errors_[i].message += fmt::format("; in the trials of block {}", block);
     }
 
     /// A measure that no trial of the type has would never answer.
@@ -216,10 +275,16 @@ private:
                                       fmt::format("a trial of the type {} does not have it", type->name)));
     }
 
-    /// Adds the condition of these levels; `block`: with the keys that this block sets, before the levels' own.
-    /// `step`: the level that a staircase puts into it; `suffix`: what its name ends with then.
-    void readCondition(const Node& scene, std::vector<std::size_t> levels, const Node* block,
-                       const Override* step = nullptr, const std::string& suffix = {}) {
+    /// What a condition has beside its levels.
+    struct Extra {
+        const Node* block;     // with the keys that this block sets, before the levels' own; nullptr: none
+        const Override* step;  // the level that a staircase puts into it; nullptr: none
+        std::string suffix;    // what its name ends with
+    };
+
+    /// Adds the condition of these levels.
+    void readCondition(const Node& scene, std::vector<std::size_t> levels, const Extra& extra) {
+        const auto& [block, step, suffix] = extra;
         const auto& factors = factors_;
         const auto copyOf = [&](std::string_view name) {
             const Node* table = root_.node(name);
@@ -236,12 +301,13 @@ private:
             condition.name += factors[i].factor.levels[levels[i]].label;
         }
         if (step != nullptr) applyOverride(*step, tables, errors_);
+        if (block != nullptr) dropOtherTypes(*block, tables);
         if (factors.empty()) condition.name = "single";
         if (block != nullptr) condition.name += "@" + block->find("name")->text;
         condition.name += suffix;
 
         const std::size_t before = errors_.size();
-        auto content = readSceneNode(tables.scene, {"scene"}, "scene", devices_, errors_);
+        auto content = readSceneNode(tables.scene, {"scene"}, "scene", devices_, geometries_, errors_);
         const Node* device = tables.scene.find("device");
         const bool names_device =
             device != nullptr && (device->kind != Node::Kind::Table || device->find("preset") != nullptr);
@@ -261,13 +327,69 @@ private:
         tasks_sound_ = tasks_sound_ && task && root_.has("task");
         readConditionExtras(tables, condition, errors_);
         const bool pair = std::holds_alternative<DiscriminationPairTask>(condition.task.form);
-        if (task && pair) condition.comparison = readComparison(tables, condition, devices_, errors_);
-        if (content.sound) checkStartPose(tables.scene, "scene", condition.scene, errors_);
-        if (errors_.size() == before && pair) checkStartPose(tables.scene, "scene", *condition.comparison, errors_);
+        if (task && pair) condition.comparison = readComparison(tables, condition, devices_, geometries_, errors_);
+        // Of accuracy = "auto" nothing is picked with which something would not be felt.
+        if (content.sound && !(content.accuracy_budget > 0.0))
+            checkFelt(tables.scene, "scene", condition.scene, geometries_, errors_, warnings_);
+        if (condition.comparison && errors_.size() == before)
+            checkFelt(tables.scene, "scene", *condition.comparison, geometries_, errors_, warnings_);
+        if (content.sound) checkStartPose(tables.scene, "scene", condition.scene, geometries_, errors_);
+        if (errors_.size() == before && pair)
+            checkStartPose(tables.scene, "scene", *condition.comparison, geometries_, errors_);
+        if (content.sound && task) checkDoable(tables, condition, step);
         condition.levels_json = levelsJson(plan_.factors, levels);
         condition.levels = std::move(levels);
         if (errors_.size() == before) condition.params_json = paramsJson(condition);
         plan_.conditions.push_back(std::move(condition));
+    }
+
+    /// What a person's hand, on this device, and judgement could not do.
+    void checkDoable(const StudyTables& tables, const Condition& condition, const Override* step) {
+        const auto device = std::find_if(devices_.begin(), devices_.end(),
+                                         [&](const auto& known) { return known.name == condition.device; });
+        if (device != devices_.end() && root_.has("task"))
+            checkReach(tables, condition, *device, geometries_, errors_, warnings_);
+        if (step != nullptr && presented_ != nullptr) checkSide(tables.scene, condition, *step);
+    }
+
+    /// "Correct" is the more frequent the farther the comparison is from its reference: so levels have to begin there.
+    void checkSide(const Node& scene, const Condition& condition, const Override& step) {
+        constexpr std::string_view kComparison = "task.comparison.";
+        const Staircase& staircase = presented_->staircase;
+        if (staircase.measure != "correct" || !step.path.starts_with(kComparison)) return;
+        const std::string key = step.path.substr(kComparison.size());
+        const Node* written = numberAt(scene, key);
+        const auto& contact = condition.scene.contact;
+        const double reference = written != nullptr                   ? written->number
+                                 : key == "contact.stiffness_N_per_m" ? contact.stiffness
+                                 : key == "contact.tolerance_um"      ? 1e6 * contact.tolerance
+                                 : key == "contact.spacing_mm"        ? 1e3 * contact.spacing
+                                                                      : step.value->number;
+        const double level = step.value->number;
+        if (staircase.above ? level >= reference : level <= reference) return;
+        errors_.push_back(errorAt(
+            step.value->place, "staircase." + staircase.name, valueText(*step.value),
+            fmt::format("is on the wrong side of the reference, {:.6g}: the higher the level, the {} often the answer "
+                        "has to be correct, so that none is {} it",
+                        reference, staircase.above ? "more" : "less", staircase.above ? "below" : "above")));
+    }
+
+    /// Where a block has trials of another type, the keys of [task] and of levels that only the study's own type has
+    /// are not for them.
+    void dropOtherTypes(const Node& block, StudyTables& tables) {
+        const auto& set = block.find("set")->entries;
+        const Node* task = root_.node("task");
+        const Node* type = task != nullptr ? task->find("type") : nullptr;
+        if (type == nullptr ||
+            std::none_of(set.begin(), set.end(), [](const Entry& entry) { return entry.key == "task.type"; }))
+            return;
+        const Node* own = tables.task.find("type");
+        std::erase_if(tables.task.entries, [&](const Entry& entry) {
+            const bool of_block = std::any_of(set.begin(), set.end(), [&](const Entry& change) {
+                return change.key == "task." + entry.key || change.key.starts_with("task." + entry.key + ".");
+            });
+            return !of_block && isTaskKey(type->text, entry.key) && !isTaskKey(own->text, entry.key);
+        });
     }
 
     /// Two conditions that nobody can tell apart are one: a level that changes nothing.
@@ -275,23 +397,31 @@ private:
         std::map<std::string, const Condition*> seen;
         std::vector<bool> reported(plan_.factors.size());
         for (const Condition& condition : plan_.conditions) {
-            const auto [twin, fresh] = seen.try_emplace(fingerprint(condition), &condition);
+            const auto [twin, fresh] = seen.try_emplace(whatReaches(condition), &condition);
             if (fresh) continue;
             const Condition& first = *twin->second;
             const auto differ = std::mismatch(first.levels.begin(), first.levels.end(), condition.levels.begin()).first;
             const auto factor = static_cast<std::size_t>(differ - first.levels.begin());
             if (reported[factor]) continue;
             reported[factor] = true;
+            const std::string dead = deadFeedback(first, condition);
+            const std::string alike =
+                dead.empty() ? "are the same in everything but their labels" : "give a person the same: " + dead;
             errors_.push_back(
                 errorAt(root_.items("factor")[factor].place, "factor." + plan_.factors[factor].name, "",
-                        fmt::format("conditions \"{}\" and \"{}\" are the same in everything but their labels",
-                                    first.name, condition.name)));
+                        fmt::format("conditions \"{}\" and \"{}\" {}", first.name, condition.name, alike)));
         }
     }
 
     void readBlockTables() {
         if (root_.has("block") && root_.items("block").empty()) root_.fail("block", "needs at least one block");
         plan_.blocks = readBlocks(root_.items("block"), plan_.factors, errors_);
+    }
+
+    std::vector<std::string> staircaseNames() const {
+        std::vector<std::string> names;
+        for (const StaircaseContent& content : staircases_) names.push_back(content.staircase.name);
+        return names;
     }
 
     void checkDuration() {
@@ -327,16 +457,20 @@ private:
     Errors errors_;
     TableReader root_;
     StudyPlan plan_;
-    bool levels_sound_ = true, tasks_sound_ = true;  // so far
+    bool levels_sound_ = true, tasks_sound_ = true, staircases_sound_ = true;  // so far
+    PartGeometries geometries_;
+    std::vector<std::string> warnings_;            // about parts and ways
+    const StaircaseContent* presented_ = nullptr;  // whose levels are being read
+    Errors for_people_;
     std::vector<FactorContent> factors_;
     std::vector<StaircaseContent> staircases_;
 };
 
 /// Without the files that the study names.
 Examined examineText(const std::string& text, const std::string& path, std::span<const DeviceDescription> devices,
-                     std::span<const std::string> known_measures) {
+                     std::span<const std::string> known_measures, model::BuildStore* builds) {
     const auto included = includeFiles(text, path);
-    if (!included) return {{}, included.errors()};
+    if (!included) return {{}, included.errors(), {}};
     auto document = parseDocument(included->text, path);
     if (!document) {
         Error error = document.errors().front();
@@ -344,12 +478,12 @@ Examined examineText(const std::string& text, const std::string& path, std::span
         relocate(*included, place);
         error.file = place.file;
         error.line = place.line;
-        return {{}, {error}};
+        return {{}, {error}, {}};
     }
     relocate(*included, *document);
     if (const auto other = otherKind(*document, FileKind::Study))
-        return {{}, {errorAt(document->place, "", "", *other)}};
-    Examined examined = ProtocolReader(*document, devices, known_measures).read();
+        return {{}, {errorAt(document->place, "", "", *other)}, {}};
+    Examined examined = ProtocolReader(*document, devices, known_measures, builds).read();
     examined.plan.source_text = included->text;
     examined.plan.source_path = path;
     return examined;
@@ -358,10 +492,10 @@ Examined examineText(const std::string& text, const std::string& path, std::span
 }  // namespace
 
 Examined examineProtocol(const std::string& path, std::span<const DeviceDescription> devices,
-                         std::span<const std::string> known_measures) {
+                         std::span<const std::string> known_measures, model::BuildStore* builds) {
     const auto text = readFile(path);
-    if (!text) return {{}, text.errors()};
-    Examined examined = examineText(*text, path, devices, known_measures);
+    if (!text) return {{}, text.errors(), {}};
+    Examined examined = examineText(*text, path, devices, known_measures, builds);
     const bool sound = examined.errors.empty();
     const auto add = [&](const Errors& errors) {
         examined.errors.insert(examined.errors.end(), errors.begin(), errors.end());
@@ -376,16 +510,16 @@ Examined examineProtocol(const std::string& path, std::span<const DeviceDescript
 }
 
 Result<StudyPlan> readProtocol(const std::string& path, std::span<const DeviceDescription> devices,
-                               std::span<const std::string> known_measures) {
-    Examined examined = examineProtocol(path, devices, known_measures);
+                               std::span<const std::string> known_measures, model::BuildStore* builds) {
+    Examined examined = examineProtocol(path, devices, known_measures, builds);
     if (!examined.errors.empty()) return std::move(examined.errors);
     return std::move(examined.plan);
 }
 
 Result<StudyPlan> readProtocolText(const std::string& text, const std::string& path,
                                    std::span<const DeviceDescription> devices,
-                                   std::span<const std::string> known_measures) {
-    Examined examined = examineText(text, path, devices, known_measures);
+                                   std::span<const std::string> known_measures, model::BuildStore* builds) {
+    Examined examined = examineText(text, path, devices, known_measures, builds);
     if (!examined.errors.empty()) return std::move(examined.errors);
     return std::move(examined.plan);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <string_view>
@@ -7,6 +8,7 @@
 #include "core/base/device_description.h"
 #include "core/model/scene_spec.h"
 #include "study/protocol/document.h"
+#include "study/protocol/part_geometry.h"
 #include "study/protocol/table_reader.h"
 
 namespace passung::protocol {
@@ -24,8 +26,9 @@ struct SceneContent {
 
 /// Reads a scene's table. `ids`: its tables in the key table; `path`: its name in messages ("scene" or "").
 /// Adds everything that is wrong to `errors`; the result is meaningful only where it says that it is sound.
+/// `geometries` is what the parts are looked up in.
 SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids, const std::string& path,
-                           std::span<const DeviceDescription> devices, Errors& errors);
+                           std::span<const DeviceDescription> devices, PartGeometries& geometries, Errors& errors);
 
 /// Reads one part. Lengths are in its own `unit`, else `units_per_metre` make a metre.
 model::PartSpec readPartNode(const Node& table, const std::string& parent_path, double units_per_metre, Errors& errors);
@@ -36,6 +39,14 @@ Vec3 readPosition(const TableReader& read, std::string_view key, double units_pe
 /// Reads `position_key` (lengths) and `rotation_key` (degrees, R = Rz·Ry·Rx).
 Pose readPose(const TableReader& read, std::string_view position_key, std::string_view rotation_key,
               double units_per_metre);
+
+/// What `unit` may name.
+struct LengthUnit {
+    std::string_view name;
+    double per_metre;
+};
+inline constexpr std::array kLengthUnits{LengthUnit{"um", 1e6}, LengthUnit{"mm", 1e3}, LengthUnit{"cm", 1e2},
+                                         LengthUnit{"m", 1.0}, LengthUnit{"in", 1.0 / 0.0254}};
 
 /// How many of a table's `unit` make a metre; `absent` if it names none.
 double unitsPerMetre(const TableReader& read, double absent);

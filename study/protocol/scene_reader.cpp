@@ -7,7 +7,9 @@
 #include <numbers>
 #include <set>
 
+#include "core/model/field_estimate.h"
 #include "core/model/part.h"
+#include "study/protocol/felt_features.h"
 #include "study/protocol/scene_node.h"
 
 namespace passung::protocol {
@@ -87,8 +89,9 @@ struct Stiffness {
 };
 
 /// `otherwise`: the stiffness on a device that is named but not known.
+/// `scaled`: said of the maximum, may be empty.
 Stiffness resolveStiffness(const TableReader& read, const char* key, double maximum, const DeviceDescription* device,
-                           bool device_named, double otherwise) {
+                           bool device_named, double otherwise, const std::string& scaled) {
     const Node* node = read.node(key);
     if (device_named && device == nullptr) return {otherwise, 1.0};
     const bool limited = maximum > 0.0;
@@ -101,17 +104,21 @@ Stiffness resolveStiffness(const TableReader& read, const char* key, double maxi
         return {fraction * maximum, fraction};
     }
     if (limited && node->number > maximum && !read.boolean("allow_unstable"))
-        read.fail(key, fmt::format("must not exceed the stable maximum of {}: {}; allow_unstable = true lifts this",
-                                   device->name, maximum));
+        read.fail(key, fmt::format("must not exceed the stable maximum of {}{}: {}; allow_unstable = true lifts this",
+                                   device->name, scaled, maximum));
     return {node->number, limited ? node->number / maximum : 1.0};
 }
 
-void readCoupling(const TableReader& read, const DeviceDescription* device, bool device_named,
+/// `scale`: of the registration. A handle that moves by d moves the held part by s d, and feels K s d + B s v: so a
+/// stiffness K is as stable as K s without a scale, at a damping B that is what the device recommends per s.
+void readCoupling(const TableReader& read, const DeviceDescription* device, bool device_named, double scale,
                   model::ContactSpec& contact) {
-    const double maximum = device != nullptr ? device->stable_stiffness_N_per_m : 0.0;
+    const double maximum = device != nullptr ? device->stable_stiffness_N_per_m / scale : 0.0;
     const double rotational_maximum = device != nullptr ? device->stable_rotational_stiffness_Nm_per_rad : 0.0;
     const auto resolve = [&](const char* key, double limit, double otherwise) {
-        return resolveStiffness(read, key, limit, device, device_named, otherwise);
+        const bool linear = limit == maximum && scale != 1.0;
+        return resolveStiffness(read, key, limit, device, device_named, otherwise,
+                                linear ? fmt::format(" per the registration's scale of {:.6g}", scale) : "");
     };
     double fraction = 1.0;
     contact.stiffness = maximum > 0.0 ? maximum : kDefaultStiffness;
@@ -124,7 +131,8 @@ void readCoupling(const TableReader& read, const DeviceDescription* device, bool
     if (read.has("rotational_stiffness_Nm_per_rad"))
         contact.rotational_stiffness =
             resolve("rotational_stiffness_Nm_per_rad", rotational_maximum, kDefaultRotationalStiffness).value;
-    contact.damping = read.numberOr("damping_Ns_per_m", device != nullptr ? device->recommended_damping_Ns_per_m : 0.0);
+    contact.damping =
+        read.numberOr("damping_Ns_per_m", device != nullptr ? device->recommended_damping_Ns_per_m / scale : 0.0);
     contact.rotational_damping = read.numberOr(
         "rotational_damping_Nms_per_rad", device != nullptr ? device->recommended_rotational_damping_Nms_per_rad : 0.0);
 }
@@ -147,8 +155,8 @@ void readPenaltyCoupling(const TableReader& read, const DeviceDescription* devic
 }
 
 /// The device's stable maximum was found under these circumstances only: under others nothing is known to be stable.
-void checkStability(const TableReader& device_table, const TableReader& contact_table, const TableReader& registration,
-                    const DeviceDescription* device, const model::SceneSpec& scene) {
+void checkStability(const TableReader& device_table, const TableReader& contact_table, const DeviceDescription* device,
+                    const model::SceneSpec& scene) {
     if (device == nullptr || contact_table.boolean("allow_unstable")) return;
     const bool linear = device->stable_stiffness_N_per_m > 0.0;
     const bool rotational = device->stable_rotational_stiffness_Nm_per_rad > 0.0;
@@ -157,61 +165,38 @@ void checkStability(const TableReader& device_table, const TableReader& contact_
                                    device->name, remedy));
     };
     const auto checkDamping = [&](const char* key, double damping, double recommended) {
-        if (damping != recommended)
+        if (!(std::abs(damping - recommended) <= 1e-9 * recommended))
             refuse(contact_table, key, fmt::format("leave it out or set the recommended {}", recommended));
     };
-    if (linear) checkDamping("damping_Ns_per_m", scene.contact.damping, device->recommended_damping_Ns_per_m);
+    if (linear)
+        checkDamping("damping_Ns_per_m", scene.contact.damping,
+                     device->recommended_damping_Ns_per_m / scene.registration.scale);
     if (rotational)
         checkDamping("rotational_damping_Nms_per_rad", scene.contact.rotational_damping,
                      device->recommended_rotational_damping_Nms_per_rad);
     if (!linear && !rotational) return;
     if (scene.limits.delay_ticks != 0) refuse(device_table, "delay_ticks", "leave it out or set 0");
-    if (scene.registration.scale != 1.0) refuse(registration, "scale", "leave it out or set 1");
 }
 
-struct Extent {
-    Vec3 size;    // [m]
-    double area;  // of the surface, roughly [m²]: what a bore takes, a chamfer or a key adds is small
-};
-
-Extent roundExtent(double diameter, double length) {
-    return {{diameter, diameter, length}, std::numbers::pi * diameter * (0.5 * diameter + length)};
-}
-
-Extent blockExtent(double x, double y, double z) { return {{x, y, z}, 2.0 * (x * y + y * z + z * x)}; }
-
-struct ExtentOf {
-    Extent operator()(const model::Sphere& s) const {
-        return {Vec3::Constant(s.diameter), std::numbers::pi * s.diameter * s.diameter};
-    }
-    Extent operator()(const model::Box& s) const { return blockExtent(s.width, s.depth, s.height); }
-    Extent operator()(const model::Cylinder& s) const { return roundExtent(s.diameter, s.length); }
-    Extent operator()(const model::Torus& s) const {
-        const double outer = s.diameter + s.tube_diameter;
-        return {{outer, outer, s.tube_diameter}, std::numbers::pi * std::numbers::pi * s.diameter * s.tube_diameter};
-    }
-    Extent operator()(const model::Sheet& s) const { return {{s.width, s.depth, 0.0}, s.width * s.depth}; }
-    Extent operator()(const model::Peg& s) const { return roundExtent(s.diameter, s.length); }
-    Extent operator()(const model::SquarePeg& s) const { return blockExtent(s.width, s.depth, s.length); }
-    Extent operator()(const model::KeyedPeg& s) const { return roundExtent(s.diameter, s.length); }
-    template <class Plate>
-    Extent operator()(const Plate& plate) const {
-        return blockExtent(plate.width, plate.depth, plate.height);
-    }
-};
-
-/// Refuses a spacing that gives a part with a point shell too many points. A mesh is judged when it is loaded.
-void checkSpacing(const TableReader& contact_table, const model::SceneSpec& scene) {
+/// Refuses a spacing that gives a part too many points, and cells that give it a field too large to build. A mesh is
+/// judged when it is loaded.
+void checkSizes(const TableReader& contact_table, const model::SceneSpec& scene, PartGeometries& geometries) {
+    const model::ContactSpec& contact = scene.contact;
+    const auto refuse = [&](const char* key, const model::PartSpec& part, const std::optional<std::string>& excess) {
+        if (excess) contact_table.fail(key, fmt::format("part {}: {}", part.name, *excess));
+    };
     for (const auto& part : scene.parts) {
-        const auto* shape = std::get_if<model::Shape>(&part.geometry);
-        if (!(part.held || scene.contact.two_way) || shape == nullptr) continue;
-        const auto [size, area] = std::visit(ExtentOf{}, *shape);
-        if (const auto excess = model::tooManyPoints(size, area, scene.contact.spacing))
-            contact_table.fail("spacing_mm", fmt::format("part {}: {}", part.name, *excess));
+        const PartGeometry* geometry = geometries.of(part);
+        if (geometry == nullptr) continue;
+        if (part.held || contact.two_way)
+            refuse("spacing_mm", part, model::tooManyPoints(geometry->size, geometry->area, contact.spacing));
+        if (contact.cell > 0.0 && (!part.held || contact.two_way))
+            refuse("cell_mm", part, model::fieldTooLarge(geometry->size, geometry->area, contact.cell));
     }
 }
 
-model::ContactSpec readContact(const TableReader& read, const DeviceDescription* device, bool device_named) {
+model::ContactSpec readContact(const TableReader& read, const DeviceDescription* device, bool device_named,
+                               double scale) {
     model::ContactSpec contact;
     const auto method = read.text("method");
     contact.method = method == "penalty"      ? model::ContactMethod::Penalty
@@ -221,17 +206,28 @@ model::ContactSpec readContact(const TableReader& read, const DeviceDescription*
     contact.variant = variant == "raw"             ? model::PenaltyVariant::Raw
                       : variant == "area_weighted" ? model::PenaltyVariant::AreaWeighted
                                                    : model::PenaltyVariant::MaxNormalised;
-    readCoupling(read, device, device_named, contact);
+    readCoupling(read, device, device_named, scale, contact);
     readPenaltyCoupling(read, device, contact);
     contact.area_stiffness = read.number("area_stiffness_N_per_m3");
-    contact.tolerance = read.number("tolerance_um");
+    contact.tolerance = read.numberOr("tolerance_um", contact.tolerance);
     contact.cell = read.numberOr("cell_mm", 0.0);
-    contact.spacing = read.number("spacing_mm");
+    contact.spacing = read.numberOr("spacing_mm", contact.spacing);
     contact.mode = model::modeNamed(read.text("mode")).value_or(contact.mode);
     contact.budget_nodes = static_cast<int>(read.integer("budget_nodes"));
-    contact.two_way = read.boolean("two_way");
+    if (read.has("two_way")) contact.two_way = read.boolean("two_way");
     contact.proxy_filter = read.number("proxy_filter_hz");
     return contact;
+}
+
+/// What the file leaves to the program: it follows from the parts.
+void completeContact(const TableReader& read, model::SceneSpec& scene, PartGeometries& geometries) {
+    const bool spacing = read.has("spacing_mm"), tolerance = read.has("tolerance_um"), two_way = read.has("two_way");
+    if (spacing && tolerance && two_way) return;
+    const ContactDefaults defaults = defaultsFor(scene, geometries);
+    if (!spacing) scene.contact.spacing = defaults.spacing;
+    if (!tolerance) scene.contact.tolerance = defaults.tolerance;
+    // accuracy = "auto" decides for each spacing that it tries.
+    if (!two_way && read.text("accuracy") != "auto") scene.contact.two_way = !oneWayFeelsAll(scene, geometries);
 }
 
 /// The budget of accuracy = "auto" [s], else 0.
@@ -243,6 +239,8 @@ double readAccuracyBudget(const TableReader& read, const model::SceneSpec& scene
     }
     for (const char* key : {"tolerance_um", "cell_mm", "spacing_mm", "mode", "budget_nodes"})
         if (read.has(key)) read.fail(key, "is picked by accuracy = \"auto\"");
+    if (read.has("two_way") && !read.boolean("two_way"))
+        read.fail("two_way", "is picked by accuracy = \"auto\"; true asks for both ways whatever it picks");
     if (std::all_of(scene.parts.begin(), scene.parts.end(), [](const auto& part) { return part.held; }))
         read.fail("accuracy", "needs a part that the held one can touch");
     if (!read.has("accuracy_budget_us")) read.fail("accuracy_budget_us", "required by accuracy = \"auto\"");
@@ -284,7 +282,7 @@ model::Effects readEffects(const TableReader& read, Errors& errors) {
 }  // namespace
 
 SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids, const std::string& path,
-                           std::span<const DeviceDescription> devices, Errors& errors) {
+                           std::span<const DeviceDescription> devices, PartGeometries& geometries, Errors& errors) {
     const std::size_t before = errors.size();
     const TableReader read(table, std::move(ids), path, errors);
     const double units = unitsPerMetre(read, 1e3);
@@ -299,6 +297,10 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     content.scene.parts = readParts(read, table, path, units, errors);
     const bool unit_sound = read.has("unit") || table.find("unit") == nullptr;
     content.parts_sound = unit_sound && read.has("part") && errors.size() == before_parts;
+    if (content.parts_sound)
+        for (const model::PartSpec& part : content.scene.parts)
+            for (Error& problem : geometries.problems(part)) errors.push_back(std::move(problem));
+    content.parts_sound = content.parts_sound && errors.size() == before_parts;
     const std::size_t before_device = errors.size();
     const auto device_table = open("device");
     const DeviceDescription* device = findDevice(device_table, devices);
@@ -306,15 +308,17 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     content.scene.limits = readLimits(device_table, device);
     const std::size_t of_device = errors.size() - before_device;
     const auto contact_table = open("contact");
-    content.scene.contact = readContact(contact_table, device, device_table.has("preset"));
+    const auto registration_table = open("registration");
+    content.scene.registration = readRegistration(registration_table, units);
+    content.scene.contact =
+        readContact(contact_table, device, device_table.has("preset"), content.scene.registration.scale);
+    if (content.parts_sound) completeContact(contact_table, content.scene, geometries);
     content.accuracy_budget = readAccuracyBudget(contact_table, content.scene);
     if (const Node* budget = contact_table.node("accuracy_budget_us")) content.accuracy_place = budget->place;
     content.allow_unstable = contact_table.boolean("allow_unstable");
-    const auto registration_table = open("registration");
-    content.scene.registration = readRegistration(registration_table, units);
     const auto only_device = [&] { return errors.size() == before + of_device; };
-    if (only_device()) checkSpacing(contact_table, content.scene);
-    checkStability(device_table, contact_table, registration_table, device, content.scene);
+    if (only_device()) checkSizes(contact_table, content.scene, geometries);
+    checkStability(device_table, contact_table, device, content.scene);
     content.scene.start_gate = readStartGate(open("start_gate"));
     content.scene.effects = readEffects(open("effects"), errors);
     // What only the model itself can judge has no line of its own.
@@ -325,26 +329,30 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     return content;
 }
 
-Result<model::SceneSpec> readScene(const std::string& path, std::span<const DeviceDescription> devices) {
+Result<model::SceneSpec> readScene(const std::string& path, std::span<const DeviceDescription> devices,
+                                   model::BuildStore* builds) {
     const auto text = readFile(path);
     if (!text) return text.errors();
-    return readSceneText(*text, path, devices);
+    return readSceneText(*text, path, devices, builds);
 }
 
 Result<model::SceneSpec> readSceneText(const std::string& text, const std::string& path,
-                                       std::span<const DeviceDescription> devices) {
-    auto scene = readSceneOnDevice(text, path, devices);
+                                       std::span<const DeviceDescription> devices, model::BuildStore* builds) {
+    auto scene = readSceneOnDevice(text, path, devices, builds);
     if (!scene) return scene.errors();
     return std::move(scene->scene);
 }
 
 Result<SceneOnDevice> readSceneOnDevice(const std::string& text, const std::string& path,
-                                        std::span<const DeviceDescription> devices) {
+                                        std::span<const DeviceDescription> devices, model::BuildStore* builds) {
     const auto document = parseDocument(text, path);
     if (!document) return document.errors();
     if (const auto other = otherKind(*document, FileKind::Scene)) return errorAt(document->place, "", "", *other);
     Errors errors;
-    auto content = readSceneNode(*document, {"scene"}, "", devices, errors);
+    PartGeometries geometries(builds);
+    auto content = readSceneNode(*document, {"scene"}, "", devices, geometries, errors);
+    std::vector<std::string> warnings;
+    if (content.sound) checkFelt(*document, "", content.scene, geometries, errors, warnings);
     if (content.accuracy_budget > 0.0)
         errors.push_back(errorAt(document->find("contact")->find("accuracy")->place, "contact.accuracy", "\"auto\"",
                                  "only in a study, whose database keeps what was picked; in a scene file write "
@@ -352,7 +360,7 @@ Result<SceneOnDevice> readSceneOnDevice(const std::string& text, const std::stri
                                  "was picked or passung accuracy FIELD SHELL what there is"));
     tidy(errors);
     if (!errors.empty()) return errors;
-    return SceneOnDevice{std::move(content.scene), std::move(content.device)};
+    return SceneOnDevice{std::move(content.scene), std::move(content.device), std::move(warnings)};
 }
 
 Result<model::PartSpec> readPart(const std::string& path, double metres_per_unit) {

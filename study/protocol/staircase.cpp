@@ -20,7 +20,11 @@ const Staircase* staircaseOf(const StudyPlan& plan, std::size_t block) {
 }
 
 std::size_t variantOf(const StudyPlan& plan, const Staircase& staircase, std::size_t condition, std::size_t level) {
-    const std::size_t own = condition - plan.blocks[staircase.block].first_condition;
+    const Block& block = plan.blocks[staircase.block];
+    std::size_t own = condition - block.first_condition;
+    if (block.first_condition == 0 && !block.conditions.empty())
+        own = static_cast<std::size_t>(std::find(block.conditions.begin(), block.conditions.end(), condition) -
+                                       block.conditions.begin());
     PASSUNG_ASSERT(own < staircase.first_variant.size() && level < staircase.levels.size());
     return staircase.first_variant[own] + level;
 }

@@ -32,8 +32,8 @@ struct Staircase {
     std::string measure;
     double threshold = 0.0;  // of the measure
     bool above = true;       // positive: the measure is above the threshold; else: below it
-    /// Index of the plan's condition that presents the first level in place of condition i of the block's design; the
-    /// others follow.
+    /// Index of the plan's condition that presents the first level in place of condition i of those that the block has;
+    /// the others follow.
     std::vector<std::size_t> first_variant;
 
     /// Trials of every condition: as many as all tracks may need, and the catch trials.

@@ -10,33 +10,41 @@
 namespace passung::protocol {
 namespace {
 
-constexpr double kStepsPerSize = 24.0;   // points are this part of the longest side apart
-constexpr double kChordPerSize = 0.005;  // of the triangles that carry the points
-constexpr double kOnSurface = 1e-9;      // [m]: what rounding leaves of a point on the surface
+constexpr double kStepsPerSize = 24.0;        // points are this part of the longest side apart
+constexpr double kChordPerSize = 0.005;       // of the triangles that carry the points
+constexpr double kOnSurface = 1e-9;           // [m]: what rounding leaves of a point on the surface
+constexpr std::size_t kManyTriangles = 4000;  // of a mesh: then its corners stand for it
+constexpr std::size_t kMostCorners = 6000;
 
 struct Placed {
-    const model::Shape& shape;
-    const Pose& X_WP;
-    model::TriangleMesh mesh;
+    const model::PartSpec& part;
+    Pose X_WP;
+    const model::TriangleMesh& mesh;
     model::Bounds bounds;
 };
 
-Placed place(const model::Shape& shape, const Pose& X_WP) {
-    const model::TriangleMesh fine = model::tessellate(shape, 1e-3);  // for its size only
-    const double longest = model::boundsOf(fine).size().maxCoeff();
-    auto mesh = model::tessellate(shape, kChordPerSize * longest);
-    auto bounds = model::boundsOf(mesh);
-    return {shape, X_WP, std::move(mesh), bounds};
+const model::Shape* shapeOf(const model::PartSpec& part) { return std::get_if<model::Shape>(&part.geometry); }
+
+/// The part's surface as triangles; empty if its mesh cannot be read.
+model::TriangleMesh surfaceOf(const model::PartSpec& part, PartGeometries& geometries) {
+    if (const auto* shape = shapeOf(part)) {
+        const model::TriangleMesh fine = model::tessellate(*shape, 1e-3);  // for its size only
+        return model::tessellate(*shape, kChordPerSize * model::boundsOf(fine).size().maxCoeff());
+    }
+    const PartGeometry* geometry = geometries.of(part);
+    return geometry != nullptr ? *geometry->mesh : model::TriangleMesh{};
 }
 
-/// How deep points of `part`'s surface stand in `obstacle` [m].
-double depthOf(const Placed& part, const Placed& obstacle) {
-    const Pose X_OP = obstacle.X_WP.inverse() * part.X_WP;
-    const Vec3 size = part.bounds.size();
-    const Vec3 centre = 0.5 * (part.bounds.low + part.bounds.high);
-    if (model::signedDistance(obstacle.shape, X_OP * centre) > 0.51 * size.norm()) return 0.0;
-    const double step = size.maxCoeff() / kStepsPerSize;
-    double deepest = 0.0;
+/// Calls `visit` for points of the surface; not with those of a chord in front of a round hole, where nothing is.
+template <class Visit>
+void visitPoints(const Placed& part, const Visit& visit) {
+    const model::Shape* shape = shapeOf(part.part);
+    if (shape == nullptr && part.mesh.triangles.size() > kManyTriangles) {
+        const std::size_t every = 1 + part.mesh.vertices.size() / kMostCorners;
+        for (std::size_t i = 0; i < part.mesh.vertices.size(); i += every) visit(part.mesh.vertices[i]);
+        return;
+    }
+    const double step = part.bounds.size().maxCoeff() / kStepsPerSize;
     for (const model::Triangle& t : part.mesh.triangles) {
         const Vec3& a = part.mesh.vertices[t[0]];
         const Vec3 ab = part.mesh.vertices[t[1]] - a, ac = part.mesh.vertices[t[2]] - a;
@@ -44,26 +52,58 @@ double depthOf(const Placed& part, const Placed& obstacle) {
         for (int i = 0; i <= n; ++i) {
             for (int k = 0; k <= n - i; ++k) {
                 const Vec3 p = a + (ab * i + ac * k) / n;
-                const double depth = -model::signedDistance(obstacle.shape, X_OP * p);
-                // A chord of a round hole lies in front of the true surface, where nothing is.
-                if (depth > deepest && model::signedDistance(part.shape, p) <= kOnSurface) deepest = depth;
+                if (shape == nullptr || model::signedDistance(*shape, p) <= kOnSurface) visit(p);
             }
         }
     }
+}
+
+/// How deep points of `part`'s surface stand in `obstacle` [m].
+double depthOf(const Placed& part, const Placed& obstacle, PartGeometries& geometries) {
+    const Pose X_OP = obstacle.X_WP.inverse() * part.X_WP;
+    const Vec3 centre = 0.5 * (part.bounds.low + part.bounds.high);
+    const double half = 0.51 * part.bounds.size().norm();
+    if (geometries.signedDistance(obstacle.part, X_OP * centre) > half) return 0.0;
+    double deepest = 0.0;
+    // Of parts that coincide no point of a surface is inside.
+    if (geometries.signedDistance(part.part, centre) < 0.0)
+        deepest = std::max(0.0, std::min(-geometries.signedDistance(part.part, centre),
+                                         -geometries.signedDistance(obstacle.part, X_OP * centre)));
+    visitPoints(part, [&](const Vec3& p) {
+        const Vec3 q = X_OP * p;
+        const bool far =
+            ((q - obstacle.bounds.low).array() < 0.0).any() || ((obstacle.bounds.high - q).array() < 0.0).any();
+        if (!far) deepest = std::max(deepest, -geometries.signedDistance(obstacle.part, q));
+    });
     return deepest;
 }
 
 }  // namespace
 
-double startDepth(const model::PartSpec& held, const model::PartSpec& obstacle) {
-    const auto* held_shape = std::get_if<model::Shape>(&held.geometry);
-    const auto* obstacle_shape = std::get_if<model::Shape>(&obstacle.geometry);
-    if (held_shape == nullptr || obstacle_shape == nullptr) return 0.0;
-    const Placed one = place(*held_shape, held.X_WP), other = place(*obstacle_shape, obstacle.X_WP);
-    return std::max(depthOf(one, other), depthOf(other, one));
+double depthAt(const model::PartSpec& part, const Pose& X_WP, const model::PartSpec& obstacle,
+               PartGeometries& geometries) {
+    const auto text = [](const Pose& X) {
+        return fmt::format("{:a} {:a} {:a} {:a} {:a} {:a} {:a}", X.p.x(), X.p.y(), X.p.z(), X.q.w(), X.q.x(), X.q.y(),
+                           X.q.z());
+    };
+    const std::string question =
+        fmt::format("{} at {} in {} at {}", geometryKey(part), text(X_WP), geometryKey(obstacle), text(obstacle.X_WP));
+    return geometries.depth(question, [&] {
+        const model::TriangleMesh one = surfaceOf(part, geometries), other = surfaceOf(obstacle, geometries);
+        if (one.triangles.empty() || other.triangles.empty()) return 0.0;
+        const Placed held{part, X_WP, one, model::boundsOf(one)};
+        const Placed still{obstacle, obstacle.X_WP, other, model::boundsOf(other)};
+        return std::max(depthOf(held, still, geometries), depthOf(still, held, geometries));
+    });
 }
 
-void checkStartPose(const Node& scene, const std::string& path, const model::SceneSpec& spec, Errors& errors) {
+double startDepth(const model::PartSpec& held, const model::PartSpec& obstacle) {
+    PartGeometries geometries;
+    return depthAt(held, held.X_WP, obstacle, geometries);
+}
+
+void checkStartPose(const Node& scene, const std::string& path, const model::SceneSpec& spec,
+                    PartGeometries& geometries, Errors& errors) {
     const model::PartSpec* held = heldPart(spec);
     const Node* parts = scene.find("part");
     if (held == nullptr || parts == nullptr) return;
@@ -73,7 +113,7 @@ void checkStartPose(const Node& scene, const std::string& path, const model::Sce
     const Node& where = position != nullptr ? *position : pose != nullptr ? *pose : table;
     for (const model::PartSpec& obstacle : spec.parts) {
         if (obstacle.held) continue;
-        const double depth = startDepth(*held, obstacle);
+        const double depth = depthAt(*held, held->X_WP, obstacle, geometries);
         if (!(depth > spec.contact.tolerance)) continue;
         errors.push_back(
             errorAt(where.place, fmt::format("{}.part.{}.pose", path, held->name),

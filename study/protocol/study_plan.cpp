@@ -94,7 +94,7 @@ design::Design designOf(const StudyPlan& plan) {
         design.blocks.push_back({block.name, block.adaptive ? kAdaptivePhase : phaseName(block.phase),
                                  block.repetitions, block.order, static_cast<std::size_t>(block.trials), block.blocked,
                                  block.blocked_order, block.constraints, block.catches, block.session,
-                                 block.first_condition});
+                                 block.first_condition, block.conditions});
     design.allocation_blocks = plan.allocation_blocks;
     return design;
 }

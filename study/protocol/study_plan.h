@@ -13,6 +13,7 @@
 #include "study/protocol/staircase.h"
 #include "study/protocol/study_texts.h"
 #include "study/protocol/task.h"
+#include "study/protocol/view.h"
 #include "study/questionnaire/definition.h"
 
 namespace passung::protocol {
@@ -102,9 +103,11 @@ struct PlannedQuestionnaire {
 
 /// What a study means to test, written down before the first participant.
 struct Analysis {
-    std::string outcome;               // a measure
+    std::string outcome;               // a measure; empty: the thresholds of a staircase
     std::vector<std::string> factors;  // names
     std::string test;                  // "rm_anova" …
+    std::string block = {};            // whose trials; empty: every main block's that has the outcome, each by itself
+    std::string staircase = {};        // whose thresholds; empty: none
 };
 
 /// What a device displays stably, as the stiffnesses of a protocol were resolved against it.
@@ -146,6 +149,7 @@ struct StudyPlan {
     std::vector<Analysis> analyses;
     std::vector<PlannedQuestionnaire> questionnaires;
     ResumePolicy resume;
+    View view;
     double max_missed_share = 0.01;                 // of a trial's cycles: an attempt that missed more is not valid
     std::vector<std::string> measures;              // names, all known to study/measures
     std::vector<MeshSource> meshes;                 // each once; their content is no part of the text

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "study/protocol/peg_in_hole_reader.h"
 #include "study/protocol/scene_node.h"
@@ -109,6 +110,12 @@ std::string_view sharedByIntervals(const std::string& path, const std::string& h
 
 }  // namespace
 
+bool isTaskKey(const std::string& type, const std::string& key) {
+    const std::string own = "task." + type;
+    const std::array<std::string_view, 2> tables{"task", own};
+    return findKey(tables, key) != nullptr;
+}
+
 Task readTask(const StudyTables& tables, const model::SceneSpec* scene, Errors& errors) {
     const std::size_t before = errors.size();
     Task task;
@@ -150,7 +157,8 @@ Task readTask(const StudyTables& tables, const model::SceneSpec* scene, Errors& 
 }
 
 model::SceneSpec readComparison(const StudyTables& tables, const Condition& condition,
-                                std::span<const DeviceDescription> devices, Errors& errors) {
+                                std::span<const DeviceDescription> devices, PartGeometries& geometries,
+                                Errors& errors) {
     const std::size_t before = errors.size();
     std::vector<Override> overrides;
     flatten(*tables.task.find("comparison"), "", overrides);
@@ -167,7 +175,7 @@ model::SceneSpec readComparison(const StudyTables& tables, const Condition& cond
         errors.insert(errors.end(), found.begin(), found.end());
     }
     if (errors.size() > before) return {};
-    auto content = readSceneNode(changed.scene, {"scene"}, "scene", devices, errors);
+    auto content = readSceneNode(changed.scene, {"scene"}, "scene", devices, geometries, errors);
     if (content.accuracy_budget > 0.0)
         errors.push_back(errorAt(tables.task.find("type")->place, "task.type", "discrimination_pair",
                                  "needs an accuracy that is named: contact.accuracy must not be \"auto\""));

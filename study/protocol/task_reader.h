@@ -4,6 +4,7 @@
 
 #include "core/base/device_description.h"
 #include "study/protocol/factors.h"
+#include "study/protocol/part_geometry.h"
 #include "study/protocol/study_plan.h"
 
 namespace passung::protocol {
@@ -12,8 +13,11 @@ namespace passung::protocol {
 /// a `scene` (nullptr: its parts are not known) it looks at what the table says by itself.
 Task readTask(const StudyTables& tables, const model::SceneSpec* scene, Errors& errors);
 
+/// Does [task] have this key where its type is this one?
+bool isTaskKey(const std::string& type, const std::string& key);
+
 /// The scene of the other interval of a discrimination_pair: the condition's with the keys of task.comparison.
 model::SceneSpec readComparison(const StudyTables& tables, const Condition& condition,
-                                std::span<const DeviceDescription> devices, Errors& errors);
+                                std::span<const DeviceDescription> devices, PartGeometries& geometries, Errors& errors);
 
 }  // namespace passung::protocol

@@ -30,7 +30,7 @@ std::optional<double> cronbachAlpha(const std::vector<std::vector<double>>& rows
         of_items += squares(column);
     }
     const double of_sums = squares(sums);
-    if (!(of_sums > 0.0)) return std::nullopt;
+    if (!(of_sums > 1e-12 * of_items)) return std::nullopt;  // sums that do not vary but for rounding
     const auto k = static_cast<double>(items);
     return k / (k - 1.0) * (1.0 - of_items / of_sums);
 }

@@ -32,6 +32,18 @@ struct Presentation {
     std::string sound = "none";  // "none": the condition has nothing to be heard; "played"; "silent": had no output
     std::string sound_output;    // its name
     double sound_delay_us = 0;   // of what is played: the length of the output's buffer
+    std::optional<std::int64_t> cue_frames;  // of the frames: drawn with the visual cue above 0; none: not counted
+};
+
+/// What of a condition's feedback reached the participant during one attempt: acknowledged by an actuator, drawn,
+/// played, or handed to the senses of a simulated one. A tick or picture in which a cue stood at nothing does not
+/// count.
+struct Delivered {
+    std::int64_t force = 0;      // ticks with a wrench, on a device that can push a hand
+    std::int64_t visual = 0;     // pictures
+    std::int64_t vibration = 0;  // ticks, as the others
+    std::int64_t sound = 0;
+    std::int64_t masking = 0;
 };
 
 /// How well the loop kept its rate during one attempt.
@@ -45,6 +57,7 @@ struct LoopHealth {
     std::uint64_t state_hash = 0;               // over every exact output of the attempt; equal on replay
     std::vector<ContactEnergy> contact_energy;  // of each obstacle in the order of the scene, then of none
     std::optional<Presentation> presentation;   // none: no window showed the attempt
+    Delivered delivered;
 };
 
 /// One stage of the tick and why it runs.

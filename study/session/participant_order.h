@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -21,10 +22,19 @@ struct DesignPlace {
 Result<std::vector<design::PlannedTrial>> planTrials(const protocol::StudyPlan& plan, const DesignPlace& place,
                                                      std::string_view participant, int session = 1);
 
-/// The places of the first `count` participants of a kind, as the store allots them; with several `stations` each takes
-/// the next one in turn.
-std::vector<DesignPlace> firstPlaces(const protocol::StudyPlan& plan, std::size_t count,
-                                     protocol::ParticipantKind kind = protocol::ParticipantKind::Real,
-                                     std::size_t stations = 1);
+/// The places of the first `count` participants of any kind, as the store allots them; with several `stations` each
+/// takes the next one in turn.
+std::vector<DesignPlace> firstPlaces(const protocol::StudyPlan& plan, std::size_t count, std::size_t stations = 1);
+
+/// A session as it is planned for one of the participants to come.
+struct PlannedSession {
+    std::string participant;  // code
+    DesignPlace place;
+    int session = 1;
+    std::vector<design::PlannedTrial> trials;
+};
+
+/// All sessions of the people who take part first.
+Result<std::vector<PlannedSession>> plannedSessions(const protocol::StudyPlan& plan, int participants, int stations);
 
 }  // namespace passung::session

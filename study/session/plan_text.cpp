@@ -9,7 +9,6 @@
 #include "study/design/trial_order.h"
 #include "study/design/williams.h"
 #include "study/protocol/duration.h"
-#include "study/protocol/participant.h"
 #include "study/protocol/planned_questionnaires.h"
 #include "study/session/order_rows.h"
 #include "study/session/participant_order.h"
@@ -52,8 +51,8 @@ std::string conditionsText(const protocol::StudyPlan& plan) {
 }
 
 /// Trials of each pass of a block, as everybody has them.
-std::size_t trialsPerPass(const design::Design& design, const protocol::Block& block) {
-    const auto cells = design::cellsOf(design, 0, 0, "", 0).ordinary;
+std::size_t trialsPerPass(const design::Design& design, std::size_t b, const protocol::Block& block) {
+    const auto cells = design::cellsOf(design.blocks[b], design::cellsOf(design, 0, 0, "", 0)).ordinary;
     const auto parts = design::partedBy(design, block.blocked, cells);
     return block.trials > 0 ? static_cast<std::size_t>(block.trials) : parts.empty() ? 0 : parts[0].size();
 }
@@ -62,7 +61,7 @@ std::string blockText(const protocol::StudyPlan& plan, const design::Design& des
     const protocol::Block& block = plan.blocks[b];
     std::string text =
         fmt::format("{}, order {}, {} x {}", protocol::phaseName(block.phase), protocol::blockOrderName(block.order),
-                    design::counted(trialsPerPass(design, block), "trial"),
+                    design::counted(trialsPerPass(design, b, block), "trial"),
                     design::counted(static_cast<std::size_t>(block.repetitions), "repetition"));
     if (block.blocked)
         text += fmt::format(", blocked by {} (order {})", plan.factors[*block.blocked].name,
@@ -132,14 +131,6 @@ bool isPlainSquare(const design::Design& design) {
            wheels[0].order == design::Order::Williams && design::groupsOf(design).size() == 1;
 }
 
-/// The code that the program gives the i-th participant, from 0.
-std::string codeOf(std::size_t i, std::size_t stations) {
-    const auto number = static_cast<std::int64_t>(i / stations) + 1;
-    auto code = protocol::participantCode(protocol::ParticipantKind::Real, number);
-    if (stations > 1) code.insert(1, 1, static_cast<char>('A' + i % stations));
-    return code;
-}
-
 }  // namespace
 
 std::string describeBalance(const protocol::StudyPlan& plan, const std::vector<DesignPlace>& places) {
@@ -181,24 +172,22 @@ Result<std::string> describePlan(const protocol::StudyPlan& plan, int participan
 
     text += "Orders (numbers of conditions; blocks parted by |)\n";
     const auto groups = protocol::groupNames(plan);
-    const auto places = firstPlaces(plan, static_cast<std::size_t>(std::max(participants, 0)),
-                                    protocol::ParticipantKind::Real, static_cast<std::size_t>(stations));
-    const int sessions = protocol::sessionsOf(plan);
-    std::vector<double> longest(static_cast<std::size_t>(sessions));
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        const auto code = codeOf(i, static_cast<std::size_t>(stations));
-        count = 0;
-        for (int session = 1; session <= sessions; ++session) {
-            const auto trials = planTrials(plan, places[i], code, session);
-            if (!trials) return trials.errors();
-            text += fmt::format("  {}{}{}  {}\n", code, groups.size() > 1 ? " " + groups[places[i].group] : "",
-                                sessions > 1 ? fmt::format(", session {}", session) : "",
-                                orderText(orderOf(plan, *trials)));
-            auto& most = longest[static_cast<std::size_t>(session - 1)];
-            most = std::max(most, protocol::longestDuration(plan, *trials));
-            count += trials->size();
+    const auto planned = plannedSessions(plan, participants, stations);
+    if (!planned) return planned.errors();
+    std::vector<DesignPlace> places;
+    std::vector<double> longest(static_cast<std::size_t>(protocol::sessionsOf(plan)));
+    std::size_t count = 0;  // of the last participant's trials
+    for (const PlannedSession& one : *planned) {
+        if (one.session == 1) {
+            places.push_back(one.place);
+            count = 0;
         }
+        text += fmt::format("  {}{}{}  {}\n", one.participant, groups.size() > 1 ? " " + groups[one.place.group] : "",
+                            longest.size() > 1 ? fmt::format(", session {}", one.session) : "",
+                            orderText(orderOf(plan, one.trials)));
+        auto& most = longest[static_cast<std::size_t>(one.session - 1)];
+        most = std::max(most, protocol::longestDuration(plan, one.trials));
+        count += one.trials.size();
     }
     const auto design = protocol::designOf(plan);
     text += stations == 1 && !places.empty() && isPlainSquare(design)

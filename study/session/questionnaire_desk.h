@@ -15,8 +15,8 @@ namespace passung::session {
 
 /// Whose questionnaires.
 struct DeskKey {
-    std::string participant;
-    std::uint64_t seed = 0;  // of the study
+    std::string participant;  // whose draws: protocol::rehearsedCode()
+    std::uint64_t seed = 0;   // of the study
     int ordinal = 1;
     bool timing_measured = true;  // false in virtual time: response times are not kept
 };

@@ -123,6 +123,26 @@ std::vector<std::size_t> toOffer(const Staircases& staircases, const Resumption&
     return places;
 }
 
+/// What became of the trials by their newest attempt that ended; of one that is discounted now it is another's turn.
+std::vector<EarlierTrial> earlierTrials(const Resumption& result, const std::vector<StoredAttempt>& attempts) {
+    std::vector<EarlierTrial> trials;
+    for (std::size_t place = 0; place < result.past.size(); ++place) {
+        const StoredAttempt* newest = nullptr;
+        int ended = 0;
+        for (const StoredAttempt& attempt : attempts) {
+            if (attempt.place != place || !attempt.outcome) continue;
+            newest = &attempt;
+            ++ended;
+        }
+        if (newest == nullptr) continue;
+        const auto time = std::find_if(newest->measures.begin(), newest->measures.end(),
+                                       [](const measures::Value& value) { return value.name == "trial_time_s"; });
+        trials.push_back({place, ended, *newest->outcome, newest->valid, newest->invalid_reason,
+                          time == newest->measures.end() ? std::nullopt : time->value, result.agenda.isOver(place)});
+    }
+    return trials;
+}
+
 }  // namespace
 
 Then thenAfter(const protocol::Block& block, Outcome outcome, bool valid, int judged) {
@@ -184,6 +204,7 @@ Resumption resumption(const protocol::StudyPlan& plan, std::vector<design::Plann
         if (newest[place] == nullptr) continue;  // left out
         result.finished.push_back({result.agenda.trial(place), newest[place]->measures, newest[place]->start_ns});
     }
+    result.earlier = earlierTrials(result, attempts);
     result.forms = std::move(forms);
     return result;
 }

@@ -38,6 +38,19 @@ struct StoredAttempt {
     std::int64_t start_ns = 0;  // session time
     std::vector<measures::Value> measures = {};
     std::optional<StoredStep> step = {};  // none: no track was told anything
+    std::string invalid_reason = {};
+};
+
+/// What an earlier part of the session made of a trial.
+struct EarlierTrial {
+    std::size_t place;          // in the plan
+    int attempts;               // that ended
+    measures::Outcome outcome;  // of the newest of them
+    bool valid;
+    std::string invalid_reason;
+    std::optional<double> time_s;
+    bool over;  // and it stays so
+    bool succeeded() const { return over && valid && outcome == measures::Outcome::Success; }
 };
 
 /// Where an interrupted session goes on.
@@ -50,6 +63,7 @@ struct Resumption {
     std::vector<FinishedTrial> finished = {};  // trials that are over and stay so, in time
     std::vector<StoredForm> forms = {};        // that were stored
     std::vector<ToldStep> steps = {};          // what staircases were told by attempts that count
+    std::vector<EarlierTrial> earlier = {};    // by place: trials of which an attempt had ended
 };
 
 /// What the protocol says of a trial whose newest attempt ended so; it is number `judged` of those that did.

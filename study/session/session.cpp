@@ -10,6 +10,7 @@
 #include "core/base/assert.h"
 #include "core/base/random.h"
 #include "study/protocol/json.h"
+#include "study/protocol/participant.h"
 #include "study/session/rendered_scenes.h"
 #include "study/session/secondary.h"
 
@@ -18,11 +19,24 @@ namespace {
 
 constexpr std::size_t kTakeAtOnce = 256;  // records
 
+/// Why a trial of this length [s] that the participant saw so does not count; empty: nothing against it.
+std::string pictureFault(const Presentation& given, const protocol::View& view, double seconds) {
+    const double age_s = 1e-6 * given.frame_age_max_us;
+    if (age_s > view.max_picture_age)
+        return fmt::format("picture: up to {:.0f} ms old, at most {:.0f} ms count", 1e3 * age_s,
+                           1e3 * view.max_picture_age);
+    // Of a short trial one picture more or less says nothing.
+    if (static_cast<double>(given.frames + 1) < view.min_pictures_per_s * seconds)
+        return fmt::format("pictures: {:.1f} a second, at least {:.1f} count",
+                           static_cast<double>(given.frames) / seconds, view.min_pictures_per_s);
+    return {};
+}
+
 }  // namespace
 
 std::uint64_t attemptSeed(const SessionSetup& setup, const design::PlannedTrial& trial, int attempt_no) {
     const std::string purpose = fmt::format("simulated|{}|{}|{}", setup.ordinal, trial.trial_index, attempt_no);
-    return streamSeed(setup.plan.name, setup.participant, trial.phase, purpose, setup.seed);
+    return streamSeed(setup.plan.name, protocol::rehearsedCode(setup.participant), trial.phase, purpose, setup.seed);
 }
 
 Session::Session(SessionSetup setup, Apparatus& apparatus, TrialSink& sink, SessionListener listener)
@@ -30,12 +44,13 @@ Session::Session(SessionSetup setup, Apparatus& apparatus, TrialSink& sink, Sess
       apparatus_(apparatus),
       sink_(sink),
       listener_(std::move(listener)),
-      desk_(setup_.plan, {setup_.participant, setup_.seed, setup_.ordinal, setup_.timing_measured}, setup_.answers,
-            sink),
+      desk_(setup_.plan,
+            {protocol::rehearsedCode(setup_.participant), setup_.seed, setup_.ordinal, setup_.timing_measured},
+            setup_.answers, sink),
       instructions_(setup_.plan, setup_.language, setup_.timing_measured, setup_.reader, sink),
       state_(setup_.waits ? SessionState::Ready : SessionState::BetweenTrials),
       agenda_(setup_.resumed ? setup_.resumed->agenda : Agenda(setup_.trials)),
-      staircases_(setup_.plan, setup_.participant, setup_.seed, setup_.ordinal),
+      staircases_(setup_.plan, protocol::rehearsedCode(setup_.participant), setup_.seed, setup_.ordinal),
       past_(setup_.resumed ? setup_.resumed->past : std::vector<Past>(setup_.trials.size())),
       last_(setup_.resumed ? setup_.resumed->last : std::nullopt),
       session_ns_(setup_.resumed ? setup_.resumed->start_ns : 0) {
@@ -118,6 +133,7 @@ void Session::beginTrial() {
     start.start_ns = session_ns_;
     start.params_json = condition.params_json;
     start.seed = attemptSeed(setup_, trial(), start.attempt_no);
+    if (setup_.shown && !std::exchange(view_noted_, true)) note("view_shown", protocol::viewJson(setup_.plan.view));
     auto stages = apparatus_.prepare(condition, start.seed, start.trial_index);
     if (!stages) return fail("prepare", stages.errors());
     start.stages = *std::move(stages);
@@ -267,6 +283,14 @@ AttemptEnd Session::describeEnd(LoopHealth health) const {
     else if (static_cast<double>(course.missedCycles()) >
              setup_.plan.max_missed_share * static_cast<double>(course.length()))
         end.invalid_reason = fmt::format("loop: {} of {} cycles missed", course.missedCycles(), course.length());
+    // Nobody looks at the pictures of a simulated participant, and where the program does not time a trial nothing
+    // moves.
+    const bool seen = health.presentation && course.started() &&
+                      protocol::kindOfCode(setup_.participant) != protocol::ParticipantKind::Simulated &&
+                      attempt_->condition.timed_by == protocol::TimedBy::Program;
+    if (end.invalid_reason.empty() && seen)
+        end.invalid_reason =
+            pictureFault(*health.presentation, setup_.plan.view, static_cast<double>(course.length()) * kTickSeconds);
     if (end.invalid_reason.empty()) end.invalid_reason = attempt_->invalidated;
     end.valid = end.invalid_reason.empty();
     end.health = std::move(health);

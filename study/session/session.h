@@ -165,6 +165,7 @@ private:
     std::string device_in_use_;              // of the last trial, or being swapped to
     bool swapping_ = false;                  // until the first trial on it begins
     std::int64_t session_ns_;                // at tick 0 of the running or next attempt
+    bool view_noted_ = false;
     Errors errors_;
 };
 

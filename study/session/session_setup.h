@@ -31,6 +31,7 @@ struct SessionSetup {
     InstructionReader* reader = nullptr;       // of instructions; null: they are logged as not shown
     /// When a device was calibrated on this machine [UTC], empty: never. Without it (virtual time) nothing is said.
     std::function<std::string(const std::string& device)> calibrated_utc = {};
+    bool shown = false;  // in a window, whose look is logged
 };
 
 /// A trial that is over and durable.

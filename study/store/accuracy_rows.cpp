@@ -1,5 +1,7 @@
 #include "study/store/accuracy_rows.h"
 
+#include "study/store/row_hash.h"
+
 namespace passung::store {
 
 std::vector<AccuracyRow> readAccuracy(const Database& database) {
@@ -37,6 +39,7 @@ void insertAccuracy(const Database& database, const std::vector<AccuracyRow>& ro
                 .bind(row.protocol_sha256, budget, row.candidate)
                 .run();
     }
+    sealNewRows(database);
     transaction.commit();
 }
 

@@ -1,6 +1,7 @@
 #include "study/store/attempt_rows.h"
 
 #include "study/store/contact_energy_rows.h"
+#include "study/store/delivery_rows.h"
 #include "study/store/presentation_rows.h"
 #include "study/store/sqlite.h"
 
@@ -29,7 +30,8 @@ constexpr std::string_view kAttemptColumns =
     "coalesce(json_extract(a.params_json, '$.secondary.stimulus'), 'none'), "
     "(SELECT min(e.t_ns) FROM event e WHERE e.attempt_id=a.attempt_id AND e.event='trial_started'), "
     "coalesce((SELECT p.condition FROM staircase_step f JOIN condition p ON p.condition_id=f.condition_id "
-    "WHERE f.attempt_id=a.attempt_id), c.condition) "
+    "WHERE f.attempt_id=a.attempt_id), c.condition), "
+    "coalesce((SELECT max(r.numerics) FROM stream r WHERE r.segment_id=a.segment_id AND r.stream='tick'), 0) "
     "FROM attempt a JOIN trial_plan t USING(trial_id) JOIN session s USING(session_id) "
     "JOIN participant pa USING(participant_id) JOIN segment g ON g.segment_id=a.segment_id "
     "JOIN condition c USING(condition_id) LEFT JOIN timing m USING(attempt_id)";
@@ -87,11 +89,13 @@ AttemptRow readAttempt(const Database& database, const Statement& row) {
     attempt.stimulus = row.text(46);
     attempt.trial_ns = row.optionalInteger(47);
     attempt.presented_condition = row.text(48);
+    attempt.numerics = row.integer(49);
     Statement values =
         database.prepare("SELECT measure, value_num FROM attempt_measure WHERE attempt_id=? AND value_num IS NOT NULL");
     values.bind(attempt.attempt_id);
     while (values.step()) attempt.measures.emplace(values.text(0), values.real(1));
     attempt.contact_energy = readContactEnergy(database, attempt.attempt_id);
+    attempt.delivered = readDelivery(database, attempt.attempt_id);
     attempt.presentation = readPresentation(database, attempt.attempt_id);
     return attempt;
 }

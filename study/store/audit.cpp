@@ -3,6 +3,7 @@
 #include <set>
 
 #include "study/store/digest.h"
+#include "study/store/tombstone.h"
 
 namespace passung::store {
 namespace {
@@ -16,6 +17,19 @@ std::string linkHash(const std::string& previous, const std::string& t_utc, cons
                          .text("action", action)
                          .text("detail_sha256", detail_sha256)
                          .str());
+}
+
+/// What stands in the place of details that were taken away.
+std::set<std::string> erasedDetails(const Database& database) {
+    std::set<std::string> details;
+    Statement erased =
+        database.prepare("SELECT json_extract(detail_json, '$.surrogate') FROM audit WHERE action='erase'");
+    while (erased.step()) details.insert(erasedDetail(erased.text(0)));
+    return details;
+}
+
+std::string linkHash(const AuditRow& row) {
+    return linkHash(row.prev_hash, row.t_utc, row.actor, row.action, row.detail_sha256);
 }
 
 }  // namespace
@@ -78,12 +92,40 @@ std::int64_t erasedCodesTo(const Database& database, protocol::ParticipantKind k
     return last.integer(0);
 }
 
+std::vector<std::string> healAudit(const Database& database, const std::string& source) {
+    std::map<std::string, AuditRow> whole;  // by hash
+    for (AuditRow& row : auditRows(database, source, erasedPeople(database, "main", source)))
+        if (linkHash(row) == row.hash && (row.erased || sha256Hex(row.detail_json) == row.detail_sha256))
+            whole.emplace(row.hash, std::move(row));
+    const std::set<std::string> erased = erasedDetails(database);
+    std::vector<std::pair<std::int64_t, const AuditRow*>> healed;
+    Statement row = database.prepare(
+        "SELECT audit_id, t_utc, actor, action, detail_json, prev_hash, hash, detail_sha256 FROM main.audit");
+    while (row.step()) {
+        const std::string own = linkHash(row.text(5), row.text(1), row.text(2), row.text(3), row.text(7));
+        const bool detail_fits = erased.count(row.text(4)) != 0 || sha256Hex(row.text(4)) == row.text(7);
+        if (own == row.text(6) && detail_fits) continue;
+        auto there = whole.find(row.text(6));
+        if (there == whole.end()) there = whole.find(own);  // the hash itself may be what is damaged
+        if (there != whole.end()) healed.emplace_back(row.integer(0), &there->second);
+    }
+    row.reset();
+    std::vector<std::string> lines;
+    for (const auto& [number, is] : healed) {
+        database
+            .prepare(
+                "UPDATE main.audit SET t_utc=?, actor=?, action=?, detail_json=?, prev_hash=?, hash=?, detail_sha256=? "
+                "WHERE audit_id=?")
+            .bind(is->t_utc, is->actor, is->action, is->detail_json, is->prev_hash, is->hash, is->detail_sha256, number)
+            .run();
+        lines.push_back("audit, row " + std::to_string(number));
+    }
+    return lines;
+}
+
 AuditReport checkAudit(const Database& database) {
     AuditReport report;
-    std::set<std::string> surrogates;
-    Statement erased =
-        database.prepare("SELECT json_extract(detail_json, '$.surrogate') FROM audit WHERE action='erase'");
-    while (erased.step()) surrogates.insert(erasedDetail(erased.text(0)));
+    const std::set<std::string> surrogates = erasedDetails(database);
     const auto report_fault = [&](std::int64_t row, const char* what) {
         report.faults.push_back("row " + std::to_string(row) + ": " + what);
     };

@@ -48,6 +48,10 @@ std::vector<AuditRow> auditRows(const Database& database, const std::string& sch
 /// Adds those of these rows that the main database has not.
 void mergeAudit(const Database& database, const std::vector<AuditRow>& rows);
 
+/// Rows that are damaged in the main database as they are in the attached one `source`, if they are whole there; what
+/// was taken away here stays away. Returns what it healed, a line each. @pre in a transaction
+std::vector<std::string> healAudit(const Database& database, const std::string& source);
+
 /// Walks the chains. Rows cut off the end of one cannot be missed.
 AuditReport checkAudit(const Database& database);
 

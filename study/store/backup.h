@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "study/store/sqlite.h"
@@ -11,7 +12,8 @@ namespace passung::store {
 std::string backupPath(const std::string& database_path);
 
 /// Writes the copy and its SHA-256, each complete or not at all; without the second the first may be older than the
-/// database. For this room only: throws.
-void writeBackup(const Database& database, const std::string& database_path);
+/// database. `change` gets the new copy before it takes the place of the old one. For this room only: throws.
+void writeBackup(const Database& database, const std::string& database_path,
+                 const std::function<void(Database& copy, const std::string& path)>& change = {});
 
 }  // namespace passung::store

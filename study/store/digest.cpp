@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/base/regular_file.h"
 #include "study/store/hex_text.h"
 
 namespace passung::store {
@@ -43,6 +44,7 @@ std::string Sha256::hex() {
 }
 
 std::string sha256OfFile(const std::string& path) {
+    if (const auto why = whyNoRegularFile(path)) throw std::runtime_error(path + " " + *why);
     std::ifstream file(path, std::ios::binary);
     if (!file) throw std::runtime_error("cannot read " + path);
     Sha256 digest;

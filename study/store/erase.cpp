@@ -4,8 +4,10 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "study/store/digest.h"
+#include "study/store/backup.h"
+#include "study/store/open_database.h"
 #include "study/store/participant_rows.h"
+#include "study/store/row_hash.h"
 #include "study/store/tombstone.h"
 
 namespace passung::store {
@@ -32,20 +34,19 @@ std::int64_t highestNumber(const Database& database, const std::string& kind) {
 
 std::string deleteRows(const Database& database, const std::string& participant, const Actor& actor) {
     Transaction transaction(database);
-    Statement find = database.prepare("SELECT kind, created_utc FROM participant WHERE participant_id=?");
+    Statement find = database.prepare("SELECT kind, identity FROM participant WHERE participant_id=?");
     if (!find.bind(participant).step()) throw std::runtime_error("participant " + participant + " is not enrolled");
-    const std::string kind = find.text(0), created_utc = find.text(1);
+    const std::string kind = find.text(0), identity = find.text(1);
     find.reset();
-    const std::string surrogate = randomHex(8);
-    const auto detail = tombstone(surrogate, kind, highestNumber(database, kind), participant, created_utc);
+    const auto detail = tombstone(identity, kind, highestNumber(database, kind));
     database.prepare("UPDATE design_slot SET state='free', participant_id=NULL WHERE participant_id=?")
         .bind(participant)
         .run();
     database.prepare("DELETE FROM participant WHERE participant_id=?").bind(participant).run();
-    eraseAuditDetails(database, participant, surrogate);
+    eraseAuditDetails(database, participant, identity);
     appendAudit(database, actor, "erase", detail);
     transaction.commit();
-    return surrogate;
+    return identity;
 }
 
 }  // namespace
@@ -57,7 +58,7 @@ std::string eraseParticipant(const Database& database, const std::string& path, 
     // Empties and removes the log, and fails while anybody else has the file open.
     if (database.text("PRAGMA journal_mode=DELETE") != "delete")
         throw std::runtime_error("another program has the database open: end it first; nothing was erased");
-    const std::string surrogate = deleteRows(database, participant, actor);
+    const std::string identity = deleteRows(database, participant, actor);
     try {
         database.execute("VACUUM");
     } catch (const SqliteError& error) {
@@ -65,7 +66,23 @@ std::string eraseParticipant(const Database& database, const std::string& path, 
                                  std::string(error.what()) + "): run VACUUM on it with sqlite3");
     }
     database.execute("PRAGMA journal_mode=WAL");
-    return surrogate;
+    return identity;
+}
+
+bool eraseFromBackup(const std::string& database_path, const std::string& identity, const Actor& actor) {
+    const std::string path = backupPath(database_path);
+    if (!std::filesystem::exists(path)) return false;
+    const auto backup = openForReading(path);
+    if (!backup) throw std::runtime_error(backup.errors().front().message);
+    Statement find = (*backup)->prepare("SELECT participant_id FROM participant WHERE identity=?");
+    if (!find.bind(identity).step()) return false;
+    const std::string code = find.text(0);
+    find.reset();
+    writeBackup(**backup, database_path, [&](Database& copy, const std::string& part) {
+        watchStudyRows(copy);
+        eraseParticipant(copy, part, code, actor);
+    });
+    return true;
 }
 
 }  // namespace passung::store

@@ -1,17 +1,22 @@
 #include "study/store/merge.h"
 
-#include <array>
 #include <filesystem>
 #include <map>
 #include <stdexcept>
 
 #include "study/store/audit.h"
+#include "study/store/heal.h"
+#include "study/store/merge_people.h"
+#include "study/store/merge_places.h"
 #include "study/store/open_database.h"
+#include "study/store/private_files.h"
 #include "study/store/process_lock.h"
 #include "study/store/same_study.h"
 #include "study/store/session_remarks.h"
 #include "study/store/session_tables.h"
 #include "study/store/tombstone.h"
+#include "study/store/untouched.h"
+#include "study/store/workshop.h"
 
 namespace passung::store {
 namespace {
@@ -21,33 +26,88 @@ namespace fs = std::filesystem;
 /// The database that is merged, attached beside the one that grows.
 constexpr const char* kSource = "source";
 
+/// How a source is taken: as a whole, or, where its pages are damaged, what of it can be read.
+enum class Taken { Whole, AsFarAsReadable };
+
 /// Merges one source into an open database.
 class Merge {
 public:
-    Merge(const Database& database, std::string source, MergeReport& report)
-        : database_(database), source_(std::move(source)), report_(report) {}
+    Merge(const Database& database, std::string source, MergeReport& report, Taken taken = Taken::Whole)
+        : database_(database), source_(std::move(source)), report_(report), taken_(taken) {}
 
-    void run() {
-        database_.prepare(std::string("ATTACH ? AS ") + kSource).bind(source_).run();
-        {
+    /// `file`: the source or a copy of it.
+    void run(const std::string& file) {
+        database_.prepare(std::string("ATTACH ? AS ") + kSource).bind(file).run();
+        tables_ = sessionTables(database_);
+        if (taken_ == Taken::Whole) {
             Transaction transaction(database_);
-            tables_ = sessionTables(database_);
-            leaveOutErased();
-            requireSameStudy(database_, kSource, [this](const std::string& reason) { refuse(reason); });
-            mergeMeasures();
-            mergeProtocols();
-            mergePeople();
-            mergeAudit(database_, auditRows(database_, kSource, left_out_));
-            settleStandings();
-            mergeSessions();
-            mergePlaces();
-            database_.execute("DROP TABLE temp.left_out");
+            mergeStudy();
             transaction.commit();
+        } else {
+            mergeStudy();
         }
         database_.execute(std::string("DETACH ") + kSource);
     }
 
 private:
+    void mergeStudy() {
+        part("who was erased from it", [&] { findErased(); });
+        leaveOut(database_, left_out_);
+        part("what study it is", [&] {
+            requireSameStudy(database_, kSource, [this](const std::string& reason) { refuseUnlessDamaged(reason); });
+        });
+        part("the hashes of the study's rows", [&] { leaveOutDamaged(); });
+        if (other_study_.empty())
+            mergeAll();
+        else if (study_damaged_)
+            report_.damaged.push_back(source_ + ": " + other_study_ + ": nothing of it is taken");
+        else
+            refuse(other_study_);
+        database_.execute("DROP TABLE temp.left_out");
+    }
+
+    void mergeAll() {
+        Healer healer(database_, kSource);
+        part("rows that are damaged here", [&] { tellHealed(healer.healRows()); });
+        if (!study_damaged_)  // a damaged row would come in under a hash of its own
+            part("the protocols", [&] {
+                mergeMeasures();
+                mergeProtocols();
+            });
+        part("the participants", [&] { mergePeople(database_); });
+        part("the audit", [&] {
+            mergeAudit(database_, auditRows(database_, kSource, left_out_));
+            settleStandings(database_);
+        });
+        mergeSessions(healer);
+        part("the places of the design", [&] {
+            for (std::string& who : mergePlaces(database_)) report_.moved_places.push_back(std::move(who));
+        });
+        part("hashes of what is new", [&] { sealNewRows(database_); });
+    }
+
+    /// Where a source is taken as far as it can be read, what cannot be read is told and left out. Each part is a
+    /// transaction then: SQLite writes nothing more within one that has met a damaged page.
+    template <class Work>
+    void part(const std::string& what, Work work) {
+        if (taken_ == Taken::Whole) return work();
+        try {
+            Transaction transaction(database_);
+            work();
+            transaction.commit();
+        } catch (const std::exception& error) {
+            const auto* refused = dynamic_cast<const SqliteError*>(&error);
+            if (refused != nullptr && isOfTheDisk(*refused)) throw;
+            report_.damaged.push_back(source_ + ": " + what + ": " + error.what() + ": left out");
+        }
+    }
+
+    /// Damaged rows make a study another one.
+    void refuseUnlessDamaged(const std::string& reason) {
+        if (taken_ == Taken::Whole) refuse(reason);
+        if (other_study_.empty()) other_study_ = reason;
+    }
+
     [[noreturn]] void refuse(const std::string& reason) const { throw std::runtime_error(source_ + ": " + reason); }
 
     /// Throws if the query has a row; `reason` gets its first column.
@@ -82,80 +142,74 @@ private:
 
     /// Whoever was erased from the result does not come back with a copy. The other way round nobody but the
     /// experimenter decides.
-    void leaveOutErased() {
+    void findErased() {
         left_out_ = erasedPeople(database_, "main", kSource);
-        leaveOut(database_, left_out_);
         for (const auto& [code, surrogate] : left_out_)
             report_.erased.push_back(source_ + ": " + code + " was erased and is left out; this file still has them");
         for (const auto& [code, surrogate] : erasedPeople(database_, kSource, "main"))
             report_.erased.push_back(source_ + ": " + code + " was erased there; the result still has them");
     }
 
-    /// One person has one kind and one time of enrolment. Whoever went on since is as far as they got.
-    void mergePeople() {
-        database_.execute("INSERT OR IGNORE INTO main.participant SELECT * FROM source.participant WHERE " + kKept);
-        database_.execute(
-            "UPDATE main.participant AS m SET status=s.status, status_reason=s.status_reason "
-            "FROM source.participant AS s WHERE s.participant_id=m.participant_id AND " +
-            rankOf("s") + ">" + rankOf("m"));
-        database_.execute(
-            "INSERT INTO main.consent(participant_id, text_sha256, language, clause, decision, decided_utc) "
-            "SELECT participant_id, text_sha256, language, clause, decision, decided_utc FROM source.consent s "
-            "WHERE NOT EXISTS(SELECT 1 FROM main.consent m WHERE (m.participant_id, m.text_sha256, m.clause, "
-            "m.decision, m.decided_utc)=(s.participant_id, s.text_sha256, s.clause, s.decision, s.decided_utc)) "
-            "AND " +
-            kKept + " ORDER BY consent_id");
-    }
-
-    /// Whoever was excluded, withdrew or was readmitted stands as the newest of these acts says, wherever it was done.
-    void settleStandings() {
-        Statement acts = database_.prepare(
-            "SELECT p.participant_id, p.status IN('excluded', 'withdrawn'), a.action, "
-            "json_extract(a.detail_json, '$.status'), json_extract(a.detail_json, '$.reason'), s.status "
-            "FROM main.participant p JOIN main.audit a ON a.audit_id=(SELECT b.audit_id FROM main.audit b WHERE "
-            "json_extract(b.detail_json, '$.participant')=p.participant_id AND b.action IN('exclude', 'withdraw', "
-            "'readmit') ORDER BY b.t_utc DESC, b.audit_id DESC LIMIT 1) "
-            "JOIN source.participant s ON s.participant_id=p.participant_id");
-        std::vector<std::array<std::string, 3>> settled;
-        while (acts.step()) {
-            const bool out = acts.integer(1) != 0, back = acts.text(2) == "readmit";
-            if (back && !out) continue;
-            const bool goes_on = back && acts.text(5) != "excluded" && acts.text(5) != "withdrawn";
-            settled.push_back(
-                {acts.text(0), goes_on ? acts.text(5) : acts.text(3), (back ? "readmitted: " : "") + acts.text(4)});
+    /// A damaged row goes nowhere: nor does anything of whom it is about.
+    void leaveOutDamaged() {
+        study_damaged_ = taken_ == Taken::AsFarAsReadable;  // until all of its rows are read
+        RowsSeen seen;
+        const bool throws = taken_ == Taken::Whole;
+        const std::vector<RowFault> faults = rowFaults(database_, kSource, throws ? nullptr : &seen);
+        study_damaged_ = !seen.unreadable.empty();
+        for (const RowFault& fault : faults) {
+            study_damaged_ = study_damaged_ || taken_ == Taken::AsFarAsReadable;
+            if (fault.participant_id.empty() && taken_ == Taken::Whole)
+                refuse(titleOf(fault) + " is damaged: passung restore heals it");
+            report_.damaged.push_back(source_ + ": " + titleOf(fault) + " is not as it was written: left out");
+            if (fault.participant_id.empty()) continue;
+            database_.prepare("INSERT OR IGNORE INTO temp.left_out VALUES(?)").bind(fault.participant_id).run();
         }
-        for (const auto& [code, status, reason] : settled)
-            database_.prepare("UPDATE main.participant SET status=?2, status_reason=?3 WHERE participant_id=?1")
-                .bind(code, status, reason)
-                .run();
+        for (const std::string& table : seen.unreadable)
+            report_.damaged.push_back(source_ + ": " + table + " cannot be read: left out");
     }
 
-    static std::string rankOf(const std::string& alias) {
-        return "CASE " + alias +
-               ".status WHEN 'enrolled' THEN 0 WHEN 'active' THEN 1 WHEN 'complete' THEN 2 WHEN 'withdrawn' THEN 3 "
-               "ELSE 4 END";
+    void tellHealed(const std::vector<std::string>& healed) {
+        report_.healed.insert(report_.healed.end(), healed.begin(), healed.end());
     }
 
-    void mergeSessions() {
+    void mergeSessions(Healer& healer) {
+        std::vector<std::pair<std::string, std::string>> sessions;  // id, title
+        part("the list of sessions", [&] { findSessions(sessions); });
+        for (const auto& [id, title] : sessions) part(title, [&, session = id] { mergeSession(session, healer); });
+    }
+
+    void findSessions(std::vector<std::pair<std::string, std::string>>& found) {
         Statement left_out = database_.prepare(
             "SELECT participant_id || ', session ' || ordinal FROM source.session WHERE end_state IS NULL AND " +
             kKept + " ORDER BY participant_id, ordinal");
         while (left_out.step()) report_.unfinished.push_back(source_ + ": " + left_out.text(0));
+        if (taken_ == Taken::AsFarAsReadable) return listSessions(found);  // such a session is left out by itself
         refuseWhere(
             "SELECT s.participant_id FROM source.session s JOIN main.session m USING(participant_id, ordinal) "
             "WHERE s.session_id<>m.session_id AND " +
                 kKept,
             "participant code ", " stands for two people: their sessions differ");
-        std::vector<std::string> ids;
-        Statement sessions =
-            database_.prepare("SELECT session_id FROM source.session WHERE end_state IS NOT NULL AND " + kKept +
-                              " ORDER BY participant_id, ordinal");
-        while (sessions.step()) ids.push_back(sessions.text(0));
-        for (const std::string& id : ids) mergeSession(id);
+        listSessions(found);
     }
 
-    void mergeSession(const std::string& id) {
-        if (!database_.prepare("SELECT 1 FROM main.session WHERE session_id=?").bind(id).step()) {
+    void listSessions(std::vector<std::pair<std::string, std::string>>& found) {
+        Statement sessions = database_.prepare(
+            "SELECT session_id, participant_id || ', session ' || ordinal FROM source.session WHERE end_state IS NOT "
+            "NULL AND " +
+            kKept + " ORDER BY participant_id, ordinal");
+        while (sessions.step()) found.emplace_back(sessions.text(0), sessions.text(1));
+    }
+
+    void mergeSession(const std::string& id, Healer& healer) {
+        const bool known = database_.prepare("SELECT 1 FROM main.session WHERE session_id=?").bind(id).step();
+        if (known) tellHealed(healer.healSession(id));
+        if (const SessionDamage damage = damageOf(database_, tables_, kSource, id); damage.any()) {
+            for (const std::string& line : damage.lines())
+                report_.damaged.push_back(source_ + ": " + damage.name + ", " + line + ": left out");
+            return;
+        }
+        if (!known) {
             copySession(id);
             ++report_.sessions;
             return;
@@ -178,7 +232,8 @@ private:
             database_.prepare("DELETE FROM main.session WHERE session_id=?").bind(id).run();
             copySession(id);
         }
-        const UnitedRemarks united = uniteRemarks(database_, id, remarks);
+        UnitedRemarks united;
+        changeLater(database_, id, [&] { united = uniteRemarks(database_, id, remarks); });
         ++(behind || united.changed ? report_.replaced : report_.known);
         reportConflicts(id, united.conflicts);
     }
@@ -248,55 +303,12 @@ private:
         return find.integer(0);
     }
 
-    /// Everybody keeps their row of the square; where stations gave one place twice, the second takes the same row in a
-    /// further replicate.
-    void mergePlaces() {
-        database_.execute(
-            "INSERT OR IGNORE INTO main.design_slot(protocol_sha256, between_group, sequence_index, replicate, "
-            "state, kind) SELECT protocol_sha256, between_group, sequence_index, replicate, 'free', kind "
-            "FROM source.design_slot");
-        database_.execute(
-            "UPDATE main.design_slot SET state='free', participant_id=NULL WHERE participant_id IN(SELECT "
-            "participant_id FROM main.participant WHERE status='excluded')");
-        Statement taken = database_.prepare(
-            "SELECT s.participant_id, s.protocol_sha256, s.kind, s.between_group, s.sequence_index, s.replicate, "
-            "s.state, s.station FROM source.design_slot s JOIN main.participant p USING(participant_id) "
-            "WHERE p.status<>'excluded' ORDER BY s.replicate, s.sequence_index, s.participant_id");
-        while (taken.step()) takePlace(taken);
-    }
-
-    void takePlace(const Statement& row) {
-        const std::string who = row.text(0), sha256 = row.text(1), kind = row.text(2), group = row.text(3);
-        const std::int64_t index = row.integer(4), wanted = row.integer(5);
-        const std::string state = row.text(6);
-        Statement own = database_.prepare("SELECT 1 FROM main.design_slot WHERE participant_id=?");
-        if (own.bind(who).step()) {
-            database_.prepare("UPDATE main.design_slot SET state=? WHERE participant_id=?").bind(state, who).run();
-            return;
-        }
-        const auto place = [&](std::int64_t replicate) {
-            Statement take = database_.prepare(
-                "UPDATE main.design_slot SET state=?, participant_id=?, station=? WHERE protocol_sha256=? AND kind=? "
-                "AND between_group=? AND sequence_index=? AND replicate=? AND participant_id IS NULL");
-            const auto station = row.isNull(7) ? std::nullopt : std::optional(row.text(7));
-            take.bind(state, who, station, sha256, kind, group, index, replicate).run();
-            return database_.changes() == 1;
-        };
-        if (place(wanted)) return;
-        report_.moved_places.push_back(who);
-        for (std::int64_t replicate = 0; !place(replicate); ++replicate)
-            database_
-                .prepare(
-                    "INSERT OR IGNORE INTO main.design_slot(protocol_sha256, between_group, sequence_index, replicate, "
-                    "state, kind) SELECT protocol_sha256, between_group, sequence_index, ?5, 'free', kind FROM "
-                    "main.design_slot WHERE protocol_sha256=?1 AND kind=?2 AND between_group=?3 AND replicate=?4")
-                .bind(sha256, kind, group, wanted, replicate + 1)
-                .run();
-    }
-
     const Database& database_;
     std::string source_;
     MergeReport& report_;
+    Taken taken_;
+    bool study_damaged_ = false;  // rows that everybody needs cannot be trusted
+    std::string other_study_;     // why the source seems to be of another study
     std::vector<Table> tables_;
     std::map<std::string, std::string> left_out_;  // code → surrogate
 };
@@ -304,14 +316,35 @@ private:
 /// A source must be sound and of this program's schema: columns are copied by their names. Returns what is wrong with
 /// its audit, which nothing but a person can judge.
 Result<std::vector<std::string>> checkSource(const std::string& path) {
-    const auto opened = openForReading(path);
+    const auto opened = openForReading(path, OlderFile::Refuse);
     if (!opened) return opened.errors();
     return guarded(path, [&] { return checkAudit(**opened).faults; });
 }
 
+/// A file that SQLite would write into is attached as a copy.
+void mergeUntouched(const Database& database, const std::string& source, const Workshop& workshop,
+                    MergeReport& report) {
+    const bool rests = !staysUntouched(source);
+    if (rests) openUntouched(source)->copyTo(workshop.source);
+    Merge(database, source, report).run(rests ? workshop.source : source);
+    removeDatabase(workshop.source);
+}
+
+/// What no source could heal.
+void tellDamage(const Database& result, const std::string& out, MergeReport& report) {
+    const auto tables = sessionTables(result);
+    Statement sessions = result.prepare("SELECT session_id FROM session ORDER BY participant_id, ordinal");
+    while (sessions.step()) {
+        const SessionDamage damage = damageOf(result, tables, "main", sessions.text(0));
+        for (const std::string& line : damage.lines()) report.damaged.push_back(out + ": " + damage.name + ", " + line);
+    }
+    for (const RowFault& fault : rowFaults(result, "main"))
+        report.damaged.push_back(out + ": " + titleOf(fault) + " is not as it was written");
+}
+
 }  // namespace
 
-Result<MergeReport> mergeDatabases(const std::vector<std::string>& sources, const std::string& out,
+Result<MergeReport> mergeDatabases(const std::vector<std::string>& sources, const std::string& to,
                                    const OpenOptions& options) {
     MergeReport report;
     for (const std::string& source : sources) {
@@ -319,32 +352,44 @@ Result<MergeReport> mergeDatabases(const std::vector<std::string>& sources, cons
         if (!faults) return faults.errors();
         for (const std::string& fault : *faults) report.conflicts.push_back(source + ": audit: " + fault);
     }
+    const std::string out = behindLink(to);
     const auto lock = ProcessLock::take(out);
     if (!lock) return lock.errors();
-    const std::string part = out + ".part";
-    std::error_code none;
-    fs::remove(part, none);
-    const auto copied = guarded(out, [&] {
-        if (fs::exists(out)) Database(out, OpenMode::ReadWrite).copyTo(part);
+    return guarded(out, [&] {
+        const Workshop workshop(out);
+        if (fs::exists(out)) Database(out, OpenMode::ReadWrite).copyTo(workshop.part);
         // A log that outlives our own look at the file belongs to somebody who has it open.
         if (fs::exists(out + "-wal")) throw std::runtime_error("another program has this database open; end it first");
-        return Done{};
-    });
-    if (!copied) return copied.errors();
-    auto merged = guarded(out, [&] {
-        const OpenedDatabase opened = openForWriting(part, options);
-        if (!opened.database) throw std::runtime_error(opened.errors.front().message);
-        for (const std::string& source : sources) Merge(*opened.database, source, report).run();
+        {
+            const OpenedDatabase opened = openForWriting(workshop.part, options);
+            if (!opened.database) throw std::runtime_error(opened.errors.front().message);
+            for (const std::string& source : sources) mergeUntouched(*opened.database, source, workshop, report);
+            tellDamage(*opened.database, out, report);
+        }
+        if (options.group) keepPrivate(out, true);
+        shareLike(out, workshop.part);
+        std::error_code refused;
+        fs::rename(workshop.part, out, refused);
+        if (refused) throw std::runtime_error("cannot be written: " + refused.message());
         return report;
     });
-    if (merged) fs::rename(part, out, none);
-    if (merged && none) merged = Error{.message = "cannot be written: " + none.message(), .file = out};
-    if (!merged)
-        for (const char* suffix : {"", "-wal", "-shm"}) {
-            std::error_code ignored;
-            fs::remove(part + suffix, ignored);
+}
+
+Result<MergeReport> mergeDamaged(const std::string& source, const std::string& file, const std::string& out,
+                                 const OpenOptions& options) {
+    return guarded(out, [&] {
+        MergeReport report;
+        const OpenedDatabase opened = openForWriting(out, options);
+        if (!opened.database) throw std::runtime_error(opened.errors.front().message);
+        try {
+            Merge(*opened.database, source, report, Taken::AsFarAsReadable).run(file);
+        } catch (const SqliteError& error) {
+            if (!isDamage(error)) throw;
+            report = {};
+            report.damaged.push_back(source + ": nothing of it can be read (" + error.what() + ")");
         }
-    return merged;
+        return report;
+    });
 }
 
 }  // namespace passung::store

@@ -1,9 +1,15 @@
 #include "study/store/open_database.h"
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 
 #include "study/store/backup.h"
+#include "study/store/private_files.h"
 #include "study/store/revisions.h"
+#include "study/store/row_hash.h"
+#include "study/store/untouched.h"
+#include "study/store/value_hash.h"
 
 namespace passung::store {
 namespace {
@@ -38,6 +44,7 @@ void checkIntegrity(const Database& database) {
 RecoveryReport markCrashed(const Database& database) {
     RecoveryReport report;
     Transaction transaction(database);
+    std::vector<std::string> crashed;
     {
         Statement attempts = database.prepare(
             "SELECT participant_id || ', session ' || ordinal || ', trial ' || (trial_index + 1) || ', attempt ' || "
@@ -46,8 +53,13 @@ RecoveryReport markCrashed(const Database& database) {
             "ORDER BY attempt_id");
         while (attempts.step()) report.crashed_attempts.push_back(attempts.text(0));
         Statement sessions = database.prepare(
-            "SELECT participant_id || ', session ' || ordinal FROM session WHERE end_state IS NULL ORDER BY rowid");
-        while (sessions.step()) report.crashed_sessions.push_back(sessions.text(0));
+            "SELECT participant_id || ', session ' || ordinal, session_id FROM session WHERE end_state IS NULL ORDER "
+            "BY "
+            "rowid");
+        while (sessions.step()) {
+            report.crashed_sessions.push_back(sessions.text(0));
+            crashed.push_back(sessions.text(1));
+        }
     }
     database.execute(
         "UPDATE attempt SET outcome='crashed', valid=0, invalid_reason='the program ended during the attempt' "
@@ -57,27 +69,39 @@ RecoveryReport markCrashed(const Database& database) {
         "UPDATE participant SET status='enrolled', status_reason=(SELECT 'session ' || max(ordinal) || ' did not "
         "complete' FROM session s WHERE s.participant_id=participant.participant_id) WHERE status='active'; "
         "UPDATE design_slot SET state='free', participant_id=NULL WHERE state='assigned'");
+    for (const std::string& session : crashed) sealSession(database, session);
     transaction.commit();
     return report;
 }
 
 /// Texts of UTC sort as their times. Virtual time says nothing about the clock.
-std::string laterUtc(const Database& database, const std::string& now_utc) {
-    const std::string newest = database.text(
+std::string newestUtc(const Database& database) {
+    return database.text(
         "SELECT max(t) FROM (SELECT max(started_utc, coalesce(ended_utc, '')) t FROM session WHERE epoch='wall' "
         "UNION ALL SELECT t_utc FROM audit)");
+}
+
+std::string laterUtc(const Database& database, const std::string& now_utc) {
+    const std::string newest = newestUtc(database);
     return newest > now_utc ? newest : std::string();
 }
 
 /// Fills `opened` for a file whose schema this program may write.
-void prepareForWriting(const OpenOptions& options, SchemaState state, OpenedDatabase& opened) {
+void prepareForWriting(const std::string& path, const OpenOptions& options, SchemaState state, OpenedDatabase& opened) {
     const Database& database = *opened.database;
     database.execute("PRAGMA busy_timeout=" + std::to_string(options.busy_timeout_ms));
     if (options.max_pages > 0) database.execute("PRAGMA max_page_count=" + std::to_string(options.max_pages));
     checkIntegrity(database);
     database.execute("PRAGMA journal_mode=WAL");
     if (state != SchemaState::Current) upgradeSchema(database, options.now_utc);
+    if (state == SchemaState::Older) {
+        Transaction transaction(database);
+        sealNewRows(database);
+        transaction.commit();
+    }
+    watchStudyRows(*opened.database);
     opened.recovery = markCrashed(database);
+    keepPrivate(path, options.group);  // the log that has come meanwhile too
     opened.recovery.later_utc = laterUtc(database, options.now_utc);
     opened.outcome = state == SchemaState::Empty     ? OpenOutcome::Created
                      : state == SchemaState::Current ? OpenOutcome::Current
@@ -108,16 +132,31 @@ void inspectAndPrepare(const std::string& path, const OpenOptions& options, Open
         case SchemaState::Current:
             break;
     }
-    prepareForWriting(options, state, opened);
+    prepareForWriting(path, options, state, opened);
 }
 
 }  // namespace
+
+bool pagesAreSound(const Database& database) {
+    constexpr std::array kOfRows = {"CHECK constraint failed", "NULL value in",      " value in ",
+                                    "missing from index",      "wrong # of entries", "non-unique entry"};
+    Statement verdict = database.prepare("PRAGMA quick_check(200)");
+    while (verdict.step()) {
+        const std::string line = verdict.text(0);
+        if (line != "ok" && std::none_of(kOfRows.begin(), kOfRows.end(),
+                                         [&](const char* what) { return line.find(what) != std::string::npos; }))
+            return false;
+    }
+    return true;
+}
 
 OpenedDatabase openForWriting(const std::string& path, const OpenOptions& options) {
     OpenedDatabase opened;
     const bool existed = std::filesystem::exists(path);
     const auto done = guarded(path, [&] {
+        if (existed) keepPrivate(path, options.group);
         opened.database = std::make_unique<Database>(path, options.create ? OpenMode::Create : OpenMode::ReadWrite);
+        if (!existed) keepPrivate(path, options.group);
         inspectAndPrepare(path, options, opened);
         return Done{};
     });
@@ -133,25 +172,33 @@ OpenedDatabase openForWriting(const std::string& path, const OpenOptions& option
     return opened;
 }
 
-Result<std::unique_ptr<Database>> openForReading(const std::string& path) {
+Result<std::unique_ptr<Database>> openForReading(const std::string& path, OlderFile older, ReadCheck check) {
     if (!std::filesystem::exists(path)) return fileError(path, "no such file");
     auto opened = guarded(path, [&] {
-        // A connection that may write tidies SQLite's side files away when it closes; query_only keeps it from writing.
-        auto database = std::make_unique<Database>(path, OpenMode::ReadWrite);
-        database->execute("PRAGMA query_only=ON");
+        auto database = openUntouched(path);
+        const auto look = [&] {
+            if (check == ReadCheck::Pages || (check == ReadCheck::Structure && !pagesAreSound(*database)))
+                checkIntegrity(*database);
+        };
         switch (inspectSchema(*database)) {
             case SchemaState::Empty:
             case SchemaState::Foreign:
                 throw std::runtime_error(kForeign);
             case SchemaState::Older:
-                throw std::runtime_error("written by an older program: open it once for writing to upgrade it");
+                if (older == OlderFile::Refuse)
+                    throw std::runtime_error("written by an older program: open it once for writing to upgrade it");
+                look();
+                database = privateCopy(*database, path);
+                upgradeSchema(*database, newestUtc(*database));
+                break;
             case SchemaState::NewerIncompatible:
                 throw std::runtime_error(newerText(*database, "it cannot be read"));
             case SchemaState::NewerCompatible:
             case SchemaState::Current:
+                look();
                 break;
         }
-        checkIntegrity(*database);
+        database->execute("PRAGMA query_only=ON");
         return database;
     });
     if (!opened) return withBackupNamed(path, opened.errors());

@@ -19,7 +19,18 @@ struct OpenedDatabase {
 /// The steps of Store::open() after its lock is taken: open, inspect, check, upgrade, mark what crashed.
 OpenedDatabase openForWriting(const std::string& path, const OpenOptions& options);
 
-/// Opens an existing Passung file that this program can read, without changing it.
-Result<std::unique_ptr<Database>> openForReading(const std::string& path);
+/// What becomes of a file of an older program that is only read: an upgraded copy of it is, which nobody else sees;
+/// nothing, where what is read has to be what lies in the file.
+enum class OlderFile { UpgradeCopy, Refuse };
+
+/// How far a file has to be sound to be opened: pages and rows; pages, whatever rows hold; no more than its beginning.
+enum class ReadCheck { Pages, Structure, None };
+
+/// Are the file's pages sound? Faults of single rows and of indices are not of them.
+bool pagesAreSound(const Database& database);
+
+/// Opens an existing Passung file that this program can read, without changing a byte of it (see openUntouched()).
+Result<std::unique_ptr<Database>> openForReading(const std::string& path, OlderFile older = OlderFile::UpgradeCopy,
+                                                 ReadCheck check = ReadCheck::Pages);
 
 }  // namespace passung::store

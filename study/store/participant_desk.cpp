@@ -150,4 +150,12 @@ Result<std::string> ParticipantDesk::erase(const std::string& code) {
         [&](const Database& database) { return eraseParticipant(database, store_.thread_->path(), code, actor_); });
 }
 
+Result<bool> ParticipantDesk::eraseFromBackup(const std::string& code) {
+    return store_.thread_->call([&](const Database& database) {
+        Statement find = database.prepare("SELECT identity FROM participant WHERE participant_id=?");
+        if (!find.bind(code).step()) throw std::runtime_error("participant " + code + " is not enrolled");
+        return store::eraseFromBackup(store_.thread_->path(), find.text(0), actor_);
+    });
+}
+
 }  // namespace passung::store

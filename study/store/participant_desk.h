@@ -42,6 +42,9 @@ public:
     /// Nothing of them is left in the database's files (see eraseParticipant()). Returns the surrogate in the audit.
     Result<std::string> erase(const std::string& code);
 
+    /// Nor in its backup (see eraseFromBackup()), before that. False if it does not hold them.
+    Result<bool> eraseFromBackup(const std::string& code);
+
 private:
     Store& store_;
     Actor actor_;

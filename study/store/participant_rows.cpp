@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "study/store/audit.h"
+#include "study/store/person_identity.h"
 
 namespace passung::store {
 namespace {
@@ -50,7 +51,13 @@ bool insertParticipant(const Database& database, const std::string& code, protoc
     }
     refuseCodeOfNoStation(code, wanted, station);
     refuseErasedCode(database, code, wanted);
-    database.prepare("INSERT INTO participant VALUES(?, ?, 'enrolled', NULL, ?)").bind(code, kind, created_utc).run();
+    const std::string identity = newIdentity(database, code, kind);
+    database
+        .prepare(
+            "INSERT INTO participant(participant_id, kind, status, created_utc, identity) "
+            "VALUES(?, ?, 'enrolled', ?, ?)")
+        .bind(code, kind, created_utc, identity)
+        .run();
     return true;
 }
 

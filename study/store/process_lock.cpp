@@ -6,11 +6,18 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
+#include <thread>
+
+#include "study/store/private_files.h"
 
 namespace passung::store {
 namespace {
+
+constexpr int kLooks = 5;
+constexpr std::chrono::milliseconds kBetweenLooks{5};
 
 /// Is the file that we locked still the one at `path`, not one that its last owner has just removed?
 bool isCurrent(const std::string& path, int descriptor) {
@@ -47,15 +54,20 @@ Result<ProcessLock> ProcessLock::take(const std::string& database_path) {
     const auto proper = properPath(database_path);
     if (!proper) return proper.errors();
     const std::string path = *proper + ".lock";
-    for (;;) {
-        const int descriptor = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    for (int looks = 0;;) {
+        const int descriptor = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
         if (descriptor < 0) {
             return lockError(database_path, std::string("cannot be opened for writing: ") + std::strerror(errno));
         }
         if (flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
             close(descriptor);
+            if (++looks < kLooks) {  // a reader may just be asking whether anybody writes
+                std::this_thread::sleep_for(kBetweenLooks);
+                continue;
+            }
             return lockError(database_path, "another program is writing this database; end it first");
         }
+        shareLike(*proper, path);
         if (isCurrent(path, descriptor)) return ProcessLock(path, descriptor);
         close(descriptor);
     }
@@ -69,6 +81,14 @@ ProcessLock::~ProcessLock() {
     if (descriptor_ < 0) return;
     unlink(path_.c_str());
     close(descriptor_);
+}
+
+bool isBeingWritten(const std::string& database_path) {
+    const int descriptor = open((database_path + ".lock").c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) return errno == EACCES;
+    const bool free = flock(descriptor, LOCK_SH | LOCK_NB) == 0;
+    close(descriptor);
+    return !free;
 }
 
 }  // namespace passung::store

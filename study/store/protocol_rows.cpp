@@ -1,4 +1,5 @@
 #include "study/store/protocol_rows.h"
+#include "core/base/regular_file.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -96,7 +97,7 @@ void requireSameStudy(const Database& database, const protocol::StudyPlan& plan)
 Result<std::vector<MeshContent>> readMeshes(const protocol::StudyPlan& plan) {
     std::vector<MeshContent> meshes;
     for (const protocol::MeshSource& mesh : plan.meshes) {
-        const auto bytes = protocol::readFile(mesh.path);
+        const auto bytes = readRegularFile(mesh.path, kMostMeshBytes);
         if (!bytes) return bytes.errors();
         meshes.push_back({mesh.name, sha256Hex(*bytes), static_cast<std::int64_t>(bytes->size())});
     }

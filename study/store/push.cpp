@@ -3,119 +3,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
+#include <cstdlib>
 #include <map>
 #include <optional>
 #include <pqxx/pqxx>
 #include <set>
 
 #include "study/store/audit.h"
-#include "study/store/hex_text.h"
+#include "study/store/digest.h"
 #include "study/store/open_database.h"
+#include "study/store/person_identity.h"
+#include "study/store/push_copies.h"
+#include "study/store/row_hash.h"
 #include "study/store/same_study.h"
+#include "study/store/session_damage.h"
 #include "study/store/session_tables.h"
 #include "study/store/tombstone.h"
 
 namespace passung::store {
 namespace {
-
-using Values = std::vector<std::optional<std::string>>;
-
-/// A table as PostgreSQL gets it, and the query that reads its rows here.
-struct Copy {
-    std::string name;
-    std::vector<TableColumn> columns;
-    std::vector<std::string> keys;
-    std::string reference;  // clause of a foreign key; may be empty
-    std::string query;      // columns in their order; of a session: ?1 is its id
-};
-
-std::string typeThere(const std::string& type) {
-    if (type == "INTEGER") return "BIGINT";
-    if (type == "REAL") return "DOUBLE PRECISION";
-    return type == "BLOB" ? "BYTEA" : "TEXT";
-}
-
-template <class Items, class Text>
-std::string joined(const Items& items, Text text) {
-    std::string all;
-    for (const auto& item : items) all += (all.empty() ? "" : ", ") + text(item);
-    return all;
-}
-
-std::string nameOf(const TableColumn& column) { return column.name; }
-
-std::string hexOf(std::span<const std::byte> bytes) {
-    return hexText(std::span(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
-}
-
-Values valuesOf(const Statement& row, const std::vector<TableColumn>& columns) {
-    Values values;
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-        const int column = static_cast<int>(i);
-        if (row.isNull(column))
-            values.emplace_back();
-        else if (columns[i].type == "REAL")
-            values.push_back(fmt::format("{:.17g}", row.real(column)));
-        else if (columns[i].type == "BLOB")
-            values.push_back("\\x" + hexOf(row.blob(column)));
-        else
-            values.push_back(row.text(column));
-    }
-    return values;
-}
-
-/// Rows that do not belong to a session. Their numbers mean nothing outside this file and stay here.
-std::vector<Copy> studyCopies(const Database& database) {
-    const auto copyOf = [&](const std::string& name, std::vector<std::string> keys, std::string where = "") {
-        Table table = describeTable(database, name);
-        const TableColumn* number = table.number();
-        const std::string numbering = number != nullptr ? number->name : "";
-        std::erase_if(table.columns, [&](const TableColumn& column) { return column.name == numbering; });
-        if (keys.empty())
-            for (const TableColumn& column : table.columns)
-                if (column.key > 0) keys.push_back(column.name);
-        const bool of_person = table.find("participant_id") != nullptr && name != "participant";
-        if (table.find("participant_id") != nullptr) where = " WHERE " + kKept + where;
-        return Copy{name, table.columns, keys, of_person ? "REFERENCES participant ON DELETE CASCADE" : "",
-                    "SELECT " + joined(table.columns, nameOf) + " FROM " + name + where};
-    };
-    std::vector<Copy> copies;
-    for (const std::string& name : tableNames(database)) {
-        const Table table = describeTable(database, name);
-        if (name == "session" || name == "design_slot" || table.find("protocol_sha256") == nullptr) continue;
-        copies.push_back(copyOf(name, name == "condition" ? std::vector<std::string>{"protocol_sha256", "condition"}
-                                                          : std::vector<std::string>{}));
-    }
-    copies.push_back(copyOf("measure", {}));
-    copies.push_back(copyOf("questionnaire", {}));
-    copies.push_back(copyOf("participant", {}));
-    copies.push_back(copyOf("consent", {"participant_id", "text_sha256", "clause", "decided_utc", "decision"}));
-    copies.push_back(copyOf("design_slot", {"participant_id"}, " AND participant_id IS NOT NULL"));
-    return copies;
-}
-
-std::vector<Copy> sessionCopies(const std::vector<Table>& tables) {
-    std::vector<Copy> copies;
-    for (const Table& table : tables) {
-        Copy copy{table.name, table.columns, {}, "REFERENCES session ON DELETE CASCADE", {}};
-        for (const TableColumn& column : table.columns)
-            if (column.key > 0) copy.keys.push_back(column.name);
-        std::string columns = joined(table.columns, [](const TableColumn& column) { return "t." + column.name; });
-        if (table.name == "session") copy.reference = "";
-        if (table.find("session_id") == nullptr) {
-            copy.columns.push_back({"session_id", "TEXT", 0, true, {}, {}});
-            columns += ", ?1";
-        }
-        if (table.name != "session") copy.keys.insert(copy.keys.begin(), "session_id");
-        if (table.find("condition_id") != nullptr) {
-            copy.columns.push_back({"condition", "TEXT", 0, false, {}, {}});
-            columns += ", (SELECT condition FROM condition c WHERE c.condition_id=t.condition_id)";
-        }
-        copy.query = "SELECT " + columns + " FROM " + table.name + " t WHERE t." + rowsOfSession(tables, table, "main");
-        copies.push_back(copy);
-    }
-    return copies;
-}
 
 /// The conversation with PostgreSQL.
 class Push {
@@ -127,6 +34,8 @@ public:
         const std::vector<Copy> study = studyCopies(database_), sessions = sessionCopies(tables);
         const std::string name = database_.text("SELECT name FROM protocol_version LIMIT 1");
         if (name.empty()) throw std::runtime_error("holds no study yet");
+        // Until this connection ends: several that push one study at once would make its tables and rows twice.
+        pqxx::nontransaction(there_).exec_params("SELECT pg_advisory_lock(hashtext($1))", "passung " + name);
         PushReport report;
         pushStudy(name, study, sessions, report);
         Statement running = database_.prepare(
@@ -155,9 +64,10 @@ private:
             "CREATE TABLE IF NOT EXISTS pushed_session(session_id TEXT PRIMARY KEY REFERENCES session ON DELETE "
             "CASCADE, digest TEXT NOT NULL)");
         const auto left_out = compareWithThere(work, study, report);
+        leaveOutDamaged(report);
         Statement people = database_.prepare("SELECT participant_id FROM participant");
         while (people.step())  // who gave a place back has it there no more
-            if (decided_there_.count(people.text(0)) == 0)
+            if (decided_there_.count(people.text(0)) == 0 && damaged_.count(people.text(0)) == 0)
                 work.exec_params("DELETE FROM design_slot WHERE participant_id=$1", people.text(0));
         for (const Copy& copy : study) {
             const bool changes = copy.name == "participant" || copy.name == "design_slot";
@@ -180,6 +90,20 @@ private:
         work.commit();
     }
 
+    /// Whoever's row is damaged stays here with all sessions; what everybody needs and is damaged ends the push.
+    void leaveOutDamaged(PushReport& report) {
+        for (const std::string& fault : checkAudit(database_).faults)
+            throw std::runtime_error("audit, " + fault + ", nothing was pushed: passung restore heals it");
+        for (const RowFault& fault : rowFaults(database_, "main")) {
+            if (fault.participant_id.empty())
+                throw std::runtime_error(titleOf(fault) + " is damaged, nothing was pushed: passung restore heals it");
+            report.damaged.push_back(titleOf(fault) + ": is not as it was written");
+            damaged_.insert(fault.participant_id);
+        }
+        for (const std::string& code : damaged_)
+            database_.prepare("INSERT OR IGNORE INTO temp.left_out VALUES(?)").bind(code).run();
+    }
+
     /// The audit's rows mean the same everywhere by their hashes.
     Copy auditCopy() const {
         Copy copy{"audit", describeTable(database_, "audit").columns, {"hash"}, {}, {}};
@@ -198,6 +122,7 @@ private:
             copies, [&](const Copy& copy) { return std::find(apart.begin(), apart.end(), copy.name) != apart.end(); });
         database_.execute("PRAGMA query_only=OFF");  // for tables in `temp`; the file is not written
         for (const Copy& copy : copies) fetch(work, copy);
+        giveIdentities(database_, "temp");  // of people who were pushed before there were any
         requireSameStudy(database_, "temp", [](const std::string& reason) { throw std::runtime_error(reason); });
         for (const auto& [code, surrogate] : erasedPeople(database_, "main", "temp")) {
             work.exec_params("DELETE FROM session WHERE participant_id=$1", code);
@@ -278,15 +203,20 @@ private:
 
     void pushSession(const std::string& id, const std::string& name, const std::vector<Copy>& copies,
                      const std::vector<Table>& tables, PushReport& report) {
+        if (const SessionDamage damage = damageOf(database_, tables, "main", id); damage.any()) {
+            for (const std::string& line : damage.lines()) report.damaged.push_back(name + ", " + line);
+            return;
+        }
         const std::string digest = sessionDigest(database_, tables, "main", id);
         pqxx::work work(there_);
         const auto found = work.exec_params("SELECT digest FROM pushed_session WHERE session_id=$1", id);
-        if (!found.empty() && found[0][0].c_str() == digest) {
+        const bool known = !found.empty() && found[0][0].c_str() == digest;
+        if (known && isSameThere(work, id, copies)) {
             ++report.known;
             return;
         }
-        if (!found.empty()) refuseOtherTrials(work, id);
-        if (!found.empty() && hasMoreThere(work, id)) {
+        if (!found.empty() && !known) refuseOtherTrials(work, id);
+        if (!found.empty() && !known && hasMoreThere(work, id)) {
             report.newer_there.push_back(name);
             return;
         }
@@ -298,7 +228,58 @@ private:
         }
         work.exec_params("INSERT INTO pushed_session VALUES($1, $2)", id, digest);
         work.commit();
-        ++(found.empty() ? report.sessions : report.replaced);
+        ++(found.empty() ? report.sessions : known ? report.healed : report.replaced);
+    }
+
+    /// Is every value that was pushed there as it is here? Samples are compared by their SHA-256, which the server
+    /// makes.
+    bool isSameThere(pqxx::work& work, const std::string& id, const std::vector<Copy>& copies) {
+        return std::all_of(copies.begin(), copies.end(), [&](const Copy& copy) {
+            std::vector<std::string> here, there;
+            Statement rows = database_.prepare(copy.query);
+            rows.bind(id);
+            while (rows.step())
+                here.push_back(comparable(copy, [&](int column) { return valueOf(rows, copy, column); }));
+            const auto found = work.exec_params(
+                "SELECT " +
+                    joined(copy.columns,
+                           [&](const TableColumn& column) {
+                               const std::string name = work.quote_name(column.name);
+                               return column.type == "BLOB" ? "encode(sha256(" + name + "), 'hex')" : name;
+                           }) +
+                    " FROM " + work.quote_name(copy.name) + " WHERE session_id=$1",
+                id);
+            for (const auto& row : found)
+                there.push_back(comparable(copy, [&](int column) -> std::optional<std::string> {
+                    if (row[column].is_null()) return std::nullopt;
+                    return row[column].c_str();
+                }));
+            std::sort(here.begin(), here.end());
+            std::sort(there.begin(), there.end());
+            return here == there;
+        });
+    }
+
+    static std::optional<std::string> valueOf(const Statement& row, const Copy& copy, int column) {
+        if (row.isNull(column)) return std::nullopt;
+        const std::string& type = copy.columns[static_cast<std::size_t>(column)].type;
+        if (type == "REAL") return fmt::format("{:.17g}", row.real(column));
+        if (type != "BLOB") return row.text(column);
+        const auto blob = row.blob(column);
+        return sha256Hex({reinterpret_cast<const char*>(blob.data()), blob.size()});
+    }
+
+    /// A row as one text. Numbers by their value: two programs write them with other digits.
+    template <class Value>
+    static std::string comparable(const Copy& copy, Value value) {
+        std::string text;
+        for (std::size_t i = 0; i < copy.columns.size(); ++i) {
+            std::optional<std::string> field = value(static_cast<int>(i));
+            if (field && copy.columns[i].type == "REAL")
+                field = std::to_string(std::bit_cast<std::uint64_t>(std::strtod(field->c_str(), nullptr)));
+            text += field ? std::to_string(field->size()) + ":" + *field + ";" : "N;";
+        }
+        return text;
     }
 
     /// A session that has changed here still holds every trial that had ended when it was pushed.
@@ -342,6 +323,7 @@ private:
 
     const Database& database_;
     pqxx::connection there_;
+    std::set<std::string> damaged_;        // codes whose own row here is damaged
     std::set<std::string> decided_there_;  // codes that were excluded, withdrew or were readmitted in a newer copy
 };
 
@@ -351,7 +333,7 @@ std::string firstLine(const std::string& text) { return text.substr(0, text.find
 }  // namespace
 
 Result<PushReport> pushDatabase(const std::string& path, const std::string& to) {
-    const auto opened = openForReading(path);
+    const auto opened = openForReading(path, OlderFile::Refuse);
     if (!opened) return opened.errors();
     return guarded(path, [&] {
         (*opened)->execute("BEGIN");

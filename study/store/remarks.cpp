@@ -4,6 +4,7 @@
 
 #include "study/protocol/json.h"
 #include "study/store/sqlite.h"
+#include "study/store/value_hash.h"
 
 namespace passung::store {
 namespace {
@@ -11,6 +12,19 @@ namespace {
 constexpr const char* kExperimenter = "experimenter";
 
 std::string noAttempt(std::int64_t attempt_id) { return "there is no attempt " + std::to_string(attempt_id); }
+
+void invalidate(const Database& database, std::int64_t attempt_id, const std::string& reason,
+                const std::string& now_utc) {
+    markInvalid(database, attempt_id, "invalidated by the experimenter: " + reason);
+    const std::string payload = protocol::JsonObject().boolean("accepted", true).text("text", reason).str();
+    database
+        .prepare(
+            "INSERT INTO event(segment_id, attempt_id, t_ns, source, event, payload_json, t_utc) "
+            "SELECT segment_id, attempt_id, end_ns, ?, 'command_invalidate', ?, CASE epoch WHEN 'wall' THEN ? END "
+            "FROM attempt JOIN segment USING(segment_id) JOIN session USING(session_id) WHERE attempt_id=?")
+        .bind(kExperimenter, payload, now_utc, attempt_id)
+        .run();
+}
 
 }  // namespace
 
@@ -33,15 +47,10 @@ void insertNote(const Database& database, const Note& note) {
 
 void invalidateLater(const Database& database, std::int64_t attempt_id, const std::string& reason,
                      const std::string& now_utc) {
-    markInvalid(database, attempt_id, "invalidated by the experimenter: " + reason);
-    const std::string payload = protocol::JsonObject().boolean("accepted", true).text("text", reason).str();
-    database
-        .prepare(
-            "INSERT INTO event(segment_id, attempt_id, t_ns, source, event, payload_json, t_utc) "
-            "SELECT segment_id, attempt_id, end_ns, ?, 'command_invalidate', ?, CASE epoch WHEN 'wall' THEN ? END "
-            "FROM attempt JOIN segment USING(segment_id) JOIN session USING(session_id) WHERE attempt_id=?")
-        .bind(kExperimenter, payload, now_utc, attempt_id)
-        .run();
+    Statement find =
+        database.prepare("SELECT session_id FROM attempt JOIN trial_plan USING(trial_id) WHERE attempt_id=?");
+    if (!find.bind(attempt_id).step()) throw std::runtime_error(noAttempt(attempt_id));
+    changeLater(database, find.text(0), [&] { invalidate(database, attempt_id, reason, now_utc); });
 }
 
 void noteLater(const Database& database, std::int64_t attempt_id, const std::string& text, const std::string& now_utc) {
@@ -51,7 +60,8 @@ void noteLater(const Database& database, std::int64_t attempt_id, const std::str
         "USING(trial_id) WHERE a.attempt_id=?1) ORDER BY s.rowid DESC LIMIT 1");
     if (!find.bind(attempt_id, now_utc).step())
         throw std::runtime_error(attempt_id > 0 ? noAttempt(attempt_id) : "holds no session");
-    insertNote(database, {find.text(0), find.text(1), kExperimenter, text});
+    const Note note{find.text(0), find.text(1), kExperimenter, text};
+    changeLater(database, note.session_id, [&] { insertNote(database, note); });
 }
 
 }  // namespace passung::store

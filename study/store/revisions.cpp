@@ -3,6 +3,7 @@
 #include <array>
 
 #include "study/store/first_schema.h"
+#include "study/store/person_identity.h"
 
 namespace passung::store {
 namespace {
@@ -144,6 +145,54 @@ constexpr const char* kRevision11 = R"sql(
 ALTER TABLE event ADD COLUMN t_utc TEXT;
 )sql";
 
+constexpr const char* kRevision12 = R"sql(
+-- who a participant is in every copy of the study, and all that is left of them there when they are erased
+ALTER TABLE participant ADD COLUMN identity TEXT NOT NULL DEFAULT '';
+)sql";
+
+constexpr const char* kRevision13 = R"sql(
+-- of the pictures: drawn with the visual cue above 0. NULL: not counted yet when the attempt was made.
+ALTER TABLE presentation ADD COLUMN cue_frames INTEGER CHECK(cue_frames BETWEEN 0 AND frames);
+)sql";
+
+constexpr const char* kRevision14 = R"sql(
+-- What of the condition's feedback reached the participant: acknowledged, drawn, played, or handed to the senses of a
+-- simulated one. Ticks and pictures in which it stood above nothing.
+CREATE TABLE delivery(
+    attempt_id INTEGER PRIMARY KEY REFERENCES attempt ON DELETE CASCADE,
+    force_ticks INTEGER NOT NULL CHECK(force_ticks >= 0),
+    visual_frames INTEGER NOT NULL CHECK(visual_frames >= 0),
+    vibrotactile_ticks INTEGER NOT NULL CHECK(vibrotactile_ticks >= 0),
+    audio_ticks INTEGER NOT NULL CHECK(audio_ticks >= 0),
+    masking_ticks INTEGER NOT NULL CHECK(masking_ticks >= 0)) STRICT;
+)sql";
+
+constexpr const char* kRevision15 = R"sql(
+-- Which arithmetic a recording's ticks followed (core/tick/numerics.h). NULL: from before there was a number, counts as
+-- 0.
+ALTER TABLE stream ADD COLUMN numerics INTEGER;
+-- SHA-256 of what the run wrote, by unit of a session, whatever numbers its rows have (value_hash.h); '' is over all
+-- units. Sessions of older programs have none.
+CREATE TABLE session_hash(
+    session_id TEXT NOT NULL REFERENCES session ON DELETE CASCADE,
+    unit TEXT NOT NULL,
+    sha256 TEXT NOT NULL,
+    PRIMARY KEY(session_id, unit)) STRICT, WITHOUT ROWID;
+-- What people changed since: a row of the session before and after. No sha256 before: the row is new.
+CREATE TABLE later_change(
+    session_id TEXT NOT NULL REFERENCES session ON DELETE CASCADE,
+    after_sha256 TEXT NOT NULL,
+    before_sha256 TEXT,
+    PRIMARY KEY(session_id, after_sha256)) STRICT, WITHOUT ROWID;
+-- The same of rows that belong to no session; those of a person go with them.
+CREATE TABLE row_hash(
+    table_name TEXT NOT NULL,
+    row_key TEXT NOT NULL,
+    participant_id TEXT REFERENCES participant ON DELETE CASCADE,
+    sha256 TEXT NOT NULL,
+    PRIMARY KEY(table_name, row_key)) STRICT, WITHOUT ROWID;
+)sql";
+
 const std::array kRevisions = {
     Revision{1, "Protocols, participants, sessions, trials, samples, timing and questionnaires", kFirstSchema, 1},
     // A reader that does not know what was picked would replay another scene.
@@ -160,6 +209,11 @@ const std::array kRevisions = {
     Revision{9, "Pictures and sound of each attempt that a window showed", kRevision9, 8},
     Revision{10, "What became of each trial in the session's order", kRevision10, 8},
     Revision{11, "When by the wall clock each event happened", kRevision11, 8},
+    Revision{12, "An identity of every participant beside the code", kRevision12, 8,
+             [](const Database& database) { giveIdentities(database, "main"); }},
+    Revision{13, "Pictures of each attempt that were drawn with the visual cue", kRevision13, 8},
+    Revision{14, "What of each attempt's feedback was delivered", kRevision14, 8},
+    Revision{15, "Hashes of what was written, the number of a recording's arithmetic", kRevision15, 8},
 };
 
 bool isEmpty(const Database& database) { return database.integer("SELECT count(*) FROM sqlite_master") == 0; }
@@ -191,6 +245,7 @@ void upgradeSchema(const Database& database, const std::string& applied_utc) {
     for (const Revision& revision : kRevisions) {
         if (revision.number <= found) continue;
         database.execute(revision.sql);
+        if (revision.fill != nullptr) revision.fill(database);
         database.prepare("INSERT INTO schema_revision VALUES(?, ?, ?, ?)")
             .bind(revision.number, revision.sentence, revision.oldest_reader, applied_utc)
             .run();

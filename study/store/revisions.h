@@ -13,6 +13,7 @@ struct Revision {
     const char* sentence;  // what it changes, for people
     const char* sql;
     int oldest_reader;  // the oldest schema number whose programs can read a file of this revision
+    void (*fill)(const Database&) = nullptr;  // what its SQL alone cannot do, right after it
 };
 
 /// All revisions this program knows, ascending from 1.

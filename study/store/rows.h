@@ -24,6 +24,7 @@ struct ProtocolRow {
     std::string source_text;
     std::string expanded_json;
     std::string app_version;
+    std::vector<std::string> main_blocks = {};  // whose trials enter means, by the stored plan
 };
 
 /// A mesh file that a protocol names, as it was when the protocol was imported.
@@ -72,6 +73,52 @@ struct ConditionRow {
     std::string protocol_sha256;
     std::string condition;
     Levels levels;
+    // What it asks for, by the stored plan; nothing in files whose plan does not say.
+    std::string task_type = {};            // "peg_in_hole" …
+    std::optional<double> timeout_s = {};  // of a trial
+    std::string timed_by = "program";      // who says when it begins and ends
+    std::string stimulus = "none";         // of its secondary task
+};
+
+/// How many trials of the main phase a session plans of a condition in a block.
+struct PlannedCellRow {
+    std::string session_id;
+    std::string participant_id;
+    std::int64_t session_ordinal = 1;
+    std::string protocol_sha256;
+    std::int64_t block_index = 0;
+    std::string block;
+    std::string condition;
+    std::int64_t trials = 0;
+};
+
+/// What the protocol means to test.
+struct AnalysisRow {
+    std::string protocol_sha256;
+    std::int64_t number = 1;  // in the protocol, from 1
+    std::string outcome;      // a measure; empty: thresholds of a staircase
+    std::string staircase;    // empty: none
+    std::string block;        // empty: every main block that has the outcome
+    std::vector<std::string> factors;
+    std::string test;
+};
+
+/// A file that a protocol names, as far as the database holds it.
+struct NamedFileRow {
+    std::string protocol_sha256;
+    std::string kind;                   // "mesh", "picture", "questionnaire", "questionnaire_texts"
+    std::string name;                   // as the protocol writes it
+    std::optional<std::string> text;    // all of it; empty: only its hash is stored
+    std::optional<std::string> sha256;  // of its bytes, where the text is not stored
+};
+
+/// A questionnaire in one language, as it was or is to be asked.
+struct QuestionnaireRow {
+    std::string questionnaire;  // its key
+    std::string version;
+    std::string language;
+    std::string definition_text;
+    std::optional<std::string> texts_text;
 };
 
 struct MeasureRow {
@@ -186,7 +233,8 @@ struct AttemptRow {
     std::string params_json;
     std::string stages_json;
     std::uint64_t seed = 0;
-    std::string state_hash;  // 16 hexadecimal digits; empty if it did not end
+    std::string state_hash;     // 16 hexadecimal digits; empty if it did not end
+    std::int64_t numerics = 0;  // of its recording (core/tick/numerics.h)
     std::string protocol_sha256;
     std::string app_version;
     std::optional<TimingRow> timing;
@@ -195,14 +243,24 @@ struct AttemptRow {
     std::string timed_by = "program";                    // who said when the trial began and ended
     std::string stimulus = "none";                       // of the secondary task
     std::optional<std::int64_t> trial_ns;                // start of the trial
+    std::optional<std::int64_t> start_tick;              // the same among the attempt's ticks; filled in by exports
     std::map<std::string, double> measures;              // only those that are defined for this attempt
     std::vector<session::ContactEnergy> contact_energy;  // none of attempts from before schema revision 6
     std::optional<session::Presentation> presentation;   // none: no window showed it
+    std::optional<session::Delivered> delivered;         // of its feedback; none: not known
 
     /// A main-phase attempt that counts in means: it ended by its own rules and nothing spoilt it.
     bool counts() const {
         return valid && phase == "main" && (outcome == "success" || outcome == "failure" || outcome == "timeout");
     }
+};
+
+/// Something that is not as it was written, and so is not handed out.
+struct DamageRow {
+    std::string participant_id;  // empty: of the study
+    std::optional<std::int64_t> session_ordinal, trial_index, attempt_no;
+    std::string part;  // "trial 4, attempt 1, samples", "form 2, item_response", or a table of the study
+    std::string what;
 };
 
 /// A stimulus of a secondary task with its response, or a press without one; times after the attempt's start.

@@ -39,7 +39,8 @@ constexpr std::array kAgreements = {
               " us accuracy = \"auto\" picked another setting there"},
     Agreement{"measure", "measure", "s.formula_version<>m.formula_version", "its measure ",
               " follows another version of the formula"},
-    Agreement{"participant", "participant_id", "s.kind<>m.kind OR s.created_utc<>m.created_utc", "participant code ",
+    Agreement{"participant", "participant_id",
+              "s.kind<>m.kind OR s.created_utc<>m.created_utc OR s.identity<>m.identity", "participant code ",
               " stands for two people"},
 };
 

@@ -60,11 +60,18 @@ const TableColumn* Table::number() const {
 
 Table describeTable(const Database& database, const std::string& name) {
     Table table{name, {}};
-    Statement columns = database.prepare("SELECT name, type, pk, \"notnull\" FROM pragma_table_info(?) ORDER BY cid");
+    Statement columns = database.prepare(
+        "SELECT name, type, pk, \"notnull\", trim(dflt_value, char(39)) FROM pragma_table_info(?) ORDER BY cid");
     columns.bind(name);
     while (columns.step()) {
         const int key = static_cast<int>(columns.integer(2));
-        table.columns.push_back({columns.text(0), columns.text(1), key, key > 0 || columns.integer(3) != 0, {}, {}});
+        table.columns.push_back({columns.text(0),
+                                 columns.text(1),
+                                 key,
+                                 key > 0 || columns.integer(3) != 0,
+                                 {},
+                                 {},
+                                 columns.optionalText(4)});
     }
     Statement keys = database.prepare("SELECT \"from\", \"table\", \"to\" FROM pragma_foreign_key_list(?)");
     keys.bind(name);

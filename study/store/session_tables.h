@@ -18,6 +18,7 @@ struct TableColumn {
     bool filled = false;  // never NULL
     std::string parent;   // table that it refers to; empty: none
     std::string parent_column;
+    std::optional<std::string> fallback = {};  // its default as text; empty: NULL
 };
 
 struct Table {

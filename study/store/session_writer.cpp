@@ -4,6 +4,7 @@
 
 #include "study/protocol/json.h"
 #include "study/store/contact_energy_rows.h"
+#include "study/store/delivery_rows.h"
 #include "study/store/event_rows.h"
 #include "study/store/hex_text.h"
 #include "study/store/order_rows.h"
@@ -14,6 +15,7 @@
 #include "study/store/session_json.h"
 #include "study/store/sqlite.h"
 #include "study/store/staircase_rows.h"
+#include "study/store/value_hash.h"
 #include "study/store/writer_thread.h"
 
 namespace passung::store {
@@ -224,6 +226,7 @@ void SessionWriter::storeEnd(const Database& database, const OpenAttempt& attemp
     if (end.staircase) storeStaircaseAnswer(database, attempt_id, *end.staircase);
     insertTiming(database, attempt_id, end.health, end.timing_measured);
     insertContactEnergy(database, attempt_id, end.health.contact_energy);
+    insertDelivery(database, attempt_id, end.health.delivered);
     if (end.health.presentation) insertPresentation(database, attempt_id, *end.health.presentation);
     insertOrderSteps(database, rows_.session_id, rows_.segment_id,
                      std::array{session::OrderStep{attempt.trial_index, end.then, end.decided_by, attempt.id}});
@@ -259,8 +262,11 @@ Result<Done> SessionWriter::storeQuestionnaire(const session::QuestionnaireRun& 
 Result<Done> SessionWriter::reorder(const session::Reordering& change) {
     return thread_.call([&](const Database& database) {
         Transaction transaction(database, Durability::Full);
-        for (const session::AttemptId attempt : change.discounted)
-            markInvalid(database, static_cast<std::int64_t>(attempt), change.reason);
+        const auto discount = [&] {
+            for (const session::AttemptId attempt : change.discounted)
+                markInvalid(database, static_cast<std::int64_t>(attempt), change.reason);
+        };
+        if (!change.discounted.empty()) changeLater(database, rows_.session_id, discount);
         insertOrderSteps(database, rows_.session_id, rows_.segment_id, change.steps);
         transaction.commit();
         return Done{};
@@ -294,6 +300,7 @@ Result<Done> SessionWriter::finishSession(bool complete, std::int64_t end_ns) {
             .run();
         database.prepare("UPDATE segment SET closed_clean=1 WHERE segment_id=?").bind(rows_.segment_id).run();
         settleParticipant(database, rows_.session_id, whole);
+        sealSession(database, rows_.session_id);
         transaction.commit();
         return Done{};
     });

@@ -2,6 +2,10 @@
 
 #include <sqlite3.h>
 
+#include "core/base/regular_file.h"
+#include "study/store/hex_text.h"
+#include "study/store/private_files.h"
+
 namespace passung::store {
 namespace {
 
@@ -11,6 +15,35 @@ namespace {
 }
 
 constexpr int kBusyTimeoutMs = 5000;
+
+int flagsOf(OpenMode mode) {
+    constexpr int kAlways = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE;
+    switch (mode) {
+        case OpenMode::ReadOnly:
+            return kAlways | SQLITE_OPEN_READONLY;
+        case OpenMode::Immutable:
+            return kAlways | SQLITE_OPEN_READONLY | SQLITE_OPEN_URI;
+        case OpenMode::Create:
+            return kAlways | SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+        case OpenMode::Follow:
+        case OpenMode::FollowUntidied:
+        case OpenMode::ReadWrite:
+            break;
+    }
+    return kAlways | SQLITE_OPEN_READWRITE;
+}
+
+/// The characters that mean something in a URI as their codes.
+std::string immutableUri(const std::string& path) {
+    std::string uri = "file:";
+    for (const char letter : path) {
+        if (letter == '%' || letter == '?' || letter == '#')
+            uri += '%' + hexText(std::span(reinterpret_cast<const unsigned char*>(&letter), 1));
+        else
+            uri += letter;
+    }
+    return uri + "?immutable=1";
+}
 
 }  // namespace
 
@@ -92,35 +125,61 @@ void Statement::bindOne(int index, std::span<const std::byte> value) {
     check(sqlite3_bind_blob64(statement_, index, value.data(), value.size(), SQLITE_STATIC));
 }
 
+struct Database::Watch {
+    std::set<std::string> tables;
+    std::function<void(const Database&, const ChangedRows&)> tell;
+    ChangedRows changed;
+};
+
 Database::Database(const std::string& path, OpenMode mode) {
-    int flags = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE;
-    switch (mode) {
-        case OpenMode::ReadOnly:
-            flags |= SQLITE_OPEN_READONLY;
-            break;
-        case OpenMode::ReadWrite:
-            flags |= SQLITE_OPEN_READWRITE;
-            break;
-        case OpenMode::Create:
-            flags |= SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
-            break;
-    }
-    const int result = sqlite3_open_v2(path.c_str(), &connection_, flags, nullptr);
+    if (const auto why = whyNoRegularFile(path)) throw SqliteError(*why, SQLITE_CANTOPEN);
+    if (mode == OpenMode::Create) makePrivate(path);
+    const std::string name = mode == OpenMode::Immutable ? immutableUri(path) : path;
+    const int result = sqlite3_open_v2(name.c_str(), &connection_, flagsOf(mode), nullptr);
     if (result != SQLITE_OK) {
         const SqliteError error(connection_ ? sqlite3_errmsg(connection_) : sqlite3_errstr(result), result);
         sqlite3_close_v2(connection_);
         throw error;
     }
-    sqlite3_busy_timeout(connection_, kBusyTimeoutMs);
     try {
-        execute("PRAGMA foreign_keys=ON");
+        configure(mode);
     } catch (...) {
         sqlite3_close_v2(connection_);
         throw;
     }
 }
 
+void Database::configure(OpenMode mode) {
+    sqlite3_busy_timeout(connection_, kBusyTimeoutMs);
+    if (mode == OpenMode::FollowUntidied) sqlite3_db_config(connection_, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
+    // A connection that may write tidies the side files away when it closes; query_only keeps it from writing.
+    if (mode == OpenMode::Follow || mode == OpenMode::FollowUntidied) execute("PRAGMA query_only=ON");
+    execute("PRAGMA foreign_keys=ON");
+}
+
 Database::~Database() { sqlite3_close_v2(connection_); }
+
+void Database::watch(std::set<std::string> tables, std::function<void(const Database&, const ChangedRows&)> changed) {
+    watch_ = std::make_unique<Watch>(Watch{std::move(tables), std::move(changed), {}});
+    sqlite3_update_hook(
+        connection_,
+        [](void* context, int, const char* schema, const char* table, sqlite3_int64 rowid) {
+            auto& watch = *static_cast<Watch*>(context);
+            if (std::string_view(schema) == "main" && watch.tables.count(table) != 0)
+                watch.changed.emplace(table, rowid);
+        },
+        watch_.get());
+}
+
+void Database::forgetChanges() const {
+    if (watch_) watch_->changed.clear();
+}
+
+void Database::tellChanges() const {
+    if (!watch_ || watch_->changed.empty()) return;
+    const ChangedRows changed = std::exchange(watch_->changed, {});
+    watch_->tell(*this, changed);
+}
 
 void Database::execute(const std::string& sql) const {
     const int result = sqlite3_exec(connection_, sql.c_str(), nullptr, nullptr, nullptr);
@@ -152,6 +211,7 @@ std::int64_t Database::changes() const { return sqlite3_changes64(connection_); 
 Transaction::Transaction(const Database& database, Durability durability) : database_(database) {
     database_.execute(durability == Durability::Full ? "PRAGMA synchronous=FULL; BEGIN IMMEDIATE"
                                                      : "PRAGMA synchronous=NORMAL; BEGIN IMMEDIATE");
+    database_.forgetChanges();
 }
 
 Transaction::~Transaction() {
@@ -164,8 +224,30 @@ Transaction::~Transaction() {
 }
 
 void Transaction::commit() {
+    database_.tellChanges();
     database_.execute("COMMIT");
     open_ = false;
+}
+
+Savepoint::Savepoint(const Database& database) : database_(database) { database_.execute("SAVEPOINT part"); }
+
+Savepoint::~Savepoint() {
+    try {
+        database_.execute(kept_ ? "RELEASE part" : "ROLLBACK TO part; RELEASE part");
+    } catch (const SqliteError&) {
+        // SQLite has already rolled the whole transaction back (a full disk does that): the next statement says so.
+    }
+}
+
+bool isDamage(const SqliteError& error) {
+    const int code = error.code & 0xff;
+    return code == SQLITE_CORRUPT || code == SQLITE_NOTADB;
+}
+
+bool isOfTheDisk(const SqliteError& error) {
+    const int code = error.code & 0xff;
+    return code == SQLITE_FULL || code == SQLITE_IOERR || code == SQLITE_NOMEM || code == SQLITE_READONLY ||
+           code == SQLITE_CANTOPEN || code == SQLITE_BUSY;
 }
 
 Error sqliteError(const std::string& path, const SqliteError& error) {

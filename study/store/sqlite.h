@@ -1,11 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/base/result.h"
 
@@ -42,6 +46,11 @@ public:
         int index = 0;
         (bindOne(++index, values), ...);
         return *this;
+    }
+    /// Binds one parameter; those that are not bound stay as they are.
+    template <class Value>
+    void bindAt(int index, const Value& value) {
+        bindOne(index, value);
     }
     /// Moves to the next row; false when there is none.
     bool step();
@@ -83,7 +92,14 @@ private:
     sqlite3_stmt* statement_ = nullptr;
 };
 
-enum class OpenMode { ReadOnly, ReadWrite, Create };
+enum class OpenMode {
+    ReadOnly,
+    Immutable,       // read only, without any file beside it: nobody may write it meanwhile
+    Follow,          // reads; tidies SQLite's side files away when nobody else has the file open any more
+    FollowUntidied,  // reads and leaves the side files as they are
+    ReadWrite,
+    Create,  // a new file is its owner's alone
+};
 
 /// One connection; closes itself. Foreign keys are on.
 class Database {
@@ -100,11 +116,23 @@ public:
     std::string text(std::string_view sql) const;
     /// The whole database as it is now into a new file, on the disk when this returns.
     void copyTo(const std::string& path) const;
+    /// Rows of these tables that statements add or change are handed over at the end of each Transaction, within it.
+    /// Not of tables WITHOUT ROWID.
+    using ChangedRows = std::set<std::pair<std::string, std::int64_t>>;  // table, rowid
+    void watch(std::set<std::string> tables, std::function<void(const Database&, const ChangedRows&)> changed);
+
     std::int64_t lastRowId() const;
     std::int64_t changes() const;  // rows that the last statement changed
 
 private:
+    void configure(OpenMode mode);
+    friend class Transaction;
+    struct Watch;
+    void forgetChanges() const;
+    void tellChanges() const;
+
     sqlite3* connection_ = nullptr;
+    std::unique_ptr<Watch> watch_;  // null: nobody watches
 };
 
 /// How hard a commit is: Full reaches the disk before commit() returns, Normal with the next Full one.
@@ -123,6 +151,25 @@ private:
     const Database& database_;
     bool open_ = true;
 };
+
+/// A part of a transaction: undoes everything since it was made unless it is kept.
+class Savepoint {
+public:
+    explicit Savepoint(const Database& database);
+    ~Savepoint();
+    Savepoint(const Savepoint&) = delete;
+    Savepoint& operator=(const Savepoint&) = delete;
+    void keep() { kept_ = true; }
+
+private:
+    const Database& database_;
+    bool kept_ = false;
+};
+
+/// Is the file no sound database, as opposed to a disk, another program or a statement that is at fault?
+bool isDamage(const SqliteError& error);
+/// Is the disk, memory or another program at fault, whatever the file holds?
+bool isOfTheDisk(const SqliteError& error);
 
 /// A readable error for `path`.
 Error sqliteError(const std::string& path, const SqliteError& error);

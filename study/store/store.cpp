@@ -109,13 +109,15 @@ void insertTrialPlan(const Database& database, const SessionStart& start, std::s
     }
 }
 
-std::int64_t insertStream(const Database& database, std::int64_t segment_id, const char* name,
+std::int64_t insertStream(const Database& database, std::int64_t segment_id, const char* name, int numerics,
                           const std::vector<Channel>& channels) {
     const std::string channels_json = channelsJson(channels);
     const std::string encoding = encodingText();
     database
-        .prepare("INSERT INTO stream(segment_id, stream, nominal_hz, channels_json, encoding) VALUES(?, ?, ?, ?, ?)")
-        .bind(segment_id, name, 1.0 / kTickSeconds, channels_json, encoding)
+        .prepare(
+            "INSERT INTO stream(segment_id, stream, nominal_hz, channels_json, encoding, numerics) "
+            "VALUES(?, ?, ?, ?, ?, ?)")
+        .bind(segment_id, name, 1.0 / kTickSeconds, channels_json, encoding, numerics)
         .run();
     return database.lastRowId();
 }
@@ -132,9 +134,10 @@ SessionWriter::Rows insertSegment(const Database& database, const SessionStart& 
               start.clock.at(0), UtcClock(start.clock).stamp(begin_ns).utc)
         .run();
     SessionWriter::Rows rows{start.session_id, database.lastRowId(), 0, std::nullopt};
-    rows.tick_stream_id = insertStream(database, rows.segment_id, "tick", tickChannels());
+    rows.tick_stream_id = insertStream(database, rows.segment_id, "tick", start.numerics, tickChannels());
     if (start.timing_measured) {
-        rows.timing_stream_id = insertStream(database, rows.segment_id, "tick_timing", timingChannels());
+        rows.timing_stream_id =
+            insertStream(database, rows.segment_id, "tick_timing", start.numerics, timingChannels());
     }
     database
         .prepare(

@@ -40,6 +40,7 @@ struct OpenOptions {
     std::string now_utc;      // wall clock for rows about the file itself (schema, import); never exported
     Station station;
     bool create = true;          // false: the file has to exist
+    bool group = false;          // share it with the owner's group; false: as it is, or with nobody
     int busy_timeout_ms = 5000;  // how long another program may hold the file before this is an error
     std::int64_t max_pages = 0;  // refuse to grow beyond so many pages of 4096 bytes; 0 = as far as the disk goes
 };
@@ -67,6 +68,7 @@ struct SessionStart {
     std::string host;  // description of the machine; leave empty in virtual time
     std::int64_t mono_zero_ns = 0;
     bool timing_measured = false;  // a real clock runs: store every tick's computing time too
+    int numerics = 0;              // core/tick/numerics.h: which arithmetic the ticks follow
 };
 
 /// A study's database, open for writing by this process alone. Every function may be called from any thread and

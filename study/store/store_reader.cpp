@@ -5,8 +5,10 @@
 #include "study/store/audit.h"
 #include "study/store/consent_rows.h"
 #include "study/store/event_rows.h"
+#include "study/store/intact_view.h"
 #include "study/store/note_rows.h"
 #include "study/store/open_database.h"
+#include "study/store/plan_rows.h"
 #include "study/store/questionnaire_rows.h"
 #include "study/store/sample_codec.h"
 #include "study/store/secondary_rows.h"
@@ -88,15 +90,21 @@ StoreReader::StoreReader(std::string path, std::unique_ptr<Database> database)
 StoreReader::~StoreReader() = default;
 StoreReader::StoreReader(StoreReader&&) noexcept = default;
 
-Result<StoreReader> StoreReader::open(const std::string& path) {
-    auto database = openForReading(path);
+Result<StoreReader> StoreReader::open(const std::string& path, Damaged damaged) {
+    const bool refused = damaged == Damaged::Refused;
+    auto database = openForReading(path, OlderFile::UpgradeCopy, refused ? ReadCheck::Pages : ReadCheck::Structure);
     if (!database) return database.errors();
+    std::vector<DamageRow> damages;
     const auto begun = guarded(path, [&] {
         (*database)->execute("BEGIN; SELECT count(*) FROM schema_revision");
+        if (damaged == Damaged::LeftOut || damaged == Damaged::LeftOutWithSamples)
+            damages = leaveOutDamaged(**database, damaged == Damaged::LeftOut ? Samples::LeftOut : Samples::LookedAt);
         return Done{};
     });
     if (!begun) return begun.errors();
-    return StoreReader(path, *std::move(database));
+    StoreReader reader(path, *std::move(database));
+    reader.damages_ = std::move(damages);
+    return reader;
 }
 
 Result<std::vector<ProtocolRow>> StoreReader::protocols() const {
@@ -105,9 +113,9 @@ Result<std::vector<ProtocolRow>> StoreReader::protocols() const {
             database_->prepare("SELECT protocol_sha256, name, version, title, source_text, expanded_json, app_version "
                                "FROM protocol_version p" +
                                std::string(kByProtocol)),
-            [](const Statement& row) {
+            [&](const Statement& row) {
                 return ProtocolRow{row.text(0), row.text(1), row.text(2), row.text(3),
-                                   row.text(4), row.text(5), row.text(6)};
+                                   row.text(4), row.text(5), row.text(6), readMainBlocks(*database_, row.text(5))};
             });
     });
 }
@@ -162,16 +170,23 @@ Result<std::vector<FactorRow>> StoreReader::factors() const {
 }
 
 Result<std::vector<ConditionRow>> StoreReader::conditions() const {
-    return guarded(path_, [&] {
-        return readAll<ConditionRow>(
-            database_->prepare("SELECT c.protocol_sha256, c.condition, c.levels_json "
-                               "FROM condition c JOIN protocol_version p USING(protocol_sha256) WHERE c.position < "
-                               "coalesce(json_extract(p.expanded_json, '$.planned_conditions'), c.position + 1)" +
-                               std::string(kByProtocol) + ", c.position"),
-            [&](const Statement& row) {
-                return ConditionRow{row.text(0), row.text(1), readLevels(*database_, row.text(2))};
-            });
-    });
+    return guarded(path_, [&] { return readConditions(*database_); });
+}
+
+Result<std::vector<PlannedCellRow>> StoreReader::plannedCells() const {
+    return guarded(path_, [&] { return readPlannedCells(*database_); });
+}
+
+Result<std::vector<AnalysisRow>> StoreReader::analyses() const {
+    return guarded(path_, [&] { return readAnalyses(*database_); });
+}
+
+Result<std::vector<NamedFileRow>> StoreReader::namedFiles() const {
+    return guarded(path_, [&] { return readNamedFiles(*database_); });
+}
+
+Result<std::vector<QuestionnaireRow>> StoreReader::questionnaires() const {
+    return guarded(path_, [&] { return readQuestionnaires(*database_); });
 }
 
 Result<std::vector<MeasureRow>> StoreReader::measures() const {

@@ -15,16 +15,22 @@ namespace passung::store {
 
 class Database;
 
+/// What a reader does where rows are damaged: refuse the file, if SQLite's own check finds them; hand them out as they
+/// are; or look at every hash, with or without every checksum of samples, and hand out what is intact.
+enum class Damaged { Refused, HandedOut, LeftOut, LeftOutWithSamples };
+
 /// A study's database, read as it was at opening, whatever a session writes meanwhile. All lists are sorted by what
 /// they mean (participant, session, trial …), never by row numbers, so that equal data gives equal lists.
 class StoreReader {
 public:
     /// Fails for files that are missing, damaged, not Passung's, or of a schema that this program cannot read.
-    static Result<StoreReader> open(const std::string& path);
+    static Result<StoreReader> open(const std::string& path, Damaged damaged = Damaged::Refused);
     ~StoreReader();
     StoreReader(StoreReader&&) noexcept;
 
     const std::string& path() const { return path_; }
+    /// What was left out, by participant, session and trial; none of a reader that refuses.
+    const std::vector<DamageRow>& damages() const { return damages_; }
 
     Result<std::vector<ProtocolRow>> protocols() const;  // by name, version, hash
     Result<std::vector<MeshRow>> meshes() const;         // protocols as above, meshes by name
@@ -32,8 +38,12 @@ public:
     Result<std::vector<protocol::StableStiffness>> stableStiffness(const std::string& protocol_sha256) const;
     /// Text of each questionnaire file that the protocol names, by that name.
     Result<std::map<std::string, std::string>> questionnaireTexts(const std::string& protocol_sha256) const;
-    Result<std::vector<FactorRow>> factors() const;        // protocols as above, factors as the protocol lists them
-    Result<std::vector<ConditionRow>> conditions() const;  // likewise
+    Result<std::vector<FactorRow>> factors() const;            // protocols as above, factors as the protocol lists them
+    Result<std::vector<ConditionRow>> conditions() const;      // likewise
+    Result<std::vector<PlannedCellRow>> plannedCells() const;  // by participant, session, block, then as listed
+    Result<std::vector<AnalysisRow>> analyses() const;         // protocols as above, as listed
+    Result<std::vector<NamedFileRow>> namedFiles() const;      // protocols as above, by kind and name
+    Result<std::vector<QuestionnaireRow>> questionnaires() const;  // by key, version, language
     Result<std::vector<MeasureRow>> measures() const;
     Result<std::vector<ParticipantRow>> participants() const;
     Result<std::vector<ConsentClauseRow>> consentClauses() const;  // protocols as above, clauses as they are asked
@@ -60,6 +70,7 @@ private:
 
     std::string path_;
     std::unique_ptr<Database> database_;
+    std::vector<DamageRow> damages_;
 };
 
 }  // namespace passung::store

@@ -5,28 +5,14 @@
 namespace passung::store {
 namespace {
 
+/// By programs that knew no identities.
 std::string personHash(const std::string& salt, const std::string& code, const std::string& created_utc) {
     return sha256Hex(
         protocol::JsonObject().text("salt", salt).text("code", code).text("created_utc", created_utc).str());
 }
 
-}  // namespace
-
-protocol::JsonObject tombstone(const std::string& surrogate, const std::string& kind, std::int64_t codes_to,
-                               const std::string& code, const std::string& created_utc) {
-    const std::string salt = randomHex(16);
-    protocol::JsonObject detail;
-    detail.text("surrogate", surrogate)
-        .text("kind", kind)
-        .integer("codes_to", codes_to)
-        .text("salt", salt)
-        .text("person", personHash(salt, code, created_utc));
-    return detail;
-}
-
-std::map<std::string, std::string> erasedPeople(const Database& database, const std::string& tombstones,
-                                                const std::string& people) {
-    std::map<std::string, std::string> erased;
+void addByHash(const Database& database, const std::string& tombstones, const std::string& people,
+               std::map<std::string, std::string>& erased) {
     Statement stones = database.prepare(
         "SELECT json_extract(detail_json, '$.salt'), json_extract(detail_json, '$.person'), "
         "json_extract(detail_json, '$.surrogate') FROM " +
@@ -36,6 +22,23 @@ std::map<std::string, std::string> erasedPeople(const Database& database, const 
         for (codes.reset(); codes.step();)
             if (personHash(stones.text(0), codes.text(0), codes.text(1)) == stones.text(1))
                 erased[codes.text(0)] = stones.text(2);
+}
+
+}  // namespace
+
+protocol::JsonObject tombstone(const std::string& identity, const std::string& kind, std::int64_t codes_to) {
+    return protocol::JsonObject().text("surrogate", identity).text("kind", kind).integer("codes_to", codes_to);
+}
+
+std::map<std::string, std::string> erasedPeople(const Database& database, const std::string& tombstones,
+                                                const std::string& people) {
+    std::map<std::string, std::string> erased;
+    Statement known =
+        database.prepare("SELECT p.participant_id, p.identity FROM " + people + ".participant p JOIN " + tombstones +
+                         ".audit a ON p.identity=json_extract(a.detail_json, '$.surrogate') "
+                         "WHERE a.action='erase' AND p.identity<>''");
+    while (known.step()) erased[known.text(0)] = known.text(1);
+    addByHash(database, tombstones, people, erased);
     return erased;
 }
 

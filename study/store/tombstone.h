@@ -9,16 +9,16 @@
 
 namespace passung::store {
 
-// What the audit keeps of an erased participant: a random surrogate, and a salted hash of code and time of enrolment by
-// which a copy of that person, in another file, is known again. It tells nothing to whoever has not both; but who has
-// can ask whether they were erased. For this room only: the functions throw.
+// What the audit keeps of an erased participant: their identity (see person_identity.h), by which a copy of them in
+// another file is known again and from which nothing else follows. Programs that knew no identities kept a salted hash
+// of code and time of enrolment instead: whoever tries all codes finds out whose it is. Such rows stay as they are,
+// since the audit's chain holds them. For this room only: the functions throw.
 
 /// Detail of the audit's row. `codes_to`: highest number of a code of this kind.
-protocol::JsonObject tombstone(const std::string& surrogate, const std::string& kind, std::int64_t codes_to,
-                               const std::string& code, const std::string& created_utc);
+protocol::JsonObject tombstone(const std::string& identity, const std::string& kind, std::int64_t codes_to);
 
-/// Who of the people in the attached database `people` was erased, as the audit in `tombstones` says, each with the
-/// surrogate. Tombstones from before there were hashes tell nothing.
+/// Who of the people in the attached database `people` was erased, as the audit in `tombstones` says, each with what
+/// stands there for them. Tombstones from before there were hashes tell nothing.
 std::map<std::string, std::string> erasedPeople(const Database& database, const std::string& tombstones,
                                                 const std::string& people);
 

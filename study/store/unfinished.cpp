@@ -6,6 +6,7 @@
 #include "core/base/tick_record.h"
 #include "study/store/order_rows.h"
 #include "study/store/sqlite.h"
+#include "study/store/value_hash.h"
 
 namespace passung::store {
 namespace {
@@ -43,7 +44,9 @@ void readTrials(const Database& database, Unfinished& session) {
     }
     Statement attempts = database.prepare(
         "SELECT attempt_id, (SELECT count(*) FROM trial_plan b WHERE b.session_id=t.session_id AND "
-        "b.trial_index<t.trial_index), attempt_no, outcome, valid, start_ns, f.staircase, f.track, f.level, f.positive "
+        "b.trial_index<t.trial_index), attempt_no, outcome, valid, start_ns, f.staircase, f.track, f.level, "
+        "f.positive, "
+        "coalesce(invalid_reason, '') "
         "FROM attempt JOIN trial_plan t USING(trial_id) LEFT JOIN staircase_step f USING(attempt_id) "
         "WHERE session_id=? ORDER BY attempt_id");
     attempts.bind(session.session_id);
@@ -56,6 +59,7 @@ void readTrials(const Database& database, Unfinished& session) {
                                     attempts.integer(5),
                                     {},
                                     {}});
+        session.attempts.back().invalid_reason = attempts.text(10);
         readMeasures(database, session.attempts.back());
         if (!attempts.isNull(7) && !attempts.isNull(9))
             session.attempts.back().step =
@@ -132,6 +136,7 @@ Unfinished readUnfinished(const Database& database, const std::string& session_i
 }
 
 void reopenSession(const Database& database, const std::string& session_id) {
+    keepDamageKnown(database, session_id);
     database.prepare("UPDATE session SET end_state=NULL, ended_utc=NULL WHERE session_id=?").bind(session_id).run();
 }
 

@@ -12,6 +12,13 @@ WriterThread::~WriterThread() {
     }
     job_added_.notify_one();
     thread_.join();
+    try {
+        // Closing empties and removes the log, unless somebody reads the file just now: what has ended is in the file
+        // itself then, as far as the reader lets it, who removes the log.
+        database_->execute("PRAGMA busy_timeout=500; PRAGMA wal_checkpoint(TRUNCATE)");
+    } catch (const std::exception&) {
+        // The disk refuses: the log keeps everything for the next time.
+    }
 }
 
 void WriterThread::post(Job job) {

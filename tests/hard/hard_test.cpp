@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <span>
 #include <variant>
 #include <vector>
@@ -23,11 +24,22 @@ struct Hold {
     const char* method_name;
 };
 
+/// By default every case is run with one of its methods, in turns, and a quarter of the planted faults is tried;
+/// PASSUNG_LONG=1: all of both. The size of each is another matter: fullSize().
+bool everything() { return std::getenv("PASSUNG_LONG") != nullptr || fullSize(); }
+
 std::vector<Hold> holds() {
     std::vector<Hold> all;
-    for (const Case& c : cases())
+    std::size_t turn = 0;
+    for (const Case& c : cases()) {
+        std::vector<Hold> of_case;
         for (const auto& [method, name] : methods())
-            if (applies(c, method)) all.push_back({&c, method, name});
+            if (applies(c, method)) of_case.push_back({&c, method, name});
+        if (everything())
+            all.insert(all.end(), of_case.begin(), of_case.end());
+        else if (!of_case.empty())
+            all.push_back(of_case[turn++ % of_case.size()]);
+    }
     return all;
 }
 
@@ -100,8 +112,10 @@ TEST(HardCases, NoMarkIsHeldByAProxyThatDoesNotFollowOrByWhatIsNotFelt) {
     // Truth: invariant. Runs of the god object with a planted fault: most overlap nothing and cross nothing.
     constexpr std::array kFaults{Fault{"never moves", neverMoves}, Fault{"feels nothing", feelsNothing},
                                  Fault{"is the device", isTheDevice}, Fault{"turns too hard", turnsTooHard}};
+    std::size_t place = 0;
     for (const Case& c : cases()) {
         if (c.compute != nullptr || !applies(c, model::ContactMethod::GodObject)) continue;
+        if (place++ % 4 != 0 && !everything()) continue;
         std::array<Judgement, kFaults.size()> found;
         std::array<bool, kFaults.size()> seen{};
         for (int seed = 0; seed < c.seeds; ++seed) {

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -12,8 +14,9 @@
 #include <tuple>
 
 #include "analysis/truth/accuracy_pick.h"
+#include "study/protocol/felt_features.h"
 #include "study/protocol/plan_json.h"
-#include "ui/app/disk_store.h"
+#include "ui/app/builds.h"
 
 namespace passung::app {
 
@@ -49,15 +52,21 @@ auto wayOfAsking(const model::ContactSpec& contact) {
 }
 
 /// One scene for every geometry among those that ask for a pick, with each way of asking once.
-std::vector<truth::AskedScene> distinctScenes(const protocol::StudyPlan& plan) {
+std::vector<truth::AskedScene> distinctScenes(const protocol::StudyPlan& plan, model::BuildStore* builds) {
     std::map<std::string, std::size_t> seen;
     std::vector<truth::AskedScene> scenes;
+    // Shared by the scenes' questions, which outlive this.
+    const auto geometries = std::make_shared<protocol::PartGeometries>(builds);
     for (const protocol::Condition& condition : plan.conditions) {
         if (!(condition.accuracy_budget > 0.0)) continue;
         std::string key;
         for (const model::PartSpec& part : condition.scene.parts) key += geometryOf(part) + '\n';
         const auto [place, fresh] = seen.try_emplace(key, scenes.size());
-        if (fresh) scenes.push_back({&condition.scene, {}});
+        if (fresh)
+            scenes.push_back({&condition.scene, {}, [geometries, scene = condition.scene](double spacing) mutable {
+                                  scene.contact.spacing = spacing;
+                                  return !protocol::oneWayFeelsAll(scene, *geometries);
+                              }});
         const model::ContactSpec& contact = condition.scene.contact;
         auto& contacts = scenes[place->second].contacts;
         if (std::none_of(contacts.begin(), contacts.end(),
@@ -107,12 +116,40 @@ Error unfitting(const protocol::StudyPlan& plan, double budget, double fastest) 
     const auto asking =
         std::find_if(plan.conditions.begin(), plan.conditions.end(),
                      [&](const protocol::Condition& condition) { return condition.accuracy_budget == budget; });
-    return {.message = fmt::format("no setting fits on this machine; the fastest takes {:.3g} µs", kUs * fastest),
-            .file = plan.source_path,
-            .line = asking->accuracy_line,
-            .column = asking->accuracy_column,
-            .key = "scene.contact.accuracy_budget_us",
-            .value = fmt::format("{:g}", inMicroseconds(budget))};
+    return {
+        .message =
+            std::isfinite(fastest)
+                ? fmt::format(
+                      "no setting fits on this machine; the fastest with which every obstacle is felt takes {:.3g} µs",
+                      kUs * fastest)
+                : "no setting lets every pin, fin, wall and edge of the obstacles be felt",
+        .file = plan.source_path,
+        .line = asking->accuracy_line,
+        .column = asking->accuracy_column,
+        .key = "scene.contact.accuracy_budget_us",
+        .value = fmt::format("{:g}", inMicroseconds(budget))};
+}
+
+/// The contact with what was picked; two ways where one would miss something.
+void setContact(const truth::AccuracySetting& setting, model::SceneSpec& scene, protocol::PartGeometries& geometries) {
+    model::ContactSpec& contact = scene.contact;
+    contact.tolerance = setting.tolerance;
+    contact.spacing = setting.spacing;
+    contact.cell = 0.0;
+    contact.budget_nodes = setting.budget_nodes;
+    contact.mode = setting.mode;
+    if (!contact.two_way) contact.two_way = !protocol::oneWayFeelsAll(scene, geometries);
+}
+
+/// In every scene that asks for a pick.
+bool feelsEverywhere(const protocol::StudyPlan& plan, const truth::AccuracySetting& setting,
+                     protocol::PartGeometries& geometries) {
+    return std::all_of(plan.conditions.begin(), plan.conditions.end(), [&](const protocol::Condition& condition) {
+        if (!(condition.accuracy_budget > 0.0)) return true;
+        model::SceneSpec scene = condition.scene;
+        setContact(setting, scene, geometries);
+        return protocol::feelsEverything(scene, geometries);
+    });
 }
 
 Result<model::FieldMode> modeOf(const store::AccuracyRow& row) {
@@ -131,18 +168,24 @@ Result<std::vector<store::AccuracyRow>> measureAccuracy(const protocol::StudyPla
                                                         const truth::StepReport& report, model::BuildStore* builds) {
     const std::vector<double> budgets = budgetsOf(plan);
     const auto measured = truth::measureCandidates(
-        distinctScenes(plan), budgets, report ? report : [](const std::string&, double) {}, builds);
+        distinctScenes(plan, builds), budgets, report ? report : [](const std::string&, double) {}, builds);
     if (!measured) return measured.errors();
+    protocol::PartGeometries geometries(builds);
     std::vector<store::AccuracyRow> rows;
-    double fastest = measured->front().time.p99;
+    std::vector<truth::AccuracyRow> felt;  // with what may be picked, and where it stands in `rows`
+    std::vector<std::size_t> places;
+    double fastest = std::numeric_limits<double>::infinity();
     for (const truth::AccuracyRow& row : *measured) {
         rows.push_back(asStored(protocol_sha256, static_cast<std::int64_t>(rows.size()), row));
+        if (!feelsEverywhere(plan, row.setting, geometries)) continue;
+        felt.push_back(row);
+        places.push_back(rows.size() - 1);
         fastest = std::min(fastest, row.time.p99);
     }
     Errors errors;
     for (const double budget : budgets) {
-        if (const auto best = truth::pickFinest(*measured, budget))
-            rows[*best].picked_for_us.push_back(inMicroseconds(budget));
+        if (const auto best = truth::pickFinest(felt, budget))
+            rows[places[*best]].picked_for_us.push_back(inMicroseconds(budget));
         else
             errors.push_back(unfitting(plan, budget, fastest));
     }
@@ -151,7 +194,9 @@ Result<std::vector<store::AccuracyRow>> measureAccuracy(const protocol::StudyPla
 }
 
 Result<Done> applyAccuracy(const std::string& protocol_sha256, std::span<const store::AccuracyRow> rows,
-                           protocol::StudyPlan& plan) {
+                           protocol::StudyPlan& plan, const ImportLimits& limits) {
+    Builds builds(nullptr, limits);
+    protocol::PartGeometries geometries(&builds);
     for (protocol::Condition& condition : plan.conditions) {
         if (!(condition.accuracy_budget > 0.0)) continue;
         const double budget = inMicroseconds(condition.accuracy_budget);
@@ -166,12 +211,8 @@ Result<Done> applyAccuracy(const std::string& protocol_sha256, std::span<const s
                          .value = fmt::format("{:g}", budget)};
         const auto mode = modeOf(*pick);
         if (!mode) return mode.errors();
-        model::ContactSpec& contact = condition.scene.contact;
-        contact.tolerance = pick->tolerance_um / kUm;
-        contact.spacing = pick->spacing_mm / kMm;
-        contact.cell = 0.0;
-        contact.budget_nodes = static_cast<int>(pick->budget_nodes);
-        contact.mode = *mode;
+        setContact({*mode, pick->tolerance_um / kUm, pick->spacing_mm / kMm, static_cast<int>(pick->budget_nodes)},
+                   condition.scene, geometries);
         condition.accuracy_picked = true;
         condition.params_json = protocol::paramsJson(condition);
     }
@@ -186,7 +227,7 @@ Result<std::vector<std::string>> tooSlowHere(const protocol::StudyPlan& plan, st
         const auto mode = modeOf(row);
         if (!mode) return mode.errors();
         const auto time = truth::timeOfSetting(
-            distinctScenes(plan),
+            distinctScenes(plan, builds),
             {*mode, row.tolerance_um / kUm, row.spacing_mm / kMm, static_cast<int>(row.budget_nodes)}, builds);
         if (!time) return time.errors();
         for (const double budget : row.picked_for_us)
@@ -200,12 +241,12 @@ Result<std::vector<std::string>> tooSlowHere(const protocol::StudyPlan& plan, st
 }
 
 Result<protocol::StudyPlan> withKeptAccuracy(const protocol::StudyPlan& plan, const std::string& protocol_sha256,
-                                             store::Store& store) {
+                                             store::Store& store, const ImportLimits& limits) {
     protocol::StudyPlan complete = plan;
     if (!asksForAccuracy(plan)) return complete;
     const auto rows = store.accuracy(protocol_sha256);
     if (!rows) return rows.errors();
-    if (const auto applied = applyAccuracy(protocol_sha256, *rows, complete); !applied) return applied.errors();
+    if (const auto applied = applyAccuracy(protocol_sha256, *rows, complete, limits); !applied) return applied.errors();
     return complete;
 }
 

@@ -10,6 +10,7 @@
 #include "study/protocol/study_plan.h"
 #include "study/store/rows.h"
 #include "study/store/store.h"
+#include "ui/app/mesh_importer.h"
 
 namespace passung::app {
 
@@ -26,7 +27,7 @@ Result<std::vector<store::AccuracyRow>> measureAccuracy(const protocol::StudyPla
 /// Writes what was picked into the scenes that ask for it; rows of other protocols do not count. Errors: a budget that
 /// nothing was picked for.
 Result<Done> applyAccuracy(const std::string& protocol_sha256, std::span<const store::AccuracyRow> rows,
-                           protocol::StudyPlan& plan);
+                           protocol::StudyPlan& plan, const ImportLimits& limits = {});
 
 /// What picked settings take longer than their budget on this machine, in words, a sentence each.
 Result<std::vector<std::string>> tooSlowHere(const protocol::StudyPlan& plan, std::span<const store::AccuracyRow> rows,
@@ -34,7 +35,7 @@ Result<std::vector<std::string>> tooSlowHere(const protocol::StudyPlan& plan, st
 
 /// The plan with what `store` keeps.
 Result<protocol::StudyPlan> withKeptAccuracy(const protocol::StudyPlan& plan, const std::string& protocol_sha256,
-                                             store::Store& store);
+                                             store::Store& store, const ImportLimits& limits = {});
 
 /// What was picked for each budget and why, in words, the keys that would fix it in a protocol. `rows`: of one
 /// protocol.

@@ -1,31 +1,21 @@
 #include "ui/app/calibration.h"
 #include "ui/app/known_names.h"
+#include "ui/app/protocol_files.h"
 
 #include <fmt/format.h>
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 
 #include "core/loop/stiffness_search.h"
 #include "devices/simulated/device_dynamics.h"
-#include "study/protocol/protocol_reader.h"
+#include "ui/app/data_folder.h"
 #include "ui/app/disk_store.h"
 
 namespace passung::app {
 
 namespace {
-
-std::filesystem::path calibrationFolder() {
-    const auto variable = [](const char* name) {
-        const char* value = std::getenv(name);
-        return std::filesystem::path(value == nullptr ? "" : value);
-    };
-    if (const auto data = variable("XDG_DATA_HOME"); data.is_absolute()) return data / "passung";
-    if (const auto home = variable("HOME"); home.is_absolute()) return home / ".local" / "share" / "passung";
-    return {};
-}
 
 std::string fileName(const std::string& device) { return device + ".calibration.toml"; }
 
@@ -53,7 +43,7 @@ bool same(const protocol::StableStiffness& a, const protocol::StableStiffness& b
 }  // namespace
 
 std::string calibrationPath(const std::string& device) {
-    const auto folder = calibrationFolder();
+    const auto folder = dataFolder();
     return folder.empty() ? "" : (folder / fileName(device)).string();
 }
 
@@ -91,7 +81,7 @@ Result<protocol::Calibration> findStiffness(const simulated::DeviceParams& devic
 }
 
 Result<Done> keepCalibration(const protocol::Calibration& calibration) {
-    const auto folder = calibrationFolder();
+    const auto folder = dataFolder();
     const Error failed{.message = "the calibration cannot be written", .file = calibrationPath(calibration.device)};
     if (folder.empty()) return failed;
     const std::string text = protocol::calibrationText(calibration);
@@ -157,10 +147,11 @@ std::vector<DeviceDescription> devicesAsKept(std::span<const protocol::StableSti
 }
 
 Result<protocol::StudyPlan> withKeptStiffness(const protocol::StudyPlan& plan,
-                                              std::span<const protocol::StableStiffness> kept) {
+                                              std::span<const protocol::StableStiffness> kept,
+                                              const ImportLimits& limits) {
     if (std::equal(kept.begin(), kept.end(), plan.stable_stiffness.begin(), plan.stable_stiffness.end(), same))
         return plan;
-    auto again = protocol::readProtocolText(plan.source_text, plan.source_path, devicesAsKept(kept), knownMeasures());
+    auto again = readProtocolText(plan.source_text, plan.source_path, devicesAsKept(kept), limits);
     if (!again) return again;
     again->seed = plan.seed;
     again->questionnaires = plan.questionnaires;  // their files are not part of the text

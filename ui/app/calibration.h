@@ -11,6 +11,7 @@
 #include "devices/simulated/presets.h"
 #include "study/protocol/calibration.h"
 #include "study/protocol/study_plan.h"
+#include "ui/app/mesh_importer.h"
 
 namespace passung::app {
 
@@ -42,7 +43,8 @@ std::vector<DeviceDescription> devicesAsKept(std::span<const protocol::StableSti
 
 /// The plan with those maxima, read anew from its text where others are in force now.
 Result<protocol::StudyPlan> withKeptStiffness(const protocol::StudyPlan& plan,
-                                              std::span<const protocol::StableStiffness> kept);
+                                              std::span<const protocol::StableStiffness> kept,
+                                              const ImportLimits& limits = {});
 
 /// What differs between the maxima in force now and those that the study keeps, a sentence each.
 std::vector<std::string> stiffnessDifferences(const protocol::StudyPlan& now, const protocol::StudyPlan& kept);

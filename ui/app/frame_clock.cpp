@@ -1,29 +1,45 @@
 #include "ui/app/frame_clock.h"
 
+#include <algorithm>
 #include <chrono>
 
 namespace passung::app {
 
-void FrameClock::show(const loop::ScreenTick& tick) {
-    if (tick.record.tick < items_.tick) ++items_.attempt;
-    items_.tick = tick.record.tick;
+void FrameClock::prepared(std::int64_t attempt) { items_ = {0, attempt, false}; }
+
+void FrameClock::show(const loop::ScreenTick& tick, bool cued) {
     items_.began_ns = tick.began_ns;
+    items_.cued = cued;
 }
 
 void FrameClock::take() { picture_ = items_; }
 
 void FrameClock::present(std::int64_t now_ns) {
+    shown_.store(picture_.attempt);
     if (picture_.began_ns == display_.began_ns) return;  // the same tick once more
-    if (picture_.attempt != display_.attempt || times_.age.count() == 0) times_ = {picture_.began_ns, {}};
     display_ = picture_;
-    times_.age.add(now_ns - picture_.began_ns);
-    box_.put(times_);
+    if (picture_.began_ns == 0) return;
+    const Picture picture{picture_.began_ns, now_ns, picture_.cued};
+    for_session_.tryPush(picture);
+    for_screen_.tryPush(picture);
 }
 
-std::optional<FrameTimes> FrameClock::timesSince(std::int64_t since_ns) {
-    const FrameTimes& newest = box_.latest();
-    if (newest.age.count() == 0 || newest.first_ns < since_ns) return std::nullopt;
-    return newest;
+PictureTimes timesBetween(std::span<const Picture> pictures, std::int64_t zero_ns, std::int64_t from_ns,
+                          std::int64_t to_ns) {
+    PictureTimes times;
+    std::int64_t on_screen = zero_ns;  // the tick that is shown
+    for (const Picture& picture : pictures) {
+        if (picture.began_ns < zero_ns || picture.presented_ns > to_ns) continue;
+        if (picture.presented_ns >= from_ns) {
+            times.ages_ns.push_back(picture.presented_ns - picture.began_ns);
+            if (picture.cued) ++times.cued;
+            times.oldest_ns = std::max(times.oldest_ns, picture.presented_ns - on_screen);
+        }
+        on_screen = picture.began_ns;
+    }
+    times.oldest_ns = std::max(times.oldest_ns, to_ns - on_screen);
+    std::sort(times.ages_ns.begin(), times.ages_ns.end());
+    return times;
 }
 
 std::int64_t steadyNanoseconds() {

@@ -2,7 +2,13 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "core/base/regular_file.h"
+#include "study/store/backup.h"
+#include "study/store/store_reader.h"
+#include "ui/app/known_exports.h"
 
 namespace passung::app {
 
@@ -11,25 +17,37 @@ namespace {
 namespace fs = std::filesystem;
 
 bool exportNames(const fs::path& folder, const std::string& participant) {
-    std::ifstream table(folder / "participants.csv");
+    const auto text = readRegularFile(folder / "participants.csv");
+    if (!text) return false;
+    std::istringstream table(*text);
     for (std::string line; std::getline(table, line);)
         if (line.starts_with(participant + ",")) return true;
     return false;
 }
 
+/// A backup that nobody can read may hold anybody.
+bool backupNames(const std::string& backup, const std::string& participant) {
+    std::error_code none;
+    if (!fs::exists(backup, none)) return false;
+    const auto reader = store::StoreReader::open(backup);
+    if (!reader) return true;
+    const auto people = reader->participants();
+    return !people || std::any_of(people->begin(), people->end(),
+                                  [&](const auto& person) { return person.participant_id == participant; });
+}
+
 }  // namespace
 
 std::vector<std::string> knownCopies(const std::string& database, const std::string& participant) {
-    std::vector<std::string> copies;
+    std::set<std::string> copies;
     std::error_code none;
-    for (const char* suffix : {".backup", ".backup.sha256"})
-        if (fs::exists(database + suffix, none)) copies.push_back(database + suffix);
-    const fs::path parent = fs::path(database).parent_path();
-    for (const auto& entry : fs::directory_iterator(parent.empty() ? fs::path(".") : parent, none))
-        if (entry.is_directory(none) && exportNames(entry.path(), participant))
-            copies.push_back((parent / entry.path().filename()).string());
-    std::sort(copies.begin(), copies.end());
-    return copies;
+    if (const std::string backup = store::backupPath(database); backupNames(backup, participant)) copies.insert(backup);
+    const fs::path parent = fs::weakly_canonical(database, none).parent_path();
+    for (const auto& entry : fs::directory_iterator(parent, none))
+        if (entry.is_directory(none) && exportNames(entry.path(), participant)) copies.insert(entry.path().string());
+    for (const std::string& folder : knownExports(database))
+        if (exportNames(folder, participant)) copies.insert(folder);
+    return {copies.begin(), copies.end()};
 }
 
 }  // namespace passung::app

@@ -1,6 +1,10 @@
 #include "ui/app/live_session.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <cmath>
 #include <exception>
 #include <filesystem>
@@ -13,6 +17,8 @@
 namespace passung::app {
 
 namespace {
+
+constexpr const char* kWindow = "window";  // that gives a command by itself
 
 sound::SoundPlan soundOf(const protocol::Condition& condition, std::uint64_t seed) {
     const protocol::Cues& cues = condition.cues;
@@ -39,6 +45,15 @@ presenter::TrialBrief briefOf(const protocol::Condition& condition) {
 
 }  // namespace
 
+std::string qualityNote(const presenter::QualityFound& found) {
+    const presenter::PictureQuality& drawn = found.quality;
+    return fmt::format(
+        "picture quality: window {} x {} pixels, drawn at {:.2f} of its sides, {} samples a pixel, shadows {}; {:.1f} "
+        "pictures a second with {} triangles",
+        found.width_px, found.height_px, drawn.scale, drawn.samples, drawn.shadows ? "on" : "off", found.pictures_per_s,
+        found.triangles);
+}
+
 LiveSession::LiveSession(protocol::StudyPlan plan, LiveOptions options)
     : plan_(std::move(plan)), options_(std::move(options)) {
     if (options_.try_out) {
@@ -50,9 +65,11 @@ LiveSession::LiveSession(protocol::StudyPlan plan, LiveOptions options)
     thread_ = std::thread([this] { main(); });
 }
 
-LiveSession::~LiveSession() {
+LiveSession::~LiveSession() { end(); }
+
+void LiveSession::end() {
     ends_.store(true);
-    thread_.join();
+    if (thread_.joinable()) thread_.join();
 }
 
 void LiveSession::main() {
@@ -157,7 +174,9 @@ std::unique_ptr<loop::HapticDevice> LiveSession::device(const simulated::DeviceP
 
 void LiveSession::begins(session::Apparatus& apparatus, const session::SessionSetup& setup) {
     interview_.forget();
-    tell(presenter::SessionBegun{setup.participant, setup.trials});
+    look_ = setup.plan.view;
+    tell(presenter::SessionBegun{setup.participant, setup.trials,
+                                 setup.resumed ? setup.resumed->earlier : std::vector<session::EarlierTrial>(), look_});
     const std::lock_guard lock(mutex_);
     apparatus_ = &apparatus;
 }
@@ -166,11 +185,17 @@ void LiveSession::prepares(const protocol::Condition& condition, std::int64_t tr
     const sound::SoundPlan heard = soundOf(condition, seed);
     if (options_.sound != nullptr) options_.sound->plan(heard);
     shown_ = {};
+    shown_.cue_frames = 0;
     shown_.drawn_pose = condition.shown == protocol::ShownPose::Proxy ? "proxy" : "device";
     if (heard.any()) shown_.sound = "silent";
     interview_.forget();
-    presenter::AttemptPrepared prepared{trial_index, condition.name, nullptr, heard.any(), briefOf(condition)};
-    if (auto scene = artist_.draw(condition)) prepared.scene = *scene;  // else the session fails at the same mesh
+    takePictures();  // what is left of the attempt before
+    pictures_.clear();
+    if (options_.frames != nullptr) attempt_ = options_.frames->expect();
+    presenter::AttemptPrepared prepared{trial_index, condition.name,     nullptr,
+                                        heard.any(), briefOf(condition), attempt_};
+    if (auto scene = artist_.draw(condition, look_))
+        prepared.scene = *scene;  // else the session fails at the same mesh
     tell(std::move(prepared));
 }
 
@@ -192,14 +217,30 @@ std::optional<presenter::RestGlance> LiveSession::restOf(const session::Session&
     return presenter::RestGlance{static_cast<std::int64_t>(seconds), plan_.blocks.at(block).rest_ends};
 }
 
+/// The same press comes twice: from the X server at once, and from the window as soon as it is alive.
+bool LiveSession::isKnown(const session::Command& command, session::SessionState state) {
+    if (state != session::SessionState::Paused) stopped_ = false;  // it went on meanwhile
+    if (command.kind != session::CommandKind::Stop) return false;
+    return std::exchange(stopped_, true);
+}
+
 void LiveSession::look(session::Session& session) {
+    // Here and not with the pictures: how far a held key goes must not depend on how fast they come.
+    const std::int64_t now = steadyNanoseconds();
+    if (looked_ns_ > 0) pointer_.pass(1e-9 * static_cast<double>(now - looked_ns_));
+    looked_ns_ = now;
     std::deque<session::Command> commands;
     {
         const std::lock_guard lock(mutex_);
         commands.swap(commands_);
     }
+    if (session.state() != session::SessionState::Paused) stopped_ = false;
     for (const session::Command& command : commands)
-        tell(presenter::CommandAnswered{command, session.command(command)});
+        if (!isKnown(command, session.state())) {
+            session::Answer answer = session.command(command);
+            if (command.source != kWindow) tell(presenter::CommandAnswered{command, std::move(answer)});
+        }
+    takePictures();
     presenter::SessionGlance glance;
     glance.state = session.state();
     const session::Agenda& agenda = session.agenda();
@@ -214,15 +255,51 @@ void LiveSession::look(session::Session& session) {
     tell(std::move(glance));
 }
 
-session::Presentation LiveSession::presented(std::int64_t since_ns) {
+void LiveSession::drawsWith(const presenter::QualityFound& found) {
+    command({.kind = session::CommandKind::Note, .text = qualityNote(found), .source = kWindow});
+}
+
+/// Does a command ask for what cannot wait for a picture? Such a trial is begun and ended at once.
+bool LiveSession::isWanted() {
+    const std::lock_guard lock(mutex_);
+    return std::any_of(commands_.begin(), commands_.end(), [](const session::Command& command) {
+        using Kind = session::CommandKind;
+        const bool later = command.kind == Kind::Note || command.kind == Kind::Start || command.kind == Kind::Done ||
+                           command.kind == Kind::Failed || (command.kind == Kind::Pause && !command.now);
+        return !later;
+    });
+}
+
+void LiveSession::awaitPicture() {
+    if (options_.frames == nullptr) return;
+    while (!options_.frames->hasShown(attempt_) && !ends_.load() && !isWanted())
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    looked_ns_ = 0;  // a key that is held moves nothing while nobody looks
+}
+
+void LiveSession::takePictures() {
+    if (options_.frames == nullptr) return;
+    std::array<Picture, 64> pictures;
+    while (const std::size_t count = options_.frames->takePictures(pictures))
+        pictures_.insert(pictures_.end(), pictures.begin(), pictures.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
+session::Presentation LiveSession::presented(std::int64_t zero_ns, std::int64_t from_ns, std::int64_t to_ns) {
     session::Presentation shown = shown_;
-    const auto times = options_.frames == nullptr ? std::nullopt : options_.frames->timesSince(since_ns);
-    if (times) {
-        shown.frames = times->age.count();
-        shown.frame_age_median_us = times->age.quantileMicroseconds(0.5);
-        shown.frame_age_p99_us = times->age.quantileMicroseconds(0.99);
-        shown.frame_age_max_us = times->age.maxMicroseconds();
+    takePictures();
+    const PictureTimes times = timesBetween(pictures_, zero_ns, from_ns, to_ns);
+    const auto& ages = times.ages_ns;
+    const auto quantile = [&](double q) {  // the smallest age that so many do not exceed
+        const double rank = std::max(1.0, std::ceil(q * static_cast<double>(ages.size())));
+        return 1e-3 * static_cast<double>(ages[static_cast<std::size_t>(rank) - 1]);
+    };
+    if (!ages.empty()) {
+        shown.frames = static_cast<std::int64_t>(ages.size());
+        shown.cue_frames = times.cued;
+        shown.frame_age_median_us = quantile(0.5);
+        shown.frame_age_p99_us = quantile(0.99);
     }
+    if (options_.frames != nullptr) shown.frame_age_max_us = 1e-3 * static_cast<double>(times.oldest_ns);
     const auto output = options_.sound == nullptr ? std::nullopt : options_.sound->output();
     if (shown.sound == "silent" && output) {
         shown.sound = "played";

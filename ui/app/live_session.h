@@ -9,14 +9,19 @@
 #include <vector>
 
 #include "devices/mouse/pointer.h"
+#include "ui/app/builds.h"
 #include "ui/app/frame_clock.h"
 #include "ui/app/interview.h"
 #include "ui/app/performer.h"
 #include "ui/app/run_study.h"
+#include "ui/presenter/quality_search.h"
 #include "ui/presenter/session_news.h"
 #include "ui/sound/sound_feed.h"
 
 namespace passung::app {
+
+/// What is kept of it with the session.
+std::string qualityNote(const presenter::QualityFound& found);
 
 /// Who moves the device in a live session.
 enum class LiveHand { Mouse, Simulated };
@@ -41,14 +46,19 @@ struct LiveOptions {
 class LiveSession final : private Performer {
 public:
     LiveSession(protocol::StudyPlan plan, LiveOptions options);
-    ~LiveSession() override;  // ends the session as interrupted
+    ~LiveSession() override;  // as end()
 
-    /// For between two of the session's steps; Stop turns the motors off at once.
+    /// For between two of the session's steps, from any thread. Stop turns the motors off at once, whatever all other
+    /// threads do; of several in a row the session learns of the first.
     void command(session::Command command);
+    /// Ends the session as interrupted and waits for it. Once.
+    void end();
     /// What has happened since the last call.
     std::vector<presenter::News> takeNews();
     /// The ticks since the last call, the oldest first, as many as fit; call until it returns 0.
     std::size_t takeTicks(std::span<loop::ScreenTick> into) { return screen_.take(into); }
+    /// How the participant's window draws from now on; kept with the session as a note.
+    void drawsWith(const presenter::QualityFound& found);
     /// Takes what the participant answers.
     Interview& interview() { return interview_; }
     /// Where the mouse wants the held part.
@@ -63,7 +73,8 @@ private:
                                                const protocol::Condition& condition) override;
     DeviceDescription describe(const simulated::DeviceParams& preset) const override;
     std::span<loop::ScreenRing* const> screens() override { return screens_; }
-    session::Presentation presented(std::int64_t since_ns) override;
+    void awaitPicture() override;
+    session::Presentation presented(std::int64_t zero_ns, std::int64_t from_ns, std::int64_t to_ns) override;
     session::QuestionnaireSource* answers() override { return &interview_; }
     session::InstructionReader* reader() override { return &interview_; }
     void begins(session::Apparatus& apparatus, const session::SessionSetup& setup) override;
@@ -76,22 +87,31 @@ private:
     Result<RunEnd> perform(const RunListener& listener);
     std::optional<bool> askConsent(const protocol::ConsentClause& clause, const std::string& text);
     bool takesAbort();
+    bool isKnown(const session::Command& command, session::SessionState state);
     std::optional<presenter::RestGlance> restOf(const session::Session& session) const;
     void tell(presenter::News news);
+    void takePictures();
+    bool isWanted();
 
     protocol::StudyPlan plan_;
     LiveOptions options_;
-    presenter::SceneArtist artist_;
+    std::unique_ptr<Builds> builds_ = openBuilds();
+    presenter::SceneArtist artist_{builds_.get()};
+    protocol::View look_;  // of the plan that runs, which is the stored one where a session goes on
     presenter::SessionGlance told_;
     bool told_anything_ = false;
     bool cancelled_ = false;  // a build
     mouse::Pointer pointer_;
+    std::int64_t looked_ns_ = 0;
     Interview interview_{[this](presenter::News news) { tell(std::move(news)); }};
     bool aborted_ = false;  // before the session began
+    bool stopped_ = false;  // an emergency stop is why the session is paused
     std::atomic<double> reach_{0.0}, swing_{0.0};
     loop::ScreenRing screen_{4096};
     std::vector<loop::ScreenRing*> screens_{&screen_};
-    session::Presentation shown_;  // of the running attempt: what its condition says
+    session::Presentation shown_;    // of the running attempt: what its condition says
+    std::int64_t attempt_ = 0;       // its number for the pictures
+    std::vector<Picture> pictures_;  // of it
     std::atomic<bool> ends_{false};
     std::mutex mutex_;  // of what follows
     session::Apparatus* apparatus_ = nullptr;

@@ -6,6 +6,7 @@
 
 #include "devices/simulated/resting_device.h"
 #include "devices/simulated/simulated_device.h"
+#include "study/session/cue_settings.h"
 #include "study/session/secondary.h"
 #include "ui/app/frame_clock.h"
 #include "ui/app/responding_device.h"
@@ -42,48 +43,38 @@ std::vector<session::StageNote> stageNotes(const tick::TickModel& model) {
     return notes;
 }
 
-LoopApparatus::Run::Run(BuiltScenes built, std::unique_ptr<loop::HapticDevice> held, bool show_proxy,
+LoopApparatus::Run::Run(BuiltScenes built, HeldDevice device, const protocol::Condition& condition,
                         std::span<loop::ScreenRing* const> screens)
     : scenes(std::move(built)),
-      device(std::move(held)),
+      held(std::move(device)),
+      cues(session::cueSettings(condition.cues), held.person, held.drives_hand),
       ring(kRingRecords),
-      cycle(scenes.turns, *device, ring, show_proxy, screens) {}
+      cycle(scenes.turns, *held.device, ring, condition.shown == protocol::ShownPose::Proxy, screens, &cues) {}
 
 LoopApparatus::LoopApparatus(const simulated::DeviceParams& device, const person::SimulatedPerson& person, Clock clock,
-                             Performer* performer)
+                             Performer* performer, const ImportLimits& import_limits)
     : description_(performer == nullptr ? simulated::describe(device) : performer->describe(device)),
       person_(person),
       clock_(clock),
-      performer_(performer) {}
+      performer_(performer),
+      store_(openBuilds(import_limits)) {}
 
 LoopApparatus::~LoopApparatus() = default;
-
-/// What the person sees; of a pair whose stimulus a staircase chose, also which interval they will name.
-simulated::VisibleTask LoopApparatus::taskOf(const protocol::Condition& condition, std::uint64_t seed,
-                                             std::int64_t trials_before) const {
-    constexpr double kOneOfTwo = 0.5;
-    simulated::VisibleTask task = visibleTask(condition);
-    auto* pair = std::get_if<simulated::CompareGoal>(&task.goal);
-    if (pair == nullptr || !perception_) return task;
-    if (const auto noticed = perception_->notices(condition, trials_before, kOneOfTwo)) {
-        const int comparison = session::comparisonInterval(seed);
-        pair->told_answer = *noticed ? comparison : 3 - comparison;
-    }
-    return task;
-}
 
 Result<std::vector<session::StageNote>> LoopApparatus::prepare(const protocol::Condition& condition, std::uint64_t seed,
                                                                std::int64_t trials_before) {
     const simulated::DeviceParams* preset = simulated::findPreset(condition.device);
     if (preset == nullptr)
         return Error{.message = "no such device preset", .key = "device.preset", .value = condition.device};
+    started_ns_ = periods_ = 0;
+    engaged_at_.reset();
     if (performer_ != nullptr) performer_->prepares(condition, trials_before, seed);
     auto scenes = build(session::renderedScenes(condition, seed));
     if (!scenes) return scenes.errors();
-    auto device = makeDevice(*preset, condition, seed, trials_before);
-    description_ = device->description();
+    HeldDevice held = makeDevice(*preset, condition, seed, trials_before);
+    description_ = held.device->description();
     auto run =
-        std::make_unique<Run>(std::move(*scenes), std::move(device), condition.shown == protocol::ShownPose::Proxy,
+        std::make_unique<Run>(std::move(*scenes), std::move(held), condition,
                               performer_ == nullptr ? std::span<loop::ScreenRing* const>() : performer_->screens());
     {
         const std::lock_guard lock(halt_mutex_);
@@ -94,6 +85,7 @@ Result<std::vector<session::StageNote>> LoopApparatus::prepare(const protocol::C
         for (session::StageNote& note : stageNotes(model))
             if (std::none_of(notes.begin(), notes.end(), [&](const auto& known) { return known.name == note.name; }))
                 notes.push_back(std::move(note));
+    if (performer_ != nullptr) performer_->awaitPicture();  // no clock runs before
     return notes;
 }
 
@@ -109,25 +101,47 @@ Result<BuiltScenes> LoopApparatus::build(const std::vector<session::RenderedScen
     }
 }
 
-std::unique_ptr<loop::HapticDevice> LoopApparatus::makeDevice(const simulated::DeviceParams& preset,
-                                                              const protocol::Condition& condition, std::uint64_t seed,
-                                                              std::int64_t trials_before) const {
+LoopApparatus::HeldDevice LoopApparatus::makeDevice(const simulated::DeviceParams& preset,
+                                                    const protocol::Condition& condition, std::uint64_t seed,
+                                                    std::int64_t trials_before) const {
     const model::Registration& r = condition.scene.registration;
     const simulated::HandRegistration registration{r.X_WB, r.scale, r.X_DH};
-    const simulated::VisibleTask task = taskOf(condition, seed, trials_before);
-    const bool held = condition.timed_by == protocol::TimedBy::Program;
-    std::unique_ptr<loop::HapticDevice> device;
-    if (performer_ != nullptr) device = performer_->device(preset, condition);
-    if (device != nullptr) return device;
-    if (held)
-        device = std::make_unique<simulated::SimulatedDevice>(preset, simulatedHand(person_, trials_before), task,
-                                                              registration, seed);
-    else
-        device = std::make_unique<simulated::RestingDevice>(preset, registration.handleFromPart(task.X_WHeldStart));
-    if (!condition.secondary.any()) return device;
+    const simulated::VisibleTask task = visibleTask(condition);
+    HeldDevice held;
+    if (performer_ != nullptr) held.device = performer_->device(preset, condition);
+    held.drives_hand = held.device == nullptr;  // what a performer brings is a mouse
+    if (held.device != nullptr) return held;
+    if (condition.timed_by == protocol::TimedBy::Program) {
+        auto device = std::make_unique<simulated::SimulatedDevice>(preset, simulatedHand(person_, trials_before), task,
+                                                                   registration, seed);
+        held.person = device.get();
+        held.device = std::move(device);
+    } else {
+        held.device =
+            std::make_unique<simulated::RestingDevice>(preset, registration.handleFromPart(task.X_WHeldStart));
+    }
+    if (!condition.secondary.any()) return held;
     const bool handles = condition.timed_by != protocol::TimedBy::Clock;
-    return std::make_unique<RespondingDevice>(std::move(device), session::detectionSettings(condition.secondary),
-                                              person_, handles, seed);
+    held.device = std::make_unique<RespondingDevice>(
+        std::move(held.device), session::detectionSettings(condition.secondary), person_, handles, seed);
+    return held;
+}
+
+/// What windows drew and played, or what a simulated person's senses took. No device has an actuator for vibration yet.
+session::Delivered LoopApparatus::delivered(const std::optional<session::Presentation>& presentation) const {
+    const session::Delivered& asked = run_->cues.asked();
+    if (performer_ == nullptr || performer_->kind() == protocol::ParticipantKind::Simulated) {
+        session::Delivered delivered = asked;
+        if (asked.masking > 0) delivered.sound = 0;  // noise covers it
+        return delivered;
+    }
+    session::Delivered delivered{.force = asked.force};
+    if (presentation) delivered.visual = presentation->cue_frames.value_or(0);
+    if (presentation && presentation->sound == "played") {
+        delivered.sound = asked.sound;
+        delivered.masking = asked.masking;
+    }
+    return delivered;
 }
 
 void LoopApparatus::wait(std::int64_t ticks) {
@@ -150,7 +164,14 @@ void LoopApparatus::advance(std::int64_t ticks) {
     std::this_thread::sleep_for(std::chrono::nanoseconds(ticks * kTickNanoseconds));
 }
 
-std::size_t LoopApparatus::takeRecords(std::span<TickRecord> into) { return run_->ring.take(into); }
+std::size_t LoopApparatus::takeRecords(std::span<TickRecord> into) {
+    const std::size_t count = run_->ring.take(into);
+    for (const TickRecord& record : into.first(count)) {
+        periods_ += record.periods;
+        if (!engaged_at_ && (record.status & kEngaged) != 0) engaged_at_ = periods_;
+    }
+    return count;
+}
 
 void LoopApparatus::halt() {
     const std::lock_guard lock(halt_mutex_);
@@ -184,8 +205,16 @@ session::LoopHealth LoopApparatus::stop() {
     health.histogram = timing.octaves();
     health.state_hash = run_->cycle.stateHash();
     health.contact_energy = contactEnergy(run_->scenes.scenes, run_->cycle.pairs());
-    if (performer_ != nullptr) health.presentation = performer_->presented(started_ns_);
+    if (performer_ != nullptr) health.presentation = presentation();
+    health.delivered = delivered(health.presentation);
     return health;
+}
+
+/// Of the trial's time; of the attempt's where it did not start or the program does not see it start.
+session::Presentation LoopApparatus::presentation() const {
+    const std::int64_t zero_ns = started_ns_ == 0 ? steadyNanoseconds() : started_ns_;
+    return performer_->presented(zero_ns, zero_ns + engaged_at_.value_or(0) * kTickNanoseconds,
+                                 zero_ns + periods_ * kTickNanoseconds);
 }
 
 }  // namespace passung::app

@@ -3,17 +3,16 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <utility>
 
 #include "core/loop/haptic_loop.h"
 #include "devices/simulated/hand_params.h"
 #include "devices/simulated/presets.h"
 #include "study/person/simulated_person.h"
 #include "study/session/apparatus.h"
+#include "ui/app/builds.h"
 #include "ui/app/built_scenes.h"
-#include "ui/app/disk_store.h"
+#include "ui/app/cue_delivery.h"
 #include "ui/app/performer.h"
-#include "ui/app/simulated_perception.h"
 #include "ui/app/watched_store.h"
 
 namespace passung::app {
@@ -25,11 +24,8 @@ enum class Clock { Virtual, RealTime };
 class LoopApparatus final : public session::Apparatus {
 public:
     LoopApparatus(const simulated::DeviceParams& device, const person::SimulatedPerson& person, Clock clock,
-                  Performer* performer = nullptr);
+                  Performer* performer = nullptr, const ImportLimits& import_limits = {});
     ~LoopApparatus() override;
-
-    /// The person answers what staircases ask by this; else by what they feel.
-    void perceiveBy(SimulatedPerception perception) { perception_.emplace(std::move(perception)); }
 
     const DeviceDescription& device() const override { return description_; }
     Result<std::vector<session::StageNote>> prepare(const protocol::Condition& condition, std::uint64_t seed,
@@ -43,36 +39,43 @@ public:
     void rearm() override;
 
 private:
+    struct HeldDevice {
+        std::unique_ptr<loop::HapticDevice> device;
+        simulated::SimulatedDevice* person = nullptr;  // who holds it; null: nobody simulated
+        bool drives_hand = true;                       // false: a stand-in without motors, such as a mouse
+    };
+
     /// Everything of one attempt; members are destroyed in reverse order, the thread first.
     struct Run {
         BuiltScenes scenes;
-        std::unique_ptr<loop::HapticDevice> device;
+        HeldDevice held;
+        CueDelivery cues;
         loop::RecordRing ring;
         loop::HapticCycle cycle;
         std::unique_ptr<loop::RealTimeThread> thread;
 
-        Run(BuiltScenes built, std::unique_ptr<loop::HapticDevice> held, bool show_proxy,
+        Run(BuiltScenes built, HeldDevice device, const protocol::Condition& condition,
             std::span<loop::ScreenRing* const> screens);
     };
 
+    session::Presentation presentation() const;
     Result<BuiltScenes> build(const std::vector<session::RenderedScene>& scenes);
-    simulated::VisibleTask taskOf(const protocol::Condition& condition, std::uint64_t seed,
-                                  std::int64_t trials_before) const;
-    std::unique_ptr<loop::HapticDevice> makeDevice(const simulated::DeviceParams& preset,
-                                                   const protocol::Condition& condition, std::uint64_t seed,
-                                                   std::int64_t trials_before) const;
+    HeldDevice makeDevice(const simulated::DeviceParams& preset, const protocol::Condition& condition,
+                          std::uint64_t seed, std::int64_t trials_before) const;
+    session::Delivered delivered(const std::optional<session::Presentation>& presentation) const;
 
     DeviceDescription description_;
     person::SimulatedPerson person_;
-    std::optional<SimulatedPerception> perception_;
     Clock clock_;
     Performer* performer_;
-    std::unique_ptr<DiskStore> store_ = openDiskStore();
+    std::unique_ptr<Builds> store_;
     WatchedStore watched_{store_.get()};
     model::PartCache parts_{&watched_};
     std::mutex halt_mutex_;  // run_ and its thread come and go, halted_ changes
     bool halted_ = false;
-    std::int64_t started_ns_ = 0;  // on the steady clock, of the running attempt's loop
+    std::int64_t started_ns_ = 0;             // on the steady clock, of the newest attempt's loop; 0: it did not start
+    std::int64_t periods_ = 0;                // since then, as the records tell
+    std::optional<std::int64_t> engaged_at_;  // [periods], when the hand had reached the start pose
     std::unique_ptr<Run> run_;
 };
 

@@ -26,8 +26,12 @@ public:
     virtual DeviceDescription describe(const simulated::DeviceParams& preset) const = 0;
     /// Get every tick, and are emptied by whoever draws or plays.
     virtual std::span<loop::ScreenRing* const> screens() = 0;
-    /// What windows have given the participant of the attempt whose loop began then, on the steady clock.
-    virtual session::Presentation presented(std::int64_t since_ns) = 0;
+    /// Waits until the first picture of the attempt that was prepared last is on the participant's screen, or somebody
+    /// wants something that cannot wait for it. Where nothing is shown: not at all.
+    virtual void awaitPicture() {}
+    /// What windows have given the participant between these times of the attempt whose loop began at `zero_ns`, on the
+    /// steady clock.
+    virtual session::Presentation presented(std::int64_t zero_ns, std::int64_t from_ns, std::int64_t to_ns) = 0;
     /// Who answers questionnaires; may be null if the plan has none.
     virtual session::QuestionnaireSource* answers() = 0;
 

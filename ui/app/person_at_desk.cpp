@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 
+#include "study/protocol/consent_reader.h"
+#include "study/protocol/plan_warnings.h"
 #include "study/store/digest.h"
 #include "study/store/participant_desk.h"
 #include "study/store/store_reader.h"
@@ -33,6 +36,11 @@ Result<Done> askForConsent(store::Store& store, const std::string& database, con
     const auto fault = [&](const std::string& what) {
         return Error{.message = participant + ": " + what, .file = database, .key = "consent"};
     };
+    for (const protocol::ConsentClause& clause : plan.consent)
+        for (const auto& [spoken, text] : clause.texts)
+            if (const auto date = protocol::unfilledDate(text); date && spoken == language)
+                return fault(fmt::format("the clause {} still says {}: fill in the date before people are asked",
+                                         clause.clause, *date));
     const auto reader = store::StoreReader::open(database);
     if (!reader) return reader.errors();
     const auto decisions = reader->consents();
@@ -51,6 +59,14 @@ Result<Done> askForConsent(store::Store& store, const std::string& database, con
         if (!*agreed && clause.required) return fault("no consent to the clause " + clause.clause + ", no session");
     }
     return Done{};
+}
+
+Errors missingOutputs(const protocol::StudyPlan& plan, const std::string& participant) {
+    const auto planned = std::span(plan.conditions).first(protocol::plannedConditions(plan));
+    Errors missing;
+    for (const std::string& sentence : protocol::cuesWithoutOutput(planned))
+        missing.push_back({.message = participant + " cannot take part: " + sentence, .file = plan.source_path});
+    return missing;
 }
 
 Errors missingDevices(const protocol::StudyPlan& plan, const std::string& participant) {

@@ -18,6 +18,9 @@ Result<Done> askForConsent(store::Store& store, const std::string& database, con
                            const std::string& participant, const std::string& language, const std::string& now_utc,
                            const AskConsent& ask);
 
+/// What keeps people (not simulated ones) from this study: each cue of its conditions that nothing here can give them.
+Errors missingOutputs(const protocol::StudyPlan& plan, const std::string& participant);
+
 /// What keeps people (not simulated ones) from a session here: each device of the study that this program cannot drive.
 Errors missingDevices(const protocol::StudyPlan& plan, const std::string& participant);
 

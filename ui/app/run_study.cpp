@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "core/tick/numerics.h"
 #include "devices/simulated/presets.h"
 #include "study/measures/measures.h"
 #include "study/person/simulated_person.h"
@@ -16,9 +17,9 @@
 #include "study/store/digest.h"
 #include "study/store/identity.h"
 #include "ui/app/auto_accuracy.h"
+#include "ui/app/builds.h"
 #include "ui/app/calibration.h"
 #include "ui/app/command_socket.h"
-#include "ui/app/disk_store.h"
 #include "ui/app/known_names.h"
 #include "ui/app/simulated_answers.h"
 #include "ui/app/simulated_timer.h"
@@ -110,6 +111,7 @@ public:
         (*writer)->appendEvent(
             {.attempt = {}, .t_ns = session.used_ns, .source = "session", .event = "session_resumed"});
         resumed.change.reason = "done again after an interruption";
+        if (listener_.resumed) listener_.resumed(resumed);
         if (const auto done = (*writer)->reorder(resumed.change); !done) return done.errors();
         return perform({plan_, session.trials, session.participant, plan_.seed, measured(), session.ordinal,
                         options_.wait, std::move(resumed)},
@@ -131,7 +133,7 @@ private:
     LoopApparatus apparatusOf(const std::string& code) const {
         const simulated::DeviceParams* device = simulated::findPreset(plan_.conditions.front().device);
         return LoopApparatus(*device, person::personOf(plan_.name, code, plan_.seed), options_.clock,
-                             options_.performer);
+                             options_.performer, options_.import_limits);
     }
 
     store::SessionStart startOf(std::string session_id, std::string code, int ordinal, const store::UtcClock& clock,
@@ -149,6 +151,7 @@ private:
         start.device = apparatus.device();
         if (measured()) start.host = hostText();
         start.timing_measured = measured();
+        start.numerics = tick::kNumerics;
         return start;
     }
 
@@ -178,13 +181,13 @@ private:
             setup.answers = options_.performer->answers();
             setup.reader = options_.performer->reader();
         }
+        setup.shown = options_.performer != nullptr;
         setup.language = options_.language;
         if (measured())
             setup.calibrated_utc = [](const std::string& device) {
                 const auto when = calibratedAt(device);
                 return when ? store::UtcClock::wall(*when).at(0) : std::string();
             };
-        apparatus.perceiveBy(SimulatedPerception(plan_, code));
         SimulatedTimer timer(person::personOf(plan_.name, code, plan_.seed));
         if (simulates) setup.timer = &timer;  // else somebody is there to say it
         if (options_.performer != nullptr) options_.performer->begins(apparatus, setup);
@@ -238,6 +241,7 @@ private:
 store::Store::Opened openForRun(const RunOptions& options, const RunListener& listener, bool create = true) {
     auto with = openOptionsNow(options.now());
     with.create = create;
+    with.group = options.group;
     with.station = options.station;
     auto opened = store::Store::open(options.database, with);
     if (!opened.store) return opened;
@@ -279,6 +283,17 @@ bool lacksDevice(const std::string& code, const Performer* performer) {
     return performer == nullptr || performer->kind() != protocol::kindOfCode(code);
 }
 
+/// Why nobody but a simulated participant can run the plan here under this code; empty: somebody can, or is simulated.
+Errors whyNotPeople(const protocol::StudyPlan& plan, const std::string& code, const Performer* performer) {
+    const bool person =
+        isPerson(code) || (performer != nullptr && performer->kind() != protocol::ParticipantKind::Simulated);
+    Errors why;
+    if (person) why = missingOutputs(plan, code.empty() ? "a person" : code);
+    if (lacksDevice(code, performer))
+        for (Error& missing : missingDevices(plan, code)) why.push_back(std::move(missing));
+    return why;
+}
+
 /// Elsewhere the session would take a place of the design that is not its station's.
 Error otherStation(const store::Unfinished& session, const RunOptions& options) {
     const bool only = session.station == store::Station{}.name;
@@ -292,7 +307,7 @@ Error otherStation(const store::Unfinished& session, const RunOptions& options) 
 }  // namespace
 
 Result<RunEnd> runStudy(const protocol::StudyPlan& plan, RunOptions options, const RunListener& listener) {
-    if (lacksDevice(options.participant, options.performer)) return missingDevices(plan, options.participant);
+    if (Errors why = whyNotPeople(plan, options.participant, options.performer); !why.empty()) return why;
     if (Errors unstable = beyondBorder(plan, knownDevices()); !unstable.empty()) return unstable;
     const auto language = protocol::chooseLanguage(plan, options.language);
     if (!language) return language.errors();
@@ -300,7 +315,7 @@ Result<RunEnd> runStudy(const protocol::StudyPlan& plan, RunOptions options, con
     // A calibration that fails must leave nothing behind: neither a new database nor the protocol in an old one.
     std::vector<store::AccuracyRow> measured;
     const auto measure = [&]() -> Result<Done> {
-        const auto builds = openDiskStore();
+        const auto builds = openBuilds(options.import_limits);
         auto rows = measureAccuracy(plan, store::sha256Hex(plan.source_text), listener.calibrating, builds.get());
         if (!rows) return rows.errors();
         measured = std::move(*rows);
@@ -329,19 +344,19 @@ Result<RunEnd> runStudy(const protocol::StudyPlan& plan, RunOptions options, con
     const auto kept = opened.store->accuracy(*sha256);
     if (!kept) return kept.errors();
     if (options.clock == Clock::RealTime && listener.warned && !kept->empty()) {
-        const auto builds = openDiskStore();
+        const auto builds = openBuilds(options.import_limits);
         const auto slow = tooSlowHere(plan, *kept, builds.get());
         if (!slow) return slow.errors();
         for (const std::string& what : *slow) listener.warned(what);
     }
     const auto stable = opened.store->stableStiffness(*sha256);
     if (!stable) return stable.errors();
-    const auto kept_plan = withKeptStiffness(plan, *stable);
+    const auto kept_plan = withKeptStiffness(plan, *stable, options.import_limits);
     if (!kept_plan) return kept_plan.errors();
     if (listener.warned)
         for (const std::string& difference : stiffnessDifferences(plan, *kept_plan)) listener.warned(difference);
     if (Errors unstable = beyondBorder(*kept_plan, knownDevices()); !unstable.empty()) return unstable;
-    auto picked = withKeptAccuracy(*kept_plan, *sha256, *opened.store);
+    auto picked = withKeptAccuracy(*kept_plan, *sha256, *opened.store, options.import_limits);
     if (!picked) return picked.errors();
     if (const auto done = protocol::loadQuestionnaires(*picked, protocol::readFile, options.language); !done)
         return done.errors();
@@ -360,12 +375,12 @@ Result<RunEnd> resumeStudy(const ResumeOptions& resume, RunOptions options, cons
     if (session->station != options.station.name) return otherStation(*session, options);
     const auto reader = store::StoreReader::open(options.database);
     if (!reader) return reader.errors();
-    StoredPlans plans(*reader, resume.meshes);
+    StoredPlans plans(*reader, resume.meshes, options.import_limits);
     const auto stored = plans.plan(session->protocol_sha256);
     if (!stored) return stored.errors();
     protocol::StudyPlan plan = **stored;
     if (const auto done = loadStoredQuestionnaires(*reader, *session, plan); !done) return done.errors();
-    if (lacksDevice(session->participant, options.performer)) return missingDevices(plan, session->participant);
+    if (Errors why = whyNotPeople(plan, session->participant, options.performer); !why.empty()) return why;
     if (Errors unstable = beyondBorder(plan, knownDevices()); !unstable.empty()) return unstable;
     plan.seed = session->seed;
     options.clock = session->virtual_time ? Clock::Virtual : Clock::RealTime;

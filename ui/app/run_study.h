@@ -8,6 +8,7 @@
 #include "study/session/session.h"
 #include "study/store/store.h"
 #include "ui/app/loop_apparatus.h"
+#include "ui/app/mesh_importer.h"
 #include "ui/app/person_at_desk.h"
 #include "ui/app/wall_clock.h"
 
@@ -20,6 +21,7 @@ struct RunOptions {
     int simulated = 1;  // how many simulated participants, one after another
     Clock clock = Clock::Virtual;
     bool backup = true;                               // copy the database when the run ends, however it does
+    bool group = false;                               // share the database, as of store::OpenOptions
     bool wait = false;                                // every session begins with the command Start
     std::function<bool()> interrupted;                // asked every few ticks: true ends the run; empty: never
     std::string language;                             // participants are spoken to in; empty: the protocol's first
@@ -29,6 +31,7 @@ struct RunOptions {
     std::string experimenter;                         // who conducts the session; empty: not said
     Performer* performer = nullptr;                   // who takes part or watches; null: nobody
     store::UtcClock::Now now = unixMilliseconds;      // in real time; virtual time has none
+    ImportLimits import_limits;                       // of every mesh file
 };
 
 /// How a run ended that met no error.
@@ -41,6 +44,7 @@ struct RunListener {
     std::function<void(const std::string&)> calibrated;                      // what was picked and why, in words
     std::function<void(const std::string&)> warned;
     std::function<void(const std::string& participant, int number, int of)> session;
+    std::function<void(const session::Resumption&)> resumed;  // what an earlier process did of the session
     std::function<void(const session::TrialProgress&)> trial;
     std::function<void(session::SessionState)> state;  // whenever it waits for a command
     /// Before that: it waits for this device to be put in place; `advice` on its calibration may be empty.

@@ -25,6 +25,10 @@ simulated::HandParams simulatedHand(const person::SimulatedPerson& person, std::
     hand.insert_force = person.strength;
     hand.lapse_rate = person.lapse_rate;
     hand.lapse_duration = person.lapse_duration;
+    hand.feeling_error = person.feeling_error;
+    hand.visual_cue = {person.colour_threshold, person.colour_delay, person.colour_noise};
+    hand.vibration_cue = {person.vibration_threshold, person.vibration_delay, person.vibration_noise};
+    hand.sound_cue = {person.knock_threshold, person.knock_delay, person.knock_noise};
     return hand;
 }
 

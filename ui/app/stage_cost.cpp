@@ -1,11 +1,13 @@
 #include "ui/app/stage_cost.h"
 
-#include <chrono>
+#include <time.h>
+
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <numbers>
 
-#include "core/loop/timing.h"
 #include "core/tick/obstacle_query.h"
 #include "core/tick/step.h"
 #include "study/protocol/plan_json.h"
@@ -14,7 +16,8 @@ namespace passung::app {
 
 namespace {
 
-constexpr int kApproachTicks = 500, kTicks = 2000;
+constexpr int kApproachTicks = 500;
+constexpr int kMostTicks = 5 * TickCost::kWantedTicks;
 constexpr double kPressed = 2e-3, kSlide = 3e-3;  // [m]
 
 /// The motion of the held part that ends pressed into the nearest obstacle.
@@ -26,35 +29,92 @@ Vec3 wayToContact(const tick::TickModel& model, tick::TickState& state) {
     return -(answer.phi + kPressed) * answer.normal_W;
 }
 
-/// Takes the time between the ends of neighbouring stages.
+/// Processor time of this thread [ns].
+std::int64_t processorTime() noexcept {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return std::int64_t{1'000'000'000} * now.tv_sec + now.tv_nsec;
+}
+
+/// What asking for the time takes itself [ns].
+std::int64_t timeOfAsking() {
+    std::int64_t least = 1'000'000;
+    for (int i = 0; i < 200; ++i) {
+        const std::int64_t before = processorTime();
+        least = std::min(least, processorTime() - before);
+    }
+    return std::max<std::int64_t>(least, 0);
+}
+
+/// Times of the stages of the ticks that count, tick by tick, all stages of a tick in a row [ns].
 class StageTimes {
 public:
-    explicit StageTimes(std::size_t stages) : timing_(stages) {}
+    explicit StageTimes(std::size_t stages) : last_tick_(stages) {}
 
-    /// One tick of the loop's own walk; `counted`: its times go into the distributions.
-    void step(const tick::TickModel& model, tick::TickState& state, const DeviceReading& reading, bool counted) {
-        counted_ = counted;
+    /// One tick of the loop's own walk; true if parts touched.
+    bool step(const tick::TickModel& model, tick::TickState& state, const DeviceReading& reading) {
         const tick::StageWatch watch{&StageTimes::after, this};
-        last_ = Clock::now();
-        tick::step(model, state, reading, &watch);
+        std::fill(last_tick_.begin(), last_tick_.end(), 0);
+        last_ = processorTime();
+        return tick::step(model, state, reading, &watch).frame.contacts > 0;
     }
+    void count() { all_.insert(all_.end(), last_tick_.begin(), last_tick_.end()); }
 
-    const loop::TimingHistogram& of(std::size_t stage) const { return timing_[stage]; }
+    const std::vector<std::int64_t>& all() const { return all_; }
 
 private:
-    using Clock = std::chrono::steady_clock;
-
     static void after(void* context, std::size_t stage) noexcept {
         auto& self = *static_cast<StageTimes*>(context);
-        const Clock::time_point now = Clock::now();
-        if (self.counted_) self.timing_[stage].add(std::chrono::nanoseconds(now - self.last_).count());
-        self.last_ = Clock::now();
+        self.last_tick_[stage] = std::max<std::int64_t>(processorTime() - self.last_ - self.asking_, 0);
+        self.last_ = processorTime();
     }
 
-    std::vector<loop::TimingHistogram> timing_;
-    Clock::time_point last_;
-    bool counted_ = false;
+    std::vector<std::int64_t> last_tick_, all_;
+    std::int64_t last_ = 0, asking_ = timeOfAsking();
 };
+
+/// The times of one run; `contact`: of ticks in contact only.
+std::vector<std::int64_t> timesOfRun(const model::Scene& scene, bool contact) {
+    tick::TickModel model = tick::makeModel(scene);
+    tick::TickState state = tick::makeState(model);
+    const Vec3 way = wayToContact(model, state);
+    // Poses are those of the held part: the registration has nothing to do, and the gate is open.
+    model.registration = model::Registration{};
+    state.engaged = true;
+    StageTimes times(model.stages.size());
+    const Vec3 aside = way.unitOrthogonal();
+    int counted = 0;
+    for (int i = 0; i < kApproachTicks + kMostTicks && counted < TickCost::kWantedTicks; ++i) {
+        const double share = std::min(1.0, static_cast<double>(i) / kApproachTicks);
+        const double slide = kSlide * std::sin(2e-3 * std::numbers::pi * std::max(0, i - kApproachTicks));
+        DeviceReading reading;
+        reading.X_BD = {model.X_WG_start.q, model.X_WG_start.p + share * way + slide * aside};
+        const bool touches = times.step(model, state, reading);
+        if (i < kApproachTicks || (contact && !touches)) continue;
+        times.count();
+        ++counted;
+    }
+    return times.all();
+}
+
+/// The least of equal runs, time by time.
+std::vector<std::int64_t> leastTimes(const model::Scene& scene, bool contact) {
+    std::vector<std::int64_t> least = timesOfRun(scene, contact);
+    for (int run = 1; run < TickCost::kRuns && !least.empty(); ++run) {
+        const std::vector<std::int64_t> again = timesOfRun(scene, contact);
+        for (std::size_t i = 0; i < std::min(least.size(), again.size()); ++i) least[i] = std::min(least[i], again[i]);
+    }
+    return least;
+}
+
+/// The smallest of the times below or at which the share `q` of them lies [µs].
+double quantileOf(std::vector<std::int64_t> times, double q) {
+    if (times.empty()) return 0.0;
+    const auto rank = static_cast<std::ptrdiff_t>(std::ceil(q * static_cast<double>(times.size()))) - 1;
+    const auto at = times.begin() + std::max<std::ptrdiff_t>(rank, 0);
+    std::nth_element(times.begin(), at, times.end());
+    return 1e-3 * static_cast<double>(*at);
+}
 
 /// Geometry, resolution, method; stiffness, limits, task and display change no cost.
 std::string costKey(protocol::Condition condition) {
@@ -91,28 +151,32 @@ std::vector<std::vector<const protocol::Condition*>> costGroups(const protocol::
     return groups;
 }
 
-std::vector<StageCost> measureStages(const model::Scene& scene) {
-    tick::TickModel model = tick::makeModel(scene);
-    tick::TickState state = tick::makeState(model);
-    const Vec3 way = wayToContact(model, state);
-    // Poses are those of the held part: the registration has nothing to do, and the gate is open.
-    model.registration = model::Registration{};
-    state.engaged = true;
-    StageTimes times(model.stages.size());
-    const Vec3 aside = way.unitOrthogonal();
-    for (int i = 0; i < kApproachTicks + kTicks; ++i) {
-        const double share = std::min(1.0, static_cast<double>(i) / kApproachTicks);
-        const double slide = kSlide * std::sin(2e-3 * std::numbers::pi * std::max(0, i - kApproachTicks));
-        DeviceReading reading;
-        reading.X_BD = {model.X_WG_start.q, model.X_WG_start.p + share * way + slide * aside};
-        times.step(model, state, reading, i >= kApproachTicks);
+TickCost measureTick(const model::Scene& scene) {
+    const tick::TickModel model = tick::makeModel(scene);
+    const std::size_t stages = model.stages.size();
+    TickCost cost;
+    cost.in_contact = !model.obstacles.empty();
+    std::vector<std::int64_t> times = leastTimes(scene, cost.in_contact);
+    if (times.empty()) {
+        cost.in_contact = false;
+        times = leastTimes(scene, false);
     }
-    std::vector<StageCost> costs;
-    for (std::size_t s = 0; s < model.stages.size(); ++s) {
-        costs.push_back({model.stages[s].name, model.stages[s].reason, times.of(s).quantileMicroseconds(0.5),
-                         times.of(s).quantileMicroseconds(0.99)});
+    const std::size_t ticks = stages == 0 ? 0 : times.size() / stages;
+    cost.ticks = static_cast<int>(ticks);
+    std::vector<std::int64_t> whole(ticks, 0);
+    for (std::size_t s = 0; s < stages; ++s) {
+        std::vector<std::int64_t> of_stage;
+        for (std::size_t t = 0; t < ticks; ++t) {
+            of_stage.push_back(times[t * stages + s]);
+            whole[t] += of_stage.back();
+        }
+        cost.stages.push_back({model.stages[s].name, model.stages[s].reason, quantileOf(of_stage, 0.5),
+                               quantileOf(std::move(of_stage), 0.99)});
     }
-    return costs;
+    cost.median_us = quantileOf(whole, 0.5);
+    cost.p99_us = quantileOf(whole, 0.99);
+    cost.most_us = quantileOf(std::move(whole), 1.0);
+    return cost;
 }
 
 }  // namespace passung::app

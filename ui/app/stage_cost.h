@@ -17,9 +17,23 @@ struct StageCost {
     double p99_us = 0.0;
 };
 
+/// What a tick of a scene costs here, in processor time: other programs do not count.
+struct TickCost {
+    std::vector<StageCost> stages;
+    double median_us = 0.0, p99_us = 0.0, most_us = 0.0;  // of all stages together
+    int ticks = 0;                                        // that were counted
+    bool in_contact = false;                              // only ticks in contact were; else free ones
+
+    static constexpr int kRuns = 3;            // a tick's time is the least of so many equal runs
+    static constexpr int kWantedTicks = 2000;  // of contact
+    /// Of a hundred ticks 99 take less than the millisecond that they have.
+    bool fits() const { return p99_us < 1000.0; }
+};
+
 /// Measures every stage on this machine while the held part is pressed two millimetres into the nearest obstacle and
-/// slides on it: 2 000 ticks in contact, or free ones if the scene has no obstacle.
-std::vector<StageCost> measureStages(const model::Scene& scene);
+/// slides on it, until kWantedTicks of contact are counted, or many more without; free ticks if the scene has no
+/// obstacle.
+TickCost measureTick(const model::Scene& scene);
 
 /// Conditions that agree in everything that decides which stages run and what they cost; as the plan lists their first.
 std::vector<std::vector<const protocol::Condition*>> costGroups(const protocol::StudyPlan& plan);

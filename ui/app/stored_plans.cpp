@@ -1,17 +1,18 @@
 #include "ui/app/stored_plans.h"
-#include "ui/app/known_names.h"
+#include "ui/app/protocol_files.h"
 
 #include <algorithm>
 
+#include "core/base/regular_file.h"
 #include "study/protocol/document.h"
-#include "study/protocol/protocol_reader.h"
 #include "study/store/digest.h"
 #include "ui/app/auto_accuracy.h"
 #include "ui/app/calibration.h"
 
 namespace passung::app {
 
-StoredPlans::StoredPlans(const store::StoreReader& reader, const std::string& meshes) : reader_(reader) {
+StoredPlans::StoredPlans(const store::StoreReader& reader, const std::string& meshes, const ImportLimits& limits)
+    : reader_(reader), limits_(limits) {
     // Where the protocol's file was is not stored: a path of one machine means nothing on another.
     if (!meshes.empty()) {
         folders_ = {meshes};
@@ -40,8 +41,7 @@ Result<protocol::StudyPlan> StoredPlans::read(const store::ProtocolRow& row) con
     const auto devices = devicesAsKept(*stable);
     Errors errors;
     for (const std::filesystem::path& folder : folders_) {
-        auto plan = protocol::readProtocolText(row.source_text, (folder / (row.name + ".toml")).string(), devices,
-                                               knownMeasures());
+        auto plan = readProtocolText(row.source_text, (folder / (row.name + ".toml")).string(), devices, limits_);
         if (!plan) {
             if (errors.empty()) errors = plan.errors();
             continue;
@@ -49,7 +49,8 @@ Result<protocol::StudyPlan> StoredPlans::read(const store::ProtocolRow& row) con
         if (const auto same = compareMeshes(row.sha256, *plan); !same) return same.errors();
         const auto accuracy = reader_.accuracy();
         if (!accuracy) return accuracy.errors();
-        if (const auto applied = applyAccuracy(row.sha256, *accuracy, *plan); !applied) return applied.errors();
+        if (const auto applied = applyAccuracy(row.sha256, *accuracy, *plan, limits_); !applied)
+            return applied.errors();
         return plan;
     }
     errors.push_back({.message = "the stored protocol cannot be read here; its mesh paths start from this folder or "
@@ -67,7 +68,7 @@ Result<Done> StoredPlans::compareMeshes(const std::string& sha256, const protoco
         const auto stored = std::find_if(rows->begin(), rows->end(), [&](const store::MeshRow& row) {
             return row.protocol_sha256 == sha256 && row.mesh == mesh.name;
         });
-        const auto bytes = protocol::readFile(mesh.path);
+        const auto bytes = readRegularFile(mesh.path, kMostMeshBytes);
         if (!bytes) return bytes.errors();
         if (stored == rows->end()) {
             errors.push_back({.message = "the database does not know this mesh file", .file = mesh.path});

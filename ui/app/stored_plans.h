@@ -8,6 +8,7 @@
 #include "core/base/result.h"
 #include "study/protocol/study_plan.h"
 #include "study/store/store_reader.h"
+#include "ui/app/mesh_importer.h"
 
 namespace passung::app {
 
@@ -16,7 +17,7 @@ namespace passung::app {
 class StoredPlans {
 public:
     /// `meshes`: folder that the protocols' mesh paths start from; empty: here, else beside the database.
-    StoredPlans(const store::StoreReader& reader, const std::string& meshes);
+    StoredPlans(const store::StoreReader& reader, const std::string& meshes, const ImportLimits& limits = {});
 
     /// Errors: the protocol is not there, or a mesh file of it is missing or another one than at the time.
     Result<const protocol::StudyPlan*> plan(const std::string& sha256);
@@ -27,6 +28,7 @@ private:
 
     const store::StoreReader& reader_;
     std::vector<std::filesystem::path> folders_;
+    ImportLimits limits_;
     std::map<std::string, protocol::StudyPlan> plans_;
 };
 

@@ -14,6 +14,7 @@ Result<Done> atTheDesk(const DeskAccess& access,
     auto open = openOptionsNow();
     open.station = access.station;
     open.create = access.create;
+    open.group = access.group;
     const auto opened = store::Store::open(access.database, open);
     if (!opened.store) return opened.errors;
     store::ParticipantDesk desk(*opened.store, {access.by, open.now_utc});
@@ -40,10 +41,15 @@ Result<Left> leave(const DeskAccess& access, const presenter::Leaving& leaving) 
         if (leaving.scope == Scope::Stop) return desk.withdraw(leaving.code, leaving.reason);
         if (leaving.scope == Scope::Exclude) return desk.exclude(leaving.code, leaving.reason, "withdraw");
         if (leaving.scope == Scope::Dismiss) return desk.exclude(leaving.code, leaving.reason);
-        left.copies = knownCopies(access.database, leaving.code);
+        if (leaving.backup_too) {
+            const auto erased = desk.eraseFromBackup(leaving.code);
+            left.backup = erased && *erased;
+            if (!erased) left.backup_problem = erased.errors().front().message;
+        }
         const auto surrogate = desk.erase(leaving.code);
         if (!surrogate) return surrogate.errors();
         left.surrogate = *surrogate;
+        left.copies = knownCopies(access.database, leaving.code);
         return Done{};
     });
     if (!done) return done.errors();

@@ -16,6 +16,7 @@ struct DeskAccess {
     std::string by = "experimenter";
     store::Station station = {};
     bool create = false;  // else the database has to be there
+    bool group = false;   // as of store::OpenOptions
 };
 
 /// Opens the database, lets `work` do its part and closes it.
@@ -29,6 +30,8 @@ Result<std::string> enrolAt(store::Store& store, store::ParticipantDesk& desk, p
 /// What came of somebody's leaving.
 struct Left {
     std::string surrogate;            // of whoever was erased, in the audit
+    bool backup = false;              // they were erased from the backup too
+    std::string backup_problem;       // why that could not be done; empty: it was, or there was nothing to do
     std::vector<std::string> copies;  // known ones that still hold them
 };
 Result<Left> leave(const DeskAccess& access, const presenter::Leaving& leaving);

@@ -20,7 +20,7 @@ simulated::VisibleTask visibleTask(const protocol::Condition& condition) {
     else if (const auto* placement = std::get_if<protocol::FreePlacementTask>(&form))
         task.goal = simulated::PlaceGoal{placement->X_WGoal, placement->round};
     else if (const auto* pair = std::get_if<protocol::DiscriminationPairTask>(&form))
-        task.goal = simulated::CompareGoal{pair->judged == protocol::Judged::Roughness, {}};
+        task.goal = simulated::CompareGoal{pair->judged == protocol::Judged::Roughness};
     return task;
 }
 

@@ -26,6 +26,10 @@ void WatchedStore::keep(const std::string& name, std::string_view bytes) {
     tell();
 }
 
+Result<model::ImportedMesh> WatchedStore::importMesh(const std::string& path, double metres_per_unit) {
+    return model::importMesh(model::MeshFile{path, metres_per_unit}, store_);
+}
+
 void WatchedStore::tell() const {
     const auto pieces = static_cast<double>(std::max<std::size_t>(pieces_, 1));
     if (watch_ && !watch_(std::min(1.0, static_cast<double>(done_) / pieces))) throw BuildCancelled();

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "core/model/build_store.h"
+#include "core/model/mesh_source.h"
 
 namespace passung::app {
 
@@ -15,7 +16,7 @@ struct BuildCancelled : std::runtime_error {
 
 /// Another store, or none, through which somebody watches a build: its pieces are the fields and shells that are asked
 /// for. Those that are there take no time and are not told of.
-class WatchedStore final : public model::BuildStore {
+class WatchedStore final : public model::BuildStore, public model::MeshSource {
 public:
     /// What is known of a build: the share of its pieces that are done. False: it is to be given up.
     using Watch = std::function<bool(double share)>;
@@ -28,6 +29,7 @@ public:
     /// Both throw BuildCancelled; what is to be kept is kept before.
     std::optional<std::string> load(const std::string& name) override;
     void keep(const std::string& name, std::string_view bytes) override;
+    Result<model::ImportedMesh> importMesh(const std::string& path, double metres_per_unit) override;
 
 private:
     void tell() const;

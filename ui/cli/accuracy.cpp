@@ -9,7 +9,7 @@
 #include "analysis/truth/accuracy_sweep.h"
 #include "analysis/truth/accuracy_tables.h"
 #include "study/protocol/document.h"
-#include "ui/app/disk_store.h"
+#include "ui/app/builds.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 #include "ui/cli/part_argument.h"
@@ -145,7 +145,8 @@ int accuracy(const AccuracyOptions& options) {
 
     ProgressLine progress;
     progress.show("reading the parts");
-    const auto truth = truth::PairTruth::build(*field, *shell);
+    const auto builds = app::openBuilds(options.import_limits);
+    const auto truth = truth::PairTruth::build(*field, *shell, builds.get());
     if (!truth) return fail(truth.errors());
     const auto poses_report = [&](double share) {
         progress.show(progressBar("finding poses and what is true there", share));
@@ -156,7 +157,6 @@ int accuracy(const AccuracyOptions& options) {
     const auto shaken = truth::shakenPoses(*truth, poses, options.fcl_poses, options.seed, [&](double share) {
         progress.show(progressBar("asking FCL about further poses", share));
     });
-    const auto builds = app::openDiskStore();
     const auto result = truth::sweepAccuracy(
         *field, *shell, spaceOf(options, truth->length()), poses, shaken, truth->lever(),
         [&](const std::string& what, double share) { progress.show(progressBar(what, share)); }, builds.get());

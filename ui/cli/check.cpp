@@ -1,18 +1,14 @@
 #include <fmt/format.h>
 
-#include <map>
 #include <optional>
-#include <utility>
 
-#include "core/model/mesh_import.h"
-#include "core/model/part.h"
 #include "study/protocol/document.h"
-#include "study/protocol/protocol_reader.h"
 #include "study/protocol/questionnaire_reader.h"
 #include "study/session/participant_order.h"
 #include "study/session/plan_text.h"
 #include "study/session/staircase_text.h"
 #include "ui/app/known_names.h"
+#include "ui/app/protocol_files.h"
 #include "ui/app/stability_report.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
@@ -20,32 +16,6 @@
 namespace passung::cli {
 
 namespace {
-
-/// What is wrong with meshes: `run` would find it at the first trial only.
-Errors checkMeshes(const protocol::StudyPlan& plan) {
-    std::map<std::pair<std::string, double>, std::optional<model::MeshReport>> reports;
-    Errors errors;
-    for (const auto& condition : plan.conditions) {
-        for (const auto& part : condition.scene.parts) {
-            const auto* file = std::get_if<model::MeshFile>(&part.geometry);
-            if (file == nullptr) continue;
-            const auto [place, fresh] = reports.try_emplace({file->path, file->metres_per_unit});
-            if (fresh) {
-                auto mesh = model::importMesh(file->path, file->metres_per_unit);
-                if (mesh)
-                    place->second = std::move(mesh->report);
-                else
-                    errors.insert(errors.end(), mesh.errors().begin(), mesh.errors().end());
-            }
-            const auto& report = place->second;
-            if (!part.held || !report) continue;
-            if (const auto excess = model::tooManyPoints(report->size, report->area, condition.scene.contact.spacing))
-                errors.push_back({.message = *excess, .file = plan.source_path, .key = "part " + part.name});
-        }
-    }
-    protocol::tidy(errors);
-    return errors;
-}
 
 /// A questionnaire's file by itself; nothing if it is none.
 std::optional<int> checkQuestionnaire(const std::string& path) {
@@ -63,8 +33,8 @@ std::optional<int> checkQuestionnaire(const std::string& path) {
 
 int check(const CheckOptions& options) {
     if (const auto code = checkQuestionnaire(options.protocol)) return *code;
-    auto [plan, errors] = protocol::examineProtocol(options.protocol, app::knownDevices(), app::knownMeasures());
-    for (const Errors& more : {checkMeshes(plan), app::beyondBorder(plan, app::knownDevices())})
+    auto [plan, errors, for_people] = app::examineProtocol(options.protocol, options.import_limits);
+    for (const Errors& more : {app::beyondBorder(plan, app::knownDevices()), for_people})
         errors.insert(errors.end(), more.begin(), more.end());
     if (!errors.empty()) return fail(errors);
     warn(options.protocol, session::planWarnings(plan));

@@ -3,8 +3,10 @@
 #include <CLI/CLI.hpp>
 
 #include <cstdint>
+#include <cstdio>
 #include <functional>
 #include <iterator>
+#include <sstream>
 
 #include "analysis/power/effect_test.h"
 #include "analysis/power/power_file.h"
@@ -47,7 +49,11 @@ public:
         try {
             app_.parse(argc, argv);
         } catch (const CLI::ParseError& error) {
-            return app_.exit(error) == 0 ? 0 : kWrongUsage;
+            std::ostringstream out, wrong;  // what it prints passes the C streams, as everything here
+            const bool fine = app_.exit(error, out, wrong) == 0;
+            std::fputs(out.str().c_str(), stdout);
+            std::fputs(wrong.str().c_str(), stderr);
+            return fine ? 0 : kWrongUsage;
         }
         return chosen_();
     }
@@ -75,17 +81,22 @@ private:
     void addStudyCommands() {
         auto* sub = command("check", "validate a protocol: every problem with its place", check_, check);
         sub->add_option("PROTOCOL", check_.protocol, "study file (.toml)")->required();
+        addImport(sub, check_.import_limits);
 
         sub = command("explain", "design, orders and balance, or the stages of a scene's tick", explain_, explain);
         sub->add_option("FILE", explain_.file, "protocol or scene")->required();
+        addImport(sub, explain_.import_limits);
         sub->add_option("--participants", explain_.participants, "how many orders to print")->check(wholeIntFrom(1));
         sub->add_option("--stations", explain_.stations, "that they take part at in turn; default 1")
             ->check(between(1.0, 26.0, "a number from 1 to 26"));
+        sub->add_option("--orders", explain_.orders, "csv: only the planned orders, a row for each trial")
+            ->check(CLI::IsMember({"csv"}));
         sub->add_option("--db", explain_.database,
                         "the study's database: shows what accuracy = \"auto\" picked there instead of measuring anew");
 
         sub = command("run", "perform a study with simulated participants", run_, passung::cli::run);
         sub->add_option("PROTOCOL", run_.protocol, "study file (.toml)")->required();
+        addImport(sub, run_.import_limits);
         sub->add_option("--db", run_.database, "database; default: the study's name with .db");
         auto* participant = sub->add_option("--participant", run_.participant, "code of one participant, such as S001");
         sub->add_option("--simulated", run_.simulated, "number of new participants; default 1")
@@ -94,6 +105,7 @@ private:
         sub->add_flag("--real-time", run_.real_time, "at 1 kHz by the clock instead of as fast as the machine goes");
         sub->add_option("--seed", run_.seed, "instead of the protocol's")->check(wholeUnsigned());
         addStation(sub, run_.station);
+        addGroup(sub, run_.group);
         sub->add_flag("--no-backup", run_.no_backup, "leave out the copy DB.backup and its SHA-256 at the end");
         addAnswers(sub, run_.answers);
         sub->add_option("--language", run_.language,
@@ -108,6 +120,23 @@ private:
                         "who answers questionnaires and consent: simulated (default), or, asked in this terminal, "
                         "participant or experimenter (who reads them out); trials stay those of a simulated hand")
             ->check(CLI::IsMember({"simulated", "participant", "experimenter"}));
+    }
+
+    static void addGroup(CLI::App* sub, bool& group) {
+        sub->add_flag("--group", group,
+                      "let the group of the file's owner read and write it (mode 0660); default: the owner alone "
+                      "(0600), or as an earlier --group left it");
+    }
+
+    /// What reading a mesh file may take.
+    static void addImport(CLI::App* sub, passung::app::ImportLimits& limits) {
+        sub->add_option("--import-seconds", limits.processor_s, "most processor time to read a mesh file; default 20")
+            ->check(between(1.0, 86400.0, "a number from 1 to 86400"));
+        sub->add_option_function<double>(
+               "--import-memory-mb",
+               [&limits](double mebibytes) { limits.memory = static_cast<std::uintmax_t>(mebibytes) << 20; },
+               "most memory to read a mesh file; default 1024; at least 16 times the file")
+            ->check(between(64.0, 1048576.0, "a number from 64 to 1048576"));
     }
 
     static void addStation(CLI::App* sub, StationOptions& options) {
@@ -139,6 +168,7 @@ private:
         sub->add_option("--protocol", participant_.protocol,
                         "study file: stored first if the database does not have it, which is made if it is not there");
         sub->add_option("--by", participant_.by, "who does it, for the audit; default experimenter");
+        addGroup(sub, participant_.group);
 
         addStation(sub, participant_.station);
 
@@ -158,6 +188,10 @@ private:
                         "of it is left in the database")
             ->required()
             ->check(CLI::IsMember({"stop", "exclude", "erase"}));
+        sub->add_option("--backup", participant_.backup,
+                        "of the scope erase: what becomes of them in the database's backup: erase (default, asked "
+                        "in a terminal) or keep")
+            ->check(CLI::IsMember({"erase", "keep"}));
         sub->add_option("--reason", participant_.reason, "if they gave one; of no one else's concern: no names");
 
         sub = action("exclude", "leave somebody out of the analysis and free their place", excludeParticipant);
@@ -174,6 +208,7 @@ private:
     void addSessionCommands() {
         auto* sub = command("resume", "go on with an interrupted session by its protocol's [resume]", resume_, resume);
         sub->add_option("DB", resume_.database, "database of the study")->required();
+        addImport(sub, resume_.import_limits);
         sub->add_option("--session", resume_.session, "session_id; default: the newest one that did not complete");
         sub->add_option("--meshes", resume_.meshes, "as of replay")->check(CLI::ExistingDirectory);
         addStation(sub, resume_.station);
@@ -201,16 +236,29 @@ private:
         sub->add_option("DB", export_.database, "database of a study")->required();
         sub->add_option("--out", export_.out, "folder")->required();
         sub->add_flag("--no-samples", export_.no_samples, "leave out the recorded ticks");
+        addGroup(sub, export_.group);
 
         sub = command("merge", "put the databases of several stations together", merge_, merge);
         sub->add_option("DB", merge_.databases, "databases of one study")->required()->expected(1, -1);
         sub->add_option("--out", merge_.out, "database that gets what it does not have yet")->required();
+        addGroup(sub, merge_.group);
 
         sub = command("push", "copy a study into PostgreSQL; again: what is new", push_, push);
         sub->add_option("DB", push_.database, "database of a study")->required();
         sub->add_option("--to", push_.to, "postgresql://USER@HOST/DATABASE, or as libpq reads it")->required();
 
+        sub = command("verify", "look for damage: every page, every hash, every checksum", verify_, verify);
+        sub->add_option("DB", verify_.database, "database of a study; it is not changed")->required();
+
+        sub =
+            command("restore", "heal a damaged database from a copy: only what is damaged changes", restore_, restore);
+        sub->add_option("DB", restore_.database, "damaged database of a study")->required();
+        sub->add_option("--from", restore_.from,
+                        "DB.backup, another database that has the sessions, or postgresql://USER@HOST/DATABASE")
+            ->required();
+
         sub = command("replay", "run recorded inputs again and compare every bit", replay_, replay);
+        addImport(sub, replay_.import_limits);
         sub->add_option("DB", replay_.database, "database of a study")->required();
         sub->add_option("--attempt", replay_.attempt, "attempt_id; default: all")->check(wholeFrom(1));
         sub->add_option("--meshes", replay_.meshes,
@@ -275,6 +323,7 @@ private:
         const CLI::IsMember units({"m", "cm", "mm", "um", "in"});
         auto* sub = command("mesh", "report what a mesh file, or the mesh of a shape, is like", mesh_, mesh);
         sub->add_option("FILE", mesh_.file, "STL, OBJ, PLY, OFF, glTF, 3MF ... or part.toml")->required();
+        addImport(sub, mesh_.import_limits);
         sub->add_option("--unit", mesh_.unit, "of files that have none; default mm")->check(units);
 
         sub = command("query", "distance, depth and wrench of two parts at given poses", query_, query);
@@ -292,6 +341,7 @@ private:
                         "error_bound_m is above it (few steps, hard pose, or --budget-nodes)")
             ->check(above0());
         sub->add_option("--cell-mm", query_.cell_mm, "of the field, instead of a tolerance")->check(above0());
+        addImport(sub, query_.import_limits);
         sub->add_option("--spacing-mm", query_.spacing_mm, "of the shell")->check(above0());
         sub->add_option("--mode", query_.mode, "of interpolation; default trilinear")->check(aMode());
         sub->add_option("--proximity-mm", query_.proximity_mm, "search no farther; default unlimited")
@@ -310,6 +360,7 @@ private:
 
         sub = command("simulate", "run a scene along a device path", simulate_, simulate);
         sub->add_option("SCENE", simulate_.scene, "scene file (.toml), not a study")->required();
+        addImport(sub, simulate_.import_limits);
         sub->add_option("--trajectory", simulate_.trajectory,
                         "CSV of poses of the held part in the world, in seconds and metres; header: "
                         "t_s,x_m,y_m,z_m,qw,qx,qy,qz")
@@ -340,6 +391,7 @@ private:
     void addAccuracyCommand(const CLI::Validator& units) {
         auto* sub = command("accuracy", "error against truth over time, for every way to ask", accuracy_, accuracy);
         sub->add_option("FIELD", accuracy_.field, "watertight mesh or part.toml")->required();
+        addImport(sub, accuracy_.import_limits);
         sub->add_option("SHELL", accuracy_.shell, "mesh or part.toml")->required();
         sub->add_option("--out", accuracy_.out, "folder for accuracy.csv, accuracy.svg, poses.csv, codebook.csv")
             ->required();
@@ -380,6 +432,8 @@ private:
     ExportOptions export_;
     MergeOptions merge_;
     PushOptions push_;
+    VerifyOptions verify_;
+    RestoreOptions restore_;
     ReplayOptions replay_;
     PowerOptions power_;
     MeshOptions mesh_;

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "ui/app/mesh_importer.h"
+
 namespace passung::cli {
 
 // One struct and one function per command; every function prints what a person needs and returns the exit code:
@@ -15,6 +17,7 @@ void openWindows();
 
 struct CheckOptions {
     std::string protocol;
+    app::ImportLimits import_limits;
 };
 int check(const CheckOptions& options);
 
@@ -23,6 +26,8 @@ struct ExplainOptions {
     int participants = 0;  // 0: as many as the protocol plans
     int stations = 1;      // where they take part in turn
     std::string database;  // of the study: what accuracy = "auto" picked there; empty: measured anew
+    std::string orders;    // "csv": a row for each planned trial and nothing else; empty: as text among the rest
+    app::ImportLimits import_limits;
 };
 int explain(const ExplainOptions& options);
 
@@ -42,9 +47,11 @@ struct RunOptions {
     std::optional<std::uint64_t> seed;
     StationOptions station;
     bool no_backup = false;
+    bool group = false;
     int acknowledge_fd = -1;            // open file descriptor that gets a line per durable attempt
     std::string answers = "simulated";  // or "participant", "experimenter": asked in this terminal
     std::string language;               // empty: the first that the protocol has
+    app::ImportLimits import_limits;
 };
 int run(const RunOptions& options);
 
@@ -56,6 +63,7 @@ struct ResumeOptions {
     bool no_backup = false;
     int acknowledge_fd = -1;  // as of RunOptions
     std::string answers = "simulated";
+    app::ImportLimits import_limits;
 };
 int resume(const ResumeOptions& options);
 
@@ -68,9 +76,11 @@ struct ParticipantOptions {
     std::vector<std::string> clauses;  // empty: all
     std::string decision = "yes";      // "no", "withdrawn"
     std::string language = "en";
-    std::string scope;  // "stop", "exclude", "erase"
+    std::string scope;   // "stop", "exclude", "erase"
+    std::string backup;  // of "erase": "erase" or "keep"; empty: asked in a terminal, else erased
     std::string reason;
     std::string by = "experimenter";
+    bool group = false;
 };
 int enrolParticipant(const ParticipantOptions& options);
 int listParticipants(const ParticipantOptions& options);
@@ -92,12 +102,14 @@ struct ExportOptions {
     std::string database;
     std::string out;
     bool no_samples = false;
+    bool group = false;
 };
 int exportData(const ExportOptions& options);
 
 struct MergeOptions {
     std::vector<std::string> databases;
     std::string out;
+    bool group = false;
 };
 int merge(const MergeOptions& options);
 
@@ -107,10 +119,22 @@ struct PushOptions {
 };
 int push(const PushOptions& options);
 
+struct VerifyOptions {
+    std::string database;
+};
+int verify(const VerifyOptions& options);
+
+struct RestoreOptions {
+    std::string database;
+    std::string from;  // a file, or PostgreSQL
+};
+int restore(const RestoreOptions& options);
+
 struct ReplayOptions {
     std::string database;
     std::int64_t attempt = 0;  // 0: all of them
     std::string meshes;  // folder that the protocol's mesh paths start from; empty: here, else beside the database
+    app::ImportLimits import_limits;
 };
 int replay(const ReplayOptions& options);
 
@@ -134,6 +158,7 @@ int power(const PowerOptions& options);
 struct MeshOptions {
     std::string file;
     std::string unit = "mm";
+    app::ImportLimits import_limits;
 };
 int mesh(const MeshOptions& options);
 
@@ -147,11 +172,13 @@ struct QueryOptions {
     double quality = 0.0;
     bool two_way = false;
     std::string patches;  // file; empty: none
+    app::ImportLimits import_limits;
 };
 int query(const QueryOptions& options);
 
 struct SimulateOptions {
     std::string scene, trajectory, out;
+    app::ImportLimits import_limits;
 };
 int simulate(const SimulateOptions& options);
 
@@ -167,6 +194,7 @@ struct AccuracyOptions {
     int repetitions = 5;
     int fcl_poses = 1000;
     std::string unit = "mm", field_unit, shell_unit;  // empty: unit
+    app::ImportLimits import_limits;
 };
 int accuracy(const AccuracyOptions& options);
 

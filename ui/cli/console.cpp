@@ -44,8 +44,21 @@ bool isNoPlainFile(const std::string& path) {
 }  // namespace
 
 int fail(const Errors& errors) {
-    for (const Error& error : errors) std::fprintf(stderr, "%s\n", toString(error).c_str());
+    constexpr std::size_t kMostShown = 500;
+    for (std::size_t i = 0; i < std::min(errors.size(), kMostShown); ++i)
+        std::fprintf(stderr, "%s\n", toString(errors[i]).c_str());
+    if (errors.size() > kMostShown) std::fprintf(stderr, "and %zu errors more\n", errors.size() - kMostShown);
     return 1;
+}
+
+bool tellDamages(const std::string& database, const std::vector<store::DamageRow>& damages, const char* consequence) {
+    for (const store::DamageRow& damage : damages) {
+        const std::string where = damage.session_ordinal ? fmt::format("{}, session {}, {}: ", damage.participant_id,
+                                                                       *damage.session_ordinal, damage.part)
+                                                         : std::string();
+        fmt::print(stderr, "{}: error: {}{}: {}\n", database, where, damage.what, consequence);
+    }
+    return !damages.empty();
 }
 
 void warn(const std::string& file, const std::vector<std::string>& warnings) {
@@ -66,7 +79,7 @@ Result<Done> refuseOverwriting(const std::string& out, const std::vector<std::st
 
 OutputFile::OutputFile(std::string path)
     : path_(std::move(path)), target_(followed(path_)), temporary_(target_ + ".part") {
-    refused_ = isNoPlainFile(target_);
+    refused_ = isNoPlainFile(target_) || isNoPlainFile(temporary_);
     if (refused_) return;
     file_ = std::fopen(temporary_.c_str(), "wb");
     if (file_ == nullptr) error_ = failure();

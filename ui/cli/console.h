@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "study/store/rows.h"
 
 namespace passung::cli {
 
@@ -14,6 +15,9 @@ int fail(const Errors& errors);
 
 /// Prints every warning about `file` on a line of its own on standard error.
 void warn(const std::string& file, const std::vector<std::string>& warnings);
+
+/// Prints what is damaged in a database, a line each on standard error, and what became of it; true if anything is.
+bool tellDamages(const std::string& database, const std::vector<store::DamageRow>& damages, const char* consequence);
 
 /// Refuses an output that is one of the input files, which would be lost, or no regular file.
 Result<Done> refuseOverwriting(const std::string& out, const std::vector<std::string>& inputs);

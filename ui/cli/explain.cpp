@@ -4,19 +4,19 @@
 #include <span>
 
 #include "study/protocol/document.h"
-#include "study/protocol/protocol_reader.h"
-#include "study/protocol/scene_reader.h"
 #include "study/session/plan_text.h"
 #include "study/store/digest.h"
 #include "study/store/store_reader.h"
 #include "ui/app/auto_accuracy.h"
+#include "ui/app/builds.h"
 #include "ui/app/calibration.h"
-#include "ui/app/disk_store.h"
 #include "ui/app/known_names.h"
+#include "ui/app/protocol_files.h"
 #include "ui/app/stability_report.h"
 #include "ui/app/stage_cost.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
+#include "ui/cli/order_table.h"
 
 namespace passung::cli {
 
@@ -47,9 +47,12 @@ Result<Done> printStages(const model::SceneSpec& spec, model::PartCache& cache) 
     if (!scene) return scene.errors();
     printShapes(spec);
     fmt::print("  {:<22}{:>10}{:>10}  {}\n", "stage of the tick", "median µs", "p99 µs", "why it runs");
-    for (const app::StageCost& cost : app::measureStages(*scene)) {
+    const app::TickCost tick = app::measureTick(*scene);
+    for (const app::StageCost& cost : tick.stages)
         fmt::print("  {:<22}{:>10.1f}{:>10.1f}  {}\n", cost.name, cost.median_us, cost.p99_us, cost.reason);
-    }
+    fmt::print("  {:<22}{:>10.1f}{:>10.1f}  {}: most {:.1f} µs; processor time of {} ticks {}, the least of {} runs\n",
+               "whole tick", tick.median_us, tick.p99_us, tick.fits() ? "fits 1 kHz here" : "does not fit 1 kHz here",
+               tick.most_us, tick.ticks, tick.in_contact ? "in contact" : "without contact", app::TickCost::kRuns);
     return Done{};
 }
 
@@ -106,7 +109,8 @@ void explainStability(const protocol::StudyPlan& plan, std::span<const DeviceDes
 }
 
 /// What accuracy = "auto" picks here, or what the study's database keeps; printed with what was measured.
-Result<Done> explainAccuracy(const std::string& database, protocol::StudyPlan& plan, model::BuildStore* builds) {
+Result<Done> explainAccuracy(const std::string& database, protocol::StudyPlan& plan, model::BuildStore* builds,
+                             const app::ImportLimits& limits) {
     if (!app::asksForAccuracy(plan)) return Done{};
     const std::string sha256 = store::sha256Hex(plan.source_text);
     std::vector<store::AccuracyRow> rows;
@@ -125,7 +129,7 @@ Result<Done> explainAccuracy(const std::string& database, protocol::StudyPlan& p
         if (!measured) return measured.errors();
         rows = std::move(*measured);
     }
-    if (const auto applied = app::applyAccuracy(sha256, rows, plan); !applied) return applied;
+    if (const auto applied = app::applyAccuracy(sha256, rows, plan, limits); !applied) return applied;
     fmt::print("\nAccuracy, {}\n{}",
                database.empty() ? "measured now on this machine: a study keeps what its first run picks, which --db "
                                   "shows; the keys picked, written into the protocol, hold everywhere"
@@ -149,15 +153,18 @@ Result<Done> explainEffects(const protocol::StudyPlan& plan, model::PartCache& c
 }  // namespace
 
 int explain(const ExplainOptions& options) {
-    const auto store = app::openDiskStore();
+    const auto store = app::openBuilds(options.import_limits);
     model::PartCache cache(store.get());
     const auto is_study = isStudy(options.file);
     if (!is_study) return fail(is_study.errors());
     if (!*is_study) {
+        if (!options.orders.empty())
+            return fail({{"a scene has no orders: --orders is for study files", options.file}});
         const auto text = protocol::readFile(options.file);
         if (!text) return fail(text.errors());
-        const auto spec = protocol::readSceneOnDevice(*text, options.file, app::knownDevices());
+        const auto spec = app::readSceneOnDevice(*text, options.file, options.import_limits);
         if (!spec) return fail(spec.errors());
+        warn(options.file, spec->warnings);
         const auto done = printStages(spec->scene, cache);
         if (const auto* device = app::deviceNamed(spec->device, app::knownDevices())) {
             printStabilityHead(device->name.size());
@@ -167,23 +174,29 @@ int explain(const ExplainOptions& options) {
         return done ? 0 : fail(done.errors());
     }
     auto devices = app::knownDevices();
-    auto plan = protocol::readProtocol(options.file, devices, app::knownMeasures());
+    auto plan = app::readProtocol(options.file, options.import_limits);
     if (!plan) return fail(plan.errors());
+    const int participants = options.participants > 0 ? options.participants : plan->participants;
+    if (options.orders == "csv") {
+        const auto sessions = session::plannedSessions(*plan, participants, options.stations);
+        if (!sessions) return fail(sessions.errors());
+        fmt::print("{}", orderCsv(*plan, *sessions));
+        return 0;
+    }
     if (!options.database.empty()) {
         const auto reader = store::StoreReader::open(options.database);
         if (!reader) return fail(reader.errors());
         const auto stable = reader->stableStiffness(store::sha256Hex(plan->source_text));
         if (!stable) return fail(stable.errors());
-        plan = app::withKeptStiffness(*plan, *stable);
+        plan = app::withKeptStiffness(*plan, *stable, options.import_limits);
         if (!plan) return fail(plan.errors());
         devices = app::devicesAsKept(*stable);
     }
-    const auto described = session::describePlan(
-        *plan, options.participants > 0 ? options.participants : plan->participants, options.stations);
+    const auto described = session::describePlan(*plan, participants, options.stations);
     if (!described) return fail(described.errors());
     fmt::print("{}", *described);
     explainStability(*plan, devices);
-    if (const auto picked = explainAccuracy(options.database, *plan, store.get()); !picked)
+    if (const auto picked = explainAccuracy(options.database, *plan, store.get(), options.import_limits); !picked)
         return fail(picked.errors());
     const auto done = explainEffects(*plan, cache);
     return done ? 0 : fail(done.errors());

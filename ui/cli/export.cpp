@@ -2,23 +2,28 @@
 
 #include <fmt/format.h>
 
+#include "ui/app/known_exports.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 
 namespace passung::cli {
 
 int exportData(const ExportOptions& options) {
-    const auto reader = store::StoreReader::open(options.database);
+    const auto reader = store::StoreReader::open(
+        options.database, options.no_samples ? store::Damaged::LeftOut : store::Damaged::LeftOutWithSamples);
     if (!reader) return fail(reader.errors());
     ProgressLine progress;
-    const auto report =
-        exporter::exportAll(*reader, options.out, {.samples = !options.no_samples, .progress = [&](double share) {
-                                                       progress.show(fmt::format("exporting: {:.0f} %", 100.0 * share));
-                                                   }});
+    const auto report = exporter::exportAll(
+        *reader, options.out, {.samples = !options.no_samples, .group = options.group, .progress = [&](double share) {
+                                   progress.show(fmt::format("exporting: {:.0f} %", 100.0 * share));
+                               }});
     if (!report) return fail(report.errors());
     progress.show("");
+    if (!app::rememberExport(options.database, options.out))
+        warn(options.out, {"this export could not be noted in the folder of your data: erasing somebody will not name "
+                           "it unless it lies beside the database"});
     fmt::print("{}: {} attempts in {} files\n", options.out, report->attempts, report->files);
-    return 0;
+    return tellDamages(options.database, reader->damages(), "left out, see missing.csv") ? 1 : 0;
 }
 
 }  // namespace passung::cli

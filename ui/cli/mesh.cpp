@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "core/model/part.h"
+#include "ui/app/builds.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 #include "ui/cli/part_argument.h"
@@ -30,12 +31,20 @@ std::string inside(const model::MeshReport& r) {
     return r.watertight ? "a closed solid" : "a closed solid, as repaired";
 }
 
+/// Where the part's own origin, about which it is placed and turned, lies.
+std::string originOf(const Vec3& low, const Vec3& high) {
+    const double least = (low.cwiseMax(-high)).maxCoeff();  // > 0: how far outside the bounds, along one axis
+    const double from_centre = (0.5 * (low + high)).norm();
+    return fmt::format("{} the bounds, {:.6g} mm from their centre", least > 0.0 ? "outside" : "within",
+                       1e3 * from_centre);
+}
+
 }  // namespace
 
 int mesh(const MeshOptions& options) {
     const auto spec = partArgument(options.file, options.unit);
     if (!spec) return fail(spec.errors());
-    const auto part = model::buildPart(*spec, {});
+    const auto part = model::buildPart(*spec, {}, app::openBuilds(options.import_limits).get());
     if (!part) return fail(part.errors());
     const model::MeshReport& r = part->report;
     fmt::print("{}\n", options.file);
@@ -52,6 +61,14 @@ int mesh(const MeshOptions& options) {
                                                       : fmt::format("{} of {} read", r.triangles, r.triangles_read));
     line("vertices", std::to_string(r.vertices));
     line("size", fmt::format("{:.6g} x {:.6g} x {:.6g} mm", r.size.x() * 1e3, r.size.y() * 1e3, r.size.z() * 1e3));
+    const auto corner = [](const Vec3& v) {
+        return fmt::format("{:.6g}, {:.6g}, {:.6g} mm", v.x() * 1e3, v.y() * 1e3, v.z() * 1e3);
+    };
+    const auto [low, high] = model::boundsOf(part->mesh);
+    line("least x, y, z", corner(low));
+    line("greatest x, y, z", corner(high));
+    line("centre of bounds", corner(0.5 * (low + high)));
+    line("origin", originOf(low, high));
     line("area", fmt::format("{:.6g} mm²", r.area * 1e6));
     line("volume", volume(r));
     line("inside", inside(r));

@@ -1,14 +1,18 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <filesystem>
 #include <functional>
+#include <iostream>
 #include <map>
 #include <optional>
 
-#include "study/protocol/protocol_reader.h"
+#include "study/store/backup.h"
 #include "study/store/participant_desk.h"
 #include "study/store/store_reader.h"
-#include "ui/app/known_names.h"
+#include "ui/app/protocol_files.h"
 #include "ui/app/study_desk.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
@@ -24,7 +28,7 @@ int atTheDesk(const ParticipantOptions& options, bool create,
               const std::function<Result<Done>(store::Store&, store::ParticipantDesk&)>& work) {
     const auto station = stationOf(options.station);
     if (!station) return fail(station.errors());
-    const auto done = app::atTheDesk({options.database, options.by, *station, create}, work);
+    const auto done = app::atTheDesk({options.database, options.by, *station, create, options.group}, work);
     return done ? 0 : fail(done.errors());
 }
 
@@ -44,7 +48,7 @@ std::string consentText(const std::vector<store::ConsentRow>& consents, const st
 int enrolParticipant(const ParticipantOptions& options) {
     std::optional<protocol::StudyPlan> plan;
     if (!options.protocol.empty()) {
-        auto read = protocol::readProtocol(options.protocol, app::knownDevices(), app::knownMeasures());
+        auto read = app::readProtocol(options.protocol);
         if (!read) return fail(read.errors());
         plan = *std::move(read);
     }
@@ -95,6 +99,40 @@ int decideConsent(const ParticipantOptions& options) {
     });
 }
 
+namespace {
+
+/// Asked where somebody can answer; nothing if nobody does.
+std::optional<bool> takesBackupAlong(const ParticipantOptions& options) {
+    const std::string backup = store::backupPath(options.database);
+    std::error_code none;
+    if (!options.backup.empty()) return options.backup == "erase";
+    if (isatty(STDIN_FILENO) == 0 || !std::filesystem::exists(backup, none)) return true;
+    fmt::print("Erase {} from the backup {} as well? [Y/n] ", options.code, backup);
+    std::fflush(stdout);
+    for (std::string line; std::getline(std::cin, line);) {
+        if (line.empty() || line == "y" || line == "Y" || line == "yes") return true;
+        if (line == "n" || line == "N" || line == "no") return false;
+        fmt::print("y or n: ");
+        std::fflush(stdout);
+    }
+    return std::nullopt;
+}
+
+void tellErasure(const ParticipantOptions& options, const app::Left& left) {
+    fmt::print("{}: erased from {}; the audit says {} in its place\n", options.code, options.database, left.surrogate);
+    const std::string backup = store::backupPath(options.database);
+    if (left.backup) fmt::print("{}: erased from the backup {} too\n", options.code, backup);
+    if (!left.backup_problem.empty())
+        fmt::print("{}: could not be erased from the backup {}: {}\n", options.code, backup, left.backup_problem);
+    for (const std::string& copy : left.copies)
+        fmt::print("names {} too, delete it if it is a copy of this database: {}\n", options.code, copy);
+    fmt::print(
+        "and whatever copies of the database and exports of other users lie elsewhere; erase them as well in the "
+        "databases of other stations and in those merged from this one, and push to PostgreSQL again\n");
+}
+
+}  // namespace
+
 int withdrawParticipant(const ParticipantOptions& options) {
     const auto station = stationOf(options.station);
     if (!station) return fail(station.errors());
@@ -104,6 +142,11 @@ int withdrawParticipant(const ParticipantOptions& options) {
     leaving.scope = options.scope == "stop"      ? presenter::Scope::Stop
                     : options.scope == "exclude" ? presenter::Scope::Exclude
                                                  : presenter::Scope::Erase;
+    if (leaving.scope == presenter::Scope::Erase) {
+        const auto along = takesBackupAlong(options);
+        if (!along) return fail({{.message = "nobody answered: nothing was erased", .file = options.database}});
+        leaving.backup_too = *along;
+    }
     const auto left = app::leave({options.database, options.by, *station}, leaving);
     if (!left) return fail(left.errors());
     if (leaving.scope != presenter::Scope::Erase) {
@@ -111,12 +154,7 @@ int withdrawParticipant(const ParticipantOptions& options) {
                    options.scope == "stop" ? "the data stays in the analysis" : "the data counts nowhere any more");
         return 0;
     }
-    fmt::print("{}: erased from {}; the audit says {} in its place\n", options.code, options.database, left->surrogate);
-    for (const std::string& copy : left->copies)
-        fmt::print("names {} too, delete it if it is a copy of this database: {}\n", options.code, copy);
-    fmt::print(
-        "and whatever copies of the database and exports lie elsewhere; erase them as well in the databases of other "
-        "stations and in those merged from this one, and push to PostgreSQL again\n");
+    tellErasure(options, *left);
     return 0;
 }
 

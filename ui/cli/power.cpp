@@ -1,17 +1,16 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "analysis/power/model_study.h"
 #include "analysis/power/power_file.h"
 #include "analysis/power/power_runs.h"
 #include "analysis/power/power_summary.h"
-#include "study/protocol/protocol_reader.h"
+#include "core/base/regular_file.h"
 #include "study/session/plan_text.h"
 #include "ui/app/haptic_study.h"
-#include "ui/app/known_names.h"
+#include "ui/app/protocol_files.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 
@@ -22,9 +21,9 @@ namespace {
 constexpr const char* kModel = "model";
 
 Result<power::PowerResult> readResult(const std::string& file) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) return Error{.message = "cannot be read", .file = file};
-    return power::readPowerText({std::istreambuf_iterator<char>(stream), {}}, file);
+    const auto text = readRegularFile(file);
+    if (!text) return text.errors();
+    return power::readPowerText(*text, file);
 }
 
 Result<Done> writeResult(const power::PowerResult& result, const std::string& file) {
@@ -66,15 +65,16 @@ Result<std::optional<power::PowerResult>> finishedBefore(const PowerOptions& opt
 
 int power(const PowerOptions& options) {
     if (!options.merge.empty()) return mergeFiles(options);
-    auto plan = protocol::readProtocol(options.protocol, app::knownDevices(), app::knownMeasures());
+    auto plan = app::readProtocol(options.protocol);
     if (!plan) return fail(plan.errors());
     warn(options.protocol, session::planWarnings(*plan));
     if (options.seed) plan->seed = *options.seed;
     const auto effect = power::readEffect(options.effect, options.against, options.measure, *plan);
     if (!effect) return fail(effect.errors());
     const bool model = options.simulation == kModel;
-    if (model && options.measure != power::kModelMeasure)
-        return fail({{.message = fmt::format("the model has {} only", power::kModelMeasure),
+    if (model && std::find(power::kModelMeasures.begin(), power::kModelMeasures.end(), options.measure) ==
+                     power::kModelMeasures.end())
+        return fail({{.message = fmt::format("the model has {} only", fmt::join(power::kModelMeasures, ", ")),
                       .key = "--measure",
                       .value = options.measure}});
 

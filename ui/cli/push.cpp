@@ -12,6 +12,9 @@ int push(const PushOptions& options) {
     if (!report) return fail(report.errors());
     for (const std::string& session : report->unfinished)
         fmt::print("{}: left out: it runs, or was killed and its database not opened since\n", session);
+    for (const std::string& damage : report->damaged)
+        fmt::print(stderr, "{}: error: {}: damaged here and not pushed; passung restore heals from a copy\n",
+                   options.database, damage);
     for (const std::string& session : report->newer_there)
         fmt::print(stderr,
                    "{}: error: {}: not pushed: there are rows of it that this file lacks; push the newer "
@@ -28,9 +31,10 @@ int push(const PushOptions& options) {
                    code);
     for (const std::string& people : report->shared_places)
         fmt::print("{}: have one place of the design; passung merge would part them\n", people);
-    fmt::print("{}: {} sessions added, {} brought up to date, {} known\n", options.database, report->sessions,
-               report->replaced, report->known);
-    return report->newer_there.empty() ? 0 : 1;
+    fmt::print("{}: {} sessions added, {} brought up to date, {} known{}\n", options.database, report->sessions,
+               report->replaced, report->known,
+               report->healed == 0 ? "" : fmt::format(", {} healed that were damaged there", report->healed));
+    return report->newer_there.empty() && report->damaged.empty() ? 0 : 1;
 }
 
 }  // namespace passung::cli

@@ -10,7 +10,7 @@
 #include "core/base/number_table.h"
 #include "core/query/part_query.h"
 #include "study/protocol/json.h"
-#include "ui/app/disk_store.h"
+#include "ui/app/builds.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 #include "ui/cli/part_argument.h"
@@ -27,10 +27,11 @@ constexpr const char* kResultColumns =
     "normal_y,normal_z,force_x_N,force_y_N,force_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,contacts,nodes_visited,points_"
     "tested,query_us";
 
-Result<model::Part> build(const std::string& path, const std::string& unit, const model::PartNeeds& needs) {
+Result<model::Part> build(const std::string& path, const std::string& unit, const model::PartNeeds& needs,
+                          const app::ImportLimits& limits) {
     auto spec = partArgument(path, unit);
     if (!spec) return spec.errors();
-    const auto store = app::openDiskStore();
+    const auto store = app::openBuilds(limits);
     auto part = model::buildPart(*spec, needs, store.get());
     if (!part) {
         Errors errors = part.errors();
@@ -138,12 +139,12 @@ int query(const QueryOptions& options) {
     field_needs.shell = shell_needs.field = options.two_way;
     ProgressLine progress;
     progress.show("building " + options.field);
-    const auto field =
-        build(options.field, options.field_unit.empty() ? options.unit : options.field_unit, field_needs);
+    const auto field = build(options.field, options.field_unit.empty() ? options.unit : options.field_unit, field_needs,
+                             options.import_limits);
     if (!field) return fail(field.errors());
     progress.show("building " + options.shell);
-    const auto shell =
-        build(options.shell, options.shell_unit.empty() ? options.unit : options.shell_unit, shell_needs);
+    const auto shell = build(options.shell, options.shell_unit.empty() ? options.unit : options.shell_unit, shell_needs,
+                             options.import_limits);
     if (!shell) return fail(shell.errors());
 
     query::PartQueryRequest request;

@@ -5,11 +5,12 @@
 #include <map>
 
 #include "core/replay/replayer.h"
+#include "core/tick/numerics.h"
 #include "study/session/recompute.h"
 #include "study/store/hex_text.h"
 #include "study/store/store_reader.h"
+#include "ui/app/builds.h"
 #include "ui/app/built_scenes.h"
-#include "ui/app/disk_store.h"
 #include "ui/app/stored_plans.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
@@ -18,21 +19,34 @@ namespace passung::cli {
 
 namespace {
 
-enum class Verdict { Same, Differs, NotProven };
+enum class Verdict { Same, Differs, NotProven, NotComparable, Damaged };
 
 /// Replays attempts of one database; parts and protocols are built once.
 class Replays {
 public:
-    Replays(const store::StoreReader& reader, const std::string& meshes,
+    Replays(const store::StoreReader& reader, const ReplayOptions& options,
             const std::vector<store::DetectionRow>& detections)
-        : reader_(reader), plans_(reader, meshes) {
+        : reader_(reader),
+          store_(app::openBuilds(options.import_limits)),
+          plans_(reader, options.meshes, options.import_limits) {
         for (const auto& row : detections) detections_[row.attempt_id].push_back(row.detection);
     }
 
     /// Prints one line per attempt.
     Result<Verdict> replay(const store::AttemptRow& attempt) {
+        if (attempt.numerics != tick::kNumerics) {
+            fmt::print(
+                "{}: not comparable: recorded by the arithmetic of numerics {}, this program computes by {}: passung "
+                "{} "
+                "made it\n",
+                nameOf(attempt), attempt.numerics, tick::kNumerics, attempt.app_version);
+            return Verdict::NotComparable;
+        }
         const auto records = reader_.records(attempt.attempt_id);
-        if (!records) return records.errors();
+        if (!records) {
+            fmt::print("{}: DAMAGED: {}\n", nameOf(attempt), records.errors().front().message);
+            return Verdict::Damaged;
+        }
         if (records->empty()) {
             fmt::print("{}: NOT PROVEN: no tick of it is recorded ({})\n", nameOf(attempt), attempt.outcome);
             return Verdict::NotProven;
@@ -131,7 +145,7 @@ private:
     }
 
     const store::StoreReader& reader_;
-    std::unique_ptr<app::DiskStore> store_ = app::openDiskStore();
+    std::unique_ptr<app::Builds> store_;
     model::PartCache parts_{store_.get()};
     app::StoredPlans plans_;
     std::map<std::int64_t, std::vector<measures::Detection>> detections_;  // by attempt
@@ -140,7 +154,7 @@ private:
 }  // namespace
 
 int replay(const ReplayOptions& options) {
-    const auto reader = store::StoreReader::open(options.database);
+    const auto reader = store::StoreReader::open(options.database, store::Damaged::HandedOut);
     if (!reader) return fail(reader.errors());
     std::vector<store::AttemptRow> attempts;
     if (options.attempt != 0) {
@@ -155,19 +169,22 @@ int replay(const ReplayOptions& options) {
     }
     const auto detections = reader->detections();
     if (!detections) return fail(detections.errors());
-    Replays replays(*reader, options.meshes, *detections);
-    std::size_t different = 0, unproven = 0;
+    Replays replays(*reader, options, *detections);
+    std::map<Verdict, std::size_t> count;
     for (const auto& attempt : attempts) {
         const auto verdict = replays.replay(attempt);
         if (!verdict) return fail(verdict.errors());
-        different += *verdict == Verdict::Differs ? 1 : 0;
-        unproven += *verdict == Verdict::NotProven ? 1 : 0;
+        ++count[*verdict];
     }
     if (attempts.size() > 1) {
-        fmt::print("{} attempts replayed, {} differ{}\n", attempts.size(), different,
-                   unproven == 0 ? "" : fmt::format(", {} could not be proven", unproven));
+        const auto told = [&](Verdict verdict, const char* what) {
+            return count[verdict] == 0 ? "" : fmt::format(", {} {}", count[verdict], what);
+        };
+        fmt::print("{} attempts replayed, {} differ{}{}{}\n", attempts.size(), count[Verdict::Differs],
+                   told(Verdict::NotProven, "could not be proven"), told(Verdict::NotComparable, "not comparable"),
+                   told(Verdict::Damaged, "damaged"));
     }
-    return different + unproven == 0 ? 0 : 1;
+    return count[Verdict::Same] == attempts.size() ? 0 : 1;
 }
 
 }  // namespace passung::cli

@@ -6,10 +6,9 @@
 #include <set>
 
 #include "analysis/export/summary.h"
-#include "study/protocol/protocol_reader.h"
 #include "study/session/plan_text.h"
 #include "study/store/store_reader.h"
-#include "ui/app/known_names.h"
+#include "ui/app/protocol_files.h"
 #include "ui/app/run_study.h"
 #include "ui/app/stability_report.h"
 #include "ui/cli/commands.h"
@@ -89,8 +88,13 @@ int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, con
         succeeded.clear();
         finished = planned = earlier = invalid = 0;
     };
+    listener.resumed = [&](const session::Resumption& resumed) {
+        finished = earlier = resumed.agenda.finished();
+        planned = resumed.agenda.planned() - resumed.agenda.leftOut();
+        for (const session::EarlierTrial& trial : resumed.earlier)
+            if (trial.succeeded()) succeeded.insert(resumed.agenda.trial(trial.place).trial_index);
+    };
     listener.trial = [&](const session::TrialProgress& trial) {
-        if (finished == 0 && trial.finished > 0) earlier = trial.finished - 1;  // of a session that is resumed
         finished = trial.finished;
         planned = trial.planned;
         const bool counts = trial.valid && trial.outcome != measures::Outcome::Aborted;
@@ -152,7 +156,7 @@ int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, con
 }  // namespace
 
 int run(const RunOptions& options) {
-    auto plan = protocol::readProtocol(options.protocol, app::knownDevices(), app::knownMeasures());
+    auto plan = app::readProtocol(options.protocol, options.import_limits);
     if (!plan) return fail(plan.errors());
     warn(options.protocol, session::planWarnings(*plan));
     if (options.seed) plan->seed = *options.seed;
@@ -165,10 +169,12 @@ int run(const RunOptions& options) {
     if (!station) return fail(station.errors());
     what.station = *station;
     what.backup = !options.no_backup;
+    what.group = options.group;
     what.wait = options.wait;
     what.clock = options.real_time ? app::Clock::RealTime : app::Clock::Virtual;
 
     what.language = options.language;
+    what.import_limits = options.import_limits;
     return tell(options.protocol, what, options.acknowledge_fd, options.answers,
                 [&](const auto& with, const auto& listener) { return app::runStudy(*plan, with, listener); });
 }
@@ -180,6 +186,7 @@ int resume(const ResumeOptions& options) {
     if (!station) return fail(station.errors());
     what.station = *station;
     what.backup = !options.no_backup;
+    what.import_limits = options.import_limits;
     return tell(options.database, what, options.acknowledge_fd, options.answers,
                 [&](const auto& with, const auto& listener) {
                     return app::resumeStudy({options.session, options.meshes}, with, listener);

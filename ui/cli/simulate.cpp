@@ -6,9 +6,9 @@
 #include "core/model/scene.h"
 #include "core/tick/step.h"
 #include "devices/scripted/trajectory.h"
-#include "study/protocol/scene_reader.h"
-#include "ui/app/disk_store.h"
-#include "ui/app/known_names.h"
+#include "study/protocol/document.h"
+#include "ui/app/builds.h"
+#include "ui/app/protocol_files.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 
@@ -40,15 +40,19 @@ void writeRow(fmt::memory_buffer& text, std::int64_t tick, const tick::TickOutpu
 int simulate(const SimulateOptions& options) {
     if (const auto free = refuseOverwriting(options.out, {options.scene, options.trajectory}); !free)
         return fail(free.errors());
-    auto spec = protocol::readScene(options.scene, app::knownDevices());
-    if (!spec) return fail(spec.errors());
+    const auto source = protocol::readFile(options.scene);
+    if (!source) return fail(source.errors());
+    auto read = app::readSceneOnDevice(*source, options.scene, options.import_limits);
+    if (!read) return fail(read.errors());
+    warn(options.scene, read->warnings);
+    model::SceneSpec* spec = &read->scene;
     const auto trajectory = scripted::Trajectory::read(options.trajectory);
     if (!trajectory) return fail(trajectory.errors());
     // The file holds poses of the held part in the world, so that the registration has nothing to do; and the run
     // begins with its first row, wherever that is.
     spec->registration = model::Registration{};
     spec->start_gate = model::StartGate{};
-    const auto store = app::openDiskStore();
+    const auto store = app::openBuilds(options.import_limits);
     model::PartCache cache(store.get());
     ProgressLine progress;
     progress.show("building the scene");

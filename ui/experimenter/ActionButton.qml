@@ -10,7 +10,8 @@ T.Button {
     property bool tall: false
     enabled: why === ""
     implicitHeight: look.scale * (tall ? 52 : 38)
-    implicitWidth: Math.max(96, row.implicitWidth + 32)
+    readonly property real keyRoom: keyName === "" ? 0 : keyText.implicitWidth + row.spacing
+    implicitWidth: Math.max(96, word.implicitWidth + keyRoom + 32)
     focusPolicy: Qt.StrongFocus
     hoverEnabled: true
     font.family: look.family
@@ -48,14 +49,18 @@ T.Button {
             anchors.centerIn: parent
             spacing: 10
             Text {
+                textFormat: Text.PlainText
+                id: word
                 text: button.text
                 font: button.font
                 color: button.ink
                 opacity: button.enabled ? 1 : 0.5
             }
             Text {
+                textFormat: Text.PlainText
+                id: keyText
                 anchors.verticalCenter: parent.verticalCenter
-                visible: button.keyName !== ""
+                visible: button.keyName !== "" && word.implicitWidth + button.keyRoom + 12 <= button.width
                 text: button.keyName
                 font.family: look.family
                 font.pixelSize: look.scale * 11

@@ -9,12 +9,21 @@ Window {
     title: "Passung"
     width: 1440
     height: 900
-    minimumWidth: 1180
-    minimumHeight: 760
+    minimumWidth: 960
+    minimumHeight: 600
     color: look.ground
     property string page: app.page // "studies", "participants", "session", "data"
     onPageChanged: app.page = page
-    onClosing: Qt.quit()
+    property bool leaving: false // somebody closes the window while a session runs
+    readonly property bool running: run.running
+    onRunningChanged: if (!running)
+        leaving = false
+    onClosing: close => {
+        close.accepted = !running;
+        leaving = running;
+        if (!running)
+            Qt.quit();
+    }
 
     Shortcut {
         sequence: "Esc"
@@ -140,8 +149,19 @@ Window {
             }
             Say {
                 Layout.rightMargin: 16
+                visible: window.width >= look.scale * 900
                 quiet: true
                 text: run.lamp === "rest" ? qsTr("loop at rest") : run.rate.toFixed(0) + " Hz"
+            }
+            Picker {
+                objectName: "participantScreen"
+                visible: screenChoice.names.length > 0
+                implicitWidth: look.scale * 200
+                name: qsTr("Participant's screen")
+                model: screenChoice.names
+                currentIndex: screenChoice.chosen
+                displayText: qsTr("Participant: %1").arg(currentText)
+                onActivated: index => screenChoice.chosen = index
             }
             ActionButton {
                 objectName: "language"
@@ -179,5 +199,29 @@ Window {
                 anchors.fill: parent
             }
         }
+    }
+
+    Question { // after a crash
+        anchors.fill: parent
+        visible: cutOff.question !== ""
+        text: cutOff.question
+        detail: qsTr("What was done is kept. The participant goes on with the trial that was cut off.")
+        yes: qsTr("Resume the session")
+        no: qsTr("Not now")
+        whyNotYes: cutOff.whyNot
+        onAgreed: if (cutOff.resume(app.language))
+            window.page = "session"
+        onRefused: cutOff.leave()
+    }
+    Question {
+        anchors.fill: parent
+        visible: window.leaving
+        text: qsTr("A session is running. Break it off and close?")
+        detail: qsTr("What was done is kept, and the session can be resumed.")
+        yes: qsTr("Break off and close")
+        no: qsTr("Go on")
+        grave: true
+        onAgreed: Qt.quit()
+        onRefused: window.leaving = false
     }
 }

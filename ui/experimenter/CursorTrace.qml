@@ -9,6 +9,15 @@ Item {
     property alias ink: trace.ink
     property alias value: trace.value
     property alias trace: trace.trace
+    property alias least: trace.least
+    readonly property var marks: { // about five round times
+        const steps = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 60, 120, 300, 600];
+        const step = steps.find(each => replay.length / each <= 6) ?? 3600;
+        const found = [];
+        for (let i = 0; i * step <= replay.length && replay.length > 0; ++i)
+            found.push({at: i * step / replay.length, text: +(i * step).toFixed(2) + " s"});
+        return found;
+    }
     Layout.fillWidth: true
     Layout.fillHeight: true
     function xOf(time) {
@@ -17,6 +26,7 @@ Item {
     TraceView {
         id: trace
         anchors.fill: parent
+        marks: view.marks
     }
     Rectangle {
         x: view.xOf(replay.go)

@@ -101,6 +101,7 @@ Item {
                                             border.width: modelData.caught ? 2 : 0
                                             border.color: look.text
                                             Text {
+                                                textFormat: Text.PlainText
                                                 anchors.centerIn: parent
                                                 text: parent.modelData.condition
                                                 color: look.text
@@ -176,6 +177,7 @@ Item {
                         radius: 4
                         color: view.tint(condition.index + 1)
                         Text {
+                            textFormat: Text.PlainText
                             anchors.centerIn: parent
                             text: condition.index + 1
                             color: look.text

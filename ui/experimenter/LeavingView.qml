@@ -10,6 +10,7 @@ Item {
         scope = 0;
         reason.clear();
         typed.clear();
+        backupToo.checked = true;
         first.forceActiveFocus(Qt.TabFocusReason);
     }
     ColumnLayout {
@@ -105,6 +106,13 @@ Item {
                 }
             }
         }
+        Tick {
+            id: backupToo
+            objectName: "backupToo"
+            visible: view.state_.erases && view.state_.hasBackup
+            text: qsTr("In the backup as well")
+            checked: true
+        }
         TextBox {
             id: typed
             objectName: "typedCode"
@@ -149,7 +157,7 @@ Item {
             kind: "stop"
             text: view.state_.erases ? qsTr("Erase for good") : qsTr("Yes, end their part")
             why: view.state_.confirms ? roster.whyNotConfirm(typed.text) : ""
-            onClicked: roster.confirmLeaving(typed.text)
+            onClicked: roster.confirmLeaving(typed.text, backupToo.checked)
         }
         ActionButton {
             id: back

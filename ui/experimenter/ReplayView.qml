@@ -87,6 +87,7 @@ ColumnLayout {
                     name: qsTr("Depth of the hand in the material")
                     unit: "mm"
                     ink: look.care
+                    least: 0.001
                     value: replay.depth
                 }
                 CursorTrace {
@@ -94,6 +95,7 @@ ColumnLayout {
                     name: qsTr("Overlap of the proxy")
                     unit: "mm"
                     ink: look.good
+                    least: 0.001
                     value: replay.overlap
                 }
             }
@@ -123,6 +125,7 @@ ColumnLayout {
                 stepSize: 0.01
                 value: replay.time
                 onMoved: replay.time = value
+                Keys.onSpacePressed: replay.plays = !replay.plays // it has the focus once it was moved
                 Accessible.name: qsTr("Time in the attempt")
             }
             Say {

@@ -15,24 +15,6 @@ ColumnLayout {
         rowSpacing: 8
         columnSpacing: 8
         ActionButton {
-            objectName: "start"
-            Layout.fillWidth: true
-            text: qsTr("Start")
-            keyName: "F5"
-            why: run.commands.start
-            onClicked: run.command("start")
-        }
-        ActionButton {
-            objectName: "pause"
-            Layout.fillWidth: true
-            readonly property bool paused: run.commands.continue === ""
-            kind: paused ? "main" : "plain"
-            text: paused ? qsTr("Continue") : qsTr("Pause")
-            keyName: qsTr("Ctrl+P")
-            why: paused ? "" : run.commands.pause
-            onClicked: run.command(paused ? "continue" : "pause")
-        }
-        ActionButton {
             objectName: "repeat"
             Layout.fillWidth: true
             text: qsTr("Repeat")

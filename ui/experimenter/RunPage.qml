@@ -6,6 +6,8 @@ import "../participant"
 ColumnLayout {
     id: page
     spacing: 16
+    readonly property real sideWidth: Math.min(look.scale * 330, 0.3 * width)
+    readonly property bool low: height < look.scale * 600
     readonly property color toneColor: run.tone === "go" ? look.accent : run.tone === "good" ? look.good : run.tone === "wait" ? look.care : run.tone === "bad" ? look.bad : look.dim
 
     function focusNote() {
@@ -25,7 +27,7 @@ ColumnLayout {
         Panel {
             title: qsTr("TRIALS")
             extra: run.known ? Math.round(100 * run.share) + " %" : ""
-            Layout.preferredWidth: look.scale * 330
+            Layout.preferredWidth: page.sideWidth
             Layout.fillHeight: true
             TrialList {
                 anchors.fill: parent
@@ -41,7 +43,7 @@ ColumnLayout {
             Rectangle {
                 Layout.fillWidth: true
                 Layout.fillHeight: true
-                Layout.minimumHeight: 160
+                Layout.minimumHeight: 60
                 radius: 10
                 clip: true
                 color: look.panel
@@ -74,7 +76,7 @@ ColumnLayout {
             Panel {
                 title: qsTr("LAST TEN SECONDS")
                 Layout.fillWidth: true
-                Layout.preferredHeight: look.scale * 240
+                Layout.preferredHeight: Math.min(look.scale * 240, 0.36 * page.height)
                 RowLayout {
                     anchors.fill: parent
                     spacing: 24
@@ -94,6 +96,7 @@ ColumnLayout {
                         name: qsTr("Depth of the hand in the material")
                         unit: "mm"
                         ink: look.care
+                        least: 0.001
                         value: run.depth
                     }
                 }
@@ -107,8 +110,8 @@ ColumnLayout {
         }
 
         ColumnLayout {
-            Layout.preferredWidth: look.scale * 330
-            Layout.maximumWidth: look.scale * 330
+            Layout.preferredWidth: page.sideWidth
+            Layout.maximumWidth: page.sideWidth
             Layout.fillHeight: true
             spacing: 16
             Flickable { // of a window that is too low for all of it
@@ -167,6 +170,30 @@ ColumnLayout {
                                 value: run.rate > 0 ? run.longest.toFixed(0) : "–"
                                 unit: "µs"
                             }
+                            Figure {
+                                objectName: "pictures"
+                                Layout.fillWidth: true
+                                name: qsTr("Pictures")
+                                value: run.pictured ? run.pictures.toFixed(0) : "–"
+                                unit: "/s"
+                            }
+                            Figure {
+                                objectName: "pictureAge"
+                                Layout.fillWidth: true
+                                name: qsTr("Picture's age")
+                                value: run.pictured ? run.pictureAge.toFixed(0) : "–"
+                                unit: "ms"
+                            }
+                            Say {
+                                objectName: "quality"
+                                Layout.columnSpan: 2
+                                Layout.fillWidth: true
+                                visible: text !== ""
+                                wrapMode: Text.WordWrap
+                                text: run.quality
+                                quiet: true
+                                font.pixelSize: look.scale * 12
+                            }
                         }
                     }
                 }
@@ -184,9 +211,41 @@ ColumnLayout {
                 Layout.fillWidth: true
                 visible: text !== ""
                 wrapMode: Text.WordWrap
-                maximumLineCount: 4
+                maximumLineCount: page.low ? 2 : 4
                 text: run.answer
                 color: run.refused ? look.bad : look.dim
+            }
+            Say {
+                objectName: "stopWaits"
+                Layout.fillWidth: true
+                visible: !stopPath.apart
+                wrapMode: Text.WordWrap
+                text: qsTr("No X server: an emergency stop waits while this window draws.")
+                color: look.care
+            }
+            RowLayout { // what must be at hand stands still, however low the window is
+                Layout.fillWidth: true
+                spacing: 8
+                ActionButton {
+                    objectName: "start"
+                    Layout.fillWidth: true
+                    Layout.preferredWidth: 1
+                    text: qsTr("Start")
+                    keyName: "F5"
+                    why: run.commands.start
+                    onClicked: run.command("start")
+                }
+                ActionButton {
+                    objectName: "pause"
+                    Layout.fillWidth: true
+                    Layout.preferredWidth: 1
+                    readonly property bool paused: run.commands.continue === ""
+                    kind: paused ? "main" : "plain"
+                    text: paused ? qsTr("Continue") : qsTr("Pause")
+                    keyName: qsTr("Ctrl+P")
+                    why: paused ? "" : run.commands.pause
+                    onClicked: run.command(paused ? "continue" : "pause")
+                }
             }
             ActionButton {
                 objectName: "stop"

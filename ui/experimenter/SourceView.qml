@@ -70,6 +70,7 @@ ColumnLayout {
                     color: look.bad
                 }
                 Text {
+                    textFormat: Text.PlainText
                     x: 4
                     width: 40
                     anchors.verticalCenter: parent.verticalCenter
@@ -80,12 +81,12 @@ ColumnLayout {
                     font.pixelSize: look.scale * 12
                 }
                 Text {
+                    textFormat: Text.PlainText
                     id: words
                     x: 58
                     width: parent.width - x
                     anchors.verticalCenter: parent.verticalCenter
                     wrapMode: Text.Wrap
-                    textFormat: Text.PlainText
                     text: line.modelData
                     color: look.text
                     font.family: look.digits

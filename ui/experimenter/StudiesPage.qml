@@ -8,6 +8,7 @@ RowLayout {
     readonly property var cards: studies.cards
     readonly property var card: cards.length > chosen ? cards[chosen] : null
     property int part: 0
+    readonly property string whyNotByHand: whyNotRun !== "" || !card || card.forPeople ? whyNotRun : qsTr("The study has a cue that nothing here can give to a person: watch a simulated participant.")
     readonly property string whyNotRun: !card || !card.sound ? qsTr("The study has problems.") : run.running ? qsTr("A session is running.") : ""
     signal begun
     spacing: 16
@@ -168,7 +169,7 @@ RowLayout {
                     kind: "main"
                     tall: true
                     text: qsTr("Try it with the mouse")
-                    why: page.whyNotRun
+                    why: page.whyNotByHand
                     onClicked: {
                         studies.tryOut(page.chosen, false, app.language);
                         page.begun();
@@ -188,7 +189,7 @@ RowLayout {
                     Layout.fillWidth: true
                     quiet: true
                     font.pixelSize: look.scale * 12
-                    text: page.whyNotRun
+                    text: page.whyNotByHand
                 }
             }
         }

@@ -4,14 +4,11 @@
 #include <QtQuick/QSGGeometryNode>
 #include <algorithm>
 
-#include "ui/presenter/axis.h"
-
 namespace passung::experimenter {
 
 namespace {
 
-constexpr double kLeastTop = 0.5;
-constexpr float kStroke = 1.6f;  // thickness of what does not change [px]
+constexpr int kCorners = 6;  // of a stroke, as two triangles
 
 }  // namespace
 
@@ -30,7 +27,7 @@ void TraceItem::show(std::vector<presenter::Trace::Span> spans) {
 
 void TraceItem::take(std::vector<presenter::Trace::Span> spans, double peak) {
     spans_ = std::move(spans);
-    const double top = presenter::roundScale(std::max(kLeastTop, 1.08 * peak));
+    const double top = presenter::traceTop(peak, least_);
     if (top != top_) {
         top_ = top;
         emit changed();
@@ -47,32 +44,21 @@ QSGNode* TraceItem::updatePaintNode(QSGNode* old, UpdatePaintNodeData*) {
     if (node == nullptr) {
         node = new QSGGeometryNode;
         node->setGeometry(new QSGGeometry(QSGGeometry::defaultAttributes_Point2D(), 0));
-        node->geometry()->setDrawingMode(QSGGeometry::DrawTriangleStrip);
+        node->geometry()->setDrawingMode(QSGGeometry::DrawTriangles);
         node->setMaterial(new QSGFlatColorMaterial);
         node->setFlags(QSGNode::OwnsGeometry | QSGNode::OwnsMaterial);
     }
     static_cast<QSGFlatColorMaterial*>(node->material())->setColor(color_);
     node->markDirty(QSGNode::DirtyMaterial);
 
+    const auto strokes = presenter::strokesOf(spans_, width(), height(), top_);
     QSGGeometry& geometry = *node->geometry();
-    geometry.allocate(static_cast<int>(2 * spans_.size()));
-    QSGGeometry::Point2D* point = geometry.vertexDataAsPoint2D();
-    const double whole = presenter::Trace::kSeconds / presenter::Trace::kStretch;
-    const double step = width() / (whole - 1.0);
-    const double left = width() - step * static_cast<double>(spans_.size() - 1);
-    using Span = presenter::Trace::Span;
-    const auto yOf = [this](float value) {
-        return static_cast<float>(height() * (1.0 - std::clamp(static_cast<double>(value) / top_, 0.0, 1.0)));
-    };
-    for (std::size_t i = 0; i < spans_.size(); ++i) {
-        const auto x = static_cast<float>(left + step * static_cast<double>(i));
-        // Neighbouring strokes overlap, so that a rise is a line and not a gap.
-        const Span& before = spans_[i > 0 ? i - 1 : 0];
-        const float upper = yOf(std::max(spans_[i].high, before.low));
-        const float lower = yOf(std::min(spans_[i].low, before.high));
-        const float thin = std::max(0.0f, 0.5f * (kStroke - (lower - upper)));
-        point[2 * i].set(x, upper - thin);
-        point[2 * i + 1].set(x, lower + thin);
+    geometry.allocate(kCorners * static_cast<int>(strokes.size()));
+    QSGGeometry::Point2D* corner = geometry.vertexDataAsPoint2D();
+    for (const presenter::Stroke& s : strokes) {
+        const float x[kCorners] = {s.left, s.right, s.left, s.left, s.right, s.right};
+        const float y[kCorners] = {s.upper, s.upper, s.lower, s.lower, s.upper, s.lower};
+        for (int i = 0; i < kCorners; ++i) corner++->set(x[i], y[i]);
     }
     node->markDirty(QSGNode::DirtyGeometry);
     return node;

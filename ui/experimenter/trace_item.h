@@ -13,6 +13,7 @@ class TraceItem : public QQuickItem {
     Q_OBJECT
     Q_PROPERTY(QColor color MEMBER color_ NOTIFY changed)
     Q_PROPERTY(double full READ full NOTIFY changed)
+    Q_PROPERTY(double least MEMBER least_ NOTIFY changed)  // that the upper edge stands for
 
 public:
     explicit TraceItem(QQuickItem* parent = nullptr);
@@ -34,7 +35,7 @@ private:
 
     std::vector<presenter::Trace::Span> spans_;
     QColor color_{Qt::white};
-    double top_ = 1.0;
+    double top_ = 1.0, least_ = 0.5;
 };
 
 }  // namespace passung::experimenter

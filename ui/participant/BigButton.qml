@@ -34,6 +34,7 @@ T.Button {
         }
     }
     contentItem: Text {
+        textFormat: Text.PlainText
         id: label
         text: button.text
         font: button.font

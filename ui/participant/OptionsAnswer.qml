@@ -31,6 +31,7 @@ Grid {
             Accessible.checked: on
             Accessible.onPressAction: grid.picked(index)
             Text {
+                textFormat: Text.PlainText
                 id: words
                 anchors.verticalCenter: parent.verticalCenter
                 x: grid.cards ? 24 : 10
@@ -44,6 +45,7 @@ Grid {
                 font.weight: option.on ? Font.DemiBold : Font.Normal
             }
             Text { // the key
+                textFormat: Text.PlainText
                 anchors.right: parent.right
                 anchors.bottom: parent.bottom
                 anchors.margins: 10

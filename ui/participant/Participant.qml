@@ -26,9 +26,16 @@ Window {
     Scene3D {
         id: scene
         objectName: "scene"
-        anchors.fill: parent
+        width: Math.ceil(parent.width * pictureQuality.scale)
+        height: Math.ceil(parent.height * pictureQuality.scale)
+        transform: Scale { // a smaller picture fills the window
+            xScale: window.width / scene.width
+            yScale: window.height / scene.height
+        }
         visible: screenView.drawn
         scene: screenView
+        shadows: pictureQuality.shadows
+        samples: pictureQuality.samples
     }
 
     // Mouse and keyboard as a device of six degrees.
@@ -93,6 +100,7 @@ Window {
             anchors.centerIn: parent
             spacing: 4
             Text {
+                textFormat: Text.PlainText
                 objectName: "line"
                 anchors.horizontalCenter: parent.horizontalCenter
                 text: guide.line
@@ -104,6 +112,7 @@ Window {
                 Accessible.name: text
             }
             Text {
+                textFormat: Text.PlainText
                 anchors.horizontalCenter: parent.horizontalCenter
                 horizontalAlignment: Text.AlignHCenter
                 visible: text !== ""

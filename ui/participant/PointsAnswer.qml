@@ -64,6 +64,7 @@ Item {
                 Accessible.checked: on
                 Accessible.onPressAction: root.picked(index)
                 Text {
+                    textFormat: Text.PlainText
                     anchors.centerIn: parent
                     text: root.row.labels[point.index] ?? ""
                     color: point.on ? look.onAccent : look.dim

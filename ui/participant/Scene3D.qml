@@ -1,24 +1,36 @@
 import QtQuick
 import QtQuick3D
+import Passung 1.0
 
-// The scene as it is drawn, for the participant and for the experimenter's mirror. Millimetres, z up.
+// The scene as it is drawn, for the participant and for the experimenter's mirror: the study says how. Millimetres, z up.
 View3D {
     id: view
-    required property var scene // Screen: what to draw
+    required property var scene // SceneModel: what to draw
     property bool shadows: true
+    property bool flat: false // for tests: each part in its own colour without light, and nothing else
+    property int samples: scene.software && scene.heavy ? 1 : 2 // a pixel
     readonly property color ground: palette3d.ground
     readonly property QtObject palette3d: QtObject {
-        readonly property color ground: look.dark ? "#1b242c" : "#e9eef2"
-        readonly property color rest: look.dark ? "#8fa3b3" : "#9fb0bd"
-        readonly property color held: look.dark ? "#f0b34a" : "#e8a02c"
-        readonly property color mark: look.dark ? "#56b4e9" : "#0072b2"
+        readonly property color ground: view.scene.dark ? "#1b242c" : "#e9eef2"
+        readonly property color rest: view.scene.dark ? "#8fa3b3" : "#9fb0bd"
+        readonly property color held: view.scene.dark ? "#f0b34a" : "#e8a02c"
+        readonly property color hit: "#d52e00" // the held part with the visual cue at 1
+        readonly property color mark: view.scene.dark ? "#56b4e9" : "#0072b2"
+    }
+    readonly property color heldColor: mixed(palette3d.held, palette3d.hit, scene.cue)
+
+    function mixed(from, to, share) {
+        return Qt.rgba(from.r + share * (to.r - from.r), from.g + share * (to.g - from.g), from.b + share * (to.b - from.b), 1);
+    }
+    function identity(index) {
+        return Qt.hsva((0.11 + 0.381966 * index) % 1, 1, 1, 1);
     }
 
     environment: SceneEnvironment {
         backgroundMode: SceneEnvironment.Color
-        clearColor: view.ground
-        antialiasingMode: view.scene.software && view.scene.heavy ? SceneEnvironment.NoAA : SceneEnvironment.MSAA
-        antialiasingQuality: SceneEnvironment.Medium
+        clearColor: view.flat ? "black" : view.ground
+        antialiasingMode: view.flat || view.samples < 2 ? SceneEnvironment.NoAA : SceneEnvironment.MSAA
+        antialiasingQuality: view.samples < 4 ? SceneEnvironment.Medium : SceneEnvironment.High
     }
 
     PerspectiveCamera {
@@ -30,27 +42,28 @@ View3D {
     }
 
     DirectionalLight {
-        // From above, behind the left shoulder.
         rotation: view.scene.lightRotation
-        brightness: 1.0
-        ambientColor: Qt.rgba(0.34, 0.36, 0.4, 1.0)
-        castsShadow: view.shadows
+        brightness: view.scene.light
+        // A little blue, as a sky is.
+        ambientColor: Qt.rgba(0.944 * view.scene.ambientLight, view.scene.ambientLight, 1.111 * view.scene.ambientLight, 1.0)
+        castsShadow: view.shadows && view.scene.shadow > 0
         shadowMapQuality: view.scene.software ? Light.ShadowMapQualityMedium : Light.ShadowMapQualityHigh
-        shadowFactor: 55
+        shadowFactor: 100 * view.scene.shadow
         shadowMapFar: 10 * view.scene.radius
     }
     DirectionalLight {
         rotation: view.scene.cameraRotation
-        brightness: 0.32
+        brightness: view.scene.fillLight
     }
 
     Model { // the ground
+        visible: view.scene.ground && !view.flat
         source: "#Rectangle"
         position: view.scene.groundPosition
         scale: Qt.vector3d(0.01, 0.01, 0.01).times(40 * view.scene.radius)
         castsShadows: false
         materials: PrincipledMaterial {
-            baseColor: look.dark ? view.ground : "#c3ccd3"
+            baseColor: view.scene.dark ? view.ground : "#c3ccd3"
             roughness: 1.0
             specularAmount: 0.0
         }
@@ -60,12 +73,16 @@ View3D {
         model: view.scene.parts
         delegate: Model {
             required property var modelData
-            geometry: modelData.geometry
+            required property int index
+            geometry: PartGeometry {
+                mesh: modelData.mesh
+            }
             position: modelData.held ? view.scene.heldPosition : modelData.position
             rotation: modelData.held ? view.scene.heldRotation : modelData.rotation
-            castsShadows: modelData.casts
             materials: PrincipledMaterial {
-                baseColor: modelData.held ? view.scene.heldColor(view.palette3d.held) : view.palette3d.rest
+                cullMode: modelData.twoSided ? Material.NoCulling : Material.BackFaceCulling
+                baseColor: view.flat ? view.identity(index) : modelData.held ? view.heldColor : view.palette3d.rest
+                lighting: view.flat ? PrincipledMaterial.NoLighting : PrincipledMaterial.FragmentLighting
                 roughness: modelData.held ? 0.38 : 0.5
                 metalness: 0.0
                 specularAmount: 0.4
@@ -73,17 +90,24 @@ View3D {
         }
     }
 
-    Model { // where the held part belongs at the start
-        visible: view.scene.startMark
-        geometry: view.scene.heldGeometry
-        position: view.scene.startPosition
-        rotation: view.scene.startRotation
-        castsShadows: false
-        opacity: 0.28
-        materials: PrincipledMaterial {
-            baseColor: view.palette3d.mark
-            lighting: PrincipledMaterial.NoLighting
-            alphaMode: PrincipledMaterial.Blend
+    Repeater3D { // where the held part belongs at the start
+        model: view.scene.ghosts
+        delegate: Model {
+            required property var modelData
+            visible: view.scene.startMark && !view.flat
+            geometry: PartGeometry {
+                mesh: modelData.mesh
+            }
+            position: view.scene.startPosition
+            rotation: view.scene.startRotation
+            castsShadows: false
+            opacity: 0.28
+            materials: PrincipledMaterial {
+                cullMode: modelData.twoSided ? Material.NoCulling : Material.BackFaceCulling
+                baseColor: view.palette3d.mark
+                lighting: PrincipledMaterial.NoLighting
+                alphaMode: PrincipledMaterial.Blend
+            }
         }
     }
 
@@ -91,8 +115,11 @@ View3D {
         model: view.scene.marks
         delegate: Model {
             required property var modelData
-            visible: !(modelData.pale && view.scene.startMark) // one pale image at a time
-            geometry: modelData.geometry
+            // One pale image at a time.
+            visible: !view.flat && !(modelData.pale && view.scene.startMark)
+            geometry: PartGeometry {
+                mesh: modelData.mesh
+            }
             position: modelData.position
             rotation: modelData.rotation
             castsShadows: false
@@ -100,13 +127,14 @@ View3D {
             materials: PrincipledMaterial {
                 baseColor: view.palette3d.mark
                 lighting: PrincipledMaterial.NoLighting
+                cullMode: modelData.twoSided ? Material.NoCulling : Material.BackFaceCulling
                 alphaMode: modelData.pale ? PrincipledMaterial.Blend : PrincipledMaterial.Opaque
             }
         }
     }
 
     Node { // the force on the hand
-        visible: view.scene.arrow
+        visible: view.scene.arrow && !view.flat
         position: view.scene.arrowPosition
         rotation: view.scene.arrowRotation
         readonly property real thick: 0.028 * view.scene.radius

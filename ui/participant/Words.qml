@@ -2,6 +2,7 @@ import QtQuick
 
 // Text as the participant's window sets it.
 Text {
+    textFormat: Text.PlainText
     property bool quiet: false
     color: quiet ? look.dim : look.text
     font.family: look.family

@@ -1,17 +1,32 @@
 #pragma once
 
+#include <QtCore/QVariant>
 #include <QtQuick3D/QQuick3DGeometry>
+#include <memory>
 
 #include "ui/presenter/shaded_mesh.h"
 
 namespace passung::participant {
 
-/// A surface for the graphics card, in millimetres.
+using Surface = std::shared_ptr<const presenter::ShadedMesh>;  // shared_ptr: windows and scenes have surfaces in common
+
+/// A surface for the graphics card, in millimetres. It belongs to the one Model that draws it and goes with it: Qt 6.4
+/// uploads no geometry again whose last Model is gone.
 class PartGeometry : public QQuick3DGeometry {
     Q_OBJECT
+    Q_PROPERTY(QVariant mesh READ mesh WRITE setMesh NOTIFY meshChanged)  // holds a Surface
 
 public:
-    explicit PartGeometry(const presenter::ShadedMesh& mesh);
+    QVariant mesh() const { return QVariant::fromValue(mesh_); }
+    void setMesh(const QVariant& mesh);
+
+signals:
+    void meshChanged();
+
+private:
+    Surface mesh_;
 };
 
 }  // namespace passung::participant
+
+Q_DECLARE_METATYPE(passung::participant::Surface)

@@ -12,10 +12,10 @@ namespace passung::presenter {
 
 namespace {
 
-constexpr double kChordError = 0.03e-3;   // of what is drawn [m]: less than a pixel
-const Vec3 kFromWhere(0.34, -1.0, 0.62);  // the eye, seen from the scene: a step to the right, half above
-constexpr double kGround = 4e-3;          // below the lowest part [m]
-constexpr double kLine = 0.5e-3;          // radius of a contour [m]
+constexpr double kChordError = 0.03e-3;  // of what is drawn [m]: less than a pixel
+constexpr double kGround = 4e-3;         // below the lowest part [m]
+constexpr double kLine = 0.5e-3;         // radius of a contour [m]
+constexpr double kUpright = 1e-6;        // a direction that is less beside the vertical is upright
 
 void extendBy(model::Bounds& bounds, const ShadedMesh& mesh, const Pose& X_W) {
     for (int corner = 0; corner < 8; ++corner) {
@@ -28,19 +28,27 @@ void extendBy(model::Bounds& bounds, const ShadedMesh& mesh, const Pose& X_W) {
     }
 }
 
-/// Looks at `centre` so that a sphere of this radius fills the picture.
-Camera cameraOn(const Vec3& centre, double radius) {
+/// As the study says; what it does not say so that a sphere of this radius about `middle` fills the picture.
+Camera cameraOn(const Vec3& middle, double radius, const protocol::View& look) {
     Camera camera;
-    camera.centre = centre;
-    const double distance = radius / std::sin(0.5 * camera.opening);
-    const Vec3 back = kFromWhere.normalized();
-    const Vec3 right = Vec3::UnitZ().cross(back).normalized();
+    camera.centre = look.camera_target.value_or(middle);
+    camera.opening = look.camera_opening;
+    const double reach = radius + (middle - camera.centre).norm();  // of all that is drawn, from what it looks at
+    const double distance = look.camera_distance.value_or(reach / std::sin(0.5 * camera.opening));
+    const Vec3 back = look.camera_from.normalized();
+    const Vec3 across = Vec3::UnitZ().cross(back);
+    const Vec3 right = across.norm() > kUpright ? across.normalized() : Vec3::UnitX();
     Mat3 axes;
     axes << right, back.cross(right), back;
-    camera.X_WC = {Quat(axes), centre + distance * back};
-    camera.near = std::max(0.02 * distance, distance - 3.0 * radius);
-    camera.far = distance + 8.0 * radius;
+    camera.X_WC = {Quat(axes), camera.centre + distance * back};
+    camera.near = std::max(0.02 * distance, distance - 3.0 * reach);
+    camera.far = distance + 8.0 * reach;
     return camera;
+}
+
+/// Where no other is asked for: over the camera's left shoulder.
+Vec3 lightFrom(const Camera& camera, const protocol::View& look) {
+    return look.light_from.value_or(camera.X_WC.q * Vec3(-0.55, 0.5, 0.35) + 1.3 * Vec3::UnitZ()).normalized();
 }
 
 }  // namespace
@@ -72,7 +80,7 @@ Result<std::shared_ptr<const ShadedMesh>> SceneArtist::surfaceOf(const model::Pa
     if (const auto known = surfaces_.find(key); known != surfaces_.end()) return known->second;
     model::TriangleMesh mesh;
     if (file != nullptr) {
-        auto read = model::importMesh(file->path, file->metres_per_unit);
+        auto read = model::importMesh(*file, builds_);
         if (!read) return read.errors();
         mesh = std::move(read->mesh);
     } else {
@@ -109,8 +117,10 @@ std::vector<Mark> SceneArtist::marksOf(const protocol::Task& task, const Pose& X
     return {};  // of a pair nothing is to be reached
 }
 
-Result<std::shared_ptr<const DrawnScene>> SceneArtist::draw(const protocol::Condition& condition) {
+Result<std::shared_ptr<const DrawnScene>> SceneArtist::draw(const protocol::Condition& condition,
+                                                            const protocol::View& look) {
     auto scene = std::make_shared<DrawnScene>();
+    scene->look = look;
     scene->shown = condition.shown;
     scene->cues = condition.cues;
     model::Bounds bounds;
@@ -131,7 +141,8 @@ Result<std::shared_ptr<const DrawnScene>> SceneArtist::draw(const protocol::Cond
     for (const Mark& mark : scene->marks) extendBy(bounds, *mark.mesh, mark.X_W);
     scene->floor = bounds.low.z() - kGround;
     scene->radius = 0.5 * bounds.size().norm();
-    scene->camera = cameraOn(0.5 * (bounds.low + bounds.high), 1.08 * scene->radius);
+    scene->camera = cameraOn(0.5 * (bounds.low + bounds.high), 1.08 * scene->radius, look);
+    scene->light_from = lightFrom(scene->camera, look);
     return std::shared_ptr<const DrawnScene>(std::move(scene));
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/base/result.h"
 #include "core/base/tick_record.h"
+#include "core/model/mesh_source.h"
 #include "study/protocol/study_plan.h"
 #include "ui/presenter/shaded_mesh.h"
 #include "ui/presenter/task_marks.h"
@@ -16,9 +17,9 @@ namespace passung::presenter {
 /// Where the scene is looked at from. The camera's own axes: x to the right, y up, looking along -z.
 struct Camera {
     Pose X_WC;
-    Vec3 centre = Vec3::Zero();         // that it looks at
-    double opening = 30.0 * 0.0174533;  // vertical angle [rad]
-    double near = 0.0, far = 1.0;       // [m]
+    Vec3 centre = Vec3::Zero();    // that it looks at
+    double opening = 0.5;          // vertical angle [rad]
+    double near = 0.0, far = 1.0;  // [m]
 
     /// Metres of the plane through the centre that a pixel of a picture so many pixels high shows.
     double metresPerPixel(double height_px) const;
@@ -37,10 +38,12 @@ struct DrawnScene {
     Vec3 held_offset = Vec3::Zero();  // drawn so far from where it is, world axes [m]
     protocol::ShownPose shown = protocol::ShownPose::Proxy;
     protocol::Cues cues;
+    protocol::View look;
     std::vector<Mark> marks;
     double floor = 0.0;   // height of the ground [m]
     double radius = 0.1;  // of everything about the camera's centre [m]
     Camera camera;
+    Vec3 light_from = Vec3::UnitZ();  // towards the light that casts shadows, length 1
 };
 
 /// Where either pose of the held part is drawn in a tick.
@@ -51,14 +54,17 @@ Pose shownPose(const DrawnScene& scene, const TickRecord& record);
 /// Turns conditions into what is drawn; keeps the surfaces that it has made.
 class SceneArtist {
 public:
+    /// `builds`, if there is one, reads the meshes; it outlives the artist.
+    explicit SceneArtist(model::BuildStore* builds = nullptr) : builds_(builds) {}
     /// Errors: a mesh that cannot be read.
-    Result<std::shared_ptr<const DrawnScene>> draw(const protocol::Condition& condition);
+    Result<std::shared_ptr<const DrawnScene>> draw(const protocol::Condition& condition, const protocol::View& look);
 
 private:
     Result<std::shared_ptr<const ShadedMesh>> surfaceOf(const model::PartSpec& part);
     std::shared_ptr<const ShadedMesh> ringAround(const ShadedMesh& held);
     std::vector<Mark> marksOf(const protocol::Task& task, const Pose& X_WTarget, const DrawnScene& scene);
 
+    model::BuildStore* builds_;
     std::map<std::string, std::shared_ptr<const ShadedMesh>> surfaces_;  // by what they are made from
 };
 

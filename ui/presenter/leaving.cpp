@@ -32,9 +32,10 @@ PersonWhy LeavingDialog::whyNotConfirm(const std::string& typed, bool session_ru
     return leaving_.scope == Scope::Erase && typed != leaving_.code ? PersonWhy::NeedsCode : PersonWhy::Possible;
 }
 
-std::optional<Leaving> LeavingDialog::confirm(const std::string& typed, bool session_runs) {
+std::optional<Leaving> LeavingDialog::confirm(const std::string& typed, bool session_runs, bool backup_too) {
     if (step_ != Step::Confirm || whyNotConfirm(typed, session_runs) != PersonWhy::Possible) return std::nullopt;
     step_ = Step::Closed;
+    leaving_.backup_too = backup_too;
     return leaving_;
 }
 

@@ -22,6 +22,7 @@ struct Leaving {
     std::string reason;
     std::int64_t sessions = 0, attempts = 0, forms = 0;  // that are there
     bool frees_place = false;
+    bool backup_too = true;  // of Erase: in the database's backup as well
 };
 
 /// Asks twice before somebody leaves: how and why, then, with what it does in sight, whether really.
@@ -43,7 +44,7 @@ public:
     /// `typed`: the code once more, which erasing asks for.
     PersonWhy whyNotConfirm(const std::string& typed, bool session_runs) const;
     /// What is to be done now, and closes; none if it may not be done.
-    std::optional<Leaving> confirm(const std::string& typed, bool session_runs);
+    std::optional<Leaving> confirm(const std::string& typed, bool session_runs, bool backup_too = true);
 
 private:
     Step step_ = Step::Closed;

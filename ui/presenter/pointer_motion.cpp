@@ -9,6 +9,7 @@ constexpr double kNotch = 2.0e-3;        // [m]
 constexpr double kTurnPerNotch = 0.05;   // [rad]
 constexpr double kKeySpeed = 0.04;       // [m/s]
 constexpr double kKeyTurn = 0.6;         // [rad/s]
+constexpr double kFine = 0.1;            // share of both
 
 /// Right, up and away as a person sees them, but level with the ground.
 struct View {
@@ -41,6 +42,7 @@ PartMotion wheelMotion(const Camera& camera, DragPlane plane, double notches) {
 
 PartMotion keyMotion(const Camera& camera, const HeldKeys& keys, double seconds) {
     const View view(camera);
+    if (keys.fine) seconds *= kFine;
     return {kKeySpeed * seconds * view.at(keys.move), kKeyTurn * seconds * view.at(keys.turn)};
 }
 

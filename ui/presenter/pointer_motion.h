@@ -28,6 +28,7 @@ PartMotion wheelMotion(const Camera& camera, DragPlane plane, double notches);
 struct HeldKeys {
     Vec3 move = Vec3::Zero();
     Vec3 turn = Vec3::Zero();
+    bool fine = false;  // a tenth of the speed
     bool any() const { return !move.isZero(0.0) || !turn.isZero(0.0); }
 };
 PartMotion keyMotion(const Camera& camera, const HeldKeys& keys, double seconds);

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+
+#include "analysis/export/cells.h"
 
 namespace passung::presenter {
 
@@ -18,6 +21,22 @@ Result<Recorded> readRecorded(const store::StoreReader& reader) {
         if (std::any_of(attempts.begin(), attempts.end(), [&](const auto& a) { return a.kind == kind; }))
             recorded.kinds.emplace_back(kind);
     return recorded;
+}
+
+std::size_t firstMeasure(const Recorded& recorded) {
+    const auto varies = [&](const ShownMeasure& measure) {
+        std::set<double> values;
+        for (const store::AttemptRow& attempt : recorded.data.attempts)
+            if (const auto found = attempt.measures.find(measure.name);
+                found != attempt.measures.end() && std::isfinite(found->second))
+                values.insert(found->second);
+        return values.size() > 1;
+    };
+    const auto& all = recorded.measures;
+    const auto time = std::find_if(all.begin(), all.end(), [](const auto& m) { return m.name == "completion_time_s"; });
+    if (time != all.end() && varies(*time)) return static_cast<std::size_t>(time - all.begin());
+    const auto first = std::find_if(all.begin(), all.end(), varies);
+    return first == all.end() ? 0 : static_cast<std::size_t>(first - all.begin());
 }
 
 std::vector<const store::AttemptRow*> attemptsOf(const Recorded& recorded, const std::string& session_id) {
@@ -48,14 +67,16 @@ std::vector<ConditionLook> lookAt(const Recorded& recorded, const std::string& m
         ConditionLook look;
         look.condition = row.condition;
         bool met = false;
+        std::set<std::string> people;
         for (const exporter::Cell& cell : cells) {
             if (cell.condition != &row || cell.kind != kind) continue;
             met = true;
             const auto values = exporter::valuesOf(cell.attempts, measure);
-            look.participants += values.empty() ? 0 : 1;
+            if (!values.empty()) people.insert(cell.participant_id);
             look.values.insert(look.values.end(), values.begin(), values.end());
         }
         if (!met) continue;
+        look.participants = people.size();
         if (recorded.data.protocols.size() > 1)
             for (const store::ProtocolRow& protocol : recorded.data.protocols)
                 if (protocol.sha256 == row.protocol_sha256) look.version = protocol.version;

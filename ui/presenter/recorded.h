@@ -22,6 +22,9 @@ struct Recorded {
 };
 Result<Recorded> readRecorded(const store::StoreReader& reader);
 
+/// The measure that a look at them begins with: how long it took, if that varies, else the first that does.
+std::size_t firstMeasure(const Recorded& recorded);
+
 /// The attempts of a session, by trial, then by number.
 std::vector<const store::AttemptRow*> attemptsOf(const Recorded& recorded, const std::string& session_id);
 

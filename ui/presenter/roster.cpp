@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "study/protocol/plan_warnings.h"
 #include "study/store/digest.h"
 
 namespace passung::presenter {
@@ -122,6 +123,7 @@ Roster emptyRoster(const protocol::StudyPlan& plan) {
     roster.clauses = plan.consent;
     roster.groups = protocol::groupNames(plan);
     roster.sessions = protocol::sessionsOf(plan);
+    roster.for_people = protocol::isForPeople(plan);
     fillPlaces(plan, roster);
     return roster;
 }
@@ -173,13 +175,15 @@ PersonWhy whyNotStart(const Roster& roster, const RosterPerson& person, bool ses
     if (session_runs) return PersonWhy::SessionRuns;
     if (person.standing != Standing::TakesPart) return PersonWhy::TakesNoPart;
     if (person.kind == ParticipantKind::Simulated) return PersonWhy::Simulated;
+    if (!roster.for_people) return PersonWhy::CueWithoutOutput;
     return person.complete() >= roster.sessions ? PersonWhy::AllDone : PersonWhy::Possible;
 }
 
-PersonWhy whyNotResume(const RosterPerson& person, bool session_runs) {
+PersonWhy whyNotResume(const Roster& roster, const RosterPerson& person, bool session_runs) {
     if (session_runs) return PersonWhy::SessionRuns;
     if (person.standing != Standing::TakesPart) return PersonWhy::TakesNoPart;
     if (person.kind == ParticipantKind::Simulated) return PersonWhy::Simulated;
+    if (!roster.for_people) return PersonWhy::CueWithoutOutput;
     return person.resumable() == nullptr ? PersonWhy::NothingInterrupted : PersonWhy::Possible;
 }
 

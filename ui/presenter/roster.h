@@ -64,6 +64,7 @@ struct Roster {
     std::vector<RosterPlace> places;
     DesignBalance balance;                    // of the real participants who have a place
     int sessions = 1;                         // of each participant
+    bool for_people = true;                   // every cue of the study has an output here
     bool other_version = false;               // the database holds the study, but not this version of it
     std::array<std::int64_t, 3> erased_to{};  // by kind: codes up to this number are not given again
 
@@ -86,10 +87,11 @@ enum class PersonWhy {
     OwnWish,             // who withdrew is not taken back
     OutAlready,          // of the study
     NeedsReason,
-    NeedsCode,  // the code is to be typed to confirm
+    NeedsCode,         // the code is to be typed to confirm
+    CueWithoutOutput,  // of the study's: nothing here can give it to a person
 };
 PersonWhy whyNotStart(const Roster& roster, const RosterPerson& person, bool session_runs);
-PersonWhy whyNotResume(const RosterPerson& person, bool session_runs);
+PersonWhy whyNotResume(const Roster& roster, const RosterPerson& person, bool session_runs);
 PersonWhy whyNotReadmit(const RosterPerson& person, const std::string& reason, bool session_runs);
 
 /// Why a code cannot be enrolled.

@@ -11,10 +11,10 @@ using session::SessionState;
 
 namespace {
 
-RowState rowStateOf(const AttemptEnded& ended) {
-    if (ended.outcome == measures::Outcome::Aborted) return RowState::Aborted;
-    if (!ended.valid) return RowState::Invalid;
-    switch (ended.outcome) {
+RowState rowStateOf(measures::Outcome outcome, bool valid) {
+    if (outcome == measures::Outcome::Aborted) return RowState::Aborted;
+    if (!valid) return RowState::Invalid;
+    switch (outcome) {
         case measures::Outcome::Success:
             return RowState::Success;
         case measures::Outcome::Timeout:
@@ -71,6 +71,7 @@ Why RunView::why(CommandKind kind) const {
 void Run::open(const protocol::StudyPlan& plan) {
     *this = Run();
     view_.state = RunState::Opening;
+    look_ = plan.view;
     view_.study = plan.title.empty() ? plan.name : plan.title;
     for (const auto& condition : plan.conditions) conditions_.push_back(condition.name);
 }
@@ -94,6 +95,7 @@ void Run::take(const News& news) {
 }
 
 void Run::begin(const SessionBegun& begun) {
+    look_ = begun.look;
     view_.participant = begun.participant;
     view_.planned = begun.trials.size();
     view_.rows.clear();
@@ -104,6 +106,14 @@ void Run::begin(const SessionBegun& begun) {
         row.phase = trial.phase;
         if (trial.condition < conditions_.size()) row.condition = conditions_[trial.condition];
         view_.rows.push_back(std::move(row));
+    }
+    for (const session::EarlierTrial& trial : begun.earlier) {
+        if (trial.place >= view_.rows.size()) continue;
+        TrialRow& row = view_.rows[trial.place];
+        row.state = rowStateOf(trial.outcome, trial.valid);
+        row.attempts = trial.attempts;
+        row.time_s = trial.time_s;
+        row.remark = trial.invalid_reason;
     }
     ++view_.rows_changed;
 }
@@ -139,6 +149,9 @@ void Run::prepare(const AttemptPrepared& prepared) {
     started_ = -1.0;
     ticks_ = 0;
     view_.loop = {};
+    view_.pictures = {};
+    presented_ns_.clear();
+    on_screen_ns_ = 0;
     force_.clear();
     depth_.clear();
 }
@@ -192,7 +205,7 @@ void Run::end(const AttemptEnded& ended) {
         result_ = {ended.outcome == measures::Outcome::Success,
                    brief_.result == protocol::ShownResult::Time ? ended.trial_time_s : std::nullopt};
     TrialRow& row = view_.rows[place];
-    row.state = rowStateOf(ended);
+    row.state = rowStateOf(ended.outcome, ended.valid);
     row.time_s = ended.trial_time_s;
     row.remark = ended.invalid_reason;
     ++row.attempts;
@@ -272,6 +285,20 @@ void Run::watch(const TickRecord& record) {
     ++ticks_;
     view_.loop.missed += record.periods - 1;
     last_ = record;
+}
+
+void Run::see(std::int64_t began_ns, std::int64_t presented_ns) {
+    presented_ns_.push_back(presented_ns);
+    on_screen_ns_ = began_ns;
+}
+
+void Run::lookAtPictures(std::int64_t now_ns) {
+    constexpr std::int64_t kSecond = 1'000'000'000;
+    while (!presented_ns_.empty() && presented_ns_.front() <= now_ns - kSecond) presented_ns_.pop_front();
+    const bool runs = view_.state == RunState::ToStart || view_.state == RunState::Running;
+    view_.pictures.known = runs && last_ && time_ >= 1.0;
+    view_.pictures.per_s = static_cast<double>(presented_ns_.size());
+    view_.pictures.age_ms = on_screen_ns_ == 0 ? 0.0 : 1e-6 * static_cast<double>(now_ns - on_screen_ns_);
 }
 
 void Run::judgeLoop() {

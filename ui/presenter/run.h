@@ -1,11 +1,13 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "study/measures/pair_watch.h"
+#include "ui/presenter/quality_search.h"
 #include "ui/presenter/session_news.h"
 #include "ui/presenter/trace.h"
 
@@ -61,6 +63,13 @@ struct LoopView {
     bool known = false;
 };
 
+/// The pictures of the participant's window over the last second.
+struct PicturesView {
+    double per_s = 0.0;   // that showed a newer tick
+    double age_ms = 0.0;  // of what is on the screen now
+    bool known = false;
+};
+
 /// What came of a trial, for the participant.
 struct TrialResult {
     bool success = false;
@@ -82,6 +91,9 @@ struct RunView {
     std::vector<TrialRow> rows;
     std::int64_t rows_changed = 0;  // counts up whenever a row does
     LoopView loop;
+    PicturesView pictures;
+    std::optional<QualityFound> quality;  // with which the participant's window draws; none: not found yet
+    bool awaits_picture = false;          // the prepared trial begins with its first one
     double force_N = 0.0, depth_mm = 0.0;
     std::optional<CommandAnswered> answered;  // the last command
     std::string failure;                      // why the session failed
@@ -102,6 +114,11 @@ public:
     void open(const protocol::StudyPlan& plan);
     void take(const News& news);
     void take(std::span<const TickRecord> records);
+    /// The display has got a picture that shows this tick [ns], both on one clock.
+    void see(std::int64_t began_ns, std::int64_t presented_ns);
+    void lookAtPictures(std::int64_t now_ns);
+    void drawsWith(const QualityFound& found) { view_.quality = found; }
+    void awaitsPicture(bool awaits) { view_.awaits_picture = awaits; }
     /// What the participant's window shows from now on. The command that the session then needs, if any.
     std::optional<session::Command> setDisplay(Display display);
 
@@ -115,6 +132,8 @@ public:
     const std::shared_ptr<const FormRequest>& form() const { return form_; }
     const std::optional<PageDue>& page() const { return page_; }
     const TrialBrief& brief() const { return brief_; }
+    /// How the participant's window draws.
+    const protocol::View& look() const { return look_; }
     /// Of a pair: where it is; nothing before its first interval.
     const std::optional<measures::PairWatch>& pair() const { return pair_; }
     /// What the participant may know of the trial that ended last; nothing once the next one begins.
@@ -138,6 +157,7 @@ private:
     std::shared_ptr<const FormRequest> form_;
     std::optional<PageDue> page_;
     TrialBrief brief_;
+    protocol::View look_;
     std::optional<measures::PairWatch> pair_;
     std::optional<TrialResult> result_;
     std::vector<std::string> conditions_;  // names
@@ -149,7 +169,9 @@ private:
     bool stopped_ = false;
     std::array<float, 1000> durations_us_{};
     std::array<std::uint32_t, 1000> periods_{};
-    std::size_t ticks_ = 0;  // of the attempt
+    std::size_t ticks_ = 0;                  // of the attempt
+    std::deque<std::int64_t> presented_ns_;  // of the last second
+    std::int64_t on_screen_ns_ = 0;          // when the tick began that is on the screen; 0: none is
 };
 
 }  // namespace passung::presenter

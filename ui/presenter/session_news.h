@@ -23,6 +23,8 @@ namespace passung::presenter {
 struct SessionBegun {
     std::string participant;
     std::vector<design::PlannedTrial> trials;
+    std::vector<session::EarlierTrial> earlier = {};  // of a session that is resumed
+    protocol::View look = {};
 };
 
 /// Clauses of consent, instructions and questionnaires, each until the participant has answered or read it.
@@ -52,6 +54,7 @@ struct AttemptPrepared {
     std::shared_ptr<const DrawnScene> scene;  // shared_ptr: windows draw it as long as they like
     bool sound = false;                       // there is something to be heard
     TrialBrief brief = {};
+    std::int64_t shown_as = 0;  // number of its first picture, which it waits for
 };
 
 /// Models of that scene's parts are built, which takes long the first time: this share of them is done.

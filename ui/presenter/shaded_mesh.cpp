@@ -1,6 +1,8 @@
 #include "ui/presenter/shaded_mesh.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace passung::presenter {
 
@@ -8,6 +10,23 @@ namespace {
 
 std::array<float, 3> floats(const Vec3& v) {
     return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+
+/// True if every edge is run through as often in one direction as in the other and the mesh holds a volume > 0: then
+/// whoever is outside meets no triangle from behind first.
+bool isClosed(const model::TriangleMesh& mesh) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> there, back;
+    double volume = 0.0;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+            there.emplace_back(from, to);
+            back.emplace_back(to, from);
+        }
+        volume += mesh.vertices[a].dot(mesh.vertices[b].cross(mesh.vertices[c]));
+    }
+    std::sort(there.begin(), there.end());
+    std::sort(back.begin(), back.end());
+    return volume > 0.0 && there == back;
 }
 
 }  // namespace
@@ -44,6 +63,7 @@ ShadedMesh shade(const model::TriangleMesh& mesh, double crease) {
             shaded.indices.push_back(index);
         }
     }
+    shaded.two_sided = !isClosed(mesh);
     const model::Bounds bounds = model::boundsOf(mesh);
     shaded.low_mm = floats(1e3 * bounds.low);
     shaded.high_mm = floats(1e3 * bounds.high);

@@ -17,6 +17,7 @@ struct ShadedMesh {
     std::vector<Vertex> vertices;
     std::vector<std::uint32_t> indices;  // three a triangle
     std::array<float, 3> low_mm{}, high_mm{};
+    bool two_sided = false;  // its inside can be seen: it is open, or its triangles do not all face outwards
 };
 
 /// Smooth where neighbouring triangles meet at less than `crease` [rad], an edge elsewhere: the normal of a corner is

@@ -19,6 +19,7 @@ struct StudyCard {
     std::string path;
     std::string name, version, title;  // of a file that is not sound: the file's name
     bool sound = false;                // may it be run?
+    bool for_people = true;            // by a person: every cue has an output here
     Errors problems;                   // why not, each with its place
     std::vector<std::string> warnings;
     std::vector<Factor> factors;

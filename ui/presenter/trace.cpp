@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/presenter/axis.h"
+
 namespace passung::presenter {
 
 void Trace::clear() {
@@ -42,5 +44,25 @@ double Trace::peak() const {
     for (const Span& span : spans()) most = std::max({most, std::abs(span.low), std::abs(span.high)});
     return most;
 }
+
+std::vector<Stroke> strokesOf(std::span<const Trace::Span> spans, double width, double height, double top) {
+    constexpr float kThick = 1.6f;  // of what does not change [px]
+    const double step = width / (Trace::kSeconds / Trace::kStretch);
+    const auto half = static_cast<float>(0.5 * std::max(step, static_cast<double>(kThick)));
+    const auto yOf = [&](float value) {
+        return static_cast<float>(height * (1.0 - std::clamp(static_cast<double>(value) / top, 0.0, 1.0)));
+    };
+    std::vector<Stroke> strokes;
+    for (std::size_t i = 0; i < spans.size(); ++i) {
+        const auto middle = static_cast<float>(width - step * (static_cast<double>(spans.size() - 1 - i) + 0.5));
+        const Trace::Span& before = spans[i > 0 ? i - 1 : 0];
+        const float upper = yOf(std::max(spans[i].high, before.low)), lower = yOf(std::min(spans[i].low, before.high));
+        const float more = std::max(0.0f, 0.5f * (kThick - (lower - upper)));
+        strokes.push_back({middle - half, middle + half, upper - more, lower + more});
+    }
+    return strokes;
+}
+
+double traceTop(double peak, double least) { return roundScale(std::max(least, 1.08 * peak)); }
 
 }  // namespace passung::presenter

@@ -6,11 +6,13 @@
 #include <QtGui/QOpenGLContext>
 #include <QtGui/QOpenGLFunctions>
 #include <QtGui/QScreen>
+#include <QtQml/QQmlComponent>
 #include <QtQml/QQmlContext>
 #include <QtQuick/QSGRendererInterface>
 #include <stdexcept>
 
 #include "ui/experimenter/strip_item.h"
+#include "ui/participant/part_geometry.h"
 
 namespace passung::window {
 
@@ -45,6 +47,7 @@ App::App(const AppOptions& options)
       guide_(desk_, speech_),
       screen_(desk_, 0),
       mirror_(desk_, kMirrorEvery),
+      quality_(desk_, options.quality),
       places_(QString::fromStdString(options.data) + "/windows.ini") {
     look_.setScale(options.text_scale);
     setLanguage(options.language);
@@ -52,11 +55,13 @@ App::App(const AppOptions& options)
     connect(&desk_, &Desk::opened, this, [this] { speech_.speak(desk_.language()); });
     qmlRegisterType<experimenter::TraceItem>("Passung", 1, 0, "TraceItem");
     qmlRegisterType<experimenter::StripItem>("Passung", 1, 0, "StripItem");
+    qmlRegisterType<participant::PartGeometry>("Passung", 1, 0, "PartGeometry");
     QQmlContext& context = *engine_.rootContext();
     context.setContextProperty("app", this);
     context.setContextProperty("look", &look_);
     context.setContextProperty("studies", &studies_);
     context.setContextProperty("roster", &roster_);
+    context.setContextProperty("cutOff", &cut_off_);
     context.setContextProperty("records", &records_);
     context.setContextProperty("replay", &replay_);
     context.setContextProperty("details", &details_);
@@ -65,58 +70,71 @@ App::App(const AppOptions& options)
     context.setContextProperty("guide", &guide_);
     context.setContextProperty("screenView", &screen_);
     context.setContextProperty("mirrorView", &mirror_);
+    context.setContextProperty("stopPath", &stop_path_);
+    context.setContextProperty("pictureQuality", &quality_);
+    context.setContextProperty("screenChoice", &screen_choice_);
     const bool software = drawsInSoftware();
     screen_.setSoftware(software);
     mirror_.setSoftware(software);
     replay_.setSoftware(software);
     engine_.load(QUrl("qrc:/ui/experimenter/Console.qml"));
-    engine_.load(QUrl("qrc:/ui/participant/Participant.qml"));
-    for (QObject* root : engine_.rootObjects()) {
-        auto* window = qobject_cast<QQuickWindow*>(root);
-        if (window != nullptr && window->objectName() == "participant") participant_ = window;
-        if (window != nullptr && window->objectName() == "experimenter") experimenter_ = window;
-    }
-    if (experimenter_ == nullptr || participant_ == nullptr) throw std::runtime_error("the windows cannot be made");
+    for (QObject* root : engine_.rootObjects()) experimenter_ = qobject_cast<QQuickWindow*>(root);
+    if (experimenter_ == nullptr) throw std::runtime_error("the windows cannot be made");
+    makeParticipant();
     watchGraphics();
+    quality_.attach(participant_.get(), participant_->findChild<QQuickItem*>("scene"));
+    connect(&desk_, &Desk::frame, participant_.get(),
+            &QQuickWindow::update);  // a picture of every look, also of a part at rest
+    stop_path_.attach({experimenter_, participant_.get()}, experimenter_->findChild<QQuickItem*>("stop"));
     places_.restore("experimenter", *experimenter_);
     places_.restore("participant", *participant_);
+    experimenter_->setGeometry(fitting(experimenter_->geometry(), experimenter_->screen()->availableGeometry()));
     experimenter_->show();
-    connect(&desk_, &Desk::opened, this, &App::placeParticipant);
-    for (QQuickWindow* window : {experimenter_, participant_})
+    connect(&desk_, &Desk::happened, this, &App::dressParticipant);
+    screen_choice_.attach(experimenter_, participant_.get());
+    for (QQuickWindow* window : {experimenter_, participant_.get()})
         for (const auto moved :
              {&QWindow::xChanged, &QWindow::yChanged, &QWindow::widthChanged, &QWindow::heightChanged})
             connect(window, moved, this, &App::keepPlaces);
 }
 
-/// On a screen of their own, if there is one, the participant sees nothing else.
-void App::placeParticipant() {
-    const auto screens = QGuiApplication::screens();
-    QList<QRect> areas;
-    for (const QScreen* screen : screens) areas.append(screen->geometry());
-    const auto own = participantScreen(areas, experimenter_->geometry());
-    if (own && !participant_->isVisible()) {
-        participant_->setScreen(screens[*own]);
-        participant_->setGeometry(areas[*own]);
-    }
-    screen_.setFullScreen(own.has_value());
+/// In the participant's window `look` is the study's, not the console's.
+void App::makeParticipant() {
+    participant_context_.setContextProperty("look", &participant_look_);
+    QQmlComponent component(&engine_, QUrl("qrc:/ui/participant/Participant.qml"));
+    std::unique_ptr<QObject> made(component.create(&participant_context_));
+    participant_.reset(qobject_cast<QQuickWindow*>(made.get()));
+    if (participant_ == nullptr) throw std::runtime_error(component.errorString().toStdString());
+    static_cast<void>(made.release());
+}
+
+void App::dressParticipant() {
+    const protocol::View& look = desk_.run().look();
+    participant_look_.setDark(look.theme == protocol::Theme::Dark);
+    participant_look_.setScale(look.text_scale);
 }
 
 /// What tells of losses is queued, what measures is not: both may come from the thread that draws.
 void App::watchGraphics() {
     const auto lost = [this] { screen_.setDrawing(false); };
     const auto regained = [this] { screen_.setDrawing(true); };
-    connect(participant_, &QQuickWindow::sceneGraphError, this, lost, Qt::QueuedConnection);
-    connect(participant_, &QQuickWindow::sceneGraphInvalidated, this, lost, Qt::QueuedConnection);
-    connect(participant_, &QQuickWindow::sceneGraphInitialized, this, regained, Qt::QueuedConnection);
+    connect(participant_.get(), &QQuickWindow::sceneGraphError, this, lost, Qt::QueuedConnection);
+    connect(participant_.get(), &QQuickWindow::sceneGraphInvalidated, this, lost, Qt::QueuedConnection);
+    connect(participant_.get(), &QQuickWindow::sceneGraphInitialized, this, regained, Qt::QueuedConnection);
     app::FrameClock& frames = desk_.frames();
     connect(
-        participant_, &QQuickWindow::afterSynchronizing, this, [&frames] { frames.take(); }, Qt::DirectConnection);
+        participant_.get(), &QQuickWindow::afterSynchronizing, this, [&frames] { frames.take(); },
+        Qt::DirectConnection);
     connect(
-        participant_, &QQuickWindow::frameSwapped, this, [&frames] { frames.present(app::steadyNanoseconds()); },
+        participant_.get(), &QQuickWindow::frameSwapped, this, [&frames] { frames.present(app::steadyNanoseconds()); },
         Qt::DirectConnection);
 }
 
-App::~App() { desk_.close(); }
+App::~App() {
+    desk_.close();
+    cut_off_.close();
+    stop_path_.detach();
+}
 
 void App::keepPlaces() {
     places_.keep("experimenter", *experimenter_);
@@ -126,6 +144,7 @@ void App::keepPlaces() {
 void App::remember() {
     page_ = memory_.value("page", "studies").toString();
     if (page_ == "session") page_ = "studies";  // there is none yet
+    if (cut_off_.find()) page_ = "participants";
     roster_.setProperty("experimenter", memory_.value("experimenter").toString());
     connect(&roster_, &RosterModel::experimenterChanged, this,
             [this] { memory_.setValue("experimenter", roster_.experimenter()); });

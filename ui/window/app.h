@@ -4,29 +4,36 @@
 #include <QtCore/QSettings>
 #include <QtCore/QTranslator>
 #include <QtQml/QQmlApplicationEngine>
+#include <QtQml/QQmlContext>
 #include <QtQuick/QQuickWindow>
+#include <memory>
 #include <string>
 
+#include "ui/window/cut_off.h"
 #include "ui/window/data_model.h"
 #include "ui/window/desk.h"
 #include "ui/window/form_model.h"
 #include "ui/window/guide.h"
 #include "ui/window/look.h"
 #include "ui/window/places.h"
+#include "ui/window/quality_finder.h"
 #include "ui/window/roster_model.h"
 #include "ui/window/run_model.h"
 #include "ui/window/screen.h"
+#include "ui/window/screen_choice.h"
+#include "ui/window/stop_path.h"
 #include "ui/window/studies.h"
 #include "ui/window/study_model.h"
 
 namespace passung::window {
 
 struct AppOptions {
-    std::string protocols;  // folder of the studies
-    std::string data;       // folder for the databases of try-outs, and for what the windows remember
-    QString language;       // "de", "en"
-    bool dark = true;
-    double text_scale = 1.0;
+    std::string protocols;    // folder of the studies
+    std::string data;         // folder for the databases of try-outs, and for what the windows remember
+    QString language;         // "de", "en"
+    bool dark = true;         // the experimenter's window; the participant's looks as its study says
+    double text_scale = 1.0;  // likewise
+    std::optional<presenter::PictureQuality> quality = {};  // the participant's window draws so; none: as it is found
 };
 
 /// Both windows and everything behind them.
@@ -55,23 +62,25 @@ public:
     Screen& screen() { return screen_; }
     FormModel& form() { return form_; }
     QQuickWindow* experimenter() const { return experimenter_; }
-    QQuickWindow* participant() const { return participant_; }
+    QQuickWindow* participant() const { return participant_.get(); }
 
 signals:
     void languageChanged();
     void pageChanged();
 
 private:
+    void makeParticipant();
+    void dressParticipant();
     void watchGraphics();
-    void placeParticipant();
     void keepPlaces();
     void remember();
 
-    Look look_;
+    Look look_, participant_look_{true};
     Desk desk_;
     QSettings memory_;  // of what the next start finds as it was
     Studies studies_;
     RosterModel roster_;
+    CutOff cut_off_{desk_, studies_, roster_, memory_};
     ReplayModel replay_;
     DataModel records_;
     StudyModel details_;
@@ -80,11 +89,15 @@ private:
     FormModel form_;
     Guide guide_;
     Screen screen_, mirror_;
+    QualityFinder quality_;
+    StopPath stop_path_{desk_};
+    ScreenChoice screen_choice_{desk_, screen_, memory_};
     QString language_, page_;
     QTranslator translator_;
-    QQmlApplicationEngine engine_;  // last: the windows go before what they show
+    QQmlApplicationEngine engine_;  // after what the windows show: they go before it
+    QQmlContext participant_context_{&engine_};
     QQuickWindow* experimenter_ = nullptr;
-    QQuickWindow* participant_ = nullptr;
+    std::unique_ptr<QQuickWindow> participant_;
     Places places_;
 };
 

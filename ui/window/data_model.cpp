@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "analysis/export/export.h"
+#include "ui/app/known_exports.h"
 #include "ui/presenter/axis.h"
 #include "ui/window/data_words.h"
 
@@ -26,13 +27,6 @@ Result<Found> readFrom(const std::string& database) {
     auto recorded = presenter::readRecorded(*reader);
     if (!recorded) return recorded.errors();
     return std::make_shared<Recorded>(*std::move(recorded));
-}
-
-/// How long it took, where that was measured.
-int firstMeasure(const Recorded& recorded) {
-    const auto& all = recorded.measures;
-    const auto time = std::find_if(all.begin(), all.end(), [](const auto& m) { return m.name == "completion_time_s"; });
-    return time == all.end() ? 0 : static_cast<int>(time - all.begin());
 }
 
 QVariantList numbers(const std::vector<double>& values) {
@@ -61,9 +55,13 @@ DataModel::DataModel(Desk& desk, Studies& studies, ReplayModel& replay)
         refresh();
     });
     connect(&desk_, &Desk::happened, this, [this] {
-        const bool runs = desk_.run().view().isRunning();
-        if (ran_ && !runs) refresh();
-        ran_ = runs;
+        const presenter::RunView& run = desk_.run().view();
+        std::int64_t ended = 0;
+        for (const presenter::TrialRow& row : run.rows) ended += row.attempts;
+        const bool begins = !ran_ && run.isRunning() && run.planned > 0, more = ran_ && ended != ended_;
+        if (begins || more || (ran_ && !run.isRunning())) refresh();
+        ran_ = run.isRunning() && run.planned > 0;
+        ended_ = ended;
     });
     refresh();
 }
@@ -101,7 +99,7 @@ void DataModel::refresh() {
                     if (session_.empty() && recorded_ && !recorded_->data.sessions.empty())
                         session_ = recorded_->data.sessions.back().session_id;
                     if (recorded_ && measure_ >= static_cast<int>(recorded_->measures.size()))
-                        measure_ = firstMeasure(*recorded_);
+                        measure_ = static_cast<int>(presenter::firstMeasure(*recorded_));
                     if (!recorded_ || kind_ >= static_cast<int>(recorded_->kinds.size())) kind_ = 0;
                     emit changed();
                 });
@@ -246,17 +244,20 @@ void DataModel::exportTo(const QString& folder, bool samples) {
     const QString to = folder.trimmed();
     worker_.run(
         [database = database().toStdString(), out = to.toStdString(), options]() -> Result<exporter::ExportReport> {
-            const auto reader = store::StoreReader::open(database);
+            const auto reader = store::StoreReader::open(
+                database, options.samples ? store::Damaged::LeftOutWithSamples : store::Damaged::LeftOut);
             if (!reader) return reader.errors();
             std::error_code problem;  // shows when the folder is begun
             std::filesystem::create_directories(std::filesystem::path(out).parent_path(), problem);
-            return exporter::exportAll(*reader, out, options);
+            auto report = exporter::exportAll(*reader, out, options);
+            if (report) app::rememberExport(database, out);
+            return report;
         },
         [this, to](const Result<exporter::ExportReport>& report) {
             exporting_ = false;
-            failed_ = !report;
+            failed_ = !report || report->missing > 0;
             if (report) last_folder_ = to;
-            told_ = report       ? exportedLine(to, report->attempts, report->files)
+            told_ = report       ? exportedLine(to, report->attempts, report->files, report->missing)
                     : cancelled_ ? cancelledLine()
                                  : text(toString(report.errors().front()));
             emit changed();

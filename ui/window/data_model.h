@@ -85,6 +85,7 @@ private:
     int source_ = 0;
     QString file_, told_, last_folder_;
     bool failed_ = false, ran_ = false, exporting_ = false;
+    std::int64_t ended_ = 0;  // attempts of the running session, which the page follows
     double exported_ = 0.0;
     std::atomic<bool> cancelled_{false};
     std::unique_ptr<presenter::Recorded> recorded_;

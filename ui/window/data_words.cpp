@@ -48,7 +48,13 @@ QString attemptTitle(const store::AttemptRow& row) {
         .arg(QString::fromStdString(row.presented_condition));
 }
 
-QString exportedLine(const QString& folder, std::size_t attempts, std::size_t files) {
+QString exportedLine(const QString& folder, std::size_t attempts, std::size_t files, std::size_t missing) {
+    if (missing > 0)
+        return said(QT_TRANSLATE_NOOP("data", "%1: %2 attempts in %3 files; damaged and left out: %4, see missing.csv"))
+            .arg(folder)
+            .arg(attempts)
+            .arg(files)
+            .arg(missing);
     return said(QT_TRANSLATE_NOOP("data", "%1: %2 attempts in %3 files")).arg(folder).arg(attempts).arg(files);
 }
 

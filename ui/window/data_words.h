@@ -14,7 +14,7 @@ QString kindText(const std::string& kind);
 QString endWord(const std::optional<std::string>& end_state);
 QString attemptTitle(const store::AttemptRow& row);
 QString outcomeWord(const std::string& outcome, bool valid);
-QString exportedLine(const QString& folder, std::size_t attempts, std::size_t files);
+QString exportedLine(const QString& folder, std::size_t attempts, std::size_t files, std::size_t missing);
 QString cancelledLine();
 
 }  // namespace passung::window

@@ -1,7 +1,8 @@
 #include "ui/window/desk.h"
 
-#include <algorithm>
 #include <array>
+
+#include "ui/presenter/participant.h"
 
 namespace passung::window {
 
@@ -17,10 +18,19 @@ Desk::Desk(std::string data) : data_(std::move(data)) {
     connect(&timer_, &QTimer::timeout, this, &Desk::look);
 }
 
-Desk::~Desk() = default;
+Desk::~Desk() { end(); }
+
+void Desk::open(const protocol::StudyPlan& plan, const std::string& language) {
+    close();
+    language_ = language;
+    run_.open(plan);
+    drawn_ = nullptr;
+    emit opened();
+    emit happened();
+}
 
 void Desk::start(const protocol::StudyPlan& plan, app::LiveOptions options) {
-    live_.reset();
+    end();
     hand_ = options.hand;
     language_ = options.language;
     run_.open(plan);
@@ -28,6 +38,10 @@ void Desk::start(const protocol::StudyPlan& plan, app::LiveOptions options) {
     options.frames = &frames_;
     options.sound = &sound_;
     live_ = std::make_unique<app::LiveSession>(plan, std::move(options));
+    {
+        const std::lock_guard lock(stop_mutex_);
+        stoppable_ = live_.get();
+    }
     timer_.start();
     emit opened();
     emit happened();
@@ -61,12 +75,47 @@ void Desk::setDisplay(presenter::Display display) {
 
 void Desk::openDisplay() {
     if (run_.view().display == presenter::Display::Lost) setDisplay(presenter::Display::Closed);  // gets a new window
+    if (run_.view().display != presenter::Display::Shown) emit displayWanted();
     setDisplay(presenter::Display::Shown);
 }
 
-void Desk::close() {
+/// What runs can be stopped until it has come to its end.
+void Desk::end() {
+    if (live_) live_->end();
+    {
+        const std::lock_guard lock(stop_mutex_);
+        stoppable_ = nullptr;
+    }
     live_.reset();
+}
+
+void Desk::stopNow() {
+    const std::lock_guard lock(stop_mutex_);
+    if (stoppable_ != nullptr) stoppable_->command({.kind = session::CommandKind::Stop});
+}
+
+void Desk::close() {
+    end();
     timer_.stop();
+}
+
+void Desk::drawsWith(const presenter::QualityFound& found) {
+    run_.drawsWith(found);
+    if (live_) live_->drawsWith(found);
+    emit happened();
+}
+
+/// The pictures that the participant's window has shown, and which attempt it waits to show.
+void Desk::lookAtPictures() {
+    std::array<app::Picture, 64> pictures;
+    while (const std::size_t count = frames_.takeForScreen(pictures))
+        for (std::size_t i = 0; i < count; ++i) run_.see(pictures[i].began_ns, pictures[i].presented_ns);
+    run_.lookAtPictures(app::steadyNanoseconds());
+    const bool awaits =
+        run_.view().state == presenter::RunState::Preparing && !run_.view().built && !frames_.hasShown(awaited_);
+    if (awaits == run_.view().awaits_picture) return;
+    run_.awaitsPicture(awaits);
+    emit happened();
 }
 
 mouse::Pointer* Desk::pointer() { return byMouse() ? &live_->pointer() : nullptr; }
@@ -74,19 +123,40 @@ mouse::Pointer* Desk::pointer() { return byMouse() ? &live_->pointer() : nullptr
 void Desk::look() {
     // Ticks first: what is still to come of an attempt that is over was before the news of the next one.
     std::array<loop::ScreenTick, 256> ticks;
-    std::array<TickRecord, 256> records;
-    bool fresh = false;
+    std::optional<loop::ScreenTick> newest;
     while (const std::size_t count = live_->takeTicks(ticks)) {
-        std::transform(ticks.begin(), ticks.begin() + count, records.begin(),
-                       [](const loop::ScreenTick& tick) { return tick.record; });
-        run_.take(std::span(records).first(count));
-        frames_.show(ticks[count - 1]);
-        fresh = true;
+        take(std::span(ticks).first(count));
+        newest = ticks[count - 1];
     }
-    const auto news = live_->takeNews();
-    for (const presenter::News& what : news) run_.take(what);
+    show(live_->takeNews(), newest);
+    if (!run_.view().isRunning()) timer_.stop();
+}
+
+void Desk::bring(const std::vector<presenter::News>& news, std::span<const loop::ScreenTick> ticks) {
+    take(ticks);
+    show(news, ticks.empty() ? std::nullopt : std::optional(ticks.back()));
+}
+
+void Desk::take(std::span<const loop::ScreenTick> ticks) {
+    std::vector<TickRecord> records;
+    records.reserve(ticks.size());
+    for (const loop::ScreenTick& tick : ticks) records.push_back(tick.record);
+    run_.take(records);
+}
+
+/// `newest`: the tick that the windows stand in from now on, if there is one since the last call.
+void Desk::show(const std::vector<presenter::News>& news, const std::optional<loop::ScreenTick>& newest) {
+    bool prepares = false;
+    for (const presenter::News& what : news) {
+        run_.take(what);
+        if (const auto* attempt = std::get_if<presenter::AttemptPrepared>(&what)) {
+            awaited_ = attempt->shown_as;
+            prepares = true;
+        }
+    }
+    lookAtPictures();
     if (run_.view().sound && !speaker_) speaker_ = openSpeaker(sound_);
-    if (byMouse() && fresh && run_.last()) {
+    if (byMouse() && newest && run_.last()) {
         const auto& p = run_.last()->hand_position_m;
         const auto& q = run_.last()->hand_quaternion;
         live_->pointer().keepNear(
@@ -98,8 +168,12 @@ void Desk::look() {
         emit sceneChanged();
     }
     if (!news.empty()) emit happened();
-    if (fresh) emit frame();
-    if (!run_.view().isRunning()) timer_.stop();
+    if (prepares) emit prepared(awaited_);
+    if (!newest) return;
+    emit frame();
+    if (prepares) return;  // the tick is of the attempt before
+    const presenter::ParticipantView view = presenter::participantView(run_, !byMouse());
+    frames_.show(*newest, view.scene && view.cue > 0.0);
 }
 
 }  // namespace passung::window

@@ -3,7 +3,10 @@
 #include <QtCore/QObject>
 #include <QtCore/QTimer>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "ui/app/live_session.h"
 #include "ui/presenter/run.h"
@@ -23,9 +26,15 @@ public:
 
     /// A session of the study: a new one, or one that goes on.
     void start(const protocol::StudyPlan& plan, app::LiveOptions options);
+    /// A run whose news and ticks the caller brings: for whoever shows one that goes on elsewhere.
+    void open(const protocol::StudyPlan& plan, const std::string& language);
+    /// What has happened in the run since the last call, and its ticks of that time.
+    void bring(const std::vector<presenter::News>& news, std::span<const loop::ScreenTick> ticks);
     /// Only the trials, into a database of its own.
     void tryOut(const protocol::StudyPlan& plan, app::LiveHand hand, const std::string& language);
     void command(session::Command command);
+    /// Emergency stop, from any thread, whatever the windows do meanwhile; nothing if no session runs.
+    void stopNow();
     /// The participant's window shows this from now on; a running trial that nobody sees is paused.
     void setDisplay(presenter::Display display);
     /// Shows the participant's window again, whatever became of it.
@@ -45,29 +54,40 @@ public:
     void pageRead(std::int64_t page, std::int64_t read_ms);
     void goOn();
 
+    /// How the participant's window draws from now on, for the experimenter and the data.
+    void drawsWith(const presenter::QualityFound& found);
     /// The pictures of the participant's window.
     app::FrameClock& frames() { return frames_; }
     /// Where sound comes from; none: nowhere.
     std::optional<sound::SoundOutput> soundOutput() const { return sound_.output(); }
 
 signals:
-    void opened();    // another run
-    void happened();  // news
-    void frame();     // time for a new picture
+    void opened();         // another run
+    void displayWanted();  // the participant's window is about to be shown again
+    void happened();       // news
+    void frame();          // time for a new picture
     void sceneChanged();
+    void prepared(qint64 attempt);  // the windows show its scene; it begins with its first picture
 
 private:
     void look();
+    void take(std::span<const loop::ScreenTick> ticks);
+    void show(const std::vector<presenter::News>& news, const std::optional<loop::ScreenTick>& newest);
+    void end();
+    void lookAtPictures();
 
     std::string data_;
     app::FrameClock frames_;
     sound::SoundFeed sound_;
     std::unique_ptr<Speaker> speaker_;  // once something is to be heard
     std::unique_ptr<app::LiveSession> live_;
+    std::mutex stop_mutex_;
+    app::LiveSession* stoppable_ = nullptr;  // what stopNow() stops
     app::LiveHand hand_ = app::LiveHand::Mouse;
     std::string language_ = "en";
     presenter::Run run_;
     const void* drawn_ = nullptr;  // scene that the windows know
+    std::int64_t awaited_ = 0;     // the newest attempt, as the pictures count them
     QTimer timer_;
 };
 

@@ -26,7 +26,7 @@ void Guide::look() {
 }
 
 bool Guide::handling() const {
-    return desk_.byMouse() &&
+    return desk_.byMouse() && !desk_.run().view().awaits_picture &&
            (view_.screen == Screen::ToStart || view_.screen == Screen::Task || view_.screen == Screen::Question ||
             view_.screen == Screen::Idle || view_.screen == Screen::ByHand || view_.screen == Screen::Wait);
 }
@@ -80,6 +80,11 @@ QString Guide::line() const {
     return speech_(QT_TRANSLATE_NOOP("participant", "Thank you!"));
 }
 
+QString Guide::keysLine() const {
+    return speech_(QT_TRANSLATE_NOOP(
+        "participant", "Keys: arrows and page up, down: move · W A S D Q E: turn · with Shift: slowly · Esc: stop"));
+}
+
 QString Guide::hint() const {
     switch (view_.screen) {
         case Screen::Welcome:
@@ -90,9 +95,12 @@ QString Guide::hint() const {
             if (!desk_.byMouse()) return {};
             if (view_.brief.kind == Kind::Placement)
                 return speech_(QT_TRANSLATE_NOOP("participant",
-                                                 "Drag: move · Shift: depth · Ctrl: turn · space bar: it is there"));
+                                                 "Drag: move · Shift: depth · Ctrl: turn · space bar: it is there")) +
+                       "\n" + keysLine();
             return speech_(QT_TRANSLATE_NOOP(
-                "participant", "Drag: move · wheel or Shift + drag: depth · right button or Ctrl + drag: turn"));
+                       "participant",
+                       "Drag: move · wheel or Shift + drag: depth · right button or Ctrl + drag: turn")) +
+                   "\n" + keysLine();
         case Screen::ByHand:
             if (view_.begun) return speech_(QT_TRANSLATE_NOOP("participant", "The experimenter stops the time."));
             return speech_(QT_TRANSLATE_NOOP("participant", "The experimenter says when to begin."));

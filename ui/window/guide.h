@@ -34,6 +34,7 @@ public:
 
     QString line() const;
     QString hint() const;
+    QString keysLine() const;
     QString result() const;
     bool succeeded() const { return view_.result && view_.result->success; }
     bool handling() const;

@@ -44,6 +44,9 @@ double millisecondsSinceStart() {
 int main(int argc, char** argv) {
     try {
         QQuickStyle::setStyle("Basic");
+        if (const QByteArray platform = passung::window::platformFor(qgetenv("DISPLAY"), qgetenv("QT_QPA_PLATFORM"));
+            !platform.isEmpty())
+            qputenv("QT_QPA_PLATFORM", platform);
         QGuiApplication application(argc, argv);
         QCoreApplication::setApplicationName("passung");
         QCommandLineParser parser;

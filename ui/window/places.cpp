@@ -26,10 +26,30 @@ QString arrangement() {
 
 }  // namespace
 
-std::optional<qsizetype> participantScreen(const QList<QRect>& screens, const QRect& experimenter) {
+QList<qsizetype> freeScreens(const QList<ScreenArea>& screens, const QRect& experimenter) {
+    QList<qsizetype> free;
     for (qsizetype i = 0; i < screens.size(); ++i)
-        if (screens.size() > 1 && !screens[i].contains(experimenter.center())) return i;
-    return std::nullopt;
+        if (screens.size() > 1 && !screens[i].area.contains(experimenter.center())) free.append(i);
+    return free;
+}
+
+std::optional<qsizetype> participantScreen(const QList<ScreenArea>& screens, const QRect& experimenter,
+                                           const QString& chosen) {
+    const QList<qsizetype> free = freeScreens(screens, experimenter);
+    for (const qsizetype i : free)
+        if (screens[i].name == chosen) return i;
+    if (free.isEmpty()) return std::nullopt;
+    return free.front();
+}
+
+QRect fitting(const QRect& wanted, const QRect& area) {
+    constexpr int kTitleBar = 32;  // [px]
+    if (area.contains(wanted) && wanted.height() <= area.height() - kTitleBar) return wanted;
+    const QSize size = wanted.size().boundedTo({area.width(), area.height() - kTitleBar});
+    const auto within = [](int at, int low, int high) { return std::max(low, std::min(at, high)); };
+    return {{within(wanted.x(), area.left(), area.left() + area.width() - size.width()),
+             within(wanted.y(), area.top() + kTitleBar, area.top() + area.height() - size.height())},
+            size};
 }
 
 void Places::restore(const QString& name, QWindow& window) const {

@@ -9,9 +9,19 @@
 
 namespace passung::window {
 
-/// Which of these screens the participant gets for themselves: the first one that the middle of the experimenter's
-/// window is not on; none: there is no other.
-std::optional<qsizetype> participantScreen(const QList<QRect>& screens, const QRect& experimenter);
+struct ScreenArea {
+    QString name;
+    QRect area;
+};
+
+/// The screens that the participant may get for themselves: all that the middle of the experimenter's window is not on.
+QList<qsizetype> freeScreens(const QList<ScreenArea>& screens, const QRect& experimenter);
+/// Which of them they get: the one of the chosen name, else the first; none: there is no other.
+std::optional<qsizetype> participantScreen(const QList<ScreenArea>& screens, const QRect& experimenter,
+                                           const QString& chosen);
+
+/// `wanted`, made smaller and moved until all of it lies in `area`, with room for a title bar above it.
+QRect fitting(const QRect& wanted, const QRect& area);
 
 /// Remembers where windows stand, for each arrangement of screens.
 class Places {

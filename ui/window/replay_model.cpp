@@ -34,7 +34,7 @@ Result<Read> readFrom(const std::string& database, const std::string& meshes, st
         return Error{.message = "the stored protocol has no such condition",
                      .key = "condition",
                      .value = attempt->presented_condition};
-    auto scene = artist.draw(*condition);
+    auto scene = artist.draw(*condition, (*plan)->view);
     if (!scene) return scene.errors();
     return std::make_shared<presenter::Playback>(*std::move(records), *std::move(scene));
 }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "ui/app/builds.h"
 #include "ui/experimenter/trace_item.h"
 #include "ui/presenter/playback.h"
 #include "ui/window/scene_model.h"
@@ -64,7 +65,8 @@ private:
     void look();
 
     std::unique_ptr<presenter::Playback> playback_;
-    presenter::SceneArtist artist_;  // of the worker's thread alone
+    std::unique_ptr<app::Builds> builds_ = app::openBuilds();  // both of the worker's thread alone
+    presenter::SceneArtist artist_{builds_.get()};
     QString title_, told_;
     bool open_ = false;
     int asked_ = 0;

@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "study/protocol/language.h"
-#include "study/protocol/protocol_reader.h"
-#include "ui/app/known_names.h"
+#include "study/store/backup.h"
+#include "ui/app/protocol_files.h"
 #include "ui/window/roster_words.h"
 
 namespace passung::window {
@@ -28,7 +28,7 @@ QString minute(const std::string& utc) { return text(utc.substr(0, 16)).replace(
 ParticipantKind kindOf(bool pilot) { return pilot ? ParticipantKind::Pilot : ParticipantKind::Real; }
 
 Result<Roster> readFrom(const std::string& protocol, const std::string& database) {
-    const auto plan = protocol::readProtocol(protocol, app::knownDevices(), app::knownMeasures());
+    const auto plan = app::readProtocol(protocol);
     if (!plan) return plan.errors();
     if (!std::filesystem::exists(database)) return presenter::emptyRoster(*plan);
     const auto reader = store::StoreReader::open(database);
@@ -134,7 +134,7 @@ void RosterModel::act(const Work& work, const QString& done) {
     app::DeskAccess access{.database = studies_.database(), .by = by(), .create = true};
     worker_.run(
         [work, access, protocol = card->path]() -> Result<Done> {
-            const auto plan = protocol::readProtocol(protocol, app::knownDevices(), app::knownMeasures());
+            const auto plan = app::readProtocol(protocol);
             if (!plan) return plan.errors();
             std::error_code problem;  // shows when the database is opened
             std::filesystem::create_directories(std::filesystem::path(access.database).parent_path(), problem);
@@ -172,8 +172,10 @@ QVariantMap RosterModel::person() const {
     for (const auto& session : person->sessions) sessions.append(sessionMap(session));
     map["sessions"] = sessions;
     map["whyNotStart"] = whyNot(presenter::whyNotStart(*roster_, *person, sessionRuns()));
-    map["whyNotResume"] = whyNot(presenter::whyNotResume(*person, sessionRuns()));
-    map["canResume"] = person->resumable() != nullptr;
+    map["whyNotResume"] = whyNot(presenter::whyNotResume(*roster_, *person, sessionRuns()));
+    const presenter::RosterSession* broken = person->resumable();
+    map["canResume"] = broken != nullptr;
+    map["cutOff"] = broken ? cutOffLine(person->code, minute(broken->started_utc), *broken) : QString();
     return map;
 }
 
@@ -224,10 +226,10 @@ void RosterModel::enrol(const QString& code, bool pilot) {
 bool RosterModel::start(bool resume, const QString& language) {
     const RosterPerson* person = person_();
     if (person == nullptr || studies_.card() == nullptr) return false;
-    const PersonWhy why = resume ? presenter::whyNotResume(*person, sessionRuns())
+    const PersonWhy why = resume ? presenter::whyNotResume(*roster_, *person, sessionRuns())
                                  : presenter::whyNotStart(*roster_, *person, sessionRuns());
     if (why != PersonWhy::Possible) return false;
-    const auto plan = protocol::readProtocol(studies_.card()->path, app::knownDevices(), app::knownMeasures());
+    const auto plan = app::readProtocol(studies_.card()->path);
     if (!plan) {
         tell(plan.errors(), {});
         emit changed();
@@ -243,6 +245,7 @@ bool RosterModel::start(bool resume, const QString& language) {
     options.language = spoken ? language.toStdString() : languages.front();
     options.experimenter = by();
     options.waits = true;
+    emit began(text(studies_.card()->path), selected());
     desk_.start(*plan, std::move(options));
     return true;
 }
@@ -285,9 +288,11 @@ void RosterModel::readmit(const QString& reason) {
 QVariantMap RosterModel::leaving() const {
     using Step = presenter::LeavingDialog::Step;
     const bool confirms = dialog_.step() == Step::Confirm;
+    std::error_code none;
     return {{"open", dialog_.step() != Step::Closed},
             {"confirms", confirms},
             {"code", text(dialog_.code())},
+            {"hasBackup", confirms && std::filesystem::exists(store::backupPath(studies_.database()), none)},
             {"erases", confirms && dialog_.leaving().scope == presenter::Scope::Erase},
             {"lines", confirms ? leavingLines(dialog_.leaving()) : QStringList()}};
 }
@@ -323,8 +328,8 @@ QString RosterModel::whyNotConfirm(const QString& typed) const {
     return whyNot(dialog_.whyNotConfirm(typed.trimmed().toStdString(), sessionRuns()));
 }
 
-void RosterModel::confirmLeaving(const QString& typed) {
-    const auto leaving = dialog_.confirm(typed.trimmed().toStdString(), sessionRuns());
+void RosterModel::confirmLeaving(const QString& typed, bool backupToo) {
+    const auto leaving = dialog_.confirm(typed.trimmed().toStdString(), sessionRuns(), backupToo);
     if (!leaving) return;
     const app::DeskAccess access{.database = studies_.database(), .by = by()};
     worker_.run(
@@ -332,6 +337,11 @@ void RosterModel::confirmLeaving(const QString& typed) {
         [this, what = *leaving](const Result<app::Left>& left) {
             tell(left ? Result<Done>(Done{}) : Result<Done>(left.errors()),
                  said(QT_TRANSLATE_NOOP("roster", "%1 has left the study.")).arg(text(what.code)));
+            if (left && left->backup)
+                told_ += " " + said(QT_TRANSLATE_NOOP("roster", "They were erased from the backup too."));
+            if (left && !left->backup_problem.empty())
+                told_ += " " + said(QT_TRANSLATE_NOOP("roster", "They could not be erased from the backup: %1"))
+                                   .arg(text(left->backup_problem));
             if (left && !left->copies.empty()) {
                 QStringList copies;
                 for (const auto& copy : left->copies) copies.append(text(copy));

@@ -69,12 +69,13 @@ public:
     Q_INVOKABLE void chooseLeaving(int scope, const QString& reason);
     Q_INVOKABLE void backLeaving();
     Q_INVOKABLE QString whyNotConfirm(const QString& typed) const;
-    Q_INVOKABLE void confirmLeaving(const QString& typed);
+    Q_INVOKABLE void confirmLeaving(const QString& typed, bool backupToo);
 
     void retranslate();
 
 signals:
     void changed();
+    void began(const QString& study, const QString& code);  // a session; the study's file
     void experimenterChanged();
 
 private:

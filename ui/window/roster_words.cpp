@@ -123,6 +123,16 @@ QString sessionWord(SessionState state) {
     return said(QT_TRANSLATE_NOOP("roster", "interrupted by a crash"));
 }
 
+QString cutOffLine(const std::string& code, const QString& began, const presenter::RosterSession& session) {
+    const QString who = QString::fromStdString(code);
+    if (session.valid >= session.planned)
+        return said(QT_TRANSLATE_NOOP("roster", "%1's session of %2 was cut off after its trials.")).arg(who, began);
+    return said(QT_TRANSLATE_NOOP("roster", "%1's session of %2 was cut off in trial %3 of %4."))
+        .arg(who, began)
+        .arg(session.valid + 1)
+        .arg(session.planned);
+}
+
 QString whyNot(PersonWhy why) {
     switch (why) {
         case PersonWhy::Possible:
@@ -145,6 +155,10 @@ QString whyNot(PersonWhy why) {
             return said(QT_TRANSLATE_NOOP("roster", "They are out of the study already."));
         case PersonWhy::NeedsReason:
             return said(QT_TRANSLATE_NOOP("roster", "Give a reason."));
+        case PersonWhy::CueWithoutOutput:
+            return said(QT_TRANSLATE_NOOP("roster",
+                                          "The study has a cue that nothing here can give to a person; only simulated "
+                                          "participants can take part."));
         case PersonWhy::NeedsCode:
             break;
     }
@@ -195,7 +209,7 @@ QStringList leavingLines(const presenter::Leaving& leaving) {
                                             "note of %2."))
                          .arg(stock, QString::fromStdString(leaving.code))
                   << said(QT_TRANSLATE_NOOP("roster", "The audit keeps that somebody was erased, not who."))
-                  << said(QT_TRANSLATE_NOOP("roster", "Backups and exports elsewhere are yours to delete."));
+                  << said(QT_TRANSLATE_NOOP("roster", "Exports, and copies elsewhere, are yours to delete."));
             break;
     }
     if (leaving.frees_place)

@@ -15,6 +15,8 @@ QString decisionWord(presenter::Decision decision);
 /// A sign that tells decisions apart without colour.
 QString decisionSign(presenter::Decision decision);
 QString sessionWord(presenter::SessionState state);
+/// How far a session came that ended before its time; `began`: when it did, in words.
+QString cutOffLine(const std::string& code, const QString& began, const presenter::RosterSession& session);
 QString whyNot(presenter::PersonWhy why);
 QString whyNot(presenter::CodeWhy why, protocol::ParticipantKind kind);
 /// What a participant's leaving does, a sentence each.

@@ -66,6 +66,8 @@ QString RunModel::answer() const { return view().answered ? answerLine(*view().a
 
 QString RunModel::sound() const { return view().sound ? soundLine(desk_.soundOutput()) : QString(); }
 
+QString RunModel::quality() const { return view().quality ? qualityLine(*view().quality) : QString(); }
+
 double RunModel::share() const {
     if (view().planned == 0) return 0.0;
     return static_cast<double>(view().finished) / static_cast<double>(view().planned);

@@ -37,6 +37,10 @@ class RunModel : public QObject {
     Q_PROPERTY(double typical READ typical NOTIFY measured)
     Q_PROPERTY(double longest READ longest NOTIFY measured)
     Q_PROPERTY(int missed READ missed NOTIFY measured)
+    Q_PROPERTY(bool pictured READ pictured NOTIFY measured)    // the pictures are known
+    Q_PROPERTY(double pictures READ pictures NOTIFY measured)  // a second
+    Q_PROPERTY(double pictureAge READ pictureAge NOTIFY measured)
+    Q_PROPERTY(QString quality READ quality NOTIFY changed)  // of the pictures; empty: not found yet
 
 public:
     explicit RunModel(Desk& desk);
@@ -66,6 +70,10 @@ public:
     double typical() const { return view().loop.typical_us; }
     double longest() const { return view().loop.longest_us; }
     int missed() const { return static_cast<int>(view().loop.missed); }
+    bool pictured() const { return view().pictures.known; }
+    double pictures() const { return view().pictures.per_s; }
+    double pictureAge() const { return view().pictures.age_ms; }
+    QString quality() const;
 
     /// `name`: one of session::kCommandNames.
     Q_INVOKABLE void command(const QString& name, const QString& text = {});

@@ -2,12 +2,8 @@
 
 #include <QtCore/QObject>
 #include <QtCore/QVariant>
-#include <QtGui/QColor>
 #include <QtGui/QQuaternion>
 #include <QtGui/QVector3D>
-#include <QtQuick3D/QQuick3DGeometry>
-#include <map>
-#include <memory>
 
 #include "ui/presenter/participant.h"
 
@@ -19,13 +15,20 @@ class SceneModel : public QObject {
     Q_PROPERTY(bool software MEMBER software_ NOTIFY sceneChanged)  // no graphics card draws
     Q_PROPERTY(bool heavy MEMBER heavy_ NOTIFY sceneChanged)        // many triangles
 
+    // Lists of maps, a Model for each: "mesh", "position", "rotation" and what else it needs.
     Q_PROPERTY(QVariantList parts MEMBER parts_ NOTIFY sceneChanged)
-    Q_PROPERTY(QQuick3DGeometry* heldGeometry MEMBER held_geometry_ NOTIFY sceneChanged)
+    Q_PROPERTY(QVariantList ghosts MEMBER ghosts_ NOTIFY sceneChanged)  // pale images of the held part: one, or none
     Q_PROPERTY(QVariantList marks MEMBER marks_ NOTIFY sceneChanged)
     Q_PROPERTY(QVector3D groundPosition MEMBER ground_position_ NOTIFY sceneChanged)
     Q_PROPERTY(double radius MEMBER radius_ NOTIFY sceneChanged)
     Q_PROPERTY(QVector3D cameraPosition MEMBER camera_position_ NOTIFY sceneChanged)
     Q_PROPERTY(QQuaternion cameraRotation MEMBER camera_rotation_ NOTIFY sceneChanged)
+    Q_PROPERTY(bool dark READ dark NOTIFY sceneChanged)
+    Q_PROPERTY(bool ground READ ground NOTIFY sceneChanged)
+    Q_PROPERTY(double light READ light NOTIFY sceneChanged)
+    Q_PROPERTY(double fillLight READ fillLight NOTIFY sceneChanged)
+    Q_PROPERTY(double ambientLight READ ambientLight NOTIFY sceneChanged)
+    Q_PROPERTY(double shadow READ shadow NOTIFY sceneChanged)
     Q_PROPERTY(QQuaternion lightRotation MEMBER light_rotation_ NOTIFY sceneChanged)
     Q_PROPERTY(double cameraOpening MEMBER camera_opening_ NOTIFY sceneChanged)
     Q_PROPERTY(double cameraNear MEMBER camera_near_ NOTIFY sceneChanged)
@@ -61,22 +64,23 @@ public:
     QVector3D arrowPosition() const;
     QQuaternion arrowRotation() const;
     double arrowLength() const;
-    /// The held part's colour, towards red with the collision cue.
-    Q_INVOKABLE QColor heldColor(const QColor& plain) const;
+
+    bool dark() const { return look_.theme == protocol::Theme::Dark; }
+    bool ground() const { return look_.ground; }
+    double light() const { return look_.light; }
+    double fillLight() const { return look_.fill_light; }
+    double ambientLight() const { return look_.ambient_light; }
+    double shadow() const { return look_.shadow; }
 
 signals:
     void sceneChanged();
     void frame();
 
 private:
-    QQuick3DGeometry* geometryOf(const std::shared_ptr<const presenter::ShadedMesh>& mesh);
-
     presenter::ParticipantView view_;
-    // A surface stays as long as this: QML may still draw the scene before.
-    std::map<std::shared_ptr<const presenter::ShadedMesh>, std::unique_ptr<QQuick3DGeometry>> geometries_;
+    protocol::View look_;
     bool software_ = false, heavy_ = false;
-    QVariantList parts_, marks_;
-    QQuick3DGeometry* held_geometry_ = nullptr;
+    QVariantList parts_, ghosts_, marks_;
     QVector3D ground_position_, camera_position_;
     QQuaternion camera_rotation_, light_rotation_;
     double radius_ = 100.0, camera_opening_ = 30.0, camera_near_ = 1.0, camera_far_ = 1000.0;

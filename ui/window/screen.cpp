@@ -65,7 +65,6 @@ Screen::Screen(Desk& desk, int every) : desk_(desk), every_(every) {
         emit stateChanged();
     });
     since_frame_.start();
-    since_keys_.start();
 }
 
 Screen::~Screen() = default;
@@ -88,9 +87,7 @@ void Screen::takeScene() {
 }
 
 void Screen::takeFrame() {
-    const double seconds = 1e-3 * static_cast<double>(since_keys_.restart());
-    if (const auto& scene = desk_.run().scene(); scene && keys_.any() && every_ == 0)
-        move(presenter::keyMotion(scene->camera, keys_, std::min(seconds, 0.1)));
+    if (keys_.any() && every_ == 0) steer();
     if (every_ > 0 && since_frame_.elapsed() < every_) return;
     since_frame_.restart();
     const auto before = view().screen;
@@ -100,6 +97,15 @@ void Screen::takeFrame() {
 
 void Screen::move(const presenter::PartMotion& motion) {
     if (mouse::Pointer* pointer = desk_.pointer()) pointer->move(motion.way, motion.turn);
+}
+
+/// Says what keys are held now; the session's thread moves the part by its own clock.
+void Screen::steer() {
+    mouse::Pointer* pointer = desk_.pointer();
+    const auto& scene = desk_.run().scene();
+    if (pointer == nullptr || !scene) return;
+    const presenter::PartMotion second = presenter::keyMotion(scene->camera, keys_, 1.0);
+    pointer->drive(second.way, second.turn);
 }
 
 void Screen::drag(double right, double down, double height, int buttons, int modifiers) {
@@ -119,15 +125,22 @@ bool Screen::key(int key, bool down) {
         if (mouse::Pointer* pointer = desk_.pointer()) pointer->press(buttons_);
         return true;
     }
+    if (key == Qt::Key_Shift) {
+        keys_.fine = down;
+        steer();
+        return false;  // it means something else with a drag
+    }
     double sign = 1.0;
     double* axis = axisOf(key, keys_, sign);
     if (axis == nullptr) return false;
     *axis = down ? sign : *axis == sign ? 0.0 : *axis;
+    steer();
     return true;
 }
 
 void Screen::letGo() {
     keys_ = {};
+    steer();
     buttons_ = 0;
     if (mouse::Pointer* pointer = desk_.pointer()) pointer->press(0u);
 }

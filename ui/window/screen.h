@@ -48,10 +48,11 @@ private:
     void takeScene();
     void takeFrame();
     void move(const presenter::PartMotion& motion);
+    void steer();
 
     Desk& desk_;
     int every_;
-    QElapsedTimer since_frame_, since_keys_;
+    QElapsedTimer since_frame_;
     presenter::HeldKeys keys_;
     std::uint32_t buttons_ = 0;  // of the handle, by keys
     bool full_screen_ = false;

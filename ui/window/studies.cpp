@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "study/protocol/protocol_reader.h"
 #include "ui/app/known_names.h"
+#include "ui/app/protocol_files.h"
 #include "ui/app/study_desk.h"
 
 namespace passung::window {
@@ -28,6 +28,7 @@ QVariantMap cardMap(const presenter::StudyCard& card) {
             {"version", text(card.version)},
             {"title", text(card.title)},
             {"sound", card.sound},
+            {"forPeople", card.for_people},
             {"problems", problems},
             {"warnings", warnings},
             {"factors", factors},
@@ -50,8 +51,7 @@ Studies::Studies(Desk& desk, const std::string& folder, std::string tryouts)
 void Studies::reload() {
     cards_.clear();
     for (const std::string& file : presenter::studyFilesBelow(folder_))
-        cards_.push_back(presenter::cardOf(
-            file, protocol::readProtocol(file, app::knownDevices(), app::knownMeasures()), app::knownDevices()));
+        cards_.push_back(presenter::cardOf(file, app::readProtocol(file), app::knownDevices()));
     if (chosen_ >= static_cast<int>(cards_.size())) chosen_ = 0;
     emit changed();
     emit chosenChanged();
@@ -61,6 +61,15 @@ void Studies::choose(int card) {
     if (card == chosen_ || card < 0 || card >= static_cast<int>(cards_.size())) return;
     chosen_ = card;
     emit chosenChanged();
+}
+
+bool Studies::chooseFile(const QString& path) {
+    for (std::size_t i = 0; i < cards_.size(); ++i) {
+        if (text(cards_[i].path) != path) continue;
+        choose(static_cast<int>(i));
+        return true;
+    }
+    return false;
 }
 
 const presenter::StudyCard* Studies::card() const {
@@ -78,7 +87,7 @@ QVariantList Studies::cards() const {
 
 void Studies::tryOut(int card, bool simulated, const QString& language) {
     const auto& path = cards_.at(static_cast<std::size_t>(card)).path;
-    const auto plan = protocol::readProtocol(path, app::knownDevices(), app::knownMeasures());
+    const auto plan = app::readProtocol(path);
     if (plan) desk_.tryOut(*plan, simulated ? app::LiveHand::Simulated : app::LiveHand::Mouse, language.toStdString());
 }
 

@@ -23,6 +23,8 @@ public:
     QVariantList cards() const;
     int chosen() const { return chosen_; }
     void choose(int card);
+    /// False: no study has this file.
+    bool chooseFile(const QString& path);
     /// Reads all protocols again.
     Q_INVOKABLE void reload();
     /// Runs the study of this card with a pilot at the mouse, or with a simulated participant to look at.

@@ -7,12 +7,12 @@
 #include <filesystem>
 
 #include "study/protocol/document.h"
-#include "study/protocol/protocol_reader.h"
 #include "study/store/digest.h"
 #include "study/store/store_reader.h"
 #include "ui/app/auto_accuracy.h"
-#include "ui/app/disk_store.h"
+#include "ui/app/builds.h"
 #include "ui/app/known_names.h"
+#include "ui/app/protocol_files.h"
 #include "ui/window/roster_words.h"
 #include "ui/window/study_words.h"
 
@@ -52,15 +52,15 @@ std::vector<ConditionWall> wallsOf(const protocol::StudyPlan& plan) {
 }
 
 Result<std::vector<StageTable>> measure(const std::string& protocol) {
-    const auto plan = protocol::readProtocol(protocol, app::knownDevices(), app::knownMeasures());
+    const auto plan = app::readProtocol(protocol);
     if (!plan) return plan.errors();
-    const auto store = app::openDiskStore();
+    const auto store = app::openBuilds();
     model::PartCache cache(store.get());
     std::vector<StageTable> tables;
     for (const auto& conditions : app::costGroups(*plan)) {
         const auto scene = model::buildScene(conditions.front()->scene, cache);
         if (!scene) return scene.errors();
-        StageTable table{{}, app::measureStages(*scene)};
+        StageTable table{{}, app::measureTick(*scene).stages};
         for (const auto* condition : conditions) table.conditions.push_back(condition->name);
         tables.push_back(std::move(table));
     }
@@ -107,7 +107,7 @@ StudyModel::StudyModel(Desk& desk, Studies& studies) : desk_(desk), studies_(stu
 
 Result<std::shared_ptr<StudyModel::Facts>> StudyModel::findOut(const std::string& protocol,
                                                                const std::string& database) {
-    const auto plan = protocol::readProtocol(protocol, app::knownDevices(), app::knownMeasures());
+    const auto plan = app::readProtocol(protocol);
     if (!plan) return plan.errors();
     auto details = presenter::detailsOf(*plan, plan->participants);
     if (!details) return details.errors();

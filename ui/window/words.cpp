@@ -67,6 +67,8 @@ QString stateDetail(const RunView& view) {
         return said(QT_TRANSLATE_NOOP("words", "models of the parts are built: %1 %")).arg(qRound(100 * *view.built));
     switch (view.state) {
         case RunState::Preparing:
+            if (view.awaits_picture) return said(QT_TRANSLATE_NOOP("words", "waits for the participant's picture"));
+            [[fallthrough]];
         case RunState::ToStart:
         case RunState::Running:
             return QString::fromStdString(view.condition);
@@ -217,6 +219,17 @@ QString answerLine(const presenter::CommandAnswered& answered) {
             break;
     }
     return said(QT_TRANSLATE_NOOP("words", "Motors are off; the session is paused."));
+}
+
+QString qualityLine(const presenter::QualityFound& found) {
+    const presenter::PictureQuality& drawn = found.quality;
+    const QString text =
+        drawn.shadows ? said(QT_TRANSLATE_NOOP("words", "%1 × %2 pixels, %3 samples each, shadows: %4 a second"))
+                      : said(QT_TRANSLATE_NOOP("words", "%1 × %2 pixels, %3 samples each, no shadows: %4 a second"));
+    return text.arg(qRound(drawn.scale * found.width_px))
+        .arg(qRound(drawn.scale * found.height_px))
+        .arg(drawn.samples)
+        .arg(found.pictures_per_s, 0, 'f', 0);
 }
 
 QString soundLine(const std::optional<sound::SoundOutput>& output) {

@@ -18,6 +18,7 @@ QString rowSign(presenter::RowState state);
 QString whyNot(presenter::Why why);
 /// What came of a command.
 QString answerLine(const presenter::CommandAnswered& answered);
+QString qualityLine(const presenter::QualityFound& found);
 QString soundLine(const std::optional<sound::SoundOutput>& output);
 QString phaseWord(const std::string& phase);
 

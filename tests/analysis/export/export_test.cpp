@@ -99,7 +99,12 @@ TEST_F(Export, TrialsHaveOneRowPerAttemptWithFactorsAndMeasures) {
     EXPECT_EQ(trials.at(7, "invalid_reason"), "NA");
     EXPECT_EQ(trials.at(7, "completion_time_s"), "1.1");
     EXPECT_EQ(trials.at(7, "peak_force_N"), "0.3333333333333333");
-    EXPECT_EQ(trials.at(7, "n_ticks"), "40");
+    EXPECT_EQ(trials.at(7, "order_position"), "2");
+    EXPECT_EQ(trials.at(7, "previous_condition"), "penalty/0.1");
+    EXPECT_EQ(trials.at(6, "previous_condition"), "NA");
+    EXPECT_EQ(trials.at(7, "counted"), "1");
+    EXPECT_EQ(trials.at(7, "not_counted_because"), "NA");
+    EXPECT_FALSE(trials.has("n_ticks")) << "it is in timing.csv";
     EXPECT_FALSE(trials.has("path_length_m")) << "the protocol does not name it";
 }
 
@@ -109,9 +114,11 @@ TEST_F(Export, ARunningAttemptClaimsNothing) {
     EXPECT_EQ(trials.at(12, "participant_id"), "S003");
     EXPECT_EQ(trials.at(12, "outcome"), "running");
     EXPECT_EQ(trials.at(12, "valid"), "0");
-    for (const char* column : {"duration_s", "completion_time_s", "peak_force_N", "n_ticks"}) {
+    for (const char* column : {"duration_s", "completion_time_s", "peak_force_N"}) {
         EXPECT_EQ(trials.at(12, column), "NA") << column;
     }
+    EXPECT_EQ(trials.at(12, "counted"), "0");
+    EXPECT_EQ(trials.at(12, "not_counted_because"), "not valid: no reason is stored");
     EXPECT_EQ(csv("sessions.csv").at(2, "end_state"), "NA");
 }
 
@@ -159,7 +166,7 @@ TEST_F(Export, EventsKeepHardTexts) {
 }
 
 TEST_F(Export, SamplesUnpackToTheRecordedTicks) {
-    // Truth: independent program (gzip) and invariant (numbers read back to the recorded bits)
+    // Truth: independent program (gzip) and invariant (numbers, read as doubles, are the recorded ones)
     const auto [text, code] = shell("gzip -dc '" + (folder_ / "out/samples/S001_1_t003_a1.csv.gz") + "'");
     ASSERT_EQ(code, 0);
     const fake::CsvFile samples = fake::readCsv(text);
@@ -170,14 +177,14 @@ TEST_F(Export, SamplesUnpackToTheRecordedTicks) {
         EXPECT_EQ(samples.at(i, "tick"), std::to_string(r.tick));
         EXPECT_EQ(std::stod(samples.at(i, "device_z_m")), r.device_position_m[2]);
         EXPECT_EQ(std::stod(samples.at(i, "device_qw")), r.device_quaternion[0]);
-        EXPECT_EQ(std::stof(samples.at(i, "hand_qz")), r.hand_quaternion[3]);
-        EXPECT_EQ(std::stof(samples.at(i, "proxy_x_m")), r.proxy_position_m[0]);
-        EXPECT_EQ(std::stof(samples.at(i, "force_y_N")), r.force_N[1]);
-        EXPECT_EQ(std::stof(samples.at(i, "torque_x_Nm")), r.torque_Nm[0]);
-        EXPECT_EQ(std::stof(samples.at(i, "proxy_depth_m")), r.proxy_depth_m);
+        EXPECT_EQ(std::stod(samples.at(i, "hand_qz")), r.hand_quaternion[3]);
+        EXPECT_EQ(std::stod(samples.at(i, "proxy_x_m")), r.proxy_position_m[0]);
+        EXPECT_EQ(std::stod(samples.at(i, "force_y_N")), r.force_N[1]);
+        EXPECT_EQ(std::stod(samples.at(i, "torque_x_Nm")), r.torque_Nm[0]);
+        EXPECT_EQ(std::stod(samples.at(i, "proxy_depth_m")), r.proxy_depth_m);
         EXPECT_EQ(samples.at(i, "status"), std::to_string(r.status));
         EXPECT_EQ(samples.at(i, "nodes_visited"), std::to_string(r.nodes_visited));
-        EXPECT_EQ(std::stof(samples.at(i, "hand_energy_J")), r.hand_energy_J);
+        EXPECT_EQ(std::stod(samples.at(i, "hand_energy_J")), r.hand_energy_J);
     }
     EXPECT_EQ(samples.at(14, "t_s"), "0.014");
     EXPECT_EQ(samples.at(15, "periods"), "3");  // two missed cycles
@@ -210,6 +217,8 @@ TEST_F(Export, PicturesAndSoundAreToldOfAttemptsThatAWindowShowed) {
     EXPECT_EQ(shown.at(2, "frame_age_max_us"), "41000");
     EXPECT_EQ(shown.at(2, "sound_output"), "speakers");
     EXPECT_EQ(shown.at(2, "sound_delay_us"), "21333");
+    EXPECT_EQ(shown.at(2, "cue_frames"), "7");
+    EXPECT_EQ(shown.at(5, "cue_frames"), "NA") << "of a session whose pictures were not counted so";
     EXPECT_EQ(shown.at(5, "drawn_pose"), "device");
     EXPECT_EQ(shown.at(5, "sound"), "silent");
     for (const char* column : {"frame_age_median_us", "frame_age_max_us", "sound_output", "sound_delay_us"})
@@ -255,7 +264,7 @@ TEST_F(Export, EveryColumnOfEveryTableIsInTheCodebook) {
         EXPECT_EQ(described[file], fake::readCsv(bytes).header) << file;
         ++tables;
     }
-    EXPECT_EQ(tables, 10);
+    EXPECT_EQ(tables, 11);
     EXPECT_TRUE(described.count("samples/*.csv.gz"));
     const store::Database sqlite(folder_ / "json.db", store::OpenMode::Create);
     store::Statement valid = sqlite.prepare("SELECT json_valid(?)");
@@ -307,6 +316,7 @@ TEST_F(Export, SamplesCanBeLeftOut) {
     for (const auto& [file, bytes] : small) EXPECT_FALSE(file.starts_with("samples")) << file;
     EXPECT_EQ(small.at("trials.csv"), expected.at("trials.csv"));
     EXPECT_EQ(small.at("README.md").find("samples"), std::string::npos);
+    EXPECT_NE(small.at("README.md").find("every complete session"), std::string::npos);
 }
 
 TEST_F(Export, AnEarlierExportIsReplacedAsAWhole) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <map>
 
 #include "analysis/export/export.h"
 #include "study/questionnaire/cronbach_alpha.h"
@@ -100,19 +101,45 @@ TEST_F(QuestionnaireTables, WideHasAColumnForEachOccasionInTheOrderOfConditions)
     EXPECT_EQ(wide.at(1, "contact_perception.hardness.after_condition.main, \"first\".penalty_0.1"), "NA");
 }
 
-TEST_F(QuestionnaireTables, ReliabilityLeavesOutFormsWithAMissingItem) {
-    // Truth: closed form: two equal items have alpha 1; an item and its reversal have sums that do not vary.
+TEST_F(QuestionnaireTables, ReliabilityIsOfAnOccasionOrOfPersons) {
+    // Truth: closed form: two equal items have alpha 1, over persons at each of four conditions, over their means and
+    // over the differences from them; an item and its reversal have sums that do not vary. S002 left out one item of
+    // hardness in the first condition.
     const auto table = csv("questionnaire_reliability.csv");
-    ASSERT_EQ(table.rows.size(), 5u);
-    for (std::size_t row = 0; row < 5; ++row) {
+    std::map<std::string, int> clarity, hardness;
+    for (std::size_t row = 0; row < table.rows.size(); ++row) {
+        const std::string level = table.at(row, "level"), forms = table.at(row, "n_forms");
+        const std::string people = table.at(row, "n_participants");
         if (table.at(row, "scale") == "clarity") {
-            EXPECT_EQ(table.at(row, "n_forms"), "8");
-            EXPECT_EQ(table.at(row, "cronbach_alpha"), "1");
+            ++clarity[level];
+            EXPECT_EQ(table.at(row, "cronbach_alpha"), "1") << level;
+            EXPECT_EQ(people, "2") << level;
+            EXPECT_EQ(forms, level == "occasion" ? "2" : "8") << level;
+            EXPECT_EQ(table.at(row, "condition") == "NA", level != "occasion");
         } else if (table.at(row, "scale") == "hardness") {
-            EXPECT_EQ(table.at(row, "n_forms"), "7");
-            EXPECT_EQ(table.at(row, "cronbach_alpha"), "NA");
+            ++hardness[level];
+            EXPECT_EQ(table.at(row, "cronbach_alpha"), "NA") << level;
+            EXPECT_EQ(forms, level != "occasion" ? "7" : table.at(row, "condition") == "penalty/0.1" ? "1" : "2");
         }
     }
+    EXPECT_EQ(clarity, (std::map<std::string, int>{{"occasion", 4}, {"between", 1}, {"within", 1}}));
+    EXPECT_EQ(hardness, clarity);
+}
+
+TEST_F(QuestionnaireTables, KeysTellTextAnswersPolarityAndScales) {
+    // Truth: invariant: the questionnaire's own file, which the export holds too, byte for byte.
+    const auto keys = csv("questionnaire_keys.csv");
+    const auto& definition = plan_.questionnaires[0].definition;
+    std::size_t row = 0;
+    while (keys.at(row, "item") != "sank_in") ++row;
+    const auto item = questionnaire::itemNamed(definition, "sank_in");
+    EXPECT_EQ(keys.at(row, "questionnaire"), "contact_perception");
+    EXPECT_EQ(keys.at(row, "reversed"), "1");
+    EXPECT_EQ(keys.at(row, "scales"), "hardness;overall");
+    EXPECT_EQ(keys.at(row, "text"), definition.items[*item].text);
+    EXPECT_EQ(keys.at(row, "low"), "1");
+    EXPECT_EQ(keys.at(row, "high"), "7");
+    EXPECT_NE(keys.at(row, "labels").find("1 = " + definition.items[*item].response.low_anchor), std::string::npos);
 }
 
 TEST_F(QuestionnaireTables, WhoIsExcludedCountsNowhere) {
@@ -127,8 +154,8 @@ TEST_F(QuestionnaireTables, WhoIsExcludedCountsNowhere) {
     EXPECT_EQ(wide.at(0, "participant_id"), "S002");
     const auto reliability = csv("questionnaire_reliability.csv");
     for (std::size_t row = 0; row < reliability.rows.size(); ++row) {
-        if (reliability.at(row, "scale") == "clarity") {
-            EXPECT_EQ(reliability.at(row, "n_forms"), "4");
+        if (reliability.at(row, "scale") == "clarity" && reliability.at(row, "level") == "occasion") {
+            EXPECT_EQ(reliability.at(row, "n_forms"), "1");
         }
     }
     for (const char* file : {"questionnaire_items.csv", "questionnaire_scores.csv", "sessions.csv"}) {
@@ -160,14 +187,14 @@ TEST_F(QuestionnaireTables, OnlyTheNewestFormOfAnOccasionCounts) {
     for (std::size_t row = 0; row < items.rows.size(); ++row)
         EXPECT_EQ(items.at(row, "counted"), row < 16 ? "0" : "1") << row;
     const auto reliability = csv("questionnaire_reliability.csv");
-    EXPECT_EQ(reliability.at(0, "n_forms"), "2");
+    EXPECT_EQ(reliability.at(0, "n_forms"), "1");
 }
 
 TEST_F(QuestionnaireTables, AreInTheCodebook) {
     // Truth: invariant: every column of every table is described.
     const auto book = csv("codebook.csv");
-    for (const char* file :
-         {"questionnaire_items.csv", "questionnaire_scores.csv", "scores_wide.csv", "questionnaire_reliability.csv"}) {
+    for (const char* file : {"questionnaire_items.csv", "questionnaire_scores.csv", "scores_wide.csv",
+                             "questionnaire_reliability.csv", "questionnaire_keys.csv"}) {
         std::vector<std::string> described;
         for (std::size_t row = 0; row < book.rows.size(); ++row)
             if (book.at(row, "file") == file) described.push_back(book.at(row, "column"));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "analysis/export/cells.h"
 #include "analysis/power/model_study.h"
 #include "analysis/stats/anova.h"
 #include "analysis/stats/rank_tests.h"

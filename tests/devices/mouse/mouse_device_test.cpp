@@ -49,6 +49,29 @@ TEST(MouseDevice, FollowsThePointerInAllSixDegreesAndStaysBehindByTwoOverOmega) 
     EXPECT_NEAR((rotationVector(X_BD.q) - Vec3(0, 0, 0.4)).norm(), 0.0, 1e-9);
 }
 
+TEST(Pointer, GoesAsFarUnderAHeldKeyHoweverOftenItIsLookedAt) {
+    // Truth: closed form, way = speed · time, for as long as somebody says that the key is held.
+    for (const double slice : {0.001, 0.02, 0.25, 0.9}) {
+        Pointer pointer;
+        pointer.place(kStart);
+        for (double t = 0.0; t < 1.8 - 1e-9; t += slice) {
+            pointer.drive(Vec3(0.04, 0, 0), Vec3(0, 0, 0.6));
+            pointer.pass(slice);
+        }
+        const double seconds = slice * std::ceil(1.8 / slice - 1e-9);
+        EXPECT_NEAR(pointer.latest().p.x(), 0.02 + 0.04 * seconds, 1e-9) << slice;
+        EXPECT_NEAR(rotationVector(pointer.latest().q).z(), 0.6 * seconds, 1e-9) << slice;
+        for (int i = 0; i < 5; ++i) pointer.pass(1.0);
+        EXPECT_NEAR(pointer.latest().p.x(), 0.02 + 0.04 * (seconds - slice + std::max(slice, Pointer::kHeld)), 1e-9)
+            << "nobody said that it was released";
+    }
+    Pointer pointer;
+    pointer.drive(Vec3(1, 0, 0), Vec3::Zero());
+    pointer.drive(Vec3::Zero(), Vec3::Zero());
+    pointer.pass(0.5);
+    EXPECT_EQ(pointer.latest().p.x(), 0.0) << "released";
+}
+
 TEST(MouseDevice, TheCouplingSpringBalancesWhatIsCommanded) {
     // Truth: closed form. At rest k (x_pointer - x) = F_motors, rotation alike.
     const simulated::DeviceParams params = smooth();

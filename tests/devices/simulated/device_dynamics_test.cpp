@@ -18,6 +18,7 @@ DeviceParams smoothDevice() {
     DeviceParams p = *findPreset("sigma7");
     p.coulomb_force.value = p.coulomb_torque.value = 0;
     p.quantum.value = p.rotational_quantum.value = 0;
+    p.workspace_radius.value = 10;  // no end stop near
     return p;
 }
 
@@ -109,6 +110,54 @@ TEST(DeviceDynamics, HeldHandleNeverGainsEnergy) {
     // At rest no farther from the set-point than friction can hold.
     EXPECT_EQ(device.trueTwist().v, Vec3(0, 0, 0));
     EXPECT_LE(hand.stiffness * (hand.X_BSet.p - device.truePose().p).norm(), 0.3);
+}
+
+TEST(DeviceDynamics, TheEndStopEndsTheWorkspace) {
+    // Truth: closed form: where a set-point far outside pulls with k_h, the handle comes to rest where the stop of k_s
+    // balances it, k_s x = k_h (d - x) beyond the border; and it is not passed by more than a hand of 1 m/s is stopped
+    // in, v sqrt((m + m_h)/k_s). Every preset has its own border.
+    for (const DeviceParams& preset : presets()) {
+        DeviceDynamics device(preset, {});
+        HandCoupling hand;
+        hand.attached = true;
+        hand.mass = 0.5;
+        hand.damping = 8;
+        hand.stiffness = 300;
+        const double radius = preset.workspace_radius.value, beyond = 0.1;
+        hand.X_BSet.p = (radius + beyond) * Vec3(1, -2, 2) / 3;
+        double farthest = 0.0, fastest = 0.0;
+        for (int k = 0; k < 6000; ++k) {
+            device.advance(hand);
+            farthest = std::max(farthest, device.truePose().p.norm());
+            fastest = std::max(fastest, device.trueTwist().v.norm());
+        }
+        const double rest = 300 * beyond / (20000 + 300), friction = preset.coulomb_force.value / 20300;
+        EXPECT_NEAR(device.truePose().p.norm(), radius + rest, friction + 1e-5) << preset.name;
+        EXPECT_LT(farthest, radius + rest + fastest * std::sqrt((preset.mass.value + 0.5) / 20000)) << preset.name;
+        EXPECT_GE(device.handEnergy(), 0.0) << preset.name;
+    }
+}
+
+TEST(DeviceDynamics, InsideTheWorkspaceNoBitKnowsOfTheEndStop) {
+    // Truth: invariant: a device that is larger moves the same, as long as the handle stays inside.
+    DeviceParams large = *findPreset("falcon");
+    large.workspace_radius.value = 1.0;
+    DeviceDynamics one(*findPreset("falcon"), {}), other(large, {});
+    HandCoupling hand;
+    hand.attached = true;
+    hand.mass = 0.5;
+    hand.damping = 8;
+    hand.stiffness = 300;
+    for (int k = 0; k < 4000; ++k) {
+        hand.X_BSet.p = 0.012 * Vec3(std::sin(0.004 * k), std::cos(0.003 * k) - 1.0, 0.3);
+        one.command({Vec3(std::sin(0.1 * k), 0, -0.0), Vec3::Zero()});
+        other.command({Vec3(std::sin(0.1 * k), 0, -0.0), Vec3::Zero()});
+        one.advance(hand);
+        other.advance(hand);
+        ASSERT_LT(one.truePose().p.norm(), 0.04);
+        ASSERT_EQ(one.truePose().p, other.truePose().p) << k;
+        ASSERT_EQ(one.handEnergy(), other.handEnergy()) << k;
+    }
 }
 
 TEST(DeviceDynamics, AccountsForWhatTheHandPutsIn) {

@@ -24,7 +24,7 @@ VisibleTask task() {
 
 HandRegistration registration() {
     HandRegistration r;
-    r.X_WB = {rotationFromVector(Vec3(0, 0, 1.2)), Vec3(0.1, 0.05, 0)};
+    r.X_WB = {rotationFromVector(Vec3(0, 0, 1.2)), Vec3(0.01, 0.02, 0.02)};
     r.scale = 1.5;
     r.X_DH.p = Vec3(0, 0, -0.04);
     return r;

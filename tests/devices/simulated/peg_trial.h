@@ -35,6 +35,7 @@ inline PegOutcome runPegTrial(PegTrial trial) {
     task.insertion_depth = 0.020;
     HandRegistration registration;
     registration.X_DH.p = Vec3(0, 0, -0.04);  // the tip below the hand
+    registration.X_WB.p = Vec3(0, 0, 0.045);  // the hand's way lies in the smallest workspace
     trial.environment.X_WP.p = trial.hidden_offset;
     trial.environment.X_WStart = task.X_WHeldStart;
     PegBoreEnvironment environment(trial.environment);

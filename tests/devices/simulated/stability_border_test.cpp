@@ -27,6 +27,7 @@ SampledWall wallOf(const DeviceParams& p, Axis axis) {
 
 /// The mechanism of `p` with nothing but mass, damping and delay.
 DeviceParams linearPart(DeviceParams p, int delay_ticks) {
+    p.workspace_radius.value = 1e3;  // no end stops
     for (auto* s : {&p.coulomb_force, &p.coulomb_torque, &p.quantum, &p.rotational_quantum}) s->value = 0.0;
     p.max_force.value = p.max_torque.value = 1e12;
     p.sensed_degrees = p.actuated_degrees = 6;

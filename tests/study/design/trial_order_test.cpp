@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <set>
+
 #include "study/design/williams.h"
 
 namespace passung::design {
@@ -65,12 +68,61 @@ TEST(TrialOrder, ListsAndNumbersEveryTrial) {
     EXPECT_EQ(planSession(3, blocks, {"demo", 42, "P001", 0}), expected);
 }
 
-TEST(TrialOrder, RepeatsTheRowInEveryRepetition) {
-    // Truth: invariant: a repetition is one more pass of the participant's row.
-    const auto trials = planSession(8, practiceAndMain(), {"demo", 1, "P003", 2});
-    ASSERT_EQ(trials.size(), 2u + 3u * 8u);
-    EXPECT_EQ(conditionsOf(trials, 1, 2), conditionsOf(trials, 1, 1));
-    EXPECT_EQ(conditionsOf(trials, 1, 3), conditionsOf(trials, 1, 1));
+TEST(TrialOrder, NobodyGetsAnOrderTwiceBeforeAllRowsAreUsed) {
+    // Truth: invariant, by counting: the passes of one person are all different, and in each pass the people of one
+    // turn of the square are balanced: every position once (odd n: twice), every neighbour once (twice).
+    for (const std::size_t n : {2u, 3u, 4u, 5u, 6u, 7u, 8u, 12u}) {
+        const std::size_t rows = williamsRows(n);
+        const auto passes = static_cast<int>(std::min<std::size_t>(rows, 12));
+        std::vector<Square> by_pass(static_cast<std::size_t>(passes));
+        for (std::size_t slot = 0; slot < rows; ++slot) {
+            const auto trials =
+                planSession(n, {{"main", "main", passes, Order::Williams, 0}}, {"demo", 1, "P001", slot});
+            std::set<Row> orders;
+            for (int pass = 1; pass <= passes; ++pass) {
+                const Row order = conditionsOf(trials, 0, pass);
+                EXPECT_TRUE(orders.insert(order).second) << n << " conditions, slot " << slot << ", pass " << pass;
+                by_pass[static_cast<std::size_t>(pass - 1)].push_back(order);
+            }
+        }
+        for (const Square& pass : by_pass) {
+            const Balance balance = balanceOf(pass);
+            EXPECT_TRUE(balance.positions.even() && balance.neighbours.even()) << n;
+        }
+    }
+}
+
+TEST(TrialOrder, NoConditionFollowsItselfFromOnePassToTheNext) {
+    // Truth: invariant; two conditions cannot do without, and an odd square turns over after n passes.
+    for (const std::size_t n : {3u, 4u, 5u, 6u, 7u, 8u, 12u})
+        for (std::size_t slot = 0; slot < williamsRows(n); ++slot) {
+            const auto trials =
+                planSession(n, {{"main", "main", static_cast<int>(n), Order::Williams, 0}}, {"demo", 1, "P001", slot});
+            for (std::size_t i = 1; i < trials.size(); ++i)
+                EXPECT_NE(trials[i].condition, trials[i - 1].condition) << n << " conditions, slot " << slot;
+        }
+}
+
+TEST(TrialOrder, ABlockHasTheConditionsThatItChooses) {
+    // Truth: closed form: listed as chosen; a square of three balances three people twice over.
+    BlockPlan listed{"listed", "main", 1, Order::Listed, 0};
+    listed.conditions = {4, 1};
+    EXPECT_EQ(conditionsOf(planSession(6, {listed}, {"demo", 1, "P001", 0}), 0, 1), (Row{4, 1}));
+    BlockPlan three{"three", "main", 1, Order::Williams, 0};
+    three.conditions = {5, 0, 2};
+    std::set<Row> orders;
+    for (std::size_t slot = 0; slot < 6; ++slot) {
+        Row order = conditionsOf(planSession(6, {three}, {"demo", 1, "P001", slot}), 0, 1);
+        orders.insert(order);
+        std::sort(order.begin(), order.end());
+        EXPECT_EQ(order, (Row{0, 2, 5}));
+    }
+    EXPECT_EQ(orders.size(), 6u);
+    three.first_condition = 100;  // its own ones
+    for (const auto& trial : planSession(6, {three}, {"demo", 1, "P001", 0})) {
+        EXPECT_GE(trial.condition, 100u);
+        EXPECT_LT(trial.condition, 103u);
+    }
 }
 
 TEST(TrialOrder, TakesTheFirstTrialsOfAShortenedPass) {

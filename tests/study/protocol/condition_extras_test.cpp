@@ -3,6 +3,7 @@
 #include <set>
 
 #include "study/protocol/json.h"
+#include "study/protocol/plan_warnings.h"
 #include "study/protocol/protocol_reader.h"
 #include "tests/study/protocol/fake_devices.h"
 
@@ -55,7 +56,9 @@ TEST(Feedback, EveryCombinationIsAConditionOfItsOwn) {
         EXPECT_EQ(condition.cues.audio, on(2));
         EXPECT_EQ(condition.scene.display_wrench, on(3));
         EXPECT_EQ(condition.cues.masking_noise, on(4));
-        EXPECT_EQ(plan->warnings.size(), on(2) && on(4) ? 1u : 0u) << "a sound that is masked";
+        const std::size_t masked = on(2) && on(4) ? 1 : 0, nowhere = on(1) ? 1 : 0;
+        EXPECT_EQ(plan->warnings.size(), masked + nowhere) << "a sound that is masked, a vibration without actuator";
+        EXPECT_EQ(isForPeople(*plan), nowhere == 0);
         stored.insert(condition.params_json);
     }
     EXPECT_EQ(stored.size(), 32u);
@@ -96,8 +99,21 @@ TEST(Secondary, OfABlockAloneIsStoredToo) {
 TEST(Secondary, ACueOfTheSameKindIsWarnedOf) {
     // Truth: invariant
     const std::string cue = "[feedback]\ncues = [\"vibrotactile\"]\n[secondary]\nstimulus = ";
-    EXPECT_EQ(read(cue + "\"vibrotactile\"\n")->warnings.size(), 1u);
-    EXPECT_TRUE(read(cue + "\"audio\"\n")->warnings.empty());
+    EXPECT_EQ(read(cue + "\"vibrotactile\"\n")->warnings.size(), 3u) << "of the same kind; neither has an output";
+    EXPECT_EQ(read(cue + "\"audio\"\n")->warnings.size(), 1u) << "no output for the cue";
+}
+
+TEST(Secondary, AStimulusThatNothingGivesNamesItsConditions) {
+    // Truth: invariant: windows play sound and draw no stimulus, no device vibrates.
+    for (const char* stimulus : {"visual", "vibrotactile"}) {
+        const auto plan = read(std::string("[secondary]\nstimulus = \"") + stimulus + "\"\n");
+        ASSERT_TRUE(plan) << faultOf(plan);
+        ASSERT_EQ(plan->warnings.size(), 1u);
+        EXPECT_NE(plan->warnings[0].find(std::string("secondary.stimulus = \"") + stimulus), std::string::npos);
+        EXPECT_NE(plan->warnings[0].find("conditions: " + plan->conditions.front().name), std::string::npos);
+        EXPECT_FALSE(isForPeople(*plan));
+    }
+    EXPECT_TRUE(isForPeople(*read("[secondary]\nstimulus = \"audio\"\n")));
 }
 
 TEST(TimedBy, NeedsAConditionThatRendersNothing) {

@@ -4,24 +4,11 @@
 #include <filesystem>
 #include <fstream>
 
-#include "devices/simulated/presets.h"
-#include "study/measures/measures.h"
 #include "study/protocol/protocol_reader.h"
+#include "tests/study/protocol/known_names.h"
 
 namespace passung::protocol {
 namespace {
-
-std::vector<DeviceDescription> knownDevices() {
-    std::vector<DeviceDescription> devices;
-    for (const auto& preset : simulated::presets()) devices.push_back(simulated::describe(preset));
-    return devices;
-}
-
-std::vector<std::string> knownMeasures() {
-    std::vector<std::string> names;
-    for (const auto& definition : measures::definitions()) names.push_back(definition.name);
-    return names;
-}
 
 std::vector<std::filesystem::path> invalidFiles() {
     std::vector<std::filesystem::path> files;

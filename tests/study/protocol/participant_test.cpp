@@ -20,6 +20,14 @@ TEST(Participant, CodesThatCouldLeaveAFolderOrNameAPersonAreRefused) {
     }
 }
 
+TEST(Participant, EachKindRehearsesThePersonOfItsNumber) {
+    // Truth: closed form (the letter of people in place of the kind's)
+    EXPECT_EQ(rehearsedCode("S001"), "P001");
+    EXPECT_EQ(rehearsedCode("TB012"), "PB012");
+    EXPECT_EQ(rehearsedCode("P007"), "P007");
+    EXPECT_EQ(rehearsedCode(""), "");
+}
+
 TEST(Participant, KindsAreNamedAsTheDatabaseAllowsThem) {
     // Truth: closed form (the schema's CHECK)
     EXPECT_EQ(participantKindNames(), (std::vector<std::string>{"real", "pilot", "simulated"}));

@@ -203,6 +203,38 @@ TEST(ProtocolReader, ReadsBlocks) {
               "p.toml:30:10: error: block.main.trials: 5: must be at most the number of conditions, 4");
 }
 
+TEST(ProtocolReader, UnderstandsALatinSquare) {
+    // Truth: closed form: a Williams square is a Latin square, and the one that is offered.
+    const std::string text = kHead + kScene + kTask + kFactors + kBlock;
+    for (const char* word : {"williams", "latin_square"}) {
+        const auto plan = read(text + "order = \"" + word + "\"\n");
+        ASSERT_TRUE(plan) << word;
+        EXPECT_EQ(plan->blocks[0].order, BlockOrder::Williams) << word;
+    }
+    EXPECT_EQ(errorsOf(text + "order = \"latin\"\n").find("p.toml:"), 0u);
+}
+
+TEST(ProtocolReader, PointsAMeshToTheTypesThatTakeIt) {
+    // Truth: invariant (whoever has a mesh is told where it goes)
+    const auto mesh = std::filesystem::path(testing::TempDir()) / ("passung_peg_" + std::to_string(getpid()) + ".off");
+    std::ofstream(mesh) << "OFF\n4 4 0\n0 0 0\n20 0 0\n0 20 0\n0 0 20\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+    const std::string scene = R"([scene]
+part = [
+  { name = "plate", shape = { kind = "bore_plate", width = 60, depth = 60, height = 30, bore_diameter = 21, bore_depth = 25 } },
+  { name = "peg", held = true, mesh = ")" +
+                              mesh.string() + R"(", pose = { position = [0, 0, 30] } },
+]
+[scene.device]
+preset = "arm"
+)";
+    const std::string lines = errorsOf(kHead + scene + kTask + kFactors + kBlock);
+    std::filesystem::remove(mesh);
+    EXPECT_NE(lines.find("the held part must have the shape peg in a peg_in_hole task; every shape and mesh serves in "
+                         "the types narrow_passage, contour_following, free_placement, discrimination_pair"),
+              std::string::npos)
+        << lines;
+}
+
 TEST(ProtocolReader, WarnsOfPenaltiesThatNoStiffnessLimits) {
     // Truth: invariant: raw and area_weighted are allowed, but nobody holds them below the device's stable maximum.
     EXPECT_TRUE(read(kHead + kScene + kTask + kFactors + kBlock)->warnings.empty());
@@ -280,11 +312,12 @@ TEST(ProtocolReader, ListsTheMeshFilesThatItNames) {
     // Truth: closed form: names as the protocol writes them, paths from here, each file once.
     const auto folder = std::filesystem::path(testing::TempDir()) / ("passung_meshes_" + std::to_string(getpid()));
     std::filesystem::create_directories(folder / "parts");
-    std::ofstream(folder / "parts/b.stl") << "solid\n";
+    std::ofstream(folder / "parts/b.off")
+        << "OFF\n4 4 0\n0 0 0\n10 0 0\n0 10 0\n0 0 10\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
     const std::string scene = R"([scene]
 part = [
   { name = "plate", shape = { kind = "bore_plate", width = 60, depth = 60, height = 30, bore_diameter = 21, bore_depth = 25 } },
-  { name = "wall", mesh = "parts/../parts/b.stl" },
+  { name = "wall", mesh = "parts/../parts/b.off", pose = { position = [90, 0, 0] } },
   { name = "peg", held = true, shape = { kind = "peg", diameter = 20, length = 50 }, pose = { position = [0, 0, 30] } },
 ]
 [scene.device]
@@ -294,8 +327,8 @@ preset = "arm"
                                        fakeDevices(), kMeasures);
     ASSERT_TRUE(plan) << toString(plan.errors().front());
     ASSERT_EQ(plan->meshes.size(), 1u);
-    EXPECT_EQ(plan->meshes[0].name, "parts/b.stl");
-    EXPECT_EQ(plan->meshes[0].path, (folder / "parts/b.stl").string());
+    EXPECT_EQ(plan->meshes[0].name, "parts/b.off");
+    EXPECT_EQ(plan->meshes[0].path, (folder / "parts/b.off").string());
     std::filesystem::remove_all(folder);
 }
 

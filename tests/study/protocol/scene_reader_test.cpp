@@ -259,7 +259,8 @@ TEST(SceneReader, RefusesStiffnessAboveTheStableMaximum) {
 }
 
 TEST(SceneReader, RefusesWhatTheStableMaximumWasNotFoundFor) {
-    // Truth: closed form: it holds for the fake device's damping 5 and 0.002, no added delay and scale 1.
+    // Truth: closed form: it holds for the fake device's damping 5 and 0.002 and no added delay; with a scale s the
+    // hand feels K s and B s, so that 4000 and 5 are 800 and 1 at s = 5.
     const std::string arm = kParts + "[device]\npreset = \"arm\"\n";
     const std::string not_known = "the stable maximum of arm is not known for this; leave it out or set ";
     const std::string unless = ", or allow_unstable = true";
@@ -270,8 +271,14 @@ TEST(SceneReader, RefusesWhatTheStableMaximumWasNotFoundFor) {
     EXPECT_EQ(errorsOf(arm + "[contact]\nrotational_damping_Nms_per_rad = 0.1\n"),
               "s.toml:14:34: error: contact.rotational_damping_Nms_per_rad: 0.1: " + not_known +
                   "the recommended 0.002" + unless);
-    EXPECT_EQ(errorsOf(arm + "[registration]\nscale = 5\n"),
-              "s.toml:14:9: error: registration.scale: 5: " + not_known + "1" + unless);
+    const std::string scaled = arm + "[registration]\nscale = 5\n[contact]\n";
+    EXPECT_EQ(errorsOf(scaled), "");
+    EXPECT_EQ(errorsOf(scaled + "stiffness_N_per_m = 800\ndamping_Ns_per_m = 1\n"), "");
+    EXPECT_EQ(errorsOf(scaled + "stiffness_N_per_m = 801\n"),
+              "s.toml:16:21: error: contact.stiffness_N_per_m: 801: must not exceed the stable maximum of arm per the "
+              "registration's scale of 5: 800; allow_unstable = true lifts this");
+    EXPECT_EQ(errorsOf(scaled + "damping_Ns_per_m = 5\n"),
+              "s.toml:16:20: error: contact.damping_Ns_per_m: 5: " + not_known + "the recommended 1" + unless);
     EXPECT_EQ(errorsOf(arm + "delay_ticks = 0\n[contact]\ndamping_Ns_per_m = 5\n"
                              "rotational_damping_Nms_per_rad = 0.002\n[registration]\nscale = 1\n"),
               "");
@@ -389,13 +396,18 @@ TEST(SceneReader, FindsMeshesBesideTheFile) {
     // Truth: invariant: the path is relative to the file that names it, not to the working directory.
     const auto folder = std::filesystem::path(testing::TempDir()) / "passung_scene_reader";
     std::filesystem::create_directories(folder);
-    std::ofstream(folder / "ball.stl") << "solid ball\nendsolid ball\n";
-    std::ofstream(folder / "s.toml") << "[[part]]\nname = \"b\"\nheld = true\nmesh = \"ball.stl\"\nunit = \"cm\"\n";
+    std::ofstream(folder / "corner.off")
+        << "OFF\n4 4 0\n0 0 0\n10 0 0\n0 10 0\n0 0 10\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+    std::ofstream(folder / "s.toml") << "[[part]]\nname = \"b\"\nheld = true\nmesh = \"corner.off\"\nunit = \"cm\"\n";
     const auto scene = readScene((folder / "s.toml").string(), {});
-    ASSERT_TRUE(scene);
+    ASSERT_TRUE(scene) << toString(scene.errors().front());
     const auto& mesh = std::get<model::MeshFile>(scene->parts[0].geometry);
     EXPECT_TRUE(std::filesystem::exists(mesh.path));
     EXPECT_EQ(mesh.metres_per_unit, 0.01);
+    std::filesystem::remove(folder / "corner.off");
+    const auto without = readScene((folder / "s.toml").string(), {});
+    ASSERT_FALSE(without) << "what contact could feel of it is not known";
+    EXPECT_EQ(without.errors().size(), 1u);
     std::filesystem::remove_all(folder);
 }
 

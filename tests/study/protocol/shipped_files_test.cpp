@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-
 #include <map>
 
 #include "devices/simulated/presets.h"
@@ -9,21 +8,10 @@
 #include "study/measures/measures.h"
 #include "study/protocol/protocol_reader.h"
 #include "study/protocol/trial_types.h"
+#include "tests/study/protocol/known_names.h"
 
 namespace passung::protocol {
 namespace {
-
-std::vector<DeviceDescription> knownDevices() {
-    std::vector<DeviceDescription> devices;
-    for (const auto& preset : simulated::presets()) devices.push_back(simulated::describe(preset));
-    return devices;
-}
-
-std::vector<std::string> knownMeasures() {
-    std::vector<std::string> names;
-    for (const auto& definition : measures::definitions()) names.push_back(definition.name);
-    return names;
-}
 
 Result<StudyPlan> readShipped(const std::string& name) {
     return readProtocol(PASSUNG_SOURCE_DIR "/protocols/" + name, knownDevices(), knownMeasures());
@@ -84,7 +72,7 @@ TEST(ShippedFiles, PegInHoleHasItsTwelveConditions) {
         if (types.empty() || types.front()->name == "peg_in_hole") possible.push_back(definition.name);
     }
     EXPECT_EQ(plan->measures, possible);
-    EXPECT_EQ(possible.size(), 29u);
+    EXPECT_EQ(possible.size(), 31u);
 }
 
 TEST(ShippedFiles, PegInHoleAsksForLoadAfterItsMainBlockAndForTheContactOfEachCondition) {
@@ -103,7 +91,8 @@ TEST(ShippedFiles, DesignsGivesEveryCombinationEquallyOften) {
     // each half of the chamfers; over all, each of the 16 without catch stands there 16 x 4 / 16 = 4 times.
     const auto plan = readShipped("designs/study.toml");
     ASSERT_TRUE(plan) << toString(plan.errors()[0]);
-    EXPECT_TRUE(plan->warnings.empty());
+    ASSERT_EQ(plan->warnings.size(), 1u) << "no actuator gives the vibration";
+    EXPECT_NE(plan->warnings[0].find("\"vibrotactile\""), std::string::npos);
     EXPECT_EQ(plan->conditions.size(), 32u);
     EXPECT_EQ(groupNames(*plan), (std::vector<std::string>{"proxy", "device"}));
     EXPECT_EQ(sessionsOf(*plan), 2);
@@ -132,7 +121,8 @@ TEST(ShippedFiles, RealVsVirtualHasItsEnvironmentsThreeTimesInBalancedOrders) {
     // the 6 rows of the square each environment stands at each position of a pass once.
     const auto plan = readShipped("real_vs_virtual/study.toml");
     ASSERT_TRUE(plan) << toString(plan.errors()[0]);
-    EXPECT_TRUE(plan->warnings.empty());
+    ASSERT_EQ(plan->warnings.size(), 1u) << "no actuator gives the vibration";
+    EXPECT_NE(plan->warnings[0].find("\"vibrotactile\""), std::string::npos);
     ASSERT_EQ(plan->conditions.size(), 21u);
     const Condition &real = plan->conditions[0], &kinesthetic = plan->conditions[4], &alone = plan->conditions[13];
     EXPECT_EQ(real.timed_by, TimedBy::Experimenter);
@@ -157,6 +147,36 @@ TEST(ShippedFiles, RealVsVirtualHasItsEnvironmentsThreeTimesInBalancedOrders) {
     }
     EXPECT_EQ(seen.size(), 12u * 6u);
     for (const auto& [place, count] : seen) EXPECT_EQ(count, 1);
+}
+
+TEST(ShippedFiles, NarrowPassageBalancesItsSixConditionsOver42People) {
+    // Truth: closed form: 3 kinds of feedback x 2 passages; a Williams square of order 6 has 6 rows, 42 = 7 x 6, so
+    // that each condition stands 7 times at each position of a pass.
+    const auto plan = readShipped("narrow_passage/study.toml");
+    ASSERT_TRUE(plan) << toString(plan.errors()[0]);
+    ASSERT_EQ(plan->warnings.size(), 1u);
+    EXPECT_NE(plan->warnings[0].find("\"vibrotactile\""), std::string::npos);
+    ASSERT_EQ(plan->conditions.size(), 6u);
+    EXPECT_EQ(plan->participants, 42);
+    for (std::size_t i = 0; i < 6; ++i) {
+        const Condition& condition = plan->conditions[i];
+        EXPECT_EQ(condition.scene.display_wrench, i / 2 == 2) << condition.name;
+        EXPECT_EQ(condition.cues.visual, i / 2 == 0);
+        EXPECT_EQ(condition.cues.vibrotactile, i / 2 == 1);
+        EXPECT_NEAR(radialClearance(condition), i % 2 == 0 ? 3e-3 : 0.5e-3, 1e-12);
+        EXPECT_NEAR(std::get<NarrowPassageTask>(condition.task.form).width, i % 2 == 0 ? 0.026 : 0.021, 1e-12);
+    }
+    const auto design = designOf(*plan);
+    ASSERT_EQ(design::sequencesOf(design), 6u);
+    std::map<std::pair<std::int64_t, std::size_t>, int> seen;
+    for (std::size_t slot = 0; slot < 42; ++slot) {
+        const auto session = design::planSession(design, {plan->name, plan->seed, "S001", slot, 0, 1});
+        ASSERT_TRUE(session);
+        for (const auto& trial : *session)
+            if (trial.block == "main") ++seen[{trial.trial_in_block, trial.condition}];
+    }
+    EXPECT_EQ(seen.size(), 12u * 6u);
+    for (const auto& [place, count] : seen) EXPECT_EQ(count, 7);
 }
 
 TEST(ShippedFiles, HiddenOffsetMovesOnlyTheTouchedPlate) {

@@ -29,8 +29,8 @@ protocol::StudyPlan smallPlan() {
 }
 
 TEST(PlanText, ShowsTheWholeDesign) {
-    // Truth: independent program (Python 3.11, the streams and squares from their definitions) for the orders;
-    // 14 trials of at most 30 s are 7 min.
+    // Truth: independent program (Python 3.11, the streams and squares from their definitions) for the rows,
+    // one further with each pass; 14 trials of at most 30 s are 7 min.
     EXPECT_EQ(*describePlan(smallPlan(), 2), R"(A demonstration
 study demo, version 1, seed 42, 4 participants planned
 
@@ -48,8 +48,8 @@ Blocks
   main      main, order williams, 4 trials x 3 repetitions
 
 Orders (numbers of conditions; blocks parted by |)
-  P001  2 1 | 2 3 4 1 (x3)
-  P002  4 2 | 3 1 2 4 (x3)
+  P001  2 1 | 2 3 4 1, 3 1 2 4, 1 4 3 2
+  P002  4 2 | 3 1 2 4, 1 4 3 2, 4 2 1 3
 2 is not a multiple of 4: position counts 0-1, neighbour counts 0-1; balanced with 4.
 
 Duration

@@ -34,6 +34,7 @@ public:
     std::vector<std::int64_t> trials_before;
     std::int64_t most_ticks_at_once = 0;
     std::int64_t waited_ticks = 0;
+    std::optional<Presentation> given;  // by a window; none: there is none
 
     const DeviceDescription& device() const override { return device_; }
 
@@ -74,6 +75,7 @@ public:
         LoopHealth health;
         health.loop = "virtual";
         health.ticks = tick_;
+        health.presentation = given;
         return health;
     }
 

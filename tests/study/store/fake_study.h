@@ -179,10 +179,10 @@ inline session::AttemptEnd attemptEnd(std::int64_t trial_index, std::size_t tick
     end.health.histogram = {1, 2, 3};
     end.health.state_hash = 0x0123456789abcdefu;
     if (timing_measured)
-        end.health.presentation = session::Presentation{"proxy",  90 + trial_index, 20'000.5,   30'000.0,
-                                                        41'000.0, "played",         "speakers", 21'333.0};
+        end.health.presentation = session::Presentation{"proxy",  90 + trial_index, 20'000.5, 30'000.0, 41'000.0,
+                                                        "played", "speakers",       21'333.0, 7};
     if (timing_measured && trial_index == 5)  // the last one was to be heard, without an output, and nothing was drawn
-        end.health.presentation = session::Presentation{"device", 0, 0.0, 0.0, 0.0, "silent", "", 0.0};
+        end.health.presentation = session::Presentation{"device", 0, 0.0, 0.0, 0.0, "silent", "", 0.0, std::nullopt};
     end.health.contact_energy = {{"plate", 1.0 / 3.0, -0.25}, {"", static_cast<double>(trial_index), 0.0}};
     return end;
 }

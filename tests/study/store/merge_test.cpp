@@ -11,7 +11,7 @@
 #include "study/store/participant_desk.h"
 #include "study/store/session_tables.h"
 #include "study/store/sqlite.h"
-#include "tests/study/store/fake_study.h"
+#include "tests/study/store/damaged_study.h"
 
 namespace passung::store {
 namespace {
@@ -93,6 +93,11 @@ std::map<std::string, std::string> digests(const std::string& path) {
     return all;
 }
 
+/// Makes it a file of before there were hashes: else what a test plants in it is damage.
+void unhash(const std::string& path) {
+    Database(path, OpenMode::ReadWrite).execute("DELETE FROM session_hash; DELETE FROM row_hash");
+}
+
 void expectSound(const std::string& path) {
     const Database database(path, OpenMode::ReadWrite);
     EXPECT_EQ(database.text("PRAGMA integrity_check"), "ok");
@@ -158,6 +163,7 @@ TEST(Merge, AddsWhatIsNewAndBringsAChangedSessionUpToDate) {
         require(one.store().enrol("PA002", ParticipantKind::Real, "2001-01-02"));
         const auto writer = one.begin("PA002", "");
         require(fake::writeAttempt(*writer, 0, kTicks));
+        unhash(a);
         Database(a, OpenMode::ReadWrite).copyTo(older);
         const MergeReport early = merge({a}, all);
         EXPECT_EQ(early.sessions, 1);
@@ -265,6 +271,7 @@ TEST(Merge, AFormFilledAfterTheLastTrialArrives) {
     const std::string a = folder / "A.db", all = folder / "ALL.db";
     Place(a, kA).perform("2001-01-01");
     Database(a, OpenMode::ReadWrite).execute("UPDATE session SET end_state='aborted'");
+    unhash(a);
     merge({a}, all);
     const Database database(a, OpenMode::ReadWrite);
     database.execute(
@@ -288,6 +295,7 @@ TEST(Merge, GivesTheSecondOfOnePlaceTheSameRowInAFurtherReplicate) {
             require(two.store().enrol(code, ParticipantKind::Real, "2001-01-02"));
             require(two.begin(code, "")->finishSession(true, 0));
         }
+        unhash(b);
         Database(b, OpenMode::ReadWrite).execute("UPDATE session SET end_state='complete'");
         const Database places(b, OpenMode::ReadWrite);
         places.execute(
@@ -462,6 +470,42 @@ TEST(Merge, RefusesOneCodeForTwoPeopleAndLeavesTheResultAsItWas) {
     EXPECT_FALSE(refusal({a, b}, folder / "new.db").empty());
     EXPECT_FALSE(fs::exists(folder / "new.db"));
     expectSound(all);
+}
+
+TEST(Merge, LeavesOutWhatIsDamagedAndHealsTheResult) {
+    // Truth: invariant: a damaged session of a source stays out and is named; where the result is damaged and the
+    // source is not, the result is healed, chunk by chunk, and the other way round nothing of the result changes.
+    const fake::TempFolder folder;
+    const std::string a = folder / "A.db", b = folder / "B.db", all = folder / "ALL.db", whole = folder / "whole.db";
+    {
+        Place one(a, kA), two(b, kB);
+        for (int i = 0; i < 2; ++i) one.perform("2001-01-0" + std::to_string(i + 1));
+        two.perform("2001-02-01");
+    }
+    const auto change = [](const std::string& path, const std::string& sql) {
+        Database(path, OpenMode::ReadWrite).execute(sql);
+    };
+    const std::string chunk = "UPDATE sample_chunk SET data=zeroblob(length(data)) WHERE stream_id=1 AND chunk_no=";
+    Database(a, OpenMode::ReadWrite).copyTo(whole);
+    change(a, chunk + "0");
+    const MergeReport first = merge({a, b}, all);
+    EXPECT_EQ(first.sessions, 2);
+    ASSERT_EQ(first.damaged.size(), 1u) << testing::PrintToString(first.damaged);
+    EXPECT_NE(first.damaged[0].find("A.db: PA001, session 1, trial 1, attempt 1, samples: "), std::string::npos)
+        << first.damaged[0];
+    EXPECT_EQ(merge({whole, b}, all).sessions, 1);
+    const auto expected = fake::dump(all);
+    EXPECT_EQ(merge({a}, all).damaged.size(), 1u) << "the damaged copy again";
+    EXPECT_TRUE(fake::dump(all) == expected);
+    // Of PA002, whose stream has the least number in the result.
+    change(all,
+           "UPDATE sample_chunk SET data=zeroblob(length(data)) WHERE chunk_no=0; UPDATE attempt_measure SET "
+           "value_num=2 WHERE measure='peak_force_N' AND attempt_id=1");
+    const MergeReport healed = merge({whole}, all);
+    EXPECT_GE(healed.healed.size(), 3u) << testing::PrintToString(healed.healed);
+    EXPECT_EQ(healed.damaged.size(), 1u) << "of station B: " << testing::PrintToString(healed.damaged);
+    EXPECT_EQ(merge({b}, all).damaged, std::vector<std::string>{});
+    EXPECT_TRUE(fake::dump(all) == expected);
 }
 
 }  // namespace

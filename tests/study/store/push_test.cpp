@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <pqxx/pqxx>
+#include <thread>
 
 #include "study/store/participant_desk.h"
+#include "study/store/person_identity.h"
+#include "study/store/restore.h"
 #include "study/store/sqlite.h"
-#include "tests/study/store/fake_study.h"
+#include "tests/study/store/damaged_study.h"
 #include "tests/study/store/postgres.h"
 
 namespace passung::store {
@@ -101,8 +104,8 @@ TEST_F(Push, BringsAChangedSessionUpToDateAndLeavesOutARunningOne) {
     const std::string path = folder_ / "s.db";
     perform(path, "S001");
     require(pushDatabase(path, server_->uri()));
-    Database(path, OpenMode::ReadWrite).execute("UPDATE attempt SET valid=0 WHERE attempt_id=1");
     const auto store = fake::openStore(path);
+    require(store->invalidateAttempt(1, "was told"));
     const auto writer = fake::beginSession(*store, "S002", 1);
     const PushReport report = require(pushDatabase(path, server_->uri()));
     EXPECT_EQ(report.replaced, 1);
@@ -159,7 +162,9 @@ TEST_F(Push, TakesFilesOfSeveralStationsButNoCodeForTwoPeople) {
     const auto refused = pushDatabase(folder_ / "c.db", server_->uri());
     ASSERT_FALSE(refused);
     EXPECT_NE(refused.errors()[0].message.find("SA001 stands for two people"), std::string::npos);
-    other.execute("UPDATE participant SET created_utc='2000-01-01T00:00:00.000Z'; UPDATE attempt SET state_hash='00'");
+    other.execute(
+        "UPDATE participant SET created_utc='2000-01-01T00:00:00.000Z'; UPDATE attempt SET state_hash='00'; DELETE "
+        "FROM session_hash");
     const auto trials = pushDatabase(folder_ / "c.db", server_->uri());
     ASSERT_FALSE(trials);
     EXPECT_NE(trials.errors()[0].message.find("other trials"), std::string::npos) << trials.errors()[0].message;
@@ -245,7 +250,9 @@ TEST_F(Push, RefusesWhatAMergeRefuses) {
         "INSERT INTO fake.mesh_file SELECT protocol_sha256, 'a.stl', 'aa', 1 FROM fake.protocol_version");
     EXPECT_NE(refusal(meshOf("bb")).find("mesh a.stl"), std::string::npos);
     EXPECT_EQ(count("session"), 1) << "nothing of the refused files is there";
-    EXPECT_EQ(refusal(meshOf("aa") + "; UPDATE protocol_version SET expanded_json='{\"seed\": 7}'"), "");
+    EXPECT_EQ(
+        refusal(meshOf("aa") + "; UPDATE protocol_version SET expanded_json='{\"seed\": 7}'; DELETE FROM row_hash"),
+        "");
 }
 
 TEST_F(Push, ASessionArrivesWholeOrNotAtAll) {
@@ -266,6 +273,170 @@ TEST_F(Push, ASessionArrivesWholeOrNotAtAll) {
     ask("DROP TRIGGER stop ON timing");
     EXPECT_EQ(require(pushDatabase(path, server_->uri())).sessions, 1);
     EXPECT_EQ(count("timing"), 4);
+}
+
+TEST_F(Push, SeveralFirstOnesAtOnceAllArrive) {
+    // Truth: invariant. Three stations, and one file three times: each round begins with an empty server.
+    std::vector<std::string> stations;
+    for (const char* code : {"S001", "S101", "S201"}) {
+        stations.push_back(folder_ / (std::string(code) + ".db"));
+        perform(stations.back(), code);
+    }
+    const std::vector<std::string> same(3, stations.front());
+    for (int round = 0; round < 2; ++round)
+        for (const auto& files : {stations, same}) {
+            pqxx::nontransaction(*there_).exec("DROP SCHEMA IF EXISTS fake CASCADE");
+            std::vector<std::string> problems(files.size());
+            std::vector<std::thread> pushes;
+            for (std::size_t i = 0; i < files.size(); ++i)
+                pushes.emplace_back([&, i] {
+                    if (const auto done = pushDatabase(files[i], server_->uri()); !done)
+                        problems[i] = done.errors()[0].message;
+                });
+            for (std::thread& push : pushes) push.join();
+            EXPECT_EQ(problems, std::vector<std::string>(files.size()));
+            EXPECT_EQ(count("session"), files == same ? 1 : 3);
+        }
+}
+
+TEST_F(Push, WhoWasPushedBeforeThereWereIdentitiesIsErasedThereToo) {
+    // Truth: independent program (PostgreSQL's own answers). An older program pushed no identity.
+    const std::string path = folder_ / "s.db";
+    perform(path, "S001");
+    {
+        const auto store = fake::openStore(path);
+        ParticipantDesk desk(*store, {"e", "2001-02-03"});
+        require(desk.enrol("P001", protocol::ParticipantKind::Real, "2001-02-03"));
+    }
+    const std::string nonce =
+        Database(path, OpenMode::ReadOnly)
+            .text("SELECT json_extract(detail_json, '$.nonce') FROM audit WHERE detail_json LIKE '%P001%'");
+    Database(path, OpenMode::ReadWrite).execute("UPDATE participant SET identity=''; DELETE FROM row_hash");
+    giveIdentities(Database(path, OpenMode::ReadWrite), "main");  // as an upgrade does
+    require(pushDatabase(path, server_->uri()));
+    ask("UPDATE participant SET identity=NULL");
+    require(ParticipantDesk(*fake::openStore(path), {"e", "2001-02-04"}).erase("P001"));
+    EXPECT_EQ(require(pushDatabase(path, server_->uri())).erased_there, std::vector<std::string>{"P001"});
+    for (const char* table : {"participant", "audit"})
+        EXPECT_EQ(ask(std::string("SELECT count(*) FROM ") + table +
+                      " t WHERE t::text LIKE '%P001%' OR t::text LIKE '%" + nonce + "%'")[0][0]
+                      .as<int>(),
+                  0)
+            << table;
+}
+
+/// Everything that the server holds of the sessions, a line a row.
+std::vector<std::string> contents(pqxx::connection& there) {
+    std::vector<std::string> lines;
+    pqxx::nontransaction work(there);
+    for (const char* table : {"session", "segment", "trial_plan", "attempt", "attempt_measure", "event", "stream",
+                              "sample_chunk", "timing", "contact_energy", "session_hash"})
+        for (const auto& row : work.exec(std::string("SELECT t::text FROM fake.") + table + " t ORDER BY 1"))
+            lines.push_back(table + std::string(": ") + row[0].c_str());
+    return lines;
+}
+
+TEST_F(Push, WhatIsDamagedHereDoesNotTravel) {
+    // Truth: independent program (PostgreSQL's own bytes): the intact copy there stays, bit for bit.
+    const std::string path = folder_ / "s.db", whole = folder_ / "whole.db";
+    perform(path, "S001");
+    perform(path, "S002");
+    require(pushDatabase(path, server_->uri()));
+    perform(path, "S003");
+    Database(path, OpenMode::ReadWrite).copyTo(whole);
+    const auto before = contents(*there_);
+    for (const char* sql : {"UPDATE sample_chunk SET data=zeroblob(length(data)) WHERE stream_id=1 AND chunk_no=0",
+                            "UPDATE sample_chunk SET crc32=crc32+1 WHERE stream_id=1 AND chunk_no=0",
+                            "UPDATE attempt_measure SET value_num=2 WHERE attempt_id=1 AND measure='peak_force_N'",
+                            "UPDATE event SET payload_json='{ }' WHERE attempt_id=2"}) {
+        SCOPED_TRACE(sql);
+        std::filesystem::copy_file(whole, path, std::filesystem::copy_options::overwrite_existing);
+        Database(path, OpenMode::ReadWrite).execute("DELETE FROM session WHERE participant_id='S003'");
+        Database(path, OpenMode::ReadWrite).execute(sql);
+        const PushReport report = require(pushDatabase(path, server_->uri()));
+        ASSERT_EQ(report.damaged.size(), 1u) << testing::PrintToString(report.damaged);
+        EXPECT_NE(report.damaged[0].find("S001, session 1, trial "), std::string::npos) << report.damaged[0];
+        EXPECT_EQ(report.known, 1);
+        EXPECT_EQ(report.replaced + report.healed, 0);
+        EXPECT_TRUE(contents(*there_) == before);
+    }
+    std::filesystem::copy_file(whole, path, std::filesystem::copy_options::overwrite_existing);
+    Database(path, OpenMode::ReadWrite).execute("UPDATE participant SET status_reason='?' WHERE participant_id='S003'");
+    const PushReport person = require(pushDatabase(path, server_->uri()));
+    EXPECT_EQ(person.damaged, std::vector<std::string>{"participant S003: is not as it was written"});
+    EXPECT_EQ(person.sessions, 0);
+    Database(path, OpenMode::ReadWrite).execute("UPDATE condition SET levels_json='{}'");
+    const auto refused = pushDatabase(path, server_->uri());
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.errors()[0].message.find("is damaged, nothing was pushed"), std::string::npos);
+}
+
+TEST_F(Push, WhoIsDamagedHereAndErasedThereIsLeftOutOnce) {
+    // Truth: independent program (PostgreSQL's own answers): everybody else's sessions arrive.
+    const std::string path = folder_ / "s.db", copy = folder_ / "copy.db";
+    perform(path, "S001");
+    perform(path, "S002");
+    Database(path, OpenMode::ReadWrite).copyTo(copy);
+    require(pushDatabase(path, server_->uri()));
+    require(ParticipantDesk(*fake::openStore(path), {"e", "2001-02-04"}).erase("S001"));
+    require(pushDatabase(path, server_->uri()));
+    perform(copy, "S003");
+    Database(copy, OpenMode::ReadWrite).execute("UPDATE participant SET status_reason='?' WHERE participant_id='S001'");
+    EXPECT_EQ(require(pushDatabase(copy, server_->uri())).sessions, 1);
+    EXPECT_EQ(count("session"), 2);
+}
+
+TEST_F(Push, ADamagedAuditDoesNotTravel) {
+    // Truth: independent program (PostgreSQL's own answers)
+    const std::string path = folder_ / "s.db";
+    perform(path, "S001");
+    require(ParticipantDesk(*fake::openStore(path), {"e", "2001-02-04"}).exclude("S001", "asleep"));
+    Database(path, OpenMode::ReadWrite)
+        .execute("UPDATE audit SET detail_json=replace(detail_json, 'asleep', 'asleeq')");
+    const auto refused = pushDatabase(path, server_->uri());
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.errors()[0].message.find("audit, row 1: its detail has been changed"), std::string::npos)
+        << refused.errors()[0].message;
+    EXPECT_EQ(pqxx::nontransaction(*there_).exec("SELECT 1 FROM pg_namespace WHERE nspname='fake'").size(), 0u);
+}
+
+TEST_F(Push, HealsWhatIsDamagedThere) {
+    // Truth: independent program (PostgreSQL's own bytes)
+    const std::string path = folder_ / "s.db";
+    perform(path, "S001");
+    perform(path, "S002");
+    require(pushDatabase(path, server_->uri()));
+    const auto before = contents(*there_);
+    for (const char* sql : {"UPDATE sample_chunk SET data=set_byte(data, 40, get_byte(data, 40) # 1) WHERE chunk_no=0",
+                            "UPDATE attempt_measure SET value_num=2 WHERE attempt_id=1 AND measure='peak_force_N'",
+                            "DELETE FROM event"}) {
+        SCOPED_TRACE(sql);
+        ask(sql);
+        EXPECT_FALSE(contents(*there_) == before);
+        EXPECT_GE(require(pushDatabase(path, server_->uri())).healed, 1);
+        EXPECT_TRUE(contents(*there_) == before);
+    }
+    EXPECT_EQ(require(pushDatabase(path, server_->uri())).known, 2);
+}
+
+TEST_F(Push, AFileIsHealedFromThere) {
+    // Truth: invariant: every value of the file is what it was.
+    const std::string path = folder_ / "s.db";
+    perform(path, "S001");
+    perform(path, "S002");
+    perform(folder_ / "other.db", "S101");
+    require(pushDatabase(folder_ / "other.db", server_->uri()));
+    require(pushDatabase(path, server_->uri()));
+    const auto whole = fake::dump(path);
+    Database(path, OpenMode::ReadWrite)
+        .execute(
+            "UPDATE sample_chunk SET data=zeroblob(length(data)) WHERE stream_id=1 AND chunk_no=0; UPDATE "
+            "attempt_measure SET value_num=2 WHERE attempt_id=4 AND measure='peak_force_N'; UPDATE condition SET "
+            "levels_json='{}' WHERE position=1");
+    const RestoreReport report = require(restoreDatabase(path, server_->uri(), fake::options()));
+    EXPECT_EQ(report.remaining, std::vector<std::string>{});
+    EXPECT_EQ(report.healed.size(), 3u) << testing::PrintToString(report.healed);
+    EXPECT_TRUE(fake::dump(path) == whole);
 }
 
 TEST(PushWithoutServer, IsOneLine) {

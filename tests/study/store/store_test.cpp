@@ -90,6 +90,8 @@ TEST(Store, PicturesAndSoundOfAnAttemptAreReadAsTheyWereWritten) {
     EXPECT_EQ(attempts[1].presentation->frame_age_p99_us, 30'000.0);
     EXPECT_EQ(attempts[1].presentation->sound_output, "speakers");
     EXPECT_EQ(attempts[1].presentation->sound_delay_us, 21'333.0);
+    EXPECT_EQ(attempts[1].presentation->cue_frames, 7);
+    EXPECT_EQ(attempts[5].presentation->cue_frames, std::nullopt) << "what was not counted is not 0";
     ASSERT_TRUE(attempts[5].presentation);
     EXPECT_EQ(attempts[5].presentation->sound, "silent");
     EXPECT_EQ(attempts[5].presentation->sound_output, "");

@@ -4,10 +4,18 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
 #include <thread>
 
+#include "devices/simulated/simulated_device.h"
 #include "study/protocol/protocol_reader.h"
+#include "tests/ui/app/stub_performer.h"
 #include "tests/ui/cli/small_study.h"
+#include "ui/app/simulated_hand.h"
+#include "ui/app/visible_task.h"
 
 namespace passung::app {
 namespace {
@@ -69,6 +77,82 @@ TEST(LoopApparatus, NamesTheStagesThatTheConditionCallsForAndNoOthers) {
     EXPECT_EQ(stagesOf(bare),
               (Names{"input guard", "energy account", "proxy correction", "proxy motion", "proxy filter",
                      "proxy record", "virtual coupling", "contact shares", "output delay", "output limits"}));
+}
+
+/// Somebody of this kind takes part in windows; the device is held by a simulated hand all the same.
+class Somebody final : public Performer {
+public:
+    Somebody(protocol::ParticipantKind kind, std::string sound, std::optional<std::int64_t> coloured)
+        : kind_(kind), sound_(std::move(sound)), coloured_(coloured) {}
+    protocol::ParticipantKind kind() const override { return kind_; }
+    std::unique_ptr<loop::HapticDevice> device(const simulated::DeviceParams&, const protocol::Condition&) override {
+        return nullptr;
+    }
+    DeviceDescription describe(const simulated::DeviceParams& preset) const override {
+        return simulated::describe(preset);
+    }
+    std::span<loop::ScreenRing* const> screens() override { return {}; }
+    session::Presentation presented(std::int64_t, std::int64_t, std::int64_t) override {
+        session::Presentation given;
+        given.sound = sound_;
+        given.cue_frames = coloured_;
+        return given;
+    }
+    session::QuestionnaireSource* answers() override { return nullptr; }
+    session::InstructionReader* reader() override { return nullptr; }
+    void begins(session::Apparatus&, const session::SessionSetup&) override {}
+    void prepares(const protocol::Condition&, std::int64_t, std::uint64_t) override {}
+    bool builds(double) override { return true; }
+    void look(session::Session&) override {}
+    void over() override {}
+
+private:
+    protocol::ParticipantKind kind_;
+    std::string sound_;
+    std::optional<std::int64_t> coloured_;  // pictures with the cue's colour
+};
+
+session::Delivered deliveredTo(protocol::ParticipantKind kind, const std::string& sound, bool masking,
+                               std::optional<std::int64_t> coloured = {}) {
+    protocol::Condition everything = condition("none");
+    everything.cues.visual = everything.cues.vibrotactile = everything.cues.audio = true;
+    everything.cues.masking_noise = masking;
+    Somebody somebody(kind, sound, coloured);
+    LoopApparatus apparatus(*simulated::findPreset("sigma7"), {}, Clock::Virtual, &somebody);
+    EXPECT_TRUE(apparatus.prepare(everything, 7, 0));
+    apparatus.start();
+    std::array<TickRecord, 64> buffer;
+    for (int i = 0; i < 400; ++i) {
+        apparatus.advance(20);
+        while (apparatus.takeRecords(buffer) > 0) {
+        }
+    }
+    return apparatus.stop().delivered;
+}
+
+TEST(LoopApparatus, TellsWhatOfTheFeedbackReachedWhom) {
+    // Truth: invariant: a simulated person's senses take everything, those of a person what was drawn, played and
+    // acknowledged: no vibration as there is no actuator, no sound without output, no colour without a picture.
+    using enum protocol::ParticipantKind;
+    const session::Delivered simulated = deliveredTo(Simulated, "silent", true);
+    EXPECT_GT(simulated.force, 0);
+    EXPECT_GT(simulated.visual, 0);
+    EXPECT_GT(simulated.vibration, 10 * simulated.visual) << "colour comes with pictures";
+    EXPECT_EQ(simulated.sound, 0) << "noise covers it";
+    EXPECT_EQ(simulated.masking, 8000);
+    EXPECT_GT(deliveredTo(Simulated, "silent", false).sound, 0);
+    for (const auto kind : {Real, Pilot})
+        for (const char* sound : {"silent", "played"}) {
+            const session::Delivered person = deliveredTo(kind, sound, true);
+            const bool played = std::string(sound) == "played";
+            EXPECT_EQ(person.force, simulated.force);
+            EXPECT_EQ(person.visual, 0);
+            EXPECT_EQ(person.vibration, 0);
+            EXPECT_EQ(person.sound > 0, played);
+            EXPECT_EQ(person.masking, played ? 8000 : 0);
+        }
+    EXPECT_EQ(deliveredTo(Pilot, "silent", false, 12).visual, 12) << "as many as a window drew";
+    EXPECT_EQ(deliveredTo(Simulated, "silent", false).masking, 0);
 }
 
 TEST(LoopApparatus, RefusesADeviceThatItDoesNotKnow) {
@@ -173,6 +257,71 @@ TEST(LoopApparatus, AHaltInRealTimeEndsTheLoopAfterItsRunningTick) {
     apparatus.start();
     apparatus.advance(20);
     EXPECT_EQ(apparatus.stop().ticks, 0);
+}
+
+/// Keeps what the motors were told; else it is the simulated device with its hand.
+class WatchedDevice : public loop::HapticDevice {
+public:
+    explicit WatchedDevice(std::unique_ptr<loop::HapticDevice> watched, std::vector<double>& forces)
+        : watched_(std::move(watched)), forces_(forces) {
+        forces_.reserve(100'000);
+    }
+    const DeviceDescription& description() const override { return watched_->description(); }
+    DeviceReading read() noexcept override { return watched_->read(); }
+    void command(const Wrench& F_D_B) noexcept override {
+        forces_.push_back(F_D_B.force.norm());
+        told_.fetch_add(1);
+        if (forces_.back() > 0.5) pushed_.store(true);
+        watched_->command(F_D_B);
+    }
+    void show(const loop::DisplayedImage& image) noexcept override { watched_->show(image); }
+
+    std::size_t told() const { return told_.load(); }
+    bool pushed() const { return pushed_.load(); }
+
+private:
+    std::unique_ptr<loop::HapticDevice> watched_;
+    std::vector<double>& forces_;  // of the loop's thread; [N]
+    std::atomic<std::size_t> told_{0};
+    std::atomic<bool> pushed_{false};
+};
+
+class DeviceOfHis : public test::StubPerformer {
+public:
+    std::unique_ptr<loop::HapticDevice> device(const simulated::DeviceParams& preset,
+                                               const protocol::Condition& c) override {
+        const model::Registration& r = c.scene.registration;
+        auto hand = std::make_unique<simulated::SimulatedDevice>(
+            preset, simulatedHand({}, 0), visibleTask(c), simulated::HandRegistration{r.X_WB, r.scale, r.X_DH}, 5);
+        auto watched = std::make_unique<WatchedDevice>(std::move(hand), forces);
+        device_ = watched.get();
+        return watched;
+    }
+    DeviceDescription describe(const simulated::DeviceParams& preset) const override {
+        return simulated::describe(preset);
+    }
+    std::vector<double> forces;
+    WatchedDevice* device_ = nullptr;
+};
+
+TEST(LoopApparatus, AHaltInContactTurnsTheMotorsOffWithinTwoTicks) {
+    // Truth: invariant, as the device sees it: after the halt at most the running tick's wrench, then zero, then
+    // nothing.
+    DeviceOfHis performer;
+    LoopApparatus apparatus(*simulated::findPreset("sigma7"), {}, Clock::RealTime, &performer);
+    ASSERT_TRUE(apparatus.prepare(condition("none"), 5, 0));
+    apparatus.start();
+    while (!performer.device_->pushed()) apparatus.advance(1);
+    std::size_t told = 0;
+    std::thread([&] {
+        apparatus.halt();
+        told = performer.device_->told();
+    }).join();
+    apparatus.advance(50);
+    EXPECT_LE(performer.device_->told(), told + 2);
+    apparatus.stop();
+    EXPECT_EQ(performer.forces.back(), 0.0);
+    EXPECT_LE(performer.forces.size(), told + 2);
 }
 
 }  // namespace

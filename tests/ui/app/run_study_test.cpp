@@ -6,6 +6,7 @@
 #include "study/protocol/protocol_reader.h"
 #include "study/store/sqlite.h"
 #include "tests/support/temp_folder.h"
+#include "tests/ui/app/stub_performer.h"
 #include "tests/ui/cli/small_study.h"
 
 namespace passung::app {
@@ -17,31 +18,12 @@ protocol::StudyPlan planOf(const std::string& text) {
     return *std::move(plan);
 }
 
-/// Somebody with a device who tries a study; nobody has asked for their consent.
-class Visitor : public Performer {
-public:
-    protocol::ParticipantKind kind() const override { return protocol::ParticipantKind::Pilot; }
-    std::unique_ptr<loop::HapticDevice> device(const simulated::DeviceParams&, const protocol::Condition&) override {
-        return nullptr;
-    }
-    DeviceDescription describe(const simulated::DeviceParams&) const override { return {}; }
-    std::span<loop::ScreenRing* const> screens() override { return {}; }
-    session::Presentation presented(std::int64_t) override { return {}; }
-    session::QuestionnaireSource* answers() override { return nullptr; }
-    session::InstructionReader* reader() override { return nullptr; }
-    void begins(session::Apparatus&, const session::SessionSetup&) override {}
-    void prepares(const protocol::Condition&, std::int64_t, std::uint64_t) override {}
-    bool builds(double) override { return true; }
-    void look(session::Session&) override {}
-    void over() override {}
-};
-
 TEST(RunStudy, WhoIsNotAdmittedIsNotEnrolled) {
     // Truth: invariant: a refusal leaves no row of the participant, however often it is tried.
     const auto plan =
         planOf(test::smallStudy() + "\n[[consent]]\nclause = \"data_use\"\ntext = { en = \"May we?\" }\n");
     const test::TempFolder folder;
-    Visitor visitor;
+    test::StubPerformer visitor;  // nobody has asked for their consent
     RunOptions options;
     options.database = folder / "study.db";
     options.backup = false;

@@ -1,16 +1,13 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
 
-#include "study/protocol/protocol_reader.h"
 #include "study/store/store_reader.h"
 #include "tests/ui/cli/program.h"
-#include "ui/app/known_names.h"
-#include "ui/app/simulated_perception.h"
 
 // The shipped study, at a size for every day: shorter intervals, fewer trials, two people.
 
@@ -24,14 +21,14 @@ std::string reduced() {
         if (at == std::string::npos) throw std::runtime_error("the study does not say " + what);
         text.replace(at, what.size(), by);
     };
-    replace("interval_s = 3\n", "interval_s = 0.4\n");
-    replace("max_trials = 60\n", "max_trials = 20\n");
-    replace("spacing_mm = 2\n", "spacing_mm = 4\n");
+    replace("interval_s = 3\n", "interval_s = 2\n");
+    replace("max_trials = 60\n", "max_trials = 30\n");
     return text;
 }
 
-TEST(AccuracyThreshold, RunsFromItsFileToTheThresholdsOfThePeople) {
-    // Truth: closed form: the threshold with which each simulated person answers, within three posterior deviations.
+TEST(AccuracyThreshold, RunsFromItsFileToThresholdsThatFollowFromWhatWasRendered) {
+    // Truth: invariant: whoever judges what is rendered is mostly right where the contact is far coarser than the
+    // reference; so the estimates lie inside the levels.
     const TempFolder folder;
     writeText(folder.path() / "study.toml", reduced());
     for (const std::vector<std::string>& arguments :
@@ -42,24 +39,29 @@ TEST(AccuracyThreshold, RunsFromItsFileToTheThresholdsOfThePeople) {
         const Ended ended = runProgram(folder.path(), arguments);
         ASSERT_EQ(ended.exit_code, 0) << arguments[0] << ": " << ended.out << ended.err;
     }
-    const auto plan =
-        protocol::readProtocol((folder.path() / "study.toml").string(), app::presetDevices(), app::knownMeasures());
-    ASSERT_TRUE(plan) << toString(plan.errors().front());
     const auto reader = store::StoreReader::open(folder / "s.db");
     ASSERT_TRUE(reader);
-    std::map<std::string, store::StaircaseStepRow> last;
     const auto attempts = reader->attempts();
     const auto steps = reader->staircaseSteps();
     ASSERT_TRUE(attempts && steps);
+    std::map<std::string, store::StaircaseStepRow> last;
+    int coarse = 0, right = 0;
     for (const store::AttemptRow& attempt : *attempts)
-        for (const store::StaircaseStepRow& step : *steps)
-            if (step.attempt_id == attempt.attempt_id && step.track) last[attempt.participant_id] = step;
+        for (const store::StaircaseStepRow& step : *steps) {
+            if (step.attempt_id != attempt.attempt_id || !step.positive) continue;
+            if (step.track) last[attempt.participant_id] = step;
+            if (step.level < 120.0) continue;
+            ++coarse;
+            right += *step.positive ? 1 : 0;
+        }
+    std::printf("%d of %d right from 120 um on\n", right, coarse);
+    EXPECT_GT(right, 3 * coarse / 4);
     ASSERT_EQ(last.size(), 2u);
     for (const auto& [code, step] : last) {
-        const double truth = app::SimulatedPerception(*plan, code).of(0).threshold;
         ASSERT_TRUE(step.estimate && step.estimate_sd);
-        EXPECT_LT(std::abs(std::log10(*step.estimate) - truth), 3.0 * *step.estimate_sd) << code;
-        EXPECT_LT(*step.estimate_sd, 0.4) << "before the first trial it is 0.52 decades";
+        std::printf("%s: %.0f um\n", code.c_str(), *step.estimate);
+        EXPECT_GT(*step.estimate, 30.0);
+        EXPECT_LT(*step.estimate, 240.0);
     }
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/thresholds.csv"));
 }

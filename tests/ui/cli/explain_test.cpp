@@ -70,6 +70,76 @@ TEST(Explain, KnowsAStudyByItsKeysHoweverTheyAreWritten) {
     EXPECT_NE(scene.out.find("stage of the tick"), std::string::npos);
 }
 
+/// The named columns of a CSV without quotes, a line for each row; P for the first letter of each.
+std::vector<std::string> columnsOf(const std::string& csv, const std::vector<std::string>& names) {
+    const auto cellsOf = [](const std::string& line) {
+        std::vector<std::string> cells(1);
+        for (const char c : line) {
+            if (c == ',')
+                cells.emplace_back();
+            else
+                cells.back() += c;
+        }
+        return cells;
+    };
+    const auto lines = linesOf(csv);
+    const auto head = cellsOf(lines.at(0));
+    std::vector<std::string> rows;
+    for (std::size_t i = 1; i < lines.size(); ++i) {
+        const auto cells = cellsOf(lines[i]);
+        std::string row;
+        for (const auto& name : names)
+            row += cells.at(static_cast<std::size_t>(std::find(head.begin(), head.end(), name) - head.begin())) + ' ';
+        row.front() = 'P';
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+TEST(Explain, OrdersAsATableAreWhatARehearsalOfTheSameNumbersGets) {
+    // Truth: invariant: a rehearsal shows what people will get. Told by the bytes of an export; shuffles, groups and
+    // catch trials are drawn per participant.
+    const TempFolder folder;
+    std::string study = smallStudyWith(R"([[factor]]
+name = "chance"
+levels = [
+  { label = "none", set = { "task.timeout_s" = 0.4 } },
+  { label = "short", set = { "task.timeout_s" = 0.5 } },
+  { label = "long", set = { "task.timeout_s" = 0.6 } },
+]
+[[factor]]
+name = "stiffness"
+kind = "between"
+key = "contact.stiffness_N_per_m"
+levels = [500, 1000]
+
+)");
+    study += "[[block]]\nname = \"mixed\"\norder = \"random\"\nrepetitions = 2\n";
+    writeText(folder / "study.toml", study);
+    const Ended planned = runProgram(folder.path(), {"explain", "study.toml", "--orders", "csv"});
+    ASSERT_EQ(planned.exit_code, 0) << planned.err;
+    const Ended ran =
+        runProgram(folder.path(), {"run", "study.toml", "--simulated", "4", "--db", "s.db", "--no-backup"});
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    const Ended told = runProgram(folder.path(), {"export", "s.db", "--out", "e", "--no-samples"});
+    ASSERT_EQ(told.exit_code, 0) << told.err;
+    const std::vector<std::string> names = {"participant_id", "group",     "session", "block_index", "block",
+                                            "phase",          "condition", "chance",  "stiffness"};
+    const auto expected = columnsOf(planned.out, names);
+    EXPECT_EQ(expected.size(), 4u * (3 * 3 + 3 * 2));
+    EXPECT_EQ(columnsOf(readText(folder / "e/trials.csv"), names), expected);
+}
+
+TEST(Explain, HasNoOrdersOfAScene) {
+    // Truth: invariant (a scene has no participants)
+    const TempFolder folder;
+    writeText(folder / "scene.toml",
+              "[[part]]\nname = \"ball\"\nheld = true\nshape = { kind = \"sphere\", diameter = 20 }\n");
+    const Ended ended = runProgram(folder.path(), {"explain", "scene.toml", "--orders", "csv"});
+    EXPECT_EQ(ended.exit_code, 1);
+    EXPECT_EQ(ended.err, "scene.toml: error: a scene has no orders: --orders is for study files\n");
+}
+
 TEST(Explain, GivesTheDiameterOfAFit) {
     // Truth: closed form: 20 g6 is 19.980 to 19.993 mm; the least clearance takes the thicker.
     const TempFolder folder;

@@ -66,6 +66,10 @@ TEST_F(MeshReport, OfAClosedCuboidSaysItsSizeAndThatItIsWatertight) {
     EXPECT_EQ(valueOf(mm, "triangles"), "12");
     EXPECT_EQ(valueOf(mm, "vertices"), "8");
     EXPECT_EQ(valueOf(mm, "size"), "1 x 2 x 3 mm");
+    EXPECT_EQ(valueOf(mm, "least x, y, z"), "0, 0, 0 mm");
+    EXPECT_EQ(valueOf(mm, "greatest x, y, z"), "1, 2, 3 mm");
+    EXPECT_EQ(valueOf(mm, "centre of bounds"), "0.5, 1, 1.5 mm");
+    EXPECT_EQ(valueOf(mm, "origin"), "within the bounds, 1.87083 mm from their centre");
     EXPECT_EQ(valueOf(mm, "area"), "22 mm²");
     EXPECT_EQ(valueOf(mm, "volume"), "6 mm³");
     EXPECT_EQ(valueOf(mm, "watertight"), "yes");

@@ -28,11 +28,11 @@ double rankedVariance(std::map<std::string, std::vector<double>> groups) {
 }
 
 TEST(Person, PeopleDifferMoreThanTheirTrialsDoAndReplayHolds) {
-    // Truth: closed form: H of six equal people is near chi-square with 5 degrees of freedom, above 15.1 once in 100
-    // studies; ranks, because a lapse makes a trial long. Replay: invariant.
+    // Truth: closed form: H of twelve equal people is near chi-square with 11 degrees of freedom, above 24.7 once in
+    // 100 studies; ranks, because a lapse makes a trial long. Replay: invariant.
     const TempFolder folder;
     writeText(folder / "fair.toml", fairStudy());
-    const Ended run = runProgram(folder.path(), {"run", "fair.toml", "--simulated", "6", "--db", "s.db"});
+    const Ended run = runProgram(folder.path(), {"run", "fair.toml", "--simulated", "12", "--db", "s.db"});
     ASSERT_EQ(run.exit_code, 0) << run.err;
     const auto reader = store::StoreReader::open(folder / "s.db");
     ASSERT_TRUE(reader);
@@ -42,9 +42,10 @@ TEST(Person, PeopleDifferMoreThanTheirTrialsDoAndReplayHolds) {
     for (const auto& attempt : *attempts)
         if (const auto time = attempt.measures.find("completion_time_s"); time != attempt.measures.end())
             times[attempt.participant_id].push_back(time->second);
-    ASSERT_EQ(times.size(), 6u);
+    ASSERT_EQ(times.size(), 12u);
     for (const auto& [code, values] : times) ASSERT_EQ(values.size(), 6u) << code;
-    EXPECT_GT(rankedVariance(times), 15.1);
+    std::printf("H = %.1f\n", rankedVariance(times));
+    EXPECT_GT(rankedVariance(times), 24.7);
 
     const Ended replay = runProgram(folder.path(), {"replay", "s.db"});
     EXPECT_EQ(replay.exit_code, 0) << replay.out << replay.err;

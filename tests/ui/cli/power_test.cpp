@@ -95,7 +95,7 @@ TEST_F(Power, AFileOfAnotherJobOrATornOneIsRefusedAndKept) {
     writeText(folder_ / "s.csv", text.substr(0, text.size() / 2));
     EXPECT_EQ(model({"--out", "s.csv"}).exit_code, 1);
     EXPECT_EQ(power({"--merge", "s.csv"}).exit_code, 1);
-    EXPECT_EQ(power({"--merge", "absent.csv"}).err, "absent.csv: error: cannot be read\n");
+    EXPECT_EQ(power({"--merge", "absent.csv"}).err, "absent.csv: error: cannot be opened\n");
 }
 
 TEST_F(Power, WrongUsageIsTwoAndWhatTheStudyLacksIsOne) {
@@ -112,7 +112,7 @@ TEST_F(Power, WrongUsageIsTwoAndWhatTheStudyLacksIsOne) {
     EXPECT_EQ(level.err, "error: --effect: good: must be a level of chance: none, fair\n");
     const Ended measure = model({"--measure", "peak_force_N"});
     EXPECT_EQ(measure.exit_code, 1);
-    EXPECT_EQ(measure.err, "error: --measure: peak_force_N: the model has completion_time_s only\n");
+    EXPECT_EQ(measure.err, "error: --measure: peak_force_N: the model has completion_time_s, time_s only\n");
     const Ended mixed = model({"--test", "lmm"});
     EXPECT_EQ(mixed.exit_code, 1);
     EXPECT_EQ(mixed.err, "error: --test: lmm: a mixed model is not fitted here\n");

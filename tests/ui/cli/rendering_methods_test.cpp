@@ -28,7 +28,7 @@ TEST(RenderingMethods, EveryConditionFollowsEveryOtherThreeTimesInEachExercise) 
     ASSERT_EQ(plan.participants, 24);
     using Pair = std::pair<std::size_t, std::size_t>;
     std::map<std::string, std::map<Pair, int>> successions, positions;
-    for (const auto& place : session::firstPlaces(plan, 24, protocol::ParticipantKind::Real)) {
+    for (const auto& place : session::firstPlaces(plan, 24)) {
         const auto trials = session::planTrials(plan, place, "", 1);
         ASSERT_TRUE(trials);
         for (std::size_t i = 0; i < trials->size(); ++i) {

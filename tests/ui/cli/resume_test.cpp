@@ -165,6 +165,40 @@ TEST_F(Resume, TheProtocolMayWantItsBlockAnew) {
     EXPECT_EQ(database.integer("SELECT count(DISTINCT trial_id) FROM attempt WHERE valid"), 24);
 }
 
+TEST_F(Resume, TellsHowManyTrialsWereOverEarlierThoughItsFirstAttemptIsRepeated) {
+    // Truth: independent program (SQLite counts trials before and after). Every attempt runs out of time, so that the
+    // first one after the interruption finishes no trial.
+    std::string text = study(6, "on_timeout = \"repeat_now\"\nmax_attempts = 2\n");
+    const std::string fair = "\"task.timeout_s\" = 20,";
+    text.replace(text.find(fair), fair.size(), "\"task.timeout_s\" = 0.4,");
+    writeText(folder_.path() / "study.toml", text);
+    ASSERT_FALSE(runKilled({"run", "study.toml", "--db", kDatabase}, 5, std::chrono::nanoseconds(0)));
+    const auto over = [&] {
+        return store::Database(folder_ / kDatabase, store::OpenMode::ReadOnly)
+            .integer("SELECT count(DISTINCT trial_id) FROM order_step WHERE then_what='done'");
+    };
+    const auto earlier = over();
+    ASSERT_GE(earlier, 2);
+    const Ended resumed = run({"resume", kDatabase});
+    EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+    EXPECT_EQ(over(), 12);
+    const std::string line = "12 trials, " + std::to_string(earlier) + " of them earlier, 0 succeeded";
+    EXPECT_NE(resumed.out.find(line), std::string::npos) << resumed.out << "expected: " << line;
+}
+
+TEST_F(Resume, CountsWhatSucceededEarlierToo) {
+    // Truth: independent program (SQLite counts what the whole session has in the end)
+    writeText(folder_.path() / "study.toml", study(6));
+    ASSERT_FALSE(runKilled({"run", "study.toml", "--db", kDatabase}, 6, std::chrono::nanoseconds(0)));
+    const Ended resumed = run({"resume", kDatabase});
+    EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+    const store::Database database(folder_ / kDatabase, store::OpenMode::ReadOnly);
+    const auto succeeded = database.integer("SELECT count(*) FROM attempt WHERE valid AND outcome='success'");
+    EXPECT_GT(succeeded, 3);
+    EXPECT_NE(resumed.out.find(" of them earlier, " + std::to_string(succeeded) + " succeeded"), std::string::npos)
+        << resumed.out;
+}
+
 TEST_F(Resume, WhoHasBegunAnotherSessionSinceDoesNotGoOnWithTheOld) {
     // Truth: invariant
     writeText(folder_.path() / "study.toml", study());

@@ -85,7 +85,8 @@ TEST(StaircaseRun, PresentsWhatTheRuleSaysAndFindsTheLevelWhereAnswersChange) {
     ASSERT_EQ(exported.exit_code, 0) << exported.err;
 
     const Rows rows = readCsv(folder.path() / "out/staircase.csv");
-    EXPECT_EQ(rows.size(), 30u);
+    EXPECT_LE(rows.size(), 30u) << "a track that has turned often enough ends before its 15 trials";
+    EXPECT_GE(rows.size(), 20u);
     std::map<std::string, std::pair<double, bool>> last;  // of each participant's track: level, answer
     for (const auto& row : rows) {
         const double level = std::stod(row.at("level")), wanted = std::stod(row.at("wanted_level"));
@@ -113,7 +114,7 @@ TEST(StaircaseRun, PresentsWhatTheRuleSaysAndFindsTheLevelWhereAnswersChange) {
 
     const auto replayed = runProgram(folder.path(), {"replay", "s.db"});
     EXPECT_EQ(replayed.exit_code, 0) << replayed.out << replayed.err;
-    EXPECT_NE(replayed.out.find("30 attempts replayed, 0 differ"), std::string::npos);
+    EXPECT_NE(replayed.out.find(std::to_string(rows.size()) + " attempts replayed, 0 differ"), std::string::npos);
 }
 
 TEST(StaircaseRun, AnAnswerThatIsInvalidatedLaterIsInNoThreshold) {

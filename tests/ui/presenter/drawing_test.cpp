@@ -57,6 +57,9 @@ TEST(PointerMotion, EveryPlaneKeepsToItsDirections) {
     HeldKeys keys;
     keys.move = Vec3(0, -1, 0);
     EXPECT_LT(keyMotion(c, keys, 0.1).way.z(), 0.0);
+    const double coarse = keyMotion(c, keys, 0.1).way.norm();
+    keys.fine = true;
+    EXPECT_NEAR(keyMotion(c, keys, 0.1).way.norm(), 0.1 * coarse, 1e-12);
 }
 
 TEST(ShadedMesh, ACylinderIsSmoothAroundAndHasSharpRims) {
@@ -115,9 +118,63 @@ Vec3 middleOf(const Mark& mark) {
 
 std::vector<Mark> marksOf(decltype(protocol::Task::form) form) {
     SceneArtist artist;
-    const auto scene = artist.draw(conditionOf(std::move(form)));
+    const auto scene = artist.draw(conditionOf(std::move(form)), {});
     EXPECT_TRUE(scene);
     return scene ? (*scene)->marks : std::vector<Mark>{};
+}
+
+TEST(SceneArtist, TheCameraStandsWhereTheStudyPutsIt) {
+    // Truth: closed form. Its axis runs through what it looks at, the picture's upward direction shows no tilt; what is
+    // not said is such that a sphere about all parts fits between the picture's lower and upper edge.
+    SceneArtist artist;
+    protocol::View look;
+    look.camera_from = {-1.0, -2.0, 2.0};
+    look.camera_target = Vec3(0.02, 0.01, 0.03);
+    look.camera_distance = 0.3;
+    look.camera_opening = 0.4;
+    look.light_from = Vec3(0, 0, 2);
+    const auto scene = artist.draw(conditionOf(protocol::PegInHoleTask{}), look);
+    ASSERT_TRUE(scene);
+    const Camera& camera = (*scene)->camera;
+    EXPECT_NEAR((camera.X_WC.p - Vec3(0.02 - 0.1, 0.01 - 0.2, 0.03 + 0.2)).norm(), 0.0, 1e-12);
+    EXPECT_NEAR((camera.X_WC.q * -Vec3::UnitZ() - Vec3(1, 2, -2) / 3.0).norm(), 0.0, 1e-12);
+    EXPECT_NEAR((camera.X_WC.q * Vec3::UnitX()).z(), 0.0, 1e-12) << "the horizon is level";
+    EXPECT_GT((camera.X_WC.q * Vec3::UnitY()).z(), 0.0);
+    EXPECT_EQ(camera.opening, 0.4);
+    EXPECT_EQ((*scene)->light_from, Vec3::UnitZ());
+
+    look.camera_distance.reset();
+    look.camera_from = Vec3::UnitZ();  // straight from above
+    const auto above = artist.draw(conditionOf(protocol::PegInHoleTask{}), look);
+    ASSERT_TRUE(above);
+    const Camera& down = (*above)->camera;
+    EXPECT_NEAR((down.X_WC.q * -Vec3::UnitZ() + Vec3::UnitZ()).norm(), 0.0, 1e-12);
+    for (const DrawnPart& part : (*above)->parts)
+        for (const auto& vertex : part.mesh->vertices) {
+            const auto& p = vertex.position_mm;
+            const Vec3 seen = down.X_WC.inverse() * (part.X_W * (1e-3 * Vec3(p[0], p[1], p[2])));
+            EXPECT_LT(std::abs(std::atan2(seen.y(), -seen.z())), 0.2);
+            EXPECT_TRUE(-seen.z() > down.near && -seen.z() < down.far);
+        }
+}
+
+TEST(ShadedMesh, KnowsWhetherItsInsideCanBeSeen) {
+    // Truth: closed form: a box is closed, without a triangle or turned inside out it is not.
+    model::TriangleMesh box = model::tessellate(model::Box{0.02, 0.03, 0.04}, 1e-4);
+    EXPECT_FALSE(shade(box).two_sided);
+    for (const auto& shape : {model::Shape(model::Torus{0.1, 0.02}), model::Shape(model::BorePlate{.width = 0.06,
+                                                                     .depth = 0.06,
+                                                                     .height = 0.03,
+                                                                     .bore_diameter = 0.02,
+                                                                     .bore_depth = 0.02,
+                                                                     .chamfer = 0.001})})
+        EXPECT_FALSE(shade(model::tessellate(shape, 1e-4)).two_sided) << model::kindName(shape);
+    EXPECT_TRUE(shade(model::tessellate(model::Sheet{0.02, 0.03}, 1e-4)).two_sided);
+    model::TriangleMesh inside_out = box;
+    for (auto& [a, b, c] : inside_out.triangles) std::swap(b, c);
+    EXPECT_TRUE(shade(inside_out).two_sided);
+    box.triangles.pop_back();
+    EXPECT_TRUE(shade(box).two_sided);
 }
 
 TEST(TaskMarks, EveryTypeOfTrialShowsWhatItAsksFor) {

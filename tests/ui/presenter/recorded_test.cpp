@@ -54,6 +54,63 @@ TEST(Recorded, LooksAtWhatCountsPerConditionAndNeverMixesKinds) {
     EXPECT_EQ(attemptsOf(recorded, recorded.data.sessions[0].session_id)[5]->trial_index, 5);
 }
 
+TEST(Recorded, ALookBeginsWithAMeasureThatVaries) {
+    // Truth: invariant. Of three measures the time is the same in all attempts, or varies, or nothing varies.
+    Recorded recorded;
+    for (const char* name : {"trials", "completion_time_s", "peak_force_N"})
+        recorded.measures.push_back({name, "", ""});
+    recorded.data.attempts.resize(2);
+    const auto set = [&](const char* name, double first, double second) {
+        recorded.data.attempts[0].measures[name] = first;
+        recorded.data.attempts[1].measures[name] = second;
+    };
+    set("trials", 1, 1);
+    set("completion_time_s", 30, 30);
+    set("peak_force_N", 2, 2);
+    EXPECT_EQ(firstMeasure(recorded), 0u);
+    set("peak_force_N", 2, 3);
+    EXPECT_EQ(firstMeasure(recorded), 2u);
+    set("completion_time_s", 30, 29);
+    EXPECT_EQ(firstMeasure(recorded), 1u);
+}
+
+TEST(Trace, ItsLineHasNoGapHoweverSteepTheSignalAndHoweverNarrowTheField) {
+    // Truth: invariant. Neighbouring columns touch in width and height, each shows its own values, all lie in the field
+    // but for half a line; at every pixel across there is a column.
+    const auto count = static_cast<std::size_t>(Trace::kSeconds / Trace::kStretch);
+    std::vector<Trace::Span> spans(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const float value = i % 97 == 0 ? 10.0f : i % 2 == 0 ? 0.0f : 4.0f;
+        spans[i] = {value, value + (i % 5 == 0 ? 1.0f : 0.0f)};
+    }
+    const double height = 120.0, top = 20.0;
+    for (const double width : {90.0, 333.0, 470.0, 1900.0}) {
+        const auto strokes = strokesOf(spans, width, height, top);
+        ASSERT_EQ(strokes.size(), count);
+        for (std::size_t i = 0; i < count; ++i) {
+            const Stroke& stroke = strokes[i];
+            const auto y = [&](float value) { return height * (1.0 - static_cast<double>(value) / top); };
+            EXPECT_LE(stroke.upper, y(spans[i].high) + 1e-3);
+            EXPECT_GE(stroke.lower, y(spans[i].low) - 1e-3);
+            EXPECT_GE(stroke.lower - stroke.upper, 1.59f);
+            EXPECT_GE(stroke.right - stroke.left, 1.59f);
+            if (i == 0) continue;
+            EXPECT_LE(stroke.left, strokes[i - 1].right + 1e-3f);
+            EXPECT_LE(stroke.upper, strokes[i - 1].lower + 1e-3f);
+            EXPECT_GE(stroke.lower, strokes[i - 1].upper - 1e-3f);
+        }
+        EXPECT_LE(strokes.front().left, 1.0f);
+        EXPECT_GE(strokes.back().right, static_cast<float>(width) - 1e-3f);
+    }
+}
+
+TEST(Trace, ItsScaleShowsMicrometres) {
+    // Truth: closed form: the smallest of 1, 2, 5 · 10^n that has room for the peak.
+    EXPECT_DOUBLE_EQ(traceTop(0.004, 0.001), 0.005);  // 4 um in mm fill four fifths of the field
+    EXPECT_DOUBLE_EQ(traceTop(0.0, 0.001), 0.001);
+    EXPECT_DOUBLE_EQ(traceTop(3.0, 0.5), 5.0);
+}
+
 TEST(Axis, ItsMarksAreRoundAndHoldEverything) {
     // Truth: invariant.
     EXPECT_EQ(axisMarks(0.0, 10.0, 5), (std::vector{0.0, 2.0, 4.0, 6.0, 8.0, 10.0}));

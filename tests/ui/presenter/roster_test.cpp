@@ -82,17 +82,28 @@ TEST_F(RosterOf, SaysOfEverybodyWhatTheyDidAndAgreedTo) {
     EXPECT_EQ(first.attempts(), 2);
     EXPECT_EQ(first.consent, (std::vector{Decision::Yes, Decision::Yes}));
     EXPECT_EQ(whyNotStart(all, first, false), PersonWhy::AllDone);
-    EXPECT_EQ(whyNotResume(first, false), PersonWhy::NothingInterrupted);
+    EXPECT_EQ(whyNotResume(all, first, false), PersonWhy::NothingInterrupted);
     const RosterPerson& second = *all.find("P002");
     EXPECT_EQ(second.interrupted(), 1);
     ASSERT_NE(second.resumable(), nullptr);
     EXPECT_EQ(second.resumable()->state, presenter::SessionState::Aborted);
-    EXPECT_EQ(whyNotResume(second, false), PersonWhy::Possible);
-    EXPECT_EQ(whyNotResume(second, true), PersonWhy::SessionRuns);
+    EXPECT_EQ(whyNotResume(all, second, false), PersonWhy::Possible);
+    EXPECT_EQ(whyNotResume(all, second, true), PersonWhy::SessionRuns);
     const RosterPerson& third = *all.find("P003");
     EXPECT_EQ(third.consent, (std::vector{Decision::NotAsked, Decision::No}));
     EXPECT_EQ(whyNotStart(all, third, false), PersonWhy::Possible);
     EXPECT_EQ(all.find("T001")->kind, ParticipantKind::Pilot);
+
+    // A cue that nothing here can give keeps people and pilots from beginning and from going on.
+    Roster shaking = all;
+    shaking.for_people = false;
+    EXPECT_EQ(whyNotStart(shaking, third, false), PersonWhy::CueWithoutOutput);
+    EXPECT_EQ(whyNotStart(shaking, *all.find("T001"), false), PersonWhy::CueWithoutOutput);
+    EXPECT_EQ(whyNotResume(shaking, second, false), PersonWhy::CueWithoutOutput);
+    EXPECT_TRUE(all.for_people);
+    plan_.conditions.front().cues.vibrotactile = true;
+    EXPECT_FALSE(roster().for_people);
+    plan_.conditions.front().cues.vibrotactile = false;
 
     // With another wording nobody has agreed to it.
     plan_.consent[0].texts = {{"en", "All of it?"}};

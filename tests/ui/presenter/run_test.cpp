@@ -94,6 +94,30 @@ TEST(Run, TellsTheRowsApart) {
     EXPECT_EQ(run.view().rows[0].attempts, 2);
 }
 
+TEST(Run, ShowsWhatAnEarlierProcessMadeOfTheTrials) {
+    // Truth: invariant. Of four trials: a success, a time-out, one that was left out, one that was cut off.
+    presenter::Run run = begun();
+    SessionBegun again{"T001", {}};
+    for (int i = 0; i < 4; ++i) {
+        again.trials.emplace_back();
+        again.trials.back().trial_index = i;
+    }
+    again.earlier = {{0, 2, measures::Outcome::Success, true, "", 2.5, true},
+                     {1, 1, measures::Outcome::Timeout, true, "", 30.0, true},
+                     {3, 1, measures::Outcome::Aborted, false, "interrupted", {}, false}};
+    run.take(again);
+    run.take(glance(SessionState::BetweenTrials, 3, {true, true, true, false}));
+    const auto& rows = run.view().rows;
+    EXPECT_EQ(rows[0].state, RowState::Success);
+    EXPECT_EQ(rows[0].attempts, 2);
+    EXPECT_EQ(rows[0].time_s, 2.5);
+    EXPECT_EQ(rows[1].state, RowState::Timeout);
+    EXPECT_EQ(rows[2].state, RowState::Skipped);
+    EXPECT_EQ(rows[3].state, RowState::Next);
+    EXPECT_EQ(rows[3].remark, "interrupted");
+    EXPECT_EQ(run.view().finished, 3u);
+}
+
 TEST(Run, OffersACommandOnlyWhenTheSessionWouldObey) {
     // Truth: invariant, the session's own refusals.
     EXPECT_EQ(presenter::Run().view().why(CommandKind::Pause), Why::NoSession);

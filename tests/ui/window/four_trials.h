@@ -16,7 +16,8 @@ inline std::string textOf(const std::string& path) {
 }
 
 /// protocols/peg_in_hole with four of its conditions, without practice, with time enough for a hand that is slow and a
-/// machine that misses cycles; a trial that does not count is repeated. Its questionnaires as they are; no consent.
+/// machine that misses cycles and pictures; a trial that does not count is repeated. Its questionnaires as they are; no
+/// consent.
 inline std::string fourTrials() {
     std::string text = textOf(PASSUNG_SOURCE_DIR "/protocols/peg_in_hole/study.toml");
     const auto swap = [&text](const std::string& from, const std::string& to) {
@@ -28,6 +29,7 @@ inline std::string fourTrials() {
     swap("  { label = \"0.1\", value = 20.2 },\n", "  { label = \"0.4\", value = 20.8 },\n");
     swap(R"(levels = ["penalty", "god_object_heuristic", "god_object"])", R"(levels = ["penalty", "god_object"])");
     swap("[[factor]]\nname = \"stiffness\"\nkey = \"contact.stiffness_N_per_m\"\nlevels = [\"0.5 max\", \"max\"]", "");
+    swap(R"(factors = ["clearance", "method", "stiffness"])", R"(factors = ["clearance", "method"])");
     swap("cell_mm = 0.5 ", "stiffness_N_per_m = \"0.5 max\"\ncell_mm = 0.5 ");
     swap("timeout_s = 30", "timeout_s = 3000");
     swap(
@@ -40,7 +42,7 @@ inline std::string fourTrials() {
     const std::size_t consent = text.find("# ---- What people agree to");
     if (consent == std::string::npos) throw std::runtime_error("protocols/peg_in_hole no longer asks for consent");
     text.erase(consent, text.find("# Without `measures") - consent);
-    return text + "\n[loop]\nmax_missed_share = 1\n";
+    return text + "\n[loop]\nmax_missed_share = 1\n[view]\nmax_picture_age_ms = 600000\nmin_pictures_per_s = 0\n";
 }
 
 /// A folder of studies with this one, and the questionnaires beside it. Returns the study's file.

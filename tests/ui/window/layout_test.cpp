@@ -136,14 +136,5 @@ TEST_F(Layout, WindowsStandWhereTheyStood) {
     EXPECT_FALSE(app_->screen().property("fullScreen").toBool()) << "there is one screen";
 }
 
-TEST(Places, TheParticipantGetsTheScreenThatTheExperimenterIsNotOn) {
-    // Truth: closed form.
-    const QRect left(0, 0, 1920, 1080), right(1920, 0, 1280, 1024);
-    EXPECT_EQ(window::participantScreen({left, right}, QRect(100, 100, 800, 600)), 1);
-    EXPECT_EQ(window::participantScreen({left, right}, QRect(2000, 0, 800, 600)), 0);
-    EXPECT_EQ(window::participantScreen({left, right}, QRect(1800, 0, 800, 600)), 0) << "its middle counts";
-    EXPECT_EQ(window::participantScreen({left}, QRect(0, 0, 800, 600)), std::nullopt);
-}
-
 }  // namespace
 }  // namespace passung::test

@@ -1,4 +1,5 @@
 #include <QtGui/QClipboard>
+#include <QtQml/QQmlEngine>
 #include <fstream>
 #include <set>
 
@@ -178,6 +179,23 @@ TEST_F(Pages, ASessionIsBegunBrokenOffAndGoneOnWith) {
     const auto second = reader().sessions();
     ASSERT_TRUE(second && second->size() == 1) << "it is the same session";
     EXPECT_EQ((*second)[0].segments, 2);
+
+    // Truth: invariant: whoever closes the window while a session runs is asked, and the session goes on meanwhile.
+    EXPECT_FALSE(app_->experimenter()->close());
+    waitFor([&] { return item(app_->experimenter(), "question") != nullptr; });
+    shot("closing");
+    click("questionNo");
+    EXPECT_EQ(item(app_->experimenter(), "question"), nullptr);
+    EXPECT_TRUE(app_->experimenter()->isVisible());
+    EXPECT_EQ(run().view().state, presenter::RunState::Ready);
+    bool quits = false;
+    QObject::connect(qmlEngine(app_->experimenter()), &QQmlEngine::quit, app_->experimenter(), [&] { quits = true; });
+    EXPECT_FALSE(app_->experimenter()->close());
+    click("questionYes");
+    EXPECT_TRUE(quits);
+    open("en", true);  // closed, not cut off
+    settle();
+    EXPECT_EQ(item(app_->experimenter(), "question"), nullptr);
 }
 
 /// The checksums of an export's files.
@@ -337,12 +355,13 @@ TEST_F(Pages, TheDesignIsExpandedAndStagesAreMeasuredInEitherLanguage) {
     waitFor([&] { return !app_->details().design().isEmpty(); });
     const QVariantList orders = app_->details().design()["orders"].toList();
     ASSERT_EQ(orders.size(), 4);
-    // A Williams square of two: 1 2 and 2 1, three times each.
+    // A Williams square of two: 1 2 and 2 1 in turns, three passes.
     std::set<std::string> rows;
     for (const QVariant& order : orders) {
         const QVariantList passes = order.toMap()["blocks"].toList()[0].toMap()["passes"].toList();
-        ASSERT_EQ(passes.size(), 1);
-        EXPECT_EQ(passes[0].toMap()["times"].toInt(), 3);
+        ASSERT_EQ(passes.size(), 3);
+        EXPECT_EQ(passes[0].toMap()["trials"], passes[2].toMap()["trials"]);
+        EXPECT_NE(passes[0].toMap()["trials"], passes[1].toMap()["trials"]);
         std::string row;
         for (const QVariant& trial : passes[0].toMap()["trials"].toList())
             row += std::to_string(trial.toMap()["condition"].toInt());

@@ -169,6 +169,37 @@ TEST_F(Rates, OfAHeavyPartInBothWindows) {
     }
 }
 
+TEST_F(Rates, QualityFallsUntilPicturesAreFastEnoughOrHalfAsLarge) {
+    // Truth: none for times, which are printed. Invariants: nothing is given up without need, and what was found while
+    // nothing else moved is enough unless the picture's sides are half the window's.
+    quality_.reset();
+    for (const QSize& size : {QSize(1280, 720), QSize(2560, 1440)}) {
+        open("en", true);
+        app_->desk().tryOut(plan(), app::LiveHand::Simulated, "en");
+        app_->participant()->setGeometry(QRect({0, 0}, size));
+        int pictures = 0;
+        const QObject context;
+        waitFor(RunState::Running);
+        QObject::connect(app_->participant(), &QQuickWindow::frameSwapped, &context, [&] { ++pictures; });
+        const Spent spent;
+        waitFor([&] { return run().view().state != RunState::Running; });
+        const double seconds = spent.seconds();
+        const auto found = run().view().quality;
+        ASSERT_TRUE(found);
+        EXPECT_EQ(QSize(found->width_px, found->height_px), size);
+        EXPECT_GE(found->triangles, static_cast<std::int64_t>(kTriangles));
+        const auto& [shadows, samples, scale] = found->quality;
+        std::printf(
+            "%d x %d, %lld triangles: %s shadows, %d samples a pixel, scale %.2f: %.1f pictures a second when "
+            "it was found, %.1f in the trial\n",
+            size.width(), size.height(), static_cast<long long>(found->triangles), shadows ? "with" : "without",
+            samples, scale, found->pictures_per_s, pictures / seconds);
+        EXPECT_TRUE(found->pictures_per_s >= presenter::QualitySearch::kWanted || scale == 0.5);
+        app_.reset();
+        std::filesystem::remove(folder_ / "data/ring.db");
+    }
+}
+
 }  // namespace
 }  // namespace passung::test
 

@@ -207,9 +207,14 @@ TEST_F(WholeSession, KilledResumedRepeatedInvalidatedAndStoppedItLeavesWhatARunW
     EXPECT_EQ(query(database, "SELECT count(*) FROM attempt WHERE outcome='success' AND valid"), "1");
 
     openLab(folder);
-    click("person-P001");
-    begin("resume");
+    waitFor([&] { return item(app_->experimenter(), "question") != nullptr; });
+    const QString question = item(app_->experimenter(), "question")->property("text").toString();
+    EXPECT_TRUE(question.startsWith("P001's session of 20") && question.endsWith(" was cut off in trial 2 of 4."))
+        << question.toStdString();
+    picture(app_->experimenter(), "session_cut_off");
+    begin("questionYes");
     ASSERT_FALSE(HasFatalFailure());
+    EXPECT_EQ(item(app_->experimenter(), "question"), nullptr);
     waitForTrial(2);
     EXPECT_EQ(query(database, "SELECT count(*) FROM attempt WHERE outcome='crashed'"), "1");
     EXPECT_GT(heldPart(picture(app_->participant(), "session_resumed")).x(), 0.0) << "the held part is not drawn";
@@ -246,6 +251,10 @@ TEST_F(WholeSession, KilledResumedRepeatedInvalidatedAndStoppedItLeavesWhatARunW
     waitFor(RunState::Complete);
     picture(app_->experimenter(), "session_complete");
     picture(app_->participant(), "thanks");
+
+    open("en", true);
+    settle();
+    EXPECT_EQ(item(app_->experimenter(), "question"), nullptr) << "asks about a session that is complete";
 
     EXPECT_EQ(query(database, "SELECT end_state FROM session"), "complete");
     EXPECT_EQ(query(database, "SELECT participant_id || ' ' || kind FROM participant"), "P001 real");

@@ -4,6 +4,7 @@
 
 #include "study/protocol/protocol_reader.h"
 #include "tests/ui/window/asking_study.h"
+#include "tests/ui/window/four_trials.h"
 #include "tests/ui/window/windows.h"
 #include "ui/app/known_names.h"
 #include "ui/app/run_study.h"
@@ -33,6 +34,7 @@ protected:
     void takeTour(const char* language, bool dark, double scale, const Look& look) {
         look_ = look;
         data_ = folder_ / (language + std::to_string(tours_++) + "/tryouts");
+        dress(dark, scale);
         open(language, dark);
         app_->look().setScale(scale);
         console_ = app_->experimenter();
@@ -46,6 +48,18 @@ protected:
     }
 
 private:
+    /// The participant's window looks as the studies say.
+    void dress(bool dark, double scale) {
+        const std::string view = std::string("\n[view]\ntheme = \"") + (dark ? "dark" : "light") +
+                                 "\"\ntext_percent = " + std::to_string(std::lround(100 * scale)) + "\n";
+        for (const auto& folder : std::filesystem::directory_iterator(protocols_)) {
+            const std::string path = folder.path() / "study.toml";
+            if (!std::filesystem::exists(path)) continue;
+            std::string text = textOf(path);
+            writeFile(path, text.substr(0, text.find("\n[view]\n")) + view);
+        }
+    }
+
     /// Every second condition is timed by the experimenter.
     static std::string askingByHand() {
         std::string text = smallStudy("asking") + kAsks;

@@ -43,8 +43,8 @@ protected:
 
     void open(const char* language, bool dark) {
         app_.reset();
-        app_ = std::make_unique<window::App>(
-            window::AppOptions{.protocols = protocols_, .data = data_, .language = language, .dark = dark});
+        app_ = std::make_unique<window::App>(window::AppOptions{
+            .protocols = protocols_, .data = data_, .language = language, .dark = dark, .quality = quality_});
         waitFor([&] { return app_->experimenter()->isExposed(); });
     }
 
@@ -89,10 +89,22 @@ protected:
         const QPointF centre = target->mapToScene({target->width() / 2, target->height() / 2});
         QTest::mouseClick(in, Qt::LeftButton, {}, centre.toPoint());
     }
-    /// Lists make their lines with the next picture.
+    /// Lists make their lines with the next picture; the list of studies is scrolled to what is asked for.
     void click(const char* name) {
-        waitFor([&] { return item(app_->experimenter(), name) != nullptr; });
+        waitFor([&] { return item(app_->experimenter(), name) != nullptr || scrollTo(name); });
         click(app_->experimenter(), name);
+    }
+
+    /// False: the list of studies does not hold it.
+    bool scrollTo(const char* name) {
+        QQuickItem* list = item(app_->experimenter(), "studies");
+        if (list == nullptr) return false;
+        for (int i = 0; i < list->property("count").toInt(); ++i) {
+            QMetaObject::invokeMethod(list, "positionViewAtIndex", Q_ARG(int, i), Q_ARG(int, 4));  // ListView.Contain
+            layOut(list);
+            if (item(list, name) != nullptr) return true;
+        }
+        return false;
     }
 
     void activate(QQuickWindow* window) {
@@ -137,6 +149,8 @@ protected:
     TempFolder folder_;
     std::string protocols_ = PASSUNG_SOURCE_DIR "/protocols";  // of the list of studies
     std::string data_ = folder_ / "data";
+    std::optional<presenter::PictureQuality> quality_ =
+        presenter::PictureQuality{true, 2, 1.0};  // none: as it is found
     std::unique_ptr<window::App> app_;
 };
 

@@ -2,6 +2,13 @@
 <!DOCTYPE TS>
 <TS version="2.1" language="de_DE">
 <context>
+    <name>TraceView</name>
+    <message>
+        <source>now</source>
+        <translation>jetzt</translation>
+    </message>
+</context>
+<context>
     <name>AccuracyView</name>
     <message>
         <source>Error over time of every measured setting</source>
@@ -34,6 +41,34 @@
 <context>
     <name>Console</name>
     <message>
+        <source>What was done is kept. The participant goes on with the trial that was cut off.</source>
+        <translation>Was getan ist, bleibt. Es geht mit dem abgebrochenen Durchgang weiter.</translation>
+    </message>
+    <message>
+        <source>Resume the session</source>
+        <translation>Sitzung fortsetzen</translation>
+    </message>
+    <message>
+        <source>Not now</source>
+        <translation>Nicht jetzt</translation>
+    </message>
+    <message>
+        <source>A session is running. Break it off and close?</source>
+        <translation>Eine Sitzung läuft. Abbrechen und schließen?</translation>
+    </message>
+    <message>
+        <source>What was done is kept, and the session can be resumed.</source>
+        <translation>Was getan ist, bleibt, und die Sitzung kann fortgesetzt werden.</translation>
+    </message>
+    <message>
+        <source>Break off and close</source>
+        <translation>Abbrechen und schließen</translation>
+    </message>
+    <message>
+        <source>Go on</source>
+        <translation>Weitermachen</translation>
+    </message>
+    <message>
         <source>Studies</source>
         <translation>Studien</translation>
     </message>
@@ -60,6 +95,14 @@
     <message>
         <source>Data</source>
         <translation>Daten</translation>
+    </message>
+    <message>
+        <source>Participant&apos;s screen</source>
+        <translation>Bildschirm der Versuchsperson</translation>
+    </message>
+    <message>
+        <source>Participant: %1</source>
+        <translation>Versuchsperson: %1</translation>
     </message>
 </context>
 <context>
@@ -220,6 +263,10 @@
 </context>
 <context>
     <name>LeavingView</name>
+    <message>
+        <source>In the backup as well</source>
+        <translation>Auch in der Sicherung</translation>
+    </message>
     <message>
         <source>How does the part of %1 end?</source>
         <translation>Wie endet die Teilnahme von %1?</translation>
@@ -553,22 +600,6 @@
 <context>
     <name>RunCommands</name>
     <message>
-        <source>Start</source>
-        <translation>Beginnen</translation>
-    </message>
-    <message>
-        <source>Continue</source>
-        <translation>Fortsetzen</translation>
-    </message>
-    <message>
-        <source>Pause</source>
-        <translation>Pause</translation>
-    </message>
-    <message>
-        <source>Ctrl+P</source>
-        <translation>Strg+P</translation>
-    </message>
-    <message>
         <source>Repeat</source>
         <translation>Wiederholen</translation>
     </message>
@@ -679,6 +710,34 @@
         <source>No scene is shown now.</source>
         <translation>Zurzeit wird keine Szene gezeigt.</translation>
     </message>
+    <message>
+        <source>Start</source>
+        <translation>Beginnen</translation>
+    </message>
+    <message>
+        <source>Continue</source>
+        <translation>Fortsetzen</translation>
+    </message>
+    <message>
+        <source>Pause</source>
+        <translation>Pause</translation>
+    </message>
+    <message>
+        <source>Ctrl+P</source>
+        <translation>Strg+P</translation>
+    </message>
+    <message>
+        <source>No X server: an emergency stop waits while this window draws.</source>
+        <translation>Kein X-Server: Ein Not-Halt wartet, solange dieses Fenster zeichnet.</translation>
+    </message>
+    <message>
+        <source>Pictures</source>
+        <translation>Bilder</translation>
+    </message>
+    <message>
+        <source>Picture&apos;s age</source>
+        <translation>Alter des Bildes</translation>
+    </message>
 </context>
 <context>
     <name>SessionList</name>
@@ -745,6 +804,10 @@
     <message>
         <source>The study has problems.</source>
         <translation>Die Studie hat Mängel.</translation>
+    </message>
+    <message>
+        <source>The study has a cue that nothing here can give to a person: watch a simulated participant.</source>
+        <translation>Die Studie hat einen Hinweisreiz, den hier nichts einem Menschen geben kann: Sehen Sie einer simulierten Person zu.</translation>
     </message>
     <message>
         <source>A session is running.</source>
@@ -953,12 +1016,20 @@
         <translation>%1: %2 Versuche in %3 Dateien</translation>
     </message>
     <message>
+        <source>%1: %2 attempts in %3 files; damaged and left out: %4, see missing.csv</source>
+        <translation>%1: %2 Versuche in %3 Dateien; beschädigt und ausgelassen: %4, siehe missing.csv</translation>
+    </message>
+    <message>
         <source>The export was cancelled; nothing was written.</source>
         <translation>Der Export wurde abgebrochen; nichts wurde geschrieben.</translation>
     </message>
 </context>
 <context>
     <name>participant</name>
+    <message>
+        <source>Keys: arrows and page up, down: move · W A S D Q E: turn · with Shift: slowly · Esc: stop</source>
+        <translation>Tasten: Pfeile und Bild auf, ab: bewegen · W A S D Q E: drehen · mit Umschalt: langsam · Esc: Stopp</translation>
+    </message>
     <message>
         <source>Your consent</source>
         <translation>Ihre Einwilligung</translation>
@@ -1263,8 +1334,20 @@
         <translation>durch Absturz unterbrochen</translation>
     </message>
     <message>
+        <source>%1&apos;s session of %2 was cut off after its trials.</source>
+        <translation>Die Sitzung von %1 vom %2 brach nach ihren Durchgängen ab.</translation>
+    </message>
+    <message>
+        <source>%1&apos;s session of %2 was cut off in trial %3 of %4.</source>
+        <translation>Die Sitzung von %1 vom %2 brach in Durchgang %3 von %4 ab.</translation>
+    </message>
+    <message>
         <source>A session is running.</source>
         <translation>Eine Sitzung läuft.</translation>
+    </message>
+    <message>
+        <source>The study has a cue that nothing here can give to a person; only simulated participants can take part.</source>
+        <translation>Die Studie hat einen Hinweisreiz, den hier nichts einem Menschen geben kann; nur simulierte Personen können teilnehmen.</translation>
     </message>
     <message>
         <source>They take part no more.</source>
@@ -1355,8 +1438,16 @@
         <translation>Das Protokoll behält, dass jemand gelöscht wurde, nicht wer.</translation>
     </message>
     <message>
-        <source>Backups and exports elsewhere are yours to delete.</source>
-        <translation>Sicherungen und Exporte an anderen Orten müssen Sie selbst löschen.</translation>
+        <source>Exports, and copies elsewhere, are yours to delete.</source>
+        <translation>Exporte und Kopien an anderen Orten müssen Sie selbst löschen.</translation>
+    </message>
+    <message>
+        <source>They were erased from the backup too.</source>
+        <translation>Auch in der Sicherung gelöscht.</translation>
+    </message>
+    <message>
+        <source>They could not be erased from the backup: %1</source>
+        <translation>In der Sicherung nicht gelöscht: %1</translation>
     </message>
     <message>
         <source>Their place in the design is free for the next participant.</source>
@@ -1910,6 +2001,18 @@
     <message>
         <source>Trial %1 of %2 waits for Start</source>
         <translation>Durchgang %1 von %2 wartet auf „Beginnen“</translation>
+    </message>
+    <message>
+        <source>%1 × %2 pixels, %3 samples each, shadows: %4 a second</source>
+        <translation>%1 × %2 Pixel, je %3 Abtastungen, Schatten: %4 je Sekunde</translation>
+    </message>
+    <message>
+        <source>%1 × %2 pixels, %3 samples each, no shadows: %4 a second</source>
+        <translation>%1 × %2 Pixel, je %3 Abtastungen, ohne Schatten: %4 je Sekunde</translation>
+    </message>
+    <message>
+        <source>waits for the participant&apos;s picture</source>
+        <translation>wartet auf das Bild der Versuchsperson</translation>
     </message>
 </context>
 </TS>

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "analysis/export/table.h"
+#include "study/store/rows.h"
+
+namespace passung::exporter {
+
+/// missing.csv: what is damaged in the database and so is not in the export.
+Table makeMissing(const std::vector<store::DamageRow>& damages);
+
+}  // namespace passung::exporter

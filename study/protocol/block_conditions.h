@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "study/protocol/document.h"
+#include "study/protocol/study_plan.h"
+
+namespace passung::protocol {
+
+/// Reads the `conditions` of the [[block]] tables: which of the plan's shared conditions each of its blocks has. An
+/// item is a condition's name, or a table of some of its levels for all conditions with these. A block with catch
+/// trials has all conditions of catch trials besides, unless it lists some. Errors: also a condition that is listed
+/// twice, and what tells the levels of a nuisance factor apart.
+/// @pre the plan's shared conditions are read, and its blocks from `tables`
+void chooseConditions(const std::vector<Node>& tables, const std::vector<Factor>& factors, StudyPlan& plan,
+                      Errors& errors);
+
+}  // namespace passung::protocol

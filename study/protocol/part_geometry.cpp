@@ -1,0 +1,110 @@
+#include "study/protocol/part_geometry.h"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "core/model/mesh_source.h"
+
+namespace passung::protocol {
+namespace {
+
+PartGeometry solid(const Vec3& size, double area) { return {size, area, false, nullptr, nullptr}; }
+
+PartGeometry roundExtent(double diameter, double length) {
+    return solid({diameter, diameter, length}, std::numbers::pi * diameter * (0.5 * diameter + length));
+}
+
+PartGeometry blockExtent(double x, double y, double z) { return solid({x, y, z}, 2.0 * (x * y + y * z + z * x)); }
+
+struct GeometryOf {
+    PartGeometry operator()(const model::Sphere& s) const {
+        return solid(Vec3::Constant(s.diameter), std::numbers::pi * s.diameter * s.diameter);
+    }
+    PartGeometry operator()(const model::Box& s) const { return blockExtent(s.width, s.depth, s.height); }
+    PartGeometry operator()(const model::Cylinder& s) const { return roundExtent(s.diameter, s.length); }
+    PartGeometry operator()(const model::Torus& s) const {
+        const double outer = s.diameter + s.tube_diameter;
+        return solid({outer, outer, s.tube_diameter},
+                     std::numbers::pi * std::numbers::pi * s.diameter * s.tube_diameter);
+    }
+    PartGeometry operator()(const model::Sheet& s) const {
+        PartGeometry sheet = solid({s.width, s.depth, 0.0}, s.width * s.depth);
+        sheet.sheet = true;
+        return sheet;
+    }
+    PartGeometry operator()(const model::Peg& s) const { return roundExtent(s.diameter, s.length); }
+    PartGeometry operator()(const model::SquarePeg& s) const { return blockExtent(s.width, s.depth, s.length); }
+    PartGeometry operator()(const model::KeyedPeg& s) const { return roundExtent(s.diameter, s.length); }
+    template <class Plate>
+    PartGeometry operator()(const Plate& plate) const {
+        return blockExtent(plate.width, plate.depth, plate.height);
+    }
+};
+
+std::unique_ptr<PartGeometry> asGeometry(model::ImportedMesh mesh) {
+    auto geometry = std::make_unique<PartGeometry>();
+    geometry->size = mesh.report.size;
+    geometry->area = mesh.report.area;
+    geometry->sheet = mesh.report.kind == model::SurfaceKind::OpenSheet;
+    geometry->mesh = std::make_shared<const model::TriangleMesh>(std::move(mesh.mesh));
+    geometry->tree = std::make_shared<const model::TriangleTree>(*geometry->mesh);
+    return geometry;
+}
+
+}  // namespace
+
+std::string geometryKey(const model::PartSpec& part) {
+    if (const auto* file = std::get_if<model::MeshFile>(&part.geometry))
+        return fmt::format("{} {:a}", file->path, file->metres_per_unit);
+    const auto& shape = std::get<model::Shape>(part.geometry);
+    std::string key = model::kindName(shape);
+    for (const double value : model::dimensions(shape)) key += fmt::format(" {:a}", value);
+    return key;
+}
+
+const PartGeometry* PartGeometries::of(const model::PartSpec& part) {
+    const auto [place, fresh] = geometries_.try_emplace(geometryKey(part));
+    if (fresh) {
+        if (const auto* shape = std::get_if<model::Shape>(&part.geometry))
+            place->second = std::make_unique<PartGeometry>(std::visit(GeometryOf{}, *shape));
+        else if (auto mesh = model::importMesh(std::get<model::MeshFile>(part.geometry), builds_))
+            place->second = asGeometry(*std::move(mesh));
+        else
+            problems_[place->first] = mesh.errors();
+    }
+    return place->second.get();
+}
+
+Errors PartGeometries::problems(const model::PartSpec& part) {
+    of(part);
+    const auto known = problems_.find(geometryKey(part));
+    return known != problems_.end() ? known->second : Errors{};
+}
+
+const std::vector<model::ThinFeature>& PartGeometries::thin(const model::PartSpec& part, double radius,
+                                                            model::ThinIn where) {
+    const auto [place, fresh] =
+        thin_.try_emplace(fmt::format("{} {:a} {}", geometryKey(part), radius, static_cast<int>(where)));
+    if (!fresh) return place->second;
+    if (const auto* shape = std::get_if<model::Shape>(&part.geometry))
+        return place->second = model::thinFeatures(*shape, radius, where);
+    const PartGeometry* geometry = of(part);
+    if (geometry == nullptr) return place->second;
+    if (geometry->sheet) return place->second = {{model::FeatureKind::Wall, 0.0, Vec3::Zero()}};
+    return place->second = model::thinFeatures(*geometry->mesh, *geometry->tree, radius, where);
+}
+
+double PartGeometries::depth(const std::string& question, const std::function<double()>& reckon) {
+    const auto known = depths_.find(question);
+    return known != depths_.end() ? known->second : depths_.emplace(question, reckon()).first->second;
+}
+
+double PartGeometries::signedDistance(const model::PartSpec& part, const Vec3& p) {
+    if (const auto* shape = std::get_if<model::Shape>(&part.geometry)) return model::signedDistance(*shape, p);
+    const PartGeometry& geometry = *of(part);
+    const double distance = geometry.tree->closest(p).distance;
+    return !geometry.sheet && geometry.tree->inside(p) ? -distance : distance;
+}
+
+}  // namespace passung::protocol

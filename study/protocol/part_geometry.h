@@ -1,0 +1,57 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/model/build_store.h"
+#include "core/model/scene_spec.h"
+#include "core/model/thin_features.h"
+#include "core/model/triangle_tree.h"
+
+namespace passung::protocol {
+
+/// A part as geometry alone, part frame.
+struct PartGeometry {
+    Vec3 size = Vec3::Zero();  // [m]
+    double area = 0.0;         // of the surface, of shapes roughly: without bores, chamfers, keys [m²]
+    bool sheet = false;        // has no inside
+    std::shared_ptr<const model::TriangleTree> tree;  // of a mesh; shared by the parts of one file
+    std::shared_ptr<const model::TriangleMesh> mesh;  // likewise
+    double longest() const { return size.maxCoeff(); }
+};
+
+/// The same text for the same geometry.
+std::string geometryKey(const model::PartSpec& part);
+
+/// What a part's shape, or the file of its mesh, is like: each looked at once for all conditions of a study.
+class PartGeometries {
+public:
+    /// `builds` reads meshes if it is a model::MeshSource; else this process does. It must outlive this.
+    explicit PartGeometries(model::BuildStore* builds = nullptr) : builds_(builds) {}
+
+    /// nullptr if the mesh cannot be read: problems() says why.
+    const PartGeometry* of(const model::PartSpec& part);
+    Errors problems(const model::PartSpec& part);
+
+    /// See model::thinFeatures; nothing of a mesh that cannot be read.
+    const std::vector<model::ThinFeature>& thin(const model::PartSpec& part, double radius, model::ThinIn where);
+
+    /// Signed distance of `p` (part frame) from the part [m], positive outside; of a sheet unsigned. @pre of(part)
+    double signedDistance(const model::PartSpec& part, const Vec3& p);
+
+    /// How deep parts stand in each other [m], by whatever tells the question from others; `reckon` is asked once.
+    double depth(const std::string& question, const std::function<double()>& reckon);
+
+private:
+    model::BuildStore* builds_;
+    std::map<std::string, std::unique_ptr<PartGeometry>> geometries_;
+    std::map<std::string, Errors> problems_;  // of those that are null
+    std::map<std::string, std::vector<model::ThinFeature>> thin_;
+    std::map<std::string, double> depths_;
+};
+
+}  // namespace passung::protocol

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "study/measures/cues.h"
+#include "study/protocol/study_plan.h"
+
+namespace passung::session {
+
+/// What commands a condition's cues have.
+inline measures::CueSettings cueSettings(const protocol::Cues& cues) {
+    return {cues.visual,     cues.vibrotactile, cues.audio,        cues.full_depth,
+            cues.full_speed, cues.sound_decay,  cues.masking_noise};
+}
+
+}  // namespace passung::session

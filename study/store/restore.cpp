@@ -1,0 +1,225 @@
+#include "study/store/restore.h"
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+
+#include "study/store/audit.h"
+#include "study/store/erase.h"
+#include "study/store/heal.h"
+#include "study/store/merge.h"
+#include "study/store/open_database.h"
+#include "study/store/private_files.h"
+#include "study/store/process_lock.h"
+#include "study/store/pull.h"
+#include "study/store/revisions.h"
+#include "study/store/tombstone.h"
+#include "study/store/untouched.h"
+#include "study/store/verify.h"
+#include "study/store/workshop.h"
+
+namespace passung::store {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSource = "source";
+
+bool isServer(const std::string& from) { return from.starts_with("postgresql://") || from.starts_with("postgres://"); }
+
+/// A private copy of this program's schema, so that the source stays as it is.
+void copySource(const std::string& from, const std::string& to, const std::string& now_utc) {
+    if (!fs::exists(from)) throw std::runtime_error(from + ": no such file");
+    openUntouched(from)->copyTo(to);
+    Database copy(to, OpenMode::ReadWrite);
+    const SchemaState state = inspectSchema(copy);
+    if (state == SchemaState::Older) upgradeSchema(copy, now_utc);
+    if (state != SchemaState::Older && state != SchemaState::Current)
+        throw std::runtime_error(from + ": not a Passung database that this program can read");
+    if (!pagesAreSound(copy)) throw std::runtime_error(from + ": is damaged itself");
+}
+
+/// The file as it is, of this program's schema. False if its pages are damaged. Refuses what is no such database.
+bool copyDamaged(const std::string& path, const std::string& to, const std::string& now_utc) {
+    try {
+        Database(path, OpenMode::ReadWrite).copyTo(to);
+        const Database copy(to, OpenMode::ReadWrite);
+        const SchemaState state = inspectSchema(copy);
+        if (state == SchemaState::Older) upgradeSchema(copy, now_utc);
+        if (state != SchemaState::Older && state != SchemaState::Current)
+            throw std::runtime_error("not a Passung database that this program can read");
+        return pagesAreSound(copy);
+    } catch (const SqliteError& error) {
+        if (!isDamage(error)) throw;
+        return false;
+    }
+}
+
+/// An index that does not fit its table is made anew; where even that is refused, a row is still damaged.
+void rebuildIndices(const Database& database) {
+    try {
+        database.execute("REINDEX");
+    } catch (const SqliteError&) {
+        // two rows of one name: healing one of them comes first
+    }
+}
+
+/// Rows of sessions that are gone while what belongs to them is there.
+void bringBackSessions(const Database& database, std::vector<std::string>& healed) {
+    Statement gone = database.prepare(
+        "SELECT session_id, participant_id || ', session ' || ordinal FROM source.session WHERE session_id NOT "
+        "IN(SELECT "
+        "session_id FROM main.session) AND session_id IN(SELECT session_id FROM main.trial_plan) AND participant_id "
+        "IN(SELECT participant_id FROM main.participant)");
+    while (gone.step()) {
+        // Under another id it would be there twice.
+        database
+            .prepare(
+                "DELETE FROM main.session WHERE (participant_id, ordinal)=(SELECT participant_id, ordinal FROM "
+                "source.session WHERE session_id=?) AND session_id NOT IN(SELECT session_id FROM main.trial_plan)")
+            .bind(gone.text(0))
+            .run();
+        database.prepare("INSERT INTO main.session SELECT * FROM source.session WHERE session_id=?")
+            .bind(gone.text(0))
+            .run();
+        healed.push_back(gone.text(1));
+    }
+}
+
+/// A detail that is no JSON any more is no reason to heal nothing else.
+void healAuditIfRead(const Database& database, std::vector<std::string>& healed) {
+    try {
+        for (std::string& line : healAudit(database, kSource)) healed.push_back(std::move(line));
+    } catch (const SqliteError& error) {
+        if (isOfTheDisk(error)) throw;
+    }
+}
+
+void heal(const Database& database, const std::string& source, std::vector<std::string>& healed) {
+    database.prepare(std::string("ATTACH ? AS ") + kSource).bind(source).run();
+    {
+        Transaction transaction(database);
+        database.execute("PRAGMA defer_foreign_keys=ON");
+        rebuildIndices(database);
+        Healer healer(database, kSource);
+        healed = healer.healRows();
+        healAuditIfRead(database, healed);
+        bringBackSessions(database, healed);
+        std::vector<std::string> ids;
+        Statement both = database.prepare(
+            "SELECT session_id FROM main.session JOIN source.session USING(session_id) ORDER BY session_id");
+        while (both.step()) ids.push_back(both.text(0));
+        for (const std::string& id : ids)
+            for (std::string& line : healer.healSession(id)) healed.push_back(std::move(line));
+        rebuildIndices(database);
+        transaction.commit();
+    }
+    database.execute(std::string("DETACH ") + kSource);
+}
+
+/// Whoever was erased from the damaged file, as far as it can still tell, is erased from its source.
+void leaveOutErased(const Workshop& workshop, const OpenOptions& options, RestoreReport& report) {
+    std::map<std::string, std::string> erased;
+    try {
+        const Database part(workshop.part, OpenMode::ReadWrite);
+        part.prepare("ATTACH ? AS damaged").bind(workshop.damaged).run();
+        erased = erasedPeople(part, "damaged", "main");
+    } catch (const SqliteError& error) {
+        if (isOfTheDisk(error)) throw;
+        report.remaining.push_back(std::string("who was erased from it cannot be read (") + error.what() +
+                                   "): whoever it was has to be erased again");
+    }
+    if (erased.empty()) return;
+    const OpenedDatabase opened = openForWriting(workshop.part, options);
+    if (!opened.database) throw std::runtime_error(opened.errors.front().message);
+    for (const auto& [code, surrogate] : erased)
+        eraseParticipant(*opened.database, workshop.part, code, {"restore", options.now_utc});
+}
+
+/// Of a file whose pages are damaged: the source, and what of the file can still be read, is intact and newer.
+void makeAnew(const std::string& path, const Workshop& workshop, const OpenOptions& options, RestoreReport& report) {
+    report.anew = true;
+    Database(workshop.source, OpenMode::ReadWrite).copyTo(workshop.part);
+    const auto merged = mergeDamaged(path, workshop.damaged, workshop.part, options);
+    if (!merged) throw std::runtime_error(merged.errors().front().message);
+    report.remaining = merged->damaged;
+    for (const std::string& session : merged->unfinished)
+        report.remaining.push_back(session + ": had not ended, is not taken over");
+    report.told = merged->conflicts;
+    for (const std::string& who : merged->moved_places)
+        report.told.push_back(who +
+                              ": the same row of the square in a further replicate, for another one has the place");
+    if (merged->sessions + merged->replaced > 0)
+        report.healed.push_back(std::to_string(merged->sessions + merged->replaced) +
+                                " sessions that are newer than the source were taken over");
+    leaveOutErased(workshop, options, report);
+}
+
+/// Whoever could open the file can open it afterwards.
+void putInPlace(const std::string& path, const Workshop& workshop, RestoreReport& report) {
+    shareLike(path, workshop.part);
+    if (report.anew) {
+        report.kept = path + ".damaged";
+        if (fs::exists(report.kept)) throw std::runtime_error(report.kept + " is there already: move it away first");
+        fs::rename(path, report.kept);
+        removeDatabase(path);
+    }
+    fs::rename(workshop.part, path);
+}
+
+/// A file of another kind is not taken for a damaged database: of the first 16 bytes, which all databases share, half
+/// are enough.
+bool beginsAsDatabase(const std::string& path) {
+    constexpr std::string_view kMagic("SQLite format 3\0", 16);
+    std::array<char, kMagic.size()> head{};
+    std::ifstream(path, std::ios::binary).read(head.data(), head.size());
+    int same = 0;
+    for (std::size_t i = 0; i < kMagic.size(); ++i) same += head[i] == kMagic[i] ? 1 : 0;
+    return 2 * same >= static_cast<int>(kMagic.size());
+}
+
+}  // namespace
+
+Result<RestoreReport> restoreDatabase(const std::string& database, const std::string& from,
+                                      const OpenOptions& options) {
+    const std::string path = behindLink(database);
+    if (!fs::exists(path)) return Error{.message = "no such file", .file = path};
+    if (!beginsAsDatabase(path)) return Error{.message = "is no database; nothing is restored over it", .file = path};
+    const auto lock = ProcessLock::take(path);
+    if (!lock) return lock.errors();
+    return guarded(path, [&] {
+        const Workshop workshop(path);
+        RestoreReport report;
+        const bool sound = copyDamaged(path, workshop.part, options.now_utc);
+        if (fs::exists(path + "-wal")) throw std::runtime_error("another program has this database open; end it first");
+        std::size_t before = 0;
+        if (sound) {
+            const auto found = verifyDatabase(workshop.part);
+            if (!found) throw std::runtime_error(found.errors().front().message);
+            before = found->damages.size();
+            if (before == 0) return report;
+        } else if (isServer(from)) {
+            throw std::runtime_error("its pages are damaged: only a backup or another database can replace it");
+        }
+        if (isServer(from))
+            pullSessions(from, workshop.part, workshop.source, options.now_utc);
+        else
+            copySource(from, workshop.source, options.now_utc);
+        if (sound) {
+            heal(Database(workshop.part, OpenMode::ReadWrite), workshop.source, report.healed);
+        } else {
+            std::error_code none;  // where not even its first page can be read
+            fs::rename(workshop.part, workshop.damaged, none);
+            makeAnew(path, workshop, options, report);
+        }
+        const auto after = verifyDatabase(workshop.part);
+        if (!after) throw std::runtime_error("could not be healed: " + after.errors().front().message);
+        for (const std::string& damage : after->damages) report.remaining.push_back(damage);
+        if (!report.healed.empty() || report.anew || report.remaining.size() < before)
+            putInPlace(path, workshop, report);
+        return report;
+    });
+}
+
+}  // namespace passung::store

@@ -1,0 +1,48 @@
+#include "core/base/regular_file.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "tests/support/temp_folder.h"
+
+namespace passung {
+namespace {
+
+TEST(RegularFile, IsReadWholeUpToItsLimit) {
+    // Truth: closed form.
+    const test::TempFolder folder;
+    const std::string content("a\0b\n\xff", 5);
+    std::ofstream(folder / "a", std::ios::binary) << content;
+    std::ofstream(folder / "empty", std::ios::binary) << "";
+    const auto read = readRegularFile(folder / "a");
+    ASSERT_TRUE(read);
+    EXPECT_EQ(*read, content);
+    EXPECT_EQ(*readRegularFile(folder / "a", 5), content);
+    EXPECT_FALSE(readRegularFile(folder / "a", 4));
+    EXPECT_EQ(*readRegularFile(folder / "empty"), "");
+    EXPECT_FALSE(readRegularFile("/proc/self/maps", 10)) << "states no size";
+    EXPECT_TRUE(readRegularFile("/proc/self/status"));
+}
+
+TEST(RegularFile, IsNoPipeNoDeviceNoFolder) {
+    // Truth: invariant (none of them is waited for: the test ends).
+    const test::TempFolder folder;
+    ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+    std::filesystem::create_symlink("pipe", folder.path() / "link");
+    for (const std::string& path :
+         {folder / "pipe", folder / "link", std::string("/dev/zero"), folder.path().string()}) {
+        const auto read = readRegularFile(path);
+        ASSERT_FALSE(read) << path;
+        EXPECT_NE(read.errors()[0].message.find("regular file"), std::string::npos) << path;
+        EXPECT_TRUE(whyNoRegularFile(path));
+    }
+    EXPECT_FALSE(readRegularFile(folder / "absent"));
+    EXPECT_FALSE(whyNoRegularFile(folder / "absent"));
+}
+
+}  // namespace
+}  // namespace passung

@@ -1,0 +1,503 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <tuple>
+
+#include "core/model/shape.h"
+#include "study/protocol/protocol_reader.h"
+#include "tests/study/protocol/known_names.h"
+
+namespace passung::protocol {
+namespace {
+
+constexpr double kMm = 1e-3;
+
+const std::string kBlock = R"(shape = { kind = "box", width = 20, depth = 20, height = 20 })";
+const std::string kPlate =
+    R"(shape = { kind = "bore_plate", width = 60, depth = 60, height = 30, bore_diameter = 21, bore_depth = 25 })";
+const std::string kPeg = R"(shape = { kind = "peg", diameter = 20, length = 50 })";
+const std::string kInsert = "type = \"peg_in_hole\"\ntarget = \"still\"\n";
+const std::string kThrough = "type = \"narrow_passage\"\ntarget = \"still\"\n";
+const std::string kLine = "type = \"contour_following\"\ntarget = \"still\"\n";
+
+std::string place(const std::string& position, const std::string& more = {}) {
+    return "type = \"free_placement\"\nposition = " + position + "\n" + more;
+}
+
+std::string line(const std::string& points, const std::string& more = {}) {
+    return kLine + "points = " + points + "\n" + more;
+}
+
+/// A study as its author writes it; what is left out is usual.
+struct Study {
+    std::string unit = "mm";
+    std::string held = kBlock, held_pose = "position = [0, 0, 30]";
+    std::string still = kPlate, still_pose = "position = [0, 0, 0]";
+    std::string device = "sigma7";
+    std::string task = place("[20, 0, 40]");
+    std::string contact = {}, registration = {}, gate = {}, more = {};
+
+    std::string text() const {
+        std::string scene =
+            "passung = 1\n[study]\nname = \"s\"\nversion = \"1\"\nseed = 1\nparticipants = 4\n[scene]\n";
+        scene += "unit = \"" + unit + "\"\n[[scene.part]]\nname = \"still\"\n" + still + "\npose = { " + still_pose +
+                 " }\n[[scene.part]]\nname = \"held\"\nheld = true\n" + held + "\npose = { " + held_pose + " }\n";
+        scene += "[scene.contact]\n" + contact + "\n[scene.device]\npreset = \"" + device + "\"\n";
+        scene += "[scene.registration]\n" + registration + "\n[scene.start_gate]\n" + gate + "\n[task]\n" + task;
+        return scene + "\n[[block]]\nname = \"main\"\norder = \"listed\"\n" + more;
+    }
+};
+
+/// Meshes that the studies name, in a folder that goes with it.
+class Folder {
+public:
+    Folder() : path_(std::filesystem::temp_directory_path() / ("passung_doable_" + std::to_string(getpid()))) {
+        std::filesystem::create_directories(path_);
+    }
+    ~Folder() { std::filesystem::remove_all(path_); }
+    std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+    /// A block of 40 x 40 x 10 mm, top at z = 0, and another shape on it, in one OFF file [mm].
+    void write(const std::string& name, const model::Shape& shape, double height) const {
+        model::TriangleMesh mesh = model::tessellate(model::Box{40, 40, 10}, 0.01);
+        for (Vec3& v : mesh.vertices) v.z() -= 5;
+        const model::TriangleMesh other = model::tessellate(shape, 0.01);
+        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+        for (const Vec3& v : other.vertices) mesh.vertices.emplace_back(v + Vec3(0, 0, 0.25 * height));
+        for (const auto& t : other.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+        std::ofstream out(file(name));
+        out << "OFF\n" << mesh.vertices.size() << ' ' << mesh.triangles.size() << " 0\n";
+        for (const Vec3& v : mesh.vertices) out << v.x() << ' ' << v.y() << ' ' << v.z() << '\n';
+        for (const auto& t : mesh.triangles) out << "3 " << t[0] << ' ' << t[1] << ' ' << t[2] << '\n';
+    }
+
+private:
+    std::filesystem::path path_;
+};
+
+/// What check says of it: errors, what keeps people out, warnings; a line each.
+std::vector<std::string> told(const Study& study, const Folder& folder) {
+    const std::string path = folder.file("s.toml");
+    std::ofstream(path) << study.text();
+    const Examined examined = examineProtocol(path, knownDevices(), knownMeasures());
+    std::vector<std::string> lines;
+    for (const Errors& errors : {examined.errors, examined.for_people})
+        for (const Error& error : errors) lines.push_back(toString(error));
+    lines.insert(lines.end(), examined.plan.warnings.begin(), examined.plan.warnings.end());
+    return lines;
+}
+
+struct Row {
+    const char* name;
+    Study study;
+    std::vector<std::string> says;  // all of it in one line
+};
+
+std::string staircase(const std::string& levels, const std::string& side) {
+    return R"([[staircase]]
+name = "threshold"
+block = "main"
+key = "task.comparison.contact.stiffness_N_per_m"
+levels = )" +
+           levels +
+           "\nrule = \"psi\"\nguess = 0.5\nsigma_low = 10\nsigma_high = 300\nmax_trials = 20\n"
+           "tracks = [{ name = \"a\" }]\nmeasure = \"correct\"\n" +
+           side + " = 0.5\n";
+}
+
+Study pair(const std::string& levels, const std::string& side) {
+    return {.task =
+                "type = \"discrimination_pair\"\ntarget = \"still\"\nquestion = \"Which was stiffer?\"\n"
+                "comparison = { \"contact.stiffness_N_per_m\" = 1000 }\n",
+            .contact = "stiffness_N_per_m = 800",
+            .gate = "position_tolerance_mm = 3\nhold_ms = 200",
+            .more = staircase(levels, side)};
+}
+
+std::string consent(const std::string& text) {
+    return "[[consent]]\nclause = \"data\"\n[consent.text]\nen = \"" + text + "\"\n";
+}
+
+const std::string kPin = "mesh = \"pin.off\"", kFin = "mesh = \"fin.off\"";
+
+std::vector<Row> undoable() {
+    const std::string small = R"(shape = { kind = "box", width = 0.02, depth = 0.02, height = 0.03 })";
+    const std::string far_plate = "position = [0, 0, -60]";
+    return {
+        {"goal 5 m away", {.task = place("[5000, 0, 30]")}, {"task.position", "5000 mm", "sigma7", "75 mm"}},
+        {"goal 40 cm off on a device of 4 cm",
+         {.device = "falcon", .task = place("[0, 400, 30]")},
+         {"task.position", "falcon", "40 mm"}},
+        {"goal just outside", {.task = place("[0, 0, 81]")}, {"task.position", "81 mm"}},
+        {"goal in inches",
+         {.unit = "in",
+          .held = R"(shape = { kind = "sphere", diameter = 1 })",
+          .held_pose = "position = [0, 0, 1]",
+          .still = R"(shape = { kind = "box", width = 2, depth = 2, height = 0.5 })",
+          .task = place("[4, 0, 1]")},
+         {"task.position", "104.7 mm"}},
+        {"goal in the plate", {.task = place("[0, 25, -15]")}, {"task.position", "deep in part still"}},
+        {"goal in a mesh",
+         {.still = "mesh = \"post.off\"", .task = place("[0, 0, 5]", "position_tolerance_mm = 2\n")},
+         {"task.position", "deep in part still"}},
+        {"start in a mesh",
+         {.held_pose = "position = [0, 0, 8]", .still = "mesh = \"post.off\""},
+         {"pose", "deep in part still"}},
+        {"start out of reach", {.held_pose = "position = [0, 0, 90]"}, {"scene.part.held.pose", "90 mm"}},
+        {"start out of reach in cm",
+         {.unit = "cm",
+          .held = R"(shape = { kind = "box", width = 2, depth = 2, height = 2 })",
+          .held_pose = "position = [0, 0, 12]",
+          .still = R"(shape = { kind = "box", width = 6, depth = 6, height = 1 })",
+          .device = "touch",
+          .task = place("[0, 0, 4]")},
+         {"pose", "120 mm", "touch"}},
+        {"base elsewhere", {.registration = "position = [200, 0, 0]"}, {"pose", "202.2 mm"}},
+        {"scaled down", {.registration = "scale = 0.2"}, {"pose", "150 mm", "workspace"}},
+        {"handle far from the part", {.registration = "handle_position = [0, 0, 120]"}, {"pose", "90 mm"}},
+        {"turn on a handle that cannot",
+         {.device = "falcon", .task = place("[0, 10, 30]", "rotation_deg = [0, 0, 40]\n")},
+         {"task.rotation_deg", "40 degrees", "falcon"}},
+        {"peg that starts tilted on a handle that cannot turn",
+         {.held = kPeg,
+          .held_pose = "position = [0, 0, 20], rotation_deg = [30, 0, 0]",
+          .device = "falcon",
+          .task = kInsert},
+         {"task.target", "30 degrees"}},
+        {"placement finer than encoders",
+         {.device = "falcon", .task = place("[0, 5, 30]", "position_tolerance_mm = 0.05\n")},
+         {"task.position_tolerance_mm", "0.064 mm"}},
+        {"gate finer than encoders",
+         {.device = "touch", .gate = "position_tolerance_mm = 0.02\nhold_ms = 100"},
+         {"start_gate.position_tolerance_mm", "0.055 mm"}},
+        {"line 40 cm away", {.task = line("[[20, 0, 0], [400, 0, 0]]")}, {"task.points", "400 mm"}},
+        {"line in the plate", {.task = line("[[20, 0, -12], [25, 0, 0]]")}, {"task.points", "deep in part still"}},
+        {"line pressed too hard",
+         {.device = "touch", .task = line("[[20, 0, 0], [25, 0, 0]]", "force_N = 5\n")},
+         {"task.force_N", "touch", "3.3 N"}},
+        {"line too fast",
+         {.task = line("[[20, -25, 0], [20, 25, 0], [25, -25, 0], [25, 25, 0]]", "timeout_s = 0.1\n")},
+         {"task.timeout_s", "too short"}},
+        {"goal too fast", {.task = place("[0, 50, 30]", "timeout_s = 0.02\n")}, {"task.timeout_s", "too short"}},
+        {"passage longer than the reach",
+         {.held = R"(shape = { kind = "sphere", diameter = 10 })",
+          .task = kThrough + "passage_length_mm = 200\npassage_width_mm = 8\n"},
+         {"task.target", "end of the passage"}},
+        {"passage too narrow",
+         {.held = R"(shape = { kind = "sphere", diameter = 30 })",
+          .still =
+              R"(shape = { kind = "bore_plate", width = 60, depth = 60, height = 20, bore_diameter = 21, bore_depth = "through" })",
+          .task = kThrough + "passage_length_mm = 20\npassage_width_mm = 2\n"},
+         {"task.target", "does not fit through"}},
+        {"bore out of reach",
+         {.held = kPeg, .held_pose = "position = [20, 0, 30]", .still_pose = far_plate, .task = kInsert},
+         {"task.target", "79 mm"}},
+        {"a slot that takes a quarter turn on a handle that cannot turn",
+         {.held = R"(shape = { kind = "box", width = 18, depth = 8, height = 8 })",
+          .still =
+              R"(shape = { kind = "square_bore_plate", width = 60, depth = 60, height = 20, pocket_width = 10, pocket_depth = 20, bore_depth = "through" })",
+          .device = "falcon",
+          .task = kThrough + "passage_length_mm = 20\npassage_width_mm = 4\nleave_radius_mm = 5\n"},
+         {"task.target", "does not fit through"}},
+        {"a pair that nobody can touch",
+         [] {
+             Study study = pair("[900, 1000, 1100]", "above");
+             study.still_pose = "position = [0, 0, -300]";
+             return study;
+         }(),
+         {"task.target", "within"}},
+        {"something in the bore",
+         {.held = kPeg,
+          .task = kInsert,
+          .more = "[[scene.part]]\nname = \"plug\"\nshape = { kind = \"sphere\", diameter = 12 }\npose = { position = "
+                  "[0, 0, -16] }\n"},
+         {"task.target", "deep in part plug"}},
+        {"held longer than it lasts", {.held = kPeg, .task = kInsert + "hold_s = 40\n"}, {"task.hold_s"}},
+        {"clock that never starts",
+         {.task = place("[0, 20, 40]", "leave_radius_mm = 300\n")},
+         {"task.leave_radius_mm"}},
+        {"metres under mm",
+         {.held = small,
+          .held_pose = "position = [0, 0, 0.06]",
+          .still = R"(shape = { kind = "box", width = 0.06, depth = 0.06, height = 0.03 })",
+          .task = place("[0.01, 0, 0.05]", "position_tolerance_mm = 0.005\n")},
+         {"held part held", "0.03 mm", "\"m\" meant"}},
+        {"centimetres under mm",
+         {.held = R"(shape = { kind = "box", width = 1, depth = 1, height = 1.9 })",
+          .held_pose = "position = [0, 0, 4]",
+          .still = R"(shape = { kind = "box", width = 6, depth = 6, height = 1 })",
+          .task = place("[1, 0, 3]", "position_tolerance_mm = 0.5\n")},
+         {"held part held", "1.9 mm", "meant"}},
+        {"millimetres under m",
+         {.unit = "m",
+          .held = R"(shape = { kind = "box", width = 3, depth = 0.02, height = 0.02 })",
+          .held_pose = "position = [0, 0, 0.05]",
+          .still = R"(shape = { kind = "box", width = 0.06, depth = 0.06, height = 0.03 })",
+          .device = "hug",
+          .task = place("[0.1, 0, 0.1]")},
+         {"held part held", "3000 mm"}},
+        {"comparisons below the reference", pair("[200, 400, 600]", "above"), {"threshold", "200", "reference, 800"}},
+        {"comparisons on both sides", pair("[700, 900, 1100]", "above"), {"threshold", "700", "reference, 800"}},
+        {"comparisons above, fewer correct",
+         pair("[900, 1000, 1100]", "below"),
+         {"threshold", "900", "reference, 800"}},
+        {"date not filled in", {.more = consent("Deleted until YYYY-MM-DD.")}, {"consent.data.text.en", "YYYY-MM-DD"}},
+        {"German date not filled in", {.more = consent("Bis zum TT.MM.JJJJ.")}, {"TT.MM.JJJJ"}},
+        {"English date not filled in", {.more = consent("By DD/MM/YYYY at the latest")}, {"DD/MM/YYYY"}},
+        {"pin between the points",
+         {.still = kPin, .contact = "spacing_mm = 1\ntwo_way = false"},
+         {"part.still", "a pin ", "slips", "two_way"}},
+        {"fin between the points",
+         {.still = kFin, .contact = "spacing_mm = 1\ntwo_way = false"},
+         {"part.still", "wall 0.5 mm"}},
+        {"fin lost in cells",
+         {.still = kFin, .contact = "cell_mm = 0.5"},
+         {"part.still", "wall 0.5 mm", "cells of 0.5 mm"}},
+        {"plate lost in cells",
+         {.still = R"(shape = { kind = "box", width = 60, depth = 60, height = 0.8 })", .contact = "cell_mm = 0.5"},
+         {"part.still", "wall 0.8 mm", "cell_mm"}},
+        {"thin rim of a bore",
+         {.still =
+              R"(shape = { kind = "bore_plate", width = 22, depth = 60, height = 30, bore_diameter = 21, bore_depth = 25 })",
+          .contact = "two_way = false"},
+         {"part.still", "wall 0.5 mm"}},
+        {"sheet one way",
+         {.still = R"(shape = { kind = "sheet", width = 60, depth = 60 })", .contact = "two_way = false"},
+         {"part.still", "wall 0 mm"}},
+        {"wall below the tolerance",
+         {.still = R"(shape = { kind = "box", width = 60, depth = 60, height = 0.1 })",
+          .contact = "tolerance_um = 100"},
+         {"part.still", "wall 0.1 mm", "tolerance"}},
+        {"needle on needle",
+         {.held = R"(shape = { kind = "cylinder", diameter = 0.3, length = 40 })",
+          .still = R"(shape = { kind = "cylinder", diameter = 0.3, length = 40 })",
+          .still_pose = "position = [30, 0, -10]",
+          .contact = "spacing_mm = 2\ntwo_way = true"},
+         {"part.still", "pin 0.3 mm", "held part"}},
+        {"too stiff by its scale",
+         {.device = "touch", .contact = "stiffness_N_per_m = 300", .registration = "scale = 2"},
+         {"stiffness_N_per_m", "scale of 2"}},
+        {"damped too much by its scale",
+         {.contact = "damping_Ns_per_m = 5", .registration = "scale = 2"},
+         {"damping_Ns_per_m", "2.5"}},
+    };
+}
+
+std::vector<Row> odd() {
+    const std::string ball = R"(shape = { kind = "sphere", diameter = 10 })";
+    return {
+        {"a small device scaled up",
+         {.device = "falcon", .task = place("[150, 0, 40]"), .registration = "scale = 5"},
+         {}},
+        {"a large one scaled down", {.device = "hug", .registration = "scale = 0.2"}, {}},
+        {"stiff for its scale",
+         {.task = place("[10, 0, 32]"),
+          .contact = "stiffness_N_per_m = 2000\ndamping_Ns_per_m = 10",
+          .registration = "scale = 0.5"},
+         {}},
+        {"soft for its scale",
+         {.device = "touch", .contact = "stiffness_N_per_m = 100", .registration = "scale = 3"},
+         {}},
+        {"everything a metre away",
+         {.held_pose = "position = [1000, 0, 30]",
+          .still_pose = "position = [1000, 0, 0]",
+          .task = place("[1020, 0, 40]"),
+          .registration = "position = [1000, 0, 0]"},
+         {}},
+        {"inches",
+         {.unit = "in",
+          .held = R"(shape = { kind = "sphere", diameter = 1 })",
+          .held_pose = "position = [0, 0, 1]",
+          .still = R"(shape = { kind = "box", width = 2, depth = 2, height = 0.5 })",
+          .task = place("[1, 0, 1]")},
+         {}},
+        {"micrometres",
+         {.unit = "um",
+          .held = R"(shape = { kind = "sphere", diameter = 10000 })",
+          .held_pose = "position = [0, 0, 20000]",
+          .still = R"(shape = { kind = "box", width = 40000, depth = 40000, height = 20000 })",
+          .task = place("[20000, 0, 30000]")},
+         {}},
+        {"metres",
+         {.unit = "m",
+          .held = R"(shape = { kind = "sphere", diameter = 0.02 })",
+          .held_pose = "position = [0, 0, 0.05]",
+          .still = R"(shape = { kind = "torus", diameter = 0.04, tube_diameter = 0.01 })",
+          .task = place("[0, 0, 0.03]")},
+         {}},
+        {"a needle of 2.5 mm",
+         {.held = R"(shape = { kind = "cylinder", diameter = 0.4, length = 2.5 })",
+          .held_pose = "position = [0, 0, 20]",
+          .still = R"(shape = { kind = "box", width = 3, depth = 3, height = 3 })",
+          .task = place("[0, 3, 10]", "leave_radius_mm = 1\n")},
+         {}},
+        {"plate and peg tilted alike",
+         {.held = kPeg,
+          .held_pose = "position = [0, -20, 35], rotation_deg = [30, 0, 0]",
+          .still_pose = "position = [0, 0, 0], rotation_deg = [30, 0, 0]",
+          .task = kInsert},
+         {}},
+        {"tilted alike on a handle that cannot turn",
+         {.held = kPeg,
+          .held_pose = "position = [0, -10, 25], rotation_deg = [0, 20, 0]",
+          .still_pose = "position = [0, 0, 0], rotation_deg = [0, 20, 0]",
+          .device = "falcon",
+          .task = kInsert + "leave_radius_mm = 5\n"},
+         {}},
+        {"goal that rests on the plate", {.task = place("[20, 20, 10]")}, {}},
+        {"goal a little too low", {.task = place("[20, 20, 8]", "position_tolerance_mm = 4\n")}, {}},
+        {"line down the side of the plate", {.held = ball, .task = line("[[30, 0, 0], [30, 0, -30]]")}, {}},
+        {"line of a ball's centre above the plate", {.held = ball, .task = line("[[12, 0, 5], [25, 10, 5]]")}, {}},
+        {"pin with what follows from it", {.still = kPin}, {}},
+        {"fin with what follows from it", {.still = kFin}, {}},
+        {"sheet with what follows from it", {.still = R"(shape = { kind = "sheet", width = 60, depth = 60 })"}, {}},
+        {"thin plate with what follows from it",
+         {.still = R"(shape = { kind = "box", width = 60, depth = 60, height = 0.4 })"},
+         {}},
+        {"fin with fine cells", {.still = kFin, .contact = "cell_mm = 0.2"}, {}},
+        {"comparisons above the reference", pair("[900, 1000, 1100]", "above"), {}},
+        {"comparisons below, fewer correct", pair("[200, 400, 600]", "below"), {}},
+        {"capital letters in the consent",
+         {.more = consent("My CT-data of 2027-03-31, AB.CD, A-B-C and DLR/TUM/UPM.")},
+         {}},
+        {"a slot that takes a quarter turn",
+         {.held = R"(shape = { kind = "box", width = 18, depth = 8, height = 8 })",
+          .still =
+              R"(shape = { kind = "square_bore_plate", width = 60, depth = 60, height = 20, pocket_width = 10, pocket_depth = 20, bore_depth = "through" })",
+          .task = kThrough + "passage_length_mm = 20\npassage_width_mm = 4\n"},
+         {}},
+        {"a bar that goes through on end",
+         {.held = R"(shape = { kind = "box", width = 40, depth = 8, height = 8 })",
+          .held_pose = "position = [0, 0, 40]",
+          .still =
+              R"(shape = { kind = "square_bore_plate", width = 60, depth = 60, height = 20, pocket_width = 10, pocket_depth = 20, bore_depth = "through" })",
+          .task = kThrough + "passage_length_mm = 20\npassage_width_mm = 4\n"},
+         {}},
+        {"a round peg that starts turned, held beside its axis",
+         {.held = kPeg,
+          .held_pose = "position = [0, 0, 30], rotation_deg = [0, 0, 180]",
+          .task = kInsert,
+          .registration = "position = [50, 0, 20]\nhandle_position = [50, 0, 0]"},
+         {}},
+        {"handle beside a turned part",
+         {.held_pose = "position = [0, 0, 50], rotation_deg = [0, 0, 90]",
+          .task = place("[0, 10, 50]", "rotation_deg = [0, 0, 90]\n"),
+          .registration = "handle_position = [0, 0, -20]\nrotation_deg = [0, 0, 45]"},
+         {}},
+        {"a beam of 1.9 m on a large device",
+         {.unit = "m",
+          .held = R"(shape = { kind = "box", width = 1.9, depth = 0.1, height = 0.1 })",
+          .held_pose = "position = [0, 0, 0.3]",
+          .still = R"(shape = { kind = "box", width = 2, depth = 2, height = 0.2 })",
+          .device = "hug",
+          .task = place("[0.2, 0, 0.3]")},
+         {}},
+    };
+}
+
+void writeMeshes(const Folder& folder) {
+    folder.write("pin.off", model::Cylinder{1, 10}, 10);
+    folder.write("fin.off", model::Box{12, 0.5, 10}, 10);
+    folder.write("post.off", model::Box{20, 20, 20}, 20);
+}
+
+TEST(Doable, WhatNobodyCouldDoIsNamedWithItsPlace) {
+    // Truth: closed form: in each study one thing is impossible by its own numbers, which its row tells.
+    const Folder folder;
+    writeMeshes(folder);
+    const auto rows = undoable();
+    EXPECT_GE(rows.size(), 40u);
+    for (const Row& row : rows) {
+        const auto lines = told(row.study, folder);
+        const bool named = std::any_of(lines.begin(), lines.end(), [&](const std::string& line) {
+            return std::all_of(row.says.begin(), row.says.end(),
+                               [&](const std::string& part) { return line.find(part) != std::string::npos; });
+        });
+        std::string all;
+        for (const std::string& line : lines) all += "\n  " + line;
+        EXPECT_TRUE(named) << row.name << ": says" << all;
+    }
+}
+
+TEST(Doable, WhatIsOnlyOddIsNotRefused) {
+    // Truth: closed form: each study is possible by its own numbers, near a limit or in an unusual way.
+    const Folder folder;
+    writeMeshes(folder);
+    const auto rows = odd();
+    EXPECT_GE(rows.size(), 20u);
+    for (const Row& row : rows) {
+        std::string all;
+        for (const std::string& line : told(row.study, folder)) all += "\n  " + line;
+        EXPECT_EQ(all, "") << row.name;
+    }
+}
+
+TEST(Doable, ThePlaceIsThatOfTheValue) {
+    // Truth: closed form: the goal's list stands in the line "position = ..." of the task.
+    const Folder folder;
+    Study study;
+    study.task = place("[0, 0, 500]");
+    const std::string text = study.text();
+    const auto at = text.find("position = [0, 0, 500]");
+    const auto lines = told(study, folder);
+    ASSERT_EQ(lines.size(), 1u);
+    const auto number = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    EXPECT_NE(lines[0].find("s.toml:" + std::to_string(number) + ":12: error"), std::string::npos) << lines[0];
+}
+
+TEST(Doable, DefaultsFollowThePartsSize) {
+    // Truth: closed form: a fiftieth and 1/2500 of the held part's longest side, rounded to 1, 2, 5; 1 mm and 20 um at
+    // 50 mm. A part a thousand times as large has a thousand times as much.
+    const auto contactOf = [](const std::string& unit, double size) {
+        const Folder folder;
+        Study study;
+        study.unit = unit;
+        const auto box = [&](double x) {
+            return "shape = { kind = \"box\", width = " + std::to_string(x * size) +
+                   ", depth = " + std::to_string(0.4 * size) + ", height = " + std::to_string(0.4 * size) + " }";
+        };
+        study.held = study.still = box(1.0);
+        study.held_pose = "position = [0, 0, " + std::to_string(size) + "]";
+        study.task = place("[0, 0, " + std::to_string(1.2 * size) + "]");
+        study.device = "hug";
+        const std::string path = folder.file("s.toml");
+        std::ofstream(path) << study.text();
+        const Examined examined = examineProtocol(path, knownDevices(), knownMeasures());
+        return examined.plan.conditions.at(0).scene.contact;
+    };
+    for (const auto& [unit, size, spacing, tolerance] : {std::tuple("mm", 3.0, 5e-5, 1e-6),
+                                                         {"mm", 50.0, 1e-3, 2e-5},
+                                                         {"cm", 5.0, 1e-3, 2e-5},
+                                                         {"m", 3.0, 5e-2, 1e-3}}) {
+        const auto contact = contactOf(unit, size);
+        EXPECT_NEAR(contact.spacing, spacing, 1e-12) << size << unit;
+        EXPECT_NEAR(contact.tolerance, tolerance, 1e-15) << size << unit;
+        EXPECT_FALSE(contact.two_way) << "a block has no thin feature";
+    }
+}
+
+TEST(Doable, BothWaysIsTheDefaultOnlyWhereOneWayWouldMiss) {
+    // Truth: closed form: a pin of 1 mm is thinner than a gap of 0.9 mm to all sides; a post of 20 mm is not. Explicit
+    // settings stay.
+    const Folder folder;
+    writeMeshes(folder);
+    const auto twoWay = [&](const std::string& still, const std::string& contact) {
+        Study study;
+        study.held = R"(shape = { kind = "box", width = 40, depth = 20, height = 20 })";
+        study.still = still;
+        study.contact = contact;
+        const std::string path = folder.file("s.toml");
+        std::ofstream(path) << study.text();
+        return examineProtocol(path, knownDevices(), knownMeasures()).plan.conditions.at(0).scene.contact.two_way;
+    };
+    EXPECT_TRUE(twoWay(kPin, ""));
+    EXPECT_FALSE(twoWay(kPin, "two_way = false"));
+    EXPECT_FALSE(twoWay(kPin, "spacing_mm = 0.5"));
+    EXPECT_FALSE(twoWay("mesh = \"post.off\"", ""));
+    EXPECT_TRUE(twoWay("mesh = \"post.off\"", "two_way = true"));
+}
+
+}  // namespace
+}  // namespace passung::protocol

@@ -1,0 +1,30 @@
+# Runs every analysis that an export plans (analyses.csv) with base R on the exported tables, as an analyst would, and
+# says whom each keeps: Rscript planned_analyses.R FOLDER. Exit code 1 if one drops a participant who counts.
+folder <- commandArgs(trailingOnly = TRUE)[1]
+table <- function(file) read.csv(file.path(folder, file), stringsAsFactors = FALSE)
+
+people <- unique(subset(table("sessions.csv"), counted == 1)$participant_id)
+analyses <- table("analyses.csv")
+dropped <- nrow(analyses) == 0
+for (i in seq_len(nrow(analyses))) {
+  planned <- analyses[i, ]
+  rows <- subset(table(planned$file), protocol_sha256 == planned$protocol_sha256)
+  rows <- if (is.na(planned$staircase)) subset(rows, block == planned$block) else
+    subset(rows, staircase == planned$staircase)
+  factors <- if (is.na(planned$factors) || planned$factors == "") character() else strsplit(planned$factors, ";")[[1]]
+  by <- lapply(rows[c("participant_id", factors)], factor)
+  cells <- aggregate(rows[planned$value_column], by, mean, na.rm = TRUE)
+  cells <- cells[complete.cases(cells), ]
+  each <- tapply(cells[[planned$value_column]], cells$participant_id, length)
+  kept <- names(each)[!is.na(each) & each == max(each, na.rm = TRUE)]
+  data <- droplevels(cells[cells$participant_id %in% kept, ])
+  model <- as.formula(sub(" \\+ \\(1 \\| participant_id\\)| \\| participant_id", "", planned$r_formula))
+  if (length(factors) > 0) {
+    fit <- aov(model, data = data)
+    if (inherits(fit, "aovlist")) stopifnot(nlevels(data$participant_id) == length(kept))
+  }
+  cat(sprintf("%s %s %s: kept %d of %d\n", planned$analysis, planned$value_column,
+              ifelse(is.na(planned$block), planned$staircase, planned$block), length(kept), length(people)))
+  if (length(kept) < length(people) || planned$n_complete != length(kept)) dropped <- TRUE
+}
+if (dropped) quit(status = 1)

@@ -1,0 +1,86 @@
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <map>
+
+#include "tests/ui/cli/program.h"
+
+namespace passung::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool hasR() { return std::system("Rscript --version > /dev/null 2>&1") == 0; }
+
+/// What R's `expression` prints.
+std::string askR(const std::string& arguments, int& code) {
+    FILE* pipe = popen(("Rscript --vanilla " + arguments + " 2>&1").c_str(), "r");
+    std::string text;
+    char buffer[4096];
+    for (std::size_t n = 0; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;) text.append(buffer, n);
+    code = pclose(pipe);
+    return text;
+}
+
+/// The shipped studies with contacts that are quick to compute, and time-outs that some trials do not meet.
+class PlannedAnalyses : public testing::TestWithParam<const char*> {
+protected:
+    void SetUp() override {
+        if (!hasR()) GTEST_SKIP() << "R (r-base-core) is not installed: no planned analysis was tried";
+        const fs::path shipped = fs::path(PASSUNG_SOURCE_DIR) / "protocols";
+        fs::copy(shipped, folder_.path() / "protocols", fs::copy_options::recursive);
+        std::string text = readText(study());
+        std::map<std::string, std::string> quicker = {{"cell_mm = 0.5", "cell_mm = 1.0"},
+                                                      {"spacing_mm = 1.0", "spacing_mm = 3.0"},
+                                                      {"timeout_s = 30", "timeout_s = 3"},
+                                                      {"timeout_s = 90", "timeout_s = 3"},
+                                                      {"max_trials = 60", "max_trials = 10"}};
+        // A secondary task needs its trials.
+        if (text.find("[secondary]") == std::string::npos) quicker["repetitions = 2"] = "repetitions = 1";
+        for (const auto& [from, to] : quicker)
+            for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+                text.replace(at, from.size(), to);
+        writeText(study(), text);
+    }
+
+    fs::path study() const { return folder_.path() / "protocols" / GetParam(); }
+
+    TempFolder folder_;
+};
+
+TEST_P(PlannedAnalyses, KeepEveryCountedPersonInR) {
+    // Truth: independent program (R 4, base: aggregate, complete.cases, aov) on the exported tables.
+    const Ended run = runProgram(folder_.path(), {"run", study().string(), "--simulated", "4", "--db", "s.db"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    ASSERT_EQ(runProgram(folder_.path(), {"export", "s.db", "--out", "out", "--no-samples"}).exit_code, 0);
+    int code = 0;
+    const std::string said = askR(std::string(PASSUNG_SOURCE_DIR) + "/tests/ui/cli/planned_analyses.R '" +
+                                      (folder_.path() / "out").string() + "'",
+                                  code);
+    EXPECT_EQ(code, 0) << said;
+    EXPECT_NE(said.find("kept 4 of 4"), std::string::npos) << said;
+    // The exported protocol is the study itself: the program reads it with the questionnaires beside it.
+    const Ended check = runProgram(
+        folder_.path() / "out", {"check", [&] {
+                                     for (const auto& entry : fs::directory_iterator(folder_.path() / "out/protocol"))
+                                         if (entry.is_regular_file()) return entry.path().string();
+                                     return std::string();
+                                 }()});
+    if (readText(study()).find("picture = ") == std::string::npos) {
+        EXPECT_EQ(check.exit_code, 0) << check.err;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shipped, PlannedAnalyses,
+                         testing::Values("peg_in_hole/study.toml", "peg_in_hole/hidden_offset.toml",
+                                         "accuracy_threshold/study.toml", "designs/study.toml",
+                                         "rendering_methods/study.toml", "real_vs_virtual/study.toml"),
+                         [](const auto& test) {
+                             std::string name = test.param;
+                             for (char& c : name)
+                                 if (!isalnum(static_cast<unsigned char>(c))) c = '_';
+                             return name;
+                         });
+
+}  // namespace
+}  // namespace passung::test

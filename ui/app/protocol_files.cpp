@@ -1,0 +1,30 @@
+#include "ui/app/protocol_files.h"
+
+#include "ui/app/builds.h"
+#include "ui/app/known_names.h"
+
+namespace passung::app {
+
+Result<protocol::StudyPlan> readProtocol(const std::string& path, const ImportLimits& limits) {
+    Builds builds(nullptr, limits);
+    return protocol::readProtocol(path, knownDevices(), knownMeasures(), &builds);
+}
+
+protocol::Examined examineProtocol(const std::string& path, const ImportLimits& limits) {
+    Builds builds(nullptr, limits);
+    return protocol::examineProtocol(path, knownDevices(), knownMeasures(), &builds);
+}
+
+Result<protocol::StudyPlan> readProtocolText(const std::string& text, const std::string& path,
+                                             std::span<const DeviceDescription> devices, const ImportLimits& limits) {
+    Builds builds(nullptr, limits);
+    return protocol::readProtocolText(text, path, devices, knownMeasures(), &builds);
+}
+
+Result<protocol::SceneOnDevice> readSceneOnDevice(const std::string& text, const std::string& path,
+                                                  const ImportLimits& limits) {
+    Builds builds(nullptr, limits);
+    return protocol::readSceneOnDevice(text, path, knownDevices(), &builds);
+}
+
+}  // namespace passung::app

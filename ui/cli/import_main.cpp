@@ -1,0 +1,77 @@
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include "core/model/mesh_bytes.h"
+#include "core/model/mesh_import.h"
+#include "ui/app/import_exit.h"
+
+// The program passung-import: reads one mesh file for passung, so that no file can do to passung what it may do to its
+// reader. Words: FILE METRES_PER_UNIT SECONDS BYTES. The answer, a mesh with its report or errors, goes to the standard
+// output as bytes (core/model/mesh_bytes.h).
+
+namespace {
+
+using namespace passung;
+
+/// Lowers a limit of this process; what it had already and was lower stays.
+void lower(int resource, rlim_t to) {
+    rlimit limit{};
+    if (getrlimit(resource, &limit) != 0) return;
+    limit.rlim_cur = limit.rlim_cur == RLIM_INFINITY ? to : std::min(limit.rlim_cur, to);
+    setrlimit(resource, &limit);
+}
+
+void limitOneself(rlim_t seconds, rlim_t bytes) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody waits for the answer any more
+    lower(RLIMIT_CORE, 0);
+    lower(RLIMIT_CPU, seconds);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which reserve terabytes
+    lower(RLIMIT_AS, bytes);
+#else
+    (void)bytes;
+#endif
+}
+
+bool writeAll(int to, const std::string& bytes) {
+    for (std::size_t done = 0; done < bytes.size();) {
+        const ssize_t written = write(to, bytes.data() + done, bytes.size() - done);
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) return false;
+        done += static_cast<std::size_t>(written);
+    }
+    return true;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    constexpr int kWords = 5;
+    if (argc != kWords) {
+        std::fprintf(stderr, "passung-import reads meshes for passung: passung mesh FILE\n");
+        return app::kWrongWords;
+    }
+    limitOneself(std::strtoull(argv[3], nullptr, 10), std::strtoull(argv[4], nullptr, 10));
+    try {
+        const auto imported = model::importMesh(argv[1], std::strtod(argv[2], nullptr));
+        return writeAll(STDOUT_FILENO, model::toBytes(imported)) ? 0 : app::kNotWritten;
+    } catch (const std::bad_alloc&) {
+        return app::kOutOfMemory;
+    } catch (const std::length_error&) {
+        return app::kOutOfMemory;
+    } catch (const std::exception& problem) {
+        const Result<model::ImportedMesh> refused(
+            Error{.message = std::string("cannot be read: ") + problem.what(), .file = argv[1]});
+        return writeAll(STDOUT_FILENO, model::toBytes(refused)) ? 0 : app::kNotWritten;
+    }
+}

@@ -1,0 +1,28 @@
+#include "study/store/restore.h"
+
+#include <fmt/format.h>
+
+#include "ui/app/wall_clock.h"
+#include "ui/cli/commands.h"
+#include "ui/cli/console.h"
+
+namespace passung::cli {
+
+int restore(const RestoreOptions& options) {
+    const auto report = store::restoreDatabase(options.database, options.from, app::openOptionsNow());
+    if (!report) return fail(report.errors());
+    for (const std::string& healed : report->healed) fmt::print("{}: {}: healed\n", options.database, healed);
+    for (const std::string& damage : report->remaining)
+        fmt::print(stderr, "{}: error: {}: there is no intact copy of it in {}\n", options.database, damage,
+                   options.from);
+    for (const std::string& line : report->told) fmt::print("{}\n", line);
+    if (report->anew)
+        fmt::print("{}: its pages were damaged: made anew from {}; the damaged file is {}\n", options.database,
+                   options.from, report->kept);
+    else if (report->healed.empty())
+        fmt::print("{}: {}nothing was changed\n", options.database,
+                   report->remaining.empty() ? "nothing is damaged, " : "");
+    return report->remaining.empty() ? 0 : 1;
+}
+
+}  // namespace passung::cli
