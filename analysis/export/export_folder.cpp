@@ -5,10 +5,12 @@
 #include <cstdlib>
 #include <fstream>
 #include <set>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
 #include "analysis/export/codebook.h"
+#include "core/base/regular_file.h"
 #include "study/protocol/document.h"
 #include "study/store/digest.h"
 #include "study/store/folder_lock.h"
@@ -23,16 +25,15 @@ Error folderError(const fs::path& path, std::string message) {
 }
 
 bool isEarlierExport(const fs::path& folder) {
-    std::ifstream codebook(folder / "codebook.json", std::ios::binary);
-    std::string start(std::string_view(kCodebookStart).size(), '\0');
-    codebook.read(start.data(), static_cast<std::streamsize>(start.size()));
-    return codebook.good() && start == kCodebookStart;
+    const auto codebook = readRegularFile((folder / "codebook.json").string());
+    return codebook && codebook->starts_with(kCodebookStart);
 }
 
 /// The first thing in `folder` that its SHA256SUMS does not list; empty if there is none.
 fs::path strangerIn(const fs::path& folder) {
     std::set<std::string> listed = {"SHA256SUMS"};
-    std::ifstream sums(folder / "SHA256SUMS");
+    const auto text = readRegularFile((folder / "SHA256SUMS").string());
+    std::istringstream sums(text ? *text : std::string());
     for (std::string sum, path; sums >> sum && sums.get() && sums.get() && std::getline(sums, path);) {
         listed.insert(path);
     }

@@ -84,7 +84,7 @@ ProcessLock::~ProcessLock() {
 }
 
 bool isBeingWritten(const std::string& database_path) {
-    const int descriptor = open((database_path + ".lock").c_str(), O_RDONLY | O_CLOEXEC);
+    const int descriptor = open((database_path + ".lock").c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (descriptor < 0) return errno == EACCES;
     const bool free = flock(descriptor, LOCK_SH | LOCK_NB) == 0;
     close(descriptor);

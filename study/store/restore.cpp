@@ -1,11 +1,11 @@
 #include "study/store/restore.h"
 
-#include <array>
 #include <filesystem>
-#include <fstream>
 #include <string_view>
 
+#include "core/base/regular_file.h"
 #include "study/store/audit.h"
+#include "study/store/database_file.h"
 #include "study/store/erase.h"
 #include "study/store/heal.h"
 #include "study/store/merge.h"
@@ -168,23 +168,13 @@ void putInPlace(const std::string& path, const Workshop& workshop, RestoreReport
     fs::rename(workshop.part, path);
 }
 
-/// A file of another kind is not taken for a damaged database: of the first 16 bytes, which all databases share, half
-/// are enough.
-bool beginsAsDatabase(const std::string& path) {
-    constexpr std::string_view kMagic("SQLite format 3\0", 16);
-    std::array<char, kMagic.size()> head{};
-    std::ifstream(path, std::ios::binary).read(head.data(), head.size());
-    int same = 0;
-    for (std::size_t i = 0; i < kMagic.size(); ++i) same += head[i] == kMagic[i] ? 1 : 0;
-    return 2 * same >= static_cast<int>(kMagic.size());
-}
-
 }  // namespace
 
 Result<RestoreReport> restoreDatabase(const std::string& database, const std::string& from,
                                       const OpenOptions& options) {
     const std::string path = behindLink(database);
     if (!fs::exists(path)) return Error{.message = "no such file", .file = path};
+    if (const auto why = whyNoRegularFile(path)) return Error{.message = *why, .file = path};
     if (!beginsAsDatabase(path)) return Error{.message = "is no database; nothing is restored over it", .file = path};
     const auto lock = ProcessLock::take(path);
     if (!lock) return lock.errors();

@@ -133,6 +133,8 @@ struct Database::Watch {
 
 Database::Database(const std::string& path, OpenMode mode) {
     if (const auto why = whyNoRegularFile(path)) throw SqliteError(*why, SQLITE_CANTOPEN);
+    for (const std::string& beside : {path + "-journal", path + "-wal"})  // which SQLite opens by itself
+        if (const auto why = whyNoRegularFile(beside)) throw SqliteError(beside + ": " + *why, SQLITE_CANTOPEN);
     if (mode == OpenMode::Create) makePrivate(path);
     const std::string name = mode == OpenMode::Immutable ? immutableUri(path) : path;
     const int result = sqlite3_open_v2(name.c_str(), &connection_, flagsOf(mode), nullptr);

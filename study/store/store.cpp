@@ -6,6 +6,7 @@
 #include "study/store/admission.h"
 #include "study/store/audit.h"
 #include "study/store/backup.h"
+#include "study/store/earlier_backup.h"
 #include "study/store/open_database.h"
 #include "study/store/participant_rows.h"
 #include "study/store/process_lock.h"
@@ -270,10 +271,13 @@ Result<Slot> Store::assignSlot(const std::string& protocol_sha256, const std::st
     });
 }
 
-Result<Done> Store::backup() {
+Result<std::string> Store::backup() {
     return thread_->call([&](const Database& database) {
-        writeBackup(database, thread_->path());
-        return Done{};
+        std::string kept;
+        writeBackup(database, thread_->path(), [&](Database&, const std::string& fresh) {
+            kept = keepEarlierBackup(backupPath(thread_->path()), fresh);
+        });
+        return kept;
     });
 }
 

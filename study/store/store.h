@@ -142,8 +142,9 @@ public:
     /// Goes on with it in a segment of its own at session time `used_ns`; `start` as for createSession.
     Result<std::unique_ptr<SessionWriter>> resumeSession(const SessionStart& start, std::int64_t used_ns);
 
-    /// Copies the database as it is now (see backupPath()).
-    Result<Done> backup();
+    /// Copies the database as it is now (see backupPath()). Returns under which name an earlier copy was kept, because
+    /// it has what the new one lacks or has damaged; empty: under none.
+    Result<std::string> backup();
     /// What people add when no session runs: an attempt no longer counts; a note about its session (0: the newest one).
     Result<Done> invalidateAttempt(std::int64_t attempt_id, const std::string& reason);
     Result<Done> addNote(std::int64_t attempt_id, const std::string& text);

@@ -7,6 +7,7 @@
 
 #include "core/base/regular_file.h"
 #include "study/store/backup.h"
+#include "study/store/database_file.h"
 #include "study/store/store_reader.h"
 #include "ui/app/known_exports.h"
 
@@ -43,6 +44,12 @@ std::vector<std::string> knownCopies(const std::string& database, const std::str
     std::error_code none;
     if (const std::string backup = store::backupPath(database); backupNames(backup, participant)) copies.insert(backup);
     const fs::path parent = fs::weakly_canonical(database, none).parent_path();
+    // What restoring, a kill in its middle or an earlier backup left beside it.
+    const std::string name = fs::weakly_canonical(database, none).filename().string() + ".";
+    for (const auto& entry : fs::directory_iterator(parent, none))
+        if (entry.is_regular_file(none) && entry.path().filename().string().starts_with(name) &&
+            store::beginsAsDatabase(entry.path().string()) && backupNames(entry.path().string(), participant))
+            copies.insert(entry.path().string());
     for (const auto& entry : fs::directory_iterator(parent, none))
         if (entry.is_directory(none) && exportNames(entry.path(), participant)) copies.insert(entry.path().string());
     for (const std::string& folder : knownExports(database))

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "study/protocol/key_table.h"
+#include "study/store/database_file.h"
 
 namespace passung::cli {
 
@@ -79,8 +80,9 @@ Result<Done> refuseOverwriting(const std::string& out, const std::vector<std::st
 
 OutputFile::OutputFile(std::string path)
     : path_(std::move(path)), target_(followed(path_)), temporary_(target_ + ".part") {
-    refused_ = isNoPlainFile(target_) || isNoPlainFile(temporary_);
-    if (refused_) return;
+    if (isNoPlainFile(target_) || isNoPlainFile(temporary_)) refused_ = kNoPlainFile;
+    if (store::beginsAsDatabase(target_)) refused_ = "is a database and would be lost: name another file";
+    if (refused_ != nullptr) return;
     file_ = std::fopen(temporary_.c_str(), "wb");
     if (file_ == nullptr) error_ = failure();
 }
@@ -92,12 +94,12 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::write(std::string_view text) {
-    if (refused_) return;
+    if (refused_ != nullptr) return;
     if (error_ == 0 && std::fwrite(text.data(), 1, text.size(), file_) != text.size()) error_ = failure();
 }
 
 Result<Done> OutputFile::commit() {
-    if (refused_) return Error{.message = kNoPlainFile, .file = path_};
+    if (refused_ != nullptr) return Error{.message = refused_, .file = path_};
     const bool opened = file_ != nullptr;
     // The number of the first failure: every later call may change it.
     const auto note = [this](bool good) {

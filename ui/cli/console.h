@@ -23,7 +23,7 @@ bool tellDamages(const std::string& database, const std::vector<store::DamageRow
 Result<Done> refuseOverwriting(const std::string& out, const std::vector<std::string>& inputs);
 
 /// A file that appears complete or not at all: written beside its place, renamed by commit(). Of a symbolic link the
-/// file that it leads to; what exists and is no regular file is refused by commit() and left as it is.
+/// file that it leads to; a database, and what exists and is no regular file, is refused by commit() and left as it is.
 class OutputFile {
 public:
     explicit OutputFile(std::string path);
@@ -36,7 +36,7 @@ public:
 
 private:
     std::string path_, target_, temporary_;
-    bool refused_ = false;
+    const char* refused_ = nullptr;  // why nothing is written
     std::FILE* file_ = nullptr;
     int error_ = 0;  // errno of the first failure
 };

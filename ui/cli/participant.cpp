@@ -155,7 +155,7 @@ int withdrawParticipant(const ParticipantOptions& options) {
         return 0;
     }
     tellErasure(options, *left);
-    return 0;
+    return left->backup_problem.empty() ? 0 : 1;
 }
 
 int excludeParticipant(const ParticipantOptions& options) {

@@ -12,6 +12,7 @@
 #include "study/store/digest.h"
 #include "study/store/revisions.h"
 #include "study/store/sqlite.h"
+#include "tests/study/store/damaged_study.h"
 #include "tests/study/store/fake_study.h"
 #include "tests/study/store/faulty_disk.h"
 #include "tests/study/store/first_revision.h"
@@ -194,6 +195,26 @@ TEST(Durability, ADamagedFileIsRefusedAndLeftAloneAndItsBackupNamed) {
     EXPECT_EQ(bytesOf(path), damaged);
     fs::copy_file(path + ".backup", path, fs::copy_options::overwrite_existing);
     expectFinished(path, kTrials, kTrials);
+}
+
+TEST(Durability, ABackupThatHasWhatTheDatabaseLacksIsKept) {
+    // Truth: invariant: the bytes of the earlier copy are there after the next one, under another name; what has
+    // nothing more than the new copy is replaced.
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db", backup = path + ".backup";
+    perform(path, [](int) {});
+    EXPECT_EQ(require(fake::openStore(path)->backup()), "");
+    EXPECT_EQ(require(fake::openStore(path)->backup()), "") << "the same again";
+    const std::string sound = bytesOf(backup);
+    Database(path, OpenMode::ReadWrite).execute("UPDATE sample_chunk SET data=zeroblob(length(data)) WHERE chunk_no=0");
+    EXPECT_EQ(require(fake::openStore(path)->backup()), backup + ".1") << "damaged since";
+    EXPECT_EQ(bytesOf(backup + ".1"), sound);
+    EXPECT_EQ(require(fake::openStore(path)->backup()), "") << "the damage is there already";
+    fs::rename(path, folder / "moved.db");
+    fs::copy_file(backup + ".1", backup, fs::copy_options::overwrite_existing);
+    fake::performAsking(path, "S009");
+    EXPECT_EQ(require(fake::openStore(path)->backup()), backup + ".2") << "another database of that name";
+    EXPECT_EQ(bytesOf(backup + ".2"), sound);
 }
 
 TEST(Durability, ABackupIsTheDatabaseWithItsSumAndReplacedAsAWhole) {

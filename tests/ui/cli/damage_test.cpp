@@ -52,6 +52,9 @@ TEST_F(Damage, IsNamedExportedAroundAndHealed) {
     const Ended replayed = ends({"replay", "s.db"}, 1);
     EXPECT_NE(replayed.out.find("6 attempts replayed, 1 differ, 1 damaged\n"), std::string::npos) << replayed.out;
 
+    const Ended merged = ends({"merge", "s.db", "--out", "all.db"}, 1);
+    EXPECT_NE(merged.err.find("error: damaged: "), std::string::npos) << merged.err;
+
     const Ended restored = ends({"restore", "s.db", "--from", "s.db.backup"}, 0);
     EXPECT_EQ(linesOf(restored.out).size(), 2u) << restored.out;
     ends({"verify", "s.db"}, 0);

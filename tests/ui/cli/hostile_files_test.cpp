@@ -50,6 +50,7 @@ TEST(HostileFiles, PipeOrDeviceBehindAPathIsRefusedAtOnce) {
         std::filesystem::create_symlink(kDeviceThatNeverEnds, folder.path() / name);
     writeText(folder / "a.off", kOff);
     writeText(folder / "scene.toml", kPart);
+    writeText(folder / "damaged.db", std::string("SQLite format 3\0", 16) + std::string(5000, 'x'));
     for (const std::string kind : {"pipe", "zero"}) {
         writeText(folder / (kind + "_mesh.toml"), replaced(kPart, "a.off", kind + ".off"));
         writeText(folder / (kind + "_include.toml"), "include = \"" + kind + ".toml\"\n" + smallStudy());
@@ -73,6 +74,10 @@ TEST(HostileFiles, PipeOrDeviceBehindAPathIsRefusedAtOnce) {
             {"resume", kind + ".db"},
             {"participant", "list", kind + ".db"},
             {"merge", kind + ".db", "--out", "m.db"},
+            {"push", kind + ".db", "--to", "postgresql://nobody@127.0.0.1:1/none"},
+            {"verify", kind + ".db"},
+            {"restore", kind + ".db", "--from", "damaged.db"},
+            {"restore", "damaged.db", "--from", kind + ".db"},
         };
         for (const auto& call : calls) {
             const Ended ended = runWithin(folder.path(), call);
@@ -82,6 +87,33 @@ TEST(HostileFiles, PipeOrDeviceBehindAPathIsRefusedAtOnce) {
             EXPECT_FALSE(ended.err.empty()) << words;
         }
     }
+}
+
+TEST(HostileFiles, PipeBesideADatabaseIsRefusedAtOnceAndADatabaseIsNoOutput) {
+    // Truth: invariant (nobody writes into the pipes; the database keeps its bytes).
+    const TempFolder folder;
+    writeText(folder / "study.toml", smallStudy());
+    ASSERT_EQ(runWithin(folder.path(), {"run", "study.toml", "--simulated", "1", "--db", "s.db"}).exit_code, 0);
+    const std::string whole = readText(folder / "s.db");
+    for (const char* beside : {"s.db-journal", "s.db-wal"}) {
+        ASSERT_EQ(mkfifo((folder / beside).c_str(), 0600), 0);
+        EXPECT_EQ(runWithin(folder.path(), {"verify", "s.db"}).exit_code, 1) << beside;
+        EXPECT_EQ(runWithin(folder.path(), {"export", "s.db", "--out", "e"}).exit_code, 1) << beside;
+        std::filesystem::remove(folder / beside);
+    }
+    ASSERT_EQ(mkfifo((folder / "s.db.lock").c_str(), 0600), 0);
+    EXPECT_EQ(runWithin(folder.path(), {"verify", "s.db"}).exit_code, 0) << "a lock that nobody holds";
+    std::filesystem::remove(folder / "s.db.lock");
+    std::filesystem::create_directory(folder / "e");
+    for (const char* name : {"codebook.json", "SHA256SUMS"})
+        ASSERT_EQ(mkfifo((folder.path() / "e" / name).c_str(), 0600), 0);
+    EXPECT_EQ(runWithin(folder.path(), {"export", "s.db", "--out", "e"}).exit_code, 1);
+
+    writeText(folder / "a.off", kOff);
+    writeText(folder / "p.csv", "x_m,y_m,z_m,qw,qx,qy,qz\n0,0,1,1,0,0,0\n");
+    expectOneLine(runWithin(folder.path(), {"query", "a.off", "a.off", "--poses", "p.csv", "--out", "s.db"}),
+                  "is a database", "query");
+    EXPECT_TRUE(readText(folder / "s.db") == whole);
 }
 
 TEST(HostileFiles, TextThatIsTooDeepOrTooLargeIsRefusedInOneLine) {
@@ -135,6 +167,8 @@ TEST(HostileFiles, MeshOfMoreThanAReaderMayTakeIsOneLineThatNamesTheOption) {
                std::to_string(i % 299'000 + (i < 300'000 ? 640 : 641)) + "\n";
     writeText(folder / "a.off", off);
     expectOneLine(runWithin(folder.path(), {"mesh", "a.off", "--import-seconds", "1"}), "--import-seconds", "time");
+    expectOneLine(runWithin(folder.path(), {"mesh", "a.off", "--import-memory-mb", "64"}), "--import-memory-mb",
+                  "memory");
     for (const auto& [name, content] : std::vector<std::pair<std::string, std::string>>{
              {"itself.3mf", package(assembly("1", "1", 1), item("1"))}, {"deep.gltf", std::string(200'000, '[')}}) {
         writeText(folder / name, content);

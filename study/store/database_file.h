@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+
+namespace passung::store {
+
+/// Does a regular file begin as SQLite's databases do? Also if a few of its first 16 bytes, which all share, are
+/// damaged: half are enough.
+bool beginsAsDatabase(const std::string& path);
+
+}  // namespace passung::store
