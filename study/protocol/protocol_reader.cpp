@@ -39,6 +39,22 @@ namespace {
 
 constexpr std::size_t kMaxConditions = 1000;
 
+/// What reading gives: see Examined. What keeps a study from being begun is apart, because one that once began goes on.
+struct Read {
+    StudyPlan plan;
+    Errors errors;
+    Errors undoable;  // what a person could not do, feel or tell apart
+    Errors for_people;
+};
+
+/// Both kinds of errors count.
+Examined examined(Read read) {
+    read.errors.insert(read.errors.end(), read.undoable.begin(), read.undoable.end());
+    tidy(read.errors);
+    if (!read.errors.empty()) read.plan.warnings.clear();
+    return {std::move(read.plan), std::move(read.errors), std::move(read.for_people)};
+}
+
 /// Reads one study file, step by step; every step adds to errors_. A step is left out only if what it would say follows
 /// from an error that is known already.
 class ProtocolReader {
@@ -52,7 +68,7 @@ public:
           geometries_(builds) {}
 
     /// The plan as far as it can be read; complete if there are no errors.
-    Examined read() {
+    Read read() {
         const bool study = isSound([&] { readStudy(); });
         const bool few = readFactorTables();
         const bool blocks = isSound([&] { readBlockTables(); });
@@ -81,6 +97,7 @@ public:
         plan_.meshes = meshesOf(plan_, document_.place.file);
         plan_.stable_stiffness = stableStiffnessOf(plan_, devices_);
         tidy(errors_);
+        tidy(undoable_);
         if (errors_.empty()) {
             plan_.warnings = conditionWarnings(std::span(plan_.conditions).first(plannedConditions(plan_)));
             for (std::string& warning : blockWarnings(plan_)) plan_.warnings.push_back(std::move(warning));
@@ -89,7 +106,7 @@ public:
                     plan_.warnings.push_back(std::move(warning));
             plan_.expanded_json = expandedJson(plan_);
         }
-        return {std::move(plan_), std::move(errors_), std::move(for_people_)};
+        return {std::move(plan_), std::move(errors_), std::move(undoable_), std::move(for_people_)};
     }
 
 private:
@@ -330,12 +347,12 @@ private:
         if (task && pair) condition.comparison = readComparison(tables, condition, devices_, geometries_, errors_);
         // Of accuracy = "auto" nothing is picked with which something would not be felt.
         if (content.sound && !(content.accuracy_budget > 0.0))
-            checkFelt(tables.scene, "scene", condition.scene, geometries_, errors_, warnings_);
+            checkFelt(tables.scene, "scene", condition.scene, geometries_, undoable_, warnings_);
         if (condition.comparison && errors_.size() == before)
-            checkFelt(tables.scene, "scene", *condition.comparison, geometries_, errors_, warnings_);
-        if (content.sound) checkStartPose(tables.scene, "scene", condition.scene, geometries_, errors_);
+            checkFelt(tables.scene, "scene", *condition.comparison, geometries_, undoable_, warnings_);
+        if (content.sound) checkStartPose(tables.scene, "scene", condition.scene, geometries_, undoable_);
         if (errors_.size() == before && pair)
-            checkStartPose(tables.scene, "scene", *condition.comparison, geometries_, errors_);
+            checkStartPose(tables.scene, "scene", *condition.comparison, geometries_, undoable_);
         if (content.sound && task) checkDoable(tables, condition, step);
         condition.levels_json = levelsJson(plan_.factors, levels);
         condition.levels = std::move(levels);
@@ -348,7 +365,7 @@ private:
         const auto device = std::find_if(devices_.begin(), devices_.end(),
                                          [&](const auto& known) { return known.name == condition.device; });
         if (device != devices_.end() && root_.has("task"))
-            checkReach(tables, condition, *device, geometries_, errors_, warnings_);
+            checkReach(tables, condition, *device, geometries_, undoable_, warnings_);
         if (step != nullptr && presented_ != nullptr) checkSide(tables.scene, condition, *step);
     }
 
@@ -367,7 +384,7 @@ private:
                                                                       : step.value->number;
         const double level = step.value->number;
         if (staircase.above ? level >= reference : level <= reference) return;
-        errors_.push_back(errorAt(
+        undoable_.push_back(errorAt(
             step.value->place, "staircase." + staircase.name, valueText(*step.value),
             fmt::format("is on the wrong side of the reference, {:.6g}: the higher the level, the {} often the answer "
                         "has to be correct, so that none is {} it",
@@ -407,7 +424,7 @@ private:
             const std::string dead = deadFeedback(first, condition);
             const std::string alike =
                 dead.empty() ? "are the same in everything but their labels" : "give a person the same: " + dead;
-            errors_.push_back(
+            undoable_.push_back(
                 errorAt(root_.items("factor")[factor].place, "factor." + plan_.factors[factor].name, "",
                         fmt::format("conditions \"{}\" and \"{}\" {}", first.name, condition.name, alike)));
         }
@@ -461,16 +478,17 @@ private:
     PartGeometries geometries_;
     std::vector<std::string> warnings_;            // about parts and ways
     const StaircaseContent* presented_ = nullptr;  // whose levels are being read
-    Errors for_people_;
+    Errors undoable_;                              // see Read
+    Errors for_people_;                            // likewise
     std::vector<FactorContent> factors_;
     std::vector<StaircaseContent> staircases_;
 };
 
 /// Without the files that the study names.
-Examined examineText(const std::string& text, const std::string& path, std::span<const DeviceDescription> devices,
-                     std::span<const std::string> known_measures, model::BuildStore* builds) {
+Read readText(const std::string& text, const std::string& path, std::span<const DeviceDescription> devices,
+              std::span<const std::string> known_measures, model::BuildStore* builds) {
     const auto included = includeFiles(text, path);
-    if (!included) return {{}, included.errors(), {}};
+    if (!included) return {{}, included.errors(), {}, {}};
     auto document = parseDocument(included->text, path);
     if (!document) {
         Error error = document.errors().front();
@@ -478,15 +496,15 @@ Examined examineText(const std::string& text, const std::string& path, std::span
         relocate(*included, place);
         error.file = place.file;
         error.line = place.line;
-        return {{}, {error}, {}};
+        return {{}, {error}, {}, {}};
     }
     relocate(*included, *document);
     if (const auto other = otherKind(*document, FileKind::Study))
-        return {{}, {errorAt(document->place, "", "", *other)}, {}};
-    Examined examined = ProtocolReader(*document, devices, known_measures, builds).read();
-    examined.plan.source_text = included->text;
-    examined.plan.source_path = path;
-    return examined;
+        return {{}, {errorAt(document->place, "", "", *other)}, {}, {}};
+    Read read = ProtocolReader(*document, devices, known_measures, builds).read();
+    read.plan.source_text = included->text;
+    read.plan.source_path = path;
+    return read;
 }
 
 }  // namespace
@@ -495,33 +513,39 @@ Examined examineProtocol(const std::string& path, std::span<const DeviceDescript
                          std::span<const std::string> known_measures, model::BuildStore* builds) {
     const auto text = readFile(path);
     if (!text) return {{}, text.errors(), {}};
-    Examined examined = examineText(*text, path, devices, known_measures, builds);
-    const bool sound = examined.errors.empty();
-    const auto add = [&](const Errors& errors) {
-        examined.errors.insert(examined.errors.end(), errors.begin(), errors.end());
-    };
-    add(checkPictures(examined.plan, readFile));
+    Examined all = examined(readText(*text, path, devices, known_measures, builds));
+    const bool sound = all.errors.empty();
+    const auto add = [&](const Errors& errors) { all.errors.insert(all.errors.end(), errors.begin(), errors.end()); };
+    add(checkPictures(all.plan, readFile));
     if (!sound) {
-        add(checkQuestionnaires(examined.plan, readFile));
-    } else if (!examined.plan.questionnaires.empty()) {
-        if (const auto done = loadQuestionnaires(examined.plan, readFile); !done) add(done.errors());
+        add(checkQuestionnaires(all.plan, readFile));
+    } else if (!all.plan.questionnaires.empty()) {
+        if (const auto done = loadQuestionnaires(all.plan, readFile); !done) add(done.errors());
     }
-    return examined;
+    return all;
 }
 
 Result<StudyPlan> readProtocol(const std::string& path, std::span<const DeviceDescription> devices,
                                std::span<const std::string> known_measures, model::BuildStore* builds) {
-    Examined examined = examineProtocol(path, devices, known_measures, builds);
-    if (!examined.errors.empty()) return std::move(examined.errors);
-    return std::move(examined.plan);
+    Examined all = examineProtocol(path, devices, known_measures, builds);
+    if (!all.errors.empty()) return std::move(all.errors);
+    return std::move(all.plan);
 }
 
 Result<StudyPlan> readProtocolText(const std::string& text, const std::string& path,
                                    std::span<const DeviceDescription> devices,
                                    std::span<const std::string> known_measures, model::BuildStore* builds) {
-    Examined examined = examineText(text, path, devices, known_measures, builds);
-    if (!examined.errors.empty()) return std::move(examined.errors);
-    return std::move(examined.plan);
+    Examined all = examined(readText(text, path, devices, known_measures, builds));
+    if (!all.errors.empty()) return std::move(all.errors);
+    return std::move(all.plan);
+}
+
+Result<StudyPlan> readBegunProtocol(const std::string& text, const std::string& path,
+                                    std::span<const DeviceDescription> devices,
+                                    std::span<const std::string> known_measures, model::BuildStore* builds) {
+    Read read = readText(text, path, devices, known_measures, builds);
+    if (!read.errors.empty()) return std::move(read.errors);
+    return std::move(read.plan);
 }
 
 }  // namespace passung::protocol

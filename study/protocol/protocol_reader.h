@@ -31,4 +31,10 @@ Result<StudyPlan> readProtocolText(const std::string& text, const std::string& p
                                    std::span<const DeviceDescription> devices,
                                    std::span<const std::string> known_measures, model::BuildStore* builds = nullptr);
 
+/// The same for a study that began, maybe under an earlier version of this program: what no longer may begin, because a
+/// person could not do it, feel it or tell conditions apart, may still go on and be looked at.
+Result<StudyPlan> readBegunProtocol(const std::string& text, const std::string& path,
+                                    std::span<const DeviceDescription> devices,
+                                    std::span<const std::string> known_measures, model::BuildStore* builds = nullptr);
+
 }  // namespace passung::protocol

@@ -19,6 +19,7 @@ constexpr double kUsualPart = 0.05;                       // [m] that a likely u
 constexpr double kFastest = 1.0;                          // [m/s] that a hand keeps up on average
 constexpr double kTilt = 5.0 * std::numbers::pi / 180.0;  // that a bore of usual clearance bears
 constexpr double kRounding = 1e-9;                        // [m]
+constexpr int kTurnSteps = 144;                           // of a whole turn
 
 double turnBetween(const Quat& a, const Quat& b) { return Eigen::AngleAxisd(a.conjugate() * b).angle(); }
 
@@ -163,8 +164,8 @@ private:
                              millimetres(depth), other.name, millimetres(slack)));
     }
 
-    /// As it starts, or with any of its axes along the passage, turned about that by eighths; a handle that does not
-    /// turn leaves the first alone.
+    /// As it starts, or with any of its axes along the passage, turned about that by steps of 2.5 degrees; a handle
+    /// that does not turn leaves the first alone.
     void fitsThrough(const NarrowPassageTask& passage, const Node& at) {
         const Vec3 along = target_->X_WP.q * Vec3::UnitZ(), middle = target_->X_WP * Vec3(0, 0, -0.5 * passage.length);
         const double allowed = scene_.contact.tolerance + 0.5 * passage.width;
@@ -172,9 +173,9 @@ private:
         const bool turns = device_.sensed_degrees >= 6;
         for (const Vec3& axis : {Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 1, 0)})
             for (const double way : {1.0, -1.0})
-                for (int eighth = 0; turns && eighth < 8 && least > allowed; ++eighth) {
+                for (int step = 0; turns && step < kTurnSteps && least > allowed; ++step) {
                     const Quat laid = Quat::FromTwoVectors(held_.X_WP.q * (way * axis), along) * held_.X_WP.q;
-                    const Quat turn(Eigen::AngleAxisd(eighth * std::numbers::pi / 4, along));
+                    const Quat turn(Eigen::AngleAxisd(step * 2.0 * std::numbers::pi / kTurnSteps, along));
                     least = std::min(least, depthAt(held_, {turn * laid, middle}, *target_, geometries_));
                 }
         if (least > allowed)

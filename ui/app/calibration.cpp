@@ -151,7 +151,7 @@ Result<protocol::StudyPlan> withKeptStiffness(const protocol::StudyPlan& plan,
                                               const ImportLimits& limits) {
     if (std::equal(kept.begin(), kept.end(), plan.stable_stiffness.begin(), plan.stable_stiffness.end(), same))
         return plan;
-    auto again = readProtocolText(plan.source_text, plan.source_path, devicesAsKept(kept), limits);
+    auto again = readBegunProtocol(plan.source_text, plan.source_path, devicesAsKept(kept), limits);
     if (!again) return again;
     again->seed = plan.seed;
     again->questionnaires = plan.questionnaires;  // their files are not part of the text

@@ -15,10 +15,10 @@ protocol::Examined examineProtocol(const std::string& path, const ImportLimits& 
     return protocol::examineProtocol(path, knownDevices(), knownMeasures(), &builds);
 }
 
-Result<protocol::StudyPlan> readProtocolText(const std::string& text, const std::string& path,
-                                             std::span<const DeviceDescription> devices, const ImportLimits& limits) {
+Result<protocol::StudyPlan> readBegunProtocol(const std::string& text, const std::string& path,
+                                              std::span<const DeviceDescription> devices, const ImportLimits& limits) {
     Builds builds(nullptr, limits);
-    return protocol::readProtocolText(text, path, devices, knownMeasures(), &builds);
+    return protocol::readBegunProtocol(text, path, devices, knownMeasures(), &builds);
 }
 
 Result<protocol::SceneOnDevice> readSceneOnDevice(const std::string& text, const std::string& path,

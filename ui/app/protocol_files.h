@@ -15,9 +15,9 @@ namespace passung::app {
 /// the program passung-import, as for the parts themselves: see Builds.
 Result<protocol::StudyPlan> readProtocol(const std::string& path, const ImportLimits& limits = {});
 protocol::Examined examineProtocol(const std::string& path, const ImportLimits& limits = {});
-Result<protocol::StudyPlan> readProtocolText(const std::string& text, const std::string& path,
-                                             std::span<const DeviceDescription> devices,
-                                             const ImportLimits& limits = {});
+Result<protocol::StudyPlan> readBegunProtocol(const std::string& text, const std::string& path,
+                                              std::span<const DeviceDescription> devices,
+                                              const ImportLimits& limits = {});
 Result<protocol::SceneOnDevice> readSceneOnDevice(const std::string& text, const std::string& path,
                                                   const ImportLimits& limits = {});
 

@@ -41,7 +41,7 @@ Result<protocol::StudyPlan> StoredPlans::read(const store::ProtocolRow& row) con
     const auto devices = devicesAsKept(*stable);
     Errors errors;
     for (const std::filesystem::path& folder : folders_) {
-        auto plan = readProtocolText(row.source_text, (folder / (row.name + ".toml")).string(), devices, limits_);
+        auto plan = readBegunProtocol(row.source_text, (folder / (row.name + ".toml")).string(), devices, limits_);
         if (!plan) {
             if (errors.empty()) errors = plan.errors();
             continue;

@@ -442,7 +442,7 @@ TEST(Doable, ThePlaceIsThatOfTheValue) {
     const std::string text = study.text();
     const auto at = text.find("position = [0, 0, 500]");
     const auto lines = told(study, folder);
-    ASSERT_EQ(lines.size(), 1u);
+    ASSERT_EQ(lines.size(), 1u) << lines[0] << "\n" << lines.back();
     const auto number = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
     EXPECT_NE(lines[0].find("s.toml:" + std::to_string(number) + ":12: error"), std::string::npos) << lines[0];
 }
