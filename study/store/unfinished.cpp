@@ -77,6 +77,15 @@ void readForms(const Database& database, Unfinished& session) {
     while (forms.step()) session.forms.push_back({forms.text(0), forms.integer(1)});
 }
 
+void readWindowNotes(const Database& database, Unfinished& session) {
+    Statement notes = database.prepare(
+        "SELECT json_extract(payload_json, '$.text') FROM event JOIN segment USING(segment_id) WHERE session_id=? AND "
+        "event='command_note' AND source='window' AND json_extract(payload_json, '$.text') IS NOT NULL "
+        "ORDER BY event_id");
+    notes.bind(session.session_id);
+    while (notes.step()) session.window_notes.push_back(notes.text(0));
+}
+
 /// The latest stamp of anything in the session. Such texts sort as their times.
 std::string latestUtc(const Database& database, const std::string& session_id) {
     Statement find = database.prepare(
@@ -132,6 +141,7 @@ Unfinished readUnfinished(const Database& database, const std::string& session_i
     readTrials(database, session);
     session.steps = readOrderSteps(database, session.session_id);
     readForms(database, session);
+    readWindowNotes(database, session);
     return session;
 }
 

@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cinttypes>
 #include <cmath>
+#include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <string_view>
 #include <utility>
 
 #include "devices/mouse/mouse_device.h"
@@ -52,6 +55,20 @@ std::string qualityNote(const presenter::QualityFound& found) {
         "pictures a second with {} triangles",
         found.width_px, found.height_px, drawn.scale, drawn.samples, drawn.shadows ? "on" : "off", found.pictures_per_s,
         found.triangles);
+}
+
+std::optional<presenter::QualityFound> qualityOf(const std::string& note) {
+    presenter::QualityFound found;
+    presenter::PictureQuality& drawn = found.quality;
+    std::array<char, 4> shadows{};
+    const int read = std::sscanf(note.c_str(),
+                                 "picture quality: window %d x %d pixels, drawn at %lf of its sides, %d samples a "
+                                 "pixel, shadows %3[a-z]; %lf pictures a second with %" SCNd64 " triangles",
+                                 &found.width_px, &found.height_px, &drawn.scale, &drawn.samples, shadows.data(),
+                                 &found.pictures_per_s, &found.triangles);
+    if (read != 7) return std::nullopt;
+    drawn.shadows = std::string_view(shadows.data()) == "on";
+    return found;
 }
 
 LiveSession::LiveSession(protocol::StudyPlan plan, LiveOptions options)
@@ -175,8 +192,13 @@ std::unique_ptr<loop::HapticDevice> LiveSession::device(const simulated::DeviceP
 void LiveSession::begins(session::Apparatus& apparatus, const session::SessionSetup& setup) {
     interview_.forget();
     look_ = setup.plan.view;
-    tell(presenter::SessionBegun{setup.participant, setup.trials,
-                                 setup.resumed ? setup.resumed->earlier : std::vector<session::EarlierTrial>(), look_});
+    presenter::SessionBegun begun{.participant = setup.participant, .trials = setup.trials, .look = look_};
+    if (setup.resumed) {
+        begun.earlier = setup.resumed->earlier;
+        for (const std::string& note : setup.resumed->window_notes)
+            if (auto quality = qualityOf(note)) begun.quality = quality;
+    }
+    tell(std::move(begun));
     const std::lock_guard lock(mutex_);
     apparatus_ = &apparatus;
 }

@@ -22,6 +22,8 @@ namespace passung::app {
 
 /// What is kept of it with the session.
 std::string qualityNote(const presenter::QualityFound& found);
+/// The other way round; nothing of any other note.
+std::optional<presenter::QualityFound> qualityOf(const std::string& note);
 
 /// Who moves the device in a live session.
 enum class LiveHand { Mouse, Simulated };

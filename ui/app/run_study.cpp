@@ -108,6 +108,7 @@ public:
         auto resumed =
             session::resumption(plan_, session.trials, session.attempts, session.crashed, session.forms, session.steps);
         resumed.start_ns = session.used_ns;
+        resumed.window_notes = session.window_notes;
         (*writer)->appendEvent(
             {.attempt = {}, .t_ns = session.used_ns, .source = "session", .event = "session_resumed"});
         resumed.change.reason = "done again after an interruption";
@@ -268,8 +269,13 @@ Result<Done> loadStoredQuestionnaires(const store::StoreReader& reader, const st
 
 void backUp(store::Store& store, const RunOptions& options, const RunListener& listener) {
     if (!options.backup) return;
-    if (const auto copied = store.backup(); !copied && listener.warned)
-        listener.warned("no backup copy was made: " + copied.errors().front().message);
+    const auto kept = store.backup();
+    if (!listener.warned) return;
+    if (!kept)
+        listener.warned("no backup copy was made: " + kept.errors().front().message);
+    else if (!kept->empty())
+        listener.warned("the earlier backup has what the database lacks or has damaged (passung verify): kept as " +
+                        *kept);
 }
 
 bool isPerson(const std::string& code) {

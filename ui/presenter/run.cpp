@@ -96,6 +96,7 @@ void Run::take(const News& news) {
 
 void Run::begin(const SessionBegun& begun) {
     look_ = begun.look;
+    view_.quality = begun.quality;
     view_.participant = begun.participant;
     view_.planned = begun.trials.size();
     view_.rows.clear();

@@ -14,6 +14,7 @@
 #include "study/session/session.h"
 #include "ui/presenter/drawn_scene.h"
 #include "ui/presenter/form.h"
+#include "ui/presenter/quality_search.h"
 
 namespace passung::presenter {
 
@@ -25,6 +26,7 @@ struct SessionBegun {
     std::vector<design::PlannedTrial> trials;
     std::vector<session::EarlierTrial> earlier = {};  // of a session that is resumed
     protocol::View look = {};
+    std::optional<QualityFound> quality = {};  // with which a session that is resumed was drawn
 };
 
 /// Clauses of consent, instructions and questionnaires, each until the participant has answered or read it.

@@ -31,6 +31,11 @@ void QualityFinder::prepare(std::int64_t attempt) {
     attempt_ = attempt;
     const bool drawn = scene_ != nullptr && scene_->isVisible() && desk_.run().scene() != nullptr;
     if (!drawn) search_.reset();  // an earlier attempt's: its scene is gone
+    if (const auto& kept = desk_.run().view().quality; kept && !fixed_ && !found_) {  // of a session that goes on
+        quality_ = kept->quality;
+        found_ = true;
+        emit changed();
+    }
     if (!fixed_ && !found_ && drawn)
         begin();
     else

@@ -12,7 +12,8 @@
 namespace passung::window {
 
 /// How the participant's window draws. Before a session's first trial that shows a scene it is found on that scene, in
-/// the window as it stands; then it is frozen until the session is over. The trial waits for it.
+/// the window as it stands; then it is frozen until the session is over, also where it is resumed. The trial waits for
+/// it.
 class QualityFinder : public QObject {
     Q_OBJECT
     Q_PROPERTY(bool shadows READ shadows NOTIFY changed)
