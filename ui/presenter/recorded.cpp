@@ -11,7 +11,7 @@ namespace passung::presenter {
 Result<Recorded> readRecorded(const store::StoreReader& reader) {
     auto data = exporter::readStudy(reader);
     if (!data) return data.errors();
-    Recorded recorded{*std::move(data), {}, {}};
+    Recorded recorded{*std::move(data), {}, {}, reader.damages().size()};
     const auto& attempts = recorded.data.attempts;
     for (const store::MeasureRow& row : recorded.data.measures)
         if (std::any_of(attempts.begin(), attempts.end(),
@@ -33,7 +33,7 @@ std::size_t firstMeasure(const Recorded& recorded) {
         return values.size() > 1;
     };
     const auto& all = recorded.measures;
-    const auto time = std::find_if(all.begin(), all.end(), [](const auto& m) { return m.name == "completion_time_s"; });
+    const auto time = std::find_if(all.begin(), all.end(), [](const auto& m) { return m.name == "time_s"; });
     if (time != all.end() && varies(*time)) return static_cast<std::size_t>(time - all.begin());
     const auto first = std::find_if(all.begin(), all.end(), varies);
     return first == all.end() ? 0 : static_cast<std::size_t>(first - all.begin());

@@ -19,6 +19,7 @@ struct Recorded {
     exporter::StudyData data;
     std::vector<ShownMeasure> measures;
     std::vector<std::string> kinds;  // of participants, that have attempts: "real", "pilot", "simulated"
+    std::size_t damages = 0;         // that the reader found and left out
 };
 Result<Recorded> readRecorded(const store::StoreReader& reader);
 

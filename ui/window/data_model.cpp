@@ -22,7 +22,7 @@ QString text(const std::string& s) { return QString::fromStdString(s); }
 
 Result<Found> readFrom(const std::string& database) {
     if (!std::filesystem::exists(database)) return Found();
-    const auto reader = store::StoreReader::open(database);
+    const auto reader = store::StoreReader::open(database, store::Damaged::LeftOut);
     if (!reader) return reader.errors();
     auto recorded = presenter::readRecorded(*reader);
     if (!recorded) return recorded.errors();
@@ -90,11 +90,12 @@ void DataModel::refresh() {
                 [this, asked](Result<Found> found) {
                     if (asked != asked_) return;
                     recorded_.reset();
-                    failed_ = !found;
+                    failed_ = !found || (*found && (*found)->damages > 0);
                     if (!found)
                         told_ = text(toString(found.errors().front()));
                     else if (*found)
                         recorded_ = std::make_unique<Recorded>(std::move(**found));
+                    if (recorded_ && recorded_->damages > 0) told_ = damagedLine(recorded_->damages);
                     if (attempts().isEmpty()) session_.clear();
                     if (session_.empty() && recorded_ && !recorded_->data.sessions.empty())
                         session_ = recorded_->data.sessions.back().session_id;
@@ -136,7 +137,7 @@ QVariantList DataModel::attempts() const {
     QVariantList all;
     if (!recorded_) return all;
     for (const store::AttemptRow* row : presenter::attemptsOf(*recorded_, session_)) {
-        const auto time = row->measures.find("completion_time_s");
+        const auto time = row->measures.find("time_s");
         const bool good = row->valid && row->outcome == "success";
         all.append(QVariantMap{{"id", static_cast<qlonglong>(row->attempt_id)},
                                {"trial", static_cast<int>(row->trial_index) + 1},

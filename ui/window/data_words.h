@@ -16,5 +16,6 @@ QString attemptTitle(const store::AttemptRow& row);
 QString outcomeWord(const std::string& outcome, bool valid);
 QString exportedLine(const QString& folder, std::size_t attempts, std::size_t files, std::size_t missing);
 QString cancelledLine();
+QString damagedLine(std::size_t damages);
 
 }  // namespace passung::window

@@ -17,7 +17,7 @@ using Read = std::shared_ptr<presenter::Playback>;  // shared: through the event
 
 Result<Read> readFrom(const std::string& database, const std::string& meshes, std::int64_t id,
                       presenter::SceneArtist& artist) {
-    const auto reader = store::StoreReader::open(database);
+    const auto reader = store::StoreReader::open(database, store::Damaged::LeftOut);
     if (!reader) return reader.errors();
     const auto attempt = reader->attempt(id);
     if (!attempt) return attempt.errors();

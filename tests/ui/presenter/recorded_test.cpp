@@ -57,20 +57,19 @@ TEST(Recorded, LooksAtWhatCountsPerConditionAndNeverMixesKinds) {
 TEST(Recorded, ALookBeginsWithAMeasureThatVaries) {
     // Truth: invariant. Of three measures the time is the same in all attempts, or varies, or nothing varies.
     Recorded recorded;
-    for (const char* name : {"trials", "completion_time_s", "peak_force_N"})
-        recorded.measures.push_back({name, "", ""});
+    for (const char* name : {"trials", "time_s", "peak_force_N"}) recorded.measures.push_back({name, "", ""});
     recorded.data.attempts.resize(2);
     const auto set = [&](const char* name, double first, double second) {
         recorded.data.attempts[0].measures[name] = first;
         recorded.data.attempts[1].measures[name] = second;
     };
     set("trials", 1, 1);
-    set("completion_time_s", 30, 30);
+    set("time_s", 30, 30);
     set("peak_force_N", 2, 2);
     EXPECT_EQ(firstMeasure(recorded), 0u);
     set("peak_force_N", 2, 3);
     EXPECT_EQ(firstMeasure(recorded), 2u);
-    set("completion_time_s", 30, 29);
+    set("time_s", 30, 29);
     EXPECT_EQ(firstMeasure(recorded), 1u);
 }
 

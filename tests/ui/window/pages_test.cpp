@@ -7,6 +7,7 @@
 #include "core/model/scene.h"
 #include "core/tick/tick_model.h"
 #include "study/protocol/protocol_reader.h"
+#include "study/store/sqlite.h"
 #include "study/store/store_reader.h"
 #include "tests/ui/cli/small_study.h"
 #include "tests/ui/window/windows.h"
@@ -165,6 +166,7 @@ TEST_F(Pages, ASessionIsBegunBrokenOffAndGoneOnWith) {
     click("abort");
     click("abort");  // really
     waitFor(presenter::RunState::Incomplete);
+    EXPECT_FALSE(app_->records().attempts().isEmpty()) << "the page of data follows by itself";
     click("page-participants");
     settle();
     EXPECT_TRUE(enabled("resume"));
@@ -198,6 +200,46 @@ TEST_F(Pages, ASessionIsBegunBrokenOffAndGoneOnWith) {
     EXPECT_EQ(item(app_->experimenter(), "question"), nullptr);
 }
 
+TEST_F(Pages, ASessionThatGoesOnIsDrawnAsItBegan) {
+    // Truth: invariant: the quality is sought once a session, and is what the first part stored.
+    quality_.reset();
+    open("en", true);
+    activate(app_->experimenter());
+    pressKey(Qt::Key_2, Qt::ControlModifier);
+    settle();
+    type("experimenter", "AB");
+    click("enrol");
+    settle();
+    click("consent-0-yes");
+    settle();
+    click("startSession");
+    waitFor(presenter::RunState::Ready);
+    click("start");
+    waitFor([&] { return run().view().quality.has_value(); });
+    ASSERT_TRUE(run().view().quality);
+    const presenter::QualityFound found = *run().view().quality;
+    waitFor([&] { return run().view().may(session::CommandKind::Pause); });
+    activate(app_->experimenter());
+    pressKey(Qt::Key_Escape);
+    waitFor(presenter::RunState::Stopped);
+    click("abort");
+    click("abort");
+    waitFor(presenter::RunState::Incomplete);
+    click("page-participants");
+    settle();
+    click("resume");
+    waitFor(presenter::RunState::Ready);
+    click("start");
+    waitFor([&] { return run().view().may(session::CommandKind::Pause); });
+    ASSERT_TRUE(run().view().quality);
+    EXPECT_EQ(run().view().quality->quality, found.quality);
+    const QQuickItem* scene = item(app_->participant(), "scene");
+    EXPECT_EQ(scene->property("samples").toInt(), found.quality.samples);
+    EXPECT_EQ(store::Database(database(), store::OpenMode::ReadOnly)
+                  .integer("SELECT count(*) FROM event WHERE event='command_note' AND source='window'"),
+              1);
+}
+
 /// The checksums of an export's files.
 std::string sumsOf(const std::string& folder) {
     std::ifstream file(folder + "/SHA256SUMS");
@@ -223,6 +265,32 @@ TEST_F(Pages, RecordedSessionsAreLookedAtAndExported) {
     click("language");
     click("theme");
     shot("data_de_light");
+}
+
+TEST_F(Pages, WhatIsDamagedIsLeftOutAndSaidAndTheRestIsLookedAtAndExported) {
+    // Truth: invariant: one changed value takes its attempt from the page and from the export, nothing else.
+    perform(2);
+    click("page-data");
+    app_->records().refresh();
+    settle();
+    const auto whole = app_->records().attempts().size();
+    store::Database(database(), store::OpenMode::ReadWrite)
+        .execute(
+            "UPDATE attempt_measure SET value_num=value_num+1 WHERE measure='peak_force_N' AND attempt_id=(SELECT "
+            "max(attempt_id) FROM attempt)");
+    app_->records().refresh();
+    settle();
+    EXPECT_EQ(textOf("noData"), "(not shown)");
+    EXPECT_TRUE(app_->records().failed());
+    EXPECT_EQ(app_->records().told().toStdString(), "Damaged and left out here: 1; passung verify names each");
+    EXPECT_EQ(app_->records().attempts().size(), whole - 1);
+    shot("data_damaged");
+    type("exportFolder", (folder_ / "out").c_str());
+    click("export");
+    waitFor([&] { return !app_->records().exporting(); });
+    EXPECT_TRUE(app_->records().failed());
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "out/missing.csv"));
+    EXPECT_NE(app_->records().told().toStdString().find("left out: 1"), std::string::npos);
 }
 
 TEST_F(Pages, AnAttemptIsShownOnceMoreWithItsForceAndItsTime) {

@@ -1020,6 +1020,10 @@
         <translation>%1: %2 Versuche in %3 Dateien; beschädigt und ausgelassen: %4, siehe missing.csv</translation>
     </message>
     <message>
+        <source>Damaged and left out here: %1; passung verify names each</source>
+        <translation>Beschädigt und hier ausgelassen: %1; passung verify nennt jedes</translation>
+    </message>
+    <message>
         <source>The export was cancelled; nothing was written.</source>
         <translation>Der Export wurde abgebrochen; nichts wurde geschrieben.</translation>
     </message>
