@@ -20,8 +20,10 @@ struct MeanColumn {
 };
 
 constexpr MeanColumn kMeans[] = {
-    {"time [s]", "completion_time_s", 1.0, 2},         {"hand depth [mm]", "max_hand_depth_m", 1e3, 3},
-    {"proxy depth [mm]", "max_proxy_depth_m", 1e3, 4}, {"mean force [N]", "mean_force_N", 1.0, 2},
+    {"time [s]", "time_s", 1.0, 2},
+    {"hand depth [mm]", "max_hand_depth_m", 1e3, 3},
+    {"proxy depth [mm]", "max_proxy_depth_m", 1e3, 4},
+    {"mean force [N]", "mean_force_N", 1.0, 2},
     {"peak force [N]", "peak_force_N", 1.0, 2},
 };
 
@@ -84,8 +86,8 @@ std::string tableOf(const StudyData& study, const std::vector<Cell>& cells, cons
     const std::string version =
         study.protocols.size() > 1 ? fmt::format("{} {}, ", protocol.name, protocol.version) : "";
     return fmt::format(
-               "{}{} participants: {}. Means over valid main trials; depths are the trial's largest, mean force over "
-               "contact time.\n",
+               "{}{} participants: {}. Means over valid main trials; time is to success, or to the end without one; "
+               "depths are the trial's largest, mean force is over contact time.\n",
                version, kind, people.size()) +
            aligned(lines);
 }

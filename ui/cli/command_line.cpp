@@ -276,7 +276,7 @@ private:
             "is +0.3 or -0.3 (added, in the measure's unit) or x1.2 (multiplied); +0 gives the rate "
             "of false positives");
         sub->add_option("--against", power_.against, "level to compare with; default: the factor's first other one");
-        sub->add_option("--measure", power_.measure, "default completion_time_s");
+        sub->add_option("--measure", power_.measure, "default time_s");
         sub->add_option(
                "--test", power_.test,
                "paired_t, wilcoxon, rm_anova, friedman, mixed_anova of a within factor; welch_t, mann_whitney, "

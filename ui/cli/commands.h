@@ -142,7 +142,7 @@ struct PowerOptions {
     std::string protocol;  // empty with merge
     std::string effect;    // FACTOR:LEVEL=DELTA
     std::string against;   // level; empty: the factor's first other one
-    std::string measure = "completion_time_s";
+    std::string measure = "time_s";
     std::string test;                   // empty: as the protocol plans
     std::string simulation = "haptic";  // or "model"
     int participants = 0;               // 0: as many as the protocol plans

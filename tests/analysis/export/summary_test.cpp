@@ -22,9 +22,16 @@ TEST(Summary, CountsOnlyValidMainTrialsAndAveragesThem) {
     {
         auto store = fake::openStore(path);
         auto writer = fake::beginSession(*store, "S001", 8);
-        for (std::int64_t trial = 0; trial < 6; ++trial) require(fake::writeAttempt(*writer, trial, 5));
+        const auto endOf = [](std::int64_t trial) {
+            session::AttemptEnd end = fake::attemptEnd(trial, 5);
+            for (auto& measure : end.measures)
+                if (measure.name == "time_s") measure.value = 1.0 + 0.1 * static_cast<double>(trial);
+            return end;
+        };
+        for (std::int64_t trial = 0; trial < 6; ++trial)
+            require(writer->finishAttempt(require(writer->startAttempt(fake::attemptStart(trial))), endOf(trial)));
         const auto spoilt = require(writer->startAttempt(fake::attemptStart(6)));
-        session::AttemptEnd end = fake::attemptEnd(6, 5);
+        session::AttemptEnd end = endOf(6);
         end.valid = false;
         require(writer->finishAttempt(spoilt, end));
         const auto late = require(writer->startAttempt(fake::attemptStart(7)));

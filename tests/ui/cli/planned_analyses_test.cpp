@@ -4,6 +4,7 @@
 #include <map>
 
 #include "tests/ui/cli/program.h"
+#include "tests/ui/cli/small_study.h"
 
 namespace passung::test {
 namespace {
@@ -30,11 +31,10 @@ protected:
         const fs::path shipped = fs::path(PASSUNG_SOURCE_DIR) / "protocols";
         fs::copy(shipped, folder_.path() / "protocols", fs::copy_options::recursive);
         std::string text = readText(study());
-        std::map<std::string, std::string> quicker = {{"cell_mm = 0.5", "cell_mm = 1.0"},
-                                                      {"spacing_mm = 1.0", "spacing_mm = 3.0"},
-                                                      {"timeout_s = 30", "timeout_s = 3"},
-                                                      {"timeout_s = 90", "timeout_s = 3"},
-                                                      {"max_trials = 60", "max_trials = 10"}};
+        std::map<std::string, std::string> quicker = {
+            {"cell_mm = 0.5", "cell_mm = 1.0"},  {"spacing_mm = 1.0", "spacing_mm = 3.0"},
+            {"timeout_s = 30", "timeout_s = 3"}, {"timeout_s = 60", "timeout_s = 3"},
+            {"timeout_s = 90", "timeout_s = 3"}, {"max_trials = 60", "max_trials = 10"}};
         // A secondary task needs its trials.
         if (text.find("[secondary]") == std::string::npos) quicker["repetitions = 2"] = "repetitions = 1";
         for (const auto& [from, to] : quicker)
@@ -74,13 +74,38 @@ TEST_P(PlannedAnalyses, KeepEveryCountedPersonInR) {
 INSTANTIATE_TEST_SUITE_P(Shipped, PlannedAnalyses,
                          testing::Values("peg_in_hole/study.toml", "peg_in_hole/hidden_offset.toml",
                                          "accuracy_threshold/study.toml", "designs/study.toml",
-                                         "rendering_methods/study.toml", "real_vs_virtual/study.toml"),
+                                         "rendering_methods/study.toml", "real_vs_virtual/study.toml",
+                                         "narrow_passage/study.toml"),
                          [](const auto& test) {
                              std::string name = test.param;
                              for (char& c : name)
                                  if (!isalnum(static_cast<unsigned char>(c))) c = '_';
                              return name;
                          });
+
+TEST(ExportedNumbers, OfFourBytesAreInRWhatWasStoredToTheLastBit) {
+    // Truth: independent program (R's own reading of numbers): a value that four bytes held survives four bytes. The
+    // columns named here are such by the codebook.
+    if (!hasR()) GTEST_SKIP() << "R (r-base-core) is not installed";
+    const TempFolder folder;
+    writeText(folder / "study.toml", smallStudy());
+    ASSERT_EQ(runProgram(folder.path(), {"run", "study.toml", "--simulated", "1", "--db", "s.db"}).exit_code, 0);
+    ASSERT_EQ(runProgram(folder.path(), {"export", "s.db", "--out", "out"}).exit_code, 0);
+    writeText(
+        folder / "read.R",
+        "samples <- list.files(file.path(commandArgs(TRUE)[1], 'samples'), 'csv.gz', full.names = TRUE)\n"
+        "kept <- function(x) identical(readBin(writeBin(x, raw(), size = 4), 'numeric', length(x), size = 4), x)\n"
+        "columns <- c('hand_x_m', 'force_z_N', 'torque_y_Nm', 'hand_depth_m')\n"
+        "rows <- do.call(rbind, lapply(samples, read.csv))\n"
+        "stopifnot(all(columns %in% names(rows)), any(rows$force_z_N != 0))\n"
+        "for (column in columns) if (!kept(as.numeric(rows[[column]]))) cat(column, 'is not kept\\n')\n"
+        "cat(nrow(rows), 'rows\\n')\n");
+    int code = 0;
+    const std::string said = askR("'" + (folder / "read.R") + "' '" + (folder / "out") + "'", code);
+    EXPECT_EQ(code, 0) << said;
+    EXPECT_EQ(said.find("is not kept"), std::string::npos) << said;
+    EXPECT_NE(said.find(" rows"), std::string::npos) << said;
+}
 
 }  // namespace
 }  // namespace passung::test

@@ -123,7 +123,7 @@ TEST_F(Power, WrongUsageIsTwoAndWhatTheStudyLacksIsOne) {
 TEST_F(Power, TheTestIsTheOneThatTheProtocolPlans) {
     // Truth: invariant; --test wins.
     std::string study = readText(folder_ / "fair.toml");
-    study += "\n[[analysis]]\noutcome = \"completion_time_s\"\nfactors = [\"chance\"]\ntest = \"wilcoxon\"\n";
+    study += "\n[[analysis]]\noutcome = \"time_s\"\nfactors = [\"chance\"]\ntest = \"wilcoxon\"\n";
     writeText(folder_ / "fair.toml", study);
     EXPECT_NE(model({}).out.find("compared with none by wilcoxon"), std::string::npos);
     EXPECT_NE(model({"--test", "rm_anova"}).out.find("compared with none by rm_anova"), std::string::npos);
@@ -131,8 +131,8 @@ TEST_F(Power, TheTestIsTheOneThatTheProtocolPlans) {
 
 TEST_F(Power, AVirtualStudyIsARunAndItsExportWithTheEffectOnTop) {
     // Truth: independent path: the same seed through `run` and `export`; the means of cells_long.csv.
-    const Ended planted = power(
-        {"fair.toml", "--effect", "chance:fair=+0.25", "--participants", "2", "--repeats", "1", "--out", "p.csv"});
+    const Ended planted = power({"fair.toml", "--effect", "chance:fair=+0.25", "--measure", "completion_time_s",
+                                 "--participants", "2", "--repeats", "1", "--out", "p.csv"});
     ASSERT_EQ(planted.exit_code, 0) << planted.err;
     const auto result = power::readPowerText(readText(folder_ / "p.csv"), "p.csv");
     ASSERT_TRUE(result);
