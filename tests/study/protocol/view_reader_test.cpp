@@ -86,7 +86,8 @@ TEST(ViewReader, EveryKeyIsStoredWithThePlan) {
     for (const char* line :
          {"theme = \"light\"", "text_percent = 101", "camera_from = [1, 0, 0]", "camera_target_mm = [0, 0, 0]",
           "camera_distance_mm = 9", "camera_angle_deg = 31", "light_from = [0, 0, 1]", "light_percent = 99",
-          "fill_light_percent = 31", "ambient_light_percent = 35", "shadow_percent = 54", "ground = false"}) {
+          "fill_light_percent = 31", "ambient_light_percent = 35", "shadow_percent = 54", "ground = false",
+          "max_picture_age_ms = 499", "min_pictures_per_s = 9"}) {
         const auto other = read(kStudy + "[view]\n" + line + "\n");
         ASSERT_TRUE(other) << line << ": " << toString(other.errors().front());
         EXPECT_NE(other->expanded_json, plain->expanded_json) << line;

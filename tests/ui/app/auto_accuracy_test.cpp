@@ -34,6 +34,32 @@ TEST(AutoAccuracy, WritesTheKeptPickIntoTheScenesThatAskForIt) {
     EXPECT_EQ(plan.conditions[1].params_json, "");
 }
 
+TEST(AutoAccuracy, APickIsFeltBothWaysWhereOneWayWouldMissAPin) {
+    // Truth: closed form: a pin of 1 mm is thinner than the gap between points 1 mm apart to all sides; a post is not.
+    protocol::StudyPlan plan;
+    plan.conditions.resize(2);
+    const model::Shape obstacles[] = {model::Cylinder{0.001, 0.01}, model::Box{0.02, 0.02, 0.02}};
+    for (std::size_t i = 0; i < 2; ++i) {
+        plan.conditions[i].accuracy_budget = 50e-6;
+        auto& parts = plan.conditions[i].scene.parts;
+        parts.resize(2);
+        parts[0].name = "block";
+        parts[0].held = true;
+        parts[0].geometry = model::Box{0.04, 0.02, 0.02};
+        parts[1].name = "still";
+        parts[1].geometry = obstacles[i];
+    }
+    const store::AccuracyRow pick{.protocol_sha256 = "a",
+                                  .candidate = 0,
+                                  .mode = "trilinear",
+                                  .tolerance_um = 20.0,
+                                  .spacing_mm = 1.0,
+                                  .picked_for_us = {50.0}};
+    ASSERT_TRUE(applyAccuracy("a", std::vector{pick}, plan));
+    EXPECT_TRUE(plan.conditions[0].scene.contact.two_way);
+    EXPECT_FALSE(plan.conditions[1].scene.contact.two_way);
+}
+
 TEST(AutoAccuracy, NamesThePicksThatThisMachineIsTooSlowFor) {
     // Truth: invariant. A query takes more than a picosecond and less than a minute.
     protocol::StudyPlan plan;

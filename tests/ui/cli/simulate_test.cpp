@@ -161,5 +161,27 @@ TEST_F(Simulate, TheSceneLimitsTheForce) {
     for (std::size_t i = 0; i < kTicks; ++i) ASSERT_LE(force(i), 0.5 + 1e-12);
 }
 
+TEST_F(Simulate, ASheetThatItsCellsLoseIsRefusedByEachCommandThatRunsTheScene) {
+    // Truth: closed form: half a millimetre lies within the diagonal of a cell of 1 mm; nothing is written.
+    std::string scene = pressScene("god_object");
+    const std::string thick = "height = 30 }\npose = { position = [0, 0, -15] }";
+    const std::size_t at = scene.find(thick);
+    ASSERT_NE(at, std::string::npos);
+    scene.replace(at, thick.size(), "height = 0.5 }\npose = { position = [0, 0, -0.25] }");
+    writeText(folder_ / "scene.toml", scene);
+    writeText(folder_ / "path.csv", kPress);
+    for (const std::vector<std::string>& call :
+         {std::vector<std::string>{"simulate", "scene.toml", "--trajectory", "path.csv", "--out", "t.csv"},
+          {"explain", "scene.toml"}}) {
+        const Ended ended = runProgram(folder_.path(), call);
+        EXPECT_EQ(ended.exit_code, 1) << call[0];
+        EXPECT_EQ(linesOf(ended.err).size(), 1u) << ended.err;
+        EXPECT_EQ(ended.err.find("scene.toml:"), 0u) << ended.err;
+        EXPECT_NE(ended.err.find("part.table"), std::string::npos) << ended.err;
+        EXPECT_NE(ended.err.find("0.5 mm"), std::string::npos) << ended.err;
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "t.csv"));
+}
+
 }  // namespace
 }  // namespace passung::test

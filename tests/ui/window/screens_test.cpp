@@ -4,6 +4,7 @@
 
 #include <QtCore/QSettings>
 #include <QtGui/QScreen>
+#include <QtQml/QQmlContext>
 #include <cstdlib>
 #include <cstring>
 #include <tuple>
@@ -11,7 +12,7 @@
 
 #include "tests/ui/window/windows.h"
 
-// Two monitors side by side, as the X server tells programs of them: on which the participant's window is shown.
+// Several monitors, as the X server tells programs of them: on which the participant's window is shown.
 
 namespace passung::test {
 namespace {
@@ -31,7 +32,7 @@ bool setMonitor(xcb_connection_t* connection, xcb_window_t root, xcb_randr_monit
     return xcb_request_check(connection, cookie) == nullptr && xcb_connection_has_error(connection) == 0;
 }
 
-/// Tells all programs that the screen is two monitors.
+/// Tells all programs that the screen is three monitors: two side by side, and one below the right one.
 void splitScreen() {
     xcb_connection_t* connection = xcb_connect(nullptr, nullptr);
     const xcb_window_t root = xcb_setup_roots_iterator(xcb_get_setup(connection)).data->root;
@@ -39,16 +40,19 @@ void splitScreen() {
         xcb_randr_get_screen_resources_reply(connection, xcb_randr_get_screen_resources(connection, root), nullptr);
     const xcb_randr_output_t output = xcb_randr_get_screen_resources_outputs(resources)[0];
     std::free(resources);
-    for (const auto& [name, x, outputs] : {std::tuple{"LEFT", 0, 1}, std::tuple{"RIGHT", 1600, 0}}) {
+    for (const auto& [name, place, outputs] :
+         {std::tuple{"LEFT", QRect(0, 0, 1600, 1000), 1}, std::tuple{"RIGHT", QRect(1600, 0, 1280, 720), 0},
+          std::tuple{"LOW", QRect(1600, 720, 1280, 280), 0}}) {
         auto* atom = xcb_intern_atom_reply(
             connection, xcb_intern_atom(connection, 0, static_cast<std::uint16_t>(std::strlen(name)), name), nullptr);
         xcb_randr_monitor_info_t info{};
         info.name = atom->atom;
         info.primary = outputs == 1;
         info.nOutput = static_cast<std::uint16_t>(outputs);
-        info.x = static_cast<std::int16_t>(x);
-        info.width = x == 0 ? 1600 : 1280;
-        info.height = x == 0 ? 1000 : 720;
+        info.x = static_cast<std::int16_t>(place.x());
+        info.y = static_cast<std::int16_t>(place.y());
+        info.width = static_cast<std::uint16_t>(place.width());
+        info.height = static_cast<std::uint16_t>(place.height());
         info.width_in_millimeters = 400, info.height_in_millimeters = 250;
         if (!setMonitor(connection, root, info, output))
             throw std::runtime_error("the X server has no monitors to set");
@@ -57,9 +61,9 @@ void splitScreen() {
     // The connection stays: a server whose last client goes forgets its monitors.
 }
 
-class TwoScreens : public Windows {
+class Screens : public Windows {
 protected:
-    TwoScreens() { quality_ = presenter::PictureQuality{false, 1, 0.5}; }  // where, not how, it is drawn
+    Screens() { quality_ = presenter::PictureQuality{false, 1, 0.5}; }  // where, not how, it is drawn
 
     static void SetUpTestSuite() {
         splitScreen();
@@ -91,9 +95,9 @@ protected:
     }
 };
 
-TEST_F(TwoScreens, TheParticipantsWindowFillsTheScreenThatTheConsoleIsNotOn) {
-    // Truth: invariant. Real windows on two monitors of one X server; the console goes from one to the other.
-    ASSERT_EQ(QGuiApplication::screens().size(), 2);
+TEST_F(Screens, TheParticipantsWindowFillsTheScreenThatTheConsoleIsNotOn) {
+    // Truth: invariant. Real windows on monitors of one X server; the console goes from one to another.
+    ASSERT_EQ(QGuiApplication::screens().size(), 3);
     ASSERT_EQ(area("RIGHT"), QRect(1600, 0, 1280, 720));
     app_->experimenter()->setPosition(30, 30);
     waitFor([&] { return area("LEFT").contains(app_->experimenter()->geometry()); });
@@ -112,7 +116,7 @@ TEST_F(TwoScreens, TheParticipantsWindowFillsTheScreenThatTheConsoleIsNotOn) {
     endSession();
 }
 
-TEST_F(TwoScreens, AWindowThatIsOpenedAgainComesBackToItsScreen) {
+TEST_F(Screens, AWindowThatIsOpenedAgainComesBackToItsScreen) {
     // Truth: invariant.
     app_->experimenter()->setPosition(30, 30);
     waitFor([&] { return area("LEFT").contains(app_->experimenter()->geometry()); });
@@ -123,6 +127,31 @@ TEST_F(TwoScreens, AWindowThatIsOpenedAgainComesBackToItsScreen) {
     click("openDisplay");
     waitFor([&] { return app_->participant()->isExposed(); });
     expectOn("RIGHT");
+    endSession();
+}
+
+TEST_F(Screens, TheScreenThatSomebodyChoseIsRemembered) {
+    // Truth: invariant: the next start of the program shows the participant's window there.
+    const auto choose = [&](const char* name) {
+        QObject* choice = qmlContext(item(app_->experimenter(), "participantScreen"))
+                              ->contextProperty("screenChoice")
+                              .value<QObject*>();
+        choice->setProperty("chosen", choice->property("names").toStringList().indexOf(name));
+    };
+    app_->experimenter()->setPosition(30, 30);
+    waitFor([&] { return area("LEFT").contains(app_->experimenter()->geometry()); });
+    tryOut();
+    expectOn("RIGHT");
+    choose("LOW");
+    expectOn("LOW");
+    endSession();
+    open("en", true);
+    app_->experimenter()->setPosition(30, 30);
+    waitFor([&] { return area("LEFT").contains(app_->experimenter()->geometry()); });
+    tryOut();
+    expectOn("LOW");
+    EXPECT_EQ(item(app_->experimenter(), "participantScreen")->property("currentText").toString(), "LOW");
+    choose("RIGHT");
     endSession();
 }
 
