@@ -25,9 +25,11 @@ target_compile_features(passung_flags INTERFACE cxx_std_20)
 
 # With PASSUNG_PRECOMPILE what most files include is parsed once, for rooms and for tests; the build by clang, without
 # it, shows that what the tests of determinism need still includes what it uses. Code with Qt is compiled otherwise
-# (-fPIC) and cannot share what was parsed.
+# (-fPIC) and shares nothing with the rest: the windows and the larger one of their tests parse their own.
 set(PASSUNG_COMMON_HEADERS <Eigen/Geometry> <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory>
   <optional> <set> <span> <string> <string_view> <variant> <vector>)
+set(PASSUNG_WINDOW_HEADERS ${PASSUNG_COMMON_HEADERS} <QtCore/QCoreApplication> <QtQml/QQmlEngine> <QtQuick/QQuickItem>
+  <QtQuick/QQuickWindow>)
 
 # passung_precompile_headers(passung_room_headers LINK passung_flags HEADERS <vector>): a target that parses them.
 function(passung_precompile_headers target)
