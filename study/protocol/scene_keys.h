@@ -114,7 +114,7 @@ inline constexpr std::array kSceneKeys{
     Key{"contact", "mode", Choice, kAny, "layered|surface_point|linear|trilinear|cubic", "trilinear",
         "Interpolation in the distance field, from coarse to smooth."},
     Key{"contact", "budget_nodes", Integer, from(0, 1000000), "", "0", "Most tree nodes that a query visits; 0 = no budget."},
-    Key{"contact", "two_way", Boolean, kAny, "", "(true where a pin, fin, wall or acute edge of an obstacle would slip between the held part's points)", "Points of the obstacles are held against the held part as well: finds edges that poke between its points, and takes about twice as long. With false, what would slip through is an error."},
+    Key{"contact", "two_way", Boolean, kAny, "", "(true where a pin, fin, wall, acute edge or relief of an obstacle would slip between the held part's points)", "Points of the obstacles are held against the held part as well: finds edges that poke between its points, and takes about twice as long. With false, what would slip through is an error."},
     Key{"contact", "proxy_filter_hz", Number, from(0, 500), "", "0", "Corner of the proxy's low-pass while in contact; 0 = no filter. God objects only."},
 
     Key{"device", "preset", Text, kAny, "", "(none)", "Name of a known device."},
