@@ -15,6 +15,7 @@
 #include "study/store/sqlite.h"
 #include "study/store/stable_stiffness_rows.h"
 #include "study/store/staircase_rows.h"
+#include "study/store/untouched.h"
 
 namespace passung::store {
 namespace {
@@ -83,6 +84,33 @@ std::vector<Chunk> readChunks(const Database& database, std::int64_t attempt_id,
     return chunks;
 }
 
+/// An index that does not fit its table, and rows that belong to none.
+std::vector<DamageRow> structureFaults(const Database& database) {
+    std::vector<DamageRow> faults;
+    const auto add = [&](const std::string& part, const std::string& what) {
+        faults.emplace_back();
+        faults.back().part = part;
+        faults.back().what = what;
+    };
+    Statement verdict = database.prepare("PRAGMA integrity_check(200)");
+    while (verdict.step())
+        if (const std::string line = verdict.text(0); line.find(" index ") != std::string::npos) add("the file", line);
+    Statement broken = database.prepare("SELECT DISTINCT \"table\", parent FROM pragma_foreign_key_check");
+    while (broken.step()) add(broken.text(0), "a row belongs to no row of " + broken.text(1));
+    return faults;
+}
+
+/// The same data with its indices made anew, as far as SQLite can: what is found through them is then what is there.
+std::unique_ptr<Database> withoutDamagedIndices(const Database& database, const std::string& path) {
+    auto copy = privateCopy(database, path);
+    try {
+        copy->execute("REINDEX");
+    } catch (const SqliteError&) {  // a row that is damaged itself, which its hash tells
+    }
+    copy->execute("PRAGMA query_only=ON");
+    return copy;
+}
+
 }  // namespace
 
 StoreReader::StoreReader(std::string path, std::unique_ptr<Database> database)
@@ -95,10 +123,15 @@ Result<StoreReader> StoreReader::open(const std::string& path, Damaged damaged) 
     auto database = openForReading(path, OlderFile::UpgradeCopy, refused ? ReadCheck::Pages : ReadCheck::Structure);
     if (!database) return database.errors();
     std::vector<DamageRow> damages;
+    const bool leaves_out = damaged == Damaged::LeftOut || damaged == Damaged::LeftOutWithSamples;
     const auto begun = guarded(path, [&] {
+        if (leaves_out) damages = structureFaults(**database);
+        if (!damages.empty()) *database = withoutDamagedIndices(**database, path);
         (*database)->execute("BEGIN; SELECT count(*) FROM schema_revision");
-        if (damaged == Damaged::LeftOut || damaged == Damaged::LeftOutWithSamples)
-            damages = leaveOutDamaged(**database, damaged == Damaged::LeftOut ? Samples::LeftOut : Samples::LookedAt);
+        if (!leaves_out) return Done{};
+        const auto rows =
+            leaveOutDamaged(**database, damaged == Damaged::LeftOut ? Samples::LeftOut : Samples::LookedAt);
+        damages.insert(damages.end(), rows.begin(), rows.end());
         return Done{};
     });
     if (!begun) return begun.errors();

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 
 #include "study/store/merge.h"
 #include "study/store/participant_desk.h"
 #include "study/store/sqlite.h"
+#include "study/store/store_reader.h"
 #include "tests/study/store/damaged_study.h"
 
 namespace passung::store {
@@ -194,6 +196,42 @@ TEST_F(Verify, CountsRowsWithoutAHashBesideOthersThatHaveOne) {
     // Truth: invariant
     change("DELETE FROM row_hash WHERE table_name='participant'");
     EXPECT_EQ(require(verifyDatabase(path_)).not_hashed, std::vector<std::string>{"2 of the study's own rows"});
+}
+
+TEST(DamagedIndex, IsToldAndWhatIsFoundThroughItIsWhatWasWritten) {
+    // Truth: invariant: the intact file's events. One bit of the last cell of an index is flipped in the file's bytes;
+    // a row of the plan is given to no session.
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db";
+    fake::performAsking(path, "S001");
+    const auto eventsOf = [&](const StoreReader& reader) {
+        std::vector<std::string> events;
+        for (const EventRow& row : require(reader.events())) events.push_back(row.event + row.payload_json);
+        return events;
+    };
+    const auto whole = eventsOf(require(StoreReader::open(path, Damaged::LeftOut)));
+    std::int64_t page = 0, size = 0;
+    {
+        const Database database(path, OpenMode::ReadOnly);
+        page = database.integer("SELECT rootpage FROM sqlite_schema WHERE name='event_of_attempt'");
+        size = database.integer("PRAGMA page_size");
+    }
+    {
+        std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+        char last = 0;
+        file.seekg(page * size - 1).get(last);
+        file.seekp(page * size - 1).put(static_cast<char>(last ^ 1));
+    }
+    EXPECT_FALSE(require(verifyDatabase(path)).damages.empty());
+    {
+        const StoreReader reader = require(StoreReader::open(path, Damaged::LeftOut));
+        EXPECT_FALSE(reader.damages().empty());
+        EXPECT_EQ(eventsOf(reader), whole);
+    }
+    fake::performAsking(folder / "t.db", "S001");
+    Database(folder / "t.db", OpenMode::ReadWrite)
+        .execute("PRAGMA foreign_keys=OFF; UPDATE trial_plan SET session_id='?' WHERE trial_id=1");
+    EXPECT_FALSE(require(StoreReader::open(folder / "t.db", Damaged::LeftOut)).damages().empty());
 }
 
 }  // namespace
