@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <stdexcept>
 
+#include "core/base/regular_file.h"
 #include "study/store/backup.h"
 #include "study/store/private_files.h"
 #include "study/store/revisions.h"
@@ -154,6 +156,8 @@ OpenedDatabase openForWriting(const std::string& path, const OpenOptions& option
     OpenedDatabase opened;
     const bool existed = std::filesystem::exists(path);
     const auto done = guarded(path, [&] {
+        // What is no file stays as it is: who may use a device is not this program's to say.
+        if (const auto why = whyNoRegularFile(path)) throw std::runtime_error(*why);
         if (existed) keepPrivate(path, options.group);
         opened.database = std::make_unique<Database>(path, options.create ? OpenMode::Create : OpenMode::ReadWrite);
         if (!existed) keepPrivate(path, options.group);

@@ -230,5 +230,16 @@ TEST(Archive, NobodyElseOpensADatabaseWhileItRunsOrLater) {
     umask(mask);
 }
 
+TEST(Archive, WhatIsNoFileKeepsItsMode) {
+    // Truth: invariant: a pipe in the place of a database is refused, and who may use it is as before.
+    const test::TempFolder folder;
+    const std::string path = folder / "s.db";
+    ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+    fs::permissions(path, fs::perms(0666));
+    EXPECT_FALSE(Store::open(path, fake::options()).store);
+    EXPECT_EQ(fs::status(path).permissions(), fs::perms(0666));
+    EXPECT_TRUE(fs::is_fifo(path));
+}
+
 }  // namespace
 }  // namespace passung::store
