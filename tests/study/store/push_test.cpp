@@ -37,7 +37,8 @@ protected:
         server_ = nullptr;
     }
     void SetUp() override {
-        if (server_ == nullptr) GTEST_SKIP() << "no PostgreSQL server is installed";
+        if (!fake::Postgres::installed()) GTEST_SKIP() << "no PostgreSQL server is installed";
+        ASSERT_NE(server_, nullptr) << "the server did not start";
         there_ = std::make_unique<pqxx::connection>(server_->uri());
         pqxx::nontransaction(*there_).exec("DROP SCHEMA IF EXISTS fake CASCADE");
     }
