@@ -12,8 +12,6 @@
 namespace passung::protocol {
 namespace {
 
-constexpr double kMm = 1e-3;
-
 const std::string kBlock = R"(shape = { kind = "box", width = 20, depth = 20, height = 20 })";
 const std::string kPlate =
     R"(shape = { kind = "bore_plate", width = 60, depth = 60, height = 30, bore_diameter = 21, bore_depth = 25 })";
