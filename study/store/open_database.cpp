@@ -152,6 +152,21 @@ bool pagesAreSound(const Database& database) {
     return true;
 }
 
+std::vector<BrokenReference> brokenReferences(const Database& database) {
+    std::vector<BrokenReference> all;
+    Statement broken = database.prepare("SELECT DISTINCT \"table\", parent FROM pragma_foreign_key_check");
+    while (broken.step()) all.push_back({broken.text(0), broken.text(1)});
+    return all;
+}
+
+void rebuildIndices(const Database& database) {
+    try {
+        database.execute("REINDEX");
+    } catch (const SqliteError&) {
+        // two rows of one name: healing one of them comes first
+    }
+}
+
 OpenedDatabase openForWriting(const std::string& path, const OpenOptions& options) {
     OpenedDatabase opened;
     const bool existed = std::filesystem::exists(path);

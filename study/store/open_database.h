@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "study/store/sqlite.h"
 #include "study/store/store.h"
@@ -28,6 +29,15 @@ enum class ReadCheck { Pages, Structure, None };
 
 /// Are the file's pages sound? Faults of single rows and of indices are not of them.
 bool pagesAreSound(const Database& database);
+
+/// Rows of `table` that belong to no row of `parent`: told once a pair.
+struct BrokenReference {
+    std::string table, parent;
+};
+std::vector<BrokenReference> brokenReferences(const Database& database);
+
+/// An index that does not fit its table is made anew; where even that is refused, a row is still damaged.
+void rebuildIndices(const Database& database);
 
 /// Opens an existing Passung file that this program can read, without changing a byte of it (see openUntouched()).
 Result<std::unique_ptr<Database>> openForReading(const std::string& path, OlderFile older = OlderFile::UpgradeCopy,

@@ -56,15 +56,6 @@ bool copyDamaged(const std::string& path, const std::string& to, const std::stri
     }
 }
 
-/// An index that does not fit its table is made anew; where even that is refused, a row is still damaged.
-void rebuildIndices(const Database& database) {
-    try {
-        database.execute("REINDEX");
-    } catch (const SqliteError&) {
-        // two rows of one name: healing one of them comes first
-    }
-}
-
 /// Rows of sessions that are gone while what belongs to them is there.
 void bringBackSessions(const Database& database, std::vector<std::string>& healed) {
     Statement gone = database.prepare(

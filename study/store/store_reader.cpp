@@ -95,18 +95,14 @@ std::vector<DamageRow> structureFaults(const Database& database) {
     Statement verdict = database.prepare("PRAGMA integrity_check(200)");
     while (verdict.step())
         if (const std::string line = verdict.text(0); line.find(" index ") != std::string::npos) add("the file", line);
-    Statement broken = database.prepare("SELECT DISTINCT \"table\", parent FROM pragma_foreign_key_check");
-    while (broken.step()) add(broken.text(0), "a row belongs to no row of " + broken.text(1));
+    for (const auto& [table, parent] : brokenReferences(database)) add(table, "a row belongs to no row of " + parent);
     return faults;
 }
 
 /// The same data with its indices made anew, as far as SQLite can: what is found through them is then what is there.
 std::unique_ptr<Database> withoutDamagedIndices(const Database& database, const std::string& path) {
     auto copy = privateCopy(database, path);
-    try {
-        copy->execute("REINDEX");
-    } catch (const SqliteError&) {  // a row that is damaged itself, which its hash tells
-    }
+    rebuildIndices(*copy);
     copy->execute("PRAGMA query_only=ON");
     return copy;
 }

@@ -53,9 +53,8 @@ private:
     }
 
     void references() {
-        Statement broken = database_.prepare("SELECT DISTINCT \"table\", parent FROM pragma_foreign_key_check");
-        while (broken.step())
-            found_.damages.push_back("a row of " + broken.text(0) + " belongs to no row of " + broken.text(1));
+        for (const auto& [table, parent] : brokenReferences(database_))
+            found_.damages.push_back("a row of " + table + " belongs to no row of " + parent);
     }
 
     void rows() {

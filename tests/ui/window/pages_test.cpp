@@ -66,6 +66,27 @@ text.de = "Sie nehmen teil."
         ASSERT_TRUE(end) << toString(end.errors().front());
     }
 
+    /// Somebody is enrolled, consents, and their session waits for its start.
+    void beginSession() {
+        pressKey(Qt::Key_2, Qt::ControlModifier);
+        settle();
+        type("experimenter", "AB");
+        click("enrol");
+        settle();
+        click("consent-0-yes");
+        settle();
+        click("startSession");
+        waitFor(presenter::RunState::Ready);
+    }
+    void breakOff() {
+        activate(app_->experimenter());
+        pressKey(Qt::Key_Escape);  // a running trial would be finished first
+        waitFor(presenter::RunState::Stopped);
+        click("abort");
+        click("abort");  // really
+        waitFor(presenter::RunState::Incomplete);
+    }
+
     std::string textOf(const char* name) const {
         const QQuickItem* found = item(app_->experimenter(), name);
         return found != nullptr ? found->property("text").toString().toStdString() : "(not shown)";
@@ -148,24 +169,11 @@ TEST_F(Pages, SomebodyIsEnrolledOnceConsentsIsExcludedReadmittedAndErased) {
 
 TEST_F(Pages, ASessionIsBegunBrokenOffAndGoneOnWith) {
     // Truth: invariant. What the page begins is what the database holds.
-    pressKey(Qt::Key_2, Qt::ControlModifier);
-    settle();
-    type("experimenter", "AB");
-    click("enrol");
-    settle();
-    click("consent-0-yes");
-    settle();
-    click("startSession");
-    waitFor(presenter::RunState::Ready);
+    beginSession();
     EXPECT_NE(item(app_->experimenter(), "stateLine"), nullptr) << "the page of the session is shown";
     click("start");
     waitFor([&] { return run().view().may(session::CommandKind::Pause); });
-    activate(app_->experimenter());
-    pressKey(Qt::Key_Escape);  // a running trial would be finished first
-    waitFor(presenter::RunState::Stopped);
-    click("abort");
-    click("abort");  // really
-    waitFor(presenter::RunState::Incomplete);
+    breakOff();
     EXPECT_FALSE(app_->records().attempts().isEmpty()) << "the page of data follows by itself";
     click("page-participants");
     settle();
@@ -205,26 +213,13 @@ TEST_F(Pages, ASessionThatGoesOnIsDrawnAsItBegan) {
     quality_.reset();
     open("en", true);
     activate(app_->experimenter());
-    pressKey(Qt::Key_2, Qt::ControlModifier);
-    settle();
-    type("experimenter", "AB");
-    click("enrol");
-    settle();
-    click("consent-0-yes");
-    settle();
-    click("startSession");
-    waitFor(presenter::RunState::Ready);
+    beginSession();
     click("start");
     waitFor([&] { return run().view().quality.has_value(); });
     ASSERT_TRUE(run().view().quality);
     const presenter::QualityFound found = *run().view().quality;
     waitFor([&] { return run().view().may(session::CommandKind::Pause); });
-    activate(app_->experimenter());
-    pressKey(Qt::Key_Escape);
-    waitFor(presenter::RunState::Stopped);
-    click("abort");
-    click("abort");
-    waitFor(presenter::RunState::Incomplete);
+    breakOff();
     click("page-participants");
     settle();
     click("resume");
