@@ -28,8 +28,13 @@ Result<TriangleMesh> readPly(std::string_view bytes, const std::string& file);
 /// itself.
 Result<TriangleMesh> readMesh(std::string_view bytes, const std::string& file, const std::string& extension);
 
+/// Corners that a polygon may have: the search for its ears grows with the square, and a fan of many more, slivers
+/// about one corner, would take a distance field minutes and gigabytes.
+inline constexpr std::size_t kMostPolygonCorners = 1000;
+inline constexpr const char* kTooManyCorners = "a face must have at most 1000 corners: cut it into triangles";
+
 /// Cuts a polygon of `mesh` into triangles by ears, so that a concave one is not filled beyond its border; one that is
-/// not simple becomes a fan. @pre at least three corners, all in range.
+/// not simple becomes a fan. @pre three to kMostPolygonCorners corners, all in range.
 void addPolygon(TriangleMesh& mesh, const std::vector<std::uint32_t>& corners);
 
 }  // namespace passung::model

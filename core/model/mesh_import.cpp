@@ -254,6 +254,18 @@ Result<Done> toMetres(TriangleMesh& mesh, double metres_per_unit, const std::str
     return Done{};
 }
 
+/// A surface that passes through itself nearly everywhere has no inside that could be told, nor an end of work on it.
+std::optional<std::string> tangle(const MeshReport& report) {
+    const double crossings = static_cast<double>(report.crossing_pairs) / static_cast<double>(report.triangles);
+    if (!(crossings > kMostCrossings)) return std::nullopt;
+    std::array<char, 160> text{};
+    std::snprintf(text.data(), text.size(),
+                  "the surface crosses itself so often that it has no inside: each triangle passes through %.0f others "
+                  "(mean), at most %.0f",
+                  crossings, kMostCrossings);
+    return std::string(text.data());
+}
+
 }  // namespace
 
 Result<TriangleMesh> readMesh(std::string_view bytes, const std::string& path, const std::string& extension) {
@@ -279,6 +291,7 @@ Result<ImportedMesh> importMesh(const std::string& path, double metres_per_unit)
 
     ImportedMesh result = repairMesh(std::move(mesh));
     if (result.mesh.triangles.empty()) return fileError(path, "the mesh must have triangles with area");
+    if (auto tangled = tangle(result.report)) return fileError(path, *tangled);
     result.report.file = path;
     result.report.format = extension;
     result.report.metres_per_unit = *scale;

@@ -41,6 +41,7 @@ struct MeshReport {
     std::size_t cavities = 0;            // shells inside a solid that bound a hollow in it
     std::size_t nested_solids = 0;       // shells inside a solid that face outwards like it
     std::size_t crossing_triangles = 0;  // an edge of another passes through them, or one of theirs through another
+    std::size_t crossing_pairs = 0;      // of triangles that do so, counted from both sides
     bool watertight = false;             // every edge is used once in each direction, before holes were closed
     bool turned_inside_out = false;      // the inside was outside: all triangles were turned
     SurfaceKind kind = SurfaceKind::OpenSheet;
@@ -63,7 +64,9 @@ struct ImportedMesh {
 /// transforms; as metres. `metres_per_unit` (> 0) applies to formats without a unit. glTF is in metres; a 3MF file
 /// names its unit, millimetre if it names none. Polygons are cut into triangles; points and lines are ignored. Errors:
 /// file missing, unreadable, empty, cut off or of another kind; no triangles with area; vertices that are not finite or
-/// farther than 100 km from the origin; faces that name no vertex.
+/// farther than 100 km from the origin; faces that name no vertex or too many; a surface whose triangles pass through
+/// more than kMostCrossings others each, in the mean.
+inline constexpr double kMostCrossings = 20.0;  // of two solids that overlap: about 5
 Result<ImportedMesh> importMesh(const std::string& path, double metres_per_unit);
 
 /// The same checks and repairs for triangles that are already in memory. @pre finite vertices, indices in range.

@@ -359,7 +359,9 @@ ImportedMesh repairMesh(TriangleMesh mesh) {
         report.turned_inside_out = orientation.turned_all;
         if (orientation.turned_all || orientation.turned_patches > 0) edges = halfEdges(mesh.triangles);
     }
-    report.crossing_triangles = crossingTriangles(mesh);
+    const Crossings crossings = crossingsOf(mesh);
+    report.crossing_triangles = crossings.triangles;
+    report.crossing_pairs = crossings.pairs;
     report.watertight = isWatertight(edges);
     const Bounds bounds = boundsOf(mesh);
     report.area = surfaceArea(mesh);

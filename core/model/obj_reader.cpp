@@ -20,6 +20,7 @@ Result<Done> readFace(TextScanner& text, TriangleMesh& mesh) {
         corners.push_back(static_cast<std::uint32_t>(index));
     }
     if (corners.size() < 3) return text.error("a face needs three vertices or more");
+    if (corners.size() > kMostPolygonCorners) return text.error(kTooManyCorners, std::to_string(corners.size()));
     addPolygon(mesh, corners);
     return Done{};
 }

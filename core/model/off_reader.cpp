@@ -16,6 +16,7 @@ Result<Done> readFace(TextScanner& text, std::size_t vertices, TriangleMesh& mes
     const std::string_view count_word = text.word();
     const auto count = numberIn<std::uint32_t>(count_word);
     if (!count) return text.error("a face must begin with its number of vertices", count_word);
+    if (*count > kMostPolygonCorners) return text.error(kTooManyCorners, count_word);
     std::vector<std::uint32_t> corners;
     for (std::uint32_t k = 0; k < *count; ++k) {
         const std::string_view word = text.word();

@@ -182,6 +182,7 @@ Result<Done> readElement(Numbers& numbers, const Element& element, TriangleMesh&
             const bool names_corners =
                 is_face && property.count && (property.name == "vertex_indices" || property.name == "vertex_index");
             corners.clear();
+            if (names_corners && count > kMostPolygonCorners) return numbers.error(element, i, kTooManyCorners);
             for (std::uint64_t k = 0; k < count; ++k) {
                 const double number = numbers.next(property.type);
                 if (names_corners) {

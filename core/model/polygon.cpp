@@ -7,8 +7,6 @@ namespace passung::model {
 
 namespace {
 
-constexpr std::size_t kMostEars = 1000;  // corners; beyond, a fan: the search for ears grows with the square
-
 /// Twice the area vector, by Newell's method.
 Vec3 newellNormal(const TriangleMesh& mesh, const std::vector<std::uint32_t>& corners) {
     Vec3 normal = Vec3::Zero();
@@ -38,7 +36,7 @@ bool isEar(const TriangleMesh& mesh, const std::vector<std::uint32_t>& corners, 
 
 void addPolygon(TriangleMesh& mesh, const std::vector<std::uint32_t>& corners) {
     std::vector<std::uint32_t> left = corners;
-    if (corners.size() > 3 && corners.size() <= kMostEars) {
+    if (corners.size() > 3) {
         const Vec3 normal = newellNormal(mesh, corners);
         for (std::size_t k = 0, misses = 0; left.size() > 3 && misses < left.size();) {
             if (!isEar(mesh, left, k, normal)) {

@@ -45,13 +45,14 @@ bool cross(const Corners& a, const Corners& b) {
 
 }  // namespace
 
-std::size_t crossingTriangles(const TriangleMesh& mesh) {
-    if (mesh.triangles.empty()) return 0;
+Crossings crossingsOf(const TriangleMesh& mesh) {
+    if (mesh.triangles.empty()) return {};
     const TriangleTree tree(mesh);
     const auto cornersOf = [&](std::size_t i) {
         const Triangle& t = mesh.triangles[i];
         return Corners{{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]}};
     };
+    Crossings found;
     std::vector<char> crossing(mesh.triangles.size(), 0);
     std::vector<std::uint32_t> near;
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -60,11 +61,13 @@ std::size_t crossingTriangles(const TriangleMesh& mesh) {
         for (const Vec3& corner : corners.at) box.extend(corner);
         tree.collectWithin(box, kMostNeighbours, near);
         for (const std::uint32_t k : near) {
-            if (k <= i || (crossing[i] != 0 && crossing[k] != 0)) continue;
-            if (cross(corners, cornersOf(k))) crossing[i] = crossing[k] = 1;
+            if (k <= i || !cross(corners, cornersOf(k))) continue;
+            crossing[i] = crossing[k] = 1;
+            found.pairs += 2;
         }
     }
-    return static_cast<std::size_t>(std::count(crossing.begin(), crossing.end(), 1));
+    found.triangles = static_cast<std::size_t>(std::count(crossing.begin(), crossing.end(), 1));
+    return found;
 }
 
 }  // namespace passung::model

@@ -39,7 +39,13 @@ struct Seed {
 struct Judged {
     bool thin = false;
     double near = 0.0, far = 0.0;  // radius of the largest ball within kNear and kFelt radii
+    bool looked_at = true;
 };
+
+/// Questions asked of the tree, those for the inside counted as several: the same on every machine.
+using Work = std::size_t;
+constexpr Work kInsideWork = 4;
+constexpr std::size_t kSeedsPerRound = 256;  // between two looks at the work
 
 /// Directions spread evenly over the sphere (Fibonacci lattice).
 std::array<Vec3, kDirections> directions() {
@@ -63,36 +69,38 @@ public:
         return tree_.closest(p - radius_ * n, radius_).distance >= kRoom * radius_;
     }
 
-    Judged judge(const Seed& seed) const {
-        const double near = largestWithin(seed, kNear * radius_), far = largestWithin(seed, kFelt * radius_);
+    Judged judge(const Seed& seed, Work& work) const {
+        const double near = largestWithin(seed, kNear * radius_, work),
+                     far = largestWithin(seed, kFelt * radius_, work);
         if (far >= kRoom * radius_) return {false, near, far};
-        if (far > kTaper * near && largestWithin(seed, kBlunt * radius_) >= kRoom * radius_) return {false, near, far};
+        if (far > kTaper * near && largestWithin(seed, kBlunt * radius_, work) >= kRoom * radius_)
+            return {false, near, far};
         return {true, near, far};
     }
 
 private:
     /// Radius of the largest ball in the solid whose centre is within `reach` of the seed, at most the radius asked
     /// for.
-    double largestWithin(const Seed& seed, double reach) const {
+    double largestWithin(const Seed& seed, double reach, Work& work) const {
         double largest = 0.0;
         for (const double step : {0.3, 0.1, 0.03, 0.01, 0.003}) {
             const Vec3 c = seed.place + step * radius_ * seed.inward;
-            if (!tree_.inside(c)) continue;
-            largest = climb(seed.place, reach, c);
+            if (!isInside(c, work)) continue;
+            largest = climb(seed.place, reach, c, work);
             break;
         }
         // Straight in from an edge, as deep as may be: a climb from its end is slow between faces of a small angle.
         for (const double share : {1.0, 0.8, 0.6}) {
             if (largest >= kRoom * radius_) break;
             const Vec3 c = seed.place + share * reach * seed.inward;
-            if (tree_.inside(c)) largest = std::max(largest, climb(seed.place, reach, c));
+            if (isInside(c, work)) largest = std::max(largest, climb(seed.place, reach, c, work));
         }
         // What lies across a narrow neck, under a low pin for instance, is found from there.
         for (const Vec3& way : directions_) {
             if (largest >= kRoom * radius_) break;
             const Vec3 c = seed.place + 0.9 * reach * way;
-            if (tree_.closest(c, radius_).distance > std::max(largest, 0.3 * radius_) && tree_.inside(c))
-                largest = std::max(largest, climb(seed.place, reach, c));
+            if (closest(c, radius_, work).distance > std::max(largest, 0.3 * radius_) && isInside(c, work))
+                largest = std::max(largest, climb(seed.place, reach, c, work));
         }
         return largest;
     }
@@ -101,7 +109,7 @@ private:
     /// whatever is nearest, which next to convex edges leads to the nearest ball that has room (projections on half
     /// spaces in turn), but so short that it cannot leave the solid. Between two faces that goes to and fro: what two
     /// steps lead on is then taken further, as long as it leads to more room.
-    double climb(const Vec3& q, double reach, Vec3 c) const {
+    double climb(const Vec3& q, double reach, Vec3 c, Work& work) const {
         const auto within = [&](const Vec3& p) {
             const double away = (p - q).norm();
             return away > reach ? Vec3(q + (reach / away) * (p - q)) : p;
@@ -109,18 +117,18 @@ private:
         double largest = 0.0;
         Vec3 before = c;  // two steps ago
         for (int i = 0; i < kClimbs; ++i) {
-            const ClosestPoint found = tree_.closest(c, 2.0 * radius_);
+            const ClosestPoint found = closest(c, 2.0 * radius_, work);
             largest = std::max(largest, std::min(found.distance, radius_));
             if (found.distance >= kRoom * radius_ || !(found.distance > 0.0)) break;
             const double step = std::min(1.001 * radius_ - found.distance, 0.5 * found.distance);
             c = within(c + step * (c - found.point) / found.distance);
             if (i % 2 == 0) continue;
             Vec3 on = c - before;
-            double room = tree_.closest(c, 2.0 * radius_).distance;
+            double room = closest(c, 2.0 * radius_, work).distance;
             for (int k = 0; k < kLeaps && on.norm() < reach; ++k, on *= 2.0) {
                 const Vec3 there = within(c + on);
-                const double more = tree_.closest(there, 2.0 * radius_).distance;
-                if (!(more > room) || !tree_.inside(there)) break;
+                const double more = closest(there, 2.0 * radius_, work).distance;
+                if (!(more > room) || !isInside(there, work)) break;
                 c = there;
                 room = more;
             }
@@ -128,12 +136,21 @@ private:
         }
         // Between opposite faces that swings for ever: it comes to rest amid them.
         for (double share = 0.5; share > 0.01 && largest < kRoom * radius_; share *= 0.85) {
-            const ClosestPoint found = tree_.closest(c, 2.0 * radius_);
+            const ClosestPoint found = closest(c, 2.0 * radius_, work);
             largest = std::max(largest, std::min(found.distance, radius_));
             if (!(found.distance > 0.0)) break;
             c = within(c + share * (c - found.point));
         }
         return largest;
+    }
+
+    ClosestPoint closest(const Vec3& p, double limit, Work& work) const {
+        ++work;
+        return tree_.closest(p, limit);
+    }
+    bool isInside(const Vec3& p, Work& work) const {
+        work += kInsideWork;
+        return tree_.inside(p);
     }
 
     const TriangleTree& tree_;
@@ -225,6 +242,23 @@ double median(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
+}
+
+/// Every seed, in rounds, each of which is spread over the part; the rounds end when the work is too much.
+std::vector<Judged> judgeAll(const Search& search, const std::vector<Seed>& seeds, const SearchLimit& limit) {
+    const std::size_t n = seeds.size(), rounds = (n + kSeedsPerRound - 1) / kSeedsPerRound;
+    std::vector<Judged> judged(n, Judged{.looked_at = false});
+    Work done = 0;
+    for (std::size_t round = 0; round < rounds && done <= limit.most_work; ++round) {
+        const std::size_t count = (n - round + rounds - 1) / rounds;
+        std::vector<Work> work(count, 0);
+        parallelFor(count, [&](std::size_t i) {
+            const std::size_t k = round + i * rounds;
+            judged[k] = search.judge(seeds[k], work[i]);
+        });
+        done = std::accumulate(work.begin(), work.end(), done);
+    }
+    return judged;
 }
 
 /// One feature of the seeds in `members`.
@@ -324,11 +358,14 @@ std::vector<ThinFeature> thinFeatures(const Shape& shape, double radius, ThinIn 
     return features;
 }
 
-std::vector<ThinFeature> thinFeatures(const TriangleMesh& mesh, const TriangleTree& tree, double radius, ThinIn where) {
+std::vector<ThinFeature> thinFeatures(const TriangleMesh& mesh, const TriangleTree& tree, double radius, ThinIn where,
+                                      SearchLimit* limit) {
     const Search search(tree, radius);
     const std::vector<Seed> seeds = seedsOf(mesh, search, radius, where);
-    std::vector<Judged> judged(seeds.size());
-    parallelFor(seeds.size(), [&](std::size_t i) { judged[i] = search.judge(seeds[i]); });
+    const std::vector<Judged> judged = judgeAll(search, seeds, limit != nullptr ? *limit : SearchLimit{});
+    if (limit != nullptr)
+        limit->left_out = static_cast<std::size_t>(
+            std::count_if(judged.begin(), judged.end(), [](const Judged& seed) { return !seed.looked_at; }));
     std::vector<std::size_t> thin;
     for (std::size_t i = 0; i < seeds.size(); ++i)
         if (judged[i].thin) thin.push_back(i);

@@ -32,6 +32,12 @@ enum class ThinIn {
     Field,   // all: what interpolation smooths away
 };
 
+/// What a search may cost, the same on every machine, and what it left out.
+struct SearchLimit {
+    std::size_t most_work = 20'000'000;  // questions asked of the tree; half a minute or so
+    std::size_t left_out = 0;            // places that it did not come to; 0 but for thousands of thin ones
+};
+
 /// Features of a solid in which no ball of `radius` [m] has room: those that surfaces sampled so that no place is
 /// farther than `radius` from a sample do not feel. (Own.)
 ///   O the solid, H another whose surface has a sample within ρ of each of its places, every sample outside O.
@@ -45,9 +51,11 @@ enum class ThinIn {
 ///   Told are pins and fins with e > kFelt ρ, and edges and tips (thicker the farther in) with e > kBlunt ρ: of less
 ///   than 27.5°. The sharp corners of a right tetrahedron, e = 3.99 ρ, are none of them.
 /// Shapes: closed forms. Meshes: q are the vertices, points along sharp edges that stand out and, for ThinIn::Field,
-/// middles of triangles; c is searched around each. A mesh without a volume is a wall of no thickness.
+/// middles of triangles; c is searched around each. A mesh without a volume is a wall of no thickness. The search ends
+/// after `limit`'s work.
 std::vector<ThinFeature> thinFeatures(const Shape& shape, double radius, ThinIn where);
-std::vector<ThinFeature> thinFeatures(const TriangleMesh& mesh, const TriangleTree& tree, double radius, ThinIn where);
+std::vector<ThinFeature> thinFeatures(const TriangleMesh& mesh, const TriangleTree& tree, double radius, ThinIn where,
+                                      SearchLimit* limit = nullptr);
 inline constexpr double kFelt = 1.9;
 inline constexpr double kBlunt = 4.2;
 

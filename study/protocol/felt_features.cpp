@@ -72,7 +72,7 @@ double smallestFeature(const model::SceneSpec& scene, double spacing, PartGeomet
 struct Unfelt {
     std::size_t part;
     std::string message;
-    bool relief;  // of a scan: not an error
+    bool relief;  // of a scan, or not known: not an error
 };
 
 /// One scene's obstacles, one after the other.
@@ -87,6 +87,11 @@ public:
             if (part.held) continue;
             checkPoints(*held, part);
             if (!isSheet(part, geometries_)) checkField(part);
+            if (geometries_.halfSearched(part))
+                unfelt_.push_back({part_,
+                                   "has so many edges and thin places that not all could be looked at: one that would "
+                                   "not be felt may be among the rest",
+                                   true});
         }
         return std::move(unfelt_);
     }

@@ -92,7 +92,10 @@ const std::vector<model::ThinFeature>& PartGeometries::thin(const model::PartSpe
     const PartGeometry* geometry = of(part);
     if (geometry == nullptr) return place->second;
     if (geometry->sheet) return place->second = {{model::FeatureKind::Wall, 0.0, Vec3::Zero()}};
-    return place->second = model::thinFeatures(*geometry->mesh, *geometry->tree, radius, where);
+    model::SearchLimit limit;
+    place->second = model::thinFeatures(*geometry->mesh, *geometry->tree, radius, where, &limit);
+    if (limit.left_out > 0) half_searched_.insert(geometryKey(part));
+    return place->second;
 }
 
 double PartGeometries::depth(const std::string& question, const std::function<double()>& reckon) {

@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,9 @@ public:
     /// See model::thinFeatures; nothing of a mesh that cannot be read.
     const std::vector<model::ThinFeature>& thin(const model::PartSpec& part, double radius, model::ThinIn where);
 
+    /// Was a search of thin() ended before it had come to all places?
+    bool halfSearched(const model::PartSpec& part) const { return half_searched_.count(geometryKey(part)) > 0; }
+
     /// Signed distance of `p` (part frame) from the part [m], positive outside; of a sheet unsigned. @pre of(part)
     double signedDistance(const model::PartSpec& part, const Vec3& p);
 
@@ -51,6 +55,7 @@ private:
     std::map<std::string, std::unique_ptr<PartGeometry>> geometries_;
     std::map<std::string, Errors> problems_;  // of those that are null
     std::map<std::string, std::vector<model::ThinFeature>> thin_;
+    std::set<std::string> half_searched_;
     std::map<std::string, double> depths_;
 };
 

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
 #include <fstream>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -62,6 +64,74 @@ TEST(HostileMesh, LeavesAloneWhatIsSound) {
     const auto scene = importMesh(written(folder, "one.gltf", test::gltfOf(test::nodesOfTens(1))), 1e-3);
     ASSERT_TRUE(scene) << toString(scene.errors()[0]);
     EXPECT_EQ(scene->report.triangles_read, 10u);
+}
+
+TEST(HostileMesh, ASurfaceThatCrossesItselfNearlyEverywhereIsRefused) {
+    // Truth: invariant: triangles at random places of a cube have no inside; of 20 balls, each a millimetre from the
+    // next, it is what any of them encloses, though most of their triangles cross others.
+    const test::TempFolder folder;
+    Random random(1);
+    std::string soup = "OFF\n900 300 0\n", balls = "OFF\n";
+    for (int i = 0; i < 900; ++i)
+        soup += std::to_string(random.uniform()) + ' ' + std::to_string(random.uniform()) + ' ' +
+                std::to_string(random.uniform()) + '\n';
+    for (int i = 0; i < 900; i += 3)
+        soup += "3 " + std::to_string(i) + ' ' + std::to_string(i + 1) + ' ' + std::to_string(i + 2) + '\n';
+    const auto refused = importMesh(written(folder, "soup.off", soup), 1e-3);
+    ASSERT_FALSE(refused);
+    ASSERT_EQ(refused.errors().size(), 1u);
+    EXPECT_NE(refused.errors()[0].message.find("crosses itself so often"), std::string::npos);
+
+    const TriangleMesh ball = tessellate(Sphere{20}, 0.1);
+    const std::size_t corners = ball.vertices.size(), faces = ball.triangles.size();
+    balls += std::to_string(20 * corners) + ' ' + std::to_string(20 * faces) + " 0\n";
+    for (int i = 0; i < 20; ++i)
+        for (const Vec3& v : ball.vertices)
+            balls += std::to_string(v.x() + i) + ' ' + std::to_string(v.y() + 0.1 * i) + ' ' +
+                     std::to_string(v.z() + 0.3 * i) + '\n';
+    for (std::size_t i = 0; i < 20; ++i)
+        for (const Triangle& t : ball.triangles)
+            balls += "3 " + std::to_string(t[0] + i * corners) + ' ' + std::to_string(t[1] + i * corners) + ' ' +
+                     std::to_string(t[2] + i * corners) + '\n';
+    const auto read = importMesh(written(folder, "balls.off", balls), 1e-3);
+    ASSERT_TRUE(read) << toString(read.errors()[0]);
+    EXPECT_GT(2 * read->report.crossing_triangles, 20 * faces);
+}
+
+TEST(HostileMesh, AFaceOfTooManyCornersIsRefusedInEveryFormat) {
+    // Truth: closed form: a polygon of n corners is n - 2 triangles; 1000 corners are allowed, 1001 are not.
+    const test::TempFolder folder;
+    for (const int n : {1000, 1001}) {
+        std::string obj, off = "OFF\n" + std::to_string(n) + " 1 0\n",
+                         ply = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(n) +
+                               "\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+                               "property list int int vertex_indices\nend_header\n";
+        std::string from_one, from_zero;
+        for (int i = 0; i < n; ++i) {
+            const double turn = 2.0 * std::numbers::pi * i / n;
+            const std::string at = std::to_string(20 * std::cos(turn)) + ' ' + std::to_string(20 * std::sin(turn));
+            obj += "v " + at + " 0\n";
+            off += at + " 0\n";
+            ply += at + " 0\n";
+            from_one += ' ' + std::to_string(i + 1);
+            from_zero += ' ' + std::to_string(i);
+        }
+        obj += "f" + from_one + '\n';
+        off += std::to_string(n) + from_zero + '\n';
+        ply += std::to_string(n) + from_zero + '\n';
+        const std::pair<std::string, std::string> files[] = {{"face.obj", obj}, {"face.off", off}, {"face.ply", ply}};
+        for (const auto& [name, content] : files) {
+            const auto read = importMesh(written(folder, name, content), 1e-3);
+            if (n <= 1000) {
+                ASSERT_TRUE(read) << name << toString(read.errors()[0]);
+                EXPECT_EQ(read->report.triangles_read, 998u) << name;
+            } else {
+                ASSERT_FALSE(read) << name;
+                EXPECT_NE(toString(read.errors()[0]).find("at most 1000 corners"), std::string::npos)
+                    << toString(read.errors()[0]);
+            }
+        }
+    }
 }
 
 ImportedMesh imported() {

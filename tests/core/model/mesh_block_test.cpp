@@ -120,7 +120,7 @@ TEST(MeshBlock, SlackHoldsWhereSolidsOverlapOrContainEachOther) {
                                      twoBoxes(0.0138, Vec3(0.03, 0.0, 0.0))}) {
         const bool apart = mesh.vertices.back().x() > 0.03;
         const auto tree = std::make_shared<const TriangleTree>(mesh);
-        const MeshBlockSampler sampler(tree, true, crossingTriangles(mesh) == 0);
+        const MeshBlockSampler sampler(tree, true, crossingsOf(mesh).triangles == 0);
         const auto block = std::make_unique<SurfaceBlock>();
         int linear = 0;
         for (int i = 0; i < 60; ++i) {

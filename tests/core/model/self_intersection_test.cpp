@@ -25,11 +25,11 @@ TEST(SelfIntersection, FindsNoneInSoundShapes) {
                                    Shape(BorePlate{0.06, 0.05, 0.03, 0.0202, 0.03, 0.001})}) {
             TriangleMesh mesh = tessellate(shape, 2e-5);
             for (Vec3& v : mesh.vertices) v *= scale;
-            EXPECT_EQ(crossingTriangles(mesh), 0u) << kindName(shape);
+            EXPECT_EQ(crossingsOf(mesh).triangles, 0u) << kindName(shape);
         }
         TriangleMesh wavy = test::wavySphere(0.08, 2e-5);
         for (Vec3& v : wavy.vertices) v *= scale;
-        EXPECT_EQ(crossingTriangles(wavy), 0u);
+        EXPECT_EQ(crossingsOf(wavy).triangles, 0u);
     }
 }
 
@@ -38,19 +38,19 @@ TEST(SelfIntersection, CountsTheTrianglesOfTwoSpikesThatCross) {
     TriangleMesh mesh;
     mesh.vertices = {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0), Vec3(1, 1, -1), Vec3(1.2, 1, 1), Vec3(0.8, 1, 1)};
     mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
-    EXPECT_EQ(crossingTriangles(mesh), 2u);
+    EXPECT_EQ(crossingsOf(mesh).triangles, 2u);
     for (std::size_t v = 3; v < 6; ++v) mesh.vertices[v].y() += 3.0;
-    EXPECT_EQ(crossingTriangles(mesh), 0u);
+    EXPECT_EQ(crossingsOf(mesh).triangles, 0u);
 }
 
 TEST(SelfIntersection, CountsNoTouch) {
     // Truth: closed form. Two boxes that share a face, an edge or a corner touch; pushed 1 mm into each other at an
     // angle of none of their axes they cross.
     const TriangleMesh box = tessellate(Box{0.02, 0.03, 0.04}, 1.0);
-    EXPECT_EQ(crossingTriangles(together(box, box, Vec3(0.02, 0.0, 0.0))), 0u);
-    EXPECT_EQ(crossingTriangles(together(box, box, Vec3(0.02, 0.03, 0.0))), 0u);
-    EXPECT_EQ(crossingTriangles(together(box, box, Vec3(0.02, 0.03, 0.04))), 0u);
-    EXPECT_GT(crossingTriangles(together(box, box, Vec3(0.019, 0.029, 0.039))), 0u);
+    EXPECT_EQ(crossingsOf(together(box, box, Vec3(0.02, 0.0, 0.0))).triangles, 0u);
+    EXPECT_EQ(crossingsOf(together(box, box, Vec3(0.02, 0.03, 0.0))).triangles, 0u);
+    EXPECT_EQ(crossingsOf(together(box, box, Vec3(0.02, 0.03, 0.04))).triangles, 0u);
+    EXPECT_GT(crossingsOf(together(box, box, Vec3(0.019, 0.029, 0.039))).triangles, 0u);
 }
 
 TEST(SelfIntersection, IsToldByTheReport) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/random.h"
 #include "core/model/mesh_import.h"
 #include "core/model/point_shell.h"
 
@@ -71,6 +72,24 @@ TEST(ThinFeatures, OnePinAmongManyEdgesIsFound) {
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0].kind, FeatureKind::Pin);
     EXPECT_LT(found[0].place.head<2>().norm(), 1 * kMm);
+}
+
+TEST(ThinFeatures, TheSearchEndsAfterItsWorkAndSaysWhatItLeftOut) {
+    // Truth: invariant: a mesh of triangles through each other is thin wherever they lie. With room for all the work
+    // the search leaves nothing out; with less it tells some of the same places, and how many it did not come to.
+    Random random(1);
+    TriangleMesh mesh;
+    for (std::uint32_t i = 0; i < 90; ++i)
+        mesh.vertices.emplace_back(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+    for (std::uint32_t i = 0; i < 90; i += 3) mesh.triangles.push_back({i, i + 1, i + 2});
+    const TriangleTree tree(mesh);
+    SearchLimit all, some{.most_work = 10'000};
+    const auto found = thinFeatures(mesh, tree, 0.05, ThinIn::Points, &all);
+    const auto fewer = thinFeatures(mesh, tree, 0.05, ThinIn::Points, &some);
+    EXPECT_EQ(all.left_out, 0u);
+    EXPECT_GT(some.left_out, 100u);
+    EXPECT_FALSE(found.empty());
+    EXPECT_FALSE(fewer.empty());
 }
 
 TEST(ThinFeatures, AFinIsAWallOfItsThickness) {
