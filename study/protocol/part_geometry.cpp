@@ -9,6 +9,10 @@
 namespace passung::protocol {
 namespace {
 
+constexpr int kBallSteps = 12;           // of the search for a ball, along each axis
+constexpr double kOnSurface = 1e-9;      // of the part's size: rounding
+constexpr double kChordPerSize = 0.005;  // of triangles that give a shape's bounds
+
 PartGeometry solid(const Vec3& size, double area) { return {size, area, false, nullptr, nullptr}; }
 
 PartGeometry roundExtent(double diameter, double length) {
@@ -101,6 +105,46 @@ const std::vector<model::ThinFeature>& PartGeometries::thin(const model::PartSpe
 double PartGeometries::depth(const std::string& question, const std::function<double()>& reckon) {
     const auto known = depths_.find(question);
     return known != depths_.end() ? known->second : depths_.emplace(question, reckon()).first->second;
+}
+
+model::Bounds PartGeometries::boundsOf(const model::PartSpec& part) {
+    const PartGeometry& geometry = *of(part);
+    if (const auto* shape = std::get_if<model::Shape>(&part.geometry))
+        return model::boundsOf(model::tessellate(*shape, kChordPerSize * geometry.longest()));
+    return model::boundsOf(*geometry.mesh);
+}
+
+PartGeometries::Ball PartGeometries::ballAtOrigin(const model::PartSpec& part) {
+    const PartGeometry* geometry = of(part);
+    if (geometry == nullptr || geometry->sheet) return {};
+    const double outside = signedDistance(part, Vec3::Zero());
+    if (outside > kOnSurface * geometry->longest()) return {};
+    return {Vec3::Zero(), std::max(0.0, -outside)};
+}
+
+PartGeometries::Ball PartGeometries::largestBall(const model::PartSpec& part) {
+    const auto [place, fresh] = balls_.try_emplace(geometryKey(part));
+    const PartGeometry* geometry = of(part);
+    if (!fresh || geometry == nullptr || geometry->sheet) return place->second;
+    Ball& best = place->second;
+    const auto tryAt = [&](const Vec3& p) {
+        const double radius = -signedDistance(part, p);
+        const bool better = radius > best.radius;
+        if (better) best = {p, radius};
+        return better;
+    };
+    const model::Bounds bounds = boundsOf(part);
+    const Vec3 step = bounds.size() / kBallSteps;
+    for (int i = 0; i < kBallSteps; ++i)
+        for (int j = 0; j < kBallSteps; ++j)
+            for (int k = 0; k < kBallSteps; ++k) tryAt(bounds.low + step.cwiseProduct(Vec3(i + 0.5, j + 0.5, k + 0.5)));
+    for (Vec3 move = 0.5 * step; move.norm() > 1e-3 * step.norm(); move *= 0.5) {
+        const Vec3 from = best.centre;
+        for (int axis = 0; axis < 3; ++axis)
+            for (const double sign : {1.0, -1.0}) tryAt(from + sign * move[axis] * Vec3::Unit(axis));
+    }
+    if (!(best.radius > 0.0)) best = {};
+    return best;
 }
 
 double PartGeometries::signedDistance(const model::PartSpec& part, const Vec3& p) {

@@ -47,7 +47,21 @@ public:
     /// Signed distance of `p` (part frame) from the part [m], positive outside; of a sheet unsigned. @pre of(part)
     double signedDistance(const model::PartSpec& part, const Vec3& p);
 
-    /// How deep parts stand in each other [m], by whatever tells the question from others; `reckon` is asked once.
+    /// Part frame [m]. @pre of(part)
+    model::Bounds boundsOf(const model::PartSpec& part);
+
+    /// A ball within the part, part frame [m]; a radius below 0 says that there is none.
+    struct Ball {
+        Vec3 centre = Vec3::Zero();
+        double radius = -1.0;
+    };
+    /// The largest about the part's origin, if that is not outside.
+    Ball ballAtOrigin(const model::PartSpec& part);
+    /// The largest that a search of a coarse grid finds.
+    Ball largestBall(const model::PartSpec& part);
+
+    /// How deep parts stand in each other [m], or another number, by whatever tells the question from others; `reckon`
+    /// is asked once.
     double depth(const std::string& question, const std::function<double()>& reckon);
 
 private:
@@ -57,6 +71,7 @@ private:
     std::map<std::string, std::vector<model::ThinFeature>> thin_;
     std::set<std::string> half_searched_;
     std::map<std::string, double> depths_;
+    std::map<std::string, Ball> balls_;
 };
 
 }  // namespace passung::protocol

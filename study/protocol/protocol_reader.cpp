@@ -12,6 +12,7 @@
 #include "study/protocol/analysis_reader.h"
 #include "study/protocol/block_conditions.h"
 #include "study/protocol/block_reader.h"
+#include "study/protocol/body_way.h"
 #include "study/protocol/condition_extras.h"
 #include "study/protocol/consent_reader.h"
 #include "study/protocol/distinct_conditions.h"
@@ -364,8 +365,11 @@ private:
     void checkDoable(const StudyTables& tables, const Condition& condition, const Override* step) {
         const auto device = std::find_if(devices_.begin(), devices_.end(),
                                          [&](const auto& known) { return known.name == condition.device; });
-        if (device != devices_.end() && root_.has("task"))
+        if (device != devices_.end() && root_.has("task")) {
+            const std::size_t before = undoable_.size();
             checkReach(tables, condition, *device, geometries_, undoable_, warnings_);
+            if (undoable_.size() == before) checkBody(tables, condition, *device, geometries_, undoable_);
+        }
         if (step != nullptr && presented_ != nullptr) checkSide(tables.scene, condition, *step);
     }
 

@@ -16,6 +16,10 @@ const std::string kBlock = R"(shape = { kind = "box", width = 20, depth = 20, he
 const std::string kPlate =
     R"(shape = { kind = "bore_plate", width = 60, depth = 60, height = 30, bore_diameter = 21, bore_depth = 25 })";
 const std::string kPeg = R"(shape = { kind = "peg", diameter = 20, length = 50 })";
+const std::string kBall = R"(shape = { kind = "sphere", diameter = 10 })";
+const std::string kHollow = "mesh = \"hollow.off\"";
+const std::string kThroughPlate =
+    R"(shape = { kind = "bore_plate", width = 60, depth = 60, height = 20, bore_diameter = 21, bore_depth = "through" })";
 const std::string kInsert = "type = \"peg_in_hole\"\ntarget = \"still\"\n";
 const std::string kThrough = "type = \"narrow_passage\"\ntarget = \"still\"\n";
 const std::string kLine = "type = \"contour_following\"\ntarget = \"still\"\n";
@@ -69,6 +73,20 @@ public:
         out << "OFF\n" << mesh.vertices.size() << ' ' << mesh.triangles.size() << " 0\n";
         for (const Vec3& v : mesh.vertices) out << v.x() << ' ' << v.y() << ' ' << v.z() << '\n';
         for (const auto& t : mesh.triangles) out << "3 " << t[0] << ' ' << t[1] << ' ' << t[2] << '\n';
+    }
+
+    /// A closed box of 60 mm with walls of 5 mm, in one OFF file [mm].
+    void writeHollow(const std::string& name) const {
+        const auto outer = model::tessellate(model::Box{60, 60, 60}, 0.01);
+        const auto inner = model::tessellate(model::Box{50, 50, 50}, 0.01);
+        std::ofstream out(file(name));
+        out << "OFF\n" << 2 * outer.vertices.size() << ' ' << 2 * outer.triangles.size() << " 0\n";
+        for (const auto& mesh : {outer, inner})
+            for (const Vec3& v : mesh.vertices) out << v.x() << ' ' << v.y() << ' ' << v.z() << '\n';
+        const std::size_t first = outer.vertices.size();
+        for (const auto& t : outer.triangles) out << "3 " << t[0] << ' ' << t[1] << ' ' << t[2] << '\n';
+        for (const auto& t : inner.triangles)
+            out << "3 " << t[0] + first << ' ' << t[2] + first << ' ' << t[1] + first << '\n';
     }
 
 private:
@@ -172,6 +190,40 @@ std::vector<Row> undoable() {
          {"start_gate.position_tolerance_mm", "0.055 mm"}},
         {"line 40 cm away", {.task = line("[[20, 0, 0], [400, 0, 0]]")}, {"task.points", "400 mm"}},
         {"line in the plate", {.task = line("[[20, 0, -12], [25, 0, 0]]")}, {"task.points", "deep in part still"}},
+        {"box led where its origin alone has room",
+         {.task = line("[[12, 0, 0], [25, 0, 0]]")},
+         {"task.points", "no room", "100 %"}},
+        {"ball led down a bore that is too narrow for it",
+         {.held = R"(shape = { kind = "sphere", diameter = 40 })", .task = line("[[0, 0, -8], [0, 0, -20]]")},
+         {"task.points", "no room"}},
+        {"passage with a floor",
+         {.held = kBall, .task = kThrough + "passage_length_mm = 30\npassage_width_mm = 8\n"},
+         {"task.target", "blocked or too narrow"}},
+        {"passage blocked behind",
+         {.held = kBall,
+          .still = kThroughPlate,
+          .task = kThrough + "passage_length_mm = 20\npassage_width_mm = 8\n",
+          .more = "[[scene.part]]\nname = \"lid\"\nshape = { kind = \"box\", width = 40, depth = 40, height = 4 }\n"
+                  "pose = { position = [0, 0, -22.5] }\n"},
+         {"task.target", "blocked or too narrow"}},
+        {"start beyond the passage",
+         {.held = kBall,
+          .held_pose = "position = [0, 0, -40]",
+          .still = kThroughPlate,
+          .task = kThrough + "passage_length_mm = 20\npassage_width_mm = 8\n"},
+         {"task.target", "beyond the passage"}},
+        {"goal in a closed box",
+         {.held = kBall, .held_pose = "position = [0, 0, 50]", .still = kHollow, .task = place("[0, 0, 0]")},
+         {"task.position", "no way leads"}},
+        {"start in a closed box",
+         {.held = kBall, .held_pose = "position = [0, 0, 0]", .still = kHollow, .task = place("[0, 0, 50]")},
+         {"task.position", "no way leads"}},
+        {"line in a closed box",
+         {.held = kBall,
+          .held_pose = "position = [0, 0, 50]",
+          .still = kHollow,
+          .task = line("[[-10, 0, 0], [10, 0, 0]]")},
+         {"task.points", "no way leads"}},
         {"line pressed too hard",
          {.device = "touch", .task = line("[[20, 0, 0], [25, 0, 0]]", "force_N = 5\n")},
          {"task.force_N", "touch", "3.3 N"}},
@@ -346,6 +398,25 @@ std::vector<Row> odd() {
          {}},
         {"goal that rests on the plate", {.task = place("[20, 20, 10]")}, {}},
         {"goal a little too low", {.task = place("[20, 20, 8]", "position_tolerance_mm = 4\n")}, {}},
+        {"goal beside the start in a closed box",
+         {.held = kBall,
+          .held_pose = "position = [0, 0, 0]",
+          .still = kHollow,
+          .task = place("[10, 5, 0]", "leave_radius_mm = 5\n")},
+         {}},
+        {"goal down a blind bore", {.held = kBall, .task = place("[0, 0, -15]")}, {}},
+        {"ball down a bore with little to spare",
+         {.held = R"(shape = { kind = "sphere", diameter = 20.9 })", .task = line("[[0, 0, 5], [0, 0, -12]]")},
+         {}},
+        {"ball through a passage",
+         {.held = kBall, .still = kThroughPlate, .task = kThrough + "passage_length_mm = 20\npassage_width_mm = 8\n"},
+         {}},
+        {"ball that starts beside its passage, below the mouth",
+         {.held = kBall,
+          .held_pose = "position = [40, 0, -10]",
+          .still = kThroughPlate,
+          .task = kThrough + "passage_length_mm = 20\npassage_width_mm = 8\n"},
+         {}},
         {"line down the side of the plate", {.held = ball, .task = line("[[30, 0, 0], [30, 0, -30]]")}, {}},
         {"line of a ball's centre above the plate", {.held = ball, .task = line("[[12, 0, 5], [25, 10, 5]]")}, {}},
         {"pin with what follows from it", {.still = kPin}, {}},
@@ -399,6 +470,7 @@ void writeMeshes(const Folder& folder) {
     folder.write("pin.off", model::Cylinder{1, 10}, 10);
     folder.write("fin.off", model::Box{12, 0.5, 10}, 10);
     folder.write("post.off", model::Box{20, 20, 20}, 20);
+    folder.writeHollow("hollow.off");
 }
 
 TEST(Doable, WhatNobodyCouldDoIsNamedWithItsPlace) {
