@@ -19,6 +19,7 @@
 #include "study/protocol/duration.h"
 #include "study/protocol/factors.h"
 #include "study/protocol/felt_features.h"
+#include "study/protocol/human_limits.h"
 #include "study/protocol/include.h"
 #include "study/protocol/measures_reader.h"
 #include "study/protocol/plan_contents.h"
@@ -93,6 +94,8 @@ public:
         plan_.measures = readMeasures(root_, tasks_sound_ ? &plan_ : nullptr, known_measures_, errors_);
         plan_.analyses = readAnalyses(root_.items("analysis"), plan_, staircaseNames(), errors_);
         if (expands && staircases_sound_) readStaircaseConditions();
+        if (expands && tasks_sound_ && staircases_sound_ && errors_.empty() && root_.node("task") != nullptr)
+            checkComparisons(plan_, *root_.node("task"), undoable_);
         if (design && tasks_sound_) checkDuration();
         if (!root_.has("measures")) dropUnused();
         plan_.meshes = meshesOf(plan_, document_.place.file);
@@ -102,6 +105,7 @@ public:
         if (errors_.empty()) {
             plan_.warnings = conditionWarnings(std::span(plan_.conditions).first(plannedConditions(plan_)));
             for (std::string& warning : blockWarnings(plan_)) plan_.warnings.push_back(std::move(warning));
+            for (std::string& warning : restWarnings(plan_)) plan_.warnings.push_back(std::move(warning));
             for (std::string& warning : warnings_)
                 if (std::find(plan_.warnings.begin(), plan_.warnings.end(), warning) == plan_.warnings.end())
                     plan_.warnings.push_back(std::move(warning));
@@ -369,6 +373,7 @@ private:
             const std::size_t before = undoable_.size();
             checkReach(tables, condition, *device, geometries_, undoable_, warnings_);
             if (undoable_.size() == before) checkBody(tables, condition, *device, geometries_, undoable_);
+            checkHuman(tables, condition, *device, undoable_, warnings_);
         }
         if (step != nullptr && presented_ != nullptr) checkSide(tables.scene, condition, *step);
     }

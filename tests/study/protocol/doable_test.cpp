@@ -132,6 +132,20 @@ Study pair(const std::string& levels, const std::string& side) {
             .more = staircase(levels, side)};
 }
 
+Study changed(Study study, const std::string& task) {
+    study.task += task;
+    return study;
+}
+
+/// A pair whose comparison has what the reference has.
+Study same() {
+    return {.task =
+                "type = \"discrimination_pair\"\ntarget = \"still\"\nquestion = \"Which was stiffer?\"\n"
+                "comparison = { \"contact.stiffness_N_per_m\" = 800 }\n",
+            .contact = "stiffness_N_per_m = 800",
+            .gate = "position_tolerance_mm = 3\nhold_ms = 200"};
+}
+
 std::string consent(const std::string& text) {
     return "[[consent]]\nclause = \"data\"\n[consent.text]\nen = \"" + text + "\"\n";
 }
@@ -264,6 +278,48 @@ std::vector<Row> undoable() {
           .more = "[[scene.part]]\nname = \"plug\"\nshape = { kind = \"sphere\", diameter = 12 }\npose = { position = "
                   "[0, 0, -16] }\n"},
          {"task.target", "deep in part plug"}},
+        {"over before a hand moves",
+         {.task = place("[0, 5, 30]", "timeout_s = 0.06\n")},
+         {"task.timeout_s", "reaction"}},
+        {"held for all but a millisecond",
+         {.held = kPeg, .task = kInsert + "hold_s = 29.999\n"},
+         {"task.hold_s", "at most 29.85 s"}},
+        {"held when it is over with the way",
+         {.held = kPeg, .held_pose = "position = [0, 0, 60]", .task = kInsert + "hold_s = 4.84\ntimeout_s = 4.9\n"},
+         {"task.timeout_s", "and hold_s, 4.84 s"}},
+        {"held without a tremor",
+         {.held = kPeg, .task = kInsert + "max_speed_mm_per_s = 1e-6\n"},
+         {"task.max_speed_mm_per_s", "calm"}},
+        {"turned to a millionth of a degree",
+         {.task = place("[20, 0, 40]", "angle_tolerance_deg = 1e-6\n")},
+         {"task.angle_tolerance_deg", "finer than a hand on sigma7"}},
+        {"gate turned to a millionth of a degree",
+         {.gate = "angle_tolerance_deg = 1e-6\nhold_ms = 100"},
+         {"start_gate.angle_tolerance_deg", "finer than a hand"}},
+        {"placed to a nanometre",
+         {.task = place("[20, 0, 40]", "position_tolerance_mm = 1e-6\n")},
+         {"task.position_tolerance_mm", "finer than"}},
+        {"intervals of a millisecond",
+         changed(pair("[900, 1000, 1100]", "above"), "interval_s = 0.001\n"),
+         {"task.interval_s", "at least 0.1 s"}},
+        {"answers in a millisecond",
+         changed(pair("[900, 1000, 1100]", "above"), "answer_s = 0.001\n"),
+         {"task.answer_s", "at least 0.15 s"}},
+        {"stimuli to be answered at once",
+         {.held = kBall,
+          .still = kThroughPlate,
+          .task = kThrough + "passage_length_mm = 20\npassage_width_mm = 8\n",
+          .more = "[secondary]\nstimulus = \"audio\"\ninterval_min_s = 3\nresponse_min_ms = 1\nresponse_max_ms = 20\n"
+                  "button = 3\n"},
+         {"secondary.response_max_ms", "150 ms"}},
+        {"a comparison that is its reference", same(), {"task.comparison", "nothing to tell apart"}},
+        {"a pair without anything to compare",
+         [] {
+             Study study = pair("[900, 1000, 1100]", "above");
+             study.more += "[feedback]\nkinesthetic = false\n";
+             return study;
+         }(),
+         {"task.comparison", "felt, seen or heard"}},
         {"held longer than it lasts", {.held = kPeg, .task = kInsert + "hold_s = 40\n"}, {"task.hold_s"}},
         {"clock that never starts",
          {.task = place("[0, 20, 40]", "leave_radius_mm = 300\n")},
@@ -426,6 +482,17 @@ std::vector<Row> odd() {
          {.still = R"(shape = { kind = "box", width = 60, depth = 60, height = 0.4 })"},
          {}},
         {"fin with fine cells", {.still = kFin, .contact = "cell_mm = 0.2"}, {}},
+        {"a pair of shapes that is seen",
+         [] {
+             Study study = same();
+             study.task.replace(study.task.find("\"contact"), 33, "\"part.still.shape.bore_diameter\" = 24");
+             study.more = "[feedback]\nkinesthetic = false\n";
+             return study;
+         }(),
+         {}},
+        {"as exact as a handle that does not turn",
+         {.device = "falcon", .task = place("[0, 5, 30]", "angle_tolerance_deg = 0.001\nleave_radius_mm = 2\n")},
+         {}},
         {"comparisons above the reference", pair("[900, 1000, 1100]", "above"), {}},
         {"comparisons below, fewer correct", pair("[200, 400, 600]", "below"), {}},
         {"capital letters in the consent",
@@ -501,6 +568,22 @@ TEST(Doable, WhatIsOnlyOddIsNotRefused) {
         std::string all;
         for (const std::string& line : told(row.study, folder)) all += "\n  " + line;
         EXPECT_EQ(all, "") << row.name;
+    }
+}
+
+TEST(Doable, WhatHardlyAnybodyDoesIsAWarning) {
+    // Truth: closed form: each is within what is possible and beyond what is usual by its number, which the line tells.
+    const Folder folder;
+    const std::pair<Study, std::string> rows[] = {
+        {{.held = kPeg, .task = kInsert + "max_speed_mm_per_s = 0.1\n"}, "task.max_speed_mm_per_s = 0.1"},
+        {{.task = place("[20, 0, 40]", "angle_tolerance_deg = 0.2\n")}, "task.angle_tolerance_deg = 0.2"},
+        {changed(pair("[900, 1000, 1100]", "above"), "interval_s = 0.2\n"), "task.interval_s = 0.2"},
+        {{.more = "rest_s = 86400\n"}, "block.rest_s = 86400 keeps a person waiting"}};
+    for (const auto& [study, sentence] : rows) {
+        const auto lines = told(study, folder);
+        ASSERT_EQ(lines.size(), 1u) << sentence << ": says " << testing::PrintToString(lines);
+        EXPECT_NE(lines[0].find(sentence), std::string::npos) << lines[0];
+        EXPECT_EQ(lines[0].find("error"), std::string::npos) << lines[0];
     }
 }
 

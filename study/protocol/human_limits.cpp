@@ -1,0 +1,171 @@
+#include "study/protocol/human_limits.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "study/protocol/distinct_conditions.h"
+#include "study/protocol/part_geometry.h"
+#include "study/protocol/scene_node.h"
+
+namespace passung::protocol {
+namespace {
+
+constexpr double kReaction = 0.15;    // [s] of the fastest
+constexpr double kFelt = 0.1;         // [s] that an interval lasts in which something can be told
+constexpr double kComfortable = 0.5;  // [s] below: hardly
+constexpr double kStillest = 1e-5;    // [m/s] that no hand falls below for a while
+constexpr double kCalm = 5e-4;        // [m/s] below: hardly
+constexpr double kExactest = 1e-6;    // [m]
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kFinestTurn = 0.01 * kDegree;
+constexpr double kFineTurn = 0.5 * kDegree;  // below: hardly
+constexpr double kLongRest = 3600.0;         // [s]
+
+/// One condition.
+class HumanCheck {
+public:
+    HumanCheck(const StudyTables& tables, const Condition& condition, const DeviceDescription& device, Errors& errors,
+               std::vector<std::string>& warnings)
+        : tables_(tables), condition_(condition), device_(device), errors_(errors), warnings_(warnings) {}
+
+    void run() {
+        const bool pair = std::holds_alternative<DiscriminationPairTask>(condition_.task.form);
+        if (!pair && condition_.task.timeout < kReaction)
+            fail("timeout_s",
+                 fmt::format("nobody can do anything in that time: a reaction alone takes {} s", kReaction));
+        std::visit([this](const auto& form) { check(form); }, condition_.task.form);
+        const auto& gate = condition_.scene.start_gate;
+        checkTurn(tables_.scene.find("start_gate"), "scene.start_gate", gate.angle_tolerance);
+        checkPlace(tables_.scene.find("start_gate"), "scene.start_gate", gate.position_tolerance);
+        if (condition_.secondary.any() && condition_.secondary.latest < kReaction)
+            failAt(&tables_.secondary, "secondary", "response_max_ms",
+                   fmt::format("nobody answers so fast: a reaction takes {} ms or more", 1e3 * kReaction));
+    }
+
+private:
+    void check(const NarrowPassageTask&) {}
+    void check(const ContourFollowingTask&) {}
+    void check(const PegInHoleTask& peg) {
+        if (condition_.timed_by != TimedBy::Program || !(peg.hold > 0.0)) return;
+        if (peg.max_speed < kStillest)
+            fail("max_speed_mm_per_s", fmt::format("no hand is so calm for hold_s: at least {} mm/s", 1e3 * kStillest));
+        else if (peg.max_speed < kCalm)
+            warn(
+                fmt::format("task.max_speed_mm_per_s = {:.3g}: a hand trembles by some mm/s, so that the depth is "
+                            "hardly held",
+                            1e3 * peg.max_speed));
+        if (peg.hold > condition_.task.timeout - kReaction)
+            fail("hold_s", fmt::format("leaves no time to get there before timeout_s: at most {:.4g} s",
+                                       condition_.task.timeout - kReaction));
+    }
+    void check(const FreePlacementTask& placement) {
+        checkTurn(&tables_.task, "task", placement.angle_tolerance);
+        checkPlace(&tables_.task, "task", placement.position_tolerance);
+    }
+    void check(const DiscriminationPairTask& pair) {
+        if (pair.interval < kFelt)
+            fail("interval_s", fmt::format("nobody can tell what is felt in that time: at least {} s", kFelt));
+        else if (pair.interval < kComfortable)
+            warn(fmt::format("task.interval_s = {:.3g}: hardly anybody reaches and judges a surface in that time",
+                             pair.interval));
+        if (pair.answer < kReaction)
+            fail("answer_s", fmt::format("nobody answers in that time: at least {} s", kReaction));
+    }
+
+    /// A handle that does not turn keeps every tolerance.
+    void checkTurn(const Node* table, const char* path, double tolerance) {
+        if (device_.sensed_degrees < 6 || !(tolerance > 0.0)) return;
+        const double finest = std::max(kFinestTurn, condition_.scene.limits.rotational_quantum);
+        if (tolerance < finest)
+            failAt(table, path, "angle_tolerance_deg",
+                   fmt::format("is finer than a hand on {} is turned: at least {:.2g} degrees", device_.name,
+                               finest / kDegree));
+        else if (tolerance < kFineTurn)
+            warn(fmt::format("{}.angle_tolerance_deg = {:.3g}: hardly anybody turns a part so exactly", path,
+                             tolerance / kDegree));
+    }
+    void checkPlace(const Node* table, const char* path, double tolerance) {
+        if (tolerance > 0.0 && tolerance < kExactest)
+            failAt(table, path, "position_tolerance_mm",
+                   fmt::format("is finer than any hand: at least {} mm", 1e3 * kExactest));
+    }
+
+    void fail(const char* key, std::string message) { failAt(&tables_.task, "task", key, std::move(message)); }
+    void failAt(const Node* table, const char* path, const char* key, std::string message) {
+        const Node* value = table != nullptr ? table->find(key) : nullptr;
+        const Node& at = value != nullptr ? *value : table != nullptr ? *table : tables_.task;
+        errors_.push_back(errorAt(at.place, fmt::format("{}.{}", path, key), value != nullptr ? valueText(at) : "",
+                                  std::move(message)));
+    }
+    void warn(std::string sentence) {
+        if (std::find(warnings_.begin(), warnings_.end(), sentence) == warnings_.end())
+            warnings_.push_back(std::move(sentence));
+    }
+
+    const StudyTables& tables_;
+    const Condition& condition_;
+    const DeviceDescription& device_;
+    Errors& errors_;
+    std::vector<std::string>& warnings_;
+};
+
+/// Are both intervals one scene?
+bool comparesTheSame(const Condition& condition) {
+    Condition reference = condition, comparison = condition;
+    comparison.scene = *condition.comparison;
+    reference.comparison.reset();
+    comparison.comparison.reset();
+    return whatReaches(reference) == whatReaches(comparison);
+}
+
+bool looksTheSame(const model::SceneSpec& a, const model::SceneSpec& b) {
+    return std::equal(a.parts.begin(), a.parts.end(), b.parts.begin(), b.parts.end(),
+                      [](const model::PartSpec& x, const model::PartSpec& y) {
+                          return geometryKey(x) == geometryKey(y) && x.X_WP.p == y.X_WP.p &&
+                                 x.X_WP.q.coeffs() == y.X_WP.q.coeffs();
+                      });
+}
+
+bool isShownOrHeard(const Cues& cues) { return cues.visual || cues.vibrotactile || cues.audio; }
+
+}  // namespace
+
+void checkHuman(const StudyTables& tables, const Condition& condition, const DeviceDescription& device, Errors& errors,
+                std::vector<std::string>& warnings) {
+    HumanCheck(tables, condition, device, errors, warnings).run();
+}
+
+void checkComparisons(const StudyPlan& plan, const Node& task, Errors& errors) {
+    std::vector<const Condition*> pairs;
+    for (const Condition& condition : plan.conditions)
+        if (condition.comparison) pairs.push_back(&condition);
+    if (pairs.empty()) return;
+    const Node* comparison = task.find("comparison");
+    const auto fail = [&](std::string message) {
+        errors.push_back(
+            errorAt(comparison != nullptr ? comparison->place : task.place, "task.comparison", "", std::move(message)));
+    };
+    if (std::all_of(pairs.begin(), pairs.end(), [](const Condition* pair) { return comparesTheSame(*pair); }))
+        return fail("is the same as its reference in every pair: there is nothing to tell apart");
+    for (const Condition* pair : pairs)
+        if (!pair->scene.display_wrench && !isShownOrHeard(pair->cues) && looksTheSame(pair->scene, *pair->comparison))
+            return fail(
+                fmt::format("differs in nothing that is felt, seen or heard with feedback.kinesthetic = false "
+                            "and no cue; condition: {}",
+                            pair->name));
+}
+
+std::vector<std::string> restWarnings(const StudyPlan& plan) {
+    std::vector<std::string> warnings;
+    for (const Block& block : plan.blocks)
+        if (block.rest > kLongRest)
+            warnings.push_back(
+                fmt::format("block.rest_s = {:.6g} keeps a person waiting for more than an hour; for "
+                            "another day there is block.session; block: {}",
+                            block.rest, block.name));
+    return warnings;
+}
+
+}  // namespace passung::protocol
