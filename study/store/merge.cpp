@@ -16,6 +16,7 @@
 #include "study/store/session_tables.h"
 #include "study/store/tombstone.h"
 #include "study/store/untouched.h"
+#include "study/store/value_hash.h"
 #include "study/store/workshop.h"
 
 namespace passung::store {
@@ -90,6 +91,12 @@ private:
     /// transaction then: SQLite writes nothing more within one that has met a damaged page.
     template <class Work>
     void part(const std::string& what, Work work) {
+        part(what, work, [] { return false; });
+    }
+
+    /// `held`: is what cannot be read no loss?
+    template <class Work, class Held>
+    void part(const std::string& what, Work work, Held held) {
         if (taken_ == Taken::Whole) return work();
         try {
             Transaction transaction(database_);
@@ -98,7 +105,7 @@ private:
         } catch (const std::exception& error) {
             const auto* refused = dynamic_cast<const SqliteError*>(&error);
             if (refused != nullptr && isOfTheDisk(*refused)) throw;
-            report_.damaged.push_back(source_ + ": " + what + ": " + error.what() + ": left out");
+            tellLeftOut(held(), what + ": " + error.what());
         }
     }
 
@@ -161,12 +168,46 @@ private:
             study_damaged_ = study_damaged_ || taken_ == Taken::AsFarAsReadable;
             if (fault.participant_id.empty() && taken_ == Taken::Whole)
                 refuse(titleOf(fault) + " is damaged: passung restore heals it");
-            report_.damaged.push_back(source_ + ": " + titleOf(fault) + " is not as it was written: left out");
+            tellLeftOut(isHeld(fault), titleOf(fault) + " is not as it was written");
             if (fault.participant_id.empty()) continue;
             database_.prepare("INSERT OR IGNORE INTO temp.left_out VALUES(?)").bind(fault.participant_id).run();
         }
         for (const std::string& table : seen.unreadable)
             report_.damaged.push_back(source_ + ": " + table + " cannot be read: left out");
+    }
+
+    /// Damage in the source is no loss where the result has what was once written there.
+    void tellLeftOut(bool is_held, const std::string& what) {
+        if (is_held)
+            report_.held.push_back(what);
+        else
+            report_.damaged.push_back(source_ + ": " + what + ": left out");
+    }
+
+    bool isHeld(const RowFault& fault) const {
+        if (taken_ == Taken::Whole) return false;
+        Statement same = database_.prepare(
+            "SELECT 1 FROM main.row_hash m JOIN source.row_hash s USING(table_name, row_key, sha256) WHERE "
+            "table_name=? AND row_key=?");
+        if (!same.bind(fault.table, fault.key).step()) return false;
+        Statement sessions = database_.prepare("SELECT session_id FROM source.session WHERE participant_id=?");
+        sessions.bind(fault.participant_id);
+        while (sessions.step())
+            if (!isHeld(sessions.text(0))) return false;
+        return true;
+    }
+
+    /// By the hashes that were kept of the session and of what people changed in it since.
+    bool isHeld(const std::string& session) const {
+        if (taken_ == Taken::Whole) return false;
+        try {
+            const auto kept = keptHashes(database_, kSource, session).units;
+            return !kept.empty() && keptHashes(database_, "main", session).units == kept &&
+                   laterChanges(database_, "main", session) == laterChanges(database_, kSource, session);
+        } catch (const SqliteError& error) {
+            if (!isDamage(error)) throw;
+            return false;
+        }
     }
 
     void tellHealed(const std::vector<std::string>& healed) {
@@ -176,7 +217,10 @@ private:
     void mergeSessions(Healer& healer) {
         std::vector<std::pair<std::string, std::string>> sessions;  // id, title
         part("the list of sessions", [&] { findSessions(sessions); });
-        for (const auto& [id, title] : sessions) part(title, [&, session = id] { mergeSession(session, healer); });
+        for (const auto& [id, title] : sessions)
+            part(
+                title, [&, session = id] { mergeSession(session, healer); },
+                [&, session = id] { return isHeld(session); });
     }
 
     void findSessions(std::vector<std::pair<std::string, std::string>>& found) {
@@ -205,8 +249,7 @@ private:
         const bool known = database_.prepare("SELECT 1 FROM main.session WHERE session_id=?").bind(id).step();
         if (known) tellHealed(healer.healSession(id));
         if (const SessionDamage damage = damageOf(database_, tables_, kSource, id); damage.any()) {
-            for (const std::string& line : damage.lines())
-                report_.damaged.push_back(source_ + ": " + damage.name + ", " + line + ": left out");
+            for (const std::string& line : damage.lines()) tellLeftOut(isHeld(id), damage.name + ", " + line);
             return;
         }
         if (!known) {

@@ -10,6 +10,7 @@
 #include "study/store/private_files.h"
 #include "study/store/revisions.h"
 #include "study/store/row_hash.h"
+#include "study/store/schema_text.h"
 #include "study/store/untouched.h"
 #include "study/store/value_hash.h"
 
@@ -37,9 +38,18 @@ std::string newerText(const Database& database, const char* consequence) {
            ", this program knows " + std::to_string(schemaNumber()) + "): " + consequence;
 }
 
+[[noreturn]] void refuseDamaged(const std::string& what) {
+    throw std::runtime_error("the database is damaged (" + what + ")");
+}
+
 void checkIntegrity(const Database& database) {
     const std::string verdict = database.text("PRAGMA quick_check(1)");
-    if (verdict != "ok") throw std::runtime_error("the database is damaged (" + verdict + ")");
+    if (verdict != "ok") refuseDamaged(verdict);
+}
+
+/// SQLite's own check does not read the schema's text, and every later statement builds on it.
+void checkSchema(const Database& database) {
+    if (const auto faults = schemaFaults(database); !faults.empty()) refuseDamaged(faults.front());
 }
 
 /// Attempts without an end belong to a process that is gone: the lock says that no other one writes.
@@ -111,6 +121,7 @@ void prepareForWriting(const std::string& path, const OpenOptions& options, Sche
 }
 
 void inspectAndPrepare(const std::string& path, const OpenOptions& options, OpenedDatabase& opened) {
+    checkSchema(*opened.database);
     const SchemaState state = inspectSchema(*opened.database);
     switch (state) {
         case SchemaState::Foreign:
@@ -135,6 +146,14 @@ void inspectAndPrepare(const std::string& path, const OpenOptions& options, Open
             break;
     }
     prepareForWriting(path, options, state, opened);
+}
+
+std::unique_ptr<Database> withSchemaMended(const Database& database, const std::string& path,
+                                           const std::vector<std::string>& faults, std::vector<std::string>* mended) {
+    auto copy = privateCopy(database, path);
+    mendSchema(*copy);
+    if (mended != nullptr) *mended = faults;
+    return copy;
 }
 
 }  // namespace
@@ -191,10 +210,15 @@ OpenedDatabase openForWriting(const std::string& path, const OpenOptions& option
     return opened;
 }
 
-Result<std::unique_ptr<Database>> openForReading(const std::string& path, OlderFile older, ReadCheck check) {
+Result<std::unique_ptr<Database>> openForReading(const std::string& path, OlderFile older, ReadCheck check,
+                                                 std::vector<std::string>* mended) {
     if (!std::filesystem::exists(path)) return fileError(path, "no such file");
     auto opened = guarded(path, [&] {
         auto database = openUntouched(path);
+        if (check == ReadCheck::Pages)
+            checkSchema(*database);
+        else if (const auto faults = schemaFaults(*database); !faults.empty())
+            database = withSchemaMended(*database, path, faults, mended);
         const auto look = [&] {
             if (check == ReadCheck::Pages || (check == ReadCheck::Structure && !pagesAreSound(*database)))
                 checkIntegrity(*database);

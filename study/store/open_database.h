@@ -40,7 +40,9 @@ std::vector<BrokenReference> brokenReferences(const Database& database);
 void rebuildIndices(const Database& database);
 
 /// Opens an existing Passung file that this program can read, without changing a byte of it (see openUntouched()).
+/// Where pages need not be sound, damage in the schema's text is mended in a private copy and told in `mended`.
 Result<std::unique_ptr<Database>> openForReading(const std::string& path, OlderFile older = OlderFile::UpgradeCopy,
-                                                 ReadCheck check = ReadCheck::Pages);
+                                                 ReadCheck check = ReadCheck::Pages,
+                                                 std::vector<std::string>* mended = nullptr);
 
 }  // namespace passung::store

@@ -84,14 +84,15 @@ std::vector<Chunk> readChunks(const Database& database, std::int64_t attempt_id,
     return chunks;
 }
 
-/// An index that does not fit its table, and rows that belong to none.
-std::vector<DamageRow> structureFaults(const Database& database) {
+/// The schema's text, an index that does not fit its table, and rows that belong to none.
+std::vector<DamageRow> structureFaults(const Database& database, const std::vector<std::string>& schema_faults) {
     std::vector<DamageRow> faults;
     const auto add = [&](const std::string& part, const std::string& what) {
         faults.emplace_back();
         faults.back().part = part;
         faults.back().what = what;
     };
+    for (const std::string& fault : schema_faults) add("the file", fault + " is not as it was written");
     Statement verdict = database.prepare("PRAGMA integrity_check(200)");
     while (verdict.step())
         if (const std::string line = verdict.text(0); line.find(" index ") != std::string::npos) add("the file", line);
@@ -116,12 +117,14 @@ StoreReader::StoreReader(StoreReader&&) noexcept = default;
 
 Result<StoreReader> StoreReader::open(const std::string& path, Damaged damaged) {
     const bool refused = damaged == Damaged::Refused;
-    auto database = openForReading(path, OlderFile::UpgradeCopy, refused ? ReadCheck::Pages : ReadCheck::Structure);
+    std::vector<std::string> schema_faults;
+    auto database =
+        openForReading(path, OlderFile::UpgradeCopy, refused ? ReadCheck::Pages : ReadCheck::Structure, &schema_faults);
     if (!database) return database.errors();
     std::vector<DamageRow> damages;
     const bool leaves_out = damaged == Damaged::LeftOut || damaged == Damaged::LeftOutWithSamples;
     const auto begun = guarded(path, [&] {
-        if (leaves_out) damages = structureFaults(**database);
+        if (leaves_out) damages = structureFaults(**database, schema_faults);
         if (!damages.empty()) *database = withoutDamagedIndices(**database, path);
         (*database)->execute("BEGIN; SELECT count(*) FROM schema_revision");
         if (!leaves_out) return Done{};

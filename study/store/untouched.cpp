@@ -59,8 +59,11 @@ bool mayWrite(const std::string& path) { return faccessat(AT_FDCWD, path.c_str()
 /// Opens a copy that lies in a folder of ours; the system frees its space with the connection.
 std::unique_ptr<Database> openCopy(const std::string& file) {
     auto database = std::make_unique<Database>(file, OpenMode::ReadWrite);
-    // Takes in what is in a log or a journal, and needs no file but this one from here on.
-    database->execute("PRAGMA journal_mode=DELETE; PRAGMA journal_mode=MEMORY; SELECT count(*) FROM sqlite_master");
+    // Takes in what is in a log or a journal, and needs no file but this one from here on. That asks for no schema
+    // whose text is whole (schema_text.h).
+    database->execute(
+        "PRAGMA writable_schema=ON; PRAGMA journal_mode=DELETE; PRAGMA journal_mode=MEMORY; PRAGMA schema_version; "
+        "PRAGMA writable_schema=RESET");
     return database;
 }
 
@@ -78,7 +81,7 @@ std::unique_ptr<Database> copyWithRests(const std::string& path) {
 std::unique_ptr<Database> openRunning(const std::string& path, bool writable) {
     try {
         auto database = std::make_unique<Database>(path, writable ? OpenMode::Follow : OpenMode::ReadOnly);
-        database->execute("SELECT count(*) FROM sqlite_master");
+        database->execute("PRAGMA schema_version");
         return database;
     } catch (const SqliteError& error) {
         if (writable || access(path.c_str(), R_OK) != 0) throw;

@@ -21,7 +21,10 @@ std::string oneLine(std::string text) {
 /// Looks at one database; what cannot be read is a damage and not the end.
 class Look {
 public:
-    explicit Look(const Database& database) : database_(database) {}
+    Look(const Database& database, const std::vector<std::string>& schema_faults) : database_(database) {
+        for (const std::string& fault : schema_faults)
+            found_.damages.push_back("the file: " + fault + " is not as it was written");
+    }
 
     Verification run() {
         attempt("the file", [&] { pages(); });
@@ -105,11 +108,12 @@ private:
 }  // namespace
 
 Result<Verification> verifyDatabase(const std::string& path) {
-    const auto opened = openForReading(path, OlderFile::UpgradeCopy, ReadCheck::None);
+    std::vector<std::string> schema_faults;
+    const auto opened = openForReading(path, OlderFile::UpgradeCopy, ReadCheck::None, &schema_faults);
     if (!opened) return opened.errors();
     return guarded(path, [&] {
         (*opened)->execute("BEGIN");
-        return Look(**opened).run();
+        return Look(**opened, schema_faults).run();
     });
 }
 

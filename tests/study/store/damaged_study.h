@@ -64,6 +64,19 @@ inline const std::vector<Planted> kPlanted = {
     {"UPDATE design_slot SET state='burned' WHERE participant_id='S001'", "design_slot"},
     {"UPDATE session_hash SET sha256='00' WHERE unit='plan'", "the list of its hashes is damaged"},
     {"UPDATE row_hash SET sha256='00' WHERE row_key='S001'", "participant S001"},
+    {"UPDATE row_hash SET row_key='S0p1' WHERE row_key='S001'", "participant S0p1: is gone"},
+    {"UPDATE row_hash SET table_name='participanu' WHERE row_key='S001'", "participanu S001: is gone"},
+    {"UPDATE trial_plan SET session_id='?' WHERE trial_id=1", "a row of trial_plan belongs to no row of session"},
+    {"UPDATE attempt SET trial_id=77 WHERE attempt_id=1", "a row of attempt belongs to no row of trial_plan"},
+    {"UPDATE attempt SET segment_id=77 WHERE attempt_id=3", "a row of attempt belongs to no row of segment"},
+    {"UPDATE attempt_measure SET attempt_id=77 WHERE attempt_id=2 AND measure='peak_force_N'",
+     "a row of attempt_measure belongs to no row of attempt"},
+    {"UPDATE item_response SET run_id=77 WHERE run_id=1 AND item='located'",
+     "a row of item_response belongs to no row of questionnaire_run"},
+    {"UPDATE sample_chunk SET stream_id=77 WHERE chunk_no=1 AND stream_id=1",
+     "a row of sample_chunk belongs to no row of stream"},
+    {"UPDATE session SET participant_id='S003' WHERE participant_id='S002'",
+     "a row of session belongs to no row of participant"},
 };
 
 /// Every value of the file, a line a row.

@@ -46,6 +46,12 @@ protected:
         file.seekp(static_cast<std::streamoff>(at / kPage * kPage));
         file << std::string(8, '\x5a');
     }
+    /// The rest of the first page.
+    void spoil(std::size_t from) const {
+        std::fstream file(path_, std::ios::binary | std::ios::in | std::ios::out);
+        file.seekp(static_cast<std::streamoff>(from));
+        file << std::string(kPage - from, '\x5a');
+    }
     void change(const std::string& sql) const { Database(path_, OpenMode::ReadWrite).execute(sql); }
     /// As a program before there were hashes left it.
     void makeOlder() const {
@@ -76,7 +82,8 @@ TEST_F(RestoreAnew, TakesOverWhatIsIntactAndNewer) {
     EXPECT_EQ(sessionsOf("S003"), 1) << testing::PrintToString(report.remaining);
     EXPECT_EQ(sessionsOf("S001"), 1);
     EXPECT_EQ(require(verifyDatabase(path_)).damages, std::vector<std::string>{});
-    EXPECT_TRUE(tells(report.remaining, "S001, session 1")) << testing::PrintToString(report.remaining);
+    EXPECT_TRUE(tells(report.healed, "S001, session 1")) << testing::PrintToString(report.healed);
+    EXPECT_EQ(report.remaining, std::vector<std::string>{});  // the source had all that was damaged
 }
 
 TEST_F(RestoreAnew, TakesOverWhatIsNewerBesideADamagedRowOfTheStudy) {
@@ -85,7 +92,7 @@ TEST_F(RestoreAnew, TakesOverWhatIsNewerBesideADamagedRowOfTheStudy) {
     breakPage();
     const RestoreReport report = restore();
     EXPECT_EQ(sessionsOf("S003"), 1) << testing::PrintToString(report.remaining);
-    EXPECT_TRUE(tells(report.remaining, "measure peak_force_N")) << testing::PrintToString(report.remaining);
+    EXPECT_TRUE(tells(report.healed, "measure peak_force_N")) << testing::PrintToString(report.healed);
     EXPECT_EQ(require(verifyDatabase(path_)).damages, std::vector<std::string>{});
 }
 
@@ -135,6 +142,33 @@ TEST_F(RestoreAnew, NeverReplacesAFileByAnotherStudy) {
     ASSERT_FALSE(report);
     EXPECT_NE(report.errors()[0].message.find("holds the study fake"), std::string::npos) << report.errors()[0].message;
     EXPECT_TRUE(bytesOf(path_) == before);
+}
+
+TEST_F(RestoreAnew, TellsWhatOnlyTheDamagedFileHad) {
+    // Truth: invariant: a note that was made after the backup, in the session whose samples cannot be read.
+    require(fake::openStore(path_)->addNote(1, "later"));
+    breakPage();
+    const RestoreReport report = restore();
+    EXPECT_TRUE(tells(report.remaining, "S001, session 1")) << testing::PrintToString(report.remaining);
+    for (const auto* lines : {&report.remaining, &report.healed, &report.told})
+        EXPECT_FALSE(tells(*lines, ".part")) << testing::PrintToString(*lines);
+}
+
+TEST_F(RestoreAnew, AFileThatCannotSayItsStudyIsReplacedByNone) {
+    // Truth: invariant: of the file no page but the first has its header.
+    protocol::StudyPlan other = fake::makeAskingPlan();
+    other.name = "another";
+    other.source_text += "# another\n";
+    fake::performAsking(folder_ / "other.db", "S001", other);
+    spoil(100);
+    const std::string before = bytesOf(path_);
+    const auto refused = restoreDatabase(path_, folder_ / "other.db", fake::options());
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.errors()[0].message.find("names the study of " + (folder_ / "other.db")), std::string::npos)
+        << refused.errors()[0].message;
+    EXPECT_TRUE(bytesOf(path_) == before);
+    EXPECT_TRUE(restore().anew);  // its own: the protocol's hash stands further on
+    EXPECT_EQ(require(verifyDatabase(path_)).damages, std::vector<std::string>{});
 }
 
 TEST_F(RestoreAnew, BringsNobodyBackWhoWasErasedAndSaysSoInTheAudit) {
