@@ -1,10 +1,13 @@
 #include "study/questionnaire/cronbach_alpha.h"
 
+#include <cmath>
 #include <cstddef>
 #include <numeric>
 
 namespace passung::questionnaire {
 namespace {
+
+constexpr double kRounding = 1e-12;  // relative, of sums over thousands of forms
 
 /// Sum of squares about the mean: n - 1 cancels in the ratio.
 double squares(const std::vector<double>& values) {
@@ -30,7 +33,8 @@ std::optional<double> cronbachAlpha(const std::vector<std::vector<double>>& rows
         of_items += squares(column);
     }
     const double of_sums = squares(sums);
-    if (!(of_sums > 1e-12 * of_items)) return std::nullopt;  // sums that do not vary but for rounding
+    if (!(of_sums > kRounding * of_items)) return std::nullopt;  // sums that do not vary but for rounding
+    if (std::abs(of_sums - of_items) <= kRounding * of_items) return 0.0;
     const auto k = static_cast<double>(items);
     return k / (k - 1.0) * (1.0 - of_items / of_sums);
 }
