@@ -79,7 +79,7 @@ constexpr std::array kStudyKeys{
     Key{"block", "rest_ends", Choice, kAny, "time|participant|experimenter", "time", "What ends that rest: its time, or then the participant or the experimenter, where a window or a command can say so."},
     Key{"block", "trials", Integer, atLeast(1), "", "(all)", "Only the first so many conditions of each pass."},
     Key{"block", "on_failure", Choice, kAny, "never|repeat_now|repeat_at_block_end", "never", "What follows an attempt that ended by the trial's own rules without success."},
-    Key{"block", "on_timeout", Choice, kAny, "never|repeat_now|repeat_at_block_end", "(as `on_failure`)", "Likewise after a time-out. An attempt that is repeated does not count."},
+    Key{"block", "on_timeout", Choice, kAny, "never|repeat_now|repeat_at_block_end", "(as `on_failure`)", "Likewise after a time-out. An attempt that is repeated does not count: `time_s` is then of what succeeded in the end, and biased; `never` keeps the time-out as a censored time."},
     Key{"block", "on_invalid", Choice, kAny, "never|repeat_now|repeat_at_block_end", "repeat_at_block_end", "Likewise after an attempt that does not count: aborted by itself, ticks lost, invalidated by the experimenter. With `never`, or `max_attempts = 1`, one of them in a main block leaves the session incomplete unless the trial is repeated by hand or on resume."},
     Key{"block", "max_attempts", Integer, from(1, 100), "", "3", "No repetition by these rules after so many attempts at a trial."},
 

@@ -29,6 +29,15 @@ constexpr std::array kWithoutOutput = {
                   "secondary.stimulus = \"visual\" can be given to simulated participants only: no window draws it"},
 };
 
+bool isGoverned(const StudyPlan& plan, std::size_t block) {
+    return std::any_of(plan.staircases.begin(), plan.staircases.end(),
+                       [block](const Staircase& staircase) { return staircase.block == block; });
+}
+
+bool measuresTime(const StudyPlan& plan) {
+    return std::find(plan.measures.begin(), plan.measures.end(), "time_s") != plan.measures.end();
+}
+
 }  // namespace
 
 std::vector<std::string> cuesWithoutOutput(std::span<const Condition> conditions) {
@@ -81,7 +90,7 @@ std::vector<std::string> conditionWarnings(std::span<const Condition> conditions
         return std::any_of(parts.begin(), parts.end(),
                            [=](const auto& part) { return part.held == held && part.friction > 0.0; });
     };
-    warn("contact.method = \"penalty\" renders no friction: that of the parts acts in other conditions only",
+    warn("contact.method = \"penalty\" renders no friction: that of the parts is not felt",
          [&](const Condition& condition) {
              return penalty(condition) && rubs(condition, true) && rubs(condition, false);
          });
@@ -102,14 +111,19 @@ std::vector<std::string> blockWarnings(const StudyPlan& plan) {
     std::vector<std::string> warnings;
     for (std::size_t i = 0; i < plan.blocks.size(); ++i) {
         const Block& block = plan.blocks[i];
-        const bool governed = std::any_of(plan.staircases.begin(), plan.staircases.end(),
-                                          [i](const Staircase& staircase) { return staircase.block == i; });
+        if (block.phase != Phase::Main || isGoverned(plan, i)) continue;
         const bool never = block.on_invalid == Repeat::Never;
-        if (block.phase != Phase::Main || governed || (!never && block.max_attempts > 1)) continue;
-        warnings.push_back(
-            fmt::format("block.{}: after one attempt that does not count the session is not "
-                        "complete unless the trial is repeated by hand or on resume; block: {}",
-                        never ? "on_invalid = \"never\"" : "max_attempts = 1", block.name));
+        if (never || block.max_attempts == 1)
+            warnings.push_back(
+                fmt::format("block.{}: after one attempt that does not count the session is not "
+                            "complete unless the trial is repeated by hand or on resume; block: {}",
+                            never ? "on_invalid = \"never\"" : "max_attempts = 1", block.name));
+        if (block.on_timeout != Repeat::Never && block.max_attempts > 1 && measuresTime(plan))
+            warnings.push_back(
+                fmt::format("block.on_timeout repeats trials after a time-out, and only the last attempt counts: "
+                            "time_s, its restricted mean and finished look better than they are; with \"never\" a "
+                            "time-out counts as not done by then; block: {}",
+                            block.name));
     }
     return warnings;
 }

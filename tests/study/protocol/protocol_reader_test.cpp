@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <span>
 
 #include "tests/study/protocol/fake_devices.h"
 
@@ -47,9 +48,9 @@ levels = [1000, { label = "stiff", value = "max" }]
 )";
 const std::string kBlock = "[[block]]\nname = \"main\"\n";
 
-Result<StudyPlan> read(const std::string& text) {
+Result<StudyPlan> read(const std::string& text, std::span<const std::string> measures = kMeasures) {
     static const auto devices = fakeDevices();
-    return readProtocolText(text, "p.toml", devices, kMeasures);
+    return readProtocolText(text, "p.toml", devices, measures);
 }
 
 std::string errorsOf(const std::string& text) {
@@ -269,6 +270,22 @@ TEST(ProtocolReader, WarnsOfMainBlocksThatDoNotRepeatWhatDoesNotCount) {
     const auto practice = read(text + "[[block]]\nname = \"warm_up\"\nphase = \"practice\"\non_invalid = \"never\"\n");
     ASSERT_TRUE(practice);
     EXPECT_TRUE(practice->warnings.empty());
+}
+
+TEST(ProtocolReader, WarnsOfMainBlocksThatRepeatTimeOutsWhileTimeIsMeasured) {
+    // Truth: invariant: of a trial that is repeated only the last attempt counts, so that its time is no longer
+    // censored.
+    const std::string text = kHead + kScene + kTask + kFactors + kBlock;
+    const std::vector<std::string> timed = {"time_s"};
+    const auto warnings = [&](const std::string& more) { return read(text + more, timed)->warnings; };
+    for (const char* repeated : {"on_timeout = \"repeat_at_block_end\"\n", "on_failure = \"repeat_now\"\n"}) {
+        ASSERT_EQ(warnings(repeated).size(), 1u) << repeated;
+        EXPECT_TRUE(warnings(repeated)[0].starts_with("block.on_timeout repeats trials")) << warnings(repeated)[0];
+        EXPECT_TRUE(warnings(repeated)[0].ends_with("block: main")) << warnings(repeated)[0];
+    }
+    EXPECT_TRUE(warnings("on_failure = \"repeat_now\"\non_timeout = \"never\"\n").empty());
+    EXPECT_TRUE(read(text + "on_timeout = \"repeat_now\"\n")->warnings.empty()) << "no time is measured";
+    EXPECT_TRUE(warnings("[[block]]\nname = \"warm_up\"\nphase = \"practice\"\non_timeout = \"repeat_now\"\n").empty());
 }
 
 TEST(ProtocolReader, WarnsOfFrictionThatThePenaltyDoesNotRender) {
