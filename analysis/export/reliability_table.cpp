@@ -107,6 +107,31 @@ Parted partedByPerson(const ScaleForms& scale) {
     return parted;
 }
 
+/// Forms, or what is made of them, over which alpha is taken.
+struct Agreement {
+    const char* level;
+    std::optional<Occasion> occasion;
+    std::size_t forms, people;
+    std::vector<Answers> answers;
+};
+
+/// At each occasion, and between and within persons where anybody filled in several forms.
+std::vector<Agreement> agreementsOf(const ScaleForms& scale) {
+    std::vector<Agreement> all;
+    for (const auto& [occasion, forms] : scale.occasions) {
+        all.push_back({"occasion", occasion, forms.size(), forms.size(), {}});
+        for (const ScaleForm& form : forms) all.back().answers.push_back(form.answers);
+    }
+    Parted parted = partedByPerson(scale);
+    if (parted.within.empty()) return all;
+    const std::size_t within = parted.within.size(), people = parted.between.size();
+    all.push_back({"between", std::nullopt, parted.forms, people, std::move(parted.between)});
+    all.push_back({"within", std::nullopt, within, parted.persons_within, std::move(parted.within)});
+    return all;
+}
+
+std::string count(std::size_t number) { return cell(static_cast<std::int64_t>(number)); }
+
 std::vector<Column> reliabilityColumns() {
     return {
         {"kind", "Real people, pilots or simulated participants", "", "text", "", 1, protocol::participantKindNames()},
@@ -149,26 +174,13 @@ Table makeReliability(const StudyData& study) {
     for (const auto& [key, scale] : formsOf(study)) {
         const auto& [asked, name] = key;
         const auto& [kind, questionnaire, version, moment] = asked;
-        // Named once more: clang captures no binding.
-        const auto add = [&, &name = name, &kind = kind, &questionnaire = questionnaire, &version = version,
-                          &moment = moment, &scale = scale](const char* level, const Occasion* occasion,
-                                                            std::size_t forms, std::size_t people,
-                                                            const std::vector<Answers>& answers) {
-            table.rows.push_back(
-                {kind, questionnaire, version, moment, name, level, occasion ? cell(occasion->block) : kMissing,
-                 occasion ? cell(occasion->condition) : kMissing, occasion ? cell(occasion->number) : kMissing,
-                 cell(static_cast<std::int64_t>(forms)), cell(static_cast<std::int64_t>(people)),
-                 cell(static_cast<std::int64_t>(scale.items)), cell(questionnaire::cronbachAlpha(answers))});
-        };
-        for (const auto& [occasion, forms] : scale.occasions) {
-            std::vector<Answers> answers;
-            for (const ScaleForm& form : forms) answers.push_back(form.answers);
-            add("occasion", &occasion, forms.size(), forms.size(), answers);
-        }
-        const Parted parted = partedByPerson(scale);
-        if (parted.within.empty()) continue;
-        add("between", nullptr, parted.forms, parted.between.size(), parted.between);
-        add("within", nullptr, parted.within.size(), parted.persons_within, parted.within);
+        for (const Agreement& row : agreementsOf(scale))
+            table.rows.push_back({kind, questionnaire, version, moment, name, row.level,
+                                  row.occasion ? cell(row.occasion->block) : kMissing,
+                                  row.occasion ? cell(row.occasion->condition) : kMissing,
+                                  row.occasion ? cell(row.occasion->number) : kMissing, count(row.forms),
+                                  count(row.people), count(scale.items),
+                                  cell(questionnaire::cronbachAlpha(row.answers))});
     }
     return table;
 }

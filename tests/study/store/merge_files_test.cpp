@@ -3,12 +3,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
 
 #include "study/store/merge.h"
 #include "study/store/participant_desk.h"
 #include "study/store/verify.h"
 #include "tests/study/store/damaged_study.h"
+#include "tests/study/store/killed_file.h"
 
 namespace passung::store {
 namespace {
@@ -16,11 +16,6 @@ namespace {
 using fake::require;
 
 namespace fs = std::filesystem;
-
-std::string bytesOf(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
 
 /// A station's file a.db with S001, and what became of them, all.db.
 class MergeFiles : public testing::Test {
@@ -43,17 +38,9 @@ protected:
 
 TEST_F(MergeFiles, LeaveASourceAsItIsWithTheLogOfAKilledProgram) {
     // Truth: invariant: not a byte changes; what the log holds is merged.
-    const std::string killed = folder_ / "killed.db";
-    {
-        const auto store = fake::openStore(a_);
-        require(store->enrol("S009", protocol::ParticipantKind::Simulated, "2001"));
-        for (const char* suffix : {"", "-wal"}) fs::copy_file(a_ + suffix, killed + suffix);
-    }
-    const std::string before = bytesOf(killed), log = bytesOf(killed + "-wal");
-    ASSERT_FALSE(log.empty());
-    require(mergeDatabases({killed}, all_, fake::options()));
-    EXPECT_TRUE(bytesOf(killed) == before);
-    EXPECT_TRUE(bytesOf(killed + "-wal") == log);
+    const fake::KilledFile killed(a_, folder_ / "killed.db");
+    require(mergeDatabases({killed.path()}, all_, fake::options()));
+    EXPECT_TRUE(killed.isUntouched());
     EXPECT_EQ(
         Database(all_, OpenMode::ReadOnly).integer("SELECT count(*) FROM participant WHERE participant_id='S009'"), 1);
     expectNothingLeft();

@@ -80,31 +80,20 @@ TEST(LoopApparatus, NamesTheStagesThatTheConditionCallsForAndNoOthers) {
 }
 
 /// Somebody of this kind takes part in windows; the device is held by a simulated hand all the same.
-class Somebody final : public Performer {
+class Somebody final : public test::StubPerformer {
 public:
     Somebody(protocol::ParticipantKind kind, std::string sound, std::optional<std::int64_t> coloured)
         : kind_(kind), sound_(std::move(sound)), coloured_(coloured) {}
     protocol::ParticipantKind kind() const override { return kind_; }
-    std::unique_ptr<loop::HapticDevice> device(const simulated::DeviceParams&, const protocol::Condition&) override {
-        return nullptr;
-    }
     DeviceDescription describe(const simulated::DeviceParams& preset) const override {
         return simulated::describe(preset);
     }
-    std::span<loop::ScreenRing* const> screens() override { return {}; }
     session::Presentation presented(std::int64_t, std::int64_t, std::int64_t) override {
         session::Presentation given;
         given.sound = sound_;
         given.cue_frames = coloured_;
         return given;
     }
-    session::QuestionnaireSource* answers() override { return nullptr; }
-    session::InstructionReader* reader() override { return nullptr; }
-    void begins(session::Apparatus&, const session::SessionSetup&) override {}
-    void prepares(const protocol::Condition&, std::int64_t, std::uint64_t) override {}
-    bool builds(double) override { return true; }
-    void look(session::Session&) override {}
-    void over() override {}
 
 private:
     protocol::ParticipantKind kind_;
