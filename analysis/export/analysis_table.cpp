@@ -39,10 +39,26 @@ std::string formulaText(const std::string& value, const std::string& test, const
     const std::string effects = factors.all.empty() ? "1" : joined(factors.all, " * ");
     if (test == "rm_anova" || test == "mixed_anova")
         return value + " ~ " + effects + " + Error(participant_id / (" + joined(factors.within, " * ") + "))";
-    if (test == "paired_t" || test == "wilcoxon" || test == "friedman")
-        return value + " ~ " + effects + " | participant_id";
+    if (test == "friedman") return value + " ~ " + effects + " | participant_id";
     if (test == "lmm") return value + " ~ " + effects + " + (1 | participant_id)";
     return value + " ~ " + effects;
+}
+
+/// The test as a call of R on `data`. R's formulas for two samples know no pairs from 4.4 on: the samples are split.
+std::string callText(const std::string& value, const std::string& test, const Factors& factors) {
+    const std::string formula = formulaText(value, test, factors);
+    const auto paired = [&](const char* function) {
+        return "with(data[order(data$participant_id), ], do.call(" + std::string(function) + ", c(unname(split(" +
+               value + ", " + joined(factors.all, ", ") + ")), paired = TRUE)))";
+    };
+    const auto plain = [&](const char* function) { return function + ("(" + formula + ", data = data)"); };
+    if (test == "paired_t") return paired("t.test");
+    if (test == "wilcoxon") return paired("wilcox.test");
+    if (test == "friedman") return plain("friedman.test");
+    if (test == "mann_whitney") return plain("wilcox.test");
+    if (test == "lmm") return plain("lme4::lmer");
+    if (test == "rm_anova" || test == "mixed_anova") return "summary(" + plain("aov") + ")";
+    return plain("t.test");
 }
 
 /// Who has which combination of the within factors' levels, with a value or without.
@@ -112,8 +128,12 @@ std::vector<Column> analysisColumns() {
         {"test", "Test that the protocol names", "", "text", "", 1, {}},
         {"file", "File that has the values: its rows of this protocol and block, or staircase", "", "text", "", 1, {}},
         {"value_column", "Its column", "", "text", "", 1, {}},
-        {"r_formula",
-         "The model in R's notation, once the values are averaged by participant and factors, these as factor()",
+        {"r_formula", "The model in R's notation, for the data of r_call", "", "text", "", 1, {}},
+        {"r_call",
+         "The test as a call of R (lmm: with the package lme4) on data: the rows of the file that belong here, "
+         "averaged "
+         "by participant and factors, these as factor(), without whoever lacks a combination: data <- "
+         "aggregate(rows[value_column], lapply(rows[c(\"participant_id\", factors)], factor), mean)",
          "",
          "text",
          "",
@@ -139,11 +159,12 @@ Table makeAnalyses(const StudyData& study, const std::vector<Cell>& cells) {
         const std::string value = thresholds ? "estimate" : cellColumn(analysis.outcome);
         const auto add = [&](const std::string& block, const Kept& kept) {
             if (kept.people.empty()) return;
-            table.rows.push_back(
-                {analysis.protocol_sha256, cell(analysis.number), thresholds ? kMissing : analysis.outcome,
-                 thresholds ? analysis.staircase : kMissing, thresholds ? kMissing : block, joined(factors.all, ";"),
-                 analysis.test, thresholds ? "thresholds.csv" : "cells_long.csv", value,
-                 formulaText(value, analysis.test, factors), cell(kept.counted()), cell(kept.complete())});
+            table.rows.push_back({analysis.protocol_sha256, cell(analysis.number),
+                                  thresholds ? kMissing : analysis.outcome, thresholds ? analysis.staircase : kMissing,
+                                  thresholds ? kMissing : block, joined(factors.all, ";"), analysis.test,
+                                  thresholds ? "thresholds.csv" : "cells_long.csv", value,
+                                  formulaText(value, analysis.test, factors), callText(value, analysis.test, factors),
+                                  cell(kept.counted()), cell(kept.complete())});
         };
         if (thresholds) {
             add("", keptBy(study, analysis, factors));

@@ -17,25 +17,13 @@ constexpr const char* kRestricted =
 std::vector<Column> cellColumns() {
     std::vector<Column> columns = whoColumns();
     const std::vector<Column> more = {
-        {"order_sequence",
-         "Row of the counterbalancing that the participant has, from 0: sequence_index of participants.csv",
-         "",
-         "integer",
-         "",
-         1,
-         {}},
+        sequenceColumn(),
         {"session", "Number of the participant's session, from 1", "", "integer", "", 1, {}},
         {"block_index", "Number of the block, from 0", "", "integer", "", 1, {}},
         {"block", "Name of the block", "", "text", "", 1, {}},
         {"protocol_sha256", "SHA-256 of the protocol's text", "", "text", "", 1, {}}};
     columns.insert(columns.end(), more.begin(), more.end());
     return columns;
-}
-
-std::string sequenceOf(const StudyData& study, const std::string& participant) {
-    for (const store::ParticipantRow& person : study.participants)
-        if (person.participant_id == participant) return cell(person.sequence_index);
-    return kMissing;
 }
 
 std::vector<std::string> cellCells(const StudyData& study, const Cell& c) {

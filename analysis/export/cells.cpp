@@ -38,7 +38,7 @@ public:
                             planned.block_index, planned.block, condition->second);
             if (const auto person = people_.find(planned.participant_id); person != people_.end()) {
                 cell.kind = person->second->kind;
-                cell.group = person->second->group.value_or("all");
+                cell.group = groupOf(study, planned.participant_id);
             }
         }
         for (const AttemptRow& attempt : study.attempts) add(attempt);

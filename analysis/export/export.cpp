@@ -58,6 +58,13 @@ std::vector<Table> makeTables(const StudyData& study) {
     return tables;
 }
 
+/// A cell without any text is a missing value like others.
+void markMissing(Table& table) {
+    for (auto& row : table.rows)
+        for (std::string& text : row)
+            if (text.empty()) text = kMissing;
+}
+
 std::string readmeText(const StudyData& study, const std::vector<Table>& tables, bool samples) {
     std::string text = "# Export of a Passung study\n\n";
     for (const store::ProtocolRow& protocol : study.protocols) {
@@ -92,9 +99,12 @@ std::string readmeText(const StudyData& study, const std::vector<Table>& tables,
         "in success, failure or timeout, and of each participant every complete session per protocol, else the "
         "latest (`counted` = 1 in `sessions.csv`).\n\n"
         "A time-out is no missing value: `time_s` is the time to success or to the end, `finished` says which, and the "
-        "cells hold its restricted mean, which keeps everybody. `analyses.csv` lists the analyses that the protocol "
-        "plans: file, column, model, and how many participants it keeps.\n";
-    return text;
+        "cells hold its restricted mean, which keeps everybody.";
+    if (!study.analyses.empty())
+        text +=
+            " `analyses.csv` lists the analyses that the protocol plans: file, column, a call of R, and how many "
+            "participants it keeps.";
+    return text + "\n";
 }
 
 /// Writes files until the first error.
@@ -172,7 +182,10 @@ Result<ExportReport> exportAll(const store::StoreReader& reader, const std::stri
     Writer writer(*folder);
     std::vector<Table> tables = makeTables(*study);
     if (!reader.damages().empty()) tables.push_back(makeMissing(reader.damages()));
-    for (const Table& table : tables) writer.write(table.file, toCsv(table));
+    for (Table& table : tables) {
+        markMissing(table);
+        writer.write(table.file, toCsv(table));
+    }
     if (options.samples) {
         tables.push_back({kSamplesPattern,
                           "One file per attempt, one row per recorded tick (1 kHz): "
@@ -188,8 +201,9 @@ Result<ExportReport> exportAll(const store::StoreReader& reader, const std::stri
     writer.write("README.md", readmeText(*study, tables, options.samples));
     if (options.samples) writeSamples(reader, *study, options, writer);
     if (writer.failed()) return writer.errors();
-    if (const auto done = folder->complete(); !done) return done.errors();
-    return ExportReport{study->attempts.size(), writer.files() + 1, reader.damages().size()};
+    const auto kept = folder->complete();
+    if (!kept) return kept.errors();
+    return ExportReport{study->attempts.size(), writer.files() + 1, reader.damages().size(), *kept};
 }
 
 }  // namespace passung::exporter

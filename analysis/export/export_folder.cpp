@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "analysis/export/codebook.h"
+#include "analysis/export/missing_table.h"
 #include "core/base/regular_file.h"
 #include "study/protocol/document.h"
 #include "study/store/digest.h"
@@ -98,6 +99,22 @@ constexpr const char* kNew = "new";
 constexpr std::size_t kRandomLetters = 6;  // of mkdtemp
 constexpr const char* kReplaced = "replaced";
 constexpr std::string_view kPartial = ".partial.";
+constexpr std::string_view kBackup = ".backup.";
+
+/// The lines of an export's list of what is missing; none if it misses nothing.
+std::set<std::string> missingIn(const fs::path& folder) {
+    std::set<std::string> lines;
+    const auto text = readRegularFile((folder / kMissingFile).string());
+    std::istringstream stream(text ? *text : std::string());
+    for (std::string line; std::getline(stream, line);) lines.insert(line);
+    return lines;
+}
+
+/// May the export in `earlier` hold what the one in `fresh` lacks because of damage?
+bool holdsMore(const fs::path& earlier, const fs::path& fresh) {
+    const auto before = missingIn(earlier), now = missingIn(fresh);
+    return !std::includes(before.begin(), before.end(), now.begin(), now.end());
+}
 
 /// Removes workshops of `folder` that no export works in any more.
 void removeAbandoned(const fs::path& folder) {
@@ -181,20 +198,29 @@ Result<Done> ExportFolder::closeToOthers() const {
     return Done{};
 }
 
-Result<Done> ExportFolder::complete() {
+/// Where the export that stands in the folder goes when the new one takes its place.
+fs::path ExportFolder::placeOfEarlier() const {
+    if (!holdsMore(folder_, workshop_ / kNew)) return workshop_ / kReplaced;
+    int number = 1;
+    const auto name = [&] { return fs::path(folder_.string() + std::string(kBackup) + std::to_string(number)); };
+    while (fs::exists(fs::symlink_status(name()))) ++number;
+    return name();
+}
+
+Result<std::string> ExportFolder::complete() {
     std::string sums;
     for (const auto& [path, sum] : sums_) sums += sum + "  " + path + "\n";
-    if (auto written = write("SHA256SUMS", sums); !written) return written;
-    if (auto closed = closeToOthers(); !closed) return closed;
+    if (auto written = write("SHA256SUMS", sums); !written) return written.errors();
+    if (auto closed = closeToOthers(); !closed) return closed.errors();
 
     // Somebody may have put a file there meanwhile.
-    if (auto checked = checkReplaceable(folder_, studies_); !checked) return checked;
-    const fs::path old = workshop_ / kReplaced;
+    if (auto checked = checkReplaceable(folder_, studies_); !checked) return checked.errors();
     std::error_code error;
-    const bool replaces = fs::exists(folder_, error);
-    if (replaces) fs::rename(folder_, old, error);
+    const bool replaces = fs::exists(folder_, error) && !fs::is_empty(folder_, error);
+    const fs::path old = replaces ? placeOfEarlier() : workshop_ / kReplaced;
+    if (fs::exists(folder_, error)) fs::rename(folder_, old, error);
     if (!error) fs::rename(workshop_ / kNew, folder_, error);
-    if (!error) return Done{};
+    if (!error) return old.parent_path() == workshop_ ? std::string() : old.string();
 
     const std::string reason = error.message();
     if (fs::exists(old, error)) {

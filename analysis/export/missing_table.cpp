@@ -3,7 +3,7 @@
 namespace passung::exporter {
 
 Table makeMissing(const std::vector<store::DamageRow>& damages) {
-    Table table{"missing.csv",
+    Table table{kMissingFile,
                 "**What is damaged in the database and so is not in the other files**, one row each. `passung restore` "
                 "heals it from a copy; then export again.",
                 {{"participant_id", "Code of the participant; NA: a row of the study", "", "text", "", 1, {}},

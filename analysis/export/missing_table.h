@@ -5,7 +5,9 @@
 
 namespace passung::exporter {
 
-/// missing.csv: what is damaged in the database and so is not in the export.
+inline constexpr const char* kMissingFile = "missing.csv";
+
+/// What is damaged in the database and so is not in the export.
 Table makeMissing(const std::vector<store::DamageRow>& damages);
 
 }  // namespace passung::exporter

@@ -162,11 +162,12 @@ Table makeScoresWide(const StudyData& study) {
         "scores_wide.csv",
         "One row per participant, protocol and session, one column per scale and occasion: mean of the counted forms' "
         "scores.",
-        {{"participant_id", "Code of the participant", "", "text", "", 1, {}},
-         {"kind", "Real person, pilot or simulated participant", "", "text", "", 1, protocol::participantKindNames()},
-         {"session", "Number of the participant's session, from 1", "", "integer", "", 1, {}},
-         {"protocol_sha256", "SHA-256 of the protocol's text", "", "text", "", 1, {}}},
+        whoColumns(),
         {}};
+    for (const Column& column :
+         {sequenceColumn(), Column{"session", "Number of the participant's session, from 1", "", "integer", "", 1, {}},
+          Column{"protocol_sha256", "SHA-256 of the protocol's text", "", "text", "", 1, {}}})
+        table.columns.push_back(column);
     using Person = std::tuple<std::string, std::string, std::string, std::int64_t>;
     std::map<WideColumn, const QuestionnaireRunRow*> columns;
     std::map<Person, std::map<WideColumn, std::vector<double>>> people;
@@ -200,7 +201,8 @@ Table makeScoresWide(const StudyData& study) {
     }
     for (const auto& [person, scores] : people) {
         const auto& [participant, kind, protocol, session] = person;
-        std::vector<std::string> row = {participant, kind, cell(session), protocol};
+        std::vector<std::string> row = {
+            participant, kind, groupOf(study, participant), sequenceOf(study, participant), cell(session), protocol};
         for (const auto& [column, run] : columns) {
             const auto found = scores.find(column);
             row.push_back(found == scores.end() ? kMissing : cell(meanOf(found->second)));

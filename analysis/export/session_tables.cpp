@@ -1,10 +1,36 @@
 #include "analysis/export/session_tables.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
 #include <set>
 
 #include "study/protocol/participant.h"
 
 namespace passung::exporter {
+namespace {
+
+using Names = std::vector<std::string>;
+
+std::string joined(const Names& names) { return names.empty() ? kMissing : fmt::format("{}", fmt::join(names, ";")); }
+
+/// The devices that the session was performed on, each once, in the order in which they came.
+std::string devicesOf(const store::SessionRow& session, const StudyData& study) {
+    std::map<std::pair<std::int64_t, std::int64_t>, std::string> attempts;  // by start, by number
+    for (const store::AttemptRow& attempt : study.attempts)
+        if (attempt.session_id == session.session_id) attempts[{attempt.start_ns, attempt.attempt_id}] = attempt.device;
+    Names devices;
+    const auto add = [&devices](const std::string& device) {
+        if (std::find(devices.begin(), devices.end(), device) == devices.end()) devices.push_back(device);
+    };
+    for (const auto& [when, device] : attempts) add(device);
+    if (attempts.empty())
+        for (const std::string& device : session.segment_devices) add(device);
+    return joined(devices);
+}
+
+}  // namespace
 
 Table makeEvents(const StudyData& study) {
     Table table{
@@ -13,8 +39,25 @@ Table makeEvents(const StudyData& study) {
         {{"participant_id", "Code of the participant", "", "text", "", 1, {}},
          {"kind", "Real person, pilot or simulated participant", "", "text", "", 1, protocol::participantKindNames()},
          {"session", "Number of the participant's session, from 1", "", "integer", "", 1, {}},
-         {"t_s", "Time from the session's start", "s", "number", "", 1, {}},
-         {"t_utc", "When, by the session's epoch (see sessions.csv)", "", "time", "", 1, {}},
+         {"t_s",
+          "Session time: 1 ms for every cycle of the haptic loop, missed ones too, from the session's first attempt "
+          "on. "
+          "It runs in attempts and rests only and stands still in between, in instructions, questionnaires and pauses "
+          "and between an interruption and the resume, after which it goes on from the last time that was stored: "
+          "differences across these are not the time that passed, which t_utc tells where epoch is wall",
+          "s",
+          "number",
+          "",
+          1,
+          {}},
+         {"t_utc",
+          "When, by the session's epoch (see sessions.csv): by the wall clock, pauses included, or in virtual time "
+          "2000-01-01T00:00:00Z + t_s",
+          "",
+          "time",
+          "",
+          1,
+          {}},
          {"trial_index", "Trial that it belongs to", "", "integer", "", 1, {}},
          {"attempt_no", "Attempt that it belongs to", "", "integer", "", 1, {}},
          {"source", "Who reported it", "", "text", "", 1, {}},
@@ -38,8 +81,23 @@ Table makeSessions(const StudyData& study) {
          {"session", "Number of the participant's session, from 1", "", "integer", "", 1, {}},
          {"session_id", "Identifier of the session", "", "text", "", 1, {}},
          {"station", "Place where the session ran", "", "text", "", 1, {}},
-         {"device", "Haptic device", "", "text", "", 1, {}},
-         {"device_simulated", "1 if the device is simulated", "", "0/1", "", 1, {"0", "1"}},
+         {"device",
+          "Haptic devices of the session's attempts in the order in which they were made, parted by ;, each once; "
+          "without attempts those of segment_devices",
+          "",
+          "text",
+          "",
+          1,
+          {}},
+         {"segment_devices",
+          "Device with which each run of the program began, in order, parted by ;: another one after a resume on "
+          "another device",
+          "",
+          "text",
+          "",
+          1,
+          {}},
+         {"device_simulated", "1 if all of segment_devices are simulated", "", "0/1", "", 1, {"0", "1"}},
          {"experimenter", "Who led the session", "", "text", "", 1, {}},
          {"language", "Language of the texts", "", "text", "", 1, {}},
          {"seed", "Seed of everything random in the session", "", "integer", "", 1, {}},
@@ -76,7 +134,8 @@ Table makeSessions(const StudyData& study) {
                               cell(s.ordinal),
                               s.session_id,
                               s.station,
-                              s.device,
+                              devicesOf(s, study),
+                              joined(s.segment_devices),
                               cell(s.device_simulated),
                               cell(s.experimenter),
                               s.language,
@@ -111,15 +170,23 @@ Table makeParticipants(const StudyData& study) {
           1,
           {"enrolled", "active", "complete", "excluded", "withdrawn"}},
          {"status_reason", "Why", "", "text", "", 1, {}},
-         {"group", "Group of the between-subjects factors; all if there is none", "", "text", "", 1, {}},
+         {"group",
+          "Group of the between-subjects factors; all if there is none; NA: there is no place yet, or it was given "
+          "back",
+          "",
+          "text",
+          "",
+          1,
+          {}},
          {"sequence_index", "Row of the counterbalancing square, from 0", "", "integer", "", 1, {}},
          {"replicate", "Which use of the square, from 0", "", "integer", "", 1, {}},
          {"created_utc", "Enrolment", "", "time", "", 1, {}},
          {"n_sessions", "Sessions begun", "", "integer", "", 1, {}}},
         {}};
     for (const store::ParticipantRow& p : study.participants) {
-        table.rows.push_back({p.participant_id, p.kind, p.status, cell(p.status_reason), cell(p.group),
-                              cell(p.sequence_index), cell(p.replicate), p.created_utc, cell(p.sessions)});
+        table.rows.push_back({p.participant_id, p.kind, p.status, cell(p.status_reason),
+                              groupOf(study, p.participant_id), cell(p.sequence_index), cell(p.replicate),
+                              p.created_utc, cell(p.sessions)});
     }
     return table;
 }

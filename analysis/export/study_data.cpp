@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "analysis/export/staircase_tables.h"
+#include "analysis/export/table.h"
 #include "analysis/export/trial_tables.h"
 #include "study/measures/measures.h"
 #include "study/measures/period_clock.h"
@@ -39,24 +40,31 @@ void take(Result<std::vector<Row>> rows, std::vector<Row>& target, Errors& error
     }
 }
 
-/// The tick of each trial's start. Periods and ticks are the same as long as no cycle was missed; where one was, the
-/// recorded ticks tell, and if one up to there is missing or cannot be read, nothing does.
-void findStartTicks(const store::StoreReader& reader, std::vector<store::AttemptRow>& attempts) {
+/// Finds the ticks of each trial's start and end. Periods and ticks are the same as long as no cycle was missed; where
+/// one was, the recorded ticks tell, and if one up to there is missing or cannot be read, nothing does.
+void findTicks(const store::StoreReader& reader, std::vector<store::AttemptRow>& attempts) {
     for (store::AttemptRow& attempt : attempts) {
         if (!attempt.trial_ns) continue;
-        const std::int64_t periods = (*attempt.trial_ns - attempt.start_ns + kTickNanoseconds / 2) / kTickNanoseconds;
-        const bool missed = !attempt.timing || attempt.timing->overruns > 0;
-        if (!missed) attempt.start_tick = periods;
-        if (!missed) continue;
+        const auto periodsTo = [&](std::int64_t t_ns) {
+            return (t_ns - attempt.start_ns + kTickNanoseconds / 2) / kTickNanoseconds;
+        };
+        const std::int64_t start = periodsTo(*attempt.trial_ns);
+        std::optional<std::int64_t> end;
+        if (attempt.end_ns) end = periodsTo(*attempt.end_ns);
+        if (attempt.timing && attempt.timing->overruns == 0) {
+            attempt.start_tick = start;
+            attempt.end_tick = end;
+            continue;
+        }
         const auto records = reader.records(attempt.attempt_id);
         if (!records) continue;
         measures::PeriodClock clock;
         std::int64_t next = 0;
         for (const TickRecord& record : *records) {
             if (record.tick != next++) break;  // how many periods a missing record stands for is not known
-            if (clock.at(record) < periods) continue;
-            attempt.start_tick = record.tick;
-            break;
+            const std::int64_t time = clock.at(record);
+            if (!attempt.start_tick && time >= start) attempt.start_tick = record.tick;
+            if (!attempt.end_tick && end && time >= *end) attempt.end_tick = record.tick;
         }
     }
 }
@@ -93,7 +101,7 @@ Result<StudyData> readStudy(const store::StoreReader& reader) {
                               [](const store::MeasureRow& measure) { return !measures::countsTicks(measure.measure); });
     study.counters.assign(counter, study.measures.end());
     study.measures.erase(counter, study.measures.end());
-    findStartTicks(reader, study.attempts);
+    findTicks(reader, study.attempts);
     std::set<std::string> taken;
     for (const Column& column : fixedColumns()) taken.insert(column.name);
     for (const store::MeasureRow& measure : study.measures) taken.insert(measure.measure);
@@ -101,6 +109,7 @@ Result<StudyData> readStudy(const store::StoreReader& reader) {
         for (const Table& table : {makeStaircase(study), makeThresholds(study)})
             for (const Column& column : table.columns) taken.insert(column.name);
     study.factors = mergeFactors(factors, taken);
+    for (store::AttemptRow& attempt : study.attempts) attempt.group = groupOf(study, attempt.participant_id);
     return study;
 }
 
@@ -108,6 +117,20 @@ std::string levelOf(const store::Levels& levels, const std::string& factor) {
     for (const auto& [name, label] : levels) {
         if (name == factor) return label;
     }
+    return kMissing;
+}
+
+std::string groupOf(const StudyData& study, const std::string& participant) {
+    for (const store::ParticipantRow& person : study.participants)
+        if (person.participant_id == participant && person.group) return *person.group;
+    const bool has_groups = std::any_of(study.factors.begin(), study.factors.end(),
+                                        [](const FactorColumn& factor) { return factor.kind == "between"; });
+    return has_groups ? kMissing : "all";
+}
+
+std::string sequenceOf(const StudyData& study, const std::string& participant) {
+    for (const store::ParticipantRow& person : study.participants)
+        if (person.participant_id == participant) return cell(person.sequence_index);
     return kMissing;
 }
 

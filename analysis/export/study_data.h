@@ -48,6 +48,13 @@ Result<StudyData> readStudy(const store::StoreReader& reader);
 /// The label of `factor`, NA where the condition does not have it.
 std::string levelOf(const store::Levels& levels, const std::string& factor);
 
+/// Group of the between-subjects factors that the participant has; "all" in studies without any, NA of
+/// whoever gave their place back.
+std::string groupOf(const StudyData& study, const std::string& participant);
+
+/// Row of the counterbalancing that the participant has; NA if none.
+std::string sequenceOf(const StudyData& study, const std::string& participant);
+
 /// Of each participant and protocol the sessions that means are taken over: the complete ones, else the latest; none
 /// of whoever is excluded.
 std::set<std::string> countedSessions(const StudyData& study);

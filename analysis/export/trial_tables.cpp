@@ -23,13 +23,7 @@ std::vector<Column> leadingColumns() {
         {"trial_in_block", "Number of the trial in the block, from 0", "", "integer", "", 1, {}},
         {"repetition", "Pass through the block's conditions, from 1", "", "integer", "", 1, {}},
         {"attempt_no", "Number of the attempt at this trial, from 1", "", "integer", "", 1, {}},
-        {"order_sequence",
-         "Row of the counterbalancing that the participant has, from 0: sequence_index of participants.csv",
-         "",
-         "integer",
-         "",
-         1,
-         {}},
+        sequenceColumn(),
         {"order_position",
          "Place of the attempt among those of its block in this session as they were made, from 1; NA: not known, as "
          "missing.csv lists an attempt of the session",
@@ -54,10 +48,18 @@ std::vector<Column> leadingColumns() {
 /// Columns of trials.csv between the factors and the measures.
 std::vector<Column> resultColumns() {
     return {
-        {"start_s", "Start of the attempt, from the session's start", "s", "number", "", 1, {}},
+        {"start_s", "Start of the attempt in session time: see t_s of events.csv", "s", "number", "", 1, {}},
         {"start_tick",
          "Tick of the attempt's samples at which the trial began: measures take the samples from there on; NA: it "
          "never began, or cycles were missed and samples before it are missing",
+         "",
+         "integer",
+         "",
+         1,
+         {}},
+        {"end_tick",
+         "Tick at which the trial ended, by success, failure, time-out or abort: measures take the samples up to the "
+         "one before it; later ones are of the loop running out. NA: as start_tick, or it has not ended",
          "",
          "integer",
          "",
@@ -191,15 +193,12 @@ class TrialRows {
 public:
     explicit TrialRows(const StudyData& study)
         : study_(study), courses_(coursesOf(study)), counted_(countedSessions(study)) {
-        for (const store::ParticipantRow& person : study.participants) {
+        for (const store::ParticipantRow& person : study.participants)
             if (person.status == "excluded") excluded_.insert(person.participant_id);
-            sequences_[person.participant_id] = person.sequence_index;
-        }
     }
 
     std::vector<std::string> row(const store::AttemptRow& a) const {
         const Course& course = courses_.at(a.attempt_id);
-        const auto sequence = sequences_.find(a.participant_id);
         std::vector<std::string> row = {a.participant_id,
                                         a.kind,
                                         a.group,
@@ -213,7 +212,7 @@ public:
                                         cell(a.trial_in_block),
                                         cell(a.repetition),
                                         cell(a.attempt_no),
-                                        sequence == sequences_.end() ? kMissing : cell(sequence->second),
+                                        sequenceOf(study_, a.participant_id),
                                         cell(course.position),
                                         a.condition,
                                         course.previous};
@@ -221,8 +220,8 @@ public:
         std::optional<std::int64_t> duration;
         if (a.end_ns) duration = *a.end_ns - a.start_ns;
         const auto because = notCounted(a, excluded_, counted_);
-        row.insert(row.end(), {secondsCell(a.start_ns), cell(a.start_tick), secondsCell(duration), a.outcome,
-                               cell(a.valid), cell(a.invalid_reason), cell(!because), cell(because)});
+        row.insert(row.end(), {secondsCell(a.start_ns), cell(a.start_tick), cell(a.end_tick), secondsCell(duration),
+                               a.outcome, cell(a.valid), cell(a.invalid_reason), cell(!because), cell(because)});
         for (const store::MeasureRow& measure : study_.measures) {
             const auto found = a.measures.find(measure.measure);
             row.push_back(found == a.measures.end() ? kMissing : cell(found->second));
@@ -235,7 +234,6 @@ private:
     const StudyData& study_;
     std::map<std::int64_t, Course> courses_;
     std::set<std::string> counted_, excluded_;
-    std::map<std::string, std::optional<std::int64_t>> sequences_;
 };
 
 }  // namespace
@@ -244,7 +242,25 @@ std::vector<Column> whoColumns() {
     return {
         {"participant_id", "Code of the participant", "", "text", "", 1, {}},
         {"kind", "Real person, pilot or simulated participant", "", "text", "", 1, protocol::participantKindNames()},
-        {"group", "Group of the between-subjects factors; all if there is none", "", "text", "", 1, {}}};
+        {"group",
+         "Group of the between-subjects factors; all if there is none; NA: the place was given back, see "
+         "order_sequence",
+         "",
+         "text",
+         "",
+         1,
+         {}}};
+}
+
+Column sequenceColumn() {
+    return {"order_sequence",
+            "Row of the counterbalancing that the participant has, from 0: sequence_index of participants.csv; NA: the "
+            "place was given back, as after a session that did not complete and by exclusion",
+            "",
+            "integer",
+            "",
+            1,
+            {}};
 }
 
 void appendFactors(std::vector<Column>& columns, const StudyData& study) {

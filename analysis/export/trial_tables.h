@@ -17,6 +17,9 @@ std::vector<Column> fixedColumns();
 /// Who it is about: the first columns of several tables.
 std::vector<Column> whoColumns();
 
+/// "order_sequence", by sequenceOf().
+Column sequenceColumn();
+
 void appendFactors(std::vector<Column>& columns, const StudyData& study);
 
 Column measureColumn(const store::MeasureRow& measure);

@@ -179,8 +179,8 @@ struct SessionRow {
     std::string kind;
     std::int64_t ordinal = 1;
     std::string station;
-    std::string device;
-    bool device_simulated = true;
+    std::vector<std::string> segment_devices;  // that each run of the program began with, in order
+    bool device_simulated = true;              // all of them
     std::optional<std::string> experimenter;
     std::string language;
     std::uint64_t seed = 0;
@@ -244,6 +244,7 @@ struct AttemptRow {
     std::string stimulus = "none";                       // of the secondary task
     std::optional<std::int64_t> trial_ns;                // start of the trial
     std::optional<std::int64_t> start_tick;              // the same among the attempt's ticks; filled in by exports
+    std::optional<std::int64_t> end_tick;                // the same of its end
     std::map<std::string, double> measures;              // only those that are defined for this attempt
     std::vector<session::ContactEnergy> contact_energy;  // none of attempts from before schema revision 6
     std::optional<session::Presentation> presentation;   // none: no window showed it

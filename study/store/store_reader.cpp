@@ -45,7 +45,6 @@ SessionRow readSession(const Statement& row) {
     session.kind = row.text(2);
     session.ordinal = row.integer(3);
     session.station = row.text(4);
-    session.device = row.text(5);
     session.device_simulated = row.integer(6) != 0;
     session.experimenter = row.optionalText(7);
     session.language = row.text(8);
@@ -281,7 +280,10 @@ Result<std::vector<SessionRow>> StoreReader::sessions() const {
         return readAll<SessionRow>(
             database_->prepare(
                 "SELECT s.session_id, s.participant_id, p.kind, s.ordinal, s.station, "
-                "json_extract(g.device_json, '$.name'), json_extract(g.device_json, '$.simulated'), s.experimenter, "
+                "(SELECT json_group_array(json_extract(n.device_json, '$.name')) FROM (SELECT device_json FROM segment "
+                "WHERE session_id=s.session_id ORDER BY segment_id) n), "
+                "(SELECT min(json_extract(n.device_json, '$.simulated')) FROM segment n WHERE "
+                "n.session_id=s.session_id), s.experimenter, "
                 "s.language, s.seed, s.rng, s.epoch, s.started_utc, s.ended_utc, s.end_state, s.protocol_sha256, "
                 "g.app_version, (SELECT count(*) FROM segment n WHERE n.session_id=s.session_id), "
                 "(SELECT count(*) FROM trial_plan t WHERE t.session_id=s.session_id), "
@@ -291,7 +293,11 @@ Result<std::vector<SessionRow>> StoreReader::sessions() const {
                 "segment g ON g.segment_id="
                 "(SELECT min(n.segment_id) FROM segment n WHERE n.session_id=s.session_id) "
                 "ORDER BY s.participant_id, s.ordinal"),
-            readSession);
+            [&](const Statement& row) {
+                SessionRow session = readSession(row);
+                session.segment_devices = readArray(*database_, row.text(5));
+                return session;
+            });
     });
 }
 

@@ -19,7 +19,11 @@ int exportData(const ExportOptions& options) {
                                }});
     if (!report) return fail(report.errors());
     progress.show("");
-    if (!app::rememberExport(options.database, options.out))
+    if (!report->kept.empty())
+        warn(options.out, {"the earlier export may hold what is damaged in the database now: kept as " + report->kept});
+    const bool known = (report->kept.empty() || app::rememberExport(options.database, report->kept)) &&
+                       app::rememberExport(options.database, options.out);
+    if (!known)
         warn(options.out, {"this export could not be noted in the folder of your data: erasing somebody will not name "
                            "it unless it lies beside the database"});
     fmt::print("{}: {} attempts in {} files\n", options.out, report->attempts, report->files);

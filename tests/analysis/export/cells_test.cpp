@@ -62,7 +62,8 @@ protected:
             R"(], "blocks": [{"name": "practice", "phase": "practice"}, {"name": "insert", "phase": "main"}, )"
             R"({"name": "line", "phase": "main"}], "analyses": [{"outcome": "time_s", "factors": ["method"], )"
             R"("test": "rm_anova", "block": "insert", "staircase": ""}, {"outcome": "completion_time_s", )"
-            R"("factors": ["method"], "test": "rm_anova", "block": "insert", "staircase": ""}]})";
+            R"("factors": ["method"], "test": "rm_anova", "block": "insert", "staircase": ""}, )"
+            R"({"outcome": "time_s", "factors": [], "test": "mean", "block": "insert", "staircase": ""}]})";
         return plan;
     }
 
@@ -119,11 +120,12 @@ protected:
         require(writer.finishAttempt(id, end));
     }
 
-    fake::CsvFile csv(const std::string& name) {
+    std::string textOf(const std::string& name) {
         std::ifstream stream(folder_ / ("out/" + name), std::ios::binary);
         EXPECT_TRUE(stream) << name;
-        return fake::readCsv({std::istreambuf_iterator<char>(stream), {}});
+        return {std::istreambuf_iterator<char>(stream), {}};
     }
+    fake::CsvFile csv(const std::string& name) { return fake::readCsv(textOf(name)); }
     bool has(const std::string& name) { return std::ifstream(folder_ / ("out/" + name)).good(); }
 
     fake::TempFolder folder_;
@@ -219,6 +221,7 @@ TEST_F(BlockedStudy, TrialsTellTheirPlaceAndWhetherTheyCount) {
         EXPECT_EQ(trials.at(row, "previous_condition"), previous[row]);
         EXPECT_EQ(trials.at(row, "counted"), row == 0 ? "0" : "1");
         EXPECT_EQ(trials.at(row, "start_tick"), "25");
+        EXPECT_EQ(trials.at(row, "end_tick"), "40");
     }
     const auto people = csv("participants.csv");
     for (std::size_t row = 0; row < trials.rows.size(); ++row)
@@ -228,12 +231,15 @@ TEST_F(BlockedStudy, TrialsTellTheirPlaceAndWhetherTheyCount) {
 TEST_F(BlockedStudy, APlannedAnalysisSaysWhomItKeeps) {
     // Truth: closed form: S002 has no completion time in condition c, but a time.
     const auto analyses = csv("analyses.csv");
-    ASSERT_EQ(analyses.rows.size(), 2u);
+    ASSERT_EQ(analyses.rows.size(), 3u);
     EXPECT_EQ(analyses.at(0, "value_column"), "time_s.restricted_mean");
     EXPECT_EQ(analyses.at(0, "r_formula"), "time_s.restricted_mean ~ method + Error(participant_id / (method))");
     EXPECT_EQ(analyses.at(0, "n_participants"), "3");
     EXPECT_EQ(analyses.at(0, "n_complete"), "3");
     EXPECT_EQ(analyses.at(1, "n_complete"), "2");
+    EXPECT_EQ(analyses.at(2, "factors"), "NA") << "there is none";
+    EXPECT_EQ(analyses.at(0, "r_call"), "summary(aov(" + analyses.at(0, "r_formula") + ", data = data))");
+    EXPECT_NE(textOf("README.md").find("analyses.csv"), std::string::npos);
 }
 
 TEST_F(BlockedStudy, ABlocksFileDoesNotDependOnWhoHasBeenThere) {

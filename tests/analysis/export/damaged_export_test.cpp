@@ -101,21 +101,50 @@ TEST_F(DamagedExport, HoldsWhatIsIntactAndListsTheRest) {
     EXPECT_EQ(2 * rowsOf(files, "trials.csv"), rowsOf(whole_, "trials.csv"));
 }
 
-TEST_F(DamagedExport, StatesNoStartTickThatTheSamplesLeftCannotTell) {
+TEST_F(DamagedExport, KeepsAnEarlierExportThatMayHoldWhatIsDamaged) {
+    // Truth: invariant: nothing that an earlier export holds and the database no longer has is lost; an export that
+    // misses the same, or more, is replaced.
+    const fs::path out = folder_ / "out", first = folder_ / "out.backup.1", second = folder_ / "out.backup.2";
+    const auto exportOver = [&] {
+        const auto reader = require(store::StoreReader::open(path_, store::Damaged::LeftOutWithSamples));
+        return fs::path(require(exportAll(reader, out)).kept);
+    };
+    EXPECT_EQ(exportOver(), fs::path()) << "both are whole";
+    const std::string answer = "UPDATE item_response SET value_num=4 WHERE run_id=1 AND item='located'; ";
+    const std::string measure = "UPDATE attempt_measure SET value_num=2 WHERE attempt_id=3 AND measure='peak_force_N'";
+    change(answer);
+    EXPECT_EQ(exportOver(), first);
+    EXPECT_TRUE(readFolder(first) == whole_);
+    const Files lacks_answer = readFolder(out);
+    EXPECT_EQ(exportOver(), fs::path()) << "both miss the same";
+    change(answer + measure);
+    EXPECT_EQ(exportOver(), second);
+    EXPECT_TRUE(readFolder(second) == lacks_answer);
+    change(answer);
+    EXPECT_EQ(exportOver(), fs::path()) << "the new one has all that the earlier one has";
+    change("");
+    EXPECT_EQ(exportOver(), fs::path());
+    EXPECT_TRUE(readFolder(out) == whole_);
+    EXPECT_TRUE(readFolder(first) == whole_);
+}
+
+TEST_F(DamagedExport, StatesNoTickThatTheSamplesLeftCannotTell) {
     // Truth: closed form: of 16 ticks the last one stands for 3 periods, so period 1150 is tick 16*63 + 15 = 1023;
     // without the first 1000 ticks nobody knows how many periods they took.
     const std::string missed =
         "DELETE FROM session_hash; UPDATE timing SET overruns=1; UPDATE event SET event='trial_started', "
         "t_ns=t_ns+1150000000 WHERE "
         "attempt_id=1; ";
-    const auto startTick = [&] {
+    // The attempt ended at period 1200, which is tick 1068: 2 * 66 periods up to it had none.
+    using Ticks = std::pair<std::string, std::string>;
+    const auto ticks = [&] {
         const auto trials = fake::readCsv(exported(true)->at("trials.csv"));
-        return trials.at(0, "start_tick");
+        return Ticks(trials.at(0, "start_tick"), trials.at(0, "end_tick"));
     };
     change(missed);
-    EXPECT_EQ(startTick(), "1023");
+    EXPECT_EQ(ticks(), Ticks("1023", "1068"));
     change(missed + "UPDATE sample_chunk SET data=zeroblob(9) WHERE stream_id=1 AND chunk_no=0");
-    EXPECT_EQ(startTick(), "NA");
+    EXPECT_EQ(ticks(), Ticks("NA", "NA"));
 }
 
 /// The row as it says nothing of the rows before it, one of which may be missing.

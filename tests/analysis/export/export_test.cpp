@@ -165,6 +165,67 @@ TEST_F(Export, EventsKeepHardTexts) {
         EXPECT_EQ(events.at(i, "t_utc").substr(0, 10), "2000-01-01") << "by the epoch of virtual time";
 }
 
+TEST(ExportedSession, TellsEveryDeviceThatItRanOn) {
+    // Truth: closed form: begun on a simulated sigma7, cut off, and resumed with a mouse.
+    const fake::TempFolder folder;
+    {
+        auto store = fake::openStore(folder / "s.db");
+        auto writer = fake::beginSession(*store, "S001", 2);
+        require(fake::writeAttempt(*writer, 0, 40));
+        require(writer->finishSession(false, 40 * kTickNanoseconds));
+        writer.reset();
+        store::SessionStart start;
+        start.protocol_sha256 = require(store->importProtocol(fake::makePlan()));
+        require(store->assignSlot(start.protocol_sha256, "S001"));
+        start.participant = "S001";
+        start.seed = fake::makePlan().seed;
+        start.session_id = store::sessionId("fake", "S001", 1, start.seed);
+        start.device.name = "mouse";
+        start.device.simulated = false;
+        writer = require(store->resumeSession(start, 40 * kTickNanoseconds));
+        require(fake::writeAttempt(*writer, 1, 40));
+        require(writer->finishSession(true, 60'000'000'000));
+    }
+    exportTo(folder / "s.db", folder / "out");
+    const fake::CsvFile sessions = fake::readCsv(readFile(folder / "out/sessions.csv"));
+    EXPECT_EQ(sessions.at(0, "n_segments"), "2");
+    EXPECT_EQ(sessions.at(0, "device"), "sigma7;mouse");
+    EXPECT_EQ(sessions.at(0, "segment_devices"), "sigma7;mouse");
+    EXPECT_EQ(sessions.at(0, "device_simulated"), "0");
+    const fake::CsvFile trials = fake::readCsv(readFile(folder / "out/trials.csv"));
+    EXPECT_EQ(trials.at(1, "device"), "mouse") << "as the trials say";
+}
+
+TEST_F(Export, TheCodebookSaysWhatSessionTimeLeavesOut) {
+    // Truth: invariant: study/session/session.h: session time is that of attempts and rests, and a resumed session goes
+    // on where it was cut off.
+    const fake::CsvFile book = csv("codebook.csv");
+    for (std::size_t i = 0; i < book.rows.size(); ++i) {
+        if (book.at(i, "file") == "events.csv" && book.at(i, "column") == "t_s") {
+            for (const char* word : {"missed ones", "rests", "pauses", "questionnaires", "resume", "t_utc"})
+                EXPECT_NE(book.at(i, "label").find(word), std::string::npos) << word;
+        }
+        if (book.at(i, "file") == "trials.csv" && book.at(i, "column") == "start_s") {
+            EXPECT_NE(book.at(i, "label").find("t_s of events.csv"), std::string::npos);
+        }
+    }
+}
+
+TEST_F(Export, TheReadmeNamesNoFileThatIsNotThere) {
+    // Truth: invariant (what stands in backquotes and ends in .csv, patterns apart)
+    const std::string& text = files_.at("README.md");
+    int named = 0;
+    for (std::size_t at = 0; (at = text.find('`', at)) != std::string::npos;) {
+        const std::size_t end = text.find('`', at + 1);
+        const std::string name = text.substr(at + 1, end - at - 1);
+        at = end + 1;
+        if (!name.ends_with(".csv") || name.find_first_of("(\"*_ ") == 0 || name.starts_with("wide_MEASURE")) continue;
+        ++named;
+        EXPECT_TRUE(files_.contains(name)) << name;
+    }
+    EXPECT_GT(named, 10);
+}
+
 TEST_F(Export, SamplesUnpackToTheRecordedTicks) {
     // Truth: independent program (gzip) and invariant (numbers, read as doubles, are the recorded ones)
     const auto [text, code] = shell("gzip -dc '" + (folder_ / "out/samples/S001_1_t003_a1.csv.gz") + "'");

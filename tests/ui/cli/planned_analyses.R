@@ -18,11 +18,14 @@ for (i in seq_len(nrow(analyses))) {
   each <- tapply(cells[[planned$value_column]], cells$participant_id, length)
   kept <- names(each)[!is.na(each) & each == max(each, na.rm = TRUE)]
   data <- droplevels(cells[cells$participant_id %in% kept, ])
-  model <- as.formula(sub(" \\+ \\(1 \\| participant_id\\)| \\| participant_id", "", planned$r_formula))
-  if (length(factors) > 0) {
-    fit <- aov(model, data = data)
-    if (inherits(fit, "aovlist")) stopifnot(nlevels(data$participant_id) == length(kept))
+  if (planned$test == "lmm") {  # base R has none: its call and its fixed part
+    stopifnot(identical(parse(text = planned$r_call)[[1]][[1]], quote(lme4::lmer)))
+    fit <- aov(as.formula(sub(" + (1 | participant_id)", "", planned$r_formula, fixed = TRUE)), data = data)
+  } else {
+    fit <- eval(parse(text = planned$r_call))
   }
+  if (inherits(fit, "htest")) stopifnot(is.finite(fit$p.value))
+  if (planned$test %in% c("paired_t", "wilcoxon")) stopifnot(grepl("^Paired|signed rank", fit$method))
   cat(sprintf("%s %s %s: kept %d of %d\n", planned$analysis, planned$value_column,
               ifelse(is.na(planned$block), planned$staircase, planned$block), length(kept), length(people)))
   if (length(kept) < length(people) || planned$n_complete != length(kept)) dropped <- TRUE

@@ -83,6 +83,43 @@ INSTANTIATE_TEST_SUITE_P(Shipped, PlannedAnalyses,
                              return name;
                          });
 
+TEST(PlannedTest, RunsInRAsTheTableWritesIt) {
+    // Truth: independent program (R 4, base): every test of the key table, each on factors that it is for.
+    if (!hasR()) GTEST_SKIP() << "R (r-base-core) is not installed";
+    const TempFolder folder;
+    std::string text = fairStudy();
+    text.replace(text.find("participants = 4"), 16, "participants = 8");
+    text.replace(text.find("repetitions = 3"), 15, "repetitions = 1");
+    text +=
+        "[[factor]]\nname = \"push\"\nkey = \"contact.stiffness_N_per_m\"\nlevels = [\"0.5 max\", \"0.7 max\", "
+        "\"max\"]\n"
+        "[[factor]]\nname = \"side\"\nkind = \"between\"\nkey = \"part.peg.pose.position\"\n"
+        "levels = [{ label = \"right\", value = [4, 0, 8] }, { label = \"left\", value = [-4, 0, 8] }]\n";
+    const auto plan = [&text](const std::string& test, const std::string& factors) {
+        text += "[[analysis]]\noutcome = \"path_length_m\"\ntest = \"" + test + "\"\n";
+        if (!factors.empty()) text += "factors = [" + factors + "]\n";
+    };
+    const std::string chance = "\"chance\"", push = "\"push\"", side = "\"side\"";
+    for (const char* test : {"paired_t", "wilcoxon"}) plan(test, chance);
+    for (const char* test : {"welch_t", "mann_whitney"}) plan(test, side);
+    plan("friedman", push);
+    plan("rm_anova", chance + ", " + push);
+    plan("mixed_anova", chance + ", " + side);
+    plan("lmm", chance);
+    plan("mean", "");
+    writeText(folder / "study.toml", text);
+    const Ended run = runProgram(folder.path(), {"run", "study.toml", "--simulated", "8", "--db", "s.db"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    ASSERT_EQ(runProgram(folder.path(), {"export", "s.db", "--out", "out", "--no-samples"}).exit_code, 0);
+    int code = 0;
+    const std::string said =
+        askR(std::string(PASSUNG_SOURCE_DIR) + "/tests/ui/cli/planned_analyses.R '" + (folder / "out") + "'", code);
+    EXPECT_EQ(code, 0) << said;
+    std::size_t kept = 0;
+    for (std::size_t at = 0; (at = said.find("kept 8 of 8", at)) != std::string::npos; ++at) ++kept;
+    EXPECT_EQ(kept, 9u) << said;
+}
+
 TEST(ExportedNumbers, OfFourBytesAreInRWhatWasStoredToTheLastBit) {
     // Truth: independent program (R's own reading of numbers): a value that four bytes held survives four bytes. The
     // columns named here are such by the codebook.
