@@ -180,9 +180,10 @@ int replay(const ReplayOptions& options) {
         const auto told = [&](Verdict verdict, const char* what) {
             return count[verdict] == 0 ? "" : fmt::format(", {} {}", count[verdict], what);
         };
-        fmt::print("{} attempts replayed, {} differ{}{}{}\n", attempts.size(), count[Verdict::Differs],
+        fmt::print("{} attempts replayed, {} differ{}{}{}\n",
+                   attempts.size() - count[Verdict::NotComparable] - count[Verdict::Damaged], count[Verdict::Differs],
                    told(Verdict::NotProven, "could not be proven"), told(Verdict::NotComparable, "not comparable"),
-                   told(Verdict::Damaged, "damaged"));
+                   told(Verdict::Damaged, "damaged and not compared"));
     }
     return count[Verdict::Same] == attempts.size() ? 0 : 1;
 }
