@@ -58,7 +58,10 @@ bool readUpTo(int descriptor, std::size_t count, std::string& bytes) {
 
 std::optional<std::string> whyNoRegularFile(const std::string& path) {
     struct stat status {};
-    if (::stat(path.c_str(), &status) != 0 || S_ISREG(status.st_mode)) return std::nullopt;
+    if (::stat(path.c_str(), &status) != 0)
+        return errno == ELOOP ? std::optional<std::string>("is a symbolic link that leads round in a circle")
+                              : std::nullopt;
+    if (S_ISREG(status.st_mode)) return std::nullopt;
     return "must be a regular file that may be read, not a folder, a pipe or a device";
 }
 

@@ -19,8 +19,8 @@ inline constexpr std::uintmax_t kMostMeshBytes = std::uintmax_t{4} << 30;
 /// cannot be read.
 Result<std::string> readRegularFile(const std::string& path, std::uintmax_t most_bytes = kMostTextBytes);
 
-/// Why something that exists must not be opened as a file: it is a pipe, a device, a socket or a folder. Nothing for a
-/// regular file, and where nothing exists.
+/// Why something that exists must not be opened as a file: it is a pipe, a device, a socket, a folder or a circle of
+/// links. Nothing for a regular file, and where nothing exists.
 std::optional<std::string> whyNoRegularFile(const std::string& path);
 
 }  // namespace passung

@@ -35,9 +35,7 @@ bool giveMode(const std::string& path, mode_t mode, gid_t group) {
 
 }  // namespace
 
-std::string behindLink(const std::string& path) {
-    return std::filesystem::is_symlink(path) ? std::filesystem::weakly_canonical(path).string() : path;
-}
+std::string behindLink(const std::string& path) { return std::filesystem::is_symlink(path) ? properName(path) : path; }
 
 void makePrivate(const std::string& path) {
     const int file = open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kOwner);

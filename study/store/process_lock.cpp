@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "core/base/regular_file.h"
 #include "study/store/private_files.h"
 
 namespace passung::store {
@@ -36,6 +37,7 @@ Error lockError(const std::string& database_path, std::string message) {
 /// locks that SQLite holds on it in this process.
 Result<std::string> properPath(const std::string& database_path) {
     namespace fs = std::filesystem;
+    if (const auto why = whyNoRegularFile(database_path)) return lockError(database_path, *why);
     std::error_code error;
     if (fs::is_symlink(fs::symlink_status(database_path, error)) && !fs::exists(database_path, error)) {
         return lockError(database_path, "is a symbolic link to a file that does not exist");

@@ -35,6 +35,7 @@ bool isServer(const std::string& from) { return from.starts_with("postgresql://"
 
 /// A private copy of this program's schema, so that the source stays as it is.
 void copySource(const std::string& from, const std::string& to, const std::string& now_utc) {
+    if (const auto why = whyNoRegularFile(from)) throw std::runtime_error(from + ": " + *why);
     if (!fs::exists(from)) throw std::runtime_error(from + ": no such file");
     openUntouched(from)->copyTo(to);
     const Database copy(to, OpenMode::ReadWrite);
@@ -254,8 +255,8 @@ RestoreReport restoreIn(const Workshop& workshop, const std::string& path, const
 Result<RestoreReport> restoreDatabase(const std::string& database, const std::string& from,
                                       const OpenOptions& options) {
     const std::string path = behindLink(database);
-    if (!fs::exists(path)) return Error{.message = "no such file", .file = path};
     if (const auto why = whyNoRegularFile(path)) return Error{.message = *why, .file = path};
+    if (!fs::exists(path)) return Error{.message = "no such file", .file = path};
     if (!beginsAsDatabase(path)) return Error{.message = "is no database; nothing is restored over it", .file = path};
     const auto lock = ProcessLock::take(path);
     if (!lock) return lock.errors();

@@ -44,5 +44,15 @@ TEST(RegularFile, IsNoPipeNoDeviceNoFolder) {
     EXPECT_FALSE(whyNoRegularFile(folder / "absent"));
 }
 
+TEST(RegularFile, IsNoCircleOfLinks) {
+    // Truth: invariant: two links that name each other lead nowhere.
+    const test::TempFolder folder;
+    std::filesystem::create_symlink("there", folder.path() / "here");
+    std::filesystem::create_symlink("here", folder.path() / "there");
+    const auto read = readRegularFile(folder / "here");
+    ASSERT_FALSE(read);
+    EXPECT_NE(read.errors()[0].message.find("in a circle"), std::string::npos) << read.errors()[0].message;
+}
+
 }  // namespace
 }  // namespace passung
