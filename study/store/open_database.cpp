@@ -104,6 +104,7 @@ void prepareForWriting(const std::string& path, const OpenOptions& options, Sche
     database.execute("PRAGMA busy_timeout=" + std::to_string(options.busy_timeout_ms));
     if (options.max_pages > 0) database.execute("PRAGMA max_page_count=" + std::to_string(options.max_pages));
     checkIntegrity(database);
+    keepPrivate(path, options.group);  // now that it is ours, and before a log comes
     database.execute("PRAGMA journal_mode=WAL");
     if (state != SchemaState::Current) upgradeSchema(database, options.now_utc);
     if (state == SchemaState::Older) {
@@ -148,6 +149,35 @@ void inspectAndPrepare(const std::string& path, const OpenOptions& options, Open
     prepareForWriting(path, options, state, opened);
 }
 
+/// What a check of SQLite's says.
+std::vector<std::string> linesOf(const Database& database, const std::string& check) {
+    std::vector<std::string> lines;
+    Statement verdict = database.prepare("PRAGMA " + check + "(200)");
+    while (verdict.step()) lines.push_back(verdict.text(0));
+    return lines;
+}
+
+/// Do these lines tell of faults of single rows and of indices only?
+bool soundBy(const std::vector<std::string>& lines) {
+    constexpr std::array kOfRows = {"CHECK constraint failed", "NULL value in",      " value in ",
+                                    "missing from index",      "wrong # of entries", "non-unique entry"};
+    return std::all_of(lines.begin(), lines.end(), [&](const std::string& line) {
+        return line == "ok" || std::any_of(kOfRows.begin(), kOfRows.end(),
+                                           [&](const char* what) { return line.find(what) != std::string::npos; });
+    });
+}
+
+/// One walk through the file, as far as `check` asks for; with `indices` what does not fit its table is told there.
+void lookThrough(const Database& database, ReadCheck check, std::vector<std::string>* indices) {
+    if (check == ReadCheck::None) return;
+    if (check == ReadCheck::Pages) return checkIntegrity(database);
+    const auto lines = linesOf(database, indices == nullptr ? "quick_check" : "integrity_check");
+    if (!soundBy(lines)) checkIntegrity(database);
+    if (indices == nullptr) return;
+    for (const std::string& line : lines)
+        if (line.find(" index ") != std::string::npos) indices->push_back(line);
+}
+
 std::unique_ptr<Database> withSchemaMended(const Database& database, const std::string& path,
                                            const std::vector<std::string>& faults, std::vector<std::string>* mended) {
     auto copy = privateCopy(database, path);
@@ -158,18 +188,7 @@ std::unique_ptr<Database> withSchemaMended(const Database& database, const std::
 
 }  // namespace
 
-bool pagesAreSound(const Database& database) {
-    constexpr std::array kOfRows = {"CHECK constraint failed", "NULL value in",      " value in ",
-                                    "missing from index",      "wrong # of entries", "non-unique entry"};
-    Statement verdict = database.prepare("PRAGMA quick_check(200)");
-    while (verdict.step()) {
-        const std::string line = verdict.text(0);
-        if (line != "ok" && std::none_of(kOfRows.begin(), kOfRows.end(),
-                                         [&](const char* what) { return line.find(what) != std::string::npos; }))
-            return false;
-    }
-    return true;
-}
+bool pagesAreSound(const Database& database) { return soundBy(linesOf(database, "quick_check")); }
 
 std::vector<BrokenReference> brokenReferences(const Database& database) {
     std::vector<BrokenReference> all;
@@ -192,7 +211,6 @@ OpenedDatabase openForWriting(const std::string& path, const OpenOptions& option
     const auto done = guarded(path, [&] {
         // What is no file stays as it is: who may use a device is not this program's to say.
         if (const auto why = whyNoRegularFile(path)) throw std::runtime_error(*why);
-        if (existed) keepPrivate(path, options.group);
         opened.database = std::make_unique<Database>(path, options.create ? OpenMode::Create : OpenMode::ReadWrite);
         if (!existed) keepPrivate(path, options.group);
         inspectAndPrepare(path, options, opened);
@@ -211,7 +229,8 @@ OpenedDatabase openForWriting(const std::string& path, const OpenOptions& option
 }
 
 Result<std::unique_ptr<Database>> openForReading(const std::string& path, OlderFile older, ReadCheck check,
-                                                 std::vector<std::string>* mended) {
+                                                 std::vector<std::string>* mended, std::vector<std::string>* indices) {
+    if (const auto why = whyNoRegularFile(path)) return fileError(path, *why);
     if (!std::filesystem::exists(path)) return fileError(path, "no such file");
     auto opened = guarded(path, [&] {
         auto database = openUntouched(path);
@@ -219,10 +238,7 @@ Result<std::unique_ptr<Database>> openForReading(const std::string& path, OlderF
             checkSchema(*database);
         else if (const auto faults = schemaFaults(*database); !faults.empty())
             database = withSchemaMended(*database, path, faults, mended);
-        const auto look = [&] {
-            if (check == ReadCheck::Pages || (check == ReadCheck::Structure && !pagesAreSound(*database)))
-                checkIntegrity(*database);
-        };
+        const auto look = [&] { lookThrough(*database, check, indices); };
         switch (inspectSchema(*database)) {
             case SchemaState::Empty:
             case SchemaState::Foreign:

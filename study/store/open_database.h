@@ -40,9 +40,11 @@ std::vector<BrokenReference> brokenReferences(const Database& database);
 void rebuildIndices(const Database& database);
 
 /// Opens an existing Passung file that this program can read, without changing a byte of it (see openUntouched()).
-/// Where pages need not be sound, damage in the schema's text is mended in a private copy and told in `mended`.
+/// Where pages need not be sound, damage in the schema's text is mended in a private copy and told in `mended`; with
+/// `indices` that of indices is looked for on the same walk through the file, and told there.
 Result<std::unique_ptr<Database>> openForReading(const std::string& path, OlderFile older = OlderFile::UpgradeCopy,
                                                  ReadCheck check = ReadCheck::Pages,
-                                                 std::vector<std::string>* mended = nullptr);
+                                                 std::vector<std::string>* mended = nullptr,
+                                                 std::vector<std::string>* indices = nullptr);
 
 }  // namespace passung::store

@@ -84,7 +84,8 @@ std::vector<Chunk> readChunks(const Database& database, std::int64_t attempt_id,
 }
 
 /// The schema's text, an index that does not fit its table, and rows that belong to none.
-std::vector<DamageRow> structureFaults(const Database& database, const std::vector<std::string>& schema_faults) {
+std::vector<DamageRow> structureFaults(const Database& database, const std::vector<std::string>& schema_faults,
+                                       const std::vector<std::string>& index_faults) {
     std::vector<DamageRow> faults;
     const auto add = [&](const std::string& part, const std::string& what) {
         faults.emplace_back();
@@ -92,11 +93,14 @@ std::vector<DamageRow> structureFaults(const Database& database, const std::vect
         faults.back().what = what;
     };
     for (const std::string& fault : schema_faults) add("the file", fault + " is not as it was written");
-    Statement verdict = database.prepare("PRAGMA integrity_check(200)");
-    while (verdict.step())
-        if (const std::string line = verdict.text(0); line.find(" index ") != std::string::npos) add("the file", line);
+    for (const std::string& fault : index_faults) add("the file", fault);
     for (const auto& [table, parent] : brokenReferences(database)) add(table, "a row belongs to no row of " + parent);
     return faults;
+}
+
+ReadCheck checkFor(Damaged damaged) {
+    if (damaged == Damaged::Refused) return ReadCheck::Pages;
+    return damaged == Damaged::KnownWhole ? ReadCheck::None : ReadCheck::Structure;
 }
 
 /// The same data with its indices made anew, as far as SQLite can: what is found through them is then what is there.
@@ -115,15 +119,14 @@ StoreReader::~StoreReader() = default;
 StoreReader::StoreReader(StoreReader&&) noexcept = default;
 
 Result<StoreReader> StoreReader::open(const std::string& path, Damaged damaged) {
-    const bool refused = damaged == Damaged::Refused;
-    std::vector<std::string> schema_faults;
-    auto database =
-        openForReading(path, OlderFile::UpgradeCopy, refused ? ReadCheck::Pages : ReadCheck::Structure, &schema_faults);
+    const bool leaves_out = damaged == Damaged::LeftOut || damaged == Damaged::LeftOutWithSamples;
+    std::vector<std::string> schema_faults, index_faults;
+    auto database = openForReading(path, OlderFile::UpgradeCopy, checkFor(damaged), &schema_faults,
+                                   leaves_out ? &index_faults : nullptr);
     if (!database) return database.errors();
     std::vector<DamageRow> damages;
-    const bool leaves_out = damaged == Damaged::LeftOut || damaged == Damaged::LeftOutWithSamples;
     const auto begun = guarded(path, [&] {
-        if (leaves_out) damages = structureFaults(**database, schema_faults);
+        if (leaves_out) damages = structureFaults(**database, schema_faults, index_faults);
         if (!damages.empty()) *database = withoutDamagedIndices(**database, path);
         (*database)->execute("BEGIN; SELECT count(*) FROM schema_revision");
         if (!leaves_out) return Done{};

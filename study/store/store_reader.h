@@ -16,8 +16,9 @@ namespace passung::store {
 class Database;
 
 /// What a reader does where rows are damaged: refuse the file, if SQLite's own check finds them; hand them out as they
-/// are; or look at every hash, with or without every checksum of samples, and hand out what is intact.
-enum class Damaged { Refused, HandedOut, LeftOut, LeftOutWithSamples };
+/// are; look at every hash, with or without every checksum of samples, and hand out what is intact; or look at nothing,
+/// because the file was found whole since the program runs.
+enum class Damaged { Refused, HandedOut, LeftOut, LeftOutWithSamples, KnownWhole };
 
 /// A study's database, read as it was at opening, whatever a session writes meanwhile. All lists are sorted by what
 /// they mean (participant, session, trial …), never by row numbers, so that equal data gives equal lists.

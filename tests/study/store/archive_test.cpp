@@ -9,6 +9,7 @@
 
 #include "study/store/backup.h"
 #include "study/store/participant_desk.h"
+#include "study/store/restore.h"
 #include "study/store/sqlite.h"
 #include "tests/study/store/fake_study.h"
 #include "tests/study/store/first_revision.h"
@@ -239,6 +240,34 @@ TEST(Archive, WhatIsNoFileKeepsItsMode) {
     EXPECT_FALSE(Store::open(path, fake::options()).store);
     EXPECT_EQ(fs::status(path).permissions(), fs::perms(0666));
     EXPECT_TRUE(fs::is_fifo(path));
+}
+
+TEST(Archive, AFileThatIsNotOursKeepsItsMode) {
+    // Truth: invariant: another program's database and a text are refused, and who may use them is as before.
+    const test::TempFolder folder;
+    const std::string text = folder / "text.db", foreign = folder / "foreign.db";
+    std::ofstream(text) << "somebody's words, which are no database at all, however long they are";
+    Database(foreign, OpenMode::Create).execute("CREATE TABLE theirs(a)");
+    for (const std::string& path : {text, foreign}) {
+        fs::permissions(path, fs::perms(0644));
+        EXPECT_FALSE(Store::open(path, fake::options()).store) << path;
+        EXPECT_EQ(fs::status(path).permissions(), fs::perms(0644)) << path;
+    }
+}
+
+TEST(Archive, ACircleOfLinksIsOneLine) {
+    // Truth: invariant: whoever opens it for writing or reading is told the same.
+    const test::TempFolder folder;
+    const std::string path = folder / "s.db";
+    fs::create_symlink("s.db", path);
+    const auto written = Store::open(path, fake::options());
+    ASSERT_EQ(written.errors.size(), 1u);
+    const auto read = StoreReader::open(path);
+    ASSERT_FALSE(read);
+    const auto restored = restoreDatabase(path, path, fake::options());
+    ASSERT_FALSE(restored);
+    for (const Error& error : {written.errors.front(), read.errors().front(), restored.errors().front()})
+        EXPECT_EQ(toString(error), path + ": error: is a symbolic link that leads round in a circle");
 }
 
 }  // namespace
