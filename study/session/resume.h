@@ -8,6 +8,7 @@
 #include "core/base/result.h"
 #include "study/protocol/study_plan.h"
 #include "study/session/agenda.h"
+#include "study/session/picture_quality.h"
 #include "study/session/staircases.h"
 #include "study/session/trial_sink.h"
 
@@ -56,15 +57,15 @@ struct EarlierTrial {
 /// Where an interrupted session goes on.
 struct Resumption {
     Agenda agenda;
-    std::vector<Past> past;                      // by place in the plan
-    Reordering change = {};                      // to be stored before it goes on
-    std::optional<std::size_t> last = {};        // place of the newest attempt that ended
-    std::int64_t start_ns = 0;                   // session time that the earlier parts took
-    std::vector<FinishedTrial> finished = {};    // trials that are over and stay so, in time
-    std::vector<StoredForm> forms = {};          // that were stored
-    std::vector<ToldStep> steps = {};            // what staircases were told by attempts that count
-    std::vector<EarlierTrial> earlier = {};      // by place: trials of which an attempt had ended
-    std::vector<std::string> window_notes = {};  // what the windows noted of themselves, in time
+    std::vector<Past> past;                    // by place in the plan
+    Reordering change = {};                    // to be stored before it goes on
+    std::optional<std::size_t> last = {};      // place of the newest attempt that ended
+    std::int64_t start_ns = 0;                 // session time that the earlier parts took
+    std::vector<FinishedTrial> finished = {};  // trials that are over and stay so, in time
+    std::vector<StoredForm> forms = {};        // that were stored
+    std::vector<ToldStep> steps = {};          // what staircases were told by attempts that count
+    std::vector<EarlierTrial> earlier = {};    // by place: trials of which an attempt had ended
+    std::optional<QualityFound> quality = {};  // with which the windows drew
 };
 
 /// What the protocol says of a trial whose newest attempt ended so; it is number `judged` of those that did.

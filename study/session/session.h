@@ -53,6 +53,9 @@ public:
     /// accepted or not; whoever wants motors off at once calls the apparatus' halt() first.
     Answer command(const Command& command);
 
+    /// Keeps in the data how the participant's window draws from now on, between two calls of advance().
+    void drawsWith(const QualityFound& found);
+
     /// Ends the session from outside, between two calls of advance(): a running trial is stored as aborted for
     /// `reason`, the session as not complete. A session without a trial or questionnaire left is complete all the
     /// same; nothing happens to one that is over.

@@ -105,6 +105,14 @@ void Session::logCommand(const Command& command, const std::optional<Refusal>& r
     sink_.appendEvent(event);
 }
 
+void Session::drawsWith(const QualityFound& found) {
+    if (isOver()) return;
+    Event event{.attempt = {}, .t_ns = now(), .source = "window", .event = kQualityEvent};
+    if (attempt_) event.attempt = attempt_->id;
+    event.payload_json = qualityJson(found);
+    sink_.appendEvent(event);
+}
+
 Answer Session::execute(const Command& command) {
     switch (command.kind) {
         case CommandKind::Start:

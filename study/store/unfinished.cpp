@@ -77,13 +77,33 @@ void readForms(const Database& database, Unfinished& session) {
     while (forms.step()) session.forms.push_back({forms.text(0), forms.integer(1)});
 }
 
-void readWindowNotes(const Database& database, Unfinished& session) {
+/// Programs before wrote it as a note.
+void readNotedQuality(const Database& database, Unfinished& session) {
     Statement notes = database.prepare(
         "SELECT json_extract(payload_json, '$.text') FROM event JOIN segment USING(segment_id) WHERE session_id=? AND "
         "event='command_note' AND source='window' AND json_extract(payload_json, '$.text') IS NOT NULL "
         "ORDER BY event_id");
     notes.bind(session.session_id);
-    while (notes.step()) session.window_notes.push_back(notes.text(0));
+    while (notes.step())
+        if (const auto quality = session::qualityOfNote(notes.text(0))) session.quality = quality;
+}
+
+/// The newest.
+void readQuality(const Database& database, Unfinished& session) {
+    Statement find = database.prepare(
+        "SELECT payload_json ->> 'window_width_px', payload_json ->> 'window_height_px', payload_json ->> 'scale', "
+        "payload_json ->> 'samples', payload_json ->> 'shadows', payload_json ->> 'pictures_per_s', "
+        "payload_json ->> 'triangles' FROM event JOIN segment USING(segment_id) WHERE session_id=? AND event=? "
+        "ORDER BY event_id DESC LIMIT 1");
+    if (!find.bind(session.session_id, session::kQualityEvent).step()) return readNotedQuality(database, session);
+    session::QualityFound found;
+    found.width_px = static_cast<int>(find.integer(0));
+    found.height_px = static_cast<int>(find.integer(1));
+    found.quality = {find.integer(4) != 0, static_cast<int>(find.integer(3)), find.real(2)};
+    found.pictures_per_s = find.real(5);
+    found.triangles = find.integer(6);
+    const bool possible = found.quality.samples >= 1 && found.quality.scale >= 0.5 && found.quality.scale <= 1.0;
+    if (possible) session.quality = found;  // else it is found anew
 }
 
 /// The latest stamp of anything in the session. Such texts sort as their times.
@@ -141,7 +161,7 @@ Unfinished readUnfinished(const Database& database, const std::string& session_i
     readTrials(database, session);
     session.steps = readOrderSteps(database, session.session_id);
     readForms(database, session);
-    readWindowNotes(database, session);
+    readQuality(database, session);
     return session;
 }
 

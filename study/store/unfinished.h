@@ -26,7 +26,7 @@ struct Unfinished {
     std::vector<session::StoredAttempt> attempts;  // ascending by time
     std::vector<session::OrderStep> steps;         // the same
     std::vector<session::StoredForm> forms;        // the same
-    std::vector<std::string> window_notes;         // what the windows noted of themselves, the same
+    std::optional<session::QualityFound> quality;  // with which the windows drew
 };
 
 /// The session of this id, or the newest one that is not complete. Throws if there is none, if it is complete, or if

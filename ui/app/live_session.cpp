@@ -5,12 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cinttypes>
 #include <cmath>
-#include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <string_view>
 #include <utility>
 
 #include "devices/mouse/mouse_device.h"
@@ -47,29 +44,6 @@ presenter::TrialBrief briefOf(const protocol::Condition& condition) {
 }
 
 }  // namespace
-
-std::string qualityNote(const presenter::QualityFound& found) {
-    const presenter::PictureQuality& drawn = found.quality;
-    return fmt::format(
-        "picture quality: window {} x {} pixels, drawn at {:.2f} of its sides, {} samples a pixel, shadows {}; {:.1f} "
-        "pictures a second with {} triangles",
-        found.width_px, found.height_px, drawn.scale, drawn.samples, drawn.shadows ? "on" : "off", found.pictures_per_s,
-        found.triangles);
-}
-
-std::optional<presenter::QualityFound> qualityOf(const std::string& note) {
-    presenter::QualityFound found;
-    presenter::PictureQuality& drawn = found.quality;
-    std::array<char, 4> shadows{};
-    const int read = std::sscanf(note.c_str(),
-                                 "picture quality: window %d x %d pixels, drawn at %lf of its sides, %d samples a "
-                                 "pixel, shadows %3[a-z]; %lf pictures a second with %" SCNd64 " triangles",
-                                 &found.width_px, &found.height_px, &drawn.scale, &drawn.samples, shadows.data(),
-                                 &found.pictures_per_s, &found.triangles);
-    if (read != 7) return std::nullopt;
-    drawn.shadows = std::string_view(shadows.data()) == "on";
-    return found;
-}
 
 LiveSession::LiveSession(protocol::StudyPlan plan, LiveOptions options)
     : plan_(std::move(plan)), options_(std::move(options)) {
@@ -195,8 +169,7 @@ void LiveSession::begins(session::Apparatus& apparatus, const session::SessionSe
     presenter::SessionBegun begun{.participant = setup.participant, .trials = setup.trials, .look = look_};
     if (setup.resumed) {
         begun.earlier = setup.resumed->earlier;
-        for (const std::string& note : setup.resumed->window_notes)
-            if (auto quality = qualityOf(note)) begun.quality = quality;
+        begun.quality = setup.resumed->quality;
     }
     tell(std::move(begun));
     const std::lock_guard lock(mutex_);
@@ -252,10 +225,13 @@ void LiveSession::look(session::Session& session) {
     if (looked_ns_ > 0) pointer_.pass(1e-9 * static_cast<double>(now - looked_ns_));
     looked_ns_ = now;
     std::deque<session::Command> commands;
+    std::optional<presenter::QualityFound> found;
     {
         const std::lock_guard lock(mutex_);
         commands.swap(commands_);
+        found.swap(found_);
     }
+    if (found) session.drawsWith(*found);
     if (session.state() != session::SessionState::Paused) stopped_ = false;
     for (const session::Command& command : commands)
         if (!isKnown(command, session.state())) {
@@ -278,7 +254,8 @@ void LiveSession::look(session::Session& session) {
 }
 
 void LiveSession::drawsWith(const presenter::QualityFound& found) {
-    command({.kind = session::CommandKind::Note, .text = qualityNote(found), .source = kWindow});
+    const std::lock_guard lock(mutex_);
+    found_ = found;
 }
 
 /// Does a command ask for what cannot wait for a picture? Such a trial is begun and ended at once.

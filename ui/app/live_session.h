@@ -20,11 +20,6 @@
 
 namespace passung::app {
 
-/// What is kept of it with the session.
-std::string qualityNote(const presenter::QualityFound& found);
-/// The other way round; nothing of any other note.
-std::optional<presenter::QualityFound> qualityOf(const std::string& note);
-
 /// Who moves the device in a live session.
 enum class LiveHand { Mouse, Simulated };
 
@@ -118,6 +113,7 @@ private:
     std::mutex mutex_;  // of what follows
     session::Apparatus* apparatus_ = nullptr;
     std::deque<session::Command> commands_;
+    std::optional<presenter::QualityFound> found_;  // to be kept
     std::vector<presenter::News> news_;
     std::thread thread_;  // last: starts when everything else is there
 };

@@ -108,7 +108,7 @@ public:
         auto resumed =
             session::resumption(plan_, session.trials, session.attempts, session.crashed, session.forms, session.steps);
         resumed.start_ns = session.used_ns;
-        resumed.window_notes = session.window_notes;
+        resumed.quality = session.quality;
         (*writer)->appendEvent(
             {.attempt = {}, .t_ns = session.used_ns, .source = "session", .event = "session_resumed"});
         resumed.change.reason = "done again after an interruption";

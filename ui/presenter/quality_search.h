@@ -4,23 +4,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "study/session/picture_quality.h"
+
 namespace passung::presenter {
 
-/// How the participant's window draws, frozen for a session once it was found on the session's own scene.
-struct PictureQuality {
-    bool shadows = true;
-    int samples = 4;     // per pixel, 1: edges are not smoothed
-    double scale = 1.0;  // of the drawn picture's sides to the window's, 0.5 … 1
-    friend bool operator==(const PictureQuality&, const PictureQuality&) = default;
-};
-
-/// What finding it has shown.
-struct QualityFound {
-    PictureQuality quality;
-    int width_px = 0, height_px = 0;  // of the window
-    std::int64_t triangles = 0;       // of the scene that was drawn meanwhile
-    double pictures_per_s = 0.0;      // that were reached with it
-};
+using session::PictureQuality;
+using session::QualityFound;
 
 /// Finds how well a window can draw a scene and still give enough pictures a second: from the best quality downwards,
 /// each tried on a few real pictures, until one is fast enough or none is left. Smooth edges go first, then shadows,

@@ -231,7 +231,7 @@ TEST_F(Pages, ASessionThatGoesOnIsDrawnAsItBegan) {
     const QQuickItem* scene = item(app_->participant(), "scene");
     EXPECT_EQ(scene->property("samples").toInt(), found.quality.samples);
     EXPECT_EQ(store::Database(database(), store::OpenMode::ReadOnly)
-                  .integer("SELECT count(*) FROM event WHERE event='command_note' AND source='window'"),
+                  .integer("SELECT count(*) FROM event WHERE event='picture_quality' AND source='window'"),
               1);
 }
 
