@@ -204,6 +204,13 @@ std::optional<Error> beyondLimits(std::string_view bytes, const std::string& pat
     });
 }
 
+/// What a person can make of an exception's text: of a number that is none the standard library names its function.
+std::string reasonOf(const std::string& why) {
+    if (why.empty()) return "no reason is given";
+    const bool number = why.size() < 8 && why.starts_with("sto");
+    return number ? "a number in it is none, or out of range" : why;
+}
+
 /// By assimp: the formats that are more than triangles. They may name other files, hence the path.
 Result<TriangleMesh> readScene(std::string_view bytes, const std::string& path, const std::string& extension) {
     if (const auto beyond = beyondLimits(bytes, path, extension)) return *beyond;
@@ -221,7 +228,7 @@ Result<TriangleMesh> readScene(std::string_view bytes, const std::string& path, 
         why = thrown.what();
     }
     if (scene == nullptr || scene->mRootNode == nullptr)
-        return fileError(path, "must be a mesh that can be read: " + (why.empty() ? "no reason is given" : why));
+        return fileError(path, "must be a mesh that can be read: " + reasonOf(why));
     TriangleMesh mesh;
     if (!appendNode(*scene, *scene->mRootNode, Eigen::Matrix4d::Identity(), mesh))
         return fileError(path, "every vertex must be finite and every triangle must name vertices that exist");

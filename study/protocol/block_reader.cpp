@@ -207,8 +207,7 @@ LevelPattern readPattern(const Node& table, const std::string& path, const std::
         }
         if (factors[*factor].kind == FactorKind::Nuisance)
             report(entry.place, "", "a nuisance factor's levels are assigned to every condition");
-        const bool text = entry.value.kind == Node::Kind::Text;
-        pattern[*factor] = findLevel(factors[*factor], text ? entry.value.text : valueText(entry.value), fault);
+        pattern[*factor] = findLevel(factors[*factor], labelText(entry.value), fault);
         if (!pattern[*factor]) report(entry.value.place, valueText(entry.value), fault);
     }
     return pattern;

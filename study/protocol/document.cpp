@@ -14,6 +14,8 @@
 namespace passung::protocol {
 namespace {
 
+constexpr std::size_t kMostShown = 200;  // bytes of a key or value in a message
+
 Place placeOf(const toml::source_region& region, const std::string& file) {
     // The parser leaves 0 where a value has no place of its own (the top-level table).
     return {file, std::max(1, static_cast<int>(region.begin.line)), std::max(1, static_cast<int>(region.begin.column))};
@@ -67,6 +69,21 @@ Node convert(const toml::node& source, const std::string& file) {
         node.text = otherKind(source.type());
     }
     return node;
+}
+
+/// As it may stand in a file: 1.0 is not the integer 1.
+std::string numberText(double number) {
+    std::string text = fmt::format("{}", number);
+    if (text.find_first_not_of("-0123456789") == std::string::npos) text += ".0";
+    return text;
+}
+
+/// One line stays readable, however long a key or value is.
+std::string shortened(std::string text) {
+    if (text.size() <= kMostShown) return text;
+    text.resize(kMostShown);
+    text.resize(text.size() - cutOff(text));
+    return text + "...";
 }
 
 /// Reports keys and texts with control characters, which no file needs and a terminal would obey.
@@ -156,6 +173,12 @@ std::string kindText(const Node& node) {
     return "";
 }
 
+std::string labelText(const Node& node) {
+    return node.kind == Node::Kind::Text     ? node.text
+           : node.kind == Node::Kind::Number ? fmt::format("{}", node.number)
+                                             : valueText(node);
+}
+
 std::string valueText(const Node& node) {
     switch (node.kind) {
         case Node::Kind::Boolean:
@@ -163,7 +186,7 @@ std::string valueText(const Node& node) {
         case Node::Kind::Integer:
             return fmt::format("{}", node.integer);
         case Node::Kind::Number:
-            return fmt::format("{}", node.number);
+            return numberText(node.number);
         case Node::Kind::Text:
             return fmt::format("\"{}\"", node.text);
         case Node::Kind::Table:
@@ -186,8 +209,8 @@ Error errorAt(const Place& place, std::string key, std::string value, std::strin
             .file = place.file,
             .line = place.line,
             .column = place.column,
-            .key = std::move(key),
-            .value = std::move(value)};
+            .key = shortened(std::move(key)),
+            .value = shortened(std::move(value))};
 }
 
 void tidy(Errors& errors) {

@@ -67,6 +67,9 @@ std::string kindText(const Node& node);
 /// The value as the user may recognise it: "abc" in quotes, numbers in shortest form, [1, 2, 3], {...}.
 std::string valueText(const Node& node);
 
+/// A value as the label of a level: a text without its quotes, 1.0 as 1.
+std::string labelText(const Node& node);
+
 Error errorAt(const Place& place, std::string key, std::string value, std::string message);
 
 /// Sorts by place and removes what was found twice (the same line is read once for every condition).

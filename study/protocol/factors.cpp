@@ -28,11 +28,10 @@ bool isScalar(const Node& node) {
            node.kind == Node::Kind::Text;
 }
 
-std::string labelOf(const Node& value) { return value.kind == Node::Kind::Text ? value.text : valueText(value); }
-
 bool isLabel(const std::string& text) {
-    return !text.empty() && std::all_of(text.begin(), text.end(),
-                                        [](char c) { return c != '/' && static_cast<unsigned char>(c) >= 0x20; });
+    return !text.empty() && text.size() <= kMostNameBytes && std::all_of(text.begin(), text.end(), [](char c) {
+        return c != '/' && static_cast<unsigned char>(c) >= 0x20;
+    });
 }
 
 /// Reads the levels of one factor.
@@ -43,7 +42,7 @@ public:
 
     void read(const Node& level) {
         const bool table = level.kind == Node::Kind::Table;
-        std::string label = table ? "" : labelOf(level);
+        std::string label = table ? "" : labelText(level);
         if (table)
             readTable(level, label);
         else if (isScalar(level))
@@ -56,7 +55,9 @@ public:
             if (!labels_.insert(label).second)
                 report(level.place, fmt::format("\"{}\"", label), "two levels have this label");
         } else if (errors_.size() == before_) {
-            report(level.place, fmt::format("\"{}\"", label), "a label must not be empty nor contain \"/\"");
+            report(level.place, fmt::format("\"{}\"", label),
+                   label.size() > kMostNameBytes ? fmt::format("a label must have at most {} letters", kMostNameBytes)
+                                                 : "a label must not be empty nor contain \"/\"");
         }
         content_.factor.levels.push_back({label, catch_trial_});
         catch_trial_ = false;
@@ -78,7 +79,7 @@ private:
         if ((value == nullptr) == (set == nullptr)) {
             report(level.place, "", "a level needs either a value or a set");
         } else if (value != nullptr) {
-            if (!read.has("label") && isScalar(*value)) label = labelOf(*value);
+            if (!read.has("label") && isScalar(*value)) label = labelText(*value);
             setKey(*value);
         } else if (read.has("set")) {
             if (factor_has_key_) report(set->place, "", "set is for factors without a key");
@@ -186,6 +187,9 @@ void applyOverride(const Override& change, StudyTables& tables, Errors& errors) 
         errors.push_back(errorAt(change.path_place, "factor", change.path, std::move(message)));
     };
     const auto segments = splitPath(change.path);
+    if (segments[0] == "scene" && segments.size() > 1)
+        return report(fmt::format("keys of the scene are written without \"scene.\": did you mean \"{}\"?",
+                                  change.path.substr(segments[0].size() + 1)));
     if (std::count(segments.begin(), segments.end(), "") > 0)
         return report("is no path of keys such as contact.method");
     if (segments.size() > kMostSegments) return report(fmt::format("must have at most {} parts", kMostSegments));

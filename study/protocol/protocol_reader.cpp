@@ -129,6 +129,7 @@ private:
         const TableReader read(*table, {"study"}, "study", errors_);
         plan_.name = read.text("name");
         plan_.version = read.text("version");
+        read.requireLine("version");
         plan_.title = read.has("title") ? read.text("title") : plan_.name;
         plan_.seed = static_cast<std::uint64_t>(read.integer("seed"));
         plan_.participants = static_cast<int>(read.integer("participants"));
@@ -355,6 +356,7 @@ private:
             checkFelt(tables.scene, "scene", condition.scene, geometries_, undoable_, warnings_);
         if (condition.comparison && errors_.size() == before)
             checkFelt(tables.scene, "scene", *condition.comparison, geometries_, undoable_, warnings_);
+        warnOfTolerance(tables.scene, "scene", warnings_);
         if (content.sound) checkStartPose(tables.scene, "scene", condition.scene, geometries_, undoable_);
         if (errors_.size() == before && pair)
             checkStartPose(tables.scene, "scene", *condition.comparison, geometries_, undoable_);

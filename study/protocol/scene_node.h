@@ -24,6 +24,10 @@ struct SceneContent {
     bool sound = false;        // everything but the device
 };
 
+/// Adds a sentence if `scene`, a table of path `path`, has contact.cell_mm and contact.tolerance_um: the first one
+/// wins.
+void warnOfTolerance(const Node& scene, const std::string& path, std::vector<std::string>& warnings);
+
 /// Reads a scene's table. `ids`: its tables in the key table; `path`: its name in messages ("scene" or "").
 /// Adds everything that is wrong to `errors`; the result is meaningful only where it says that it is sound.
 /// `geometries` is what the parts are looked up in.

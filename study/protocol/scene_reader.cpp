@@ -329,6 +329,18 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     return content;
 }
 
+void warnOfTolerance(const Node& scene, const std::string& path, std::vector<std::string>& warnings) {
+    const Node* contact = scene.find("contact");
+    if (contact == nullptr || contact->find("cell_mm") == nullptr || contact->find("tolerance_um") == nullptr) return;
+    const std::string key = path.empty() ? "contact" : path + ".contact";
+    std::string sentence = fmt::format(
+        "{}.cell_mm decides the cells of distance fields: tolerance_um beside it has no "
+        "say in them",
+        key);
+    if (std::find(warnings.begin(), warnings.end(), sentence) == warnings.end())
+        warnings.push_back(std::move(sentence));
+}
+
 Result<model::SceneSpec> readScene(const std::string& path, std::span<const DeviceDescription> devices,
                                    model::BuildStore* builds) {
     const auto text = readFile(path);
@@ -353,6 +365,7 @@ Result<SceneOnDevice> readSceneOnDevice(const std::string& text, const std::stri
     auto content = readSceneNode(*document, {"scene"}, "", devices, geometries, errors);
     std::vector<std::string> warnings;
     if (content.sound) checkFelt(*document, "", content.scene, geometries, errors, warnings);
+    warnOfTolerance(*document, "", warnings);
     if (content.accuracy_budget > 0.0)
         errors.push_back(errorAt(document->find("contact")->find("accuracy")->place, "contact.accuracy", "\"auto\"",
                                  "only in a study, whose database keeps what was picked; in a scene file write "

@@ -98,6 +98,7 @@ std::string valueFault(const Key& key, const Node& value) {
         case KeyType::Text:
             return value.text.empty() ? "must not be empty" : "";
         case KeyType::Name:
+            if (value.text.size() > kMostNameBytes) return fmt::format("must have at most {} letters", kMostNameBytes);
             return isName(value.text) ? "" : "must be lower-case letters, digits and _, beginning with a letter";
         case KeyType::Choice:
             return choiceFault(key, value);
@@ -124,16 +125,19 @@ TableReader::TableReader(const Node& table, std::vector<std::string_view> tables
     }
     for (const Key& row : keys()) {
         const bool here = std::find(tables_.begin(), tables_.end(), row.table) != tables_.end();
-        if (here && row.required() && table.find(row.name) == nullptr) fail(row.name, "required");
+        const bool meant = std::find(meant_.begin(), meant_.end(), row.name) != meant_.end();
+        if (here && row.required() && !meant && table.find(row.name) == nullptr) fail(row.name, "required");
     }
 }
 
-void TableReader::reportUnknown(const Entry& entry) const {
+void TableReader::reportUnknown(const Entry& entry) {
     std::vector<std::string_view> names;
     for (const Key& row : keys())
         if (std::find(tables_.begin(), tables_.end(), row.table) != tables_.end()) names.push_back(row.name);
     std::string message = "unknown key";
-    if (const auto close = closestWord(entry.key, names))
+    const auto close = entry.key.size() <= kMostNameBytes ? closestWord(entry.key, names) : std::nullopt;
+    if (close) meant_.push_back(*close);
+    if (close)
         message += fmt::format("; did you mean \"{}\"?", *close);
     else
         message += names.empty() ? "; no key is known here" : fmt::format("; known keys: {}", fmt::join(names, ", "));
@@ -214,6 +218,12 @@ void TableReader::fail(std::string_view name, std::string message) const {
     errors_.push_back(value == nullptr ? errorAt(table_.place, pathOf(name),
                                                  fallback.empty() ? "" : fallback + " (default)", std::move(message))
                                        : errorAt(value->place, pathOf(name), valueText(*value), std::move(message)));
+}
+
+void TableReader::requireLine(std::string_view name) const {
+    const std::string value = text(name);
+    if (value.find_first_of("\n\r\t") != std::string::npos) fail(name, "must be one line without tabs");
+    if (value.size() > kMostNameBytes) fail(name, fmt::format("must have at most {} letters", kMostNameBytes));
 }
 
 std::string TableReader::pathOf(std::string_view name) const {

@@ -33,13 +33,15 @@ public:
 
     /// Something is wrong with this key's value; placed at the value, or at the table where it is absent.
     void fail(std::string_view name, std::string message) const;
+    /// Refuses a text of several lines, with tabs or longer than a name.
+    void requireLine(std::string_view name) const;
     /// Name of a key for messages.
     std::string pathOf(std::string_view name) const;
 
 private:
     const Key& key(std::string_view name) const;
     std::string fallbackText(std::string_view name) const;
-    void reportUnknown(const Entry& entry) const;
+    void reportUnknown(const Entry& entry);
     bool check(const Key& key, const Node& value) const;
 
     const Node& table_;
@@ -47,7 +49,11 @@ private:
     std::string path_;
     Errors& errors_;
     std::vector<const Entry*> sound_;
+    std::vector<std::string_view> meant_;  // keys that an unknown one is likely to be: their absence is told with it
 };
+
+/// Of names, versions and labels: columns, lines and files are made of them.
+inline constexpr std::size_t kMostNameBytes = 100;
 
 /// True for a lower-case letter followed by lower-case letters, digits and underscores.
 bool isName(std::string_view text);

@@ -37,6 +37,44 @@ target = "plate"
 
 std::string faultOf(const Result<StudyPlan>& plan) { return plan ? "" : toString(plan.errors().front()); }
 
+TEST(Messages, OfFrictionUnderThePenaltySayThatItIsNotFelt) {
+    // Truth: invariant: every condition is a penalty's, so that there is no other in which the friction acts.
+    std::string rubs =
+        "[[factor]]\nname = \"method\"\nkey = \"contact.method\"\nlevels = [\"penalty\", \"god_object\"]\n";
+    rubs += "[[exclude]]\nmethod = \"god_object\"\n";
+    for (const char* part : {"plate", "peg"})
+        rubs += std::string("[[factor]]\nname = \"rub_") + part + "\"\nkey = \"part." + part +
+                ".friction\"\nlevels = [0.2, 0.3]\n";
+    const auto plan = read(rubs);
+    ASSERT_TRUE(plan) << faultOf(plan);
+    ASSERT_EQ(plan->warnings.size(), 1u);
+    EXPECT_TRUE(plan->warnings[0].starts_with(
+        "contact.method = \"penalty\" renders no friction: that of the parts is not felt; conditions: "))
+        << plan->warnings[0];
+}
+
+TEST(Messages, SayWhichOfCellAndToleranceWins) {
+    // Truth: invariant: with one of them there is nothing to say.
+    for (const bool both : {false, true}) {
+        const auto plan = read("[scene.contact]\ncell_mm = 0.5\n" + std::string(both ? "tolerance_um = 100\n" : ""));
+        ASSERT_TRUE(plan) << faultOf(plan);
+        ASSERT_EQ(plan->warnings.size(), both ? 1u : 0u);
+        for (const std::string& warning : plan->warnings)
+            EXPECT_EQ(
+                warning,
+                "scene.contact.cell_mm decides the cells of distance fields: tolerance_um beside it has no say in "
+                "them");
+    }
+}
+
+TEST(Messages, ALabelOfALevelStaysAsShortAsItWas) {
+    // Truth: regression: labels are parts of orders and columns; only messages tell 1.0 from 1.
+    const auto plan = read("[[factor]]\nname = \"spacing\"\nkey = \"contact.spacing_mm\"\nlevels = [1.0, 0.5]\n");
+    ASSERT_TRUE(plan) << faultOf(plan);
+    EXPECT_EQ(plan->conditions[0].name, "1");
+    EXPECT_EQ(plan->conditions[1].name, "0.5");
+}
+
 TEST(Feedback, EveryCombinationIsAConditionOfItsOwn) {
     // Truth: closed form: 2 x 2 x 2 x 2 x 2; what is stored of each says which it is.
     std::set<std::string> stored;
