@@ -165,7 +165,7 @@ void makeAnew(const std::string& path, const std::string& from, const Workshop& 
               RestoreReport& report) {
     report.anew = true;
     Database(workshop.source, OpenMode::ReadWrite).copyTo(workshop.part);
-    const auto merged = mergeDamaged(path, workshop.damaged, workshop.part, options);
+    const auto merged = mergeDamaged("the damaged file", workshop.damaged, workshop.part, options);
     if (!merged) throw std::runtime_error(merged.errors().front().message);
     if (!holdsStudyOf(path, workshop.source))
         throw std::runtime_error("nothing in it names the study of " + from +
@@ -179,9 +179,9 @@ void makeAnew(const std::string& path, const std::string& from, const Workshop& 
     for (const std::string& who : merged->moved_places)
         report.told.push_back(who +
                               ": the same row of the square in a further replicate, for another one has the place");
-    if (merged->sessions + merged->replaced > 0)
-        report.healed.push_back(std::to_string(merged->sessions + merged->replaced) +
-                                " sessions that are newer than the source were taken over");
+    if (const auto newer = merged->sessions + merged->replaced; newer > 0)
+        report.told.push_back(std::to_string(newer) + (newer == 1 ? " session that is" : " sessions that are") +
+                              " newer than the source: taken over");
     leaveOutErased(workshop, options, report);
 }
 

@@ -12,9 +12,9 @@ int restore(const RestoreOptions& options) {
     const auto report = store::restoreDatabase(options.database, options.from, app::openOptionsNow());
     if (!report) return fail(report.errors());
     for (const std::string& healed : report->healed) fmt::print("{}: {}: healed\n", options.database, healed);
+    const std::string none = report->anew ? "" : ": there is no intact copy of it in " + options.from;
     for (const std::string& damage : report->remaining)
-        fmt::print(stderr, "{}: error: {}: there is no intact copy of it in {}\n", options.database, damage,
-                   options.from);
+        fmt::print(stderr, "{}: error: {}{}\n", options.database, damage, none);
     for (const std::string& line : report->told) fmt::print("{}\n", line);
     if (report->anew)
         fmt::print("{}: its pages were damaged: made anew from {}; the damaged file is {}\n", options.database,
