@@ -205,7 +205,7 @@ Window {
         anchors.fill: parent
         visible: cutOff.question !== ""
         text: cutOff.question
-        detail: qsTr("What was done is kept. The participant goes on with the trial that was cut off.")
+        detail: qsTr("What was done is kept. The participant goes on with the trial or questionnaire that was cut off; of a questionnaire only what was handed in is kept.")
         yes: qsTr("Resume the session")
         no: qsTr("Not now")
         whyNotYes: cutOff.whyNot

@@ -185,9 +185,23 @@ RowLayout {
                         page.begun();
                     }
                 }
+            }
+            ColumnLayout { // below the buttons, where words have the whole width
+                spacing: 6
                 Say {
+                    objectName: "leftOut"
                     Layout.fillWidth: true
                     quiet: true
+                    wrapMode: Text.WordWrap
+                    font.pixelSize: look.scale * 12
+                    text: qsTr("Both show the trials only: consent, instructions and questionnaires are left out.")
+                }
+                Say {
+                    objectName: "whyNotByHand"
+                    Layout.fillWidth: true
+                    visible: text !== ""
+                    quiet: true
+                    wrapMode: Text.WordWrap
                     font.pixelSize: look.scale * 12
                     text: page.whyNotByHand
                 }

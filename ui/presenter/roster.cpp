@@ -93,6 +93,24 @@ RosterPerson personOf(const store::ParticipantRow& row, const Roster& roster, co
     return person;
 }
 
+/// Which of the sessions that can be resumed were cut off in a questionnaire.
+Result<Done> findOpenForms(const store::StoreReader& reader, Roster& roster) {
+    std::map<std::pair<std::string, std::int64_t>, RosterSession*> resumable;
+    for (RosterPerson& person : roster.people)
+        if (person.resumable() != nullptr)
+            resumable[{person.code, person.sessions.back().ordinal}] = &person.sessions.back();
+    if (resumable.empty()) return Done{};
+    const auto events = reader.events();
+    if (!events) return events.errors();
+    for (const store::EventRow& event : *events) {
+        const auto found = resumable.find({event.participant_id, event.session_ordinal});
+        if (found == resumable.end()) continue;
+        if (event.event == "questionnaire_shown") found->second->in_form = true;
+        if (event.event == "questionnaire_answered" || event.attempt_no) found->second->in_form = false;
+    }
+    return Done{};
+}
+
 }  // namespace
 
 std::int64_t RosterPerson::attempts() const {
@@ -159,7 +177,7 @@ Result<Roster> readRoster(const protocol::StudyPlan& plan, const store::StoreRea
             if (session.participant_id == person.code)
                 person.sessions.push_back({session.session_id, session.started_utc, static_cast<int>(session.ordinal),
                                            stateNamed(session.end_state), session.planned_trials, session.attempts,
-                                           session.valid_attempts});
+                                           session.valid_attempts, false});
         std::sort(person.sessions.begin(), person.sessions.end(),
                   [](const auto& a, const auto& b) { return a.ordinal < b.ordinal; });
         person.forms = std::count_if(forms->begin(), forms->end(), [&](const auto& form) {
@@ -167,6 +185,7 @@ Result<Roster> readRoster(const protocol::StudyPlan& plan, const store::StoreRea
         });
         roster.people.push_back(std::move(person));
     }
+    if (const auto found = findOpenForms(reader, roster); !found) return found.errors();
     fillPlaces(plan, roster);
     return roster;
 }

@@ -29,6 +29,7 @@ struct RosterSession {
     int ordinal = 1;
     SessionState state = SessionState::Open;
     std::int64_t planned = 0, attempts = 0, valid = 0;
+    bool in_form = false;  // the last thing in it is a questionnaire that was not handed in
 };
 
 struct RosterPerson {

@@ -257,6 +257,7 @@ void DataModel::exportTo(const QString& folder, bool samples) {
         [this, to](const Result<exporter::ExportReport>& report) {
             exporting_ = false;
             failed_ = !report || report->missing > 0;
+            if (report && !report->kept.empty()) app::rememberExport(database, report->kept);
             if (report) last_folder_ = to;
             told_ = report       ? exportedLine(to, report->attempts, report->files, report->missing)
                     : cancelled_ ? cancelledLine()
@@ -266,6 +267,7 @@ void DataModel::exportTo(const QString& folder, bool samples) {
         });
     emit exportChanged();
 }
+            if (report && !report->kept.empty()) told_ += "\n" + keptExportLine(text(report->kept));
 
 void DataModel::retranslate() {
     told_.clear();  // said in the language before

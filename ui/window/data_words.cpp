@@ -58,6 +58,10 @@ QString exportedLine(const QString& folder, std::size_t attempts, std::size_t fi
     return said(QT_TRANSLATE_NOOP("data", "%1: %2 attempts in %3 files")).arg(folder).arg(attempts).arg(files);
 }
 
+QString keptExportLine(const QString& kept) {
+    return said(QT_TRANSLATE_NOOP("data", "The earlier export may hold what is damaged now: kept as %1")).arg(kept);
+}
+
 QString damagedLine(std::size_t damages) {
     return said(QT_TRANSLATE_NOOP("data", "Damaged and left out here: %1; passung verify names each")).arg(damages);
 }

@@ -15,6 +15,9 @@ QString endWord(const std::optional<std::string>& end_state);
 QString attemptTitle(const store::AttemptRow& row);
 QString outcomeWord(const std::string& outcome, bool valid);
 QString exportedLine(const QString& folder, std::size_t attempts, std::size_t files, std::size_t missing);
+
+/// Where an earlier export is that the new one did not replace.
+QString keptExportLine(const QString& kept);
 QString cancelledLine();
 QString damagedLine(std::size_t damages);
 

@@ -125,6 +125,12 @@ QString sessionWord(SessionState state) {
 
 QString cutOffLine(const std::string& code, const QString& began, const presenter::RosterSession& session) {
     const QString who = QString::fromStdString(code);
+    if (session.in_form)
+        return said(QT_TRANSLATE_NOOP("roster",
+                                      "%1's session of %2 was cut off in a questionnaire, after %3 of %4 trials."))
+            .arg(who, began)
+            .arg(session.valid)
+            .arg(session.planned);
     if (session.valid >= session.planned)
         return said(QT_TRANSLATE_NOOP("roster", "%1's session of %2 was cut off after its trials.")).arg(who, began);
     return said(QT_TRANSLATE_NOOP("roster", "%1's session of %2 was cut off in trial %3 of %4."))

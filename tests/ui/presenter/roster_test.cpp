@@ -40,8 +40,8 @@ protected:
         require(desk.decide(code, {}, "en", store::Consent::Yes));
     }
 
-    /// A session of two trials, one attempt each as far as it gets.
-    void session(const std::string& code, bool whole) {
+    /// A session of two trials, one attempt each as far as it gets, and what happens after them.
+    void session(const std::string& code, bool whole, const std::vector<std::string>& events = {}) {
         require(store_->assignSlot(sha256_, code));
         store::SessionStart start;
         start.protocol_sha256 = sha256_;
@@ -52,6 +52,7 @@ protected:
         start.device.name = "sigma7";
         const auto writer = require(store_->createSession(start, fake::makeTrials(plan_, 2)));
         for (int trial = 0; trial < (whole ? 2 : 1); ++trial) require(fake::writeAttempt(*writer, trial, 100));
+        for (const std::string& event : events) writer->appendEvent({{}, 900'000'000, "session", event, "{}"});
         require(writer->finishSession(whole, 1'000'000'000));
     }
 
@@ -108,6 +109,24 @@ TEST_F(RosterOf, SaysOfEverybodyWhatTheyDidAndAgreedTo) {
     // With another wording nobody has agreed to it.
     plan_.consent[0].texts = {{"en", "All of it?"}};
     EXPECT_EQ(roster().find("P001")->consent[0], Decision::OtherWords);
+}
+
+TEST_F(RosterOf, SaysWhoseSessionWasCutOffInAQuestionnaire) {
+    // Truth: closed form: a form that was shown last and not handed in.
+    const std::vector<std::vector<std::string>> ways = {
+        {},
+        {"questionnaire_shown"},
+        {"questionnaire_shown", "questionnaire_answered"},
+        {"questionnaire_shown", "questionnaire_answered", "questionnaire_shown"}};
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+        const std::string code = "P00" + std::to_string(i + 1);
+        enrol(code);
+        consent(code);
+        session(code, false, ways[i]);
+    }
+    const Roster all = roster();
+    for (std::size_t i = 0; i < ways.size(); ++i)
+        EXPECT_EQ(all.people[i].resumable()->in_form, i % 2 == 1) << all.people[i].code;
 }
 
 TEST_F(RosterOf, ProposesCodesByTheStoresRulesAndRefusesOthersWithAReason) {

@@ -13,6 +13,7 @@
 #include "tests/ui/window/windows.h"
 #include "ui/app/known_names.h"
 #include "ui/app/study_desk.h"
+#include "ui/window/roster_words.h"
 #include "ui/window/study_words.h"
 
 namespace passung {
@@ -269,6 +270,7 @@ TEST_F(Pages, WhatIsDamagedIsLeftOutAndSaidAndTheRestIsLookedAtAndExported) {
     app_->records().refresh();
     settle();
     const auto whole = app_->records().attempts().size();
+    ASSERT_TRUE(exporter::exportAll(reader(), folder_ / "out"));
     store::Database(database(), store::OpenMode::ReadWrite)
         .execute(
             "UPDATE attempt_measure SET value_num=value_num+1 WHERE measure='peak_force_N' AND attempt_id=(SELECT "
@@ -285,7 +287,28 @@ TEST_F(Pages, WhatIsDamagedIsLeftOutAndSaidAndTheRestIsLookedAtAndExported) {
     waitFor([&] { return !app_->records().exporting(); });
     EXPECT_TRUE(app_->records().failed());
     EXPECT_TRUE(std::filesystem::exists(folder_ / "out/missing.csv"));
-    EXPECT_NE(app_->records().told().toStdString().find("left out: 1"), std::string::npos);
+    const std::string told = app_->records().told().toStdString();
+    EXPECT_NE(told.find("left out: 1"), std::string::npos);
+    EXPECT_NE(told.find("kept as " + (folder_ / "out.backup.1")), std::string::npos) << told;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out.backup.1/missing.csv")) << "the earlier one, which was whole";
+}
+
+TEST_F(Pages, TryOutsSayWhatTheyLeaveOut) {
+    // Truth: closed form: a try-out has neither consent nor instructions nor questionnaires (ui/app/live_session.h).
+    click("page-studies");
+    settle();
+    EXPECT_EQ(textOf("leftOut"), "Both show the trials only: consent, instructions and questionnaires are left out.");
+}
+
+TEST(CutOffLine, TellsATrialFromAQuestionnaire) {
+    // Truth: closed form
+    presenter::RosterSession session;
+    session.planned = 4;
+    session.valid = 1;
+    EXPECT_TRUE(window::cutOffLine("P001", "today", session).endsWith("was cut off in trial 2 of 4."));
+    session.in_form = true;
+    EXPECT_TRUE(
+        window::cutOffLine("P001", "today", session).endsWith("was cut off in a questionnaire, after 1 of 4 trials."));
 }
 
 TEST_F(Pages, AnAttemptIsShownOnceMoreWithItsForceAndItsTime) {

@@ -41,8 +41,8 @@
 <context>
     <name>Console</name>
     <message>
-        <source>What was done is kept. The participant goes on with the trial that was cut off.</source>
-        <translation>Was getan ist, bleibt. Es geht mit dem abgebrochenen Durchgang weiter.</translation>
+        <source>What was done is kept. The participant goes on with the trial or questionnaire that was cut off; of a questionnaire only what was handed in is kept.</source>
+        <translation>Was getan ist, bleibt. Es geht mit dem Durchgang oder Fragebogen weiter, der abgebrochen wurde; von einem Fragebogen bleibt nur, was abgegeben wurde.</translation>
     </message>
     <message>
         <source>Resume the session</source>
@@ -818,6 +818,10 @@
         <translation>Simulierter Person zusehen</translation>
     </message>
     <message>
+        <source>Both show the trials only: consent, instructions and questionnaires are left out.</source>
+        <translation>Beides zeigt nur die Durchgänge: Einwilligung, Anleitung und Fragebögen entfallen.</translation>
+    </message>
+    <message>
         <source>Problems: %1</source>
         <translation>Mängel: %1</translation>
     </message>
@@ -1018,6 +1022,10 @@
     <message>
         <source>%1: %2 attempts in %3 files; damaged and left out: %4, see missing.csv</source>
         <translation>%1: %2 Versuche in %3 Dateien; beschädigt und ausgelassen: %4, siehe missing.csv</translation>
+    </message>
+    <message>
+        <source>The earlier export may hold what is damaged now: kept as %1</source>
+        <translation>Der frühere Export hat vielleicht, was jetzt beschädigt ist: aufbewahrt als %1</translation>
     </message>
     <message>
         <source>Damaged and left out here: %1; passung verify names each</source>
@@ -1575,6 +1583,10 @@
     <message>
         <source>the overlap at the device&apos;s pose is measured and recorded</source>
         <translation>die Überlappung an der Pose des Geräts wird gemessen und aufgezeichnet</translation>
+    <message>
+        <source>%1&apos;s session of %2 was cut off in a questionnaire, after %3 of %4 trials.</source>
+        <translation>Die Sitzung von %1 vom %2 brach in einem Fragebogen ab, nach %3 von %4 Durchgängen.</translation>
+    </message>
     </message>
     <message>
         <source>virtual coupling</source>
