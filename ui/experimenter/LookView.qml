@@ -119,9 +119,12 @@ Item {
                 anchors.verticalCenter: parent.verticalCenter
                 Say {
                     id: numbers
+                    objectName: "lookNumbers"
                     width: parent.width
                     font.family: look.digits
                     font.pixelSize: look.scale * 13
+                    fontSizeMode: Text.HorizontalFit // figures are never cut
+                    minimumPixelSize: look.scale * 8
                     text: row.modelData.box.length === 5 ? row.modelData.box[2].toPrecision(3) + " (" + row.modelData.box[1].toPrecision(3) + "–" + row.modelData.box[3].toPrecision(3) + ")" : "–"
                 }
                 Say {
@@ -129,7 +132,7 @@ Item {
                     visible: row.modelData.n > 0
                     quiet: true
                     font.pixelSize: look.scale * 11
-                    text: qsTr("%1 trials, participants: %2").arg(row.modelData.n).arg(row.modelData.participants)
+                    text: qsTr("Trials: %1, participants: %2").arg(row.modelData.n).arg(row.modelData.participants)
                 }
             }
         }

@@ -25,7 +25,7 @@ Flickable {
                 unit: view.card && view.card.sessions > 1 ? qsTr("in the first of %1 sessions").arg(view.card.sessions) : ""
             }
             Figure {
-                name: qsTr("At most")
+                name: qsTr("About")
                 value: view.card ? view.card.minutes : ""
                 unit: qsTr("min")
             }

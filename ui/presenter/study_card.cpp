@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "study/protocol/duration.h"
 #include "study/protocol/plan_warnings.h"
 #include "study/session/participant_order.h"
 #include "study/session/plan_text.h"
@@ -53,7 +54,7 @@ StudyCard cardOf(const std::string& path, const Result<protocol::StudyPlan>& rea
         return card;
     }
     card.trials = trials->size();
-    for (const auto& trial : *trials) card.most_minutes += plan.conditions[trial.condition].task.timeout / 60.0;
+    card.minutes = protocol::longestDuration(plan, *trials) / 60.0;
     card.sound = true;
     card.for_people = protocol::isForPeople(plan);
     return card;

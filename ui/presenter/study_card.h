@@ -24,9 +24,9 @@ struct StudyCard {
     std::vector<std::string> warnings;
     std::vector<Factor> factors;
     std::size_t conditions = 0;
-    std::size_t trials = 0;   // of a participant's first session
-    int sessions = 1;         // of each participant
-    double most_minutes = 0;  // that the trials of that session take if all run out of time
+    std::size_t trials = 0;  // of a participant's first session
+    int sessions = 1;        // of each participant
+    double minutes = 0;      // of that session by protocol::longestDuration(), which is no bound
     int participants = 0;
     std::string device;  // label; of several the first
     std::vector<std::string> questionnaires;

@@ -34,7 +34,7 @@ struct StudyDetails {
     std::vector<std::string> conditions;  // names of those planned
     std::vector<BlockLine> blocks;
     std::vector<OrderLine> orders;
-    std::vector<double> minutes;  // that each session takes at most
+    std::vector<double> minutes;  // of each session by protocol::longestDuration(), which is no bound
     DesignBalance balance;        // of these participants
 };
 

@@ -9,6 +9,7 @@
 #include "ui/app/known_exports.h"
 #include "ui/presenter/axis.h"
 #include "ui/window/data_words.h"
+#include "ui/window/registry_words.h"
 
 namespace passung::window {
 
@@ -20,9 +21,9 @@ using Found = std::shared_ptr<Recorded>;  // shared: through the event loop; nul
 
 QString text(const std::string& s) { return QString::fromStdString(s); }
 
-Result<Found> readFrom(const std::string& database) {
+Result<Found> readFrom(const std::string& database, store::Damaged damaged) {
     if (!std::filesystem::exists(database)) return Found();
-    const auto reader = store::StoreReader::open(database, store::Damaged::LeftOut);
+    const auto reader = store::StoreReader::open(database, damaged);
     if (!reader) return reader.errors();
     auto recorded = presenter::readRecorded(*reader);
     if (!recorded) return recorded.errors();
@@ -59,7 +60,8 @@ DataModel::DataModel(Desk& desk, Studies& studies, ReplayModel& replay)
         std::int64_t ended = 0;
         for (const presenter::TrialRow& row : run.rows) ended += row.attempts;
         const bool begins = !ran_ && run.isRunning() && run.planned > 0, more = ran_ && ended != ended_;
-        if (begins || more || (ran_ && !run.isRunning())) refresh();
+        const bool ends = ran_ && !run.isRunning();
+        if (begins || more || ends) read(begins || ends || whole_ != database().toStdString());
         ran_ = run.isRunning() && run.planned > 0;
         ended_ = ended;
     });
@@ -84,11 +86,15 @@ void DataModel::setFile(const QString& file) {
     if (source_ == 2) refresh();
 }
 
-void DataModel::refresh() {
+/// A file that was whole is not searched for damage again after each trial.
+void DataModel::read(bool looks) {
     const int asked = ++asked_;
-    worker_.run([database = database().toStdString()] { return readFrom(database); },
-                [this, asked](Result<Found> found) {
+    const auto damaged = looks ? store::Damaged::LeftOut : store::Damaged::KnownWhole;
+    if (looks) whole_.clear();
+    worker_.run([database = database().toStdString(), damaged] { return readFrom(database, damaged); },
+                [this, asked, of = database().toStdString()](Result<Found> found) {
                     if (asked != asked_) return;
+                    if (found && *found && (*found)->damages == 0) whole_ = of;
                     recorded_.reset();
                     failed_ = !found || (*found && (*found)->damages > 0);
                     if (!found)
@@ -117,7 +123,6 @@ QVariantList DataModel::sessions() const {
                                {"ordinal", static_cast<int>(row.ordinal)},
                                {"kind", kindText(row.kind)},
                                {"date", row.epoch == "virtual" ? QString() : text(row.started_utc.substr(0, 10))},
-                               {"device", text(row.device)},
                                {"word", endWord(row.end_state)},
                                {"tone", whole           ? "good"
                                         : row.end_state ? "wait"
@@ -173,11 +178,11 @@ QVariantList DataModel::measures() const {
     QVariantList all;
     if (recorded_)
         for (const auto& measure : recorded_->measures)
-            all.append(
-                QVariantMap{{"name", text(measure.name)},
-                            {"label", text(measure.label) + (measure.unit.empty() || measure.unit == "1"
-                                                                 ? QString()
-                                                                 : QStringLiteral(" [%1]").arg(text(measure.unit)))}});
+            all.append(QVariantMap{
+                {"name", text(measure.name)},
+                {"label", measureWord(measure.label) + (measure.unit.empty() || measure.unit == "1"
+                                                            ? QString()
+                                                            : QStringLiteral(" [%1]").arg(text(measure.unit)))}});
     return all;
 }
 
@@ -252,22 +257,22 @@ void DataModel::exportTo(const QString& folder, bool samples) {
             std::filesystem::create_directories(std::filesystem::path(out).parent_path(), problem);
             auto report = exporter::exportAll(*reader, out, options);
             if (report) app::rememberExport(database, out);
+            if (report && !report->kept.empty()) app::rememberExport(database, report->kept);
             return report;
         },
         [this, to](const Result<exporter::ExportReport>& report) {
             exporting_ = false;
             failed_ = !report || report->missing > 0;
-            if (report && !report->kept.empty()) app::rememberExport(database, report->kept);
             if (report) last_folder_ = to;
             told_ = report       ? exportedLine(to, report->attempts, report->files, report->missing)
                     : cancelled_ ? cancelledLine()
                                  : text(toString(report.errors().front()));
+            if (report && !report->kept.empty()) told_ += "\n" + keptExportLine(text(report->kept));
             emit changed();
             emit exportChanged();
         });
     emit exportChanged();
 }
-            if (report && !report->kept.empty()) told_ += "\n" + keptExportLine(text(report->kept));
 
 void DataModel::retranslate() {
     told_.clear();  // said in the language before

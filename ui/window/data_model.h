@@ -67,7 +67,7 @@ public:
     QString proposedFolder() const;
     QString lastFolder() const { return last_folder_; }
 
-    Q_INVOKABLE void refresh();
+    Q_INVOKABLE void refresh() { read(true); }
     /// Shows an attempt of the selected session once more.
     Q_INVOKABLE void showAgain(int attempt);
     Q_INVOKABLE void exportTo(const QString& folder, bool samples);
@@ -79,6 +79,8 @@ signals:
     void exportChanged();
 
 private:
+    void read(bool looks);
+
     Desk& desk_;
     Studies& studies_;
     ReplayModel& replay_;
@@ -92,6 +94,7 @@ private:
     std::string session_;
     std::int64_t again_ = 0;            // attempt that is shown again
     int measure_ = INT_MAX, kind_ = 0;  // until something is read: none
+    std::string whole_;                 // database in which a look found no damage
     int asked_ = 0;                     // readings so far: an answer to an earlier one is old
     Worker worker_;                     // last: what it calls is there until it ends
 };

@@ -5,6 +5,7 @@
 #include "ui/app/known_names.h"
 #include "ui/app/protocol_files.h"
 #include "ui/app/study_desk.h"
+#include "ui/window/registry_words.h"
 
 namespace passung::window {
 
@@ -36,9 +37,9 @@ QVariantMap cardMap(const presenter::StudyCard& card) {
             {"conditions", static_cast<int>(card.conditions)},
             {"trials", static_cast<int>(card.trials)},
             {"sessions", card.sessions},
-            {"minutes", static_cast<int>(std::ceil(card.most_minutes))},
+            {"minutes", static_cast<int>(std::ceil(card.minutes))},
             {"participants", card.participants},
-            {"device", text(card.device)}};
+            {"device", deviceWord(card.device)}};
 }
 
 }  // namespace

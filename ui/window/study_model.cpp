@@ -13,6 +13,7 @@
 #include "ui/app/builds.h"
 #include "ui/app/known_names.h"
 #include "ui/app/protocol_files.h"
+#include "ui/window/registry_words.h"
 #include "ui/window/roster_words.h"
 #include "ui/window/study_words.h"
 
@@ -185,7 +186,7 @@ QVariantList StudyModel::walls() const {
         const bool stable =
             wall.modelled ? wall.displayed < wall.bounds.border : wall.most > 0.0 && wall.displayed <= wall.most;
         all.append(QVariantMap{{"condition", text(wall.condition)},
-                               {"device", text(wall.device)},
+                               {"device", deviceWord(wall.device)},
                                {"stiffness", wall.displayed},
                                {"most", wall.most},
                                {"border", wall.bounds.border},

@@ -106,8 +106,9 @@ QString blockWords(const presenter::BlockLine& block, std::size_t sessions) {
 QString durationLine(const std::vector<double>& minutes) {
     QStringList each;
     for (const double m : minutes) each << QString::number(std::ceil(m));
-    return said(
-               QT_TRANSLATE_NOOP("study", "At most %1 min a participant: every trial to its time-out, shortest rests."))
+    return said(QT_TRANSLATE_NOOP("study",
+                                  "About %1 min a participant with every trial to its time-out and shortest rests; "
+                                  "ways to the start, repeats and questionnaires come on top."))
         .arg(each.join(QStringLiteral(" + ")));
 }
 

@@ -363,8 +363,8 @@
         <translation>Median (Quartile), n</translation>
     </message>
     <message>
-        <source>%1 trials, participants: %2</source>
-        <translation>%1 Durchgänge, Personen: %2</translation>
+        <source>Trials: %1, participants: %2</source>
+        <translation>Durchgänge: %1, Personen: %2</translation>
     </message>
 </context>
 <context>
@@ -880,8 +880,8 @@
         <translation>in der ersten von %1 Sitzungen</translation>
     </message>
     <message>
-        <source>At most</source>
-        <translation>Höchstens</translation>
+        <source>About</source>
+        <translation>Etwa</translation>
     </message>
     <message>
         <source>min</source>
@@ -1034,6 +1034,240 @@
     <message>
         <source>The export was cancelled; nothing was written.</source>
         <translation>Der Export wurde abgebrochen; nichts wurde geschrieben.</translation>
+    </message>
+</context>
+<context>
+    <name>devices</name>
+    <message>
+        <source>Force Dimension sigma.7 (simulated)</source>
+        <translation>Force Dimension sigma.7 (simuliert)</translation>
+    </message>
+    <message>
+        <source>DLR HUG, one arm (simulated)</source>
+        <translation>DLR HUG, ein Arm (simuliert)</translation>
+    </message>
+    <message>
+        <source>Haption Virtuose 6D35-45 (simulated)</source>
+        <translation>Haption Virtuose 6D35-45 (simuliert)</translation>
+    </message>
+    <message>
+        <source>Novint Falcon (simulated)</source>
+        <translation>Novint Falcon (simuliert)</translation>
+    </message>
+    <message>
+        <source>Wearable haptic interface, TU Berlin and DLR (simulated)</source>
+        <translation>Tragbares haptisches Gerät, TU Berlin und DLR (simuliert)</translation>
+    </message>
+    <message>
+        <source>3D Systems Touch, formerly Phantom Omni (simulated)</source>
+        <translation>3D Systems Touch, früher Phantom Omni (simuliert)</translation>
+    </message>
+</context>
+<context>
+    <name>measures</name>
+    <message>
+        <source>Success</source>
+        <translation>Gelungen</translation>
+    </message>
+    <message>
+        <source>Completion time</source>
+        <translation>Dauer ab der ersten Bewegung</translation>
+    </message>
+    <message>
+        <source>Trial time</source>
+        <translation>Dauer des Durchgangs</translation>
+    </message>
+    <message>
+        <source>Time to success, or to the end without one</source>
+        <translation>Zeit bis zum Gelingen, sonst bis zum Ende</translation>
+    </message>
+    <message>
+        <source>Whether the time ended in success</source>
+        <translation>Ob die Zeit mit dem Gelingen endete</translation>
+    </message>
+    <message>
+        <source>Approach time</source>
+        <translation>Dauer der Annäherung</translation>
+    </message>
+    <message>
+        <source>Search time</source>
+        <translation>Suchdauer</translation>
+    </message>
+    <message>
+        <source>Insertion time</source>
+        <translation>Dauer des Einführens</translation>
+    </message>
+    <message>
+        <source>Insertion depth</source>
+        <translation>Einführtiefe</translation>
+    </message>
+    <message>
+        <source>Path length of the hand</source>
+        <translation>Weg der Hand</translation>
+    </message>
+    <message>
+        <source>Rotation path of the hand</source>
+        <translation>Drehweg der Hand</translation>
+    </message>
+    <message>
+        <source>Contact onsets</source>
+        <translation>Beginne von Kontakt</translation>
+    </message>
+    <message>
+        <source>Contact time</source>
+        <translation>Dauer des Kontakts</translation>
+    </message>
+    <message>
+        <source>Mean force</source>
+        <translation>Mittlere Kraft</translation>
+    </message>
+    <message>
+        <source>Peak force</source>
+        <translation>Größte Kraft</translation>
+    </message>
+    <message>
+        <source>Mean torque</source>
+        <translation>Mittleres Drehmoment</translation>
+    </message>
+    <message>
+        <source>Peak torque</source>
+        <translation>Größtes Drehmoment</translation>
+    </message>
+    <message>
+        <source>Mean depth at the hand&apos;s pose</source>
+        <translation>Mittlere Tiefe der Hand</translation>
+    </message>
+    <message>
+        <source>Largest depth at the hand&apos;s pose</source>
+        <translation>Größte Tiefe der Hand</translation>
+    </message>
+    <message>
+        <source>Mean depth at the proxy&apos;s pose</source>
+        <translation>Mittlere Tiefe des Proxys</translation>
+    </message>
+    <message>
+        <source>Largest depth at the proxy&apos;s pose</source>
+        <translation>Größte Tiefe des Proxys</translation>
+    </message>
+    <message>
+        <source>Impulse</source>
+        <translation>Impuls</translation>
+    </message>
+    <message>
+        <source>Work of the hand</source>
+        <translation>Arbeit der Hand</translation>
+    </message>
+    <message>
+        <source>Share of ticks at the force limit</source>
+        <translation>Anteil der Takte an der Kraftgrenze</translation>
+    </message>
+    <message>
+        <source>Ticks on the last good pose after a bad sample</source>
+        <translation>Takte mit der letzten guten Lage nach einem schlechten Messwert</translation>
+    </message>
+    <message>
+        <source>Ticks without usable device input, hence without force</source>
+        <translation>Takte ohne brauchbare Geräteeingabe, daher ohne Kraft</translation>
+    </message>
+    <message>
+        <source>Ticks for which the device had nothing new</source>
+        <translation>Takte, zu denen das Gerät nichts Neues hatte</translation>
+    </message>
+    <message>
+        <source>Ticks without force because a computed one was not finite</source>
+        <translation>Takte ohne Kraft, weil eine berechnete nicht endlich war</translation>
+    </message>
+    <message>
+        <source>Ticks at the limit of force or torque</source>
+        <translation>Takte an der Grenze von Kraft oder Drehmoment</translation>
+    </message>
+    <message>
+        <source>Ticks at the limit of rising force</source>
+        <translation>Takte an der Grenze des Kraftanstiegs</translation>
+    </message>
+    <message>
+        <source>Ticks in which the passivity controller acted</source>
+        <translation>Takte, in denen der Passivitätsregler eingriff</translation>
+    </message>
+    <message>
+        <source>Followed share of the line</source>
+        <translation>Abgefahrener Anteil der Linie</translation>
+    </message>
+    <message>
+        <source>Deviation from the line</source>
+        <translation>Abweichung von der Linie</translation>
+    </message>
+    <message>
+        <source>Largest deviation from the line</source>
+        <translation>Größte Abweichung von der Linie</translation>
+    </message>
+    <message>
+        <source>Force while following</source>
+        <translation>Kraft beim Abfahren</translation>
+    </message>
+    <message>
+        <source>Deviation from the asked force</source>
+        <translation>Abweichung von der verlangten Kraft</translation>
+    </message>
+    <message>
+        <source>Stimuli of the secondary task</source>
+        <translation>Reize der Nebenaufgabe</translation>
+    </message>
+    <message>
+        <source>Share of stimuli that were answered</source>
+        <translation>Anteil der beantworteten Reize</translation>
+    </message>
+    <message>
+        <source>Mean response time of the secondary task</source>
+        <translation>Mittlere Reaktionszeit der Nebenaufgabe</translation>
+    </message>
+    <message>
+        <source>Presses that answer no stimulus</source>
+        <translation>Tastendrücke, die keinen Reiz beantworten</translation>
+    </message>
+    <message>
+        <source>Interval with the comparison</source>
+        <translation>Intervall mit dem Vergleich</translation>
+    </message>
+    <message>
+        <source>Interval that was named</source>
+        <translation>Genanntes Intervall</translation>
+    </message>
+    <message>
+        <source>The comparison was named</source>
+        <translation>Der Vergleich wurde genannt</translation>
+    </message>
+    <message>
+        <source>Response time</source>
+        <translation>Antwortzeit</translation>
+    </message>
+    <message>
+        <source>Time in the passage</source>
+        <translation>Zeit im Durchlass</translation>
+    </message>
+    <message>
+        <source>Path in the passage</source>
+        <translation>Weg im Durchlass</translation>
+    </message>
+    <message>
+        <source>Contact time in the passage</source>
+        <translation>Dauer des Kontakts im Durchlass</translation>
+    </message>
+    <message>
+        <source>Peak force in the passage</source>
+        <translation>Größte Kraft im Durchlass</translation>
+    </message>
+    <message>
+        <source>Entries into the passage</source>
+        <translation>Eintritte in den Durchlass</translation>
+    </message>
+    <message>
+        <source>Position error at the confirmation</source>
+        <translation>Lagefehler bei der Bestätigung</translation>
+    </message>
+    <message>
+        <source>Angle error at the confirmation</source>
+        <translation>Winkelfehler bei der Bestätigung</translation>
     </message>
 </context>
 <context>
@@ -1350,6 +1584,10 @@
         <translation>Die Sitzung von %1 vom %2 brach nach ihren Durchgängen ab.</translation>
     </message>
     <message>
+        <source>%1&apos;s session of %2 was cut off in a questionnaire, after %3 of %4 trials.</source>
+        <translation>Die Sitzung von %1 vom %2 brach in einem Fragebogen ab, nach %3 von %4 Durchgängen.</translation>
+    </message>
+    <message>
         <source>%1&apos;s session of %2 was cut off in trial %3 of %4.</source>
         <translation>Die Sitzung von %1 vom %2 brach in Durchgang %3 von %4 ab.</translation>
     </message>
@@ -1583,10 +1821,6 @@
     <message>
         <source>the overlap at the device&apos;s pose is measured and recorded</source>
         <translation>die Überlappung an der Pose des Geräts wird gemessen und aufgezeichnet</translation>
-    <message>
-        <source>%1&apos;s session of %2 was cut off in a questionnaire, after %3 of %4 trials.</source>
-        <translation>Die Sitzung von %1 vom %2 brach in einem Fragebogen ab, nach %3 von %4 Durchgängen.</translation>
-    </message>
     </message>
     <message>
         <source>virtual coupling</source>
@@ -1696,8 +1930,8 @@
         <translation>nach %1 s Pause</translation>
     </message>
     <message>
-        <source>At most %1 min a participant: every trial to its time-out, shortest rests.</source>
-        <translation>Höchstens %1 min je Person: jeder Durchgang bis zum Zeitlimit, kürzeste Pausen.</translation>
+        <source>About %1 min a participant with every trial to its time-out and shortest rests; ways to the start, repeats and questionnaires come on top.</source>
+        <translation>Etwa %1 min je Person mit jedem Durchgang bis zum Zeitlimit und kürzesten Pausen; Wege zum Start, Wiederholungen und Fragebögen kommen dazu.</translation>
     </message>
     <message>
         <source>This study picks its accuracy by itself when its first session begins: every setting is then measured on this machine and kept here.</source>
