@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "study/store/sqlite.h"
 #include "study/store/store_reader.h"
 #include "tests/analysis/export/csv_reader.h"
 #include "tests/ui/cli/program.h"
@@ -127,6 +128,37 @@ TEST(CuesRun, PeopleAndPilotsAreRefusedBeforeAnythingIsStored) {
     writeText(folder.path() / "study.toml", withCues(placementStudy(), "\"visual\""));
     const Ended quiet = runProgram(folder.path(), {"check", "study.toml"});
     EXPECT_EQ((quiet.out + quiet.err).find("can be given to simulated"), std::string::npos) << "a window draws it";
+}
+
+TEST(CuesRun, APersonsSessionIsNotResumedUnderACueThatNothingGives) {
+    // Truth: invariant: a database from before the refusal holds such a session; it stays as it was. Made from a
+    // simulated participant's by giving them a person's code.
+    const TempFolder folder;
+    const std::string path = folder / "p.db";
+    writeText(folder.path() / "study.toml", withCues(placementStudy(), "\"vibrotactile\""));
+    {
+        Program run(folder.path(), {"run", "study.toml", "--db", "p.db", "--no-backup"}, true);
+        ASSERT_NE(run.nextAcknowledgement(), "");
+        run.killNow();
+        ASSERT_EQ(run.wait(), -SIGKILL);
+    }
+    {
+        const store::Database database(path, store::OpenMode::ReadWrite);
+        database.execute("PRAGMA foreign_keys=OFF");
+        for (const char* table : {"participant", "session"})
+            database.execute(std::string("UPDATE ") + table + " SET participant_id='P001' WHERE participant_id='S001'");
+        database.execute(
+            "UPDATE participant SET kind='real'; UPDATE design_slot SET state='free', participant_id=NULL");
+    }
+    const auto attempts = [&] {
+        return store::Database(path, store::OpenMode::ReadOnly).integer("SELECT count(*) FROM attempt");
+    };
+    const auto before = attempts();
+    const Ended resumed = runProgram(folder.path(), {"resume", "p.db"});
+    EXPECT_EQ(resumed.exit_code, 1);
+    EXPECT_NE(resumed.err.find("P001 cannot take part: feedback.cues = [\"vibrotactile\"]"), std::string::npos)
+        << resumed.err;
+    EXPECT_EQ(attempts(), before);
 }
 
 }  // namespace
