@@ -26,9 +26,14 @@ constexpr double kLongRest = 3600.0;         // [s]
 /// One condition.
 class HumanCheck {
 public:
-    HumanCheck(const StudyTables& tables, const Condition& condition, const DeviceDescription& device, Errors& errors,
-               std::vector<std::string>& warnings)
-        : tables_(tables), condition_(condition), device_(device), errors_(errors), warnings_(warnings) {}
+    HumanCheck(const StudyTables& tables, const Condition& condition, const DeviceDescription& device,
+               const std::string& stepped, Errors& errors, std::vector<std::string>& warnings)
+        : tables_(tables),
+          condition_(condition),
+          device_(device),
+          stepped_(stepped),
+          errors_(errors),
+          warnings_(warnings) {}
 
     void run() {
         const bool pair = std::holds_alternative<DiscriminationPairTask>(condition_.task.form);
@@ -56,7 +61,7 @@ private:
                 fmt::format("task.max_speed_mm_per_s = {:.3g}: a hand trembles by some mm/s, so that the depth is "
                             "hardly held",
                             1e3 * peg.max_speed));
-        if (peg.hold > condition_.task.timeout - kReaction)
+        if (peg.hold > condition_.task.timeout - kReaction && stepped_ != "task.timeout_s")
             fail("hold_s", fmt::format("leaves no time to get there before timeout_s: at most {:.4g} s",
                                        condition_.task.timeout - kReaction));
     }
@@ -94,10 +99,11 @@ private:
 
     void fail(const char* key, std::string message) { failAt(&tables_.task, "task", key, std::move(message)); }
     void failAt(const Node* table, const char* path, const char* key, std::string message) {
+        const std::string name = fmt::format("{}.{}", path, key);
+        if (name == stepped_ || name == "scene." + stepped_) return;
         const Node* value = table != nullptr ? table->find(key) : nullptr;
         const Node& at = value != nullptr ? *value : table != nullptr ? *table : tables_.task;
-        errors_.push_back(errorAt(at.place, fmt::format("{}.{}", path, key), value != nullptr ? valueText(at) : "",
-                                  std::move(message)));
+        errors_.push_back(errorAt(at.place, name, value != nullptr ? valueText(at) : "", std::move(message)));
     }
     void warn(std::string sentence) {
         if (std::find(warnings_.begin(), warnings_.end(), sentence) == warnings_.end())
@@ -107,6 +113,7 @@ private:
     const StudyTables& tables_;
     const Condition& condition_;
     const DeviceDescription& device_;
+    const std::string& stepped_;
     Errors& errors_;
     std::vector<std::string>& warnings_;
 };
@@ -132,9 +139,9 @@ bool isShownOrHeard(const Cues& cues) { return cues.visual || cues.vibrotactile 
 
 }  // namespace
 
-void checkHuman(const StudyTables& tables, const Condition& condition, const DeviceDescription& device, Errors& errors,
-                std::vector<std::string>& warnings) {
-    HumanCheck(tables, condition, device, errors, warnings).run();
+void checkHuman(const StudyTables& tables, const Condition& condition, const DeviceDescription& device,
+                const std::string& stepped, Errors& errors, std::vector<std::string>& warnings) {
+    HumanCheck(tables, condition, device, stepped, errors, warnings).run();
 }
 
 void checkComparisons(const StudyPlan& plan, const Node& task, Errors& errors) {

@@ -14,8 +14,9 @@ namespace passung::protocol {
 ///   A simple reaction takes 0.15 s or more, an answer to a choice longer (Woodworth & Schlosberg 1954).
 ///   A hand at rest trembles at 8 to 12 Hz by a tenth of a millimetre or so (Elble & Koller 1990): by some mm/s.
 ///   Tilts of a hand are told apart from about half a degree on, whoever judges them by sight (proposed).
-void checkHuman(const StudyTables& tables, const Condition& condition, const DeviceDescription& device, Errors& errors,
-                std::vector<std::string>& warnings);
+/// `stepped`: path of the key that a staircase presents, may be empty; its levels may go beyond what anybody can.
+void checkHuman(const StudyTables& tables, const Condition& condition, const DeviceDescription& device,
+                const std::string& stepped, Errors& errors, std::vector<std::string>& warnings);
 
 /// Adds an error at `task` if a study compares intervals that are the same in all its pairs, or that differ in nothing
 /// that is felt, seen or heard.

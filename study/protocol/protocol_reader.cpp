@@ -375,7 +375,7 @@ private:
             const std::size_t before = undoable_.size();
             checkReach(tables, condition, *device, geometries_, undoable_, warnings_);
             if (undoable_.size() == before) checkBody(tables, condition, *device, geometries_, undoable_);
-            checkHuman(tables, condition, *device, undoable_, warnings_);
+            checkHuman(tables, condition, *device, step != nullptr ? step->path : "", undoable_, warnings_);
         }
         if (step != nullptr && presented_ != nullptr) checkSide(tables.scene, condition, *step);
     }

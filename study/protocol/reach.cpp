@@ -64,7 +64,7 @@ private:
         handleTurns(tiltBetween(held_.X_WP.q, end.q), kTilt, at, "task.target");
         for (const model::PartSpec& other : scene_.parts)
             if (other.name != task_.target) overlapAt(end, other, scene_.contact.tolerance, at, "task.target");
-        way((end.p - held_.X_WP.p).norm(), peg.hold);
+        way((end.p - held_.X_WP.p).norm());
     }
 
     void check(const NarrowPassageTask& passage) {
@@ -204,12 +204,12 @@ private:
                  fmt::format("no way on {} leaves this sphere: at most {}", device_.name, millimetres(farthest)));
     }
 
-    /// [m] from the start to the end of the task, where the held part is kept for `hold` [s].
-    void way(double length, double hold = 0.0) {
-        if (length / kFastest + hold > task_.timeout)
+    /// [m] from the start to the end of the task.
+    void way(double length) {
+        if (length > kFastest * task_.timeout)
             fail(valueOf("timeout_s"), "task.timeout_s",
-                 fmt::format("is too short for a way of {}{}: a hand takes more than {:.3g} s", millimetres(length),
-                             hold > 0.0 ? fmt::format(" and hold_s, {:.6g} s", hold) : "", length / kFastest + hold));
+                 fmt::format("is too short for a way of {}: a hand takes more than {:.3g} s", millimetres(length),
+                             length / kFastest));
         const double across = 2.0 * device_.workspace_radius_m * scene_.registration.scale;
         const bool direct = !std::holds_alternative<ContourFollowingTask>(task_.form);
         if (direct && length > across)

@@ -284,9 +284,6 @@ std::vector<Row> undoable() {
         {"held for all but a millisecond",
          {.held = kPeg, .task = kInsert + "hold_s = 29.999\n"},
          {"task.hold_s", "at most 29.85 s"}},
-        {"held when it is over with the way",
-         {.held = kPeg, .held_pose = "position = [0, 0, 60]", .task = kInsert + "hold_s = 4.84\ntimeout_s = 4.9\n"},
-         {"task.timeout_s", "and hold_s, 4.84 s"}},
         {"held without a tremor",
          {.held = kPeg, .task = kInsert + "max_speed_mm_per_s = 1e-6\n"},
          {"task.max_speed_mm_per_s", "calm"}},
@@ -492,6 +489,13 @@ std::vector<Row> odd() {
          {}},
         {"as exact as a handle that does not turn",
          {.device = "falcon", .task = place("[0, 5, 30]", "angle_tolerance_deg = 0.001\nleave_radius_mm = 2\n")},
+         {}},
+        {"a staircase down to where nobody can",
+         {.held = kPeg,
+          .task = kInsert + "hold_s = 0.05\n",
+          .more = "[[staircase]]\nname = \"time\"\nblock = \"main\"\nkey = \"task.timeout_s\"\nlevels = [0.1, 1, 10]\n"
+                  "rule = \"1_up_1_down\"\nstep_down = 5\nmax_trials = 6\ntracks = [{ name = \"a\", start = 10 }]\n"
+                  "measure = \"success\"\nabove = 0.5\n"},
          {}},
         {"comparisons above the reference", pair("[900, 1000, 1100]", "above"), {}},
         {"comparisons below, fewer correct", pair("[200, 400, 600]", "below"), {}},
