@@ -5,6 +5,7 @@ table <- function(file) read.csv(file.path(folder, file), stringsAsFactors = FAL
 
 people <- unique(subset(table("sessions.csv"), counted == 1)$participant_id)
 analyses <- table("analyses.csv")
+stopifnot(c("r_formula", "r_call") %in% names(analyses))
 dropped <- nrow(analyses) == 0
 for (i in seq_len(nrow(analyses))) {
   planned <- analyses[i, ]
