@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <QtGui/QColor>
+#include <QtTest/QSignalSpy>
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -221,12 +222,12 @@ protected:
         return showman.scenes;
     }
 
-    /// Pixels that hold nothing but the scene: no text lies over them.
-    std::vector<QRectF> covered() const {
+    /// What lies over a scene, in its own coordinates: elsewhere pixels hold nothing but the scene.
+    static std::vector<QRectF> coveredOf(QQuickItem* scene) {
         std::vector<QRectF> rects;
-        for (QQuickItem* item : app_->participant()->contentItem()->childItems()) {
-            if (!item->isVisible() || item->objectName() == "scene" || item->inherits("QQuickMouseArea")) continue;
-            rects.push_back(item->mapRectToScene({0, 0, item->width(), item->height()}).adjusted(-1, -1, 1, 1));
+        for (QQuickItem* item : scene->parentItem()->childItems()) {
+            if (!item->isVisible() || item == scene || item->inherits("QQuickMouseArea")) continue;
+            rects.push_back(item->mapRectToItem(scene, {0, 0, item->width(), item->height()}).adjusted(-1, -1, 1, 1));
         }
         return rects;
     }
@@ -242,9 +243,35 @@ protected:
         const QImage flat = picture(window, ("oracle_" + std::to_string(samples_) + "_flat").c_str());
         scene->setProperty("flat", false);
         ASSERT_EQ(flat.size(), size_);
+        if (samples_ % 8 == 0) compareMirror(moment, what + ", mirror");
         ++samples_;
+        compare(shown, flat, coveredOf(scene), moment, what);
+    }
+
+    /// The same of the experimenter's mirror, which follows a few times a second.
+    void compareMirror(const Moment& moment, const std::string& what) {
+        QQuickWindow* window = app_->experimenter();
+        app_->setPage("session");
+        waitFor([&] { return window->isExposed() && item(window, "mirror") != nullptr; });
+        QQuickItem* mirror = item(window, "mirror");
+        QSignalSpy follows(mirror->property("scene").value<QObject*>(), SIGNAL(frame()));
+        waitFor([&] {
+            emit app_->desk().frame();
+            return !follows.isEmpty();
+        });
+        const QRect place = mirror->mapRectToScene({0, 0, mirror->width(), mirror->height()}).toRect();
+        const std::string name = "oracle_" + std::to_string(samples_) + "_mirror";
+        const QImage shown = picture(window, name.c_str()).copy(place);
+        mirror->setProperty("flat", true);
+        const QImage flat = picture(window, (name + "_flat").c_str()).copy(place);
+        mirror->setProperty("flat", false);
+        ++mirrored_;
+        compare(shown, flat, coveredOf(mirror), moment, what);
+    }
+
+    void compare(const QImage& shown, const QImage& flat, const std::vector<QRectF>& over, const Moment& moment,
+                 const std::string& what) {
         const SeenParts seen(standing(moment), eyeOf(plan_->view, run().scene()->camera), flat.width(), flat.height());
-        const auto over = covered();
         compareMasks(flat, seen, over, what);
         const auto& parts = moment.condition->scene.parts;
         for (std::size_t i = 0; i < parts.size(); ++i)
@@ -317,14 +344,15 @@ protected:
 
     void report(const char* what) const {
         std::printf(
-            "%s: %d scenes, %d pictures; %d masks, overlap at least %.4f; %d hidden; %d hues, off by at most "
+            "%s: %d scenes, %d pictures, %d of the mirror; %d masks, overlap at least %.4f; %d hidden; %d hues, off by "
+            "at most "
             "%.4f, %d of them nearer to the cue's red\n",
-            what, scenes_, samples_, compared_, least_overlap_, hidden_, hues_, worst_hue_, red_);
+            what, scenes_, samples_, mirrored_, compared_, least_overlap_, hidden_, hues_, worst_hue_, red_);
     }
 
     const protocol::StudyPlan* plan_ = nullptr;
     QSize size_;
-    int scenes_ = 0, samples_ = 0, compared_ = 0, hidden_ = 0, hues_ = 0, red_ = 0;
+    int scenes_ = 0, samples_ = 0, mirrored_ = 0, compared_ = 0, hidden_ = 0, hues_ = 0, red_ = 0;
     double least_overlap_ = 1.0, worst_hue_ = 0.0;
 };
 
@@ -416,6 +444,7 @@ shadow_percent = 20
     show(light, folder_ / "second.db", true);
     report("scenes that come back");
     EXPECT_GE(scenes_, 60);
+    EXPECT_GE(mirrored_, 15);
     EXPECT_GT(red_, 10) << "the cue was hardly seen";
     EXPECT_GT(hidden_, scenes_ / 2) << "nothing was hidden";
 }
