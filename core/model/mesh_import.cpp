@@ -264,12 +264,13 @@ Result<Done> toMetres(TriangleMesh& mesh, double metres_per_unit, const std::str
 /// A surface that passes through itself nearly everywhere has no inside that could be told, nor an end of work on it.
 std::optional<std::string> tangle(const MeshReport& report) {
     const double crossings = static_cast<double>(report.crossing_pairs) / static_cast<double>(report.triangles);
-    if (!(crossings > kMostCrossings)) return std::nullopt;
+    const double most = report.kind == SurfaceKind::HoledSolid ? kMostCrossingsWithGaps : kMostCrossings;
+    if (!(crossings > most)) return std::nullopt;
     std::array<char, 160> text{};
     std::snprintf(text.data(), text.size(),
                   "the surface crosses itself so often that it has no inside: each triangle passes through %.0f others "
                   "(mean), at most %.0f",
-                  crossings, kMostCrossings);
+                  crossings, most);
     return std::string(text.data());
 }
 

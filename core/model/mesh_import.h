@@ -65,8 +65,10 @@ struct ImportedMesh {
 /// names its unit, millimetre if it names none. Polygons are cut into triangles; points and lines are ignored. Errors:
 /// file missing, unreadable, empty, cut off or of another kind; no triangles with area; vertices that are not finite or
 /// farther than 100 km from the origin; faces that name no vertex or too many; a surface whose triangles pass through
-/// more than kMostCrossings others each, in the mean.
+/// more than kMostCrossings others each, in the mean; fewer, kMostCrossingsWithGaps, if it is left open.
 inline constexpr double kMostCrossings = 20.0;  // of two solids that overlap: about 5
+inline constexpr double kMostCrossingsWithGaps =
+    5.0;  // of a solid that is left open: its field would take many minutes
 Result<ImportedMesh> importMesh(const std::string& path, double metres_per_unit);
 
 /// The same checks and repairs for triangles that are already in memory. @pre finite vertices, indices in range.
