@@ -142,7 +142,7 @@ void Run::prepare(const AttemptPrepared& prepared) {
     view_.state = RunState::Preparing;
     view_.number = prepared.trial_index + 1;
     view_.condition = prepared.condition;
-    view_.trial_s = 0.0;
+    view_.trial_s = view_.force_N = view_.depth_mm = 0.0;
     if (prepared.scene) scene_ = prepared.scene;
     view_.sound = prepared.sound;
     last_.reset();

@@ -74,6 +74,23 @@ TEST(Run, GoesFromPreparingOverTheStartPoseToRunningByWhatTheTicksSay) {
     EXPECT_EQ(run.view().condition, "a");
 }
 
+TEST(Run, NoFigureOfTheTrialBeforeStandsOverTheNextOne) {
+    // Truth: invariant: before its first tick nothing of a trial is known.
+    presenter::Run run = begun();
+    run.take(AttemptPrepared{0, "a", nullptr});
+    TickRecord pressed;
+    pressed.tick = 1;
+    pressed.periods = 1;
+    pressed.force_N = {0.0f, 0.0f, 2.0f};
+    pressed.hand_depth_m = 0.001f;
+    run.take(std::vector{pressed});
+    EXPECT_EQ(run.view().force_N, 2.0);
+    EXPECT_NEAR(run.view().depth_mm, 1.0, 1e-6);
+    run.take(AttemptPrepared{1, "b", nullptr});
+    EXPECT_EQ(run.view().force_N, 0.0);
+    EXPECT_EQ(run.view().depth_mm, 0.0);
+}
+
 TEST(Run, TellsTheRowsApart) {
     // Truth: invariant. What an attempt ended with stays; a trial that is over without one was left out.
     presenter::Run run = begun();
