@@ -9,7 +9,7 @@
 namespace passung::store {
 namespace {
 
-/// Of one column that refers to a parent.
+/// Heals one column that refers to a parent; returns how many rows.
 std::int64_t healColumn(const Database& database, const std::string& source, const Table& table,
                         const TableColumn& column) {
     std::string same, equal;

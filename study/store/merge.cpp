@@ -6,6 +6,7 @@
 
 #include "study/store/audit.h"
 #include "study/store/heal.h"
+#include "study/store/held.h"
 #include "study/store/merge_people.h"
 #include "study/store/merge_places.h"
 #include "study/store/open_database.h"
@@ -16,7 +17,6 @@
 #include "study/store/session_tables.h"
 #include "study/store/tombstone.h"
 #include "study/store/untouched.h"
-#include "study/store/value_hash.h"
 #include "study/store/workshop.h"
 
 namespace passung::store {
@@ -57,7 +57,11 @@ private:
         part("what study it is", [&] {
             requireSameStudy(database_, kSource, [this](const std::string& reason) { refuseUnlessDamaged(reason); });
         });
-        part("the hashes of the study's rows", [&] { leaveOutDamaged(); });
+        const auto none = [] { return false; };
+        attempt(
+            "the hashes of the study's rows", [&] { findDamaged(); }, none);
+        part("who is left out", [&] { leaveOutDamaged(); });
+        tellDamaged();
         if (other_study_.empty())
             mergeAll();
         else if (study_damaged_)
@@ -98,10 +102,21 @@ private:
     template <class Work, class Held>
     void part(const std::string& what, Work work, Held held) {
         if (taken_ == Taken::Whole) return work();
+        attempt(
+            what,
+            [&] {
+                Transaction transaction(database_);
+                work();
+                transaction.commit();
+            },
+            held);
+    }
+
+    template <class Work, class Held>
+    void attempt(const std::string& what, Work work, Held held) {
+        if (taken_ == Taken::Whole) return work();
         try {
-            Transaction transaction(database_);
             work();
-            transaction.commit();
         } catch (const std::exception& error) {
             const auto* refused = dynamic_cast<const SqliteError*>(&error);
             if (refused != nullptr && isOfTheDisk(*refused)) throw;
@@ -157,23 +172,34 @@ private:
             report_.erased.push_back(source_ + ": " + code + " was erased there; the result still has them");
     }
 
-    /// A damaged row goes nowhere: nor does anything of whom it is about.
-    void leaveOutDamaged() {
+    /// Reads alone: a transaction that met a damaged page would keep nothing of what it wrote.
+    void findDamaged() {
         study_damaged_ = taken_ == Taken::AsFarAsReadable;  // until all of its rows are read
         RowsSeen seen;
-        const bool throws = taken_ == Taken::Whole;
-        const std::vector<RowFault> faults = rowFaults(database_, kSource, throws ? nullptr : &seen);
-        study_damaged_ = !seen.unreadable.empty();
-        for (const RowFault& fault : faults) {
-            study_damaged_ = study_damaged_ || taken_ == Taken::AsFarAsReadable;
+        damaged_rows_ = rowFaults(database_, kSource, taken_ == Taken::Whole ? nullptr : &seen);
+        study_damaged_ = !seen.unreadable.empty() || (taken_ == Taken::AsFarAsReadable && !damaged_rows_.empty());
+        for (const std::string& table : seen.unreadable)
+            report_.damaged.push_back(source_ + ": " + table + " cannot be read: left out");
+    }
+
+    /// A damaged row goes nowhere: nor does anything of whom it is about.
+    void leaveOutDamaged() {
+        for (const RowFault& fault : damaged_rows_) {
             if (fault.participant_id.empty() && taken_ == Taken::Whole)
                 refuse(titleOf(fault) + " is damaged: passung restore heals it");
-            tellLeftOut(isHeld(fault), titleOf(fault) + " is not as it was written");
             if (fault.participant_id.empty()) continue;
             database_.prepare("INSERT OR IGNORE INTO temp.left_out VALUES(?)").bind(fault.participant_id).run();
         }
-        for (const std::string& table : seen.unreadable)
-            report_.damaged.push_back(source_ + ": " + table + " cannot be read: left out");
+    }
+
+    void tellDamaged() {
+        for (const RowFault& fault : damaged_rows_)
+            tellLeftOut(taken_ == Taken::AsFarAsReadable && holdsRow(database_, kSource, fault),
+                        titleOf(fault) + " is not as it was written");
+    }
+
+    bool isHeld(const std::string& session) const {
+        return taken_ == Taken::AsFarAsReadable && holdsSession(database_, kSource, session);
     }
 
     /// Damage in the source is no loss where the result has what was once written there.
@@ -182,32 +208,6 @@ private:
             report_.held.push_back(what);
         else
             report_.damaged.push_back(source_ + ": " + what + ": left out");
-    }
-
-    bool isHeld(const RowFault& fault) const {
-        if (taken_ == Taken::Whole) return false;
-        Statement same = database_.prepare(
-            "SELECT 1 FROM main.row_hash m JOIN source.row_hash s USING(table_name, row_key, sha256) WHERE "
-            "table_name=? AND row_key=?");
-        if (!same.bind(fault.table, fault.key).step()) return false;
-        Statement sessions = database_.prepare("SELECT session_id FROM source.session WHERE participant_id=?");
-        sessions.bind(fault.participant_id);
-        while (sessions.step())
-            if (!isHeld(sessions.text(0))) return false;
-        return true;
-    }
-
-    /// By the hashes that were kept of the session and of what people changed in it since.
-    bool isHeld(const std::string& session) const {
-        if (taken_ == Taken::Whole) return false;
-        try {
-            const auto kept = keptHashes(database_, kSource, session).units;
-            return !kept.empty() && keptHashes(database_, "main", session).units == kept &&
-                   laterChanges(database_, "main", session) == laterChanges(database_, kSource, session);
-        } catch (const SqliteError& error) {
-            if (!isDamage(error)) throw;
-            return false;
-        }
     }
 
     void tellHealed(const std::vector<std::string>& healed) {
@@ -350,8 +350,9 @@ private:
     std::string source_;
     MergeReport& report_;
     Taken taken_;
-    bool study_damaged_ = false;  // rows that everybody needs cannot be trusted
-    std::string other_study_;     // why the source seems to be of another study
+    std::vector<RowFault> damaged_rows_;  // of the source
+    bool study_damaged_ = false;          // rows that everybody needs cannot be trusted
+    std::string other_study_;             // why the source seems to be of another study
     std::vector<Table> tables_;
     std::map<std::string, std::string> left_out_;  // code → surrogate
 };

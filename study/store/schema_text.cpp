@@ -36,7 +36,7 @@ bool isSame(const SchemaRow& one, const SchemaRow& other) {
     return one.type == other.type && one.name == other.name && one.table == other.table && one.sql == other.sql;
 }
 
-/// As a file holds it that was upgraded to this revision.
+/// The schema of a file that was upgraded to this revision.
 std::vector<SchemaRow> schemaOf(int number) {
     const Database fresh(":memory:", OpenMode::ReadWrite);
     for (const Revision& revision : revisions())
@@ -96,31 +96,75 @@ private:
     const Database& database_;
 };
 
-/// The revision that the file says it has; 0 where it cannot say.
-int saidRevision(const Database& database) {
+/// The revisions that the file says it has. They follow one another from 1 on.
+std::vector<std::int64_t> saidRevisions(const Database& database) {
+    std::vector<std::int64_t> said;
     try {
-        return fileSchemaNumber(database);
+        Statement rows = database.prepare("SELECT revision FROM main.schema_revision ORDER BY revision");
+        while (rows.step()) said.push_back(rows.integer(0));
     } catch (const SqliteError&) {
-        return 0;
+        said.clear();  // cannot say
     }
+    return said;
 }
 
-/// By the revision that the file is nearest to, where the one that it says does not explain it.
-std::vector<SchemaFault> findFaults(const Database& database) {
+/// The number that is not its own, if there is one.
+std::optional<std::int64_t> wrongNumber(const std::vector<std::int64_t>& said) {
+    for (std::size_t i = 0; i < said.size(); ++i)
+        if (said[i] != static_cast<std::int64_t>(i) + 1) return said.back();
+    return std::nullopt;
+}
+
+/// What a file of one revision would have to be explained by.
+struct Verdict {
+    std::vector<SchemaFault> faults;
+    std::size_t too_new = 0;  // objects of later revisions
+    std::size_t unexplained() const { return faults.size() + too_new; }
+};
+
+Verdict judge(const std::vector<SchemaRow>& here, const std::vector<SchemaRow>& newest, int number) {
+    const std::vector<SchemaRow> written = schemaOf(number);
+    const auto has = [](const std::vector<SchemaRow>& rows, const SchemaRow& row) {
+        return std::any_of(rows.begin(), rows.end(), [&](const SchemaRow& r) { return r.name == row.name; });
+    };
+    Verdict verdict{compare(here, written), 0};
+    for (const SchemaRow& row : newest)
+        if (!has(written, row) && has(here, row)) ++verdict.too_new;
+    return verdict;
+}
+
+struct Finding {
+    std::vector<SchemaFault> faults;
+    std::optional<std::int64_t> wrong_number;  // of the last revision
+};
+
+/// Takes the revision that explains the file best; the one that the file says comes first.
+Finding findFaults(const Database& database) {
     const std::vector<SchemaRow> here = readSchema(database);
-    const int said = saidRevision(database);
-    if (here.empty() || database.integer("PRAGMA application_id") != kApplicationId || said > schemaNumber()) return {};
-    std::vector<SchemaFault> fewest = compare(here, schemaOf(said > 0 ? said : schemaNumber()));
-    for (int number = schemaNumber(); number > 0 && fewest.size() > 1; --number)
-        if (std::vector<SchemaFault> faults = compare(here, schemaOf(number)); faults.size() < fewest.size())
-            fewest = std::move(faults);
-    return fewest;
+    if (here.empty() || database.integer("PRAGMA application_id") != kApplicationId) return {};
+    const std::vector<std::int64_t> revisions = saidRevisions(database);
+    const auto wrong = wrongNumber(revisions);
+    const int said = wrong ? 0 : static_cast<int>(revisions.size());
+    if (said > schemaNumber()) return {};
+    const std::vector<SchemaRow> newest = schemaOf(schemaNumber());
+    Verdict best = judge(here, newest, said > 0 ? said : schemaNumber());
+    for (int number = schemaNumber(); number > 0 && best.unexplained() > 1; --number)
+        if (Verdict verdict = judge(here, newest, number); verdict.unexplained() < best.unexplained())
+            best = std::move(verdict);
+    return {std::move(best.faults), wrong};
 }
 
-std::vector<std::string> titlesOf(const std::vector<SchemaFault>& faults) {
+std::vector<std::string> titlesOf(const Finding& finding) {
     std::vector<std::string> titles;
-    for (const SchemaFault& fault : faults) titles.push_back(fault.title());
+    for (const SchemaFault& fault : finding.faults) titles.push_back(fault.title());
+    if (finding.wrong_number) titles.push_back("the schema's number " + std::to_string(*finding.wrong_number));
     return titles;
+}
+
+void mend(const Database& database, const SchemaFault& fault) {
+    database.prepare("UPDATE main.sqlite_schema SET type=?2, name=?3, tbl_name=?4, sql=?5 WHERE rowid=?1")
+        .bind(*fault.rowid, fault.written.type, fault.written.name, fault.written.table, nullIfEmpty(fault.written.sql))
+        .run();
 }
 
 }  // namespace
@@ -138,14 +182,17 @@ std::vector<std::string> schemaFaults(const Database& database) {
 std::vector<std::string> mendSchema(const Database& database) {
     try {
         const LenientSchema lenient(database);
-        std::vector<SchemaFault> faults = findFaults(database);
-        std::erase_if(faults, [](const SchemaFault& fault) { return !fault.rowid; });
-        for (const SchemaFault& fault : faults)
-            database.prepare("UPDATE main.sqlite_schema SET type=?2, name=?3, tbl_name=?4, sql=?5 WHERE rowid=?1")
-                .bind(*fault.rowid, fault.written.type, fault.written.name, fault.written.table,
-                      nullIfEmpty(fault.written.sql))
+        Finding finding = findFaults(database);
+        std::erase_if(finding.faults, [](const SchemaFault& fault) { return !fault.rowid; });
+        for (const SchemaFault& fault : finding.faults) mend(database, fault);
+        if (finding.wrong_number)
+            database
+                .prepare(
+                    "UPDATE main.schema_revision SET revision=(SELECT count(*) FROM main.schema_revision) WHERE "
+                    "revision=?")
+                .bind(*finding.wrong_number)
                 .run();
-        return titlesOf(faults);
+        return titlesOf(finding);
     } catch (const SqliteError& error) {
         if (!isDamage(error)) throw;
         return {};

@@ -88,7 +88,7 @@ void readNotedQuality(const Database& database, Unfinished& session) {
         if (const auto quality = session::qualityOfNote(notes.text(0))) session.quality = quality;
 }
 
-/// The newest.
+/// Reads the newest event of it.
 void readQuality(const Database& database, Unfinished& session) {
     Statement find = database.prepare(
         "SELECT payload_json ->> 'window_width_px', payload_json ->> 'window_height_px', payload_json ->> 'scale', "

@@ -155,6 +155,25 @@ TEST_F(RestoreAnew, TellsWhatOnlyTheDamagedFileHad) {
         EXPECT_FALSE(tells(*lines, ".part")) << testing::PrintToString(*lines);
 }
 
+TEST_F(RestoreAnew, TakesNoDamagedRowWhereSessionsCannotBeFound) {
+    // Truth: invariant: a row that was changed is nowhere, though the index by which a person's sessions are found is
+    // spoilt: neither of whom the source has nor of whom it has not.
+    change("UPDATE participant SET status_reason='?' WHERE participant_id IN('S002','S003')");
+    const std::int64_t page = Database(path_, OpenMode::ReadOnly)
+                                  .integer(
+                                      "SELECT rootpage FROM sqlite_schema WHERE tbl_name='session' AND "
+                                      "type='index' AND name LIKE '%\\_2' ESCAPE '\\'");
+    ASSERT_GT(page, 1);
+    std::fstream(path_, std::ios::binary | std::ios::in | std::ios::out).seekp((page - 1) * 4096)
+        << std::string(kPage, '\x5a');
+    const RestoreReport report = restore();
+    EXPECT_TRUE(report.anew);
+    EXPECT_EQ(Database(path_, OpenMode::ReadOnly).integer("SELECT count(*) FROM participant WHERE status_reason='?'"),
+              0)
+        << testing::PrintToString(report.remaining);
+    EXPECT_EQ(require(verifyDatabase(path_)).damages, std::vector<std::string>{});
+}
+
 TEST_F(RestoreAnew, AFileThatCannotSayItsStudyIsReplacedByNone) {
     // Truth: invariant: of the file no page but the first has its header.
     protocol::StudyPlan other = fake::makeAskingPlan();

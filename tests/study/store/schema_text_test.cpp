@@ -68,6 +68,29 @@ TEST(SchemaText, EveryFlippedBitIsToldReadAroundAndHealed) {
     }
 }
 
+TEST(SchemaText, TwoDamagedStatementsAreNotTakenForAnOlderSchema) {
+    // Truth: invariant: neighbours that came with one revision; and a last revision whose number grew is no newer one.
+    const fake::TempFolder folder;
+    const std::string path = folder / "s.db", backup = folder / "s.db.backup";
+    fake::performAsking(path, "S001");
+    Database(path, OpenMode::ReadWrite).copyTo(backup);
+    const auto whole = fake::dump(path);
+    for (const char* sql :
+         {"PRAGMA writable_schema=ON; UPDATE sqlite_schema SET sql=replace(sql, 'sha256 TEXT', 'sha25v TEXT') WHERE "
+          "name IN('row_hash','later_change')",
+          "UPDATE schema_revision SET revision=revision+16 WHERE revision=(SELECT max(revision) FROM "
+          "schema_revision)"}) {
+        SCOPED_TRACE(sql);
+        std::filesystem::copy_file(backup, path, std::filesystem::copy_options::overwrite_existing);
+        Database(path, OpenMode::ReadWrite).execute(sql);
+        const auto damages = require(verifyDatabase(path)).damages;
+        EXPECT_FALSE(damages.empty());
+        for (const std::string& line : damages) EXPECT_EQ(line.find("stream"), std::string::npos) << line;
+        EXPECT_EQ(require(restoreDatabase(path, backup, fake::options())).remaining, std::vector<std::string>{});
+        EXPECT_TRUE(fake::dump(path) == whole);
+    }
+}
+
 TEST(SchemaText, WhatOthersAddIsNoDamage) {
     // Truth: invariant: an analyst's own index, view and table.
     const fake::TempFolder folder;
