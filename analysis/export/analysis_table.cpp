@@ -61,6 +61,13 @@ std::string callText(const std::string& value, const std::string& test, const Fa
     return plain("t.test");
 }
 
+bool isLogarithmic(const StudyData& study, const store::AnalysisRow& analysis) {
+    return std::any_of(study.staircase_tracks.begin(), study.staircase_tracks.end(), [&](const auto& track) {
+        return track.protocol_sha256 == analysis.protocol_sha256 && track.staircase == analysis.staircase &&
+               track.params.logarithmic;
+    });
+}
+
 /// Who has which combination of the within factors' levels, with a value or without.
 struct Kept {
     std::map<std::string, std::map<Names, bool>> people;
@@ -112,7 +119,7 @@ Kept keptBy(const StudyData& study, const store::AnalysisRow& analysis, const Fa
         Names levels;
         for (const std::string& factor : factors.within) levels.push_back(row[column(factor)]);
         bool& has = kept.people[row[column("participant_id")]][levels];
-        has = has || row[column("estimate")] != kMissing;
+        has = has || row[column(kThreshold)] != kMissing;
     }
     return kept;
 }
@@ -156,7 +163,9 @@ Table makeAnalyses(const StudyData& study, const std::vector<Cell>& cells) {
     for (const store::AnalysisRow& analysis : study.analyses) {
         const Factors factors = factorsOf(study, analysis);
         const bool thresholds = analysis.outcome.empty();
-        const std::string value = thresholds ? "estimate" : cellColumn(analysis.outcome);
+        const std::string value = !thresholds                      ? cellColumn(analysis.outcome)
+                                  : isLogarithmic(study, analysis) ? kLogThreshold
+                                                                   : kThreshold;
         const auto add = [&](const std::string& block, const Kept& kept) {
             if (kept.people.empty()) return;
             table.rows.push_back({analysis.protocol_sha256, cell(analysis.number),

@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <fstream>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <system_error>
@@ -100,20 +101,25 @@ constexpr std::size_t kRandomLetters = 6;  // of mkdtemp
 constexpr const char* kReplaced = "replaced";
 constexpr std::string_view kPartial = ".partial.";
 constexpr std::string_view kBackup = ".backup.";
+constexpr const char* kSamplesFolder = "samples";
 
-/// The lines of an export's list of what is missing; none if it misses nothing.
-std::set<std::string> missingIn(const fs::path& folder) {
+/// The lines of an export's list of what is missing; none if it misses nothing, nothing if the list cannot be read.
+std::optional<std::set<std::string>> missingIn(const fs::path& folder) {
     std::set<std::string> lines;
-    const auto text = readRegularFile((folder / kMissingFile).string());
-    std::istringstream stream(text ? *text : std::string());
+    const fs::path file = folder / kMissingFile;
+    if (!fs::exists(fs::symlink_status(file))) return lines;
+    const auto text = readRegularFile(file.string());
+    if (!text) return std::nullopt;
+    std::istringstream stream(*text);
     for (std::string line; std::getline(stream, line);) lines.insert(line);
     return lines;
 }
 
-/// May the export in `earlier` hold what the one in `fresh` lacks because of damage?
+/// May the export in `earlier` hold what the one in `fresh` lacks: samples that nobody looked at, or what is damaged?
 bool holdsMore(const fs::path& earlier, const fs::path& fresh) {
+    if (fs::exists(earlier / kSamplesFolder) && !fs::exists(fresh / kSamplesFolder)) return true;
     const auto before = missingIn(earlier), now = missingIn(fresh);
-    return !std::includes(before.begin(), before.end(), now.begin(), now.end());
+    return !before || !now || !std::includes(before->begin(), before->end(), now->begin(), now->end());
 }
 
 /// Removes workshops of `folder` that no export works in any more.

@@ -15,7 +15,7 @@ namespace passung::exporter {
 /// A folder that appears complete or not at all: files go to a folder of their own beside it,
 /// `<folder>.partial.<random>`, and take its place at the end. What is not completed is removed. An earlier export is
 /// replaced, but nothing that its SHA256SUMS does not list is ever deleted; one that may hold what the new one lacks,
-/// because its database is damaged, is kept beside it.
+/// samples or what is damaged in its database now, is kept beside it.
 class ExportFolder {
 public:
     /// Fails if `folder` exists and is neither empty nor an earlier export without further files, or if that export
@@ -30,7 +30,8 @@ public:
     Result<Done> write(const std::string& path, std::string_view bytes);
 
     /// Adds SHA256SUMS over everything written and puts the folder in its place. An earlier export there is removed,
-    /// but not where the new one's missing.csv has a row that the earlier one's has not: it gets the first free name
+    /// but not where it has samples and the new one none, nor where the new one's missing.csv has a row that the
+    /// earlier one's has not: it gets the first free name
     /// `<folder>.backup.1`, `<folder>.backup.2` …, which is returned; empty if there was nothing to keep.
     Result<std::string> complete();
 

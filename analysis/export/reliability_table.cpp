@@ -115,7 +115,7 @@ struct Agreement {
     std::vector<Answers> answers;
 };
 
-/// At each occasion, and between and within persons where anybody filled in several forms.
+/// Lists agreement at each occasion, and between and within persons where anybody filled in several forms.
 std::vector<Agreement> agreementsOf(const ScaleForms& scale) {
     std::vector<Agreement> all;
     for (const auto& [occasion, forms] : scale.occasions) {

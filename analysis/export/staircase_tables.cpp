@@ -1,6 +1,7 @@
 #include "analysis/export/staircase_tables.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <tuple>
@@ -61,8 +62,8 @@ struct Told {
     const StaircaseStepRow& step() const { return *answers.begin()->second.second; }
 };
 
-/// Trials that count, their reversals, trials that no longer count, the estimate and its deviation: the track told
-/// anew what counts.
+/// Trials that count, their reversals, trials that no longer count, the estimate, that on a logarithmic axis, its
+/// deviation: the track told anew what counts.
 std::vector<std::string> thresholdCells(const StudyData& study, const Told& told) {
     const auto known = std::find_if(study.staircase_tracks.begin(), study.staircase_tracks.end(), [&](const auto& row) {
         return row.protocol_sha256 == told.attempt().protocol_sha256 && row.staircase == told.step().staircase &&
@@ -76,9 +77,11 @@ std::vector<std::string> thresholdCells(const StudyData& study, const Told& told
         ++(attempt->valid ? trials : invalidated);
         if (attempt->valid && track && !track->finished()) track->answer(step->level, *step->positive);
     }
-    if (!track) return {cell(trials), kMissing, cell(invalidated), kMissing, kMissing};
-    return {cell(trials), cell(std::int64_t{track->reversals()}), cell(invalidated), cell(track->estimate()),
-            cell(track->uncertainty())};
+    if (!track) return {cell(trials), kMissing, cell(invalidated), kMissing, kMissing, kMissing};
+    const std::optional<double> estimate = track->estimate();
+    const bool decades = estimate && known->params.logarithmic;
+    return {cell(trials),   cell(std::int64_t{track->reversals()}),           cell(invalidated),
+            cell(estimate), decades ? cell(std::log10(*estimate)) : kMissing, cell(track->uncertainty())};
 }
 
 }  // namespace
@@ -134,7 +137,14 @@ Table makeThresholds(const StudyData& study) {
         {"n_trials", "Trials that told it something and count", "", "integer", "", 1, {}},
         {"n_reversals", "Reversals of the track by these alone", "", "integer", "", 1, {}},
         {"n_invalidated", "Trials that told it something and were invalidated later", "", "integer", "", 1, {}},
-        {"estimate", "Threshold by the trials that count, in the key's unit", "", "number", kEstimate, 1, {}},
+        {kThreshold, "Threshold by the trials that count, in the key's unit", "", "number", kEstimate, 1, {}},
+        {kLogThreshold,
+         "The same in decades; NA: the staircase's axis is not logarithmic",
+         "",
+         "number",
+         "log10(estimate)",
+         1,
+         {}},
         {"estimate_sd", "How unsure it is", "", "number", kDeviation, 1, {}},
         {"protocol_sha256", "SHA-256 of the protocol's text, see protocol/", "", "text", "", 1, {}}};
     table.columns.insert(table.columns.end(), more.begin(), more.end());

@@ -5,6 +5,10 @@
 
 namespace passung::exporter {
 
+// Columns of thresholds.csv: in the key's unit and, of a staircase with a logarithmic axis, in decades.
+inline constexpr const char* kThreshold = "estimate";
+inline constexpr const char* kLogThreshold = "log10_estimate";
+
 /// One row per attempt at a trial of a staircase: what was presented, what came of it, the estimate after it.
 Table makeStaircase(const StudyData& study);
 

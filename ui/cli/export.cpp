@@ -20,10 +20,10 @@ int exportData(const ExportOptions& options) {
     if (!report) return fail(report.errors());
     progress.show("");
     if (!report->kept.empty())
-        warn(options.out, {"the earlier export may hold what is damaged in the database now: kept as " + report->kept});
-    const bool known = (report->kept.empty() || app::rememberExport(options.database, report->kept)) &&
-                       app::rememberExport(options.database, options.out);
-    if (!known)
+        warn(options.out, {"the earlier export may hold what this one lacks: kept as " + report->kept});
+    const bool earlier_known = report->kept.empty() || app::rememberExport(options.database, report->kept);
+    const bool known = app::rememberExport(options.database, options.out);
+    if (!earlier_known || !known)
         warn(options.out, {"this export could not be noted in the folder of your data: erasing somebody will not name "
                            "it unless it lies beside the database"});
     fmt::print("{}: {} attempts in {} files\n", options.out, report->attempts, report->files);

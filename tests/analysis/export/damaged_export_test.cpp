@@ -126,6 +126,14 @@ TEST_F(DamagedExport, KeepsAnEarlierExportThatMayHoldWhatIsDamaged) {
     EXPECT_EQ(exportOver(), fs::path());
     EXPECT_TRUE(readFolder(out) == whole_);
     EXPECT_TRUE(readFolder(first) == whole_);
+    // Samples that nobody looked at this time may be damaged too.
+    const auto reader = require(store::StoreReader::open(path_, store::Damaged::LeftOut));
+    ExportOptions without;
+    without.samples = false;
+    const fs::path third = folder_ / "out.backup.3";
+    EXPECT_EQ(fs::path(require(exportAll(reader, out, without)).kept), third);
+    EXPECT_TRUE(readFolder(third) == whole_);
+    EXPECT_EQ(fs::path(require(exportAll(reader, out, without)).kept), fs::path());
 }
 
 TEST_F(DamagedExport, StatesNoTickThatTheSamplesLeftCannotTell) {

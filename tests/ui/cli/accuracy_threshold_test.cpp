@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "study/store/store_reader.h"
+#include "tests/analysis/export/csv_reader.h"
 #include "tests/ui/cli/program.h"
 
 // The shipped study, at a size for every day: shorter intervals, fewer trials, two people.
@@ -63,7 +65,16 @@ TEST(AccuracyThreshold, RunsFromItsFileToThresholdsThatFollowFromWhatWasRendered
         EXPECT_GT(*step.estimate, 30.0);
         EXPECT_LT(*step.estimate, 240.0);
     }
-    EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/thresholds.csv"));
+    // Truth: closed form: on the levels' logarithmic axis, as the protocol plans it.
+    const auto thresholds = fake::readCsv(readText(folder.path() / "out/thresholds.csv"));
+    ASSERT_GE(thresholds.rows.size(), 2u);
+    for (std::size_t row = 0; row < thresholds.rows.size(); ++row)
+        EXPECT_NEAR(std::stod(thresholds.at(row, "log10_estimate")),
+                    std::log10(std::stod(thresholds.at(row, "estimate"))), 1e-12);
+    const auto analyses = fake::readCsv(readText(folder.path() / "out/analyses.csv"));
+    ASSERT_EQ(analyses.rows.size(), 1u);
+    EXPECT_EQ(analyses.at(0, "value_column"), "log10_estimate");
+    EXPECT_EQ(analyses.at(0, "r_call"), "t.test(log10_estimate ~ 1, data = data)");
 }
 
 }  // namespace
