@@ -9,6 +9,7 @@
 #include "study/store/held.h"
 #include "study/store/merge_people.h"
 #include "study/store/merge_places.h"
+#include "study/store/merge_session.h"
 #include "study/store/open_database.h"
 #include "study/store/private_files.h"
 #include "study/store/process_lock.h"
@@ -138,12 +139,11 @@ private:
         if (find.step()) refuse(before + find.text(0) + after);
     }
 
-    static std::string names(const Table& table, bool with_number) {
+    /// Names of the columns but the one that numbers the rows.
+    static std::string names(const Table& table) {
         std::string text;
-        const TableColumn* number = table.number();
         for (const TableColumn& column : table.columns)
-            if (with_number || number == nullptr || column.name != number->name)
-                text += (text.empty() ? "" : ", ") + column.name;
+            if (&column != table.number()) text += (text.empty() ? "" : ", ") + column.name;
         return text;
     }
 
@@ -151,7 +151,7 @@ private:
         for (const std::string& name : tableNames(database_)) {
             const Table table = describeTable(database_, name);
             if (table.find("protocol_sha256") == nullptr || name == "session" || name == "design_slot") continue;
-            const std::string columns = names(table, false);
+            const std::string columns = names(table);
             database_.execute("INSERT OR IGNORE INTO main." + name + "(" + columns + ") SELECT " + columns +
                               " FROM source." + name);
         }
@@ -253,7 +253,7 @@ private:
             return;
         }
         if (!known) {
-            copySession(id);
+            copySession(database_, tables_, kSource, id);
             ++report_.sessions;
             return;
         }
@@ -261,8 +261,8 @@ private:
             ++report_.known;
             return;
         }
-        const bool behind = lacks("main", kSource, id);
-        if (behind && lacks(kSource, "main", id)) {
+        const bool behind = sessionLacks(database_, "main", kSource, id);
+        if (behind && sessionLacks(database_, kSource, "main", id)) {
             Statement who = database_.prepare(
                 "SELECT participant_id || ' stands for two people: session ' || ordinal FROM source.session "
                 "WHERE session_id=?");
@@ -273,7 +273,7 @@ private:
         const SessionRemarks remarks = remarksOf(database_, behind ? "main" : kSource, id);
         if (behind) {
             database_.prepare("DELETE FROM main.session WHERE session_id=?").bind(id).run();
-            copySession(id);
+            copySession(database_, tables_, kSource, id);
         }
         UnitedRemarks united;
         changeLater(database_, id, [&] { united = uniteRemarks(database_, id, remarks); });
@@ -287,63 +287,6 @@ private:
         who.bind(id).step();
         for (const std::string& conflict : conflicts)
             report_.conflicts.push_back(source_ + ": " + who.text(0) + ", " + conflict);
-    }
-
-    /// What the session consists of, a line each; remarks on it apart.
-    static std::string contents(const std::string& schema) {
-        const std::string of = " FROM " + schema + ".", where = " WHERE session_id=?1";
-        return "SELECT json_array('attempt', s.started_utc, s.station, t.trial_index, a.attempt_no, a.start_ns, "
-               "a.end_ns, a.outcome, a.seed, a.state_hash)" +
-               of + "attempt a JOIN " + schema + ".trial_plan t USING(trial_id) JOIN " + schema +
-               ".session s USING(session_id)" + where +
-               " UNION ALL SELECT json_array('segment', started_utc, utc_zero, mono_zero_ns)" + of + "segment" + where +
-               " UNION ALL SELECT json_array('form', questionnaire_sha256, moment, block_index, (SELECT trial_index "
-               "FROM " +
-               schema + ".trial_plan t WHERE t.trial_id=q.trial_id), started_utc, completed_utc)" + of +
-               "questionnaire_run q" + where + " UNION ALL SELECT 'complete'" + of + "session" + where +
-               " AND end_state='complete'";
-    }
-
-    /// Has the session in `other` anything that it has not in `one`?
-    bool lacks(const std::string& one, const std::string& other, const std::string& id) const {
-        Statement find = database_.prepare(contents(other) + " EXCEPT SELECT * FROM (" + contents(one) + ") LIMIT 1");
-        return find.bind(id).step();
-    }
-
-    void copySession(const std::string& id) {
-        std::map<std::string, std::int64_t> offsets;
-        for (const Table& table : tables_)
-            if (const TableColumn* number = table.number())
-                offsets[table.name] =
-                    database_.integer("SELECT coalesce(max(" + number->name + "), 0) FROM main." + table.name) -
-                    least(table, *number, id) + 1;
-        for (const Table& table : tables_) {
-            std::string values;
-            for (const TableColumn& column : table.columns) {
-                std::string value = column.name;
-                const Table* numbered = numberedBy(tables_, table, column);
-                if (numbered != nullptr)
-                    value += " + " + std::to_string(offsets[numbered->name]);
-                else if (column.parent == "condition")
-                    value =
-                        "(SELECT m.condition_id FROM main.condition m JOIN source.condition s USING("
-                        "protocol_sha256, condition) WHERE s.condition_id=t." +
-                        column.name + ")";
-                values += (values.empty() ? "" : ", ") + value;
-            }
-            database_
-                .prepare("INSERT INTO main." + table.name + "(" + names(table, true) + ") SELECT " + values +
-                         " FROM source." + table.name + " t WHERE " + rowsOfSession(tables_, table, kSource))
-                .bind(id)
-                .run();
-        }
-    }
-
-    std::int64_t least(const Table& table, const TableColumn& number, const std::string& id) const {
-        Statement find = database_.prepare("SELECT coalesce(min(" + number.name + "), 0) FROM source." + table.name +
-                                           " WHERE " + rowsOfSession(tables_, table, kSource));
-        find.bind(id).step();
-        return find.integer(0);
     }
 
     const Database& database_;
