@@ -12,12 +12,6 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-std::string joined(const Names& names, const char* between) {
-    std::string text;
-    for (const std::string& name : names) text += (text.empty() ? "" : between) + name;
-    return text;
-}
-
 /// The columns of an analysis' factors, within and between.
 struct Factors {
     Names all, within;

@@ -5,12 +5,6 @@
 namespace passung::exporter {
 namespace {
 
-std::string joined(const std::vector<std::string>& levels) {
-    std::string text;
-    for (const std::string& level : levels) text += (text.empty() ? "" : "; ") + level;
-    return text;
-}
-
 std::string columnJson(const Column& column) {
     using protocol::jsonText;
     std::string json = "{\"label\": " + jsonText(column.label) + ", \"unit\": " + jsonText(column.unit) +
@@ -40,7 +34,7 @@ Table makeCodebook(std::span<const Table> tables) {
                {}};
     const auto describe = [&book](const Table& table) {
         for (const Column& c : table.columns) {
-            book.rows.push_back({table.file, c.name, c.label, c.unit, c.type, joined(c.levels), c.formula,
+            book.rows.push_back({table.file, c.name, c.label, c.unit, c.type, joined(c.levels, "; "), c.formula,
                                  cell(c.formula_version), kMissing});
         }
     };

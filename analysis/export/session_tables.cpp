@@ -1,7 +1,5 @@
 #include "analysis/export/session_tables.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <map>
 #include <set>
@@ -13,7 +11,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-std::string joined(const Names& names) { return names.empty() ? kMissing : fmt::format("{}", fmt::join(names, ";")); }
+std::string listCell(const Names& names) { return names.empty() ? kMissing : joined(names, ";"); }
 
 /// The devices that the session was performed on, each once, in the order in which they came.
 std::string devicesOf(const store::SessionRow& session, const StudyData& study) {
@@ -27,7 +25,7 @@ std::string devicesOf(const store::SessionRow& session, const StudyData& study) 
     for (const auto& [when, device] : attempts) add(device);
     if (attempts.empty())
         for (const std::string& device : session.segment_devices) add(device);
-    return joined(devices);
+    return listCell(devices);
 }
 
 }  // namespace
@@ -135,7 +133,7 @@ Table makeSessions(const StudyData& study) {
                               s.session_id,
                               s.station,
                               devicesOf(s, study),
-                              joined(s.segment_devices),
+                              listCell(s.segment_devices),
                               cell(s.device_simulated),
                               cell(s.experimenter),
                               s.language,

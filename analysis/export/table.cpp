@@ -36,6 +36,12 @@ std::string cell(const std::optional<std::string>& value) { return value.value_o
 std::string cell(const std::optional<std::int64_t>& value) { return value ? cell(*value) : kMissing; }
 std::string cell(const std::optional<double>& value) { return value ? cell(*value) : kMissing; }
 
+std::string joined(const std::vector<std::string>& texts, std::string_view between) {
+    std::string all;
+    for (const std::string& text : texts) all.append(all.empty() ? std::string_view() : between).append(text);
+    return all;
+}
+
 std::string secondsCell(const std::optional<std::int64_t>& nanoseconds) {
     if (!nanoseconds) return kMissing;
     return cell(static_cast<double>(*nanoseconds) / 1e9);

@@ -39,6 +39,9 @@ std::string cell(const std::optional<std::string>& value);
 std::string cell(const std::optional<std::int64_t>& value);
 std::string cell(const std::optional<double>& value);
 
+/// All of them with `between` between them; empty for none.
+std::string joined(const std::vector<std::string>& texts, std::string_view between);
+
 /// Nanoseconds as seconds.
 std::string secondsCell(const std::optional<std::int64_t>& nanoseconds);
 
