@@ -245,19 +245,21 @@ double median(std::vector<double> values) {
 }
 
 /// Every seed, in rounds, each of which is spread over the part; the rounds end when the work is too much.
-std::vector<Judged> judgeAll(const Search& search, const std::vector<Seed>& seeds, const SearchLimit& limit) {
+std::vector<Judged> judgeAll(const Search& search, const std::vector<Seed>& seeds, SearchLimit& limit) {
     const std::size_t n = seeds.size(), rounds = (n + kSeedsPerRound - 1) / kSeedsPerRound;
     std::vector<Judged> judged(n, Judged{.looked_at = false});
-    Work done = 0;
-    for (std::size_t round = 0; round < rounds && done <= limit.most_work; ++round) {
+    limit.work = 0;
+    for (std::size_t round = 0; round < rounds && limit.work <= limit.most_work; ++round) {
         const std::size_t count = (n - round + rounds - 1) / rounds;
         std::vector<Work> work(count, 0);
         parallelFor(count, [&](std::size_t i) {
             const std::size_t k = round + i * rounds;
             judged[k] = search.judge(seeds[k], work[i]);
         });
-        done = std::accumulate(work.begin(), work.end(), done);
+        limit.work = std::accumulate(work.begin(), work.end(), limit.work);
     }
+    limit.left_out = static_cast<std::size_t>(
+        std::count_if(judged.begin(), judged.end(), [](const Judged& seed) { return !seed.looked_at; }));
     return judged;
 }
 
@@ -362,10 +364,8 @@ std::vector<ThinFeature> thinFeatures(const TriangleMesh& mesh, const TriangleTr
                                       SearchLimit* limit) {
     const Search search(tree, radius);
     const std::vector<Seed> seeds = seedsOf(mesh, search, radius, where);
-    const std::vector<Judged> judged = judgeAll(search, seeds, limit != nullptr ? *limit : SearchLimit{});
-    if (limit != nullptr)
-        limit->left_out = static_cast<std::size_t>(
-            std::count_if(judged.begin(), judged.end(), [](const Judged& seed) { return !seed.looked_at; }));
+    SearchLimit usual;
+    const std::vector<Judged> judged = judgeAll(search, seeds, limit != nullptr ? *limit : usual);
     std::vector<std::size_t> thin;
     for (std::size_t i = 0; i < seeds.size(); ++i)
         if (judged[i].thin) thin.push_back(i);

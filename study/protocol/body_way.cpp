@@ -13,11 +13,12 @@
 namespace passung::protocol {
 namespace {
 
-constexpr int kLattice = 4;              // steps from the middle of a sphere to its surface
+constexpr int kHalvings = 3;             // of the cube in which a place is searched for
 constexpr double kHalfDiagonal = 0.867;  // of a cube with edge 1, rounded up
 constexpr int kMostCells = 48;           // along the longest side of the grid
 constexpr int kDepths = 32;              // of a passage
-constexpr int kPlaces = 200;             // on a line
+constexpr int kPieces = 200;             // of a line, equally long
+constexpr double kRounding = 1e-9;       // of a sum of lengths
 
 /// Obstacles as one distance.
 class Obstacles {
@@ -39,14 +40,7 @@ public:
 
     /// Is there a place within `reach` of `centre` where the distance may be `needed`?
     bool roomWithin(const Vec3& centre, double reach, double needed) const {
-        if (distance(centre) >= needed) return true;
-        if (distance(centre) + reach < needed) return false;
-        const double step = reach / kLattice, enough = needed - kHalfDiagonal * step;
-        for (int i = -kLattice; i <= kLattice; ++i)
-            for (int j = -kLattice; j <= kLattice; ++j)
-                for (int k = -kLattice; k <= kLattice; ++k)
-                    if (distance(centre + step * Vec3(i, j, k)) >= enough) return true;
-        return false;
+        return roomIn({centre, reach, needed}, centre, reach, 0);
     }
 
     model::Bounds bounds() const {
@@ -62,6 +56,26 @@ public:
     }
 
 private:
+    struct Sought {
+        Vec3 centre;
+        double reach, needed;
+    };
+
+    /// Halves the cube about `middle` as long as it may hold such a place.
+    bool roomIn(const Sought& sought, const Vec3& middle, double half, int halvings) const {
+        const double across = 2.0 * kHalfDiagonal * half, off = (middle - sought.centre).norm();
+        if (off > sought.reach + across) return false;
+        const double found = distance(middle);
+        if (found >= sought.needed && off <= sought.reach) return true;
+        if (found + std::min(across, off + sought.reach) < sought.needed) return false;
+        if (halvings == kHalvings) return true;
+        for (int corner = 0; corner < 8; ++corner) {
+            const Vec3 way(corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5, corner & 4 ? 0.5 : -0.5);
+            if (roomIn(sought, middle + half * way, 0.5 * half, halvings + 1)) return true;
+        }
+        return false;
+    }
+
     PartGeometries& geometries_;
     std::vector<const model::PartSpec*> parts_;
 };
@@ -84,16 +98,14 @@ public:
         spread(obstacles, needed - kHalfDiagonal * edge_, start);
     }
 
-    /// Did it come anywhere within `slack` of `goal`? Also if it could not begin.
-    bool reaches(const Vec3& goal, double slack) const {
-        if (!began_) return true;
+    /// How many of `goals` did it come anywhere within `slack` of? All if it could not begin.
+    std::size_t reached(const std::vector<Vec3>& goals, double slack) const {
+        if (!began_) return goals.size();
         const double near = slack + kHalfDiagonal * edge_;
-        const Cell low = cellOf(goal - Vec3::Constant(near)), high = cellOf(goal + Vec3::Constant(near));
-        for (int x = low[0]; x <= high[0]; ++x)
-            for (int y = low[1]; y <= high[1]; ++y)
-                for (int z = low[2]; z <= high[2]; ++z)
-                    if (free_[indexOf({x, y, z})] == kFree && (middle({x, y, z}) - goal).norm() <= near) return true;
-        return false;
+        Cell last = cellOf(goals.front());  // of neighbours on a line the same cell often is near
+        return static_cast<std::size_t>(std::count_if(goals.begin(), goals.end(), [&](const Vec3& goal) {
+            return isNear(last, goal, near) || find(goal, near, last);
+        }));
     }
 
 private:
@@ -111,22 +123,52 @@ private:
         return static_cast<std::size_t>((c[2] * cells_[1] + c[1]) * cells_[0] + c[0]);
     }
 
+    bool isNear(const Cell& cell, const Vec3& goal, double near) const {
+        return free_[indexOf(cell)] == kFree && (middle(cell) - goal).norm() <= near;
+    }
+
+    bool find(const Vec3& goal, double near, Cell& found) const {
+        const Cell low = cellOf(goal - Vec3::Constant(near)), high = cellOf(goal + Vec3::Constant(near));
+        for (int x = low[0]; x <= high[0]; ++x)
+            for (int y = low[1]; y <= high[1]; ++y)
+                for (int z = low[2]; z <= high[2]; ++z)
+                    if (isNear({x, y, z}, goal, near)) {
+                        found = {x, y, z};
+                        return true;
+                    }
+        return false;
+    }
+
+    template <class Visit>
+    void around(const Cell& at, int steps, Visit visit) const {
+        for (int x = std::max(0, at[0] - steps); x <= std::min(cells_[0] - 1, at[0] + steps); ++x)
+            for (int y = std::max(0, at[1] - steps); y <= std::min(cells_[1] - 1, at[1] + steps); ++y)
+                for (int z = std::max(0, at[2] - steps); z <= std::min(cells_[2] - 1, at[2] + steps); ++z)
+                    visit(Cell{x, y, z});
+    }
+
     void spread(const Obstacles& obstacles, double enough, const Vec3& start) {
         std::vector<Cell> front;
         const auto enter = [&](const Cell& cell) {
-            char& state = free_[indexOf(cell)];
-            if (state != kUnseen) return;
-            state = obstacles.distance(middle(cell)) >= enough ? kFree : kBlocked;
-            if (state == kFree) front.push_back(cell);
+            if (free_[indexOf(cell)] != kUnseen) return;
+            const double over = obstacles.distance(middle(cell)) - enough;
+            free_[indexOf(cell)] = over >= 0.0 ? kFree : kBlocked;
+            if (!(over >= 0.0)) return;
+            front.push_back(cell);
+            // Whatever is no farther away than that is free, too: of open space few cells are asked for.
+            around(cell, static_cast<int>(std::min(over / edge_, 1.0 * kMostCells)), [&](const Cell& other) {
+                char& state = free_[indexOf(other)];
+                if (state != kUnseen || (middle(other) - middle(cell)).norm() > over) return;
+                state = kFree;
+                front.push_back(other);
+            });
         };
         enter(cellOf(start));
         began_ = !front.empty();
         while (!front.empty()) {
             const Cell at = front.back();
             front.pop_back();
-            for (int x = std::max(0, at[0] - 1); x <= std::min(cells_[0] - 1, at[0] + 1); ++x)
-                for (int y = std::max(0, at[1] - 1); y <= std::min(cells_[1] - 1, at[1] + 1); ++y)
-                    for (int z = std::max(0, at[2] - 1); z <= std::min(cells_[2] - 1, at[2] + 1); ++z) enter({x, y, z});
+            around(at, 1, enter);
         }
     }
 
@@ -137,7 +179,6 @@ private:
     bool began_ = false;
 };
 
-/// One trial's geometry.
 class BodyCheck {
 public:
     BodyCheck(const StudyTables& tables, const Condition& condition, const DeviceDescription& device,
@@ -177,22 +218,39 @@ private:
         });
     }
 
+    /// Of `places` (world) those without room: how many, and the first; `places.size()` if there is none.
+    struct Without {
+        std::size_t count, first;
+    };
+    Without withoutRoom(const std::vector<Vec3>& places, double reach) {
+        const auto tight = [&](const Vec3& place) { return !hasRoom(place, reach); };
+        const auto ask = [&](const char* what, const auto& reckon) {
+            std::string all = what;
+            for (const Ball& ball : balls_)
+                if (ball.radius >= 0.0) all += question(ball, centresAt(places, ball), reach + spread(ball));
+            return static_cast<std::size_t>(geometries_.remembered(all, reckon));
+        };
+        const std::size_t count =
+            ask("tight ", [&] { return static_cast<double>(std::count_if(places.begin(), places.end(), tight)); });
+        if (count == 0) return {0, places.size()};
+        return {count, ask("first ", [&] {
+                    return static_cast<double>(std::find_if(places.begin(), places.end(), tight) - places.begin());
+                })};
+    }
+
     void checkRoom(const PegInHoleTask&) {}
     void checkRoom(const FreePlacementTask&) {}
     void checkRoom(const DiscriminationPairTask&) {}
     void checkRoom(const ContourFollowingTask& contour) {
         if (target_ == nullptr) return;
-        int without = 0;
-        Vec3 first = Vec3::Zero();
-        const auto places = placesOn(contour);
-        for (const Vec3& place : places)
-            if (!hasRoom(target_->X_WP * place, contour.reach) && without++ == 0) first = place;
-        const double share = static_cast<double>(without) / static_cast<double>(places.size());
-        if (share > 1.0 - contour.coverage + 1.0 / kPlaces)
-            fail("points", fmt::format("the held part's body has no room within reach_mm of {:.0f} % of the line, from "
-                                       "{:.3g}, {:.3g}, {:.3g} mm of the target on; `coverage` asks for {:.0f} %",
-                                       100.0 * share, 1e3 * first.x(), 1e3 * first.y(), 1e3 * first.z(),
-                                       100.0 * contour.coverage));
+        const Line line = piecesOf(contour);
+        const Without without = withoutRoom(line.places, contour.reach + line.half);
+        const double share = static_cast<double>(without.count) / static_cast<double>(line.places.size());
+        if (!(share > 1.0 - contour.coverage + kRounding)) return;
+        const Vec3 first = 1e3 * (target_->X_WP.inverse() * line.places[without.first]);
+        fail("points", fmt::format("the held part's body has no room within reach_mm of {:.0f} % of the line, from "
+                                   "{:.3g}, {:.3g}, {:.3g} mm of the target on; `coverage` asks for {:.0f} %",
+                                   100.0 * share, first.x(), first.y(), first.z(), 100.0 * contour.coverage));
     }
 
     void checkRoom(const NarrowPassageTask& passage) {
@@ -201,13 +259,15 @@ private:
             return fail("target",
                         "the held part starts beyond the passage already, which begins in the plane z = 0 of the "
                         "target and runs along -z");
-        for (int i = 0; i <= kDepths; ++i) {
-            const double depth = passage.length * i / kDepths;
-            if (hasRoom(target_->X_WP * Vec3(0, 0, -depth), 0.5 * passage.width)) continue;
-            return fail("target", fmt::format("the passage is blocked or too narrow {:.4g} mm from its mouth: the held "
-                                              "part's body has no room there within half of passage_width_mm",
-                                              1e3 * depth));
-        }
+        std::vector<Vec3> places;
+        for (int i = 0; i <= kDepths; ++i)
+            places.emplace_back(target_->X_WP * Vec3(0, 0, -passage.length * i / kDepths));
+        const Without without = withoutRoom(places, 0.5 * passage.width);
+        if (without.count == 0) return;
+        fail("target",
+             fmt::format("the passage is blocked or too narrow {:.4g} mm from its mouth: the held part's body "
+                         "has no room there within half of passage_width_mm",
+                         1e3 * passage.length * static_cast<double>(without.first) / kDepths));
     }
 
     void checkWay(const DiscriminationPairTask&) {}
@@ -223,33 +283,37 @@ private:
     }
     void checkWay(const ContourFollowingTask& contour) {
         if (target_ == nullptr) return;
-        std::vector<Vec3> places = placesOn(contour);
-        for (Vec3& place : places) place = target_->X_WP * place;
-        way("points", places, contour.reach, contour.coverage - 1.0 / kPlaces);
+        const Line line = piecesOf(contour);
+        way("points", line.places, contour.reach + line.half, contour.coverage - kRounding);
     }
 
     /// From the start the held part's origin comes within `slack` of a `share` of `goals`.
     void way(const char* key, const std::vector<Vec3>& goals, double slack, double share) {
         for (const Ball& ball : balls_) {
             if (ball.radius < 0.0) continue;
-            std::vector<Vec3> centres;
-            for (const Vec3& goal : goals) centres.push_back(centreAt(goal, ball));
+            const std::vector<Vec3> centres = centresAt(goals, ball);
             const Vec3 start = held_.X_WP * ball.centre;
             const double near = slack + spread(ball);
             // Conditions that differ in their contact only have one answer.
-            const double reached = geometries_.depth(question(ball, start, centres, near), [&] {
-                const Flood flood(obstacles_, needed(ball), start, centres);
-                return static_cast<double>(std::count_if(
-                    centres.begin(), centres.end(), [&](const Vec3& centre) { return flood.reaches(centre, near); }));
+            const double reached = geometries_.remembered("way " + text(start) + question(ball, centres, near), [&] {
+                return static_cast<double>(Flood(obstacles_, needed(ball), start, centres).reached(centres, near));
             });
             if (reached >= share * static_cast<double>(goals.size())) continue;
             return fail(key, "no way leads there from the held part's start: obstacles close one of them off");
         }
     }
 
-    std::string question(const Ball& ball, const Vec3& start, const std::vector<Vec3>& centres, double near) const {
-        const auto text = [](const Vec3& p) { return fmt::format(" {:a},{:a},{:a}", p.x(), p.y(), p.z()); };
-        std::string all = fmt::format("way {:a} {:a}", needed(ball), near) + text(start);
+    static std::string text(const Vec3& p) { return fmt::format(" {:a},{:a},{:a}", p.x(), p.y(), p.z()); }
+
+    std::vector<Vec3> centresAt(const std::vector<Vec3>& places, const Ball& ball) const {
+        std::vector<Vec3> centres;
+        for (const Vec3& place : places) centres.push_back(centreAt(place, ball));
+        return centres;
+    }
+
+    /// What tells a ball about these centres, each give or take `near`, amid these obstacles from another.
+    std::string question(const Ball& ball, const std::vector<Vec3>& centres, double near) const {
+        std::string all = fmt::format("{:a} {:a}", needed(ball), near);
         for (const Vec3& centre : centres) all += text(centre);
         for (const model::PartSpec& part : scene_.parts)
             if (!part.held)
@@ -258,18 +322,28 @@ private:
         return all;
     }
 
-    /// Places of the line, evenly spread, in the target's frame.
-    static std::vector<Vec3> placesOn(const ContourFollowingTask& contour) {
-        double length = 0.0;
-        for (std::size_t i = 1; i < contour.points.size(); ++i)
-            length += (contour.points[i] - contour.points[i - 1]).norm();
+    /// Middles (world) of equally long pieces of a line. Any place of a piece is within `half` of its middle.
+    struct Line {
         std::vector<Vec3> places;
-        for (std::size_t i = 1; i < contour.points.size(); ++i) {
-            const Vec3 &a = contour.points[i - 1], &b = contour.points[i];
-            const int pieces = std::max(1, static_cast<int>(std::lround(kPlaces * (b - a).norm() / length)));
-            for (int k = 0; k < pieces; ++k) places.emplace_back(a + (b - a) * ((k + 0.5) / pieces));
+        double half;
+    };
+    Line piecesOf(const ContourFollowingTask& contour) const {
+        const auto& points = contour.points;
+        const auto lengthOf = [&](std::size_t i) { return (points[i + 1] - points[i]).norm(); };
+        double length = 0.0, before = 0.0;
+        for (std::size_t i = 0; i + 1 < points.size(); ++i) length += lengthOf(i);
+        Line line{{}, 0.5 * length / kPieces};
+        for (std::size_t i = 0; line.places.size() < std::size_t{kPieces};) {
+            const double at = (2.0 * static_cast<double>(line.places.size()) + 1.0) * line.half, own = lengthOf(i);
+            if (at > before + own && i + 2 < points.size()) {
+                before += own;
+                ++i;
+                continue;
+            }
+            const double share = own > 0.0 ? std::min((at - before) / own, 1.0) : 0.0;
+            line.places.emplace_back(target_->X_WP * (points[i] + share * (points[i + 1] - points[i])));
         }
-        return places;
+        return line;
     }
 
     void fail(const char* key, std::string message) {
@@ -295,6 +369,9 @@ private:
 
 void checkBody(const StudyTables& tables, const Condition& condition, const DeviceDescription& device,
                PartGeometries& geometries, Errors& errors) {
+    const model::ContactSpec& contact = condition.scene.contact;
+    const bool stops = contact.method != model::ContactMethod::Penalty && condition.scene.display_wrench;
+    if (!stops || condition.timed_by != TimedBy::Program) return;
     BodyCheck(tables, condition, device, geometries, errors).run();
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <tuple>
 
 #include "study/protocol/distinct_conditions.h"
 #include "study/protocol/part_geometry.h"
@@ -23,7 +24,6 @@ constexpr double kFinestTurn = 0.01 * kDegree;
 constexpr double kFineTurn = 0.5 * kDegree;  // below: hardly
 constexpr double kLongRest = 3600.0;         // [s]
 
-/// One condition.
 class HumanCheck {
 public:
     HumanCheck(const StudyTables& tables, const Condition& condition, const DeviceDescription& device,
@@ -127,12 +127,29 @@ bool comparesTheSame(const Condition& condition) {
     return whatReaches(reference) == whatReaches(comparison);
 }
 
-bool looksTheSame(const model::SceneSpec& a, const model::SceneSpec& b) {
-    return std::equal(a.parts.begin(), a.parts.end(), b.parts.begin(), b.parts.end(),
-                      [](const model::PartSpec& x, const model::PartSpec& y) {
-                          return geometryKey(x) == geometryKey(y) && x.X_WP.p == y.X_WP.p &&
-                                 x.X_WP.q.coeffs() == y.X_WP.q.coeffs();
-                      });
+/// Does a proxy under the same hand go the same way? What only a force follows from does not move it.
+bool movesTheSame(const model::ContactSpec& a, const model::ContactSpec& b) {
+    if (a.method != b.method || a.rendersAtHand() != b.rendersAtHand()) return false;
+    if (a.rendersAtHand()) return true;
+    const auto fields = [](const model::ContactSpec& c) {
+        return std::tie(c.tolerance, c.cell, c.spacing, c.mode, c.budget_nodes, c.two_way, c.proxy_filter);
+    };
+    const auto tool = [](const model::ContactSpec& c) {
+        return std::tie(c.coupling, c.variant, c.stiffness, c.rotational_stiffness, c.damping, c.rotational_damping,
+                        c.area_stiffness, c.penalty_stiffness, c.tool_mass, c.tool_inertia);
+    };
+    return fields(a) == fields(b) && (a.method != model::ContactMethod::Penalty || tool(a) == tool(b));
+}
+
+bool looksTheSame(const model::SceneSpec& a, const model::SceneSpec& b, ShownPose shown) {
+    const bool proxy = shown == ShownPose::Proxy && !(a.contact.rendersAtHand() && b.contact.rendersAtHand());
+    const auto alike = [&](const model::PartSpec& x, const model::PartSpec& y) {
+        return geometryKey(x) == geometryKey(y) && x.X_WP.p == y.X_WP.p && x.X_WP.q.coeffs() == y.X_WP.q.coeffs() &&
+               x.shown_offset == y.shown_offset &&
+               (!proxy || (x.friction == y.friction && x.sliding_friction == y.sliding_friction));
+    };
+    return std::equal(a.parts.begin(), a.parts.end(), b.parts.begin(), b.parts.end(), alike) &&
+           (!proxy || movesTheSame(a.contact, b.contact));
 }
 
 bool isShownOrHeard(const Cues& cues) { return cues.visual || cues.vibrotactile || cues.audio; }
@@ -157,7 +174,8 @@ void checkComparisons(const StudyPlan& plan, const Node& task, Errors& errors) {
     if (std::all_of(pairs.begin(), pairs.end(), [](const Condition* pair) { return comparesTheSame(*pair); }))
         return fail("is the same as its reference in every pair: there is nothing to tell apart");
     for (const Condition* pair : pairs)
-        if (!pair->scene.display_wrench && !isShownOrHeard(pair->cues) && looksTheSame(pair->scene, *pair->comparison))
+        if (!pair->scene.display_wrench && !isShownOrHeard(pair->cues) &&
+            looksTheSame(pair->scene, *pair->comparison, pair->shown))
             return fail(
                 fmt::format("differs in nothing that is felt, seen or heard with feedback.kinesthetic = false "
                             "and no cue; condition: {}",

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "core/model/mesh_source.h"
@@ -96,15 +97,18 @@ const std::vector<model::ThinFeature>& PartGeometries::thin(const model::PartSpe
     const PartGeometry* geometry = of(part);
     if (geometry == nullptr) return place->second;
     if (geometry->sheet) return place->second = {{model::FeatureKind::Wall, 0.0, Vec3::Zero()}};
-    model::SearchLimit limit;
+    // Of all radii together, which conditions and their levels may make as many of as they like.
+    std::size_t& left = work_left_.try_emplace(geometryKey(part), model::SearchLimit{}.most_work).first->second;
+    model::SearchLimit limit{.most_work = left};
     place->second = model::thinFeatures(*geometry->mesh, *geometry->tree, radius, where, &limit);
+    left -= std::min(left, limit.work);
     if (limit.left_out > 0) half_searched_.insert(geometryKey(part));
     return place->second;
 }
 
-double PartGeometries::depth(const std::string& question, const std::function<double()>& reckon) {
-    const auto known = depths_.find(question);
-    return known != depths_.end() ? known->second : depths_.emplace(question, reckon()).first->second;
+double PartGeometries::remembered(const std::string& question, const std::function<double()>& reckon) {
+    const auto known = remembered_.find(question);
+    return known != remembered_.end() ? known->second : remembered_.emplace(question, reckon()).first->second;
 }
 
 model::Bounds PartGeometries::boundsOf(const model::PartSpec& part) {

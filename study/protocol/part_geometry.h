@@ -38,7 +38,8 @@ public:
     const PartGeometry* of(const model::PartSpec& part);
     Errors problems(const model::PartSpec& part);
 
-    /// See model::thinFeatures; nothing of a mesh that cannot be read.
+    /// See model::thinFeatures; one model::SearchLimit for all questions about one geometry; nothing of a mesh that
+    /// cannot be read.
     const std::vector<model::ThinFeature>& thin(const model::PartSpec& part, double radius, model::ThinIn where);
 
     /// Was a search of thin() ended before it had come to all places?
@@ -60,17 +61,17 @@ public:
     /// The largest that a search of a coarse grid finds.
     Ball largestBall(const model::PartSpec& part);
 
-    /// How deep parts stand in each other [m], or another number, by whatever tells the question from others; `reckon`
-    /// is asked once.
-    double depth(const std::string& question, const std::function<double()>& reckon);
+    /// A number that takes long to reckon, by whatever tells the question from others; `reckon` is asked once.
+    double remembered(const std::string& question, const std::function<double()>& reckon);
 
 private:
     model::BuildStore* builds_;
     std::map<std::string, std::unique_ptr<PartGeometry>> geometries_;
     std::map<std::string, Errors> problems_;  // of those that are null
     std::map<std::string, std::vector<model::ThinFeature>> thin_;
+    std::map<std::string, std::size_t> work_left_;  // for thin()
     std::set<std::string> half_searched_;
-    std::map<std::string, double> depths_;
+    std::map<std::string, double> remembered_;
     std::map<std::string, Ball> balls_;
 };
 

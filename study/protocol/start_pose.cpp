@@ -88,7 +88,7 @@ double depthAt(const model::PartSpec& part, const Pose& X_WP, const model::PartS
     };
     const std::string question =
         fmt::format("{} at {} in {} at {}", geometryKey(part), text(X_WP), geometryKey(obstacle), text(obstacle.X_WP));
-    return geometries.depth(question, [&] {
+    return geometries.remembered(question, [&] {
         const model::TriangleMesh one = surfaceOf(part, geometries), other = surfaceOf(obstacle, geometries);
         if (one.triangles.empty() || other.triangles.empty()) return 0.0;
         const Placed held{part, X_WP, one, model::boundsOf(one)};

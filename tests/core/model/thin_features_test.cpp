@@ -88,6 +88,8 @@ TEST(ThinFeatures, TheSearchEndsAfterItsWorkAndSaysWhatItLeftOut) {
     const auto fewer = thinFeatures(mesh, tree, 0.05, ThinIn::Points, &some);
     EXPECT_EQ(all.left_out, 0u);
     EXPECT_GT(some.left_out, 100u);
+    EXPECT_GT(some.work, some.most_work);
+    EXPECT_GT(all.work, some.work);
     EXPECT_FALSE(found.empty());
     EXPECT_FALSE(fewer.empty());
 }

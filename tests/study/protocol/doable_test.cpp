@@ -150,6 +150,21 @@ std::string consent(const std::string& text) {
     return "[[consent]]\nclause = \"data\"\n[consent.text]\nen = \"" + text + "\"\n";
 }
 
+/// A line of 78 mm at `height` over the plate that bends down, or up, and has 1000 corners from `from` to `to` there.
+std::string bentLine(double height, double from, double to) {
+    std::string points = "[[-50, 25, " + std::to_string(height) + "], [28, 25, " + std::to_string(height) + "]";
+    for (int i = 0; i < 1000; ++i) points += ", [28, 25, " + std::to_string(from + (to - from) * i / 999.0) + "]";
+    return points + "]";
+}
+
+/// A pair that is seen only, whose comparison has this instead.
+Study seen(const std::string& comparison, const std::string& feedback = {}) {
+    Study study = same();
+    study.task.replace(study.task.find("\"contact"), 33, comparison);
+    study.more = "[feedback]\nkinesthetic = false\n" + feedback;
+    return study;
+}
+
 const std::string kPin = "mesh = \"pin.off\"", kFin = "mesh = \"fin.off\"";
 
 std::vector<Row> undoable() {
@@ -209,6 +224,14 @@ std::vector<Row> undoable() {
          {"task.points", "no room", "100 %"}},
         {"ball led down a bore that is too narrow for it",
          {.held = R"(shape = { kind = "sphere", diameter = 40 })", .task = line("[[0, 0, -8], [0, 0, -20]]")},
+         {"task.points", "no room"}},
+        {"line without room but for many corners",
+         {.held = R"(shape = { kind = "sphere", diameter = 20 })",
+          .task = line(bentLine(5, 12, 14), "reach_mm = 1\ncoverage = 0.5\n")},
+         {"task.points", "no room", "9"}},
+        {"line at a surface that stops the part",
+         {.held = R"(shape = { kind = "sphere", diameter = 12 })",
+          .task = line("[[12, -20, 0], [12, 20, 0]]", "reach_mm = 5\nforce_N = 2\n")},
          {"task.points", "no room"}},
         {"passage with a floor",
          {.held = kBall, .task = kThrough + "passage_length_mm = 30\npassage_width_mm = 8\n"},
@@ -309,6 +332,9 @@ std::vector<Row> undoable() {
           .more = "[secondary]\nstimulus = \"audio\"\ninterval_min_s = 3\nresponse_min_ms = 1\nresponse_max_ms = 20\n"
                   "button = 3\n"},
          {"secondary.response_max_ms", "150 ms"}},
+        {"a pair whose proxies are not drawn",
+         seen(R"("contact.method" = "penalty")", "shown_pose = \"device\"\n"),
+         {"task.comparison", "felt, seen or heard"}},
         {"a comparison that is its reference", same(), {"task.comparison", "nothing to tell apart"}},
         {"a pair without anything to compare",
          [] {
@@ -472,6 +498,29 @@ std::vector<Row> odd() {
          {}},
         {"line down the side of the plate", {.held = ball, .task = line("[[30, 0, 0], [30, 0, -30]]")}, {}},
         {"line of a ball's centre above the plate", {.held = ball, .task = line("[[12, 0, 5], [25, 10, 5]]")}, {}},
+        {"line without room at many corners alone",
+         {.held = R"(shape = { kind = "sphere", diameter = 20 })",
+          .task = line(bentLine(12, 8.5, 6.5), "reach_mm = 1\n")},
+         {}},
+        {"line at a surface that gives way",
+         {.held = R"(shape = { kind = "sphere", diameter = 12 })",
+          .task = line("[[12, -20, 0], [12, 20, 0]]", "reach_mm = 5\nforce_N = 2\n"),
+          .contact = "method = \"penalty\"\nstiffness_N_per_m = 1000"},
+         {}},
+        {"line at a surface that is not felt",
+         {.held = R"(shape = { kind = "sphere", diameter = 12 })",
+          .task = line("[[12, -20, 0], [12, 20, 0]]", "reach_mm = 5\n"),
+          .more = "[feedback]\nkinesthetic = false\n"},
+         {}},
+        {"goal in a closed box that gives way",
+         {.held = kBall,
+          .held_pose = "position = [0, 0, 50]",
+          .still = kHollow,
+          .task = place("[0, 0, 0]"),
+          .contact = "method = \"penalty\"\ncoupling = \"quasi_static\""},
+         {}},
+        {"a pair whose proxies part", seen(R"("contact.method" = "penalty")"), {}},
+        {"a pair that is drawn elsewhere", seen(R"("part.still.shown_offset" = [5, 0, 0])"), {}},
         {"pin with what follows from it", {.still = kPin}, {}},
         {"fin with what follows from it", {.still = kFin}, {}},
         {"sheet with what follows from it", {.still = R"(shape = { kind = "sheet", width = 60, depth = 60 })"}, {}},
