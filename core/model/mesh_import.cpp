@@ -264,12 +264,14 @@ Result<Done> toMetres(TriangleMesh& mesh, double metres_per_unit, const std::str
 /// A surface that passes through itself nearly everywhere has no inside that could be told, nor an end of work on it.
 std::optional<std::string> tangle(const MeshReport& report) {
     const double crossings = static_cast<double>(report.crossing_pairs) / static_cast<double>(report.triangles);
-    const double most = report.kind == SurfaceKind::HoledSolid ? kMostCrossingsWithGaps : kMostCrossings;
+    const bool scraps = report.kind == SurfaceKind::HoledSolid &&
+                        static_cast<double>(report.open_edges_left) > kScraps * static_cast<double>(report.triangles);
+    const double most = scraps ? kMostCrossingsOfScraps : kMostCrossings;
     if (!(crossings > most)) return std::nullopt;
     std::array<char, 160> text{};
     std::snprintf(text.data(), text.size(),
-                  "the surface crosses itself so often that it has no inside: each triangle passes through %.0f others "
-                  "(mean), at most %.0f",
+                  "the surface crosses itself so often that it has no inside: each triangle passes through %.1f others "
+                  "(mean), at most %.1f",
                   crossings, most);
     return std::string(text.data());
 }

@@ -60,15 +60,20 @@ struct ImportedMesh {
     MeshReport report;
 };
 
+/// How often a triangle may pass through others, in the mean: two solids that overlap have about 5, a lattice of struts
+/// that were never merged 12. Scraps have more open edges than kScraps for a triangle: their field jumps wherever their
+/// winding number passes a half, where there is no surface to refine it at, and would take many minutes.
+inline constexpr double kMostCrossings = 20.0;
+inline constexpr double kMostCrossingsOfScraps = 5.0;
+inline constexpr double kScraps = 1.0;  // of three; 3 for triangles that share no edge
+
 /// Reads a mesh file: STL, OBJ, PLY and OFF by ourselves (mesh_formats.h), glTF and 3MF by assimp, all nodes with their
 /// transforms; as metres. `metres_per_unit` (> 0) applies to formats without a unit. glTF is in metres; a 3MF file
 /// names its unit, millimetre if it names none. Polygons are cut into triangles; points and lines are ignored. Errors:
 /// file missing, unreadable, empty, cut off or of another kind; no triangles with area; vertices that are not finite or
 /// farther than 100 km from the origin; faces that name no vertex or too many; a surface whose triangles pass through
-/// more than kMostCrossings others each, in the mean; fewer, kMostCrossingsWithGaps, if it is left open.
-inline constexpr double kMostCrossings = 20.0;  // of two solids that overlap: about 5
-inline constexpr double kMostCrossingsWithGaps =
-    5.0;  // of a solid that is left open: its field would take many minutes
+/// more than kMostCrossings others each, in the mean; fewer, kMostCrossingsOfScraps, of scraps that hardly hang
+/// together.
 Result<ImportedMesh> importMesh(const std::string& path, double metres_per_unit);
 
 /// The same checks and repairs for triangles that are already in memory. @pre finite vertices, indices in range.
