@@ -60,6 +60,24 @@ TEST(PenaltyTool, ShowsSpringAndContactInSeriesOnAPlane) {
         }
 }
 
+TEST(PenaltyTool, SlidesAsIfThePartsHadNoFriction) {
+    // Truth: invariant: contacts of a penalty push along their normals alone, at the hand and on a tool.
+    for (const auto coupling : {PenaltyCoupling::Direct, PenaltyCoupling::QuasiStatic, PenaltyCoupling::Virtual}) {
+        tick::TickOutput out[2];
+        for (const double friction : {0.0, 0.8}) {
+            auto spec = overBlock(model::Sphere{0.02}, Vec3(0, 0, 0.0105));
+            spec.contact.coupling = coupling;
+            for (model::PartSpec& part : spec.parts) part.friction = part.sliding_friction = friction;
+            test::Bench bench(spec);
+            press(bench, {Quat::Identity(), Vec3(0, 0, 0.0105)}, {Quat::Identity(), Vec3(0, 0, 0.009)}, 200);
+            out[friction > 0.0] =
+                press(bench, {Quat::Identity(), Vec3(0, 0, 0.009)}, {Quat::Identity(), Vec3(0.005, 0, 0.009)}, 200);
+        }
+        EXPECT_GT(out[1].F_D_B.force.z(), 0.5);
+        EXPECT_EQ(out[0].F_D_B.force, out[1].F_D_B.force);
+    }
+}
+
 TEST(PenaltyTool, TurnsAgainstATiltedBoxLikeTwoSpringsInSeries) {
     // Truth: closed form. All of the box's foot a × b is in: F = κ a b d; its tilt is a ship's, T = (κ a³ b/12 - F e) θ
     // with e the height of the box's centre above that of its immersed part.

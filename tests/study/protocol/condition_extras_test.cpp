@@ -51,6 +51,11 @@ TEST(Messages, OfFrictionUnderThePenaltySayThatItIsNotFelt) {
     EXPECT_TRUE(plan->warnings[0].starts_with(
         "contact.method = \"penalty\" renders no friction: that of the parts is not felt; conditions: "))
         << plan->warnings[0];
+    // PenaltyTool.SlidesAsIfThePartsHadNoFriction: nor does a tool.
+    const auto tool = read(rubs + "[scene.contact]\ncoupling = \"quasi_static\"\n");
+    ASSERT_TRUE(tool) << faultOf(tool);
+    ASSERT_EQ(tool->warnings.size(), 1u);
+    EXPECT_TRUE(tool->warnings[0].starts_with("contact.method = \"penalty\" renders no friction")) << tool->warnings[0];
 }
 
 TEST(Messages, SayWhichOfCellAndToleranceWins) {
