@@ -71,7 +71,7 @@ Node convert(const toml::node& source, const std::string& file) {
     return node;
 }
 
-/// As it may stand in a file: 1.0 is not the integer 1.
+/// Text of a number as a file may hold it: 1.0 is not the integer 1.
 std::string numberText(double number) {
     std::string text = fmt::format("{}", number);
     if (text.find_first_not_of("-0123456789") == std::string::npos) text += ".0";

@@ -29,9 +29,8 @@ bool isScalar(const Node& node) {
 }
 
 bool isLabel(const std::string& text) {
-    return !text.empty() && text.size() <= kMostNameBytes && std::all_of(text.begin(), text.end(), [](char c) {
-        return c != '/' && static_cast<unsigned char>(c) >= 0x20;
-    });
+    return !text.empty() && std::all_of(text.begin(), text.end(),
+                                        [](char c) { return c != '/' && static_cast<unsigned char>(c) >= 0x20; });
 }
 
 /// Reads the levels of one factor.
@@ -55,9 +54,7 @@ public:
             if (!labels_.insert(label).second)
                 report(level.place, fmt::format("\"{}\"", label), "two levels have this label");
         } else if (errors_.size() == before_) {
-            report(level.place, fmt::format("\"{}\"", label),
-                   label.size() > kMostNameBytes ? fmt::format("a label must have at most {} letters", kMostNameBytes)
-                                                 : "a label must not be empty nor contain \"/\"");
+            report(level.place, fmt::format("\"{}\"", label), "a label must not be empty nor contain \"/\"");
         }
         content_.factor.levels.push_back({label, catch_trial_});
         catch_trial_ = false;

@@ -34,8 +34,26 @@ bool isGoverned(const StudyPlan& plan, std::size_t block) {
                        [block](const Staircase& staircase) { return staircase.block == block; });
 }
 
-bool measuresTime(const StudyPlan& plan) {
-    return std::find(plan.measures.begin(), plan.measures.end(), "time_s") != plan.measures.end();
+/// Does the protocol itself name the time, as a measure or as an outcome in this block?
+bool namesTime(const StudyPlan& plan, const Block& block, bool chosen_measures) {
+    constexpr std::string_view kTime = "time_s";
+    return (chosen_measures && std::count(plan.measures.begin(), plan.measures.end(), kTime) > 0) ||
+           std::any_of(plan.analyses.begin(), plan.analyses.end(), [&](const Analysis& analysis) {
+               return analysis.outcome == kTime && (analysis.block.empty() || analysis.block == block.name);
+           });
+}
+
+/// Pairs have no time-out that a repeated trial would hide.
+bool hasPairsAlone(const StudyPlan& plan, const Block& block) {
+    const bool own = block.first_condition > 0;
+    const std::size_t shared = plan.shared_conditions > 0 ? plan.shared_conditions : plan.conditions.size();
+    const std::size_t count = block.conditions.empty() ? shared : block.conditions.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t c = own ? block.first_condition + i : block.conditions.empty() ? i : block.conditions[i];
+        if (c < plan.conditions.size() && !std::holds_alternative<DiscriminationPairTask>(plan.conditions[c].task.form))
+            return false;
+    }
+    return true;
 }
 
 }  // namespace
@@ -107,7 +125,7 @@ std::vector<std::string> conditionWarnings(std::span<const Condition> conditions
     return warnings;
 }
 
-std::vector<std::string> blockWarnings(const StudyPlan& plan) {
+std::vector<std::string> blockWarnings(const StudyPlan& plan, bool chosen_measures) {
     std::vector<std::string> warnings;
     for (std::size_t i = 0; i < plan.blocks.size(); ++i) {
         const Block& block = plan.blocks[i];
@@ -118,7 +136,8 @@ std::vector<std::string> blockWarnings(const StudyPlan& plan) {
                 fmt::format("block.{}: after one attempt that does not count the session is not "
                             "complete unless the trial is repeated by hand or on resume; block: {}",
                             never ? "on_invalid = \"never\"" : "max_attempts = 1", block.name));
-        if (block.on_timeout != Repeat::Never && block.max_attempts > 1 && measuresTime(plan))
+        if (block.on_timeout != Repeat::Never && block.max_attempts > 1 && namesTime(plan, block, chosen_measures) &&
+            !hasPairsAlone(plan, block))
             warnings.push_back(
                 fmt::format("block.on_timeout repeats trials after a time-out, and only the last attempt counts: "
                             "time_s, its restricted mean and finished look better than they are; with \"never\" a "

@@ -19,6 +19,7 @@ std::vector<std::string> cuesWithoutOutput(std::span<const Condition> conditions
 bool isForPeople(const StudyPlan& plan);
 
 /// Such sentences about main blocks. One that a staircase governs repeats what its tracks lack anyway.
-std::vector<std::string> blockWarnings(const StudyPlan& plan);
+/// `chosen_measures`: the protocol lists its measures itself.
+std::vector<std::string> blockWarnings(const StudyPlan& plan, bool chosen_measures);
 
 }  // namespace passung::protocol

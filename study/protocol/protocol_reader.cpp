@@ -22,6 +22,7 @@
 #include "study/protocol/human_limits.h"
 #include "study/protocol/include.h"
 #include "study/protocol/measures_reader.h"
+#include "study/protocol/name_limits.h"
 #include "study/protocol/plan_contents.h"
 #include "study/protocol/plan_json.h"
 #include "study/protocol/plan_warnings.h"
@@ -45,7 +46,7 @@ constexpr std::size_t kMaxConditions = 1000;
 struct Read {
     StudyPlan plan;
     Errors errors;
-    Errors undoable;  // what a person could not do, feel or tell apart
+    Errors undoable;  // what a person could not do, feel or tell apart, and names
     Errors for_people;
 };
 
@@ -72,6 +73,7 @@ public:
     /// The plan as far as it can be read; complete if there are no errors.
     Read read() {
         const bool study = isSound([&] { readStudy(); });
+        checkNames(document_, undoable_);
         const bool few = readFactorTables();
         const bool blocks = isSound([&] { readBlockTables(); });
         staircases_sound_ = isSound([&] {
@@ -104,7 +106,8 @@ public:
         tidy(undoable_);
         if (errors_.empty()) {
             plan_.warnings = conditionWarnings(std::span(plan_.conditions).first(plannedConditions(plan_)));
-            for (std::string& warning : blockWarnings(plan_)) plan_.warnings.push_back(std::move(warning));
+            for (std::string& warning : blockWarnings(plan_, root_.has("measures")))
+                plan_.warnings.push_back(std::move(warning));
             for (std::string& warning : restWarnings(plan_)) plan_.warnings.push_back(std::move(warning));
             for (std::string& warning : warnings_)
                 if (std::find(plan_.warnings.begin(), plan_.warnings.end(), warning) == plan_.warnings.end())
@@ -129,7 +132,6 @@ private:
         const TableReader read(*table, {"study"}, "study", errors_);
         plan_.name = read.text("name");
         plan_.version = read.text("version");
-        read.requireLine("version");
         plan_.title = read.has("title") ? read.text("title") : plan_.name;
         plan_.seed = static_cast<std::uint64_t>(read.integer("seed"));
         plan_.participants = static_cast<int>(read.integer("participants"));
@@ -518,6 +520,20 @@ Read readText(const std::string& text, const std::string& path, std::span<const 
     return read;
 }
 
+/// See checkNames(); a file that cannot be read is told of elsewhere.
+Errors namesOfQuestionnaires(const StudyPlan& plan) {
+    Errors errors;
+    const auto folder = std::filesystem::path(plan.source_path).parent_path();
+    for (const PlannedQuestionnaire& planned : plan.questionnaires)
+        for (const std::string& file : {planned.file, planned.texts}) {
+            const auto text = file.empty() ? Result<std::string>(std::string()) : readFile((folder / file).string());
+            const auto document = text ? parseDocument(*text, (folder / file).string()) : Result<Node>(text.errors());
+            if (document) checkNames(*document, errors);
+        }
+    tidy(errors);
+    return errors;
+}
+
 }  // namespace
 
 Examined examineProtocol(const std::string& path, std::span<const DeviceDescription> devices,
@@ -528,6 +544,7 @@ Examined examineProtocol(const std::string& path, std::span<const DeviceDescript
     const bool sound = all.errors.empty();
     const auto add = [&](const Errors& errors) { all.errors.insert(all.errors.end(), errors.begin(), errors.end()); };
     add(checkPictures(all.plan, readFile));
+    add(namesOfQuestionnaires(all.plan));
     if (!sound) {
         add(checkQuestionnaires(all.plan, readFile));
     } else if (!all.plan.questionnaires.empty()) {

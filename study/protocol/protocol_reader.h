@@ -32,7 +32,8 @@ Result<StudyPlan> readProtocolText(const std::string& text, const std::string& p
                                    std::span<const std::string> known_measures, model::BuildStore* builds = nullptr);
 
 /// The same for a study that began, maybe under an earlier version of this program: what no longer may begin, because a
-/// person could not do it, feel it or tell conditions apart, may still go on and be looked at.
+/// person could not do it, feel it or tell conditions apart, or for the length of a name, may still go on and be looked
+/// at.
 Result<StudyPlan> readBegunProtocol(const std::string& text, const std::string& path,
                                     std::span<const DeviceDescription> devices,
                                     std::span<const std::string> known_measures, model::BuildStore* builds = nullptr);

@@ -11,6 +11,8 @@
 namespace passung::protocol {
 namespace {
 
+constexpr std::size_t kMostMeant = 100;  // bytes of an unknown key that may be a known one, misspelt
+
 bool isNumber(const Node& node) { return node.kind == Node::Kind::Number || node.kind == Node::Kind::Integer; }
 
 /// What is wrong with a number; empty if nothing. Finite first: every comparison with NaN is false.
@@ -98,7 +100,6 @@ std::string valueFault(const Key& key, const Node& value) {
         case KeyType::Text:
             return value.text.empty() ? "must not be empty" : "";
         case KeyType::Name:
-            if (value.text.size() > kMostNameBytes) return fmt::format("must have at most {} letters", kMostNameBytes);
             return isName(value.text) ? "" : "must be lower-case letters, digits and _, beginning with a letter";
         case KeyType::Choice:
             return choiceFault(key, value);
@@ -135,7 +136,7 @@ void TableReader::reportUnknown(const Entry& entry) {
     for (const Key& row : keys())
         if (std::find(tables_.begin(), tables_.end(), row.table) != tables_.end()) names.push_back(row.name);
     std::string message = "unknown key";
-    const auto close = entry.key.size() <= kMostNameBytes ? closestWord(entry.key, names) : std::nullopt;
+    const auto close = entry.key.size() <= kMostMeant ? closestWord(entry.key, names) : std::nullopt;
     if (close) meant_.push_back(*close);
     if (close)
         message += fmt::format("; did you mean \"{}\"?", *close);
@@ -218,12 +219,6 @@ void TableReader::fail(std::string_view name, std::string message) const {
     errors_.push_back(value == nullptr ? errorAt(table_.place, pathOf(name),
                                                  fallback.empty() ? "" : fallback + " (default)", std::move(message))
                                        : errorAt(value->place, pathOf(name), valueText(*value), std::move(message)));
-}
-
-void TableReader::requireLine(std::string_view name) const {
-    const std::string value = text(name);
-    if (value.find_first_of("\n\r\t") != std::string::npos) fail(name, "must be one line without tabs");
-    if (value.size() > kMostNameBytes) fail(name, fmt::format("must have at most {} letters", kMostNameBytes));
 }
 
 std::string TableReader::pathOf(std::string_view name) const {

@@ -33,8 +33,6 @@ public:
 
     /// Something is wrong with this key's value; placed at the value, or at the table where it is absent.
     void fail(std::string_view name, std::string message) const;
-    /// Refuses a text of several lines, with tabs or longer than a name.
-    void requireLine(std::string_view name) const;
     /// Name of a key for messages.
     std::string pathOf(std::string_view name) const;
 
@@ -51,9 +49,6 @@ private:
     std::vector<const Entry*> sound_;
     std::vector<std::string_view> meant_;  // keys that an unknown one is likely to be: their absence is told with it
 };
-
-/// Of names, versions and labels: columns, lines and files are made of them.
-inline constexpr std::size_t kMostNameBytes = 100;
 
 /// True for a lower-case letter followed by lower-case letters, digits and underscores.
 bool isName(std::string_view text);

@@ -58,7 +58,8 @@ TEST(InvalidFiles, AStudyThatOnlyMayNotBeginCanStillBeReadOnceItBegan) {
         EXPECT_FALSE(readProtocolText(text, name, knownDevices(), knownMeasures())) << name;
         return readBegunProtocol(text, name, knownDevices(), knownMeasures());
     };
-    for (const char* name : {"dead_cue_decay.toml", "dead_cue_depth.toml", "dead_shown_pose.toml"}) {
+    for (const char* name : {"dead_cue_decay.toml", "dead_cue_depth.toml", "dead_shown_pose.toml", "long_name.toml",
+                             "long_label.toml", "version_lines.toml"}) {
         const auto plan = begun(name);
         ASSERT_TRUE(plan) << toString(plan.errors().front());
         EXPECT_FALSE(plan->conditions.empty());

@@ -275,8 +275,9 @@ TEST(ProtocolReader, WarnsOfMainBlocksThatDoNotRepeatWhatDoesNotCount) {
 TEST(ProtocolReader, WarnsOfMainBlocksThatRepeatTimeOutsWhileTimeIsMeasured) {
     // Truth: invariant: of a trial that is repeated only the last attempt counts, so that its time is no longer
     // censored.
-    const std::string text = kHead + kScene + kTask + kFactors + kBlock;
-    const std::vector<std::string> timed = {"time_s"};
+    const std::string own = kHead + kScene + kTask + kFactors + kBlock;
+    const std::string text = "measures = [\"time_s\"]\n" + own;
+    const std::vector<std::string> timed = {"time_s", "search_time_s"};
     const auto warnings = [&](const std::string& more) { return read(text + more, timed)->warnings; };
     for (const char* repeated : {"on_timeout = \"repeat_at_block_end\"\n", "on_failure = \"repeat_now\"\n"}) {
         ASSERT_EQ(warnings(repeated).size(), 1u) << repeated;
@@ -284,8 +285,46 @@ TEST(ProtocolReader, WarnsOfMainBlocksThatRepeatTimeOutsWhileTimeIsMeasured) {
         EXPECT_TRUE(warnings(repeated)[0].ends_with("block: main")) << warnings(repeated)[0];
     }
     EXPECT_TRUE(warnings("on_failure = \"repeat_now\"\non_timeout = \"never\"\n").empty());
-    EXPECT_TRUE(read(text + "on_timeout = \"repeat_now\"\n")->warnings.empty()) << "no time is measured";
+    EXPECT_TRUE(
+        read("measures = [\"search_time_s\"]\n" + own + "on_timeout = \"repeat_now\"\n", timed)->warnings.empty())
+        << "no such time is measured";
+    EXPECT_TRUE(read(own + "on_timeout = \"repeat_now\"\n", timed)->warnings.empty()) << "all are, whoever needs them";
+    const std::string analysis = "[[analysis]]\noutcome = \"time_s\"\nfactors = [\"method\"]\ntest = \"rm_anova\"\n";
+    const auto outcome = read(own + "on_timeout = \"repeat_now\"\n" + analysis, timed);
+    ASSERT_TRUE(outcome) << toString(outcome.errors().front());
+    ASSERT_EQ(outcome->warnings.size(), 1u);
+    EXPECT_TRUE(outcome->warnings[0].starts_with("block.on_timeout repeats trials")) << outcome->warnings[0];
+    std::string pairs = text;
+    pairs.replace(pairs.find(kTask), kTask.size(),
+                  "[task]\ntype = \"discrimination_pair\"\ntarget = \"plate\"\nquestion = \"Which?\"\n"
+                  "comparison = { \"contact.stiffness_N_per_m\" = 500 }\n"
+                  "[scene.start_gate]\nposition_tolerance_mm = 3\nhold_ms = 200\n");
+    const auto paired = read(pairs + "on_timeout = \"repeat_now\"\n", timed);
+    ASSERT_TRUE(paired) << toString(paired.errors().front());
+    EXPECT_TRUE(paired->warnings.empty()) << paired->warnings[0];
     EXPECT_TRUE(warnings("[[block]]\nname = \"warm_up\"\nphase = \"practice\"\non_timeout = \"repeat_now\"\n").empty());
+}
+
+TEST(ProtocolReader, CountsTheLettersOfNamesAndLabelsNotTheirBytes) {
+    // Truth: closed form: 100 letters are allowed; each of these takes two bytes. What began with more goes on.
+    for (const std::string letter : {"a", "\u00e4"})
+        for (const int letters : {100, 101}) {
+            std::string label;
+            for (int i = 0; i < letters; ++i) label += letter;
+            for (const bool version : {false, true}) {
+                std::string text = kHead + kScene + kTask + kFactors + kBlock;
+                const std::string from = version ? "version = \"2\"" : "\"stiff\"";
+                ASSERT_NE(text.find(from), std::string::npos);
+                text.replace(text.find(from), from.size(), (version ? "version = \"" : "\"") + label + "\"");
+                const auto plan = read(text);
+                EXPECT_EQ(static_cast<bool>(plan), letters == 100) << letter << version;
+                if (!plan) {
+                    EXPECT_NE(toString(plan.errors()[0]).find("at most 100 letters"), std::string::npos);
+                }
+                const auto begun = readBegunProtocol(text, "p.toml", fakeDevices(), kMeasures);
+                EXPECT_TRUE(begun) << toString(begun.errors()[0]);
+            }
+        }
 }
 
 TEST(ProtocolReader, WarnsOfFrictionThatThePenaltyDoesNotRender) {
