@@ -45,7 +45,7 @@ struct Judged {
 /// Questions asked of the tree, those for the inside counted as several: the same on every machine.
 using Work = std::size_t;
 constexpr Work kInsideWork = 4;
-constexpr std::size_t kSeedsPerRound = 256;  // between two looks at the work
+constexpr std::size_t kSeedsPerRound = 64;  // between two looks at the work
 
 /// Directions spread evenly over the sphere (Fibonacci lattice).
 std::array<Vec3, kDirections> directions() {

@@ -35,7 +35,7 @@ enum class ThinIn {
 /// What a search may cost, the same on every machine, and what it left out.
 struct SearchLimit {
     std::size_t most_work = 20'000'000;  // questions asked of the tree; half a minute or so
-    std::size_t work = 0;                // of them those that it asked; some hundred places are looked at anyway
+    std::size_t work = 0;                // of them those that it asked; some tens of places are looked at anyway
     std::size_t left_out = 0;            // places that it did not come to; 0 but for thousands of thin ones
 };
 
