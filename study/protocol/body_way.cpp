@@ -16,6 +16,7 @@ namespace {
 constexpr int kHalvings = 3;             // of the cube in which a place is searched for
 constexpr double kHalfDiagonal = 0.867;  // of a cube with edge 1, rounded up
 constexpr int kMostCells = 48;           // along the longest side of the grid
+constexpr int kMostSteps = 6;            // of cells around one that are taken with it
 constexpr int kDepths = 32;              // of a passage
 constexpr int kPieces = 200;             // of a line, equally long
 constexpr double kRounding = 1e-9;       // of a sum of lengths
@@ -29,6 +30,13 @@ public:
     }
 
     bool none() const { return parts_.empty(); }
+
+    /// Is a distance worth more than a look at some hundred cells? That of a mesh is.
+    bool takesLong() const {
+        return std::any_of(parts_.begin(), parts_.end(), [](const model::PartSpec* part) {
+            return std::holds_alternative<model::MeshFile>(part->geometry);
+        });
+    }
 
     /// From all of them [m]; negative inside.
     double distance(const Vec3& p) const {
@@ -149,6 +157,7 @@ private:
 
     void spread(const Obstacles& obstacles, double enough, const Vec3& start) {
         std::vector<Cell> front;
+        const int most = obstacles.takesLong() ? kMostSteps : 0;
         const auto enter = [&](const Cell& cell) {
             if (free_[indexOf(cell)] != kUnseen) return;
             const double over = obstacles.distance(middle(cell)) - enough;
@@ -156,7 +165,7 @@ private:
             if (!(over >= 0.0)) return;
             front.push_back(cell);
             // Whatever is no farther away than that is free, too: of open space few cells are asked for.
-            around(cell, static_cast<int>(std::min(over / edge_, 1.0 * kMostCells)), [&](const Cell& other) {
+            around(cell, most == 0 ? 0 : static_cast<int>(std::min(over / edge_, 1.0 * most)), [&](const Cell& other) {
                 char& state = free_[indexOf(other)];
                 if (state != kUnseen || (middle(other) - middle(cell)).norm() > over) return;
                 state = kFree;
