@@ -71,8 +71,7 @@ TEST_F(Damage, AnEarlierWholeExportIsKeptAndNamed) {
     const std::string whole = readText(folder_.path() / "out/SHA256SUMS");
     change("UPDATE attempt_measure SET value_num=9 WHERE attempt_id=3 AND measure='trial_time_s'");
     const Ended damaged = ends({"export", "s.db", "--out", "out"}, 1);
-    EXPECT_NE(damaged.err.find("out: warning: the earlier export may hold what is damaged in the database now: kept as "
-                               "out.backup.1"),
+    EXPECT_NE(damaged.err.find("out: warning: the earlier export may hold what this one lacks: kept as out.backup.1"),
               std::string::npos)
         << damaged.err;
     EXPECT_EQ(readText(folder_.path() / "out.backup.1/SHA256SUMS"), whole);
