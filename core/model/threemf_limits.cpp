@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <memory>
+#include <sstream>
 
 #include "core/model/scene_file_limits.h"
 
@@ -89,6 +91,17 @@ std::string idOf(std::string_view text) {
 bool isReferred(std::string_view id) { return id.find('&') != std::string_view::npos; }
 constexpr const char* kReferred = "an object's id is written with a character reference";
 
+/// Numbers parted by white space; another reader would stop at a word by an exception and lose what it holds.
+bool isOfNumbers(std::string_view text) {
+    std::istringstream words{std::string(text)};
+    for (std::string word; words >> word;) {
+        char* end = nullptr;
+        const float number = std::strtof(word.c_str(), &end);
+        if (*end != '\0' || !std::isfinite(number)) return false;
+    }
+    return true;
+}
+
 /// Judges the elements of a model: how deep they are, and which object stands in which.
 std::optional<std::string> judgeModel(std::string_view xml) {
     Nesting nesting;
@@ -111,6 +124,7 @@ std::optional<std::string> judgeModel(std::string_view xml) {
         } else if (name == "component" || name == "item") {
             const std::string_view id = tags.attribute("objectid");
             if (isReferred(id)) return kReferred;
+            if (!isOfNumbers(tags.attribute("transform"))) return "a transform in it must be of finite numbers alone";
             const std::size_t inner = nesting.number(idOf(id));
             nesting[name == "item" ? all : object].inner.push_back(inner);
         } else if (name == "triangle") {
