@@ -235,12 +235,6 @@ const Table& Healer::table(const std::string& name) const {
     return *std::find_if(tables_.begin(), tables_.end(), [&](const Table& table) { return table.name == name; });
 }
 
-std::string Healer::namesOf(const Table& table) const {
-    std::string names;
-    for (const TableColumn& column : table.columns) names += (names.empty() ? "" : ", ") + column.name;
-    return names;
-}
-
 /// The columns of a row t there as they are to be here. A number by which nothing refers to the row is ?3; where that
 /// is NULL, the one that it has there; where that is taken, a new one.
 std::string Healer::valuesOf(const Table& table) const {
@@ -270,9 +264,9 @@ void Healer::copy(const Table& table, const std::string& where, std::int64_t key
         list += (list.empty() ? "" : ", ") + column.name + (column.key > 0 ? "" : "=excluded." + column.name);
     }
     database_
-        .prepare("INSERT INTO main." + table.name + "(" + namesOf(table) + ") SELECT " + valuesOf(table) + " FROM " +
-                 source_ + "." + table.name + " t WHERE (?1=?1 OR ?2=?2) AND " + where + " ON CONFLICT(" + keys +
-                 ") DO UPDATE SET " + changes)
+        .prepare("INSERT INTO main." + table.name + "(" + columnNames(table) + ") SELECT " + valuesOf(table) +
+                 " FROM " + source_ + "." + table.name + " t WHERE (?1=?1 OR ?2=?2) AND " + where + " ON CONFLICT(" +
+                 keys + ") DO UPDATE SET " + changes)
         .bind(key, session_)
         .run();
 }
@@ -291,8 +285,8 @@ void Healer::replaceRows(const Table& table, const std::string& where_here, std:
     const std::string those = " t WHERE (?1=?1 OR ?2=?2) AND ";
     const std::string rows_here = where_here + notLater(table, "main");
     const std::string rows_there = where_there + notLater(table, source_);
-    const std::string insert = "INSERT INTO main." + table.name + "(" + namesOf(table) + ") SELECT " + valuesOf(table) +
-                               " FROM " + source_ + "." + table.name + those + rows_there;
+    const std::string insert = "INSERT INTO main." + table.name + "(" + columnNames(table) + ") SELECT " +
+                               valuesOf(table) + " FROM " + source_ + "." + table.name + those + rows_there;
     const auto numbers = [&](const std::string& schema, const std::string& where, std::int64_t key) {
         std::vector<std::int64_t> found;
         Statement rows = database_.prepare("SELECT t." + table.number()->name + " FROM " + schema + "." + table.name +

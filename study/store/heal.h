@@ -41,7 +41,6 @@ private:
     void keepLaterInvalidation(std::int64_t here, const std::string& valid, const std::string& reason);
 
     const Table& table(const std::string& name) const;
-    std::string namesOf(const Table& table) const;
     std::string valuesOf(const Table& table) const;
     void copy(const Table& table, const std::string& where, std::int64_t key);
     void replaceRows(const Table& table, const std::string& where_here, std::int64_t here,

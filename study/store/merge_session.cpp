@@ -28,12 +28,6 @@ std::int64_t least(const Database& database, const std::vector<Table>& tables, c
     return find.integer(0);
 }
 
-std::string namesOf(const Table& table) {
-    std::string names;
-    for (const TableColumn& column : table.columns) names += (names.empty() ? "" : ", ") + column.name;
-    return names;
-}
-
 }  // namespace
 
 bool sessionLacks(const Database& database, const std::string& one, const std::string& other, const std::string& id) {
@@ -64,7 +58,7 @@ void copySession(const Database& database, const std::vector<Table>& tables, con
             values += (values.empty() ? "" : ", ") + value;
         }
         database
-            .prepare("INSERT INTO main." + table.name + "(" + namesOf(table) + ") SELECT " + values + " FROM " +
+            .prepare("INSERT INTO main." + table.name + "(" + columnNames(table) + ") SELECT " + values + " FROM " +
                      source + "." + table.name + " t WHERE " + rowsOfSession(tables, table, source))
             .bind(id)
             .run();

@@ -86,6 +86,12 @@ Table describeTable(const Database& database, const std::string& name) {
     return table;
 }
 
+std::string columnNames(const Table& table) {
+    std::string names;
+    for (const TableColumn& column : table.columns) names += (names.empty() ? "" : ", ") + column.name;
+    return names;
+}
+
 std::vector<std::string> tableNames(const Database& database) {
     std::vector<std::string> names;
     Statement tables = database.prepare(

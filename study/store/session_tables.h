@@ -32,6 +32,9 @@ struct Table {
 
 Table describeTable(const Database& database, const std::string& name);
 
+/// "a, b, c": all columns, as they stand in a statement.
+std::string columnNames(const Table& table);
+
 /// Names of all tables of the file, in the order in which the schema made them.
 std::vector<std::string> tableNames(const Database& database);
 
