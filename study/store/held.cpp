@@ -30,15 +30,15 @@ bool holdsSession(const Database& database, const std::string& source, const std
     });
 }
 
-bool holdsRow(const Database& database, const std::string& source, const RowFault& fault) {
+bool holdsRow(const Database& database, const std::string& source, const RowFault& fault,
+              const std::vector<RowFault>& faults) {
+    if (std::any_of(faults.begin(), faults.end(), [&](const RowFault& other) { return isSame(other, fault); }))
+        return false;
     return surely([&] {
         Statement same = database.prepare("SELECT 1 FROM main.row_hash m JOIN " + source +
                                           ".row_hash s USING(table_name, row_key, sha256) WHERE table_name=? AND "
                                           "row_key=?");
         if (!same.bind(fault.table, fault.key).step()) return false;
-        const std::vector<RowFault> here = rowFaults(database, "main");
-        if (std::any_of(here.begin(), here.end(), [&](const RowFault& other) { return isSame(other, fault); }))
-            return false;
         Statement sessions = database.prepare("SELECT session_id FROM " + source + ".session WHERE participant_id=?");
         sessions.bind(fault.participant_id);
         while (sessions.step())

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "study/store/row_hash.h"
 
@@ -12,7 +13,9 @@ namespace passung::store {
 /// Is the session in the main database as it was kept in the source, with what people changed in it since?
 bool holdsSession(const Database& database, const std::string& source, const std::string& session);
 
-/// Is the damaged row of the source sound in the main database, with all sessions of whom it is about?
-bool holdsRow(const Database& database, const std::string& source, const RowFault& fault);
+/// Is the damaged row of the source sound in the main database, whose own `faults` are these, with all sessions of whom
+/// it is about?
+bool holdsRow(const Database& database, const std::string& source, const RowFault& fault,
+              const std::vector<RowFault>& faults);
 
 }  // namespace passung::store

@@ -193,8 +193,11 @@ private:
     }
 
     void tellDamaged() {
+        if (damaged_rows_.empty()) return;
+        const bool may_hold = taken_ == Taken::AsFarAsReadable;
+        const std::vector<RowFault> here = may_hold ? rowFaults(database_, "main") : std::vector<RowFault>();
         for (const RowFault& fault : damaged_rows_)
-            tellLeftOut(taken_ == Taken::AsFarAsReadable && holdsRow(database_, kSource, fault),
+            tellLeftOut(may_hold && holdsRow(database_, kSource, fault, here),
                         titleOf(fault) + " is not as it was written");
     }
 

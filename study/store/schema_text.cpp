@@ -123,7 +123,7 @@ struct Verdict {
 };
 
 Verdict judge(const std::vector<SchemaRow>& here, const std::vector<SchemaRow>& newest, int number) {
-    const std::vector<SchemaRow> written = schemaOf(number);
+    const std::vector<SchemaRow> written = number == schemaNumber() ? newest : schemaOf(number);
     const auto has = [](const std::vector<SchemaRow>& rows, const SchemaRow& row) {
         return std::any_of(rows.begin(), rows.end(), [&](const SchemaRow& r) { return r.name == row.name; });
     };
