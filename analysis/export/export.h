@@ -28,8 +28,8 @@ struct ExportReport {
 /// Writes the whole study as files for people and statistics programs into the folder `out_dir`: tables as CSV (UTF-8,
 /// RFC 4180, LF, NA for missing), a codebook, the protocols, README.md and SHA256SUMS. The same data gives the same
 /// bytes. What the reader left out because it is damaged is listed in missing.csv. The folder appears complete or not
-/// at all; an earlier export in its place is replaced, or kept as `out_dir`.backup.1, .2 … where it may hold what is
-/// damaged now; a folder with any other file is refused.
+/// at all; an earlier export in its place is replaced, or kept as `out_dir`.backup.1, .2 … where it may hold what the
+/// new one lacks; a folder with any other file is refused.
 Result<ExportReport> exportAll(const store::StoreReader& reader, const std::string& out_dir,
                                const ExportOptions& options = {});
 
