@@ -5,6 +5,7 @@ cmake_policy(VERSION 3.25)
 # Each room and the rooms it may include besides itself. Arrows point only upward.
 set(core_rooms "core/base core/model core/tick core/query core/loop core/replay")
 set(study_rooms "study/protocol study/design study/questionnaire study/measures study/person")
+set(front_rooms "${core_rooms} devices study analysis ui/presenter")
 set(rooms
   "core/base           |"
   "core/model          | core/base"
@@ -23,14 +24,14 @@ set(rooms
   "analysis/truth      | core/base core/model core/tick core/query"
   "analysis/export     | core/base study/design study/protocol study/questionnaire study/measures study/store"
   "analysis/stats      | core/base"
-  "analysis/power      | core/base ${study_rooms} study/session study/store analysis/export analysis/stats"
-  "ui/presenter        | core/base core/model ${study_rooms} study/session study/store analysis/export analysis/stats"
+  "study/run           | ${core_rooms} devices ${study_rooms} study/session study/store analysis/truth"
+  "analysis/power      | core/base ${study_rooms} study/session study/store study/run analysis/export analysis/stats"
+  "ui/presenter        | core/base core/model ${study_rooms} study/session study/store study/run analysis/export analysis/stats"
   "ui/sound            | core/base core/loop study/measures"
   "ui/experimenter     | ui/presenter"
   "ui/participant      | ui/presenter"
-  "ui/window           | *"
-  "ui/cli              | *"
-  "ui/app              | *"
+  "ui/window           | ${front_rooms} ui/sound ui/experimenter ui/participant"
+  "ui/cli              | ${front_rooms}"
   "tests               | *")
 
 # Headers from outside: what the path between the angle brackets looks like, the rooms that may include it, and
@@ -48,7 +49,7 @@ set(libraries
   "FCL      | ^fcl/                            | analysis/truth tests                   | cpp"
   "Boost.Math | ^boost/math/                     | analysis/stats tests                   | cpp"
   "spdlog   | ^spdlog/                         | ui tests                               | cpp"
-  "CLI11    | ^CLI/                            | ui/cli ui/app tests                    | cpp"
+  "CLI11    | ^CLI/                            | ui/cli tests                           | cpp"
   "ODE      | ^ode/                            | tests                                  | cpp"
   "Bullet   | ^(btBullet|Bullet)               | tests                                  | cpp"
   "OpenVDB  | ^openvdb/                        | tests                                  | cpp"
@@ -56,7 +57,7 @@ set(libraries
   "XCB      | ^xcb/                            | ui/window tests                        | cpp"
   "gbench   | ^benchmark/                      | tests                                  | cpp"
   "gtest    | ^g(test|mock)/                   | tests                                  | any"
-  "POSIX    | ^(sys|linux|arpa|netinet)/|^(unistd|pthread|sched|fcntl|poll|semaphore|spawn|signal|time|dlfcn|termios|malloc|pwd|grp)[.]h$ | core/base core/loop devices study/store ui tests | cpp")
+  "POSIX    | ^(sys|linux|arpa|netinet)/|^(unistd|pthread|sched|fcntl|poll|semaphore|spawn|signal|time|dlfcn|termios|malloc|pwd|grp)[.]h$ | core/base core/loop devices study/store study/run ui tests | cpp")
 
 # The tick: a positive list. What is not here allocates, locks, throws, waits or talks to the system.
 set(tick_standard_headers algorithm array atomic bit bitset cassert cfloat climits cmath compare concepts cstddef

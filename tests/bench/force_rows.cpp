@@ -12,11 +12,11 @@
 #include "core/tick/step.h"
 #include "study/person/simulated_person.h"
 #include "study/protocol/protocol_reader.h"
+#include "study/run/files/disk_store.h"
+#include "study/run/files/known_names.h"
+#include "study/run/loop_apparatus.h"
 #include "tests/bench/stopwatch.h"
 #include "tests/hard/figures.h"
-#include "ui/app/disk_store.h"
-#include "ui/app/known_names.h"
-#include "ui/app/loop_apparatus.h"
 
 namespace {
 

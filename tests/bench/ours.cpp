@@ -9,9 +9,9 @@
 
 #include "core/model/timed_store.h"
 #include "core/tick/penalty.h"
+#include "study/run/files/disk_store.h"
 #include "tests/bench/contact_scene.h"
 #include "tests/bench/stopwatch.h"
-#include "ui/app/disk_store.h"
 
 namespace passung::bench {
 

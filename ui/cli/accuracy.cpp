@@ -9,7 +9,7 @@
 #include "analysis/truth/accuracy_sweep.h"
 #include "analysis/truth/accuracy_tables.h"
 #include "study/protocol/document.h"
-#include "ui/app/builds.h"
+#include "study/run/files/builds.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 #include "ui/cli/part_argument.h"

@@ -4,12 +4,12 @@
 
 #include "study/protocol/document.h"
 #include "study/protocol/questionnaire_reader.h"
+#include "study/run/files/known_names.h"
+#include "study/run/files/protocol_files.h"
+#include "study/run/machine/stability_report.h"
 #include "study/session/participant_order.h"
 #include "study/session/plan_text.h"
 #include "study/session/staircase_text.h"
-#include "ui/app/known_names.h"
-#include "ui/app/protocol_files.h"
-#include "ui/app/stability_report.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "ui/app/mesh_importer.h"
+#include "study/run/files/mesh_importer.h"
 
 namespace passung::cli {
 

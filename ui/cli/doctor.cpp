@@ -5,10 +5,10 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "ui/app/calibration.h"
-#include "ui/app/known_names.h"
-#include "ui/app/loop_check.h"
-#include "ui/app/stability_report.h"
+#include "study/run/files/known_names.h"
+#include "study/run/machine/calibration.h"
+#include "study/run/machine/loop_check.h"
+#include "study/run/machine/stability_report.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 

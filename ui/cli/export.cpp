@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "ui/app/known_exports.h"
+#include "study/run/files/known_exports.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 

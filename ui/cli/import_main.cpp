@@ -14,7 +14,7 @@
 
 #include "core/model/mesh_bytes.h"
 #include "core/model/mesh_import.h"
-#include "ui/app/import_exit.h"
+#include "study/run/import_exit.h"
 
 // The program passung-import: reads one mesh file for passung, so that no file can do to passung what it may do to its
 // reader. Words: FILE METRES_PER_UNIT SECONDS BYTES. The answer, a mesh with its report or errors, goes to the standard

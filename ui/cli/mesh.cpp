@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "core/model/part.h"
-#include "ui/app/builds.h"
+#include "study/run/files/builds.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 #include "ui/cli/part_argument.h"

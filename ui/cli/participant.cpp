@@ -9,15 +9,15 @@
 #include <map>
 #include <optional>
 
+#include "study/run/files/protocol_files.h"
 #include "study/store/backup.h"
 #include "study/store/participant_desk.h"
 #include "study/store/store_reader.h"
-#include "ui/app/protocol_files.h"
-#include "ui/app/study_desk.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 #include "ui/cli/places.h"
 #include "ui/cli/station.h"
+#include "ui/presenter/study_desk.h"
 
 namespace passung::cli {
 

@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
+#include "study/run/files/stored_plans.h"
 #include "study/session/plan_text.h"
-#include "ui/app/stored_plans.h"
 
 namespace passung::cli {
 

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "analysis/power/haptic_study.h"
 #include "analysis/power/model_study.h"
 #include "analysis/power/power_file.h"
 #include "analysis/power/power_runs.h"
 #include "analysis/power/power_summary.h"
 #include "core/base/regular_file.h"
+#include "study/run/files/protocol_files.h"
 #include "study/session/plan_text.h"
-#include "ui/app/haptic_study.h"
-#include "ui/app/protocol_files.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 

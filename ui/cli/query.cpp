@@ -10,7 +10,7 @@
 #include "core/base/number_table.h"
 #include "core/query/part_query.h"
 #include "study/protocol/json.h"
-#include "ui/app/builds.h"
+#include "study/run/files/builds.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 #include "ui/cli/part_argument.h"

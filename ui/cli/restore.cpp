@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "ui/app/wall_clock.h"
+#include "study/run/files/wall_clock.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 

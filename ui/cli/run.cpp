@@ -6,11 +6,11 @@
 #include <set>
 
 #include "analysis/export/summary.h"
+#include "study/run/files/protocol_files.h"
+#include "study/run/machine/stability_report.h"
+#include "study/run/run_study.h"
 #include "study/session/plan_text.h"
 #include "study/store/store_reader.h"
-#include "ui/app/protocol_files.h"
-#include "ui/app/run_study.h"
-#include "ui/app/stability_report.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 #include "ui/cli/station.h"

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "ui/app/command_socket.h"
-#include "ui/app/wall_clock.h"
+#include "study/run/command_socket.h"
+#include "study/run/files/wall_clock.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 

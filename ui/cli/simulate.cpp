@@ -7,8 +7,8 @@
 #include "core/tick/step.h"
 #include "devices/scripted/trajectory.h"
 #include "study/protocol/document.h"
-#include "ui/app/builds.h"
-#include "ui/app/protocol_files.h"
+#include "study/run/files/builds.h"
+#include "study/run/files/protocol_files.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "analysis/export/export.h"
-#include "ui/app/known_exports.h"
+#include "study/run/files/known_exports.h"
 #include "ui/presenter/axis.h"
 #include "ui/window/data_words.h"
 #include "ui/window/registry_words.h"

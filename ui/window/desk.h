@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "ui/app/live_session.h"
 #include "ui/presenter/run.h"
+#include "ui/window/live_session.h"
 #include "ui/window/speaker.h"
 
 namespace passung::window {

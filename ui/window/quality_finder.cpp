@@ -1,6 +1,6 @@
 #include "ui/window/quality_finder.h"
 
-#include "ui/app/frame_clock.h"
+#include "study/run/machine/frame_clock.h"
 
 namespace passung::window {
 

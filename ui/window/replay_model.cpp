@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "study/run/files/stored_plans.h"
 #include "study/store/store_reader.h"
-#include "ui/app/stored_plans.h"
 #include "ui/presenter/participant.h"
 
 namespace passung::window {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "ui/app/builds.h"
+#include "study/run/files/builds.h"
 #include "ui/experimenter/trace_item.h"
 #include "ui/presenter/playback.h"
 #include "ui/window/scene_model.h"

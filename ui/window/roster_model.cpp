@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "study/protocol/language.h"
+#include "study/run/files/protocol_files.h"
 #include "study/store/backup.h"
-#include "ui/app/protocol_files.h"
 #include "ui/window/roster_words.h"
 
 namespace passung::window {

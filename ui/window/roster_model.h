@@ -7,9 +7,9 @@
 
 #include "study/protocol/study_plan.h"
 #include "study/store/participant_desk.h"
-#include "ui/app/study_desk.h"
 #include "ui/presenter/leaving.h"
 #include "ui/presenter/roster.h"
+#include "ui/presenter/study_desk.h"
 #include "ui/window/desk.h"
 #include "ui/window/studies.h"
 #include "ui/window/worker.h"

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "ui/app/known_names.h"
-#include "ui/app/protocol_files.h"
-#include "ui/app/study_desk.h"
+#include "study/run/files/known_names.h"
+#include "study/run/files/protocol_files.h"
+#include "ui/presenter/study_desk.h"
 #include "ui/window/registry_words.h"
 
 namespace passung::window {

@@ -7,12 +7,12 @@
 #include <filesystem>
 
 #include "study/protocol/document.h"
+#include "study/run/files/builds.h"
+#include "study/run/files/known_names.h"
+#include "study/run/files/protocol_files.h"
+#include "study/run/machine/auto_accuracy.h"
 #include "study/store/digest.h"
 #include "study/store/store_reader.h"
-#include "ui/app/auto_accuracy.h"
-#include "ui/app/builds.h"
-#include "ui/app/known_names.h"
-#include "ui/app/protocol_files.h"
 #include "ui/window/registry_words.h"
 #include "ui/window/roster_words.h"
 #include "ui/window/study_words.h"

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "ui/app/loop_check.h"
-#include "ui/app/stability_report.h"
-#include "ui/app/stage_cost.h"
+#include "study/run/machine/loop_check.h"
+#include "study/run/machine/stability_report.h"
+#include "study/run/machine/stage_cost.h"
 #include "ui/presenter/study_details.h"
 #include "ui/window/desk.h"
 #include "ui/window/studies.h"

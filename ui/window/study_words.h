@@ -2,7 +2,7 @@
 
 #include <QtCore/QString>
 
-#include "ui/app/loop_check.h"
+#include "study/run/machine/loop_check.h"
 #include "ui/presenter/study_details.h"
 
 namespace passung::window {

@@ -10,11 +10,11 @@
 
 #include "core/model/mesh_import.h"
 #include "study/protocol/protocol_reader.h"
+#include "study/run/files/known_names.h"
 #include "tests/support/hostile_scene.h"
 #include "tests/support/mutation.h"
 #include "tests/ui/cli/program.h"
 #include "tests/ui/cli/small_study.h"
-#include "ui/app/known_names.h"
 
 namespace passung::test {
 namespace {

@@ -5,10 +5,10 @@
 #include <set>
 
 #include "study/protocol/protocol_reader.h"
+#include "study/run/files/known_names.h"
 #include "study/session/participant_order.h"
 #include "study/store/store_reader.h"
 #include "tests/ui/cli/program.h"
-#include "ui/app/known_names.h"
 
 namespace passung::test {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "core/base/types.h"
 #include "study/protocol/protocol_reader.h"
+#include "study/run/files/known_names.h"
 #include "study/store/digest.h"
 #include "study/store/sample_codec.h"
 #include "study/store/sqlite.h"
@@ -15,7 +16,6 @@
 #include "tests/analysis/export/csv_reader.h"
 #include "tests/ui/cli/program.h"
 #include "tests/ui/cli/small_study.h"
-#include "ui/app/known_names.h"
 
 namespace passung::test {
 namespace {

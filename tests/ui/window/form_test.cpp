@@ -3,10 +3,10 @@
 #include <functional>
 
 #include "study/protocol/protocol_reader.h"
+#include "study/run/files/known_names.h"
 #include "study/store/sqlite.h"
 #include "tests/ui/window/asking_study.h"
 #include "tests/ui/window/windows.h"
-#include "ui/app/known_names.h"
 
 // What the participant is asked at their window: consent, instructions, questionnaires; by keyboard alone and by mouse.
 

@@ -14,13 +14,13 @@
 #include "core/model/mesh_import.h"
 #include "core/model/shape.h"
 #include "study/protocol/protocol_reader.h"
+#include "study/run/files/known_names.h"
+#include "study/run/run_study.h"
 #include "study/store/store_reader.h"
 #include "tests/ui/cli/small_study.h"
 #include "tests/ui/window/four_trials.h"
 #include "tests/ui/window/ray_caster.h"
 #include "tests/ui/window/windows.h"
-#include "ui/app/known_names.h"
-#include "ui/app/run_study.h"
 #include "ui/presenter/drawn_scene.h"
 
 // What a participant saw, beside what the protocol and the recorded ticks say: sessions in virtual time are shown in

@@ -7,12 +7,12 @@
 #include "core/model/scene.h"
 #include "core/tick/tick_model.h"
 #include "study/protocol/protocol_reader.h"
+#include "study/run/files/known_names.h"
 #include "study/store/sqlite.h"
 #include "study/store/store_reader.h"
 #include "tests/ui/cli/small_study.h"
 #include "tests/ui/window/windows.h"
-#include "ui/app/known_names.h"
-#include "ui/app/study_desk.h"
+#include "ui/presenter/study_desk.h"
 #include "ui/window/roster_words.h"
 #include "ui/window/study_words.h"
 
@@ -294,7 +294,7 @@ TEST_F(Pages, WhatIsDamagedIsLeftOutAndSaidAndTheRestIsLookedAtAndExported) {
 }
 
 TEST_F(Pages, TryOutsSayWhatTheyLeaveOut) {
-    // Truth: closed form: a try-out has neither consent nor instructions nor questionnaires (ui/app/live_session.h).
+    // Truth: closed form: a try-out has neither consent nor instructions nor questionnaires (ui/window/live_session.h).
     click("page-studies");
     settle();
     EXPECT_EQ(textOf("leftOut"), "Both show the trials only: consent, instructions and questionnaires are left out.");

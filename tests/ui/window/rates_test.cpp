@@ -9,10 +9,10 @@
 
 #include "core/model/shape.h"
 #include "study/protocol/protocol_reader.h"
+#include "study/run/files/known_names.h"
 #include "study/store/store_reader.h"
 #include "tests/ui/window/windows.h"
-#include "ui/app/known_names.h"
-#include "ui/app/live_session.h"
+#include "ui/window/live_session.h"
 
 // What drawing costs: a part of 59 000 triangles, both windows open, and the same trials without a window. Prints
 // pictures a second, processor time and the ticks' computing time; times are not judged here, they depend on what else

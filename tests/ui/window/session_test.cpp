@@ -10,12 +10,12 @@
 #include <set>
 
 #include "study/protocol/protocol_reader.h"
+#include "study/run/files/known_names.h"
 #include "study/store/sqlite.h"
 #include "tests/ui/window/four_trials.h"
 #include "tests/ui/window/windows.h"
-#include "ui/app/known_names.h"
-#include "ui/app/study_desk.h"
 #include "ui/presenter/pointer_motion.h"
+#include "ui/presenter/study_desk.h"
 
 // A whole session through the real windows: performed by mouse and keyboard, killed, resumed, with a repeated and an
 // invalidated trial and an emergency stop; and what it leaves beside what a run without windows leaves.

@@ -3,12 +3,12 @@
 #include <functional>
 
 #include "study/protocol/protocol_reader.h"
+#include "study/run/files/known_names.h"
+#include "study/run/run_study.h"
 #include "tests/ui/window/asking_study.h"
 #include "tests/ui/window/four_trials.h"
 #include "tests/ui/window/windows.h"
-#include "ui/app/known_names.h"
-#include "ui/app/run_study.h"
-#include "ui/app/study_desk.h"
+#include "ui/presenter/study_desk.h"
 
 namespace passung::test {
 

@@ -2,12 +2,12 @@
 #include <fstream>
 
 #include "study/measures/measures.h"
+#include "study/run/files/known_names.h"
+#include "study/run/files/protocol_files.h"
+#include "study/run/run_study.h"
 #include "tests/ui/cli/small_study.h"
 #include "tests/ui/window/windows.h"
-#include "ui/app/known_names.h"
-#include "ui/app/protocol_files.h"
-#include "ui/app/run_study.h"
-#include "ui/app/study_desk.h"
+#include "ui/presenter/study_desk.h"
 #include "ui/window/registry_words.h"
 
 // What the console says of a study: in the language of the window, whole on a small screen, and no more than is true.

@@ -1,0 +1,20 @@
+#include "study/run/files/builds.h"
+
+namespace passung::app {
+
+std::optional<std::string> Builds::load(const std::string& name) { return kept_ ? kept_->load(name) : std::nullopt; }
+
+void Builds::keep(const std::string& name, std::string_view bytes) {
+    if (kept_) kept_->keep(name, bytes);
+}
+
+Result<model::ImportedMesh> Builds::importMesh(const std::string& path, double metres_per_unit) {
+    if (!program_) return model::importMesh(path, metres_per_unit);
+    return importElsewhere(*program_, path, metres_per_unit, limits_);
+}
+
+std::unique_ptr<Builds> openBuilds(const ImportLimits& limits) {
+    return std::make_unique<Builds>(openDiskStore(), limits);
+}
+
+}  // namespace passung::app

@@ -1,0 +1,87 @@
+#include "study/run/files/stored_plans.h"
+#include "study/run/files/protocol_files.h"
+
+#include <algorithm>
+
+#include "core/base/regular_file.h"
+#include "study/protocol/document.h"
+#include "study/run/machine/auto_accuracy.h"
+#include "study/run/machine/calibration.h"
+#include "study/store/digest.h"
+
+namespace passung::app {
+
+StoredPlans::StoredPlans(const store::StoreReader& reader, const std::string& meshes, const ImportLimits& limits)
+    : reader_(reader), limits_(limits) {
+    // Where the protocol's file was is not stored: a path of one machine means nothing on another.
+    if (!meshes.empty()) {
+        folders_ = {meshes};
+    } else {
+        folders_ = {"", std::filesystem::path(reader.path()).parent_path()};
+    }
+}
+
+Result<const protocol::StudyPlan*> StoredPlans::plan(const std::string& sha256) {
+    if (const auto known = plans_.find(sha256); known != plans_.end()) return &known->second;
+    const auto rows = reader_.protocols();
+    if (!rows) return rows.errors();
+    for (const auto& row : *rows) {
+        if (row.sha256 != sha256) continue;
+        auto plan = read(row);
+        if (!plan) return plan.errors();
+        return &plans_.emplace(sha256, std::move(*plan)).first->second;
+    }
+    return Error{.message = "is not in the database", .key = "protocol", .value = sha256};
+}
+
+/// The stored protocol with the mesh files of the first folder that has them all.
+Result<protocol::StudyPlan> StoredPlans::read(const store::ProtocolRow& row) const {
+    const auto stable = reader_.stableStiffness(row.sha256);
+    if (!stable) return stable.errors();
+    const auto devices = devicesAsKept(*stable);
+    Errors errors;
+    for (const std::filesystem::path& folder : folders_) {
+        auto plan = readBegunProtocol(row.source_text, (folder / (row.name + ".toml")).string(), devices, limits_);
+        if (!plan) {
+            if (errors.empty()) errors = plan.errors();
+            continue;
+        }
+        if (const auto same = compareMeshes(row.sha256, *plan); !same) return same.errors();
+        const auto accuracy = reader_.accuracy();
+        if (!accuracy) return accuracy.errors();
+        if (const auto applied = applyAccuracy(row.sha256, *accuracy, *plan, limits_); !applied)
+            return applied.errors();
+        return plan;
+    }
+    errors.push_back({.message = "the stored protocol cannot be read here; its mesh paths start from this folder or "
+                                 "the database's: --meshes names another",
+                      .file = reader_.path()});
+    return errors;
+}
+
+/// A replay with another geometry would prove nothing.
+Result<Done> StoredPlans::compareMeshes(const std::string& sha256, const protocol::StudyPlan& plan) const {
+    const auto rows = reader_.meshes();
+    if (!rows) return rows.errors();
+    Errors errors;
+    for (const protocol::MeshSource& mesh : plan.meshes) {
+        const auto stored = std::find_if(rows->begin(), rows->end(), [&](const store::MeshRow& row) {
+            return row.protocol_sha256 == sha256 && row.mesh == mesh.name;
+        });
+        const auto bytes = readRegularFile(mesh.path, kMostMeshBytes);
+        if (!bytes) return bytes.errors();
+        if (stored == rows->end()) {
+            errors.push_back({.message = "the database does not know this mesh file", .file = mesh.path});
+        } else if (const std::string found = store::sha256Hex(*bytes); found != stored->sha256) {
+            errors.push_back(
+                {.message = "is not the mesh file of the recorded trials, whose SHA-256 is " + stored->sha256,
+                 .file = mesh.path,
+                 .key = "SHA-256",
+                 .value = found});
+        }
+    }
+    if (!errors.empty()) return errors;
+    return Done{};
+}
+
+}  // namespace passung::app

@@ -1,0 +1,220 @@
+#include "study/run/loop_apparatus.h"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "devices/simulated/resting_device.h"
+#include "devices/simulated/simulated_device.h"
+#include "study/run/machine/frame_clock.h"
+#include "study/run/person/responding_device.h"
+#include "study/run/person/simulated_hand.h"
+#include "study/run/visible_task.h"
+#include "study/session/cue_settings.h"
+#include "study/session/secondary.h"
+
+namespace passung::app {
+
+namespace {
+
+constexpr std::size_t kRingRecords = 8192;  // eight seconds: a writer that stalls for longer shows in the data
+
+/// Of each scene in turn: its obstacles, then what none pushed.
+std::vector<session::ContactEnergy> contactEnergy(std::span<const model::Scene> scenes,
+                                                  std::span<const tick::PairAccount> pairs) {
+    std::vector<session::ContactEnergy> energy;
+    for (const model::Scene& scene : scenes) {
+        for (std::size_t i = 0; i < scene.spec.parts.size(); ++i)
+            if (i != scene.held) energy.push_back({.obstacle = scene.spec.parts[i].name});
+        energy.emplace_back();
+    }
+    for (std::size_t i = 0; i < energy.size(); ++i) {
+        energy[i].taken_in_J = pairs[i].taken_in;
+        energy[i].least_J = pairs[i].least;
+    }
+    return energy;
+}
+
+}  // namespace
+
+std::vector<session::StageNote> stageNotes(const tick::TickModel& model) {
+    std::vector<session::StageNote> notes;
+    for (const tick::Stage& stage : model.stages) notes.push_back({stage.name, stage.reason});
+    return notes;
+}
+
+LoopApparatus::Run::Run(BuiltScenes built, HeldDevice device, const protocol::Condition& condition,
+                        std::span<loop::ScreenRing* const> screens)
+    : scenes(std::move(built)),
+      held(std::move(device)),
+      cues(session::cueSettings(condition.cues), held.person, held.drives_hand),
+      ring(kRingRecords),
+      cycle(scenes.turns, *held.device, ring, condition.shown == protocol::ShownPose::Proxy, screens, &cues) {}
+
+LoopApparatus::LoopApparatus(const simulated::DeviceParams& device, const person::SimulatedPerson& person, Clock clock,
+                             Performer* performer, const ImportLimits& import_limits)
+    : description_(performer == nullptr ? simulated::describe(device) : performer->describe(device)),
+      person_(person),
+      clock_(clock),
+      performer_(performer),
+      store_(openBuilds(import_limits)) {}
+
+LoopApparatus::~LoopApparatus() = default;
+
+Result<std::vector<session::StageNote>> LoopApparatus::prepare(const protocol::Condition& condition, std::uint64_t seed,
+                                                               std::int64_t trials_before) {
+    const simulated::DeviceParams* preset = simulated::findPreset(condition.device);
+    if (preset == nullptr)
+        return Error{.message = "no such device preset", .key = "device.preset", .value = condition.device};
+    started_ns_ = periods_ = 0;
+    engaged_at_.reset();
+    if (performer_ != nullptr) performer_->prepares(condition, trials_before, seed);
+    auto scenes = build(session::renderedScenes(condition, seed));
+    if (!scenes) return scenes.errors();
+    HeldDevice held = makeDevice(*preset, condition, seed, trials_before);
+    description_ = held.device->description();
+    auto run =
+        std::make_unique<Run>(std::move(*scenes), std::move(held), condition,
+                              performer_ == nullptr ? std::span<loop::ScreenRing* const>() : performer_->screens());
+    {
+        const std::lock_guard lock(halt_mutex_);
+        run_.swap(run);
+    }
+    std::vector<session::StageNote> notes;  // of a pair the stages of both intervals, each once
+    for (const tick::TickModel& model : run_->scenes.models)
+        for (session::StageNote& note : stageNotes(model))
+            if (std::none_of(notes.begin(), notes.end(), [&](const auto& known) { return known.name == note.name; }))
+                notes.push_back(std::move(note));
+    if (performer_ != nullptr) performer_->awaitPicture();  // no clock runs before
+    return notes;
+}
+
+Result<BuiltScenes> LoopApparatus::build(const std::vector<session::RenderedScene>& scenes) {
+    std::size_t pieces = 0;
+    for (const session::RenderedScene& scene : scenes)
+        pieces += scene.spec.parts.size() * (scene.spec.contact.two_way ? 2 : 1);
+    watched_.begin(pieces, [this](double share) { return performer_ == nullptr || performer_->builds(share); });
+    try {
+        return buildScenes(scenes, parts_);
+    } catch (const BuildCancelled& cancelled) {
+        return Error{.message = cancelled.what()};
+    }
+}
+
+LoopApparatus::HeldDevice LoopApparatus::makeDevice(const simulated::DeviceParams& preset,
+                                                    const protocol::Condition& condition, std::uint64_t seed,
+                                                    std::int64_t trials_before) const {
+    const model::Registration& r = condition.scene.registration;
+    const simulated::HandRegistration registration{r.X_WB, r.scale, r.X_DH};
+    const simulated::VisibleTask task = visibleTask(condition);
+    HeldDevice held;
+    if (performer_ != nullptr) held.device = performer_->device(preset, condition);
+    held.drives_hand = held.device == nullptr;  // what a performer brings is a mouse
+    if (held.device != nullptr) return held;
+    if (condition.timed_by == protocol::TimedBy::Program) {
+        auto device = std::make_unique<simulated::SimulatedDevice>(preset, simulatedHand(person_, trials_before), task,
+                                                                   registration, seed);
+        held.person = device.get();
+        held.device = std::move(device);
+    } else {
+        held.device =
+            std::make_unique<simulated::RestingDevice>(preset, registration.handleFromPart(task.X_WHeldStart));
+    }
+    if (!condition.secondary.any()) return held;
+    const bool handles = condition.timed_by != protocol::TimedBy::Clock;
+    held.device = std::make_unique<RespondingDevice>(
+        std::move(held.device), session::detectionSettings(condition.secondary), person_, handles, seed);
+    return held;
+}
+
+/// What windows drew and played, or what a simulated person's senses took. No device has an actuator for vibration yet.
+session::Delivered LoopApparatus::delivered(const std::optional<session::Presentation>& presentation) const {
+    const session::Delivered& asked = run_->cues.asked();
+    if (performer_ == nullptr || performer_->kind() == protocol::ParticipantKind::Simulated) {
+        session::Delivered delivered = asked;
+        if (asked.masking > 0) delivered.sound = 0;  // noise covers it
+        return delivered;
+    }
+    session::Delivered delivered{.force = asked.force};
+    if (presentation) delivered.visual = presentation->cue_frames.value_or(0);
+    if (presentation && presentation->sound == "played") {
+        delivered.sound = asked.sound;
+        delivered.masking = asked.masking;
+    }
+    return delivered;
+}
+
+void LoopApparatus::wait(std::int64_t ticks) {
+    if (clock_ == Clock::RealTime) std::this_thread::sleep_for(std::chrono::nanoseconds(ticks * kTickNanoseconds));
+}
+
+void LoopApparatus::start() {
+    started_ns_ = steadyNanoseconds();
+    const std::lock_guard lock(halt_mutex_);
+    if (clock_ == Clock::RealTime && !halted_)
+        run_->thread = std::make_unique<loop::RealTimeThread>(run_->cycle, performer_ == nullptr);
+}
+
+void LoopApparatus::advance(std::int64_t ticks) {
+    if (clock_ == Clock::Virtual) {
+        const std::lock_guard lock(halt_mutex_);
+        for (std::int64_t i = 0; i < ticks && !halted_; ++i) run_->cycle.run();
+        return;
+    }
+    std::this_thread::sleep_for(std::chrono::nanoseconds(ticks * kTickNanoseconds));
+}
+
+std::size_t LoopApparatus::takeRecords(std::span<TickRecord> into) {
+    const std::size_t count = run_->ring.take(into);
+    for (const TickRecord& record : into.first(count)) {
+        periods_ += record.periods;
+        if (!engaged_at_ && (record.status & kEngaged) != 0) engaged_at_ = periods_;
+    }
+    return count;
+}
+
+void LoopApparatus::halt() {
+    const std::lock_guard lock(halt_mutex_);
+    halted_ = true;
+    if (run_ && run_->thread) run_->thread->askToStop();
+}
+
+void LoopApparatus::rearm() {
+    const std::lock_guard lock(halt_mutex_);
+    halted_ = false;
+}
+
+session::LoopHealth LoopApparatus::stop() {
+    session::LoopHealth health;
+    if (run_->thread) {
+        run_->thread->stop();
+        health.loop = run_->thread->scheduling().fifo ? "real-time fifo" : "real-time normal";
+        health.overruns = run_->thread->overruns();
+    } else {
+        run_->cycle.release();
+        health.loop = clock_ == Clock::Virtual ? "virtual" : "real-time normal";  // halted before it began
+    }
+    const loop::TimingHistogram& timing = run_->cycle.timing();
+    health.ticks = run_->cycle.ticks();
+    health.mean_us = timing.meanMicroseconds();
+    health.sd_us = timing.deviationMicroseconds();
+    health.p99_us = timing.quantileMicroseconds(0.99);
+    health.p999_us = timing.quantileMicroseconds(0.999);
+    health.max_us = timing.maxMicroseconds();
+    health.dropped_records = run_->ring.dropped();
+    health.histogram = timing.octaves();
+    health.state_hash = run_->cycle.stateHash();
+    health.contact_energy = contactEnergy(run_->scenes.scenes, run_->cycle.pairs());
+    if (performer_ != nullptr) health.presentation = presentation();
+    health.delivered = delivered(health.presentation);
+    return health;
+}
+
+/// Of the trial's time; of the attempt's where it did not start or the program does not see it start.
+session::Presentation LoopApparatus::presentation() const {
+    const std::int64_t zero_ns = started_ns_ == 0 ? steadyNanoseconds() : started_ns_;
+    return performer_->presented(zero_ns, zero_ns + engaged_at_.value_or(0) * kTickNanoseconds,
+                                 zero_ns + periods_ * kTickNanoseconds);
+}
+
+}  // namespace passung::app

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "core/loop/haptic_loop.h"
+#include "devices/simulated/hand_params.h"
+#include "devices/simulated/presets.h"
+#include "study/person/simulated_person.h"
+#include "study/run/cue_delivery.h"
+#include "study/run/files/builds.h"
+#include "study/run/files/built_scenes.h"
+#include "study/run/files/watched_store.h"
+#include "study/run/person/performer.h"
+#include "study/session/apparatus.h"
+
+namespace passung::app {
+
+enum class Clock { Virtual, RealTime };
+
+/// The session's apparatus: the haptic loop on a simulated device with a simulated hand, in either clock, or on what a
+/// performer holds. Where the program does not time the trial the hand has left the device: real parts, or nothing.
+class LoopApparatus final : public session::Apparatus {
+public:
+    LoopApparatus(const simulated::DeviceParams& device, const person::SimulatedPerson& person, Clock clock,
+                  Performer* performer = nullptr, const ImportLimits& import_limits = {});
+    ~LoopApparatus() override;
+
+    const DeviceDescription& device() const override { return description_; }
+    Result<std::vector<session::StageNote>> prepare(const protocol::Condition& condition, std::uint64_t seed,
+                                                    std::int64_t trials_before) override;
+    void wait(std::int64_t ticks) override;
+    void start() override;
+    void advance(std::int64_t ticks) override;
+    std::size_t takeRecords(std::span<TickRecord> into) override;
+    session::LoopHealth stop() override;
+    void halt() override;
+    void rearm() override;
+
+private:
+    struct HeldDevice {
+        std::unique_ptr<loop::HapticDevice> device;
+        simulated::SimulatedDevice* person = nullptr;  // who holds it; null: nobody simulated
+        bool drives_hand = true;                       // false: a stand-in without motors, such as a mouse
+    };
+
+    /// Everything of one attempt; members are destroyed in reverse order, the thread first.
+    struct Run {
+        BuiltScenes scenes;
+        HeldDevice held;
+        CueDelivery cues;
+        loop::RecordRing ring;
+        loop::HapticCycle cycle;
+        std::unique_ptr<loop::RealTimeThread> thread;
+
+        Run(BuiltScenes built, HeldDevice device, const protocol::Condition& condition,
+            std::span<loop::ScreenRing* const> screens);
+    };
+
+    session::Presentation presentation() const;
+    Result<BuiltScenes> build(const std::vector<session::RenderedScene>& scenes);
+    HeldDevice makeDevice(const simulated::DeviceParams& preset, const protocol::Condition& condition,
+                          std::uint64_t seed, std::int64_t trials_before) const;
+    session::Delivered delivered(const std::optional<session::Presentation>& presentation) const;
+
+    DeviceDescription description_;
+    person::SimulatedPerson person_;
+    Clock clock_;
+    Performer* performer_;
+    std::unique_ptr<Builds> store_;
+    WatchedStore watched_{store_.get()};
+    model::PartCache parts_{&watched_};
+    std::mutex halt_mutex_;  // run_ and its thread come and go, halted_ changes
+    bool halted_ = false;
+    std::int64_t started_ns_ = 0;             // on the steady clock, of the newest attempt's loop; 0: it did not start
+    std::int64_t periods_ = 0;                // since then, as the records tell
+    std::optional<std::int64_t> engaged_at_;  // [periods], when the hand had reached the start pose
+    std::unique_ptr<Run> run_;
+};
+
+/// What runs in every tick of `model` and why.
+std::vector<session::StageNote> stageNotes(const tick::TickModel& model);
+
+}  // namespace passung::app

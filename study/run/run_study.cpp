@@ -1,0 +1,400 @@
+#include "study/run/run_study.h"
+
+#include <fmt/format.h>
+#include <sys/utsname.h>
+
+#include <filesystem>
+#include <thread>
+
+#include "core/tick/numerics.h"
+#include "devices/simulated/presets.h"
+#include "study/measures/measures.h"
+#include "study/person/simulated_person.h"
+#include "study/protocol/document.h"
+#include "study/protocol/language.h"
+#include "study/protocol/planned_questionnaires.h"
+#include "study/run/command_socket.h"
+#include "study/run/files/builds.h"
+#include "study/run/files/known_names.h"
+#include "study/run/files/stored_plans.h"
+#include "study/run/machine/auto_accuracy.h"
+#include "study/run/machine/calibration.h"
+#include "study/run/machine/stability_report.h"
+#include "study/run/person/simulated_answers.h"
+#include "study/run/person/simulated_timer.h"
+#include "study/session/participant_order.h"
+#include "study/store/digest.h"
+#include "study/store/identity.h"
+
+namespace passung::app {
+
+namespace {
+
+std::string hostText() {
+    utsname name{};
+    uname(&name);
+    return std::string(name.sysname) + " " + name.release + " " + name.machine;
+}
+
+/// A simulated person has no use for a text.
+class SimulatedReader : public session::InstructionReader {
+public:
+    std::optional<session::PageRead> read(const session::Page&) override { return session::PageRead{"simulated", {}}; }
+};
+
+/// One participant: enrolled, given a slot, and through all trials.
+class StudyRun {
+public:
+    StudyRun(const protocol::StudyPlan& plan, const RunOptions& options, const RunListener& listener,
+             store::Store& store, std::string protocol_sha256)
+        : plan_(plan), options_(options), listener_(listener), store_(store), sha256_(std::move(protocol_sha256)) {}
+
+    /// All sessions that are left to do; of a participant named by code the next one.
+    Result<RunEnd> participant(int number) {
+        const store::UtcClock clock = clockNow();
+        std::string code = options_.participant;
+        if (code.empty()) {
+            auto next = store_.nextCode(kind());
+            if (!next) return next.errors();
+            code = *next;
+        }
+        // Whoever is not admitted leaves no trace; only a decision on consent that is asked for here needs a code
+        // first.
+        if (!options_.ask_consent)
+            if (const auto admitted = store_.checkAdmission(sha256_, code, kind()); !admitted) return admitted.errors();
+        if (auto enrolled = store_.enrol(code, kind(), clock.at(0)); !enrolled) {
+            return enrolled.errors();
+        }
+        if (options_.ask_consent) {
+            const auto asked = askForConsent(store_, options_.database, plan_, code, options_.language, clock.at(0),
+                                             options_.ask_consent);
+            if (!asked) return asked.errors();
+        }
+        auto slot = store_.assignSlot(sha256_, code);
+        if (!slot) return slot.errors();
+        auto part = store_.nextPart(sha256_, code);
+        if (!part) return part.errors();
+        const int last = options_.participant.empty() ? protocol::sessionsOf(plan_) : *part;
+        if (listener_.session) listener_.session(code, number, options_.simulated);
+        for (int p = *part; p <= last; ++p)
+            if (auto end = session(code, {static_cast<std::size_t>(slot->number), slot->group}, p);
+                !end || *end == RunEnd::Interrupted)
+                return end;
+        return RunEnd::Complete;
+    }
+
+    Result<RunEnd> resume(const store::Unfinished& session) {
+        if (session.age_s)
+            if (const auto old = session::tooOld(plan_.resume, *session.age_s))
+                return Error{.message = fmt::format("{}, session {}: {}", session.participant, session.ordinal, *old),
+                             .file = options_.database};
+        // The place that the interruption freed may have another owner by now: one with the same order will do.
+        const auto part = store_.nextPart(sha256_, session.participant);
+        if (!part) return part.errors();
+        const auto fits = [&](const store::Slot& slot) {
+            const session::DesignPlace place{static_cast<std::size_t>(slot.number), slot.group};
+            const auto trials = session::planTrials(plan_, place, session.participant, *part);
+            return trials && *trials == session.trials;
+        };
+        if (const auto slot = store_.assignSlot(sha256_, session.participant, fits); !slot) return slot.errors();
+        if (listener_.session) listener_.session(session.participant, 1, 1);
+
+        LoopApparatus apparatus = apparatusOf(session.participant);
+        const store::UtcClock clock = clockNow(session.used_ns, session.latest_utc);
+        const auto start = startOf(session.session_id, session.participant, session.ordinal, clock, apparatus);
+        auto writer = store_.resumeSession(start, session.used_ns);
+        if (!writer) return writer.errors();
+
+        auto resumed =
+            session::resumption(plan_, session.trials, session.attempts, session.crashed, session.forms, session.steps);
+        resumed.start_ns = session.used_ns;
+        resumed.quality = session.quality;
+        (*writer)->appendEvent(
+            {.attempt = {}, .t_ns = session.used_ns, .source = "session", .event = "session_resumed"});
+        resumed.change.reason = "done again after an interruption";
+        if (listener_.resumed) listener_.resumed(resumed);
+        if (const auto done = (*writer)->reorder(resumed.change); !done) return done.errors();
+        return perform({plan_, session.trials, session.participant, plan_.seed, measured(), session.ordinal,
+                        options_.wait, std::move(resumed)},
+                       apparatus, **writer);
+    }
+
+private:
+    bool measured() const { return options_.clock == Clock::RealTime; }
+
+    protocol::ParticipantKind kind() const {
+        return options_.performer == nullptr ? protocol::ParticipantKind::Simulated : options_.performer->kind();
+    }
+
+    store::UtcClock clockNow(std::int64_t used_ns = 0, const std::string& latest_utc = {}) const {
+        return measured() ? store::UtcClock::running(options_.now, used_ns, latest_utc)
+                          : store::UtcClock::virtualEpoch();
+    }
+
+    LoopApparatus apparatusOf(const std::string& code) const {
+        const simulated::DeviceParams* device = simulated::findPreset(plan_.conditions.front().device);
+        return LoopApparatus(*device, person::personOf(plan_.name, code, plan_.seed), options_.clock,
+                             options_.performer, options_.import_limits);
+    }
+
+    store::SessionStart startOf(std::string session_id, std::string code, int ordinal, const store::UtcClock& clock,
+                                const LoopApparatus& apparatus) const {
+        store::SessionStart start;
+        start.session_id = std::move(session_id);
+        start.participant = std::move(code);
+        start.protocol_sha256 = sha256_;
+        start.ordinal = ordinal;
+        start.station = options_.station.name;
+        start.experimenter = options_.experimenter;
+        start.language = options_.language;
+        start.seed = plan_.seed;
+        start.clock = clock;
+        start.device = apparatus.device();
+        if (measured()) start.host = hostText();
+        start.timing_measured = measured();
+        start.numerics = tick::kNumerics;
+        return start;
+    }
+
+    Result<RunEnd> session(const std::string& code, const session::DesignPlace& place, int part) {
+        auto ordinal = store_.nextOrdinal(code);
+        if (!ordinal) return ordinal.errors();
+        LoopApparatus apparatus = apparatusOf(code);
+        const auto start =
+            startOf(store::sessionId(plan_.name, code, *ordinal, plan_.seed), code, *ordinal, clockNow(), apparatus);
+        const auto trials = session::planTrials(plan_, place, code, part);
+        if (!trials) return trials.errors();
+        auto writer = store_.createSession(start, *trials);
+        if (!writer) return writer.errors();
+        return perform({plan_, *trials, code, plan_.seed, measured(), *ordinal, options_.wait}, apparatus, **writer);
+    }
+
+    Result<RunEnd> perform(session::SessionSetup setup, LoopApparatus& apparatus, session::TrialSink& sink) {
+        const std::string code = setup.participant;
+        SimulatedAnswers simulated(plan_, code);
+        setup.answers = options_.answers != nullptr ? options_.answers : &simulated;
+        // In virtual time nobody can say when a trial begins and ends.
+        const bool simulates =
+            kind() == protocol::ParticipantKind::Simulated && (options_.answers == nullptr || !measured());
+        SimulatedReader reader;
+        setup.reader = options_.reader != nullptr ? options_.reader : &reader;
+        if (kind() != protocol::ParticipantKind::Simulated) {
+            setup.answers = options_.performer->answers();
+            setup.reader = options_.performer->reader();
+        }
+        setup.shown = options_.performer != nullptr;
+        setup.language = options_.language;
+        if (measured())
+            setup.calibrated_utc = [](const std::string& device) {
+                const auto when = calibratedAt(device);
+                return when ? store::UtcClock::wall(*when).at(0) : std::string();
+            };
+        SimulatedTimer timer(person::personOf(plan_.name, code, plan_.seed));
+        if (simulates) setup.timer = &timer;  // else somebody is there to say it
+        if (options_.performer != nullptr) options_.performer->begins(apparatus, setup);
+        struct Over {  // whatever is thrown: before the apparatus goes
+            Performer* performer;
+            ~Over() {
+                if (performer != nullptr) performer->over();
+            }
+        } const over{options_.performer};
+        session::Session session(std::move(setup), apparatus, sink, {listener_.acknowledge, listener_.trial});
+        conduct(session, apparatus);
+        if (session.state() == session::SessionState::Failed) return session.errors();
+        if (session.state() == session::SessionState::Interrupted) return RunEnd::Interrupted;
+        if (listener_.session_over) listener_.session_over(code, session.isWhole());
+        return RunEnd::Complete;
+    }
+
+    /// Until it is over: commands, then a step; while it waits, commands only.
+    void conduct(session::Session& session, LoopApparatus& apparatus) {
+        auto commands = CommandSocket::listen(options_.database, [&apparatus] { apparatus.halt(); });
+        if (!commands && listener_.warned) listener_.warned(toString(commands.errors().front()));
+        const std::int64_t began = unixMilliseconds();
+        auto told = session::SessionState::BetweenTrials;
+        while (!session.isOver()) {
+            const auto state = session.state();
+            const bool waits = state == session::SessionState::Ready || state == session::SessionState::Paused;
+            if (waits && told != state && listener_.swap && !session.awaitedDevice().empty())
+                listener_.swap(session.awaitedDevice(),
+                               calibrationAdvice(session.awaitedDevice(), plan_.stable_stiffness, began));
+            if (waits && told != state && listener_.state) listener_.state(state);
+            told = state;
+            if (commands)
+                (*commands)->serve([&](const session::Command& c) { return session.command(c); }, waits);
+            else if (waits)
+                std::this_thread::sleep_for(CommandSocket::kServeWait);
+            if (options_.performer != nullptr) options_.performer->look(session);
+            if (options_.interrupted && options_.interrupted())
+                session.interrupt("interrupted");
+            else
+                session.advance();
+        }
+    }
+
+    const protocol::StudyPlan& plan_;
+    const RunOptions& options_;
+    const RunListener& listener_;
+    store::Store& store_;
+    std::string sha256_;
+};
+
+store::Store::Opened openForRun(const RunOptions& options, const RunListener& listener, bool create = true) {
+    auto with = openOptionsNow(options.now());
+    with.create = create;
+    with.group = options.group;
+    with.station = options.station;
+    auto opened = store::Store::open(options.database, with);
+    if (!opened.store) return opened;
+    if (listener.recovered && !opened.recovery.empty()) listener.recovered(opened.recovery);
+    if (listener.warned && !opened.recovery.later_utc.empty())
+        listener.warned("this machine's clock is behind: the database holds the time " + opened.recovery.later_utc +
+                        "; orders and durations do not depend on it, stored dates will");
+    return opened;
+}
+
+/// The session's questionnaires as the protocol was imported with them, whatever became of their files.
+Result<Done> loadStoredQuestionnaires(const store::StoreReader& reader, const store::Unfinished& session,
+                                      protocol::StudyPlan& plan) {
+    const auto texts = reader.questionnaireTexts(session.protocol_sha256);
+    if (!texts) return texts.errors();
+    const auto folder = std::filesystem::path(plan.source_path).parent_path();
+    const auto read = [&](const std::string& path) -> Result<std::string> {
+        for (const auto& [file, text] : *texts)
+            if ((folder / file).string() == path) return text;
+        return Error{.message = "is not stored with the protocol"};
+    };
+    return protocol::loadQuestionnaires(plan, read, session.language);
+}
+
+void backUp(store::Store& store, const RunOptions& options, const RunListener& listener) {
+    if (!options.backup) return;
+    const auto kept = store.backup();
+    if (!listener.warned) return;
+    if (!kept)
+        listener.warned("no backup copy was made: " + kept.errors().front().message);
+    else if (!kept->empty())
+        listener.warned("the earlier backup has what the database lacks or has damaged (passung verify): kept as " +
+                        *kept);
+}
+
+bool isPerson(const std::string& code) {
+    const auto kind = protocol::kindOfCode(code);
+    return kind && *kind != protocol::ParticipantKind::Simulated;
+}
+
+/// Nobody is there to take part under this code: a person needs a device that a person can move.
+bool lacksDevice(const std::string& code, const Performer* performer) {
+    if (!isPerson(code)) return false;
+    return performer == nullptr || performer->kind() != protocol::kindOfCode(code);
+}
+
+/// Why nobody but a simulated participant can run the plan here under this code; empty: somebody can, or is simulated.
+Errors whyNotPeople(const protocol::StudyPlan& plan, const std::string& code, const Performer* performer) {
+    const bool person =
+        isPerson(code) || (performer != nullptr && performer->kind() != protocol::ParticipantKind::Simulated);
+    Errors why;
+    if (person) why = missingOutputs(plan, code.empty() ? "a person" : code);
+    if (lacksDevice(code, performer))
+        for (Error& missing : missingDevices(plan, code)) why.push_back(std::move(missing));
+    return why;
+}
+
+/// Elsewhere the session would take a place of the design that is not its station's.
+Error otherStation(const store::Unfinished& session, const RunOptions& options) {
+    const bool only = session.station == store::Station{}.name;
+    return Error{.message = fmt::format("{}, session {}: {}", session.participant, session.ordinal,
+                                        only ? "ran without --station: resume it without"
+                                             : "ran at station " + session.station + ": name --station " +
+                                                   session.station + " and --stations, as for run"),
+                 .file = options.database};
+}
+
+}  // namespace
+
+Result<RunEnd> runStudy(const protocol::StudyPlan& plan, RunOptions options, const RunListener& listener) {
+    if (Errors why = whyNotPeople(plan, options.participant, options.performer); !why.empty()) return why;
+    if (Errors unstable = beyondBorder(plan, knownDevices()); !unstable.empty()) return unstable;
+    const auto language = protocol::chooseLanguage(plan, options.language);
+    if (!language) return language.errors();
+    options.language = *language;
+    // A calibration that fails must leave nothing behind: neither a new database nor the protocol in an old one.
+    std::vector<store::AccuracyRow> measured;
+    const auto measure = [&]() -> Result<Done> {
+        const auto builds = openBuilds(options.import_limits);
+        auto rows = measureAccuracy(plan, store::sha256Hex(plan.source_text), listener.calibrating, builds.get());
+        if (!rows) return rows.errors();
+        measured = std::move(*rows);
+        return Done{};
+    };
+    const bool calibrates = asksForAccuracy(plan);
+    std::error_code none;
+    if (calibrates && !std::filesystem::exists(options.database, none))
+        if (const auto done = measure(); !done) return done.errors();
+    auto opened = openForRun(options, listener);
+    if (!opened.store) return opened.errors;
+    if (calibrates && measured.empty()) {
+        const auto known = opened.store->checkProtocol(plan);
+        if (!known) return known.errors();
+        const auto there = opened.store->accuracy(*known);
+        if (!there) return there.errors();
+        if (there->empty())
+            if (const auto done = measure(); !done) return done.errors();
+    }
+    auto sha256 = opened.store->importProtocol(plan);
+    if (!sha256) return sha256.errors();
+    if (!measured.empty()) {
+        if (const auto done = opened.store->keepAccuracy(measured); !done) return done.errors();
+        if (listener.calibrated) listener.calibrated(describePick(measured));
+    }
+    const auto kept = opened.store->accuracy(*sha256);
+    if (!kept) return kept.errors();
+    if (options.clock == Clock::RealTime && listener.warned && !kept->empty()) {
+        const auto builds = openBuilds(options.import_limits);
+        const auto slow = tooSlowHere(plan, *kept, builds.get());
+        if (!slow) return slow.errors();
+        for (const std::string& what : *slow) listener.warned(what);
+    }
+    const auto stable = opened.store->stableStiffness(*sha256);
+    if (!stable) return stable.errors();
+    const auto kept_plan = withKeptStiffness(plan, *stable, options.import_limits);
+    if (!kept_plan) return kept_plan.errors();
+    if (listener.warned)
+        for (const std::string& difference : stiffnessDifferences(plan, *kept_plan)) listener.warned(difference);
+    if (Errors unstable = beyondBorder(*kept_plan, knownDevices()); !unstable.empty()) return unstable;
+    auto picked = withKeptAccuracy(*kept_plan, *sha256, *opened.store, options.import_limits);
+    if (!picked) return picked.errors();
+    if (const auto done = protocol::loadQuestionnaires(*picked, protocol::readFile, options.language); !done)
+        return done.errors();
+    StudyRun run(*picked, options, listener, *opened.store, *sha256);
+    Result<RunEnd> end = RunEnd::Complete;
+    for (int i = 0; i < options.simulated && end && *end == RunEnd::Complete; ++i) end = run.participant(i + 1);
+    backUp(*opened.store, options, listener);
+    return end;
+}
+
+Result<RunEnd> resumeStudy(const ResumeOptions& resume, RunOptions options, const RunListener& listener) {
+    auto opened = openForRun(options, listener, false);
+    if (!opened.store) return opened.errors;
+    const auto session = opened.store->unfinished(resume.session);
+    if (!session) return session.errors();
+    if (session->station != options.station.name) return otherStation(*session, options);
+    const auto reader = store::StoreReader::open(options.database);
+    if (!reader) return reader.errors();
+    StoredPlans plans(*reader, resume.meshes, options.import_limits);
+    const auto stored = plans.plan(session->protocol_sha256);
+    if (!stored) return stored.errors();
+    protocol::StudyPlan plan = **stored;
+    if (const auto done = loadStoredQuestionnaires(*reader, *session, plan); !done) return done.errors();
+    if (Errors why = whyNotPeople(plan, session->participant, options.performer); !why.empty()) return why;
+    if (Errors unstable = beyondBorder(plan, knownDevices()); !unstable.empty()) return unstable;
+    plan.seed = session->seed;
+    options.clock = session->virtual_time ? Clock::Virtual : Clock::RealTime;
+    options.language = session->language;
+    StudyRun run(plan, options, listener, *opened.store, session->protocol_sha256);
+    const auto end = run.resume(*session);
+    backUp(*opened.store, options, listener);
+    return end;
+}
+
+}  // namespace passung::app

@@ -1,0 +1,63 @@
+#include "ui/presenter/study_desk.h"
+
+#include <filesystem>
+
+#include "study/run/files/known_copies.h"
+#include "study/run/files/wall_clock.h"
+
+namespace passung::app {
+
+namespace fs = std::filesystem;
+
+Result<Done> atTheDesk(const DeskAccess& access,
+                       const std::function<Result<Done>(store::Store&, store::ParticipantDesk&)>& work) {
+    auto open = openOptionsNow();
+    open.station = access.station;
+    open.create = access.create;
+    open.group = access.group;
+    const auto opened = store::Store::open(access.database, open);
+    if (!opened.store) return opened.errors;
+    store::ParticipantDesk desk(*opened.store, {access.by, open.now_utc});
+    return work(*opened.store, desk);
+}
+
+Result<std::string> enrolAt(store::Store& store, store::ParticipantDesk& desk, protocol::ParticipantKind kind,
+                            std::string code) {
+    if (code.empty()) {
+        const auto next = store.nextCode(kind);
+        if (!next) return next.errors();
+        code = *next;
+    }
+    const bool simulated = kind == protocol::ParticipantKind::Simulated;
+    const auto clock = simulated ? store::UtcClock::virtualEpoch() : store::UtcClock::wall(unixMilliseconds());
+    if (const auto done = desk.enrol(code, kind, clock.at(0)); !done) return done.errors();
+    return code;
+}
+
+Result<Left> leave(const DeskAccess& access, const presenter::Leaving& leaving) {
+    using presenter::Scope;
+    Left left;
+    const auto done = atTheDesk(access, [&](store::Store&, store::ParticipantDesk& desk) -> Result<Done> {
+        if (leaving.scope == Scope::Stop) return desk.withdraw(leaving.code, leaving.reason);
+        if (leaving.scope == Scope::Exclude) return desk.exclude(leaving.code, leaving.reason, "withdraw");
+        if (leaving.scope == Scope::Dismiss) return desk.exclude(leaving.code, leaving.reason);
+        if (leaving.backup_too) {
+            const auto erased = desk.eraseFromBackup(leaving.code);
+            left.backup = erased && *erased;
+            if (!erased) left.backup_problem = erased.errors().front().message;
+        }
+        const auto surrogate = desk.erase(leaving.code);
+        if (!surrogate) return surrogate.errors();
+        left.surrogate = *surrogate;
+        left.copies = knownCopies(access.database, leaving.code);
+        return Done{};
+    });
+    if (!done) return done.errors();
+    return left;
+}
+
+std::string studyDatabase(const std::string& tryouts, const std::string& study) {
+    return (fs::path(tryouts).parent_path() / "studies" / (study + ".db")).string();
+}
+
+}  // namespace passung::app
