@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kName = "passung-bench";
 
-/// Where the build of tests puts it, seen from the program; first where somebody may have copied both.
-constexpr std::array kPlaces{"", "tests/bench", "../release/tests/bench"};
+/// Beside the program, or where ./dev build puts both.
+constexpr std::array kPlaces{"", "../release"};
 
 fs::path findBench() {
     std::error_code unknown;
@@ -37,7 +37,7 @@ int bench(const BenchOptions& options) {
     const fs::path program = findBench();
     if (program.empty())
         return fail(
-            {{.message = "the program passung-bench is neither beside this one nor in its build folder; it "
+            {{.message = "the program passung-bench is neither beside this one nor in build/release; it "
                          "links the engines we are compared with and is built by ./dev build (or ./dev test)"}});
     std::vector<std::string> words{program.string()};
     if (!options.out.empty()) words.insert(words.end(), {"--out", options.out});

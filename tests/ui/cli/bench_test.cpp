@@ -13,24 +13,28 @@ namespace fs = std::filesystem;
 /// A copy of the program in a folder of its own: passung-bench is looked for beside the program that runs.
 class CopiedProgram {
 public:
-    CopiedProgram() { fs::copy_file(PASSUNG_PROGRAM, folder_.path() / "passung"); }
+    CopiedProgram() {
+        fs::create_directory(folder_);
+        fs::copy_file(PASSUNG_PROGRAM, folder_ / "passung");
+    }
 
     /// Something that says how it was called and ends with `exit_code`.
     void putBench(const std::string& place, int exit_code) {
-        fs::create_directories(folder_.path() / place);
-        const fs::path file = folder_.path() / place / "passung-bench";
+        fs::create_directories(folder_ / place);
+        const fs::path file = folder_ / place / "passung-bench";
         writeText(file, "#!/bin/sh\nprintf '<%s>' \"$@\"\nexit " + std::to_string(exit_code) + "\n");
         fs::permissions(file, fs::perms::owner_all);
     }
 
     Ended run(const std::string& arguments) {
-        const std::string line = "cd '" + folder_.path().string() + "' && ./passung " + arguments + " >.out 2>.err";
+        const std::string line = "cd '" + folder_.string() + "' && ./passung " + arguments + " >.out 2>.err";
         const int status = std::system(line.c_str());
-        return {WEXITSTATUS(status), readText(folder_.path() / ".out"), readText(folder_.path() / ".err")};
+        return {WEXITSTATUS(status), readText(folder_ / ".out"), readText(folder_ / ".err")};
     }
 
 private:
-    TempFolder folder_;
+    TempFolder parent_;
+    const fs::path folder_ = parent_.path() / "own";
 };
 
 TEST(Bench, WithoutTheSeparateProgramSaysInOneLineHowToBuildIt) {
@@ -44,7 +48,7 @@ TEST(Bench, WithoutTheSeparateProgramSaysInOneLineHowToBuildIt) {
 
 TEST(Bench, PassesItsOptionsOnAndEndsWithTheOtherProgramsExitCode) {
     // Truth: invariant
-    for (const char* place : {".", "tests/bench"}) {
+    for (const char* place : {".", "../release"}) {
         CopiedProgram program;
         program.putBench(place, 7);
         const Ended ended = program.run("bench --filter 'bore 10 mm' --check --out b.csv");
