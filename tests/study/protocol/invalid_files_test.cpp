@@ -12,7 +12,7 @@ namespace {
 
 std::vector<std::filesystem::path> invalidFiles() {
     std::vector<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(PASSUNG_SOURCE_DIR "/protocols/invalid"))
+    for (const auto& entry : std::filesystem::directory_iterator(PASSUNG_SOURCE_DIR "/tests/data/invalid"))
         if (entry.path().extension() == ".toml") files.push_back(entry.path());
     std::sort(files.begin(), files.end());
     return files;
@@ -53,7 +53,7 @@ TEST(InvalidFiles, AStudyThatOnlyMayNotBeginCanStillBeReadOnceItBegan) {
     // Truth: invariant: a study of an earlier version of the program, whose conditions no longer may begin, is looked
     // at and goes on; what cannot be read stays an error.
     const auto begun = [](const char* name) {
-        std::ifstream stream(std::string(PASSUNG_SOURCE_DIR "/protocols/invalid/") + name);
+        std::ifstream stream(std::string(PASSUNG_SOURCE_DIR "/tests/data/invalid/") + name);
         const std::string text(std::istreambuf_iterator<char>(stream), {});
         EXPECT_FALSE(readProtocolText(text, name, knownDevices(), knownMeasures())) << name;
         return readBegunProtocol(text, name, knownDevices(), knownMeasures());
@@ -70,7 +70,7 @@ TEST(InvalidFiles, AStudyThatOnlyMayNotBeginCanStillBeReadOnceItBegan) {
 
 TEST(InvalidFiles, AreSoundApartFromTheirMistake) {
     // Truth: invariant: one mistake a file; with its line repaired, unknown_key.toml is a study.
-    std::ifstream stream(PASSUNG_SOURCE_DIR "/protocols/invalid/unknown_key.toml");
+    std::ifstream stream(PASSUNG_SOURCE_DIR "/tests/data/invalid/unknown_key.toml");
     std::string text(std::istreambuf_iterator<char>(stream), {});
     const std::string wrong = "stifness";
     const auto position = text.rfind(wrong);

@@ -300,7 +300,7 @@ TEST_F(ExitCode, IsZeroForHelpAndVersion) {
 TEST_F(ExitCode, IsOneForEveryInvalidProtocolAndNoDatabaseAppears) {
     // Truth: invariant (the error's place and words are checked with the reader; here: the exit code, nothing written)
     std::size_t count = 0;
-    for (const auto& entry : fs::directory_iterator(fs::path(PASSUNG_SOURCE_DIR) / "protocols/invalid")) {
+    for (const auto& entry : fs::directory_iterator(fs::path(PASSUNG_SOURCE_DIR) / "tests/data/invalid")) {
         if (entry.path().extension() != ".toml") continue;
         SCOPED_TRACE(entry.path().filename().string());
         ++count;

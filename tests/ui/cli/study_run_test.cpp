@@ -29,7 +29,7 @@ std::vector<std::string> shippedStudies() {
     std::vector<std::string> studies;
     for (const auto& entry : fs::recursive_directory_iterator(protocols)) {
         const std::string name = fs::relative(entry.path(), protocols).string();
-        if (entry.path().extension() != ".toml" || name.starts_with("invalid")) continue;
+        if (entry.path().extension() != ".toml") continue;
         if (name.starts_with("rendering_methods")) continue;
         if (readText(entry.path()).find("\n[study]\n") != std::string::npos) studies.push_back(name);
     }
