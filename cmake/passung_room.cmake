@@ -56,3 +56,17 @@ function(passung_room room)
   target_link_libraries(passung_${name} PUBLIC passung_flags ${ROOM_LINK} PRIVATE ${ROOM_PRIVATE_LINK})
   passung_reuse_headers(passung_${name} passung_room_headers "${ROOM_LINK};${ROOM_PRIVATE_LINK}")
 endfunction()
+
+# A room with items of Qt; its arguments are passung_room()'s.
+function(passung_qt_room room)
+  passung_room(${room} ${ARGN})
+  string(REPLACE "/" "_" name ${room})
+  set_target_properties(passung_${name} PROPERTIES AUTOMOC ON)
+endfunction()
+
+# Puts the room's QML files into its library, under their paths in the tree.
+function(passung_qml_files room)
+  string(REPLACE "/" "_" name ${room})
+  file(GLOB qml CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${room}/*.qml)
+  qt_add_resources(passung_${name} ${name} PREFIX / BASE ${PROJECT_SOURCE_DIR} FILES ${qml})
+endfunction()
