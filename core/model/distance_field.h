@@ -14,7 +14,7 @@
 #include "core/base/types.h"
 #include "core/model/instructions.h"
 #include "core/model/mesh.h"
-#include "core/model/scene_spec.h"
+#include "core/model/field_mode.h"
 #include "core/model/surface_block.h"
 
 namespace passung::model {
