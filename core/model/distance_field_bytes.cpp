@@ -2,7 +2,7 @@
 #include <bit>
 #include <cmath>
 
-#include "core/model/build_store.h"
+#include "core/base/bytes.h"
 #include "core/model/distance_field.h"
 
 namespace passung::model {

@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "core/model/build_store.h"
+#include "core/base/bytes.h"
 
 namespace passung::model {
 

@@ -13,6 +13,7 @@
 #include "core/model/mesh_block.h"
 #include "core/model/mesh_source.h"
 #include "core/model/shape_bound.h"
+#include "core/model/shell_bytes.h"
 #include "core/model/triangle_tree.h"
 
 namespace passung::model {

@@ -1,5 +1,7 @@
 #include "core/model/timed_store.h"
 
+#include "core/base/bytes.h"
+
 namespace passung::model {
 
 namespace {

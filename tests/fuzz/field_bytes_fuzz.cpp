@@ -8,6 +8,7 @@
 
 #include "core/model/build_store.h"
 #include "core/model/distance_field.h"
+#include "core/model/shell_bytes.h"
 
 /// libFuzzer: any bytes are a field, a shell, or nothing; a field that is one answers queries. The checksum is left
 /// out: no mutation would pass it. An input that begins with 'e' is a list of edits of a sound field (four bytes:

@@ -10,6 +10,7 @@
 
 #include "core/base/random.h"
 #include "core/model/part.h"
+#include "core/model/shell_bytes.h"
 
 namespace passung::model {
 namespace {
