@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/tick/penalty.h"
+#include "core/tick/depth_sum.h"
 
 namespace passung::query {
 
@@ -160,10 +160,8 @@ PartQueryResult PartQuery::oneWay(const model::Part& field, const model::Part& s
     }
     result.budget_reached = result.budget_reached || (!free && result.nodes_visited >= request_.max_nodes);
 
-    model::ContactSpec contact;
-    contact.variant = model::PenaltyVariant::AreaWeighted;
-    contact.area_stiffness = request_.area_stiffness;
-    result.wrench = tick::penaltyWrench(contact, manifold_, X_FS.p);
+    const Wrench load = tick::sumDepths(manifold_, true, X_FS.p, [](const auto&...) {}).sum;
+    result.wrench = {request_.area_stiffness * load.force, request_.area_stiffness * load.torque};
     result.contacts = static_cast<int>(
         std::count_if(manifold_.begin(), manifold_.end(), [](const tick::ContactPoint& c) { return c.phi < 0.0; }));
     return result;

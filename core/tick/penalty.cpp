@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/tick/contact_energy.h"
+#include "core/tick/depth_sum.h"
 #include "core/tick/obstacle_query.h"
 #include "core/tick/twist_between.h"
 
@@ -74,29 +75,19 @@ Wrench penaltyWrench(const model::ContactSpec& contact, const ContactManifold& m
 PenaltyLoad penaltyLoad(const model::ContactSpec& contact, const ContactManifold& manifold, const Vec3& p_WO,
                         std::span<PairAccount> pairs) noexcept {
     const bool weighted = isWeighted(contact.variant);
-    Wrench sum;
-    double depth_sum = 0.0, deepest = 0.0;
-    for (const ContactPoint& c : manifold) {
-        if (!(c.phi < 0.0)) continue;
-        const double depth = -c.phi;
-        const Vec3 f = (weighted ? c.area * depth : depth) * -c.normal;
-        const Vec3 moment = (c.position - p_WO).cross(f);
-        sum.force += f;
-        sum.torque += moment;
-        if (!pairs.empty()) {
+    const DepthSum all =
+        sumDepths(manifold, weighted, p_WO, [&](const ContactPoint& c, const Vec3& f, const Vec3& moment) {
+            if (pairs.empty()) return;
             pairs[c.obstacle].push.force += f;
             pairs[c.obstacle].push.torque += moment;
-        }
-        depth_sum += depth;
-        deepest = std::max(deepest, depth);
-    }
+        });
     double scale = (contact.two_way ? 0.5 : 1.0) * (weighted ? contact.area_stiffness : contact.stiffness);
     if (contact.variant == model::PenaltyVariant::MaxNormalised) {
-        const double coherent = std::max(sum.force.norm(), kLeastCoherence * depth_sum);
-        if (coherent > 0.0) scale = contact.stiffness * deepest / coherent;
+        const double coherent = std::max(all.sum.force.norm(), kLeastCoherence * all.depths);
+        if (coherent > 0.0) scale = contact.stiffness * all.deepest / coherent;
     }
     scalePushes(pairs, scale);
-    return {{scale * sum.force, scale * sum.torque}, scale};
+    return {{scale * all.sum.force, scale * all.sum.torque}, scale};
 }
 
 void renderPenalty(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
