@@ -1,9 +1,9 @@
-# Installs the core as a library for other projects: find_package(passung) gives passung::core_base, core_model,
-# core_tick, core_query, core_loop and core_replay. Headers keep their room in the path: #include "core/tick/step.h".
+# Installs the core as a library for other projects: find_package(passung) gives passung::core_base, core_geometry …
+# core_tick, core_query, core_loop and core_replay, each with what it needs. Headers keep their room in the path: #include "core/tick/step.h".
 
 include(CMakePackageConfigHelpers)
 
-set(core_rooms base model tick query loop replay)
+set(core_rooms base geometry import shape field shell scene contact motion tick query loop replay)
 set(core_targets passung_flags)
 foreach(room ${core_rooms})
   list(APPEND core_targets passung_core_${room})

@@ -3,30 +3,39 @@
 cmake_policy(VERSION 3.25)
 
 # Each room and the rooms it may include besides itself. Arrows point only upward.
-set(core_rooms "core/base core/model core/tick core/query core/loop core/replay")
+set(model_rooms "core/geometry core/import core/shape core/field core/shell core/scene")
+set(contact_rooms "core/base ${model_rooms} core/contact core/motion")
+set(core_rooms "${contact_rooms} core/tick core/query core/loop core/replay")
 set(study_rooms "study/protocol study/design study/questionnaire study/measures study/person")
 set(front_rooms "${core_rooms} devices study analysis ui/presenter")
 set(rooms
   "core/base           |"
-  "core/model          | core/base"
-  "core/tick           | core/base core/model"
-  "core/query          | core/base core/model core/tick"
-  "core/loop           | core/base core/model core/tick"
-  "core/replay         | core/base core/model core/tick"
+  "core/geometry       | core/base"
+  "core/import         | core/base core/geometry"
+  "core/shape          | core/base core/geometry core/import"
+  "core/field          | core/base core/geometry core/import core/shape"
+  "core/shell          | core/base core/geometry core/import core/shape core/field"
+  "core/scene          | core/base core/geometry core/import core/shape core/field core/shell"
+  "core/contact        | core/base ${model_rooms}"
+  "core/motion         | core/base ${model_rooms} core/contact"
+  "core/tick           | ${contact_rooms}"
+  "core/query          | ${contact_rooms}"
+  "core/loop           | ${contact_rooms} core/tick"
+  "core/replay         | ${contact_rooms} core/tick"
   "devices             | core/base core/loop"
   "study/design        | core/base"
   "study/questionnaire | core/base"
-  "study/protocol      | core/base core/model study/design study/questionnaire"
+  "study/protocol      | core/base ${model_rooms} study/design study/questionnaire"
   "study/measures      | core/base"
   "study/person        | core/base study/questionnaire"
-  "study/session       | core/base core/model ${study_rooms}"
+  "study/session       | core/base ${model_rooms} ${study_rooms}"
   "study/store         | core/base ${study_rooms} study/session"
-  "analysis/truth      | core/base core/model core/tick core/query"
+  "analysis/truth      | ${contact_rooms} core/tick core/query"
   "analysis/export     | core/base study/design study/protocol study/questionnaire study/measures study/store"
   "analysis/stats      | core/base"
   "study/run           | ${core_rooms} devices ${study_rooms} study/session study/store analysis/truth"
   "analysis/power      | core/base ${study_rooms} study/session study/store study/run analysis/export analysis/stats"
-  "ui/presenter        | core/base core/model ${study_rooms} study/session study/store study/run analysis/export analysis/stats"
+  "ui/presenter        | core/base ${model_rooms} ${study_rooms} study/session study/store study/run analysis/export analysis/stats"
   "ui/sound            | core/base core/loop study/measures"
   "ui/experimenter     | ui/presenter"
   "ui/participant      | ui/presenter"
@@ -38,9 +47,9 @@ set(rooms
 # whether only their .cpp files may (so that nothing built on the room sees it).
 set(libraries
   "Eigen    | ^Eigen/                          | *                                      | any"
-  "fmt      | ^fmt/                            | core/base core/model core/loop core/replay devices study analysis ui tests | any"
-  "assimp   | ^assimp/                         | core/model tests                       | cpp"
-  "minizip  | ^minizip/                        | core/model                             | cpp"
+  "fmt      | ^fmt/                            | core/base core/loop core/replay devices study analysis ui tests | any"
+  "assimp   | ^assimp/                         | core/import tests                      | cpp"
+  "minizip  | ^minizip/                        | core/import                            | cpp"
   "toml++   | ^toml[+][+]/                     | study/protocol tests                   | cpp"
   "SQLite   | ^sqlite3[.]h$                    | study/store tests                      | any"
   "zlib     | ^zlib[.]h$                       | study/store analysis/export tests      | cpp"
@@ -122,7 +131,7 @@ endfunction()
 function(judge_foreign room file path)
   set(complaint "" PARENT_SCOPE)
   if(path MATCHES "^[a-z0-9_]+$")
-    if(room STREQUAL "core/tick" AND NOT path IN_LIST tick_standard_headers)
+    if(room MATCHES "^core/(contact|motion|tick)$" AND NOT path IN_LIST tick_standard_headers)
       set(complaint "<${path}> has no place in the tick" PARENT_SCOPE)
     elseif(room IN_LIST threadless_rooms AND path IN_LIST thread_headers)
       set(complaint "<${path}>: ${room} has no threads" PARENT_SCOPE)

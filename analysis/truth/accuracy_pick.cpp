@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "core/base/assert.h"
-#include "core/model/parallel.h"
-#include "core/model/scene.h"
+#include "core/geometry/parallel.h"
+#include "core/scene/scene.h"
 
 namespace passung::truth {
 

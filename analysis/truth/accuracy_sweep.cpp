@@ -9,8 +9,8 @@
 #include <numeric>
 #include <optional>
 
-#include "core/model/timed_store.h"
 #include "core/query/part_query.h"
+#include "core/scene/timed_store.h"
 #include "core/tick/obstacle_query.h"
 #include "core/tick/penalty.h"
 #include "core/tick/proxy.h"

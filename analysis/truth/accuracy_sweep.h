@@ -8,8 +8,8 @@
 
 #include "analysis/truth/contact_path.h"
 #include "core/base/result.h"
-#include "core/model/part.h"
-#include "core/model/scene_spec.h"
+#include "core/scene/part.h"
+#include "core/scene/scene_spec.h"
 
 namespace passung::truth {
 

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "core/base/random.h"
-#include "core/model/parallel.h"
+#include "core/geometry/parallel.h"
 
 namespace passung::truth {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/types.h"
-#include "core/model/mesh.h"
+#include "core/geometry/mesh.h"
 
 namespace passung::truth {
 

@@ -5,7 +5,7 @@
 #include "analysis/truth/exact_mesh.h"
 #include "core/base/result.h"
 #include "core/base/types.h"
-#include "core/model/mesh.h"
+#include "core/geometry/mesh.h"
 
 namespace passung::truth {
 
@@ -16,7 +16,7 @@ enum class Relation { Apart, SurfacesIntersect, BInsideA, AInsideB };
 const char* toString(Relation relation);
 
 /// Independent truth about two watertight meshes A and B: FCL's bounding volume hierarchies (OBBRSS) for intersection
-/// and separation of the surfaces, own exact geometry for inside and depth. Nothing of core/model's or core/tick's
+/// and separation of the surfaces, own exact geometry for inside and depth. Nothing of core's
 /// queries is used. Built once, then const. `X_AB` is the pose of B in A; a pose that is not finite is an error.
 ///
 /// Limits: FCL gives no penetration depth for meshes (per-contact depths belong to triangle pairs and are far smaller),

@@ -5,7 +5,7 @@
 #include "analysis/truth/mesh_oracle.h"
 #include "analysis/truth/surface_tree.h"
 #include "core/base/result.h"
-#include "core/model/part.h"
+#include "core/scene/part.h"
 
 namespace passung::truth {
 

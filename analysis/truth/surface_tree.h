@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/truth/exact_mesh.h"
-#include "core/model/shape.h"
+#include "core/shape/shape.h"
 
 namespace passung::truth {
 

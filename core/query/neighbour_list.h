@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/model/triangle_tree.h"
+#include "core/geometry/triangle_tree.h"
 
 namespace passung::query {
 

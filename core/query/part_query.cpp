@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/tick/depth_sum.h"
+#include "core/contact/depth_sum.h"
 
 namespace passung::query {
 

@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "core/model/part.h"
+#include "core/contact/contact_clusters.h"
+#include "core/contact/contact_query.h"
 #include "core/query/surface_search.h"
-#include "core/tick/contact_clusters.h"
-#include "core/tick/contact_query.h"
+#include "core/scene/part.h"
 
 namespace passung::query {
 

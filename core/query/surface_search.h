@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "core/base/types.h"
-#include "core/model/part.h"
-#include "core/model/triangle_tree.h"
+#include "core/geometry/triangle_tree.h"
 #include "core/query/triangle_spheres.h"
+#include "core/scene/part.h"
 
 namespace passung::query {
 

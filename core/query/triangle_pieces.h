@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-#include "core/model/triangle_distance.h"
+#include "core/geometry/triangle_distance.h"
 
 /// Parts of triangles: what a search cuts where a whole one says too little.
 namespace passung::query {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/tick_record.h"
-#include "core/model/scene.h"
+#include "core/scene/scene.h"
 #include "core/tick/energy_account.h"
 #include "core/tick/scene_sequence.h"
 

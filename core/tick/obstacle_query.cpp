@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/tick/edge_search.h"
+#include "core/contact/edge_search.h"
 
 namespace passung::tick {
 

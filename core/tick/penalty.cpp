@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "core/contact/depth_sum.h"
 #include "core/tick/contact_energy.h"
-#include "core/tick/depth_sum.h"
 #include "core/tick/obstacle_query.h"
 #include "core/tick/twist_between.h"
 

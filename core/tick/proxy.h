@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/tick/constrained_motion.h"
+#include "core/motion/constrained_motion.h"
 #include "core/tick/tick_model.h"
 
 namespace passung::tick {

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "core/tick/constrained_motion.h"
+#include "core/motion/constrained_motion.h"
 #include "core/tick/tick_model.h"
 
 namespace passung::tick {

@@ -6,9 +6,9 @@
 
 #include "core/base/tick_record.h"
 #include "core/base/types.h"
-#include "core/model/scene.h"
+#include "core/motion/friction.h"
+#include "core/scene/scene.h"
 #include "core/tick/energy_account.h"
-#include "core/tick/friction.h"
 
 namespace passung::tick {
 

@@ -4,14 +4,14 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "core/model/scene_spec.h"
+#include "core/scene/scene_spec.h"
 #include "study/protocol/document.h"
 #include "study/protocol/part_geometry.h"
 
 namespace passung::protocol {
 
 /// No disc on a face that is wider than this, per spacing, is without a sample of the point shell: what samplePoints
-/// reaches (tests/core/model/thin_features_test.cpp holds it).
+/// reaches (tests/core/shape/thin_features_test.cpp holds it).
 inline constexpr double kCoverShare = 0.9;
 
 /// What contact takes where a protocol does not say it.

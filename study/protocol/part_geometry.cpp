@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "core/model/mesh_source.h"
+#include "core/scene/mesh_source.h"
 
 namespace passung::protocol {
 namespace {

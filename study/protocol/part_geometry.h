@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "core/model/build_store.h"
-#include "core/model/scene_spec.h"
-#include "core/model/thin_features.h"
-#include "core/model/triangle_tree.h"
+#include "core/geometry/triangle_tree.h"
+#include "core/scene/build_store.h"
+#include "core/scene/scene_spec.h"
+#include "core/shape/thin_features.h"
 
 namespace passung::protocol {
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "core/model/iso_fit.h"
+#include "core/shape/iso_fit.h"
 #include "study/protocol/scene_node.h"
 
 namespace passung::protocol {

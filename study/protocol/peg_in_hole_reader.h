@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/model/scene_spec.h"
+#include "core/scene/scene_spec.h"
 #include "study/protocol/factors.h"
 #include "study/protocol/table_reader.h"
 #include "study/protocol/task.h"

@@ -5,7 +5,7 @@
 
 #include "core/base/device_description.h"
 #include "core/base/result.h"
-#include "core/model/build_store.h"
+#include "core/scene/build_store.h"
 #include "study/protocol/study_plan.h"
 
 namespace passung::protocol {

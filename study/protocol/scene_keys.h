@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "core/model/scene_spec.h"
+#include "core/scene/scene_spec.h"
 #include "study/protocol/key_ranges.h"
 #include "study/protocol/key_table.h"
 

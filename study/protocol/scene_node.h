@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "core/base/device_description.h"
-#include "core/model/scene_spec.h"
+#include "core/scene/scene_spec.h"
 #include "study/protocol/document.h"
 #include "study/protocol/part_geometry.h"
 #include "study/protocol/table_reader.h"

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "core/model/scene_spec.h"
+#include "core/scene/scene_spec.h"
 
 namespace passung::protocol {
 

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <set>
 
-#include "core/model/field_estimate.h"
-#include "core/model/part.h"
+#include "core/scene/field_estimate.h"
+#include "core/scene/part.h"
 #include "study/protocol/felt_features.h"
 #include "study/protocol/scene_node.h"
 

@@ -6,8 +6,8 @@
 
 #include "core/base/device_description.h"
 #include "core/base/result.h"
-#include "core/model/build_store.h"
-#include "core/model/scene_spec.h"
+#include "core/scene/build_store.h"
+#include "core/scene/scene_spec.h"
 
 namespace passung::protocol {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/base/result.h"
-#include "core/model/scene_spec.h"
+#include "core/scene/scene_spec.h"
 #include "study/protocol/document.h"
 #include "study/protocol/part_geometry.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/model/scene_spec.h"
+#include "core/scene/scene_spec.h"
 #include "study/design/design.h"
 #include "study/protocol/block.h"
 #include "study/protocol/secondary_task.h"

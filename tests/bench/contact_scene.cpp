@@ -6,8 +6,8 @@
 #include "analysis/truth/mesh_oracle.h"
 #include "analysis/truth/surface_tree.h"
 #include "core/base/random.h"
-#include "core/model/mesh_import.h"
-#include "core/model/parallel.h"
+#include "core/geometry/parallel.h"
+#include "core/import/mesh_import.h"
 #include "tests/bench/loop_subdivision.h"
 
 namespace passung::bench {

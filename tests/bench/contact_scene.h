@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "core/model/mesh.h"
+#include "core/geometry/mesh.h"
 
 namespace passung::bench {
 

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "core/base/random.h"
-#include "core/model/part.h"
+#include "core/scene/part.h"
 
 namespace passung::bench {
 

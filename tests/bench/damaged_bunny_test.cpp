@@ -8,9 +8,9 @@
 
 #include "analysis/truth/exact_mesh.h"
 #include "core/base/random.h"
-#include "core/model/mesh_import.h"
-#include "core/model/part.h"
-#include "core/model/triangle_tree.h"
+#include "core/geometry/triangle_tree.h"
+#include "core/import/mesh_import.h"
+#include "core/scene/part.h"
 #include "tests/bench/loop_subdivision.h"
 #include "tests/support/broken_mesh.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/model/mesh.h"
+#include "core/geometry/mesh.h"
 
 namespace passung::bench {
 

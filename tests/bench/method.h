@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/base/types.h"
-#include "core/model/mesh.h"
-#include "core/model/part.h"
+#include "core/geometry/mesh.h"
+#include "core/scene/part.h"
 
 namespace passung::bench {
 

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/model/timed_store.h"
+#include "core/scene/timed_store.h"
 #include "core/tick/penalty.h"
 #include "study/run/files/disk_store.h"
 #include "tests/bench/contact_scene.h"

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "core/base/result.h"
-#include "core/model/part.h"
 #include "core/query/part_query.h"
+#include "core/scene/part.h"
 #include "tests/bench/method.h"
 
 namespace passung::bench {

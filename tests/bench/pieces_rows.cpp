@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "analysis/truth/exact_mesh.h"
-#include "core/model/point_shell.h"
-#include "core/tick/contact_query.h"
+#include "core/contact/contact_query.h"
+#include "core/shell/point_shell.h"
 #include "tests/bench/ours.h"
 
 namespace passung::bench {

@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
-#include "core/model/build_store.h"
-#include "core/model/distance_field.h"
-#include "core/model/shell_bytes.h"
+#include "core/field/distance_field.h"
+#include "core/scene/build_store.h"
+#include "core/shell/shell_bytes.h"
 
 /// libFuzzer: any bytes are a field, a shell, or nothing; a field that is one answers queries. The checksum is left
 /// out: no mutation would pass it. An input that begins with 'e' is a list of edits of a sound field (four bytes:

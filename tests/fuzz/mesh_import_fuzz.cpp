@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "core/model/mesh_formats.h"
-#include "core/model/mesh_import.h"
+#include "core/import/mesh_formats.h"
+#include "core/import/mesh_import.h"
 
 /// libFuzzer: any bytes are a mesh or an error, and a mesh is repaired to one that holds what its report says. The
 /// first byte chooses the format; 'b' is a binary STL file whose count and size agree, which no mutation would find.

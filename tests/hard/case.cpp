@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "core/tick/friction_balance.h"
+#include "core/motion/friction_balance.h"
 #include "core/tick/god_object.h"
 #include "core/tick/god_object_heuristic.h"
 #include "core/tick/proxy.h"

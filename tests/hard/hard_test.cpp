@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include "core/model/shape.h"
-#include "core/tick/constrained_motion.h"
+#include "core/motion/constrained_motion.h"
+#include "core/shape/shape.h"
 #include "core/tick/god_object.h"
 #include "tests/hard/case.h"
 #include "tests/hard/figures.h"

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/base/random.h"
-#include "core/model/mesh_import.h"
+#include "core/import/mesh_import.h"
 #include "tests/support/off_file.h"
 #include "tests/support/temp_folder.h"
 

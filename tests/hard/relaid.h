@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "core/base/result.h"
-#include "core/model/scene.h"
+#include "core/scene/scene.h"
 
 namespace passung::hard {
 

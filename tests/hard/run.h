@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "core/model/scene.h"
+#include "core/scene/scene.h"
 #include "core/tick/step.h"
 
 namespace passung::hard {

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/model/part.h"
+#include "core/contact/contact_query.h"
 #include "core/query/part_query.h"
-#include "core/tick/contact_query.h"
+#include "core/scene/part.h"
 
 using namespace passung;
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "core/model/mesh.h"
-#include "core/model/shape.h"
+#include "core/geometry/mesh.h"
+#include "core/shape/shape.h"
 
 /// Meshes with something wrong on purpose, made from sound ones.
 namespace passung::test {

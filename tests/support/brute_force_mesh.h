@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/base/types.h"
-#include "core/model/mesh.h"
+#include "core/geometry/mesh.h"
 
 /// Plain sums and searches over all triangles of a mesh, by other formulas than the core uses: a truth for tests.
 namespace passung::test {

@@ -9,7 +9,7 @@
 
 #include "analysis/truth/mesh_oracle.h"
 #include "core/base/random.h"
-#include "core/model/part.h"
+#include "core/scene/part.h"
 #include "tests/support/off_file.h"
 
 namespace passung::test {

@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "core/model/scene_spec.h"
+#include "core/scene/scene_spec.h"
 
 namespace passung::test {
 

@@ -3,7 +3,7 @@
 #include <fstream>
 #include <string>
 
-#include "core/model/mesh.h"
+#include "core/geometry/mesh.h"
 
 namespace passung::test {
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/model/scene.h"
+#include "core/scene/scene.h"
 #include "core/tick/step.h"
 
 namespace passung::test {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/base/types.h"
-#include "core/model/mesh.h"
+#include "core/geometry/mesh.h"
 
 namespace passung::test {
 

@@ -12,13 +12,13 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/model/mesh_bytes.h"
-#include "core/model/mesh_import.h"
+#include "core/import/mesh_bytes.h"
+#include "core/import/mesh_import.h"
 #include "study/run/import_exit.h"
 
 // The program passung-import: reads one mesh file for passung, so that no file can do to passung what it may do to its
 // reader. Words: FILE METRES_PER_UNIT SECONDS BYTES. The answer, a mesh with its report or errors, goes to the standard
-// output as bytes (core/model/mesh_bytes.h).
+// output as bytes (core/import/mesh_bytes.h).
 
 namespace {
 

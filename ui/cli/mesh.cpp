@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "core/model/part.h"
+#include "core/scene/part.h"
 #include "study/run/files/builds.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <iterator>
 
-#include "core/model/scene.h"
+#include "core/scene/scene.h"
 #include "core/tick/step.h"
 #include "devices/scripted/trajectory.h"
 #include "study/protocol/document.h"

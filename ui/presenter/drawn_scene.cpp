@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/model/mesh_import.h"
-#include "core/model/shape.h"
+#include "core/import/mesh_import.h"
+#include "core/shape/shape.h"
 
 namespace passung::presenter {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/model/mesh.h"
+#include "core/geometry/mesh.h"
 
 namespace passung::presenter {
 

@@ -1,6 +1,6 @@
 #include "ui/presenter/task_marks.h"
 
-#include "core/model/shape.h"
+#include "core/shape/shape.h"
 
 namespace passung::presenter {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/base/types.h"
-#include "core/model/mesh.h"
+#include "core/geometry/mesh.h"
 #include "ui/presenter/shaded_mesh.h"
 
 namespace passung::presenter {

@@ -3,8 +3,8 @@
 #include <memory>
 #include <utility>
 
-#include "core/model/build_store.h"
-#include "core/model/mesh_source.h"
+#include "core/scene/build_store.h"
+#include "core/scene/mesh_source.h"
 #include "study/run/files/disk_store.h"
 #include "study/run/files/mesh_importer.h"
 

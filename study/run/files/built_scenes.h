@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/model/scene.h"
+#include "core/scene/scene.h"
 #include "core/tick/scene_sequence.h"
 #include "study/session/rendered_scenes.h"
 

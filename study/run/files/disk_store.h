@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "core/model/build_store.h"
+#include "core/scene/build_store.h"
 
 namespace passung::app {
 

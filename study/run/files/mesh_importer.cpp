@@ -14,7 +14,7 @@
 #include <cstring>
 #include <vector>
 
-#include "core/model/mesh_bytes.h"
+#include "core/import/mesh_bytes.h"
 #include "study/run/import_exit.h"
 
 namespace passung::app {

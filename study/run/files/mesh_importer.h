@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/base/result.h"
-#include "core/model/mesh_import.h"
+#include "core/import/mesh_import.h"
 
 namespace passung::app {
 

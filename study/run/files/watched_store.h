@@ -4,8 +4,8 @@
 #include <functional>
 #include <stdexcept>
 
-#include "core/model/build_store.h"
-#include "core/model/mesh_source.h"
+#include "core/scene/build_store.h"
+#include "core/scene/mesh_source.h"
 
 namespace passung::app {
 

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <thread>
 
-#include "core/model/scene.h"
+#include "core/scene/scene.h"
 #include "devices/simulated/presets.h"
 #include "devices/simulated/simulated_device.h"
 

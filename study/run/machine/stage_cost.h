@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "core/model/scene.h"
+#include "core/scene/scene.h"
 #include "study/protocol/study_plan.h"
 
 namespace passung::app {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/base/random.h"
-#include "core/model/shape.h"
+#include "core/shape/shape.h"
 
 namespace passung::truth {
 namespace {

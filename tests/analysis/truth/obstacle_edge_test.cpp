@@ -7,7 +7,7 @@
 
 #include "analysis/truth/exact_mesh.h"
 #include "core/base/random.h"
-#include "core/model/shape.h"
+#include "core/shape/shape.h"
 #include "tests/support/scenes.h"
 
 // The tick tests the held part's sample points against the obstacles' fields and not the reverse, so that an obstacle's

@@ -5,7 +5,7 @@
 
 #include "analysis/truth/exact_mesh.h"
 #include "core/base/random.h"
-#include "core/model/shape.h"
+#include "core/shape/shape.h"
 #include "tests/support/scenes.h"
 
 namespace passung {

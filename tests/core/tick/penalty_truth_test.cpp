@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "core/base/random.h"
-#include "core/model/part.h"
+#include "core/scene/part.h"
 #include "core/tick/penalty.h"
 #include "tests/support/submerged.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/types.h"
-#include "core/model/shape.h"
+#include "core/shape/shape.h"
 
 namespace passung::simulated {
 

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <tuple>
 
-#include "core/model/shape.h"
+#include "core/shape/shape.h"
 #include "study/protocol/protocol_reader.h"
 #include "tests/study/protocol/known_names.h"
 

@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/model/scene.h"
+#include "core/scene/scene.h"
 
 namespace passung::app {
 namespace {

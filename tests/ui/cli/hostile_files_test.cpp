@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/model/mesh_import.h"
+#include "core/import/mesh_import.h"
 #include "tests/support/hostile_scene.h"
 #include "tests/ui/cli/program.h"
 #include "tests/ui/cli/small_study.h"

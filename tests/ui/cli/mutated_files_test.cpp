@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/model/mesh_import.h"
+#include "core/import/mesh_import.h"
 #include "study/protocol/protocol_reader.h"
 #include "study/run/files/known_names.h"
 #include "tests/support/hostile_scene.h"

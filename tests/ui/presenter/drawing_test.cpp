@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/model/shape.h"
+#include "core/shape/shape.h"
 #include "ui/presenter/drawn_scene.h"
 #include "ui/presenter/pointer_motion.h"
 #include "ui/presenter/shaded_mesh.h"

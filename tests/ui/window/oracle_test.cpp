@@ -11,8 +11,8 @@
 #include <set>
 #include <variant>
 
-#include "core/model/mesh_import.h"
-#include "core/model/shape.h"
+#include "core/import/mesh_import.h"
+#include "core/shape/shape.h"
 #include "study/protocol/protocol_reader.h"
 #include "study/run/files/known_names.h"
 #include "study/run/run_study.h"

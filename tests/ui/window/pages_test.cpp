@@ -4,7 +4,7 @@
 #include <set>
 
 #include "analysis/export/export.h"
-#include "core/model/scene.h"
+#include "core/scene/scene.h"
 #include "core/tick/tick_model.h"
 #include "study/protocol/protocol_reader.h"
 #include "study/run/files/known_names.h"

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <thread>
 
-#include "core/model/shape.h"
+#include "core/shape/shape.h"
 #include "study/protocol/protocol_reader.h"
 #include "study/run/files/known_names.h"
 #include "study/store/store_reader.h"

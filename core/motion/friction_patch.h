@@ -1,0 +1,22 @@
+#pragma once
+
+#include <utility>
+
+#include "core/motion/friction.h"
+
+namespace passung::tick {
+
+// Geometry of a patch of contacts that rub as one. rt-safe.
+
+inline constexpr double kSameWay = 0.985;  // cosine of 10 degrees: contacts that face so much alike rub as one
+
+/// Two unit vectors along the plane across `n`.
+std::pair<Vec3, Vec3> tangentsOf(const Vec3& n) noexcept;
+
+/// The friction of `patch` in the tangents of a normal that differs a little.
+Vec3 turned(const FrictionPatch& patch, const Vec3& normal) noexcept;
+
+/// Mean distance from the centre of pressure of the points that `patch` touches after `u`, under their pressure.
+double effectiveRadius(const Surroundings& around, const FrictionPatch& patch, const Motion& u) noexcept;
+
+}  // namespace passung::tick

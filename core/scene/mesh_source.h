@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "core/base/result.h"
+#include "core/import/mesh_import.h"
+#include "core/scene/build_store.h"
+#include "core/scene/scene_spec.h"
+
+namespace passung::model {
+
+/// Reads meshes for whoever builds parts: a BuildStore that is one, too, is asked for them.
+class MeshSource {
+public:
+    virtual ~MeshSource() = default;
+    /// As model::importMesh(), in whatever process.
+    virtual Result<ImportedMesh> importMesh(const std::string& path, double metres_per_unit) = 0;
+};
+
+/// By the store if it is a MeshSource, else in this process.
+Result<ImportedMesh> importMesh(const MeshFile& file, BuildStore* store);
+
+}  // namespace passung::model

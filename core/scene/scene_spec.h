@@ -1,0 +1,119 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/base/types.h"
+#include "core/field/field_mode.h"
+#include "core/shape/shape.h"
+
+namespace passung::model {
+
+/// Where the geometry of a part comes from: a file or a parametric shape.
+struct MeshFile {
+    std::string path;  // as a reader can open it (already relative to the working directory)
+    double metres_per_unit = 1e-3;
+};
+
+/// A part as a scene file describes it; SI units.
+struct PartSpec {
+    std::string name;
+    std::variant<Shape, MeshFile> geometry;
+    Pose X_WP;                         // part to world at the start
+    bool held = false;                 // the hand's part; exactly one in a scene
+    double friction = 0.0;             // of the surface at rest: μ_s of a pair is the geometric mean, ≥ 0
+    double sliding_friction = 0.0;     // likewise μ_d, ≤ friction
+    Vec3 shown_offset = Vec3::Zero();  // drawn this far from where it is touched, world axes [m]
+};
+
+enum class ContactMethod { Penalty, GodObjectHeuristic, GodObject };
+enum class PenaltyVariant { MaxNormalised, AreaWeighted, Raw };
+enum class PenaltyCoupling { Direct, QuasiStatic, Virtual };
+
+struct ContactSpec {
+    ContactMethod method = ContactMethod::GodObjectHeuristic;
+    PenaltyVariant variant = PenaltyVariant::MaxNormalised;
+    double stiffness = 1000.0;          // [N/m], > 0
+    double rotational_stiffness = 1.0;  // [N·m/rad], ≥ 0
+    double damping = 0.0;               // [N·s/m], ≥ 0
+    double rotational_damping = 0.0;    // [N·m·s/rad], ≥ 0
+    double area_stiffness = 1e9;        // κ [N/m³], > 0; area-weighted penalty only
+    // The penalty may act on a tool that the stiffness and damping above couple to the hand: core/tick/penalty_tool.h.
+    PenaltyCoupling coupling = PenaltyCoupling::Direct;
+    double penalty_stiffness = 10000.0;  // of a coupled penalty's contacts, in place of `stiffness` [N/m], > 0
+    double tool_mass = 0.05;             // of PenaltyCoupling::Virtual [kg], > 0
+    double tool_inertia = 5e-5;          // likewise [kg·m²], > 0
+    double tolerance = 20e-6;            // asked accuracy of the distance field near surfaces [m], > 0
+    double cell = 0.0;                   // edge of a field cell [m]; 0 = chosen from the tolerance
+    double spacing = 1.0e-3;             // of the point shell [m], > 0
+    FieldMode mode = FieldMode::Trilinear;
+    int budget_nodes = 0;       // per query; 0 = no budget
+    bool two_way = false;       // the obstacles' points are held against the held part's field too
+    double proxy_filter = 0.0;  // corner of the god object's low-pass while in contact [Hz]; 0 = none
+
+    /// True if forces come from the overlap at the hand's own pose, false if there is a proxy or tool.
+    bool rendersAtHand() const { return method == ContactMethod::Penalty && coupling == PenaltyCoupling::Direct; }
+};
+
+inline constexpr int kMaxDelayTicks = 100;
+
+/// Limits that the output stage holds; filled from the device's description, tightened by the scene.
+struct OutputLimits {
+    double max_force = 12.0;          // [N], > 0
+    double max_torque = 0.2;          // [N·m], ≥ 0
+    double max_force_rate = 10000.0;  // [N/s] while rising, > 0
+    double max_speed = 20.0;          // [m/s], a faster reading is a broken one
+    double max_spin = 200.0;          // [rad/s]
+    bool actuates_torque = true;
+    // Encoder steps of the handle's pose, which the energy account has to know; 0: none or not known.
+    double quantum = 0.0;             // [m]
+    double rotational_quantum = 0.0;  // [rad]
+    int delay_ticks = 0;              // added between command and effect
+};
+
+/// Maps device space to the scene: X_WH = align · scale(X_BD) · handle.
+struct Registration {
+    Pose X_WB;           // device base in the scene
+    double scale = 1.0;  // scene metres per device metre, > 0
+    Pose X_DH;           // held part in the handle
+};
+
+/// When does contact start: the hand has to hold the start pose first (0 = at once).
+struct StartGate {
+    double position_tolerance = 0.0;  // [m]
+    double angle_tolerance = 0.0;     // [rad]
+    int hold_ticks = 0;
+};
+
+/// A decaying vibration at every impact.
+struct Transients {
+    double amplitude = 0.0;    // force per speed of the impact [N·s/m], ≥ 0; 0: none
+    double frequency = 100.0;  // [Hz], > 0 and below half the tick's rate
+    double decay = 0.02;       // time constant [s], > 0
+};
+
+/// Effects beyond contact; what is 0 is not built.
+struct Effects {
+    double passivity_damping = 0.0;  // most of the passivity controller's damper [N·s/m], ≥ 0; 0: no controller
+    Transients transients;
+};
+
+struct SceneSpec {
+    std::vector<PartSpec> parts;
+    ContactSpec contact;
+    OutputLimits limits;
+    Registration registration;
+    StartGate start_gate;
+    Effects effects;
+    bool record_hand_depth = true;  // an extra query at the device pose for god objects
+    bool display_wrench = true;     // false: contact is computed and recorded, but the device commands nothing
+
+    /// Everything wrong with the values, cross-field rules included. Finite first.
+    std::vector<Error> validate() const;
+};
+
+}  // namespace passung::model

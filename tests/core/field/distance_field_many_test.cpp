@@ -1,0 +1,134 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include "core/base/random.h"
+#include "core/scene/part.h"
+
+namespace passung::model {
+namespace {
+
+struct Points {
+    std::vector<float> x, y, z;
+
+    void add(const Vec3& p) {
+        x.push_back(static_cast<float>(p.x()));
+        y.push_back(static_cast<float>(p.y()));
+        z.push_back(static_cast<float>(p.z()));
+    }
+    Vec3 at(std::size_t i) const {
+        return {static_cast<double>(x[i]), static_cast<double>(y[i]), static_cast<double>(z[i])};
+    }
+};
+
+const Pose kPose{rotationFromVector({0.3, -0.5, 0.7}), Vec3(0.01, 0.02, -0.03)};
+
+/// Points around the part, most of them near it, some off its grid and some that are no points.
+Points someAround(const DistanceField& field) {
+    Random random(7);
+    Points points;
+    const Pose X_SF = kPose.inverse();
+    for (int i = 0; i < 20'011; ++i) {  // not a multiple of any block
+        const double margin = i % 7 == 0 ? 0.5 : 0.002;
+        Vec3 p;
+        for (int axis = 0; axis < 3; ++axis)
+            p[axis] = random.uniform(field.bounds().low[axis] - margin, field.bounds().high[axis] + margin);
+        points.add(X_SF * p);
+    }
+    points.x[100] = std::numeric_limits<float>::quiet_NaN();
+    points.y[200] = std::numeric_limits<float>::infinity();
+    return points;
+}
+
+std::vector<DistanceField> someFields() {
+    std::vector<DistanceField> fields;
+    const auto add = [&](const Shape& shape, const PartNeeds& needs) {
+        PartSpec spec;
+        spec.geometry = shape;
+        auto part = buildPart(spec, needs);
+        EXPECT_TRUE(part);
+        fields.push_back(std::move(*part->field));
+    };
+    add(Sphere{0.03}, {.field = true, .cell = 0.7e-3});
+    add(BorePlate{0.06, 0.06, 0.03, 0.0202, 0.025, 0.001}, {.field = true, .tolerance = 20e-6});
+    add(Sheet{0.05, 0.03}, {.field = true, .tolerance = 50e-6});
+    return fields;
+}
+
+TEST(SampleMany, IsTheSampleOfEachPointWithinSinglePrecision) {
+    // Truth: invariant (sample() of each point; the bound stated in the header, and a float's own rounding).
+    for (const DistanceField& field : someFields()) {
+        const Points points = someAround(field);
+        std::vector<float> phi(points.x.size());
+        field.sampleMany(field.place(kPose), points.x, points.y, points.z, phi);
+        const double span = 2.0 * std::sqrt(3.0) * DistanceField::kBrickCells * 0.06 / 32.0;  // of the largest brick
+        for (std::size_t i = 0; i < phi.size(); ++i) {
+            const double one = field.sample(kPose * points.at(i), FieldMode::Trilinear).phi;
+            if (std::isnan(one)) {
+                EXPECT_TRUE(std::isnan(phi[i]));
+                continue;
+            }
+            if (std::isinf(one)) {
+                EXPECT_EQ(static_cast<double>(phi[i]), one);
+                continue;
+            }
+            ASSERT_NEAR(static_cast<double>(phi[i]), one, 0x1p-20 * span + 0x1p-24 * std::abs(one)) << i;
+        }
+    }
+}
+
+TEST(SampleMany, GivesTheSameBitsWithAllInstructionsAndInAnyGrouping) {
+    // Truth: invariant.
+    for (const DistanceField& field : someFields()) {
+        const Points points = someAround(field);
+        const std::size_t count = points.x.size();
+        std::vector<float> baseline(count);
+        field.sampleMany(field.place(kPose), points.x, points.y, points.z, baseline, Instructions::Baseline);
+        for (const Instructions instructions : {Instructions::V3, Instructions::V4}) {
+            if (instructions > bestInstructions()) continue;
+            std::vector<float> phi(count);
+            field.sampleMany(field.place(kPose), points.x, points.y, points.z, phi, instructions);
+            EXPECT_EQ(std::memcmp(phi.data(), baseline.data(), count * sizeof(float)), 0)
+                << static_cast<int>(instructions);
+        }
+        for (std::size_t i = 0; i < count; i += 97) {
+            float phi = 0.0f;
+            field.sampleMany(field.place(kPose), {&points.x[i], 1}, {&points.y[i], 1}, {&points.z[i], 1}, {&phi, 1});
+            EXPECT_EQ(std::memcmp(&phi, &baseline[i], sizeof(float)), 0) << i;
+        }
+    }
+}
+
+TEST(LowerBounds, AreNeverAboveTheDistanceAndHardlyBelowTheOneOfEachPoint) {
+    // Truth: closed form; lowerBound() of each point.
+    std::vector<Shape> shapes{Sphere{0.03}, BorePlate{0.06, 0.06, 0.03, 0.0202, 0.025, 0.001}, Sheet{0.05, 0.03}};
+    std::size_t k = 0;
+    for (const DistanceField& field : someFields()) {
+        const Shape& shape = shapes[k++];
+        const Points points = someAround(field);
+        const std::size_t count = points.x.size();
+        std::vector<float> bound(count), other(count);
+        field.lowerBounds(field.place(kPose), points.x, points.y, points.z, bound, Instructions::Baseline);
+        double loosest = 0.0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const Vec3 p = kPose * points.at(i);
+            if (!p.allFinite()) continue;
+            const double value = static_cast<double>(bound[i]);
+            ASSERT_LE(value, signedDistance(shape, p) + 1e-12) << kindName(shape) << " " << i;
+            ASSERT_LE(value, field.lowerBound(p) + 1e-12) << i;
+            loosest = std::max(loosest, field.lowerBound(p) - value);
+        }
+        EXPECT_LT(loosest, 2e-6) << kindName(shape);  // 2⁻¹⁸ of the largest distance, half a metre
+        for (const Instructions instructions : {Instructions::V3, Instructions::V4}) {
+            if (instructions > bestInstructions()) continue;
+            field.lowerBounds(field.place(kPose), points.x, points.y, points.z, other, instructions);
+            EXPECT_EQ(std::memcmp(other.data(), bound.data(), count * sizeof(float)), 0);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace passung::model
