@@ -53,7 +53,7 @@ set(libraries
   "toml++   | ^toml[+][+]/                     | study/protocol tests                   | cpp"
   "SQLite   | ^sqlite3[.]h$                    | study/store tests                      | any"
   "zlib     | ^zlib[.]h$                       | study/store analysis/export tests      | cpp"
-  "OpenSSL  | ^openssl/                        | study/store analysis/export tests      | cpp"
+  "OpenSSL  | ^openssl/                        | core/base tests                         | cpp"
   "libpqxx  | ^pqxx/                           | study/store tests                      | cpp"
   "FCL      | ^fcl/                            | analysis/truth tests                   | cpp"
   "Boost.Math | ^boost/math/                     | analysis/stats tests                   | cpp"

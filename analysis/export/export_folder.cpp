@@ -12,10 +12,10 @@
 
 #include "analysis/export/codebook.h"
 #include "analysis/export/missing_table.h"
+#include "core/base/digest.h"
+#include "core/base/folder_lock.h"
 #include "core/base/regular_file.h"
 #include "study/protocol/document.h"
-#include "study/store/digest.h"
-#include "study/store/folder_lock.h"
 
 namespace passung::exporter {
 namespace {

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/folder_lock.h"
 #include "core/base/result.h"
-#include "study/store/folder_lock.h"
 
 namespace passung::exporter {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "study/store/digest.h"
+#include "core/base/digest.h"
 
 namespace passung::exporter {
 namespace {

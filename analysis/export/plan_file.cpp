@@ -1,6 +1,6 @@
 #include "analysis/export/plan_file.h"
 
-#include "study/protocol/json.h"
+#include "core/base/json.h"
 
 namespace passung::exporter {
 

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <optional>
 
+#include "core/base/folder_lock.h"
 #include "study/run/machine/auto_accuracy.h"
 #include "study/run/run_study.h"
-#include "study/store/folder_lock.h"
 #include "study/store/store_reader.h"
 
 namespace passung::app {

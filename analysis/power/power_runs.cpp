@@ -6,8 +6,8 @@
 #include <mutex>
 #include <thread>
 
+#include "core/base/digest.h"
 #include "core/base/random.h"
-#include "study/store/digest.h"
 
 namespace passung::power {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "study/protocol/json.h"
+#include "core/base/json.h"
 #include "study/protocol/table_reader.h"
 
 namespace passung::protocol {

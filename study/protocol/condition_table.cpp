@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "study/protocol/json.h"
+#include "core/base/json.h"
 
 namespace passung::protocol {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
+#include "core/base/json.h"
 #include "study/design/allocation.h"
-#include "study/protocol/json.h"
 #include "study/protocol/task_json.h"
 
 namespace passung::protocol {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <iterator>
 
-#include "study/protocol/json.h"
+#include "core/base/json.h"
 #include "study/protocol/plan_json.h"
 #include "study/protocol/questionnaire_reader.h"
 #include "study/protocol/questionnaire_texts.h"

@@ -1,6 +1,6 @@
 #include "study/protocol/task_json.h"
 
-#include "study/protocol/json.h"
+#include "core/base/json.h"
 #include "study/protocol/trial_types.h"
 
 namespace passung::protocol {

@@ -1,6 +1,6 @@
 #include "study/protocol/view.h"
 
-#include "study/protocol/json.h"
+#include "core/base/json.h"
 
 namespace passung::protocol {
 

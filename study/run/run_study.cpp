@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "core/base/digest.h"
 #include "core/tick/numerics.h"
 #include "devices/simulated/presets.h"
 #include "study/measures/measures.h"
@@ -23,7 +24,6 @@
 #include "study/run/person/simulated_answers.h"
 #include "study/run/person/simulated_timer.h"
 #include "study/session/participant_order.h"
-#include "study/store/digest.h"
 #include "study/store/identity.h"
 
 namespace passung::app {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "study/protocol/json.h"
+#include "core/base/json.h"
 
 namespace passung::session {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string_view>
 
-#include "study/protocol/json.h"
+#include "core/base/json.h"
 
 namespace passung::session {
 

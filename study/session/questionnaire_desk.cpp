@@ -7,8 +7,8 @@
 #include <map>
 #include <utility>
 
+#include "core/base/json.h"
 #include "core/base/random.h"
-#include "study/protocol/json.h"
 #include "study/questionnaire/presented_order.h"
 #include "study/session/questionnaire_moments.h"
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "core/base/json.h"
 #include "core/base/result.h"
 #include "study/measures/detection.h"
-#include "study/protocol/json.h"
 #include "study/session/apparatus.h"
 #include "study/session/command.h"
 #include "study/session/instruction_desk.h"

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <utility>
 
-#include "study/protocol/json.h"
+#include "core/base/json.h"
 #include "study/session/session.h"
 
 // What Session does between two trials: questionnaires, rests, changes of the device.

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/base/assert.h"
-#include "study/protocol/json.h"
+#include "core/base/json.h"
 #include "study/session/session.h"
 
 // What Session does for an experimenter: may the command be obeyed now, the log, and the deed.

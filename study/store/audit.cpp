@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "study/store/digest.h"
+#include "core/base/digest.h"
 #include "study/store/tombstone.h"
 
 namespace passung::store {

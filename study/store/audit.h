@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "study/protocol/json.h"
+#include "core/base/json.h"
 #include "study/protocol/participant.h"
 #include "study/store/rows.h"
 #include "study/store/sqlite.h"

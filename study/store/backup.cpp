@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "study/store/digest.h"
+#include "core/base/digest.h"
 #include "study/store/private_files.h"
 
 namespace passung::store {

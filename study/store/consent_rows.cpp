@@ -1,6 +1,6 @@
 #include "study/store/consent_rows.h"
 
-#include "study/store/digest.h"
+#include "core/base/digest.h"
 
 namespace passung::store {
 

@@ -1,7 +1,7 @@
 #include "study/store/identity.h"
 
+#include "core/base/hex_text.h"
 #include "core/base/random.h"
-#include "study/store/hex_text.h"
 
 namespace passung::store {
 

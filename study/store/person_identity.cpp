@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "study/protocol/json.h"
-#include "study/store/digest.h"
+#include "core/base/digest.h"
+#include "core/base/json.h"
 
 namespace passung::store {
 namespace {

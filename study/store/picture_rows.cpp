@@ -1,7 +1,7 @@
 #include "study/store/picture_rows.h"
 
+#include "core/base/digest.h"
 #include "study/protocol/document.h"
-#include "study/store/digest.h"
 
 namespace passung::store {
 

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/base/digest.h"
+#include "core/base/json.h"
 #include "study/measures/measures.h"
 #include "study/protocol/document.h"
-#include "study/protocol/json.h"
 #include "study/store/consent_rows.h"
-#include "study/store/digest.h"
 #include "study/store/questionnaire_rows.h"
 #include "study/store/revisions.h"
 #include "study/store/slots.h"

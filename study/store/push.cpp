@@ -10,8 +10,8 @@
 #include <pqxx/pqxx>
 #include <set>
 
+#include "core/base/digest.h"
 #include "study/store/audit.h"
-#include "study/store/digest.h"
 #include "study/store/open_database.h"
 #include "study/store/person_identity.h"
 #include "study/store/push_copies.h"

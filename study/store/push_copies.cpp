@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "study/store/hex_text.h"
+#include "core/base/hex_text.h"
 #include "study/store/tombstone.h"
 
 namespace passung::store {

@@ -2,8 +2,8 @@
 
 #include <stdexcept>
 
-#include "study/protocol/json.h"
-#include "study/store/digest.h"
+#include "core/base/digest.h"
+#include "core/base/json.h"
 #include "study/store/event_rows.h"
 #include "study/store/sqlite.h"
 

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "study/protocol/json.h"
+#include "core/base/json.h"
 #include "study/store/sqlite.h"
 #include "study/store/value_hash.h"
 

@@ -2,7 +2,7 @@
 
 #include <bit>
 
-#include "study/store/digest.h"
+#include "core/base/digest.h"
 
 namespace passung::store {
 

@@ -6,8 +6,8 @@
 #include <cstring>
 
 #include "core/base/assert.h"
-#include "study/protocol/json.h"
-#include "study/store/digest.h"
+#include "core/base/json.h"
+#include "study/store/compression.h"
 
 namespace passung::store {
 namespace {

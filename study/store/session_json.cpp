@@ -1,6 +1,6 @@
 #include "study/store/session_json.h"
 
-#include "study/protocol/json.h"
+#include "core/base/json.h"
 
 namespace passung::store {
 namespace {

@@ -5,7 +5,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "study/store/digest.h"
+#include "core/base/digest.h"
 
 namespace passung::store {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <array>
 
-#include "study/protocol/json.h"
+#include "core/base/hex_text.h"
+#include "core/base/json.h"
 #include "study/store/contact_energy_rows.h"
 #include "study/store/delivery_rows.h"
 #include "study/store/event_rows.h"
-#include "study/store/hex_text.h"
 #include "study/store/order_rows.h"
 #include "study/store/presentation_rows.h"
 #include "study/store/questionnaire_rows.h"

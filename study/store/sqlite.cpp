@@ -2,8 +2,8 @@
 
 #include <sqlite3.h>
 
+#include "core/base/hex_text.h"
 #include "core/base/regular_file.h"
-#include "study/store/hex_text.h"
 #include "study/store/private_files.h"
 
 namespace passung::store {

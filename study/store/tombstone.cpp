@@ -1,6 +1,6 @@
 #include "study/store/tombstone.h"
 
-#include "study/store/digest.h"
+#include "core/base/digest.h"
 
 namespace passung::store {
 namespace {

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "study/protocol/json.h"
+#include "core/base/json.h"
 #include "study/store/sqlite.h"
 
 namespace passung::store {

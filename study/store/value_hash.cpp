@@ -5,7 +5,7 @@
 #include <bit>
 #include <set>
 
-#include "study/store/digest.h"
+#include "core/base/digest.h"
 #include "study/store/row_text.h"
 
 namespace passung::store {

@@ -1,7 +1,7 @@
 #include "study/store/verify.h"
 
+#include "core/base/digest.h"
 #include "study/store/audit.h"
-#include "study/store/digest.h"
 #include "study/store/open_database.h"
 #include "study/store/row_hash.h"
 #include "study/store/session_damage.h"

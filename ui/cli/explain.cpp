@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "core/base/digest.h"
 #include "study/protocol/document.h"
 #include "study/run/files/builds.h"
 #include "study/run/files/known_names.h"
@@ -12,7 +13,6 @@
 #include "study/run/machine/stability_report.h"
 #include "study/run/machine/stage_cost.h"
 #include "study/session/plan_text.h"
-#include "study/store/digest.h"
 #include "study/store/store_reader.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/json.h"
 #include "core/base/number_table.h"
 #include "core/query/part_query.h"
-#include "study/protocol/json.h"
 #include "study/run/files/builds.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"

@@ -4,13 +4,13 @@
 #include <bit>
 #include <map>
 
+#include "core/base/hex_text.h"
 #include "core/replay/replayer.h"
 #include "core/tick/numerics.h"
 #include "study/run/files/builds.h"
 #include "study/run/files/built_scenes.h"
 #include "study/run/files/stored_plans.h"
 #include "study/session/recompute.h"
-#include "study/store/hex_text.h"
 #include "study/store/store_reader.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"

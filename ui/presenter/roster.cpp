@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "core/base/digest.h"
 #include "study/protocol/plan_warnings.h"
-#include "study/store/digest.h"
 
 namespace passung::presenter {
 

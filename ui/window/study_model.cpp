@@ -6,12 +6,12 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/base/digest.h"
 #include "study/protocol/document.h"
 #include "study/run/files/builds.h"
 #include "study/run/files/known_names.h"
 #include "study/run/files/protocol_files.h"
 #include "study/run/machine/auto_accuracy.h"
-#include "study/store/digest.h"
 #include "study/store/store_reader.h"
 #include "ui/window/registry_words.h"
 #include "ui/window/roster_words.h"

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
+#include "core/base/digest.h"
 #include "core/base/regular_file.h"
 #include "study/protocol/document.h"
 #include "study/run/machine/auto_accuracy.h"
 #include "study/run/machine/calibration.h"
-#include "study/store/digest.h"
 
 namespace passung::app {
 

@@ -6,9 +6,9 @@
 #include <set>
 #include <span>
 
+#include "core/base/digest.h"
 #include "study/protocol/consent_reader.h"
 #include "study/protocol/plan_warnings.h"
-#include "study/store/digest.h"
 #include "study/store/participant_desk.h"
 #include "study/store/store_reader.h"
 

@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "study/protocol/json.h"
+#include "core/base/json.h"
 #include "study/protocol/plan_warnings.h"
 #include "study/protocol/protocol_reader.h"
 #include "tests/study/protocol/fake_devices.h"

@@ -8,8 +8,8 @@
 #include <functional>
 #include <set>
 
+#include "core/base/digest.h"
 #include "study/store/backup.h"
-#include "study/store/digest.h"
 #include "study/store/revisions.h"
 #include "study/store/sqlite.h"
 #include "tests/study/store/damaged_study.h"

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "core/base/json.h"
 #include "study/protocol/document.h"
-#include "study/protocol/json.h"
 #include "study/protocol/questionnaire_reader.h"
 #include "study/questionnaire/scoring.h"
 #include "tests/study/store/fake_study.h"

@@ -5,8 +5,8 @@
 #include <fstream>
 #include <set>
 
+#include "core/base/digest.h"
 #include "study/store/backup.h"
-#include "study/store/digest.h"
 #include "study/store/merge.h"
 #include "study/store/participant_desk.h"
 #include "study/store/revisions.h"

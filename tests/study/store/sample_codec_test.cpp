@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "study/store/digest.h"
+#include "study/store/compression.h"
 #include "tests/study/store/fake_study.h"
 
 namespace passung::store {

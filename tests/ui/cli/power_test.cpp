@@ -6,7 +6,7 @@
 
 #include "analysis/power/power_file.h"
 #include "analysis/power/power_runs.h"
-#include "study/store/folder_lock.h"
+#include "core/base/folder_lock.h"
 #include "tests/analysis/export/csv_reader.h"
 #include "tests/ui/cli/program.h"
 #include "tests/ui/cli/small_study.h"

@@ -6,10 +6,10 @@
 #include <map>
 #include <set>
 
+#include "core/base/digest.h"
 #include "core/base/types.h"
 #include "study/protocol/protocol_reader.h"
 #include "study/run/files/known_names.h"
-#include "study/store/digest.h"
 #include "study/store/sample_codec.h"
 #include "study/store/sqlite.h"
 #include "study/store/store_reader.h"

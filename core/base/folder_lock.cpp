@@ -1,4 +1,4 @@
-#include "study/store/folder_lock.h"
+#include "core/base/folder_lock.h"
 
 #include <fcntl.h>
 #include <sys/file.h>

@@ -1,4 +1,4 @@
-#include "study/store/hex_text.h"
+#include "core/base/hex_text.h"
 
 #include <array>
 #include <string_view>

@@ -1,4 +1,4 @@
-#include "study/protocol/json.h"
+#include "core/base/json.h"
 
 #include <fmt/format.h>
 

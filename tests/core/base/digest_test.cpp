@@ -1,4 +1,4 @@
-#include "study/store/digest.h"
+#include "core/base/digest.h"
 
 #include <gtest/gtest.h>
 
@@ -9,13 +9,6 @@ TEST(Digest, Sha256GivesThePublishedValues) {
     // Truth: closed form (FIPS 180-2, appendix B.1; the empty message from the NIST test vectors)
     EXPECT_EQ(sha256Hex("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
     EXPECT_EQ(sha256Hex(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-}
-
-TEST(Digest, Crc32GivesTheCheckValueOfItsCatalogue) {
-    // Truth: closed form (check value of CRC-32/ISO-HDLC over the digits 1 to 9)
-    const std::string digits = "123456789";
-    EXPECT_EQ(crc32(std::as_bytes(std::span(digits))), 0xcbf43926u);
-    EXPECT_EQ(crc32({}), 0u);
 }
 
 }  // namespace
