@@ -6,7 +6,6 @@ namespace passung::exporter {
 namespace {
 
 std::string columnJson(const Column& column) {
-    using protocol::jsonText;
     std::string json = "{\"label\": " + jsonText(column.label) + ", \"unit\": " + jsonText(column.unit) +
                        ", \"type\": " + jsonText(column.type) + ", \"levels\": [";
     for (std::size_t i = 0; i < column.levels.size(); ++i) json += (i > 0 ? ", " : "") + jsonText(column.levels[i]);
@@ -47,10 +46,10 @@ Table makeCodebook(std::span<const Table> tables) {
 std::string codebookJson(std::span<const Table> tables) {
     std::string json = std::string(kCodebookStart) + "\n  \"files\": {";
     for (std::size_t i = 0; i < tables.size(); ++i) {
-        json += (i > 0 ? ",\n    " : "\n    ") + protocol::jsonText(tables[i].file) + ": {";
+        json += (i > 0 ? ",\n    " : "\n    ") + jsonText(tables[i].file) + ": {";
         for (std::size_t k = 0; k < tables[i].columns.size(); ++k) {
             const Column& column = tables[i].columns[k];
-            json += (k > 0 ? ",\n      " : "\n      ") + protocol::jsonText(column.name) + ": " + columnJson(column);
+            json += (k > 0 ? ",\n      " : "\n      ") + jsonText(column.name) + ": " + columnJson(column);
         }
         json += "\n    }";
     }

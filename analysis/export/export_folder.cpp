@@ -133,7 +133,7 @@ void removeAbandoned(const fs::path& folder) {
         if (name.starts_with(start) && name.size() == start.size() + kRandomLetters) found.push_back(entry->path());
     }
     for (const fs::path& workshop : found) {
-        if (const auto lock = store::FolderLock::take(workshop)) fs::remove_all(workshop, ignored);
+        if (const auto lock = FolderLock::take(workshop)) fs::remove_all(workshop, ignored);
     }
 }
 
@@ -172,7 +172,7 @@ Result<ExportFolder> ExportFolder::begin(const std::string& name, std::vector<st
     }
     ExportFolder made(folder, std::move(studies), group);
     made.workshop_ = workshop;
-    if (auto lock = store::FolderLock::take(workshop)) made.lock_.emplace(std::move(*lock));
+    if (auto lock = FolderLock::take(workshop)) made.lock_.emplace(std::move(*lock));
     if (!fs::create_directory(made.workshop_ / kNew, error)) {
         return folderError(made.workshop_ / kNew, "cannot be created: " + error.message());
     }
@@ -187,7 +187,7 @@ Result<Done> ExportFolder::write(const std::string& path, std::string_view bytes
     stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     stream.close();
     if (!stream) return folderError(file, "cannot be written");
-    sums_[path] = store::sha256Hex(bytes);
+    sums_[path] = sha256Hex(bytes);
     return Done{};
 }
 

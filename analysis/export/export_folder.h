@@ -43,8 +43,8 @@ private:
     std::filesystem::path folder_;
     std::vector<std::string> studies_;
     bool group_;
-    std::optional<store::FolderLock> lock_;  // of the workshop
-    std::filesystem::path workshop_;         // holds the new files, then the replaced ones; empty: nothing to remove
+    std::optional<FolderLock> lock_;  // of the workshop
+    std::filesystem::path workshop_;  // holds the new files, then the replaced ones; empty: nothing to remove
     std::map<std::string, std::string> sums_;
 };
 

@@ -36,8 +36,8 @@ std::vector<Placed> placed(const StudyData& study) {
         };
         if (row.text && std::any_of(files.begin(), files.end(), differs)) {
             const fs::path path(file.path);
-            file.path = (path.parent_path() / (path.stem().string() + "_" + store::sha256Hex(*row.text).substr(0, 12) +
-                                               path.extension().string()))
+            file.path = (path.parent_path() /
+                         (path.stem().string() + "_" + sha256Hex(*row.text).substr(0, 12) + path.extension().string()))
                             .string();
         }
         files.push_back(std::move(file));
@@ -79,7 +79,7 @@ Table makeFiles(const StudyData& study) {
             {protocol.sha256, "protocol", protocol.name, protocol.sha256, protocolPath(protocol.sha256)});
     for (const Placed& file : placed(study))
         table.rows.push_back({file.row->protocol_sha256, file.row->kind, file.row->name,
-                              file.row->text ? store::sha256Hex(*file.row->text) : cell(file.row->sha256),
+                              file.row->text ? sha256Hex(*file.row->text) : cell(file.row->sha256),
                               file.path.empty() ? kMissing : file.path});
     return table;
 }

@@ -9,7 +9,7 @@ std::string planJson(const StudyData& study) {
     for (std::size_t i = 0; i < study.protocols.size(); ++i) {
         const store::ProtocolRow& protocol = study.protocols[i];
         json += (i > 0 ? ",\n    " : "\n    ");
-        json += protocol::JsonObject()
+        json += JsonObject()
                     .text("protocol_sha256", protocol.sha256)
                     .text("app_version", protocol.app_version)
                     .json("plan", protocol.expanded_json)

@@ -22,7 +22,7 @@ void removeLeftFolders() {
     std::error_code none;
     for (const auto& entry : fs::directory_iterator(fs::temp_directory_path(), none)) {
         if (!entry.path().filename().string().starts_with(kPrefix) || fs::is_empty(entry.path(), none)) continue;
-        if (const auto lock = store::FolderLock::take(entry.path())) fs::remove_all(entry.path(), none);
+        if (const auto lock = FolderLock::take(entry.path())) fs::remove_all(entry.path(), none);
     }
 }
 
@@ -33,7 +33,7 @@ public:
         removeLeftFolders();
         std::string name = (fs::temp_directory_path() / kPrefix).string() + "XXXXXX";
         if (mkdtemp(name.data()) == nullptr) return;
-        if (auto lock = store::FolderLock::take(name)) lock_.emplace(*std::move(lock));
+        if (auto lock = FolderLock::take(name)) lock_.emplace(*std::move(lock));
         path_ = name;
     }
     ~TemporaryFolder() {
@@ -47,7 +47,7 @@ public:
 
 private:
     fs::path path_;
-    std::optional<store::FolderLock> lock_;
+    std::optional<FolderLock> lock_;
 };
 
 }  // namespace

@@ -16,7 +16,7 @@ PowerJob describeJob(const protocol::StudyPlan& plan, const PlantedEffect& effec
     for (const protocol::Condition& condition : plan.conditions) all += condition.params_json;
     PowerJob job;
     job.study = plan.name + ' ' + plan.version;
-    job.plan_sha256 = store::sha256Hex(all);
+    job.plan_sha256 = sha256Hex(all);
     job.seed = plan.seed;
     job.measure = effect.measure;
     job.against = effect.against;

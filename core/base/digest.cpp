@@ -11,7 +11,7 @@
 #include "core/base/hex_text.h"
 #include "core/base/regular_file.h"
 
-namespace passung::store {
+namespace passung {
 
 std::string sha256Hex(std::string_view bytes) {
     std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
@@ -62,4 +62,4 @@ std::string randomHex(std::size_t bytes) {
     return hexText(std::span<const unsigned char>(drawn));
 }
 
-}  // namespace passung::store
+}  // namespace passung

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace passung::store {
+namespace passung {
 
 /// SHA-256 as 64 lower-case hex digits.
 std::string sha256Hex(std::string_view bytes);
@@ -30,4 +30,4 @@ std::string sha256OfFile(const std::string& path);
 /// So many random bytes of the system's generator, as hex digits: for what nobody may guess, never for data.
 std::string randomHex(std::size_t bytes);
 
-}  // namespace passung::store
+}  // namespace passung

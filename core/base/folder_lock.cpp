@@ -6,7 +6,7 @@
 
 #include <utility>
 
-namespace passung::store {
+namespace passung {
 
 std::optional<FolderLock> FolderLock::take(const std::filesystem::path& folder) {
     const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
@@ -22,4 +22,4 @@ FolderLock::~FolderLock() {
     if (descriptor_ >= 0) close(descriptor_);
 }
 
-}  // namespace passung::store
+}  // namespace passung

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <optional>
 
-namespace passung::store {
+namespace passung {
 
 /// Marks a folder as in use by one owner: an advisory lock, which the system releases however the program ends.
 class FolderLock {
@@ -20,4 +20,4 @@ private:
     int descriptor_ = -1;
 };
 
-}  // namespace passung::store
+}  // namespace passung

@@ -3,7 +3,7 @@
 #include <array>
 #include <string_view>
 
-namespace passung::store {
+namespace passung {
 
 std::string hexText(std::span<const unsigned char> bytes) {
     constexpr std::string_view kDigits = "0123456789abcdef";
@@ -22,4 +22,4 @@ std::string hexText(std::uint64_t value) {
     return hexText(bytes);
 }
 
-}  // namespace passung::store
+}  // namespace passung

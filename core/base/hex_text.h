@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-namespace passung::store {
+namespace passung {
 
 /// Two lower-case hexadecimal digits a byte.
 std::string hexText(std::span<const unsigned char> bytes);
@@ -12,4 +12,4 @@ std::string hexText(std::span<const unsigned char> bytes);
 /// 16 lower-case hexadecimal digits, most significant first.
 std::string hexText(std::uint64_t value);
 
-}  // namespace passung::store
+}  // namespace passung

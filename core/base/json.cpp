@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace passung::protocol {
+namespace passung {
 
 std::string jsonText(std::string_view text) {
     std::string result = "\"";
@@ -46,4 +46,4 @@ JsonObject& JsonObject::json(std::string_view key, std::string_view value) {
     return *this;
 }
 
-}  // namespace passung::protocol
+}  // namespace passung

@@ -7,7 +7,7 @@
 
 #include "core/base/types.h"
 
-namespace passung::protocol {
+namespace passung {
 
 /// JSON text of a string, quoted and escaped.
 std::string jsonText(std::string_view text);
@@ -38,4 +38,4 @@ private:
     std::string content_;
 };
 
-}  // namespace passung::protocol
+}  // namespace passung

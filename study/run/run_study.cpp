@@ -322,7 +322,7 @@ Result<RunEnd> runStudy(const protocol::StudyPlan& plan, RunOptions options, con
     std::vector<store::AccuracyRow> measured;
     const auto measure = [&]() -> Result<Done> {
         const auto builds = openBuilds(options.import_limits);
-        auto rows = measureAccuracy(plan, store::sha256Hex(plan.source_text), listener.calibrating, builds.get());
+        auto rows = measureAccuracy(plan, sha256Hex(plan.source_text), listener.calibrating, builds.get());
         if (!rows) return rows.errors();
         measured = std::move(*rows);
         return Done{};

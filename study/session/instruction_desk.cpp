@@ -71,7 +71,7 @@ Page InstructionDesk::pageOf(const protocol::Instruction& instruction) const {
 
 void InstructionDesk::log(const protocol::Instruction& instruction, const std::optional<PageRead>& read,
                           std::int64_t session_ns) const {
-    protocol::JsonObject payload;
+    JsonObject payload;
     payload.text("moment", protocol::showAtName(instruction.moment))
         .text("text", instruction.text)
         .text("picture", instruction.picture);

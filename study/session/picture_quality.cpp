@@ -10,7 +10,7 @@
 namespace passung::session {
 
 std::string qualityJson(const QualityFound& found) {
-    return protocol::JsonObject()
+    return JsonObject()
         .integer("window_width_px", found.width_px)
         .integer("window_height_px", found.height_px)
         .number("scale", found.quality.scale)

@@ -100,7 +100,7 @@ void QuestionnaireDesk::noteShown(const Form& form, std::int64_t session_ns) {
          .source = "session",
          .event = "questionnaire_shown",
          .payload_json =
-             protocol::JsonObject().text("questionnaire", form.planned.definition.key).text("form", form.id()).str()});
+             JsonObject().text("questionnaire", form.planned.definition.key).text("form", form.id()).str()});
 }
 
 Form QuestionnaireDesk::formOf(const Occasion& occasion) const {

@@ -305,7 +305,7 @@ void Session::appendEvents(const std::vector<TrialEvent>& events) {
         event.source = "session";
         event.event = happened.name;
         if (event.event == "aborted")
-            event.payload_json = protocol::JsonObject().text("reason", attempt_->course.abortReason()).str();
+            event.payload_json = JsonObject().text("reason", attempt_->course.abortReason()).str();
         sink_.appendEvent(event);
     }
 }
@@ -328,7 +328,7 @@ void Session::note(const char* name, const std::string& payload_json) {
 }
 
 void Session::note(const char* name, const char* key, const std::string& text) {
-    note(name, protocol::JsonObject().text(key, text).str());
+    note(name, JsonObject().text(key, text).str());
 }
 
 void Session::fail(const char* stage, const Errors& errors) {

@@ -106,7 +106,7 @@ private:
     bool rest();
     bool isResting(const protocol::Block& block);
     bool swapsDevice();
-    protocol::JsonObject stableStiffnessOf(const char* key, const std::string& device) const;
+    JsonObject stableStiffnessOf(const char* key, const std::string& device) const;
     std::optional<StaircaseStep> nextStep() const;
     const protocol::Condition& conditionOf(const std::optional<StaircaseStep>& step) const;
     void leaveOutNeedless();

@@ -56,8 +56,8 @@ bool Session::isResting(const protocol::Block& block) {
 }
 
 /// The device under `key`, with the stable stiffness that the study keeps for it.
-protocol::JsonObject Session::stableStiffnessOf(const char* key, const std::string& device) const {
-    protocol::JsonObject payload;
+JsonObject Session::stableStiffnessOf(const char* key, const std::string& device) const {
+    JsonObject payload;
     payload.text(key, device);
     for (const protocol::StableStiffness& stable : setup_.plan.stable_stiffness)
         if (stable.device == device)
@@ -81,7 +81,7 @@ bool Session::swapsDevice() {
         }
     }
     const bool swapped = std::exchange(swapping_, false);
-    if (swapped) note("device_swapped", protocol::JsonObject().text("to", device).str());
+    if (swapped) note("device_swapped", JsonObject().text("to", device).str());
     if ((first || swapped) && setup_.calibrated_utc)
         note("device_calibration",
              stableStiffnessOf("device", device).text("calibrated_utc", setup_.calibrated_utc(device)).str());

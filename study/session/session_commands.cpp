@@ -95,7 +95,7 @@ void Session::logCommand(const Command& command, const std::optional<Refusal>& r
     event.t_ns = now();
     event.source = command.source;
     event.event = fmt::format("command_{}", commandName(command.kind));
-    protocol::JsonObject payload;
+    JsonObject payload;
     payload.boolean("accepted", !refused);
     if (refused) payload.text("refusal", refused->text);
     if (command.now) payload.boolean("now", true);

@@ -10,7 +10,7 @@ namespace {
 
 std::string linkHash(const std::string& previous, const std::string& t_utc, const std::string& actor,
                      const std::string& action, const std::string& detail_sha256) {
-    return sha256Hex(protocol::JsonObject()
+    return sha256Hex(JsonObject()
                          .text("prev_hash", previous)
                          .text("t_utc", t_utc)
                          .text("actor", actor)
@@ -34,11 +34,9 @@ std::string linkHash(const AuditRow& row) {
 
 }  // namespace
 
-std::string erasedDetail(const std::string& surrogate) {
-    return protocol::JsonObject().text("erased", surrogate).str();
-}
+std::string erasedDetail(const std::string& surrogate) { return JsonObject().text("erased", surrogate).str(); }
 
-void appendAudit(const Database& database, const Actor& actor, const std::string& action, protocol::JsonObject detail) {
+void appendAudit(const Database& database, const Actor& actor, const std::string& action, JsonObject detail) {
     const std::string text = detail.text("nonce", randomHex(16)).str();
     const std::string detail_sha256 = sha256Hex(text);
     const std::string previous = database.text("SELECT hash FROM audit ORDER BY audit_id DESC LIMIT 1");

@@ -24,7 +24,7 @@ struct Actor {
 };
 
 /// Adds a row at the end of the chain, within the caller's transaction.
-void appendAudit(const Database& database, const Actor& actor, const std::string& action, protocol::JsonObject detail);
+void appendAudit(const Database& database, const Actor& actor, const std::string& action, JsonObject detail);
 
 /// What stands in the place of a detail about somebody erased.
 std::string erasedDetail(const std::string& surrogate);

@@ -37,7 +37,7 @@ void leave(const Database& database, const Actor& actor, const std::string& code
            const std::string& reason, const std::string& action) {
     Transaction transaction(database);
     requireEnrolled(database, code);
-    protocol::JsonObject detail;
+    JsonObject detail;
     detail.text("participant", code).text("status", status).text("reason", reason);
     describeStanding(database, code, detail);
     const bool excluded = std::string_view(status) == "excluded";
@@ -88,7 +88,7 @@ Result<Done> ParticipantDesk::enrol(const std::string& code, protocol::Participa
         if (!insertParticipant(database, code, kind, created_utc, store_.options_.station))
             throw std::runtime_error("participant " + code + " is already enrolled");
         appendAudit(database, actor_, "enrol",
-                    protocol::JsonObject().text("participant", code).text("kind", protocol::participantKindName(kind)));
+                    JsonObject().text("participant", code).text("kind", protocol::participantKindName(kind)));
         transaction.commit();
         return Done{};
     });
@@ -114,7 +114,7 @@ Result<std::vector<std::string>> ParticipantDesk::decide(const std::string& code
         for (const ConsentClauseRow& row : asked) {
             insert.bind(code, row.text_sha256, language, row.clause, consentName(decision), actor_.now_utc).run();
             appendAudit(database, actor_, "consent",
-                        protocol::JsonObject()
+                        JsonObject()
                             .text("participant", code)
                             .text("clause", row.clause)
                             .text("decision", consentName(decision))

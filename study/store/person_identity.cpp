@@ -12,14 +12,14 @@ namespace {
 
 constexpr std::size_t kBytes = 16;
 
-std::string hashed(const protocol::JsonObject& what) { return sha256Hex(what.str()).substr(0, 2 * kBytes); }
+std::string hashed(const JsonObject& what) { return sha256Hex(what.str()).substr(0, 2 * kBytes); }
 
 /// By the protocol imported last.
 std::string simulatedIdentity(const Database& database, const std::string& schema, const std::string& code) {
     Statement find = database.prepare("SELECT name, coalesce(json_extract(expanded_json, '$.seed'), 0) FROM " + schema +
                                       ".protocol_version ORDER BY rowid DESC LIMIT 1");
     const bool found = find.step();
-    return hashed(protocol::JsonObject()
+    return hashed(JsonObject()
                       .text("study", found ? find.text(0) : "")
                       .integer("seed", found ? find.integer(1) : 0)
                       .text("code", code));
@@ -56,7 +56,7 @@ void giveIdentities(const Database& database, const std::string& schema) {
         if (people.text(1) == "simulated") {
             given.emplace_back(code, simulatedIdentity(database, schema, code));
         } else if (const auto secret = secretOf(database, schema, code)) {
-            given.emplace_back(code, hashed(protocol::JsonObject().text("code", code).text("secret", *secret)));
+            given.emplace_back(code, hashed(JsonObject().text("code", code).text("secret", *secret)));
         } else if (schema == "main") {
             given.emplace_back(code, randomHex(kBytes));
         }

@@ -19,8 +19,8 @@ namespace {
 
 std::string levelsJson(const protocol::Factor& factor) {
     std::vector<std::string> labels;
-    for (const protocol::Level& level : factor.levels) labels.push_back(protocol::jsonText(level.label));
-    return protocol::jsonList(labels);
+    for (const protocol::Level& level : factor.levels) labels.push_back(jsonText(level.label));
+    return jsonList(labels);
 }
 
 /// Rows of the counterbalancing that the plan's orders take turns with.

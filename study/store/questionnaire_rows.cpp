@@ -14,7 +14,7 @@ using protocol::PlannedQuestionnaire;
 
 /// Everything that decides what was shown and how it was scored.
 std::string definitionJson(const PlannedQuestionnaire& planned) {
-    return protocol::JsonObject().text("language", planned.language).json("source", planned.source_json).str();
+    return JsonObject().text("language", planned.language).json("source", planned.source_json).str();
 }
 
 std::string digestOf(const PlannedQuestionnaire& planned) { return sha256Hex(definitionJson(planned)); }
@@ -122,7 +122,7 @@ void insertQuestionnaireRun(const Database& database, const std::string& session
     const std::int64_t run_id = database.lastRowId();
     insertResponses(database, run_id, run);
     insertScores(database, run_id, run);
-    const std::string payload = protocol::JsonObject()
+    const std::string payload = JsonObject()
                                     .text("questionnaire", planned.definition.key)
                                     .text("moment", moment)
                                     .text("form", run.form.id())

@@ -52,14 +52,14 @@ bool takePlaceBack(const Database& database, const std::string& code, const Form
 
 }  // namespace
 
-void describeStanding(const Database& database, const std::string& code, protocol::JsonObject& detail) {
+void describeStanding(const Database& database, const std::string& code, JsonObject& detail) {
     Statement find = database.prepare(
         "SELECT status, protocol_sha256, between_group, sequence_index, replicate, state FROM participant "
         "LEFT JOIN design_slot USING(participant_id) WHERE participant_id=?");
     if (!find.bind(code).step()) return;
     detail.text("status_before", find.text(0));
     if (find.isNull(1)) return;
-    detail.json("place", protocol::JsonObject()
+    detail.json("place", JsonObject()
                              .text("protocol_sha256", find.text(1))
                              .text("group", find.text(2))
                              .integer("sequence", find.integer(3))
@@ -78,7 +78,7 @@ bool readmit(const Database& database, const Actor& actor, const std::string& co
         .run();
     const bool placed = !exclusion.place || takePlaceBack(database, code, *exclusion.place);
     appendAudit(database, actor, "readmit",
-                protocol::JsonObject()
+                JsonObject()
                     .text("participant", code)
                     .text("status", exclusion.status)
                     .text("reason", reason)

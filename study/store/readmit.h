@@ -12,6 +12,6 @@ namespace passung::store {
 bool readmit(const Database& database, const Actor& actor, const std::string& code, const std::string& reason);
 
 /// What an exclusion takes away, for its row in the audit: the status and the place that the participant has now.
-void describeStanding(const Database& database, const std::string& code, protocol::JsonObject& detail);
+void describeStanding(const Database& database, const std::string& code, JsonObject& detail);
 
 }  // namespace passung::store

@@ -16,7 +16,7 @@ std::string noAttempt(std::int64_t attempt_id) { return "there is no attempt " +
 void invalidate(const Database& database, std::int64_t attempt_id, const std::string& reason,
                 const std::string& now_utc) {
     markInvalid(database, attempt_id, "invalidated by the experimenter: " + reason);
-    const std::string payload = protocol::JsonObject().boolean("accepted", true).text("text", reason).str();
+    const std::string payload = JsonObject().boolean("accepted", true).text("text", reason).str();
     database
         .prepare(
             "INSERT INTO event(segment_id, attempt_id, t_ns, source, event, payload_json, t_utc) "

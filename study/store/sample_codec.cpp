@@ -222,13 +222,13 @@ std::string encodingText() {
 std::string channelsJson(const std::vector<Channel>& channels) {
     std::vector<std::string> items;
     for (const Channel& channel : channels)
-        items.push_back(protocol::JsonObject()
+        items.push_back(JsonObject()
                             .text("name", channel.name)
                             .text("type", channel.type)
                             .text("unit", channel.unit)
                             .text("label", channel.label)
                             .str());
-    return protocol::jsonList(items);
+    return jsonList(items);
 }
 
 Chunk encodeTicks(std::span<const TickRecord> records) { return encode(tickLayout(), records); }

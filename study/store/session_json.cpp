@@ -5,7 +5,7 @@
 namespace passung::store {
 namespace {
 
-using protocol::JsonObject;
+using JsonObject;
 
 std::string mechanismJson(const DeviceMechanism& m) {
     return JsonObject()
@@ -43,7 +43,7 @@ std::string stagesJson(std::span<const session::StageNote> stages) {
     std::vector<std::string> items;
     for (const session::StageNote& stage : stages)
         items.push_back(JsonObject().text("stage", stage.name).text("reason", stage.reason).str());
-    return protocol::jsonList(items);
+    return jsonList(items);
 }
 
 }  // namespace passung::store

@@ -112,8 +112,7 @@ std::string SessionWriter::stamp(std::int64_t t_ns) {
                      .t_ns = t_ns,
                      .source = "session",
                      .event = "clock_set_back",
-                     .payload_json =
-                         protocol::JsonObject().text("machine_utc", stamp.machine_utc).text("utc", stamp.utc).str()});
+                     .payload_json = JsonObject().text("machine_utc", stamp.machine_utc).text("utc", stamp.utc).str()});
     return stamp.utc;
 }
 

@@ -7,8 +7,7 @@ namespace {
 
 /// By programs that knew no identities.
 std::string personHash(const std::string& salt, const std::string& code, const std::string& created_utc) {
-    return sha256Hex(
-        protocol::JsonObject().text("salt", salt).text("code", code).text("created_utc", created_utc).str());
+    return sha256Hex(JsonObject().text("salt", salt).text("code", code).text("created_utc", created_utc).str());
 }
 
 void addByHash(const Database& database, const std::string& tombstones, const std::string& people,
@@ -26,8 +25,8 @@ void addByHash(const Database& database, const std::string& tombstones, const st
 
 }  // namespace
 
-protocol::JsonObject tombstone(const std::string& identity, const std::string& kind, std::int64_t codes_to) {
-    return protocol::JsonObject().text("surrogate", identity).text("kind", kind).integer("codes_to", codes_to);
+JsonObject tombstone(const std::string& identity, const std::string& kind, std::int64_t codes_to) {
+    return JsonObject().text("surrogate", identity).text("kind", kind).integer("codes_to", codes_to);
 }
 
 std::map<std::string, std::string> erasedPeople(const Database& database, const std::string& tombstones,

@@ -15,7 +15,7 @@ namespace passung::store {
 // since the audit's chain holds them. For this room only: the functions throw.
 
 /// Detail of the audit's row. `codes_to`: highest number of a code of this kind.
-protocol::JsonObject tombstone(const std::string& identity, const std::string& kind, std::int64_t codes_to);
+JsonObject tombstone(const std::string& identity, const std::string& kind, std::int64_t codes_to);
 
 /// Who of the people in the attached database `people` was erased, as the audit in `tombstones` says, each with what
 /// stands there for them. Tombstones from before there were hashes tell nothing.

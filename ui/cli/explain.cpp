@@ -112,7 +112,7 @@ void explainStability(const protocol::StudyPlan& plan, std::span<const DeviceDes
 Result<Done> explainAccuracy(const std::string& database, protocol::StudyPlan& plan, model::BuildStore* builds,
                              const app::ImportLimits& limits) {
     if (!app::asksForAccuracy(plan)) return Done{};
-    const std::string sha256 = store::sha256Hex(plan.source_text);
+    const std::string sha256 = sha256Hex(plan.source_text);
     std::vector<store::AccuracyRow> rows;
     if (!database.empty()) {
         const auto reader = store::StoreReader::open(database);
@@ -186,7 +186,7 @@ int explain(const ExplainOptions& options) {
     if (!options.database.empty()) {
         const auto reader = store::StoreReader::open(options.database);
         if (!reader) return fail(reader.errors());
-        const auto stable = reader->stableStiffness(store::sha256Hex(plan->source_text));
+        const auto stable = reader->stableStiffness(sha256Hex(plan->source_text));
         if (!stable) return fail(stable.errors());
         plan = app::withKeptStiffness(*plan, *stable, options.import_limits);
         if (!plan) return fail(plan.errors());

@@ -90,8 +90,7 @@ void writeRow(fmt::memory_buffer& text, std::string_view input, const query::Par
 }
 
 std::string patchJson(const tick::ContactCluster& patch, double area_stiffness) {
-    using protocol::jsonVector;
-    return protocol::JsonObject()
+    return JsonObject()
         .json("deepest_m", jsonVector(patch.deepest))
         .number("depth_m", -patch.phi)
         .json("normal", jsonVector(patch.normal))
@@ -107,10 +106,10 @@ std::string patchJson(const tick::ContactCluster& patch, double area_stiffness) 
 std::string patchesJson(std::size_t row, const query::PartQueryResult& result, double area_stiffness) {
     std::vector<std::string> patches;
     for (const tick::ContactCluster& patch : result.patches) patches.push_back(patchJson(patch, area_stiffness));
-    return protocol::JsonObject()
+    return JsonObject()
         .integer("row", static_cast<std::int64_t>(row))
         .integer("patches_found", static_cast<std::int64_t>(result.patches_found))
-        .json("patches", protocol::jsonList(patches))
+        .json("patches", jsonList(patches))
         .str();
 }
 

@@ -127,7 +127,7 @@ private:
                        stored[i].obstacle.empty() ? "no obstacle" : stored[i].obstacle);
             return Verdict::Differs;
         }
-        const std::string hash = store::hexText(report.state_hash);
+        const std::string hash = hexText(report.state_hash);
         if (attempt.state_hash.empty()) {
             fmt::print(
                 "{}: NOT PROVEN: {} ticks, every recorded bit the same, but there is no state hash to compare "

@@ -37,7 +37,7 @@ Decision decisionOn(const protocol::ConsentClause& clause, const std::vector<con
     for (const store::ConsentRow* row : rows) {
         if (row->clause != clause.clause) continue;
         const bool same_words = std::any_of(clause.texts.begin(), clause.texts.end(), [&](const auto& text) {
-            return store::sha256Hex(text.second) == row->text_sha256;
+            return sha256Hex(text.second) == row->text_sha256;
         });
         if (same_words)
             latest = decisionNamed(row->decision);
@@ -159,7 +159,7 @@ Result<Roster> readRoster(const protocol::StudyPlan& plan, const store::StoreRea
     if (!forms) return forms.errors();
 
     Roster roster = emptyRoster(plan);
-    const std::string sha256 = store::sha256Hex(plan.source_text);
+    const std::string sha256 = sha256Hex(plan.source_text);
     roster.other_version =
         std::none_of(protocols->begin(), protocols->end(), [&](const auto& row) { return row.sha256 == sha256; });
     for (const ParticipantKind kind : kKinds) {

@@ -121,7 +121,7 @@ Result<std::shared_ptr<StudyModel::Facts>> StudyModel::findOut(const std::string
     if (!reader) return reader.errors();
     const auto rows = reader->accuracy();
     if (!rows) return rows.errors();
-    facts->points = presenter::accuracyPoints(*rows, store::sha256Hex(plan->source_text));
+    facts->points = presenter::accuracyPoints(*rows, sha256Hex(plan->source_text));
     return facts;
 }
 

@@ -72,7 +72,7 @@ Result<Done> StoredPlans::compareMeshes(const std::string& sha256, const protoco
         if (!bytes) return bytes.errors();
         if (stored == rows->end()) {
             errors.push_back({.message = "the database does not know this mesh file", .file = mesh.path});
-        } else if (const std::string found = store::sha256Hex(*bytes); found != stored->sha256) {
+        } else if (const std::string found = sha256Hex(*bytes); found != stored->sha256) {
             errors.push_back(
                 {.message = "is not the mesh file of the recorded trials, whose SHA-256 is " + stored->sha256,
                  .file = mesh.path,

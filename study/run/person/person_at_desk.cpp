@@ -23,7 +23,7 @@ bool isDecided(const protocol::ConsentClause& clause, const std::vector<store::C
     for (const store::ConsentRow& row : decisions)
         if (row.participant_id == participant && row.clause == clause.clause &&
             std::any_of(clause.texts.begin(), clause.texts.end(),
-                        [&](const auto& text) { return store::sha256Hex(text.second) == row.text_sha256; }))
+                        [&](const auto& text) { return sha256Hex(text.second) == row.text_sha256; }))
             latest = &row;
     return latest != nullptr && (latest->decision == "yes" || !clause.required);
 }

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace passung::store {
+namespace passung {
 namespace {
 
 TEST(Digest, Sha256GivesThePublishedValues) {
@@ -12,4 +12,4 @@ TEST(Digest, Sha256GivesThePublishedValues) {
 }
 
 }  // namespace
-}  // namespace passung::store
+}  // namespace passung

@@ -16,7 +16,7 @@ inline protocol::PlannedQuestionnaire shippedQuestionnaire(const std::string& ke
     planned.language = "de";
     planned.moment = moment;
     planned.definition = *protocol::readQuestionnaire(text, path, "de");
-    planned.source_json = protocol::JsonObject().text("definition", text).str();
+    planned.source_json = JsonObject().text("definition", text).str();
     return planned;
 }
 

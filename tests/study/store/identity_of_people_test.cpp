@@ -64,8 +64,7 @@ std::vector<std::string> guesses(const std::string& code, const std::vector<std:
     for (const std::string& salt : salts) {
         texts.insert(texts.end(), {salt + code, code + salt, salt + "|" + code, code + "|" + salt});
         for (const std::string& time : times)
-            texts.push_back(
-                protocol::JsonObject().text("salt", salt).text("code", code).text("created_utc", time).str());
+            texts.push_back(JsonObject().text("salt", salt).text("code", code).text("created_utc", time).str());
     }
     return texts;
 }
@@ -106,10 +105,10 @@ TEST(PersonIdentity, NoSearchThroughAllCodesTellsWhoWasErased) {
     erase(older, "P007");
     const std::string salt = "0011223344556677";
     const std::string hash =
-        sha256Hex(protocol::JsonObject().text("salt", salt).text("code", "P007").text("created_utc", kEnrolled).str());
+        sha256Hex(JsonObject().text("salt", salt).text("code", "P007").text("created_utc", kEnrolled).str());
     Database(older, OpenMode::ReadWrite)
         .prepare("UPDATE audit SET detail_json=? WHERE action='erase'")
-        .bind(protocol::JsonObject().text("salt", salt).text("person", hash).str())
+        .bind(JsonObject().text("salt", salt).text("person", hash).str())
         .run();
     EXPECT_EQ(guessedFrom(older), std::set<std::string>{"P007"});
 }
@@ -152,7 +151,7 @@ void makeOlder(const std::string& path) {
     for (const char* code : {"P001", "P002"}) {
         database.prepare("INSERT INTO participant VALUES(?, 'real', 'enrolled', NULL, ?)").bind(code, kEnrolled).run();
         appendAudit(database, kActor, "enrol",
-                    protocol::JsonObject().text("participant", std::string(code)).text("kind", std::string("real")));
+                    JsonObject().text("participant", std::string(code)).text("kind", std::string("real")));
     }
 }
 

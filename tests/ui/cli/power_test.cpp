@@ -59,7 +59,7 @@ TEST_F(Power, RemovesWhatAKilledRunLeftAndNothingThatIsInUse) {
         fs::create_directories(temporary / (std::string("passung_power_") + name));
     for (const char* name : {"dead", "alive"})
         writeText(temporary / (std::string("passung_power_") + name) / "study.db", "left");
-    const auto alive = store::FolderLock::take(temporary / "passung_power_alive");
+    const auto alive = FolderLock::take(temporary / "passung_power_alive");
     ASSERT_TRUE(alive);
     ASSERT_EQ(setenv("TMPDIR", temporary.c_str(), 1), 0);
     const Ended ended = power({"fair.toml", "--effect", "chance:fair=+0.5", "--repeats", "1", "--participants", "2"});
