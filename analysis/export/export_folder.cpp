@@ -27,14 +27,14 @@ Error folderError(const fs::path& path, std::string message) {
 }
 
 bool isEarlierExport(const fs::path& folder) {
-    const auto codebook = readRegularFile((folder / "codebook.json").string());
+    const auto codebook = readFile((folder / "codebook.json").string());
     return codebook && codebook->starts_with(kCodebookStart);
 }
 
 /// The first thing in `folder` that its SHA256SUMS does not list; empty if there is none.
 fs::path strangerIn(const fs::path& folder) {
     std::set<std::string> listed = {"SHA256SUMS"};
-    const auto text = readRegularFile((folder / "SHA256SUMS").string());
+    const auto text = readFile((folder / "SHA256SUMS").string());
     std::istringstream sums(text ? *text : std::string());
     for (std::string sum, path; sums >> sum && sums.get() && sums.get() && std::getline(sums, path);) {
         listed.insert(path);
@@ -51,7 +51,7 @@ std::vector<std::string> studiesIn(const fs::path& folder) {
     std::vector<std::string> names;
     if (!fs::is_directory(folder / "protocol")) return names;
     for (const auto& entry : fs::directory_iterator(folder / "protocol")) {
-        const auto text = protocol::readFile(entry.path().string());
+        const auto text = readFile(entry.path().string());
         if (!text) continue;
         const auto document = protocol::parseDocument(*text, entry.path().string());
         const auto* study = document ? document->find("study") : nullptr;
@@ -108,7 +108,7 @@ std::optional<std::set<std::string>> missingIn(const fs::path& folder) {
     std::set<std::string> lines;
     const fs::path file = folder / kMissingFile;
     if (!fs::exists(fs::symlink_status(file))) return lines;
-    const auto text = readRegularFile(file.string());
+    const auto text = readFile(file.string());
     if (!text) return std::nullopt;
     std::istringstream stream(*text);
     for (std::string line; std::getline(stream, line);) lines.insert(line);

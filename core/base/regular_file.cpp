@@ -87,4 +87,6 @@ Result<std::string> readRegularFile(const std::string& path, std::uintmax_t most
     return bytes;
 }
 
+Result<std::string> readFile(const std::string& path) { return readRegularFile(path, kMostTextBytes); }
+
 }  // namespace passung

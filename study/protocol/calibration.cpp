@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/base/json.h"
+#include "core/base/regular_file.h"
 #include "study/protocol/table_reader.h"
 
 namespace passung::protocol {

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/base/printable.h"
-#include "core/base/regular_file.h"
 #include "study/protocol/text_limits.h"
 
 namespace passung::protocol {
@@ -150,8 +149,6 @@ Result<Node> parseDocument(const std::string& text, const std::string& file) {
         return errorAt(placeOf(error.source(), file), "", "", fmt::format("not valid TOML: {}", description));
     }
 }
-
-Result<std::string> readFile(const std::string& path) { return readRegularFile(path); }
 
 std::string kindText(const Node& node) {
     switch (node.kind) {

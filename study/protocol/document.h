@@ -58,9 +58,6 @@ Node emptyTable(const Place& place);
 /// Parses TOML; `file` is the name in places. Errors: the parser's, at its place.
 Result<Node> parseDocument(const std::string& text, const std::string& file);
 
-/// The whole file as bytes. Errors: cannot be opened or read.
-Result<std::string> readFile(const std::string& path);
-
 /// What a value is, with its article, for messages: "a string".
 std::string kindText(const Node& node);
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <sstream>
 
+#include "core/base/regular_file.h"
 #include "study/protocol/condition_table.h"
 #include "study/protocol/text_limits.h"
 

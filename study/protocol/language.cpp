@@ -30,4 +30,14 @@ Result<std::string> chooseLanguage(const StudyPlan& plan, const std::string& ask
                  .value = "\"" + asked + "\""};
 }
 
+bool speaks(const StudyPlan& plan, const std::string& language) {
+    return plan.languages.size() > 1 &&
+           std::find(plan.languages.begin(), plan.languages.end(), language) != plan.languages.end();
+}
+
+std::vector<std::string> languagesAsked(const StudyPlan& plan, const PlannedQuestionnaire& planned) {
+    if (planned.texts.empty() && speaks(plan, planned.language)) return plan.languages;
+    return {planned.language};
+}
+
 }  // namespace passung::protocol

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "core/base/json.h"
+#include "study/protocol/language.h"
 #include "study/protocol/plan_json.h"
 #include "study/protocol/questionnaire_reader.h"
 #include "study/protocol/questionnaire_texts.h"
@@ -92,11 +93,6 @@ private:
     Errors& errors_;
 };
 
-bool speaks(const StudyPlan& plan, const std::string& language) {
-    return plan.languages.size() > 1 &&
-           std::find(plan.languages.begin(), plan.languages.end(), language) != plan.languages.end();
-}
-
 /// Those of a session in this language.
 void speakLanguage(const StudyPlan& plan, const std::string& language, std::vector<PlannedQuestionnaire>& all) {
     if (!speaks(plan, language)) return;
@@ -181,11 +177,6 @@ std::vector<PlannedQuestionnaire> readQuestionnaires(const std::vector<Node>& ta
         all.push_back(std::move(planned));
     }
     return all;
-}
-
-std::vector<std::string> languagesAsked(const StudyPlan& plan, const PlannedQuestionnaire& planned) {
-    if (planned.texts.empty() && speaks(plan, planned.language)) return plan.languages;
-    return {planned.language};
 }
 
 Errors checkQuestionnaires(const StudyPlan& plan, const std::function<Result<std::string>(const std::string&)>& read) {

@@ -17,10 +17,6 @@ std::vector<PlannedQuestionnaire> readQuestionnaires(const std::vector<Node>& ta
 /// What is wrong with these files.
 Errors checkQuestionnaires(const StudyPlan& plan, const std::function<Result<std::string>(const std::string&)>& read);
 
-/// Languages that it is asked in, each session in its own: all of a study with several of which its own is one. A
-/// slot's texts are in one.
-std::vector<std::string> languagesAsked(const StudyPlan& plan, const PlannedQuestionnaire& planned);
-
 /// Reads the files that the plan's questionnaires name, relative to the plan's own, and checks them, in
 /// every language that they are asked in; the plan's expanded JSON then holds their texts. `read` gives a file's bytes
 /// by its path. A plan with an error in it stays as it was.

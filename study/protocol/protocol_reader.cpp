@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 
+#include "core/base/regular_file.h"
 #include "study/protocol/analysis_reader.h"
 #include "study/protocol/block_conditions.h"
 #include "study/protocol/block_reader.h"

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "core/base/regular_file.h"
 #include "core/scene/field_estimate.h"
 #include "core/scene/part.h"
 #include "study/protocol/felt_features.h"

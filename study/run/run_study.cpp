@@ -7,11 +7,11 @@
 #include <thread>
 
 #include "core/base/digest.h"
+#include "core/base/regular_file.h"
 #include "core/tick/numerics.h"
 #include "devices/simulated/presets.h"
 #include "study/measures/measures.h"
 #include "study/person/simulated_person.h"
-#include "study/protocol/document.h"
 #include "study/protocol/language.h"
 #include "study/protocol/planned_questionnaires.h"
 #include "study/run/command_socket.h"
@@ -364,7 +364,7 @@ Result<RunEnd> runStudy(const protocol::StudyPlan& plan, RunOptions options, con
     if (Errors unstable = beyondBorder(*kept_plan, knownDevices()); !unstable.empty()) return unstable;
     auto picked = withKeptAccuracy(*kept_plan, *sha256, *opened.store, options.import_limits);
     if (!picked) return picked.errors();
-    if (const auto done = protocol::loadQuestionnaires(*picked, protocol::readFile, options.language); !done)
+    if (const auto done = protocol::loadQuestionnaires(*picked, readFile, options.language); !done)
         return done.errors();
     StudyRun run(*picked, options, listener, *opened.store, *sha256);
     Result<RunEnd> end = RunEnd::Complete;

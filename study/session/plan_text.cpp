@@ -9,7 +9,7 @@
 #include "study/design/trial_order.h"
 #include "study/design/williams.h"
 #include "study/protocol/duration.h"
-#include "study/protocol/planned_questionnaires.h"
+#include "study/protocol/language.h"
 #include "study/session/order_rows.h"
 #include "study/session/participant_order.h"
 #include "study/session/staircase_text.h"

@@ -1,14 +1,14 @@
 #include "study/store/picture_rows.h"
 
 #include "core/base/digest.h"
-#include "study/protocol/document.h"
+#include "core/base/regular_file.h"
 
 namespace passung::store {
 
 Result<std::vector<PictureContent>> readPictures(const protocol::StudyPlan& plan) {
     std::vector<PictureContent> pictures;
     for (const protocol::PictureSource& picture : plan.pictures) {
-        const auto bytes = protocol::readFile(picture.path);
+        const auto bytes = readFile(picture.path);
         if (!bytes) return bytes.errors();
         pictures.push_back({picture.name, sha256Hex(*bytes), static_cast<std::int64_t>(bytes->size())});
     }

@@ -7,7 +7,6 @@
 #include "core/base/digest.h"
 #include "core/base/json.h"
 #include "study/measures/measures.h"
-#include "study/protocol/document.h"
 #include "study/store/consent_rows.h"
 #include "study/store/questionnaire_rows.h"
 #include "study/store/revisions.h"

@@ -8,7 +8,7 @@
 #include "analysis/truth/accuracy_picture.h"
 #include "analysis/truth/accuracy_sweep.h"
 #include "analysis/truth/accuracy_tables.h"
-#include "study/protocol/document.h"
+#include "core/base/regular_file.h"
 #include "study/run/files/builds.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
@@ -61,7 +61,7 @@ private:
             if (std::find(kFiles.begin(), kFiles.end(), entry.path().filename()) == kFiles.end())
                 return error("exists and holds something else than results of accuracy (" +
                              entry.path().filename().string() + "): name another folder");
-        const auto picture = protocol::readFile((folder_ / "accuracy.svg").string());
+        const auto picture = readFile((folder_ / "accuracy.svg").string());
         if (!picture || !truth::isPictureOf(*picture, pair))
             return error("holds results that are not of " + pair.shell + " against " + pair.field +
                          ": name another folder");

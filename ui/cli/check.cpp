@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "study/protocol/document.h"
+#include "core/base/regular_file.h"
 #include "study/protocol/questionnaire_reader.h"
 #include "study/run/files/known_names.h"
 #include "study/run/files/protocol_files.h"
@@ -19,7 +19,7 @@ namespace {
 
 /// A questionnaire's file by itself; nothing if it is none.
 std::optional<int> checkQuestionnaire(const std::string& path) {
-    const auto text = protocol::readFile(path);
+    const auto text = readFile(path);
     if (!text || !protocol::isQuestionnaire(*text, path)) return std::nullopt;
     const auto definition = protocol::readQuestionnaire(*text, path, "");
     if (!definition) return fail(definition.errors());

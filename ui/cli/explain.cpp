@@ -4,6 +4,7 @@
 #include <span>
 
 #include "core/base/digest.h"
+#include "core/base/regular_file.h"
 #include "study/protocol/document.h"
 #include "study/run/files/builds.h"
 #include "study/run/files/known_names.h"
@@ -23,7 +24,7 @@ namespace passung::cli {
 namespace {
 
 Result<bool> isStudy(const std::string& path) {
-    const auto text = protocol::readFile(path);
+    const auto text = readFile(path);
     if (!text) return text.errors();
     const auto document = protocol::parseDocument(*text, path);
     if (!document) return document.errors();
@@ -160,7 +161,7 @@ int explain(const ExplainOptions& options) {
     if (!*is_study) {
         if (!options.orders.empty())
             return fail({{"a scene has no orders: --orders is for study files", options.file}});
-        const auto text = protocol::readFile(options.file);
+        const auto text = readFile(options.file);
         if (!text) return fail(text.errors());
         const auto spec = app::readSceneOnDevice(*text, options.file, options.import_limits);
         if (!spec) return fail(spec.errors());

@@ -21,7 +21,7 @@ namespace {
 constexpr const char* kModel = "model";
 
 Result<power::PowerResult> readResult(const std::string& file) {
-    const auto text = readRegularFile(file);
+    const auto text = readFile(file);
     if (!text) return text.errors();
     return power::readPowerText(*text, file);
 }

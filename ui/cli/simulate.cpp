@@ -3,10 +3,10 @@
 #include <chrono>
 #include <iterator>
 
+#include "core/base/regular_file.h"
 #include "core/scene/scene.h"
 #include "core/tick/step.h"
 #include "devices/scripted/trajectory.h"
-#include "study/protocol/document.h"
 #include "study/run/files/builds.h"
 #include "study/run/files/protocol_files.h"
 #include "ui/cli/commands.h"
@@ -40,7 +40,7 @@ void writeRow(fmt::memory_buffer& text, std::int64_t tick, const tick::TickOutpu
 int simulate(const SimulateOptions& options) {
     if (const auto free = refuseOverwriting(options.out, {options.scene, options.trajectory}); !free)
         return fail(free.errors());
-    const auto source = protocol::readFile(options.scene);
+    const auto source = readFile(options.scene);
     if (!source) return fail(source.errors());
     auto read = app::readSceneOnDevice(*source, options.scene, options.import_limits);
     if (!read) return fail(read.errors());

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "core/base/digest.h"
-#include "study/protocol/document.h"
+#include "core/base/regular_file.h"
 #include "study/run/files/builds.h"
 #include "study/run/files/known_names.h"
 #include "study/run/files/protocol_files.h"
@@ -327,7 +327,7 @@ void StudyModel::openProtocol() {
 void StudyModel::show(const std::string& file, int line) {
     source_file_ = text(file);
     source_line_ = line;
-    const auto read = protocol::readFile(file);
+    const auto read = readFile(file);
     source_problem_ = read ? QString() : text(toString(read.errors().front()));
     source_lines_ = read ? text(*read).split('\n') : QStringList();
     if (!source_lines_.isEmpty() && source_lines_.back().isEmpty()) source_lines_.removeLast();

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 bool exportNames(const fs::path& folder, const std::string& participant) {
-    const auto text = readRegularFile(folder / "participants.csv");
+    const auto text = readFile(folder / "participants.csv");
     if (!text) return false;
     std::istringstream table(*text);
     for (std::string line; std::getline(table, line);)

@@ -5,7 +5,6 @@
 
 #include "core/base/digest.h"
 #include "core/base/regular_file.h"
-#include "study/protocol/document.h"
 #include "study/run/machine/auto_accuracy.h"
 #include "study/run/machine/calibration.h"
 

@@ -1,4 +1,5 @@
 #include "study/protocol/planned_questionnaires.h"
+#include "core/base/regular_file.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "study/protocol/document.h"
+#include "core/base/regular_file.h"
 #include "study/protocol/questionnaire_texts.h"
 #include "study/questionnaire/scoring.h"
 

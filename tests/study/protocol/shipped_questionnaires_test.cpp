@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "study/protocol/document.h"
+#include "core/base/regular_file.h"
 #include "study/protocol/questionnaire_reader.h"
 #include "study/questionnaire/scoring.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/base/json.h"
-#include "study/protocol/document.h"
+#include "core/base/regular_file.h"
 #include "study/protocol/questionnaire_reader.h"
 #include "study/questionnaire/scoring.h"
 #include "tests/study/store/fake_study.h"
@@ -11,7 +11,7 @@ namespace passung::fake {
 
 inline protocol::PlannedQuestionnaire shippedQuestionnaire(const std::string& key, protocol::Moment moment) {
     const std::string path = PASSUNG_SOURCE_DIR "/protocols/questionnaires/" + key + ".toml";
-    const std::string text = *protocol::readFile(path);
+    const std::string text = *readFile(path);
     protocol::PlannedQuestionnaire planned;
     planned.language = "de";
     planned.moment = moment;

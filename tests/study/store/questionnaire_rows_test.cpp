@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/regular_file.h"
 #include "study/store/sqlite.h"
 #include "tests/study/store/fake_questionnaire.h"
 
@@ -76,7 +77,7 @@ TEST_F(QuestionnaireRows, KeepTheInstrumentAsItWasAndSayWhoAnswered) {
     write();
     const auto all = runs();
     EXPECT_EQ(all[0].definition_text,
-              *protocol::readFile(PASSUNG_SOURCE_DIR "/protocols/questionnaires/contact_perception.toml"));
+              *readFile(PASSUNG_SOURCE_DIR "/protocols/questionnaires/contact_perception.toml"));
     EXPECT_FALSE(all[0].texts_text);
     const auto events = require(require(StoreReader::open(folder_ / "s.db")).events());
     ASSERT_EQ(events.size(), 2u);
