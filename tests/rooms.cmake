@@ -6,7 +6,8 @@ cmake_policy(VERSION 3.25)
 set(model_rooms "core/geometry core/import core/shape core/field core/shell core/scene")
 set(contact_rooms "core/base ${model_rooms} core/contact core/motion")
 set(core_rooms "${contact_rooms} core/tick core/query core/loop core/replay")
-set(study_rooms "study/protocol study/design study/questionnaire study/measures study/person")
+set(plan_rooms "study/plan study/design study/questionnaire study/measures")
+set(study_rooms "${plan_rooms} study/protocol study/person")
 set(front_rooms "${core_rooms} devices study analysis ui/presenter")
 set(rooms
   "core/base           |"
@@ -25,13 +26,14 @@ set(rooms
   "devices             | core/base core/loop"
   "study/design        | core/base"
   "study/questionnaire | core/base"
-  "study/protocol      | core/base ${model_rooms} study/design study/questionnaire"
+  "study/plan          | core/base ${model_rooms} study/design study/questionnaire"
+  "study/protocol      | core/base ${model_rooms} study/plan study/design study/questionnaire"
   "study/measures      | core/base"
   "study/person        | core/base study/questionnaire"
-  "study/session       | core/base ${model_rooms} ${study_rooms}"
-  "study/store         | core/base ${study_rooms} study/session"
+  "study/session       | core/base ${model_rooms} ${plan_rooms}"
+  "study/store         | core/base ${plan_rooms} study/session"
   "analysis/truth      | ${contact_rooms} core/tick core/query"
-  "analysis/export     | core/base study/design study/protocol study/questionnaire study/measures study/store"
+  "analysis/export     | core/base ${plan_rooms} study/protocol study/store"
   "analysis/stats      | core/base"
   "study/run           | ${core_rooms} devices ${study_rooms} study/session study/store analysis/truth"
   "analysis/power      | core/base ${study_rooms} study/session study/store study/run analysis/export analysis/stats"
@@ -73,7 +75,7 @@ set(tick_standard_headers algorithm array atomic bit bitset cassert cfloat climi
   cstdint cstdlib cstring initializer_list iterator limits numbers numeric optional span tuple type_traits utility
   variant vector)
 # Rooms without a thread or a lock of their own.
-set(threadless_rooms core/base core/query core/replay study/protocol study/design study/questionnaire study/measures
+set(threadless_rooms core/base core/query core/replay study/plan study/protocol study/design study/questionnaire study/measures
   study/person study/session ui/presenter)
 set(thread_headers barrier condition_variable future latch mutex semaphore shared_mutex stop_token thread)
 

@@ -1,6 +1,6 @@
 #include "analysis/export/contact_energy_table.h"
 
-#include "study/protocol/participant.h"
+#include "study/plan/participant.h"
 
 namespace passung::exporter {
 

@@ -1,6 +1,6 @@
 #include "analysis/export/note_table.h"
 
-#include "study/protocol/participant.h"
+#include "study/plan/participant.h"
 
 namespace passung::exporter {
 

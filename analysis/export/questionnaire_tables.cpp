@@ -7,7 +7,7 @@
 #include "analysis/export/cells.h"
 #include "analysis/export/counted_forms.h"
 #include "analysis/export/trial_tables.h"
-#include "study/protocol/participant.h"
+#include "study/plan/participant.h"
 #include "study/questionnaire/scoring.h"
 
 namespace passung::exporter {

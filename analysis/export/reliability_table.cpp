@@ -4,7 +4,7 @@
 
 #include "analysis/export/counted_forms.h"
 #include "analysis/export/questionnaire_tables.h"
-#include "study/protocol/participant.h"
+#include "study/plan/participant.h"
 #include "study/questionnaire/cronbach_alpha.h"
 
 namespace passung::exporter {

@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "study/protocol/participant.h"
+#include "study/plan/participant.h"
 
 namespace passung::exporter {
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include "study/protocol/participant.h"
+#include "study/plan/participant.h"
 
 namespace passung::exporter {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "study/design/adaptive.h"
-#include "study/protocol/participant.h"
+#include "study/plan/participant.h"
 
 namespace passung::exporter {
 namespace {

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "analysis/export/cells.h"
-#include "study/protocol/participant.h"
+#include "study/plan/participant.h"
 
 namespace passung::exporter {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "core/base/random.h"
 #include "study/person/completion_time.h"
-#include "study/protocol/participant.h"
+#include "study/plan/participant.h"
 #include "study/protocol/trial_types.h"
 #include "study/session/participant_order.h"
 

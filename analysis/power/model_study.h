@@ -4,7 +4,7 @@
 
 #include "analysis/export/study_data.h"
 #include "core/base/result.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 
 namespace passung::power {
 

@@ -6,7 +6,7 @@
 #include "analysis/power/planted_effect.h"
 #include "analysis/power/power_file.h"
 #include "core/base/result.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 
 namespace passung::power {
 

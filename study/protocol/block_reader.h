@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "study/plan/study_plan.h"
 #include "study/protocol/document.h"
-#include "study/protocol/study_plan.h"
 
 namespace passung::protocol {
 

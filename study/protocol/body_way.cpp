@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "study/plan/scene_parts.h"
 #include "study/protocol/scene_node.h"
-#include "study/protocol/scene_parts.h"
 
 namespace passung::protocol {
 namespace {

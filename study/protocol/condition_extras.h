@@ -1,7 +1,7 @@
 #pragma once
 
+#include "study/plan/study_plan.h"
 #include "study/protocol/factors.h"
-#include "study/protocol/study_plan.h"
 
 namespace passung::protocol {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "study/plan/study_plan.h"
 #include "study/protocol/document.h"
-#include "study/protocol/study_plan.h"
 
 namespace passung::protocol {
 

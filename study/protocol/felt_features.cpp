@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "study/protocol/scene_parts.h"
+#include "study/plan/scene_parts.h"
 
 namespace passung::protocol {
 namespace {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/base/device_description.h"
+#include "study/plan/study_plan.h"
 #include "study/protocol/factors.h"
-#include "study/protocol/study_plan.h"
 
 namespace passung::protocol {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "study/protocol/scene_parts.h"
+#include "study/plan/scene_parts.h"
 #include "study/protocol/table_reader.h"
 #include "study/protocol/trial_types.h"
 

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "core/scene/scene_spec.h"
+#include "study/plan/task.h"
 #include "study/protocol/factors.h"
 #include "study/protocol/table_reader.h"
-#include "study/protocol/task.h"
 
 namespace passung::protocol {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 
 namespace passung::protocol {
 

@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "core/base/json.h"
-#include "study/protocol/language.h"
+#include "study/plan/language.h"
 #include "study/protocol/plan_json.h"
 #include "study/protocol/questionnaire_reader.h"
 #include "study/protocol/questionnaire_texts.h"

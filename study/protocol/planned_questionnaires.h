@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "study/plan/study_plan.h"
 #include "study/protocol/document.h"
-#include "study/protocol/study_plan.h"
 
 namespace passung::protocol {
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "study/plan/scene_parts.h"
 #include "study/protocol/scene_node.h"
-#include "study/protocol/scene_parts.h"
 #include "study/protocol/start_pose.h"
 
 namespace passung::protocol {

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "core/base/device_description.h"
+#include "study/plan/study_plan.h"
 #include "study/protocol/factors.h"
 #include "study/protocol/part_geometry.h"
-#include "study/protocol/study_plan.h"
 
 namespace passung::protocol {
 

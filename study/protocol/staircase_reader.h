@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "study/plan/staircase.h"
+#include "study/plan/study_plan.h"
 #include "study/protocol/document.h"
 #include "study/protocol/factors.h"
-#include "study/protocol/staircase.h"
-#include "study/protocol/study_plan.h"
 
 namespace passung::protocol {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "study/protocol/scene_parts.h"
+#include "study/plan/scene_parts.h"
 
 namespace passung::protocol {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "study/protocol/task.h"
+#include "study/plan/task.h"
 
 namespace passung::protocol {
 

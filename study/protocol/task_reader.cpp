@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 
+#include "study/plan/scene_parts.h"
 #include "study/protocol/peg_in_hole_reader.h"
 #include "study/protocol/scene_node.h"
-#include "study/protocol/scene_parts.h"
 #include "study/protocol/trial_types.h"
 
 namespace passung::protocol {

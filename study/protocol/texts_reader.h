@@ -3,7 +3,7 @@
 #include <functional>
 #include <string>
 
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 #include "study/protocol/table_reader.h"
 
 namespace passung::protocol {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "study/protocol/task.h"
+#include "study/plan/task.h"
 
 namespace passung::protocol {
 

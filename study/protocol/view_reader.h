@@ -1,7 +1,7 @@
 #pragma once
 
+#include "study/plan/view.h"
 #include "study/protocol/table_reader.h"
-#include "study/protocol/view.h"
 
 namespace passung::protocol {
 

@@ -12,7 +12,7 @@
 #include "devices/simulated/presets.h"
 #include "study/measures/measures.h"
 #include "study/person/simulated_person.h"
-#include "study/protocol/language.h"
+#include "study/plan/language.h"
 #include "study/protocol/planned_questionnaires.h"
 #include "study/run/command_socket.h"
 #include "study/run/files/builds.h"

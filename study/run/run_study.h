@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/base/result.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 #include "study/run/files/mesh_importer.h"
 #include "study/run/files/wall_clock.h"
 #include "study/run/loop_apparatus.h"

@@ -1,6 +1,6 @@
 #include "study/run/visible_task.h"
 
-#include "study/protocol/scene_parts.h"
+#include "study/plan/scene_parts.h"
 
 namespace passung::app {
 

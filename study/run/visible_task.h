@@ -1,7 +1,7 @@
 #pragma once
 
 #include "devices/simulated/hand_params.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 
 namespace passung::app {
 

@@ -11,7 +11,7 @@
 #include "core/base/device_description.h"
 #include "core/base/result.h"
 #include "core/base/tick_record.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 
 namespace passung::session {
 

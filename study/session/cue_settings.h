@@ -1,7 +1,7 @@
 #pragma once
 
 #include "study/measures/cues.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 
 namespace passung::session {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "study/protocol/study_texts.h"
+#include "study/plan/study_texts.h"
 
 namespace passung::session {
 

@@ -7,8 +7,8 @@
 
 #include "core/base/result.h"
 #include "study/design/trial_order.h"
-#include "study/protocol/participant.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/participant.h"
+#include "study/plan/study_plan.h"
 
 namespace passung::session {
 

@@ -8,7 +8,7 @@
 
 #include "study/design/trial_order.h"
 #include "study/measures/measures.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 #include "study/questionnaire/definition.h"
 #include "study/questionnaire/scoring.h"
 

@@ -8,7 +8,7 @@
 #include "core/base/result.h"
 #include "core/base/tick_record.h"
 #include "study/measures/measures.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 
 namespace passung::session {
 

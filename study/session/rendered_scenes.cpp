@@ -7,7 +7,7 @@
 
 #include "core/base/random.h"
 #include "core/base/tick_record.h"
-#include "study/protocol/scene_parts.h"
+#include "study/plan/scene_parts.h"
 
 namespace passung::session {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 #include "study/session/agenda.h"
 #include "study/session/picture_quality.h"
 #include "study/session/staircases.h"

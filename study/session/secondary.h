@@ -1,7 +1,7 @@
 #pragma once
 
 #include "study/measures/detection.h"
-#include "study/protocol/secondary_task.h"
+#include "study/plan/secondary_task.h"
 
 namespace passung::session {
 

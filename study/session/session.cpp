@@ -10,7 +10,7 @@
 #include "core/base/assert.h"
 #include "core/base/json.h"
 #include "core/base/random.h"
-#include "study/protocol/participant.h"
+#include "study/plan/participant.h"
 #include "study/session/rendered_scenes.h"
 #include "study/session/secondary.h"
 

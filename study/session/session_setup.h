@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "study/design/trial_order.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 #include "study/session/instruction_reader.h"
 #include "study/session/questionnaire_source.h"
 #include "study/session/resume.h"

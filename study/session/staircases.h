@@ -10,7 +10,7 @@
 #include "study/design/adaptive.h"
 #include "study/design/trial_order.h"
 #include "study/measures/measures.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 #include "study/session/staircase_step.h"
 #include "study/session/trial_sink.h"
 

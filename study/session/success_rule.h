@@ -6,7 +6,7 @@
 
 #include "core/base/tick_record.h"
 #include "study/measures/period_clock.h"
-#include "study/protocol/task.h"
+#include "study/plan/task.h"
 
 namespace passung::session {
 

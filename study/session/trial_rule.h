@@ -10,7 +10,7 @@
 #include "study/measures/measures.h"
 #include "study/measures/pair_watch.h"
 #include "study/measures/passage_watch.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 #include "study/session/success_rule.h"
 
 namespace passung::session {

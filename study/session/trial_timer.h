@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 #include "study/session/command.h"
 
 namespace passung::session {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "study/protocol/participant.h"
+#include "study/plan/participant.h"
 #include "study/store/sqlite.h"
 
 namespace passung::store {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/json.h"
-#include "study/protocol/participant.h"
+#include "study/plan/participant.h"
 #include "study/store/rows.h"
 #include "study/store/sqlite.h"
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "study/protocol/participant.h"
+#include "study/plan/participant.h"
 #include "study/store/audit.h"
 
 namespace passung::store {

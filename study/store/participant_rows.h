@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "study/protocol/participant.h"
+#include "study/plan/participant.h"
 #include "study/store/sqlite.h"
 #include "study/store/station.h"
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 #include "study/store/sqlite.h"
 
 namespace passung::store {

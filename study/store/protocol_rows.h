@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 #include "study/store/picture_rows.h"
 #include "study/store/store.h"
 

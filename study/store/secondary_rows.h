@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "study/measures/measures.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 #include "study/store/rows.h"
 #include "study/store/sqlite.h"
 

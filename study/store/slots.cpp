@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "study/protocol/participant.h"
+#include "study/plan/participant.h"
 
 namespace passung::store {
 

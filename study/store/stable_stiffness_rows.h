@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 #include "study/store/sqlite.h"
 
 namespace passung::store {

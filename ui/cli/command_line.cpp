@@ -11,7 +11,7 @@
 #include "analysis/power/effect_test.h"
 #include "analysis/power/power_file.h"
 #include "core/field/field_mode.h"
-#include "study/protocol/participant.h"
+#include "study/plan/participant.h"
 #include "study/session/command.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 #include "study/session/form_filling.h"
 #include "study/session/instruction_reader.h"
 

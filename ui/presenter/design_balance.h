@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "study/design/balance.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 #include "study/session/participant_order.h"
 
 namespace passung::presenter {

@@ -8,7 +8,7 @@
 #include "core/base/result.h"
 #include "core/base/tick_record.h"
 #include "core/scene/mesh_source.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 #include "ui/presenter/shaded_mesh.h"
 #include "ui/presenter/task_marks.h"
 

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "core/base/digest.h"
-#include "study/protocol/plan_warnings.h"
+#include "study/plan/plan_warnings.h"
 
 namespace passung::presenter {
 

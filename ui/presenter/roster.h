@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "study/protocol/participant.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/participant.h"
+#include "study/plan/study_plan.h"
 #include "study/session/participant_order.h"
 #include "study/store/store_reader.h"
 #include "ui/presenter/design_balance.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "study/protocol/duration.h"
-#include "study/protocol/plan_warnings.h"
+#include "study/plan/duration.h"
+#include "study/plan/plan_warnings.h"
 #include "study/session/participant_order.h"
 #include "study/session/plan_text.h"
 

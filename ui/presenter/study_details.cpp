@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "study/protocol/duration.h"
-#include "study/protocol/participant.h"
+#include "study/plan/duration.h"
+#include "study/plan/participant.h"
 
 namespace passung::presenter {
 

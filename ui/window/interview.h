@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 #include "study/session/instruction_reader.h"
 #include "study/session/questionnaire_source.h"
 #include "ui/presenter/session_news.h"

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "devices/mouse/mouse_device.h"
-#include "study/protocol/scene_parts.h"
+#include "study/plan/scene_parts.h"
 #include "study/session/secondary.h"
 
 namespace passung::app {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "study/protocol/language.h"
+#include "study/plan/language.h"
 #include "study/run/files/protocol_files.h"
 #include "study/store/backup.h"
 #include "ui/window/roster_words.h"

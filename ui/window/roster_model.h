@@ -5,7 +5,7 @@
 #include <functional>
 #include <optional>
 
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 #include "study/store/participant_desk.h"
 #include "ui/presenter/leaving.h"
 #include "ui/presenter/roster.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 #include "study/run/files/mesh_importer.h"
 #include "study/store/store_reader.h"
 

@@ -7,7 +7,7 @@
 #include "analysis/truth/accuracy_sweep.h"
 #include "core/base/result.h"
 #include "core/scene/build_store.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 #include "study/run/files/mesh_importer.h"
 #include "study/store/rows.h"
 #include "study/store/store.h"

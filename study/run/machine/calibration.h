@@ -9,8 +9,8 @@
 #include "core/base/device_description.h"
 #include "core/base/result.h"
 #include "devices/simulated/presets.h"
+#include "study/plan/study_plan.h"
 #include "study/protocol/calibration.h"
-#include "study/protocol/study_plan.h"
 #include "study/run/files/mesh_importer.h"
 
 namespace passung::app {

@@ -6,7 +6,7 @@
 #include "core/base/device_description.h"
 #include "core/loop/stability.h"
 #include "core/scene/scene_spec.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 
 namespace passung::app {
 

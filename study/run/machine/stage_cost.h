@@ -5,7 +5,7 @@
 
 #include "core/base/result.h"
 #include "core/scene/scene.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 
 namespace passung::app {
 

@@ -5,8 +5,8 @@
 #include "core/loop/haptic_device.h"
 #include "core/loop/record_ring.h"
 #include "devices/simulated/presets.h"
-#include "study/protocol/participant.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/participant.h"
+#include "study/plan/study_plan.h"
 #include "study/session/apparatus.h"
 #include "study/session/session.h"
 

@@ -7,8 +7,8 @@
 #include <span>
 
 #include "core/base/digest.h"
+#include "study/plan/plan_warnings.h"
 #include "study/protocol/consent_reader.h"
-#include "study/protocol/plan_warnings.h"
 #include "study/store/participant_desk.h"
 #include "study/store/store_reader.h"
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "study/protocol/participant.h"
+#include "study/plan/participant.h"
 #include "study/store/store.h"
 
 namespace passung::app {

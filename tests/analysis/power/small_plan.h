@@ -1,6 +1,6 @@
 #pragma once
 
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 
 namespace passung::power::test {
 

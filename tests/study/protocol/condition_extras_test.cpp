@@ -3,7 +3,7 @@
 #include <set>
 
 #include "core/base/json.h"
-#include "study/protocol/plan_warnings.h"
+#include "study/plan/plan_warnings.h"
 #include "study/protocol/protocol_reader.h"
 #include "tests/study/protocol/fake_devices.h"
 

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "study/protocol/participant.h"
+#include "study/plan/participant.h"
 #include "study/store/utc_clock.h"
 
 namespace passung::store {

@@ -1,4 +1,4 @@
-#include "study/protocol/plan_warnings.h"
+#include "study/plan/plan_warnings.h"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 
 namespace passung::protocol {
 

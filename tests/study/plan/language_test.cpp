@@ -1,4 +1,4 @@
-#include "study/protocol/language.h"
+#include "study/plan/language.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "study/protocol/staircase.h"
+#include "study/plan/staircase.h"
 
 #include <algorithm>
 
 #include "core/base/assert.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 
 namespace passung::protocol {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/device_description.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 
 namespace passung::protocol {
 

@@ -1,4 +1,4 @@
-#include "study/protocol/plan_contents.h"
+#include "study/plan/plan_contents.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "study/protocol/scene_parts.h"
+#include "study/plan/scene_parts.h"
 
 namespace passung::protocol {
 namespace {

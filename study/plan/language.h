@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 
 namespace passung::protocol {
 
@@ -18,8 +18,8 @@ Result<std::string> chooseLanguage(const StudyPlan& plan, const std::string& ask
 /// Is the study in several languages of which this is one?
 bool speaks(const StudyPlan& plan, const std::string& language);
 
-/// Languages that a questionnaire is asked in, each session in its own: all of a study with several of which its own is one. A
-/// slot's texts are in one.
+/// Languages that a questionnaire is asked in, each session in its own: all of a study with several of which its own
+/// is one. A slot's texts are in one.
 std::vector<std::string> languagesAsked(const StudyPlan& plan, const PlannedQuestionnaire& planned);
 
 }  // namespace passung::protocol

@@ -3,7 +3,7 @@
 #include <span>
 
 #include "study/design/trial_order.h"
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 
 namespace passung::protocol {
 

@@ -1,4 +1,4 @@
-#include "study/protocol/view.h"
+#include "study/plan/view.h"
 
 #include "core/base/json.h"
 

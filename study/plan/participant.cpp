@@ -1,4 +1,4 @@
-#include "study/protocol/participant.h"
+#include "study/plan/participant.h"
 
 #include <fmt/format.h>
 

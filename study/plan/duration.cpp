@@ -1,4 +1,4 @@
-#include "study/protocol/duration.h"
+#include "study/plan/duration.h"
 
 #include <algorithm>
 

@@ -8,12 +8,12 @@
 
 #include "core/scene/scene_spec.h"
 #include "study/design/design.h"
-#include "study/protocol/block.h"
-#include "study/protocol/secondary_task.h"
-#include "study/protocol/staircase.h"
-#include "study/protocol/study_texts.h"
-#include "study/protocol/task.h"
-#include "study/protocol/view.h"
+#include "study/plan/block.h"
+#include "study/plan/secondary_task.h"
+#include "study/plan/staircase.h"
+#include "study/plan/study_texts.h"
+#include "study/plan/task.h"
+#include "study/plan/view.h"
 #include "study/questionnaire/definition.h"
 
 namespace passung::protocol {

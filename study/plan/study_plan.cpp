@@ -1,4 +1,4 @@
-#include "study/protocol/study_plan.h"
+#include "study/plan/study_plan.h"
 
 #include <algorithm>
 
