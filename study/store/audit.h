@@ -7,6 +7,7 @@
 
 #include "core/base/json.h"
 #include "study/plan/participant.h"
+#include "study/store/actor.h"
 #include "study/store/rows.h"
 #include "study/store/sqlite.h"
 
@@ -16,12 +17,6 @@ namespace passung::store {
 // detail. Erasing a participant takes the details about them away and leaves the chain whole; each detail holds a
 // random text, so that nobody can find an erased code by trying. A file into which others were merged holds their
 // chains beside its own: every row follows an earlier one, or begins a chain. For this room only: the functions throw.
-
-/// Who does something, and when.
-struct Actor {
-    std::string name;
-    std::string now_utc;
-};
 
 /// Adds a row at the end of the chain, within the caller's transaction.
 void appendAudit(const Database& database, const Actor& actor, const std::string& action, JsonObject detail);

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "study/store/open_options.h"
 #include "study/store/sqlite.h"
-#include "study/store/store.h"
 
 namespace passung::store {
 

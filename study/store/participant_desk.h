@@ -5,7 +5,7 @@
 
 #include "core/base/result.h"
 #include "study/plan/participant.h"
-#include "study/store/audit.h"
+#include "study/store/actor.h"
 
 namespace passung::store {
 

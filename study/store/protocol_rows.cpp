@@ -1,11 +1,11 @@
 #include "study/store/protocol_rows.h"
-#include "core/base/regular_file.h"
 
 #include <algorithm>
 #include <stdexcept>
 
 #include "core/base/digest.h"
 #include "core/base/json.h"
+#include "core/base/regular_file.h"
 #include "study/measures/measures.h"
 #include "study/store/consent_rows.h"
 #include "study/store/questionnaire_rows.h"

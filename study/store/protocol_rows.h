@@ -6,8 +6,8 @@
 
 #include "core/base/result.h"
 #include "study/plan/study_plan.h"
+#include "study/store/open_options.h"
 #include "study/store/picture_rows.h"
-#include "study/store/store.h"
 
 namespace passung::store {
 

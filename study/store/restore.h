@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "study/store/store.h"
+#include "study/store/open_options.h"
 
 namespace passung::store {
 

@@ -1,9 +1,10 @@
 #include "study/protocol/planned_questionnaires.h"
-#include "core/base/regular_file.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
+
+#include "core/base/regular_file.h"
 
 namespace passung::protocol {
 namespace {
