@@ -7,6 +7,7 @@ set(model_rooms "core/geometry core/import core/shape core/field core/shell core
 set(contact_rooms "core/base ${model_rooms} core/contact core/motion")
 set(core_rooms "${contact_rooms} core/tick core/query core/loop core/replay")
 set(plan_rooms "study/plan study/design study/questionnaire study/measures")
+set(row_rooms "core/base ${plan_rooms} study/session")
 set(study_rooms "${plan_rooms} study/protocol study/person")
 set(front_rooms "${core_rooms} devices study analysis ui/presenter")
 set(rooms
@@ -31,7 +32,13 @@ set(rooms
   "study/measures      | core/base"
   "study/person        | core/base study/questionnaire"
   "study/session       | core/base ${model_rooms} ${plan_rooms}"
-  "study/store         | core/base ${plan_rooms} study/session"
+  "study/store/schema   | core/base ${plan_rooms}"
+  "study/store/samples  | core/base"
+  "study/store/rows     | ${row_rooms} study/store/schema"
+  "study/store/read     | ${row_rooms} study/store/schema study/store/samples study/store/rows"
+  "study/store/write    | ${row_rooms} study/store/schema study/store/samples study/store/rows study/store/read"
+  "study/store/people   | ${row_rooms} study/store/schema study/store/samples study/store/rows study/store/read study/store/write"
+  "study/store/transfer | ${row_rooms} study/store/schema study/store/samples study/store/rows study/store/read study/store/write study/store/people"
   "analysis/truth      | ${contact_rooms} core/tick core/query"
   "analysis/export     | core/base ${plan_rooms} study/protocol study/store"
   "analysis/stats      | core/base"
@@ -54,9 +61,9 @@ set(libraries
   "minizip  | ^minizip/                        | core/import                            | cpp"
   "toml++   | ^toml[+][+]/                     | study/protocol tests                   | cpp"
   "SQLite   | ^sqlite3[.]h$                    | study/store tests                      | any"
-  "zlib     | ^zlib[.]h$                       | study/store analysis/export tests      | cpp"
+  "zlib     | ^zlib[.]h$                       | study/store/samples analysis/export tests | cpp"
   "OpenSSL  | ^openssl/                        | core/base tests                         | cpp"
-  "libpqxx  | ^pqxx/                           | study/store tests                      | cpp"
+  "libpqxx  | ^pqxx/                           | study/store/transfer tests             | cpp"
   "FCL      | ^fcl/                            | analysis/truth tests                   | cpp"
   "Boost.Math | ^boost/math/                     | analysis/stats tests                   | cpp"
   "spdlog   | ^spdlog/                         | ui tests                               | cpp"

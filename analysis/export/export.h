@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/base/result.h"
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
 
 /// The folder's name is a word of the language, hence `exporter`.
 namespace passung::exporter {

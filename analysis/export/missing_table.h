@@ -1,7 +1,7 @@
 #pragma once
 
 #include "analysis/export/table.h"
-#include "study/store/rows.h"
+#include "study/store/rows/rows.h"
 
 namespace passung::exporter {
 

@@ -7,7 +7,7 @@
 
 #include "analysis/export/status_bits.h"
 #include "study/measures/period_clock.h"
-#include "study/store/sample_codec.h"
+#include "study/store/samples/sample_codec.h"
 
 namespace passung::exporter {
 namespace {

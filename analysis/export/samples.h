@@ -10,7 +10,7 @@
 #include "analysis/export/table.h"
 #include "core/base/tick_record.h"
 #include "study/measures/cues.h"
-#include "study/store/rows.h"
+#include "study/store/rows/rows.h"
 
 namespace passung::exporter {
 

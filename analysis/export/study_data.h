@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
 
 namespace passung::exporter {
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "core/base/result.h"
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
 
 namespace passung::exporter {
 

@@ -7,7 +7,7 @@
 #include "core/base/folder_lock.h"
 #include "study/run/machine/auto_accuracy.h"
 #include "study/run/run_study.h"
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
 
 namespace passung::app {
 

@@ -24,7 +24,7 @@
 #include "study/run/person/simulated_answers.h"
 #include "study/run/person/simulated_timer.h"
 #include "study/session/participant_order.h"
-#include "study/store/identity.h"
+#include "study/store/schema/identity.h"
 
 namespace passung::app {
 

@@ -10,7 +10,7 @@
 #include "study/run/loop_apparatus.h"
 #include "study/run/person/person_at_desk.h"
 #include "study/session/session.h"
-#include "study/store/store.h"
+#include "study/store/write/store.h"
 
 namespace passung::app {
 

@@ -10,7 +10,7 @@
 #include <system_error>
 
 #include "study/protocol/key_table.h"
-#include "study/store/database_file.h"
+#include "study/store/schema/database_file.h"
 
 namespace passung::cli {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "study/store/rows.h"
+#include "study/store/rows/rows.h"
 
 namespace passung::cli {
 

@@ -14,7 +14,7 @@
 #include "study/run/machine/stability_report.h"
 #include "study/run/machine/stage_cost.h"
 #include "study/session/plan_text.h"
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 #include "ui/cli/order_table.h"

@@ -1,4 +1,4 @@
-#include "study/store/merge.h"
+#include "study/store/transfer/merge.h"
 
 #include <fmt/format.h>
 

@@ -10,9 +10,9 @@
 #include <optional>
 
 #include "study/run/files/protocol_files.h"
-#include "study/store/backup.h"
-#include "study/store/participant_desk.h"
-#include "study/store/store_reader.h"
+#include "study/store/people/participant_desk.h"
+#include "study/store/read/store_reader.h"
+#include "study/store/schema/backup.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 #include "ui/cli/places.h"

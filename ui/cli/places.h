@@ -1,6 +1,6 @@
 #pragma once
 
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
 
 namespace passung::cli {
 

@@ -1,4 +1,4 @@
-#include "study/store/push.h"
+#include "study/store/transfer/push.h"
 
 #include <fmt/format.h>
 

@@ -11,7 +11,7 @@
 #include "study/run/files/built_scenes.h"
 #include "study/run/files/stored_plans.h"
 #include "study/session/recompute.h"
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 

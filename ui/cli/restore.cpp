@@ -1,4 +1,4 @@
-#include "study/store/restore.h"
+#include "study/store/transfer/restore.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "study/store/store.h"
+#include "study/store/write/store.h"
 #include "ui/cli/commands.h"
 
 namespace passung::cli {

@@ -1,4 +1,4 @@
-#include "study/store/verify.h"
+#include "study/store/read/verify.h"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 
 #include "analysis/export/study_data.h"
 #include "core/base/result.h"
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
 
 namespace passung::presenter {
 

@@ -10,7 +10,7 @@
 #include "study/plan/participant.h"
 #include "study/plan/study_plan.h"
 #include "study/session/participant_order.h"
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
 #include "ui/presenter/design_balance.h"
 
 namespace passung::presenter {

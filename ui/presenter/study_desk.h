@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "study/store/participant_desk.h"
-#include "study/store/store.h"
+#include "study/store/people/participant_desk.h"
+#include "study/store/write/store.h"
 #include "ui/presenter/leaving.h"
 
 namespace passung::app {

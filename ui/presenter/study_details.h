@@ -6,7 +6,7 @@
 #include "core/base/result.h"
 #include "study/plan/study_plan.h"
 #include "study/session/order_rows.h"
-#include "study/store/rows.h"
+#include "study/store/rows/rows.h"
 #include "ui/presenter/design_balance.h"
 
 namespace passung::presenter {

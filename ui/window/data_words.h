@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "study/store/rows.h"
+#include "study/store/rows/rows.h"
 
 namespace passung::window {
 

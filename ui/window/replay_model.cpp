@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "study/run/files/stored_plans.h"
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
 #include "ui/presenter/participant.h"
 
 namespace passung::window {

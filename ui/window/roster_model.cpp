@@ -6,7 +6,7 @@
 
 #include "study/plan/language.h"
 #include "study/run/files/protocol_files.h"
-#include "study/store/backup.h"
+#include "study/store/schema/backup.h"
 #include "ui/window/roster_words.h"
 
 namespace passung::window {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "study/plan/study_plan.h"
-#include "study/store/participant_desk.h"
+#include "study/store/people/participant_desk.h"
 #include "ui/presenter/leaving.h"
 #include "ui/presenter/roster.h"
 #include "ui/presenter/study_desk.h"

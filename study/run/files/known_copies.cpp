@@ -7,9 +7,9 @@
 
 #include "core/base/regular_file.h"
 #include "study/run/files/known_exports.h"
-#include "study/store/backup.h"
-#include "study/store/database_file.h"
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
+#include "study/store/schema/backup.h"
+#include "study/store/schema/database_file.h"
 
 namespace passung::app {
 

@@ -8,7 +8,7 @@
 #include "core/base/result.h"
 #include "study/plan/study_plan.h"
 #include "study/run/files/mesh_importer.h"
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
 
 namespace passung::app {
 

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "study/store/store.h"
+#include "study/store/write/store.h"
 
 namespace passung::app {
 

@@ -9,8 +9,8 @@
 #include "core/scene/build_store.h"
 #include "study/plan/study_plan.h"
 #include "study/run/files/mesh_importer.h"
-#include "study/store/rows.h"
-#include "study/store/store.h"
+#include "study/store/rows/rows.h"
+#include "study/store/write/store.h"
 
 namespace passung::app {
 

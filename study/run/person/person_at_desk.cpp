@@ -9,8 +9,8 @@
 #include "core/base/digest.h"
 #include "study/plan/plan_warnings.h"
 #include "study/protocol/consent_reader.h"
-#include "study/store/participant_desk.h"
-#include "study/store/store_reader.h"
+#include "study/store/people/participant_desk.h"
+#include "study/store/read/store_reader.h"
 
 namespace passung::app {
 

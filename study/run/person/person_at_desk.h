@@ -5,7 +5,7 @@
 #include <string>
 
 #include "study/plan/participant.h"
-#include "study/store/store.h"
+#include "study/store/write/store.h"
 
 namespace passung::app {
 

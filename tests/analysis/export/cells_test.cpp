@@ -8,7 +8,7 @@
 #include <set>
 
 #include "analysis/export/export.h"
-#include "study/store/participant_desk.h"
+#include "study/store/people/participant_desk.h"
 #include "tests/analysis/export/csv_reader.h"
 #include "tests/study/store/fake_study.h"
 

@@ -8,7 +8,7 @@
 
 #include "analysis/export/export.h"
 #include "core/base/random.h"
-#include "study/store/verify.h"
+#include "study/store/read/verify.h"
 #include "tests/analysis/export/csv_reader.h"
 #include "tests/study/store/damaged_study.h"
 

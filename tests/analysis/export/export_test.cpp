@@ -12,7 +12,7 @@
 
 #include "analysis/export/samples.h"
 #include "analysis/export/status_bits.h"
-#include "study/store/sqlite.h"
+#include "study/store/schema/sqlite.h"
 #include "tests/analysis/export/csv_reader.h"
 #include "tests/study/store/fake_study.h"
 

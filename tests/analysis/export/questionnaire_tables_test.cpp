@@ -7,7 +7,7 @@
 
 #include "analysis/export/export.h"
 #include "study/questionnaire/cronbach_alpha.h"
-#include "study/store/participant_desk.h"
+#include "study/store/people/participant_desk.h"
 #include "tests/analysis/export/csv_reader.h"
 #include "tests/study/store/fake_questionnaire.h"
 

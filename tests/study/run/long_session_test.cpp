@@ -6,7 +6,7 @@
 #include "study/protocol/protocol_reader.h"
 #include "study/run/files/known_names.h"
 #include "study/run/run_study.h"
-#include "study/store/sqlite.h"
+#include "study/store/schema/sqlite.h"
 #include "tests/study/store/fake_study.h"
 #include "tests/ui/cli/small_study.h"
 

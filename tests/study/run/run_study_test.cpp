@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "study/protocol/protocol_reader.h"
-#include "study/store/sqlite.h"
+#include "study/store/schema/sqlite.h"
 #include "tests/study/run/stub_performer.h"
 #include "tests/support/temp_folder.h"
 #include "tests/ui/cli/small_study.h"

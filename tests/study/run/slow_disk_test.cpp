@@ -8,7 +8,7 @@
 #include "study/protocol/protocol_reader.h"
 #include "study/run/files/known_names.h"
 #include "study/run/run_study.h"
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
 #include "tests/study/store/fake_study.h"
 #include "tests/study/store/faulty_disk.h"
 #include "tests/ui/cli/small_study.h"

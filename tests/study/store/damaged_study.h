@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "study/store/session_tables.h"
-#include "study/store/sqlite.h"
+#include "study/store/schema/session_tables.h"
+#include "study/store/schema/sqlite.h"
 #include "tests/study/store/fake_questionnaire.h"
 
 /// A study with every kind of row that a session writes, and ways to damage it, for tests of what happens then.

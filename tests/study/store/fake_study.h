@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "study/store/store.h"
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
+#include "study/store/write/store.h"
 #include "tests/support/temp_folder.h"
 
 /// A small study whose every number is known from its seeds, for tests of store and export.

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "study/store/revisions.h"
-#include "study/store/sqlite.h"
+#include "study/store/schema/revisions.h"
+#include "study/store/schema/sqlite.h"
 
 namespace passung::fake {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
 #include "tests/analysis/export/csv_reader.h"
 #include "tests/ui/cli/program.h"
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
 #include "tests/ui/cli/program.h"
 #include "tests/ui/cli/small_study.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "study/store/sqlite.h"
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
+#include "study/store/schema/sqlite.h"
 #include "tests/analysis/export/csv_reader.h"
 #include "tests/ui/cli/program.h"
 #include "tests/ui/cli/typed_studies.h"

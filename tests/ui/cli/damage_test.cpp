@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "core/tick/numerics.h"
-#include "study/store/sqlite.h"
+#include "study/store/schema/sqlite.h"
 #include "tests/ui/cli/program.h"
 #include "tests/ui/cli/small_study.h"
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <vector>
 
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
 #include "tests/ui/cli/program.h"
 #include "tests/ui/cli/small_study.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
 #include "tests/ui/cli/program.h"
 #include "tests/ui/cli/typed_studies.h"
 

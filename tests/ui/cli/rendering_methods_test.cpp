@@ -7,7 +7,7 @@
 #include "study/protocol/protocol_reader.h"
 #include "study/run/files/known_names.h"
 #include "study/session/participant_order.h"
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
 #include "tests/ui/cli/program.h"
 
 namespace passung::test {

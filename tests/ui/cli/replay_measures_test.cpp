@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "study/store/sqlite.h"
+#include "study/store/schema/sqlite.h"
 #include "tests/ui/cli/program.h"
 #include "tests/ui/cli/small_study.h"
 

@@ -5,8 +5,8 @@
 #include <map>
 #include <sstream>
 
-#include "study/store/sqlite.h"
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
+#include "study/store/schema/sqlite.h"
 #include "tests/ui/cli/program.h"
 #include "tests/ui/cli/small_study.h"
 

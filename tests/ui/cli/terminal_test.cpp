@@ -5,7 +5,7 @@
 #include <regex>
 #include <thread>
 
-#include "study/store/sqlite.h"
+#include "study/store/schema/sqlite.h"
 #include "tests/ui/cli/program.h"
 #include "tests/ui/cli/small_study.h"
 

@@ -6,7 +6,7 @@
 
 #include "core/base/tick_record.h"
 #include "study/session/rendered_scenes.h"
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
 #include "tests/ui/cli/program.h"
 #include "tests/ui/cli/typed_studies.h"
 

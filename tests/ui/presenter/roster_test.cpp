@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "study/store/participant_desk.h"
+#include "study/store/people/participant_desk.h"
 #include "tests/study/store/fake_study.h"
 #include "ui/presenter/leaving.h"
 

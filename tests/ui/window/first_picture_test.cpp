@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "study/store/sqlite.h"
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
+#include "study/store/schema/sqlite.h"
 #include "tests/ui/cli/small_study.h"
 #include "tests/ui/window/windows.h"
 

@@ -4,7 +4,7 @@
 
 #include "study/protocol/protocol_reader.h"
 #include "study/run/files/known_names.h"
-#include "study/store/sqlite.h"
+#include "study/store/schema/sqlite.h"
 #include "tests/ui/window/asking_study.h"
 #include "tests/ui/window/windows.h"
 

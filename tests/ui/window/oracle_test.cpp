@@ -16,7 +16,7 @@
 #include "study/protocol/protocol_reader.h"
 #include "study/run/files/known_names.h"
 #include "study/run/run_study.h"
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
 #include "tests/ui/cli/small_study.h"
 #include "tests/ui/window/four_trials.h"
 #include "tests/ui/window/ray_caster.h"

@@ -10,7 +10,7 @@
 #include "core/shape/shape.h"
 #include "study/protocol/protocol_reader.h"
 #include "study/run/files/known_names.h"
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
 #include "tests/ui/window/windows.h"
 #include "ui/window/live_session.h"
 

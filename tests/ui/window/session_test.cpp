@@ -11,7 +11,7 @@
 
 #include "study/protocol/protocol_reader.h"
 #include "study/run/files/known_names.h"
-#include "study/store/sqlite.h"
+#include "study/store/schema/sqlite.h"
 #include "tests/ui/window/four_trials.h"
 #include "tests/ui/window/windows.h"
 #include "ui/presenter/pointer_motion.h"

@@ -2,8 +2,8 @@
 #include <chrono>
 #include <thread>
 
-#include "study/store/sqlite.h"
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
+#include "study/store/schema/sqlite.h"
 #include "tests/ui/window/windows.h"
 #include "tests/ui/window/x_person.h"
 

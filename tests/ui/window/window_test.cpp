@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "study/store/store_reader.h"
+#include "study/store/read/store_reader.h"
 #include "tests/ui/cli/small_study.h"
 #include "tests/ui/window/windows.h"
 

@@ -1,0 +1,36 @@
+#include "study/store/rows/picture_rows.h"
+
+#include "core/base/digest.h"
+#include "core/base/regular_file.h"
+
+namespace passung::store {
+
+Result<std::vector<PictureContent>> readPictures(const protocol::StudyPlan& plan) {
+    std::vector<PictureContent> pictures;
+    for (const protocol::PictureSource& picture : plan.pictures) {
+        const auto bytes = readFile(picture.path);
+        if (!bytes) return bytes.errors();
+        pictures.push_back({picture.name, sha256Hex(*bytes), static_cast<std::int64_t>(bytes->size())});
+    }
+    return pictures;
+}
+
+void insertPictures(const Database& database, const std::string& protocol_sha256,
+                    const std::vector<PictureContent>& pictures) {
+    Statement insert = database.prepare("INSERT INTO picture_file VALUES(?, ?, ?, ?)");
+    for (const PictureContent& picture : pictures)
+        insert.bind(protocol_sha256, picture.picture, picture.sha256, picture.bytes).run();
+}
+
+void requirePictures(const Database& database, const std::string& protocol_sha256,
+                     const std::vector<PictureContent>& pictures) {
+    Statement find = database.prepare("SELECT sha256 FROM picture_file WHERE protocol_sha256=? AND picture=?");
+    for (const PictureContent& picture : pictures) {
+        if (find.bind(protocol_sha256, picture.picture).step() && find.text(0) == picture.sha256) continue;
+        throw std::runtime_error("the picture " + picture.picture +
+                                 " has changed since this protocol was stored: restore it, or give the protocol a new "
+                                 "version");
+    }
+}
+
+}  // namespace passung::store

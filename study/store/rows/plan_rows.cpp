@@ -1,0 +1,122 @@
+#include "study/store/rows/plan_rows.h"
+
+#include <map>
+
+#include "study/store/rows/attempt_rows.h"
+#include "study/store/schema/sqlite.h"
+
+namespace passung::store {
+namespace {
+
+constexpr const char* kByProtocol = " ORDER BY p.name, p.version, p.protocol_sha256";
+
+std::vector<std::string> readTexts(const Database& database, const std::string& json) {
+    std::vector<std::string> texts;
+    Statement each = database.prepare("SELECT value FROM json_each(?)");
+    each.bind(json);
+    while (each.step()) texts.push_back(each.text(0));
+    return texts;
+}
+
+}  // namespace
+
+std::vector<std::string> readMainBlocks(const Database& database, const std::string& expanded_json) {
+    std::vector<std::string> names;
+    Statement block = database.prepare(
+        "SELECT json_extract(b.value, '$.name') FROM json_each(?1, '$.blocks') b "
+        "WHERE json_extract(b.value, '$.phase')='main' AND json_extract(b.value, '$.name') NOT IN "
+        "(SELECT json_extract(s.value, '$.block') FROM json_each(?1, '$.staircases') s) ORDER BY b.key");
+    block.bind(expanded_json);
+    while (block.step()) names.push_back(block.text(0));
+    return names;
+}
+
+std::vector<ConditionRow> readConditions(const Database& database) {
+    std::vector<ConditionRow> rows;
+    std::map<std::pair<std::string, std::string>, std::size_t> places;  // protocol, condition
+    Statement row = database.prepare(
+        std::string("SELECT c.protocol_sha256, c.condition, c.levels_json FROM condition c "
+                    "JOIN protocol_version p USING(protocol_sha256) WHERE c.position < "
+                    "coalesce(json_extract(p.expanded_json, '$.planned_conditions'), c.position + 1)") +
+        kByProtocol + ", c.position");
+    while (row.step()) {
+        places[{row.text(0), row.text(1)}] = rows.size();
+        rows.push_back({row.text(0), row.text(1), readLevels(database, row.text(2))});
+    }
+    Statement facts = database.prepare(
+        "SELECT p.protocol_sha256, json_extract(c.value, '$.condition'), "
+        "coalesce(json_extract(c.value, '$.params.task.type'), ''), "
+        "json_extract(c.value, '$.params.task.timeout_s'), "
+        "coalesce(json_extract(c.value, '$.params.timed_by'), 'program'), "
+        "coalesce(json_extract(c.value, '$.params.secondary.stimulus'), 'none') "
+        "FROM protocol_version p, json_each(p.expanded_json, '$.conditions') c");
+    while (facts.step()) {
+        const auto place = places.find({facts.text(0), facts.text(1)});
+        if (place == places.end()) continue;
+        ConditionRow& condition = rows[place->second];
+        condition.task_type = facts.text(2);
+        condition.timeout_s = facts.optionalReal(3);
+        condition.timed_by = facts.text(4);
+        condition.stimulus = facts.text(5);
+    }
+    return rows;
+}
+
+std::vector<PlannedCellRow> readPlannedCells(const Database& database) {
+    std::vector<PlannedCellRow> rows;
+    Statement row = database.prepare(
+        "SELECT s.session_id, s.participant_id, s.ordinal, s.protocol_sha256, t.block_index, t.block, c.condition, "
+        "count(*) FROM trial_plan t JOIN session s USING(session_id) JOIN condition c USING(condition_id) "
+        "WHERE t.phase='main' GROUP BY s.session_id, t.block_index, c.condition_id "
+        "ORDER BY s.participant_id, s.ordinal, t.block_index, c.position");
+    while (row.step())
+        rows.push_back({row.text(0), row.text(1), row.integer(2), row.text(3), row.integer(4), row.text(5), row.text(6),
+                        row.integer(7)});
+    return rows;
+}
+
+std::vector<AnalysisRow> readAnalyses(const Database& database) {
+    std::vector<AnalysisRow> rows;
+    Statement row = database.prepare(
+        std::string("SELECT p.protocol_sha256, a.key, coalesce(json_extract(a.value, '$.outcome'), ''), "
+                    "coalesce(json_extract(a.value, '$.staircase'), ''), "
+                    "coalesce(json_extract(a.value, '$.block'), ''), json_extract(a.value, '$.factors'), "
+                    "json_extract(a.value, '$.test') "
+                    "FROM protocol_version p, json_each(p.expanded_json, '$.analyses') a") +
+        kByProtocol + ", a.key");
+    while (row.step())
+        rows.push_back({row.text(0), row.integer(1) + 1, row.text(2), row.text(3), row.text(4),
+                        readTexts(database, row.text(5)), row.text(6)});
+    return rows;
+}
+
+std::vector<NamedFileRow> readNamedFiles(const Database& database) {
+    std::vector<NamedFileRow> rows;
+    Statement row = database.prepare(
+        "WITH planned AS (SELECT p.protocol_sha256 sha, q.value planned FROM protocol_version p, "
+        "json_each(p.expanded_json, '$.questionnaires') q WHERE q.type='object'), file(sha, kind, name, text, sha256) "
+        "AS ("
+        "SELECT protocol_sha256, 'mesh', mesh, NULL, sha256 FROM mesh_file "
+        "UNION SELECT protocol_sha256, 'picture', picture, NULL, sha256 FROM picture_file "
+        "UNION SELECT sha, 'questionnaire', json_extract(planned, '$.file'), "
+        "json_extract(planned, '$.source.definition'), NULL FROM planned "
+        "UNION SELECT sha, 'questionnaire_texts', json_extract(planned, '$.texts'), "
+        "json_extract(planned, '$.source.texts'), NULL FROM planned WHERE json_extract(planned, '$.texts')<>'') "
+        "SELECT f.sha, f.kind, f.name, f.text, f.sha256 FROM file f "
+        "JOIN protocol_version p ON p.protocol_sha256=f.sha ORDER BY p.name, p.version, f.sha, f.kind, f.name");
+    while (row.step())
+        rows.push_back({row.text(0), row.text(1), row.text(2), row.optionalText(3), row.optionalText(4)});
+    return rows;
+}
+
+std::vector<QuestionnaireRow> readQuestionnaires(const Database& database) {
+    std::vector<QuestionnaireRow> rows;
+    Statement row = database.prepare(
+        "SELECT key, version, language, json_extract(definition_json, '$.source.definition'), "
+        "json_extract(definition_json, '$.source.texts') FROM questionnaire "
+        "ORDER BY key, version, language, questionnaire_sha256");
+    while (row.step()) rows.push_back({row.text(0), row.text(1), row.text(2), row.text(3), row.optionalText(4)});
+    return rows;
+}
+
+}  // namespace passung::store

@@ -1,0 +1,274 @@
+#include "study/store/samples/sample_codec.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+
+#include "core/base/assert.h"
+#include "core/base/json.h"
+#include "study/store/samples/compression.h"
+
+namespace passung::store {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "chunks are written as the machine holds them");
+static_assert(std::is_standard_layout_v<TickRecord>);
+
+/// Where a column's value lies in a record.
+struct Field {
+    std::size_t offset;
+    std::size_t width;
+};
+
+struct Layout {
+    std::vector<Channel> channels;
+    std::vector<Field> fields;
+    std::size_t bytes_per_tick = 0;
+    std::size_t later_columns = 0;  // at the end, that older chunks may lack
+
+    /// How many columns `chunk` has; 0 if its size fits none of the layouts there were.
+    std::size_t columnsOf(const Chunk& chunk) const {
+        if (chunk.count < 1 || chunk.count > static_cast<std::int64_t>(kChunkTicks)) return 0;
+        std::size_t width = bytes_per_tick;
+        for (std::size_t n = fields.size(); n + later_columns >= fields.size(); width -= fields[--n].width)
+            if (chunk.data.size() == static_cast<std::size_t>(chunk.count) * width) return n;
+        return 0;
+    }
+
+    void add(std::string name, std::string type, std::string unit, std::string label, std::size_t offset) {
+        const std::size_t width = type == "float64" || type == "int64" ? 8 : 4;
+        channels.push_back({std::move(name), std::move(type), std::move(unit), std::move(label)});
+        fields.push_back({offset, width});
+        bytes_per_tick += width;
+    }
+
+    /// `axes` columns of one array, e.g. proxy_x_m, proxy_y_m, proxy_z_m.
+    void addAxes(const std::string& stem, std::string_view axes, const std::string& suffix, const std::string& type,
+                 const std::string& unit, const std::string& label, std::size_t offset) {
+        const std::size_t width = type == "float64" ? 8 : 4;
+        for (std::size_t i = 0; i < axes.size(); ++i) {
+            const std::string axis(1, axes[i]);
+            add(stem + axis + suffix, type, unit, label + ", " + axis, offset + i * width);
+        }
+    }
+};
+
+Layout makeTickLayout() {
+    Layout layout;
+    layout.addAxes("device_", "xyz", "_m", "float64", "m", "Raw position of the handle, device base frame",
+                   offsetof(TickRecord, device_position_m));
+    layout.addAxes("device_q", "wxyz", "", "float64", "1", "Raw orientation of the handle, device base frame",
+                   offsetof(TickRecord, device_quaternion));
+    layout.add("input_flags", "uint32", "1", "Bit 0: fresh reading; bits 8-31: buttons 0-23",
+               offsetof(TickRecord, input_flags));
+    layout.add("periods", "uint32", "1",
+               "Haptic periods of 1 ms since the previous tick: 1, more after missed cycles; tick 0: 1",
+               offsetof(TickRecord, periods));
+    layout.addAxes("hand_", "xyz", "_m", "float32", "m", "Held part where the device asks it to be, scene frame",
+                   offsetof(TickRecord, hand_position_m));
+    layout.addAxes("hand_q", "wxyz", "", "float32", "1", "Orientation asked by the device, scene frame",
+                   offsetof(TickRecord, hand_quaternion));
+    layout.addAxes("proxy_", "xyz", "_m", "float32", "m", "Held part's proxy, scene frame (penalty: as hand)",
+                   offsetof(TickRecord, proxy_position_m));
+    layout.addAxes("proxy_q", "wxyz", "", "float32", "1", "Orientation of the proxy, scene frame",
+                   offsetof(TickRecord, proxy_quaternion));
+    layout.addAxes("force_", "xyz", "_N", "float32", "N", "Force on the hand after the output stage, scene axes",
+                   offsetof(TickRecord, force_N));
+    layout.addAxes("torque_", "xyz", "_Nm", "float32", "N·m",
+                   "Torque on the hand about the held part's origin, scene axes", offsetof(TickRecord, torque_Nm));
+    layout.add("hand_depth_m", "float32", "m",
+               "Depth of the held part's deepest sample point (contact.spacing_mm apart) at the hand's pose",
+               offsetof(TickRecord, hand_depth_m));
+    layout.add("proxy_depth_m", "float32", "m",
+               "Depth of the held part's deepest sample point (contact.spacing_mm apart) at the proxy's pose",
+               offsetof(TickRecord, proxy_depth_m));
+    layout.add(
+        "energy_J", "float32", "J",
+        "Energy that the controller has taken in through the handle since the trial's first tick; below 0: it gave",
+        offsetof(TickRecord, energy_J));
+    layout.add("quality", "float32", "1", "Area fraction of the point shell that was proven or evaluated",
+               offsetof(TickRecord, quality));
+    layout.add("status", "uint32", "1", "Status bits of the tick; 0 = nothing to report", offsetof(TickRecord, status));
+    layout.add("contacts", "uint32", "1", "Points inside an obstacle at the proxy", offsetof(TickRecord, contacts));
+    layout.add("iterations", "uint32", "1", "Sub-steps of the proxy", offsetof(TickRecord, iterations));
+    layout.add("nodes_visited", "uint32", "1", "Nodes that the queries visited", offsetof(TickRecord, nodes_visited));
+    // The last: chunks of databases from before it end here, and its values are then not known.
+    layout.add("hand_energy_J", "float32", "J",
+               "Energy that the simulated hand has put into the handle since the trial's first tick; not a number of "
+               "real hands",
+               offsetof(TickRecord, hand_energy_J));
+    layout.later_columns = 1;
+    return layout;
+}
+
+Layout makeTimingLayout() {
+    Layout layout;
+    layout.add("duration_ns", "int64", "ns", "Computing time of the tick", offsetof(TickRecord, duration_ns));
+    return layout;
+}
+
+const Layout& tickLayout() {
+    static const Layout layout = makeTickLayout();
+    return layout;
+}
+
+const Layout& timingLayout() {
+    static const Layout layout = makeTimingLayout();
+    return layout;
+}
+
+Chunk encode(const Layout& layout, std::span<const TickRecord> records) {
+    PASSUNG_ASSERT(!records.empty() && consecutiveTicks(records) == records.size());
+    Chunk chunk;
+    chunk.first_tick = records.front().tick;
+    chunk.count = static_cast<std::int64_t>(records.size());
+    chunk.data.resize(layout.bytes_per_tick * records.size());
+    std::byte* out = chunk.data.data();
+    for (const Field& field : layout.fields) {
+        for (const TickRecord& record : records) {
+            std::memcpy(out, reinterpret_cast<const std::byte*>(&record) + field.offset, field.width);
+            out += field.width;
+        }
+    }
+    chunk.crc32 = crc32(chunk.data);
+    return chunk;
+}
+
+constexpr std::string_view kPacked = "columns-v2";
+constexpr std::size_t kSizeBytes = 4;  // before the deflated bytes: how many they become, little-endian
+
+/// Moves bytes between rows and planes: plane b of a column of w-byte values holds byte b of each, from the first row
+/// to the last. Neighbouring ticks share their high bytes, which deflate then finds side by side.
+template <class Move>
+void forEachPlanedByte(const Layout& layout, std::size_t columns, std::size_t rows, Move move) {
+    std::size_t start = 0;
+    for (const Field& field : std::span(layout.fields).first(columns)) {
+        for (std::size_t byte = 0; byte < field.width; ++byte)
+            for (std::size_t row = 0; row < rows; ++row)
+                move(start + row * field.width + byte, start + byte * rows + row);
+        start += rows * field.width;
+    }
+}
+
+Chunk pack(const Layout& layout, const Chunk& chunk) {
+    std::vector<std::byte> planes(chunk.data.size());
+    forEachPlanedByte(layout, layout.columnsOf(chunk), static_cast<std::size_t>(chunk.count),
+                      [&](std::size_t row, std::size_t plane) { planes[plane] = chunk.data[row]; });
+    Chunk packed{chunk.first_tick, chunk.count, 0, deflated(planes)};
+    std::array<std::byte, kSizeBytes> size;
+    for (std::size_t i = 0; i < kSizeBytes; ++i) size[i] = static_cast<std::byte>(planes.size() >> (8 * i) & 0xff);
+    packed.data.insert(packed.data.begin(), size.begin(), size.end());
+    packed.crc32 = crc32(packed.data);
+    return packed;
+}
+
+Error chunkError(const Chunk& chunk, const char* what) {
+    return {.message = "chunk of samples from tick " + std::to_string(chunk.first_tick) + ": " + what};
+}
+
+Result<Chunk> unpack(const Layout& layout, const Chunk& stored, std::string_view encoding) {
+    if (!encoding.starts_with(kPacked)) return stored;
+    if (crc32(stored.data) != stored.crc32) return chunkError(stored, "checksum does not match, the data is damaged");
+    if (stored.data.size() < kSizeBytes) return chunkError(stored, "its size does not fit its number of ticks");
+    std::size_t size = 0;
+    for (std::size_t i = 0; i < kSizeBytes; ++i) size |= std::to_integer<std::size_t>(stored.data[i]) << (8 * i);
+    Chunk chunk{stored.first_tick, stored.count, 0, {}};
+    if (size > kChunkTicks * layout.bytes_per_tick)
+        return chunkError(stored, "its size does not fit its number of ticks");
+    const auto planes = inflated(std::span(stored.data).subspan(kSizeBytes), size);
+    chunk.data.resize(size);
+    const std::size_t columns = layout.columnsOf(chunk);
+    if (planes.size() != size || columns == 0) return chunkError(stored, "its size does not fit its number of ticks");
+    forEachPlanedByte(layout, columns, static_cast<std::size_t>(chunk.count),
+                      [&](std::size_t row, std::size_t plane) { chunk.data[row] = planes[plane]; });
+    chunk.crc32 = crc32(chunk.data);
+    return chunk;
+}
+
+Result<Done> check(const Layout& layout, const Chunk& chunk) {
+    if (layout.columnsOf(chunk) == 0) return chunkError(chunk, "its size does not fit its number of ticks");
+    if (crc32(chunk.data) != chunk.crc32) return chunkError(chunk, "checksum does not match, the data is damaged");
+    return Done{};
+}
+
+void decode(const Layout& layout, const Chunk& chunk, std::span<TickRecord> records, std::size_t skip_rows) {
+    const auto rows = static_cast<std::size_t>(chunk.count);
+    const std::byte* column = chunk.data.data();
+    for (const Field& field : std::span(layout.fields).first(layout.columnsOf(chunk))) {
+        for (std::size_t row = 0; row < records.size(); ++row) {
+            std::memcpy(reinterpret_cast<std::byte*>(&records[row]) + field.offset,
+                        column + (skip_rows + row) * field.width, field.width);
+        }
+        column += rows * field.width;
+    }
+}
+
+}  // namespace
+
+const std::vector<Channel>& tickChannels() { return tickLayout().channels; }
+const std::vector<Channel>& timingChannels() { return timingLayout().channels; }
+
+std::string encodingText() {
+    return "columns-v2: one blob holds n consecutive ticks, tick number of row i = first_tick + i. Time since the "
+           "attempt's tick 0 = 0.001 s * sum of the column periods over the ticks after it (in virtual time: 0.001 s * "
+           "tick); that of the chunk's first tick is t0_ns less the attempt's start_ns. The columns of channels_json "
+           "follow one another in that order, each as "
+           "n values of its type, little-endian, without padding, and each column as planes: the first byte of all n "
+           "values, then the second of all, and so on. The blob is the length of these bytes (4 bytes, little-endian), "
+           "then the bytes as a zlib stream. crc32 = CRC-32 (zlib) of the blob.";
+}
+
+std::string channelsJson(const std::vector<Channel>& channels) {
+    std::vector<std::string> items;
+    for (const Channel& channel : channels)
+        items.push_back(JsonObject()
+                            .text("name", channel.name)
+                            .text("type", channel.type)
+                            .text("unit", channel.unit)
+                            .text("label", channel.label)
+                            .str());
+    return jsonList(items);
+}
+
+Chunk encodeTicks(std::span<const TickRecord> records) { return encode(tickLayout(), records); }
+Chunk encodeTiming(std::span<const TickRecord> records) { return encode(timingLayout(), records); }
+
+Chunk packTicks(const Chunk& chunk) { return pack(tickLayout(), chunk); }
+Chunk packTiming(const Chunk& chunk) { return pack(timingLayout(), chunk); }
+Result<Chunk> unpackTicks(const Chunk& stored, std::string_view encoding) {
+    return unpack(tickLayout(), stored, encoding);
+}
+Result<Chunk> unpackTiming(const Chunk& stored, std::string_view encoding) {
+    return unpack(timingLayout(), stored, encoding);
+}
+
+Result<Done> decodeTicks(const Chunk& chunk, std::vector<TickRecord>& records) {
+    if (const auto sound = check(tickLayout(), chunk); !sound) return sound.errors();
+    const std::size_t first = records.size();
+    records.resize(first + static_cast<std::size_t>(chunk.count));
+    const std::span<TickRecord> added = std::span(records).subspan(first);
+    for (std::size_t row = 0; row < added.size(); ++row) {
+        added[row].tick = chunk.first_tick + static_cast<std::int64_t>(row);
+    }
+    decode(tickLayout(), chunk, added, 0);
+    return Done{};
+}
+
+Result<Done> decodeTiming(const Chunk& chunk, std::span<TickRecord> records) {
+    if (const auto sound = check(timingLayout(), chunk); !sound) return sound.errors();
+    for (TickRecord& record : records) {
+        const std::int64_t row = record.tick - chunk.first_tick;
+        if (row < 0 || row >= chunk.count) continue;
+        decode(timingLayout(), chunk, std::span(&record, 1), static_cast<std::size_t>(row));
+    }
+    return Done{};
+}
+
+std::size_t consecutiveTicks(std::span<const TickRecord> records) {
+    std::size_t n = std::min<std::size_t>(records.size(), 1);
+    while (n < records.size() && n < kChunkTicks && records[n].tick == records[n - 1].tick + 1) ++n;
+    return n;
+}
+
+}  // namespace passung::store

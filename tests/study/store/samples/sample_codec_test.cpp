@@ -1,0 +1,188 @@
+#include "study/store/samples/sample_codec.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "study/store/samples/compression.h"
+#include "tests/study/store/fake_study.h"
+
+namespace passung::store {
+namespace {
+
+TEST(SampleCodec, GivesBackEveryStoredBit) {
+    // Truth: invariant (decoding inverts encoding)
+    for (const std::size_t count : {1u, 2u, 999u, 1000u}) {
+        std::vector<TickRecord> records = fake::makeRecords(count, count, 5'000'000'000);
+        records[0].device_position_m = {std::nan("7"), -0.0, std::numeric_limits<double>::infinity()};
+        records[0].force_N = {std::nanf("7"), -0.0f, std::numeric_limits<float>::denorm_min()};
+        std::vector<TickRecord> back;
+        ASSERT_TRUE(decodeTicks(encodeTicks(records), back));
+        EXPECT_TRUE(fake::sameStoredBits(records, back)) << count;
+    }
+}
+
+TEST(SampleCodec, KeepsMeasuredDurationsOutOfTheTicksAndInTheirOwnStream) {
+    // Truth: invariant
+    const std::vector<TickRecord> records = fake::makeRecords(1, 50);
+    std::vector<TickRecord> back;
+    ASSERT_TRUE(decodeTicks(encodeTicks(records), back));
+    for (const TickRecord& record : back) EXPECT_EQ(record.duration_ns, 0);
+    ASSERT_TRUE(decodeTiming(encodeTiming(records), back));
+    for (std::size_t i = 0; i < records.size(); ++i) EXPECT_EQ(back[i].duration_ns, records[i].duration_ns);
+}
+
+TEST(SampleCodec, FindsEveryFlippedBit) {
+    // Truth: invariant (a CRC-32 finds every single-bit error)
+    const Chunk sound = encodeTicks(fake::makeRecords(2, 3));
+    for (std::size_t byte = 0; byte < sound.data.size(); ++byte) {
+        for (int bit = 0; bit < 8; ++bit) {
+            Chunk damaged = sound;
+            damaged.data[byte] ^= static_cast<std::byte>(1 << bit);
+            std::vector<TickRecord> back;
+            ASSERT_FALSE(decodeTicks(damaged, back)) << byte << " " << bit;
+            ASSERT_TRUE(back.empty());
+        }
+    }
+}
+
+TEST(SampleCodec, RefusesAChunkWhoseSizeDoesNotFit) {
+    // Truth: invariant
+    const Chunk sound = encodeTicks(fake::makeRecords(2, 3));
+    std::vector<TickRecord> back;
+    Chunk longer = sound;
+    longer.count = 4;
+    EXPECT_FALSE(decodeTicks(longer, back));
+    longer.count = -1;
+    EXPECT_FALSE(decodeTicks(longer, back));
+    Chunk shorter = sound;
+    shorter.data.resize(shorter.data.size() - 1);
+    EXPECT_FALSE(decodeTicks(shorter, back));
+    EXPECT_TRUE(back.empty());
+}
+
+TEST(SampleCodec, LayoutIsWhatItsDescriptionSays) {
+    // Truth: invariant (a reader written from encodingText() and the channels alone finds the values)
+    const std::vector<TickRecord> records = fake::makeRecords(3, 10);
+    const Chunk chunk = encodeTicks(records);
+    std::size_t offset = 0;
+    int checked = 0;
+    for (const Channel& channel : tickChannels()) {
+        const std::size_t width = channel.type == "float64" || channel.type == "int64" ? 8 : 4;
+        const std::byte* row7 = chunk.data.data() + offset + 7 * width;
+        const auto holds = [&](const auto& expected) {
+            ++checked;
+            return sizeof expected == width && std::memcmp(row7, &expected, width) == 0;
+        };
+        const TickRecord& r = records[7];
+        if (channel.name == "device_z_m") {
+            EXPECT_TRUE(holds(r.device_position_m[2]));
+        }
+        if (channel.name == "device_qw") {
+            EXPECT_TRUE(holds(r.device_quaternion[0]));
+        }
+        if (channel.name == "input_flags") {
+            EXPECT_TRUE(holds(r.input_flags));
+        }
+        if (channel.name == "periods") {
+            EXPECT_TRUE(holds(r.periods));
+        }
+        if (channel.name == "proxy_y_m") {
+            EXPECT_TRUE(holds(r.proxy_position_m[1]));
+        }
+        if (channel.name == "force_x_N") {
+            EXPECT_TRUE(holds(r.force_N[0]));
+        }
+        if (channel.name == "torque_z_Nm") {
+            EXPECT_TRUE(holds(r.torque_Nm[2]));
+        }
+        if (channel.name == "proxy_depth_m") {
+            EXPECT_TRUE(holds(r.proxy_depth_m));
+        }
+        if (channel.name == "nodes_visited") {
+            EXPECT_TRUE(holds(r.nodes_visited));
+        }
+        if (channel.name == "energy_J") {
+            EXPECT_TRUE(holds(r.energy_J));
+        }
+        if (channel.name == "hand_energy_J") {
+            EXPECT_TRUE(holds(r.hand_energy_J));
+        }
+        offset += 10 * width;
+    }
+    EXPECT_EQ(offset, chunk.data.size());
+    EXPECT_EQ(checked, 11);
+}
+
+TEST(SampleCodec, PackedChunksComeBackAndNeighboursThatDifferLittleTakeLittle) {
+    // Truth: invariant; and closed form: 1000 ticks of which only the last bits of one column change are constant
+    // planes but for one, which deflate turns into next to nothing.
+    const Chunk noise = encodeTicks(fake::makeRecords(5, 700));
+    const auto back = unpackTicks(packTicks(noise), encodingText());
+    ASSERT_TRUE(back);
+    EXPECT_EQ(back->data, noise.data);
+    std::vector<TickRecord> still(1000, fake::makeRecords(6, 1).front());
+    for (std::size_t i = 0; i < still.size(); ++i) {
+        still[i].tick = static_cast<std::int64_t>(i);
+        still[i].force_N[0] = 1.0f + 1e-6f * static_cast<float>(i % 8);
+    }
+    const Chunk raw = encodeTicks(still);
+    const Chunk packed = packTicks(raw);
+    EXPECT_LT(packed.data.size() * 50, raw.data.size());
+    EXPECT_EQ(unpackTicks(packed, encodingText())->data, raw.data);
+    const Chunk timing = encodeTiming(still);
+    EXPECT_EQ(unpackTiming(packTiming(timing), encodingText())->data, timing.data);
+    EXPECT_EQ(unpackTicks(raw, "columns-v1: as it is")->data, raw.data) << "files from before";
+}
+
+TEST(SampleCodec, APackedChunkWithAnyFlippedBitOrWrongLengthIsRefused) {
+    // Truth: invariant, also where the checksum hides it
+    const Chunk sound = packTicks(encodeTicks(fake::makeRecords(7, 3)));
+    ASSERT_TRUE(unpackTicks(sound, encodingText()));
+    for (std::size_t byte = 0; byte < sound.data.size(); ++byte) {
+        Chunk damaged = sound;
+        damaged.data[byte] ^= std::byte{4};
+        EXPECT_FALSE(unpackTicks(damaged, encodingText())) << byte;
+    }
+    for (const std::size_t size : {0u, 3u, 4u, 20u, static_cast<unsigned>(sound.data.size()) - 1}) {
+        Chunk cut = sound;
+        cut.data.resize(size);
+        cut.crc32 = crc32(cut.data);
+        EXPECT_FALSE(unpackTicks(cut, encodingText())) << size;
+    }
+    Chunk counted = sound;
+    counted.count = 4;
+    EXPECT_FALSE(unpackTicks(counted, encodingText()));
+}
+
+TEST(SampleCodec, ReadsChunksFromBeforeTheHandsEnergyWasRecorded) {
+    // Truth: invariant: all other columns as they were, and the hand's energy not known.
+    auto records = fake::makeRecords(3, 10);
+    Chunk old = encodeTicks(records);
+    old.data.resize(old.data.size() - 10 * sizeof(float));
+    old.crc32 = crc32(old.data);
+    std::vector<TickRecord> back;
+    ASSERT_TRUE(decodeTicks(old, back));
+    ASSERT_EQ(back.size(), records.size());
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        EXPECT_TRUE(std::isnan(back[i].hand_energy_J));
+        back[i].hand_energy_J = records[i].hand_energy_J;
+    }
+    EXPECT_TRUE(fake::sameStoredBits(records, back));
+    old.data.resize(old.data.size() - 10 * sizeof(float));  // one more is damage
+    old.crc32 = crc32(old.data);
+    EXPECT_FALSE(decodeTicks(old, back));
+}
+
+TEST(SampleCodec, AChunkEndsAtAGapAndAtItsLargestSize) {
+    // Truth: closed form
+    std::vector<TickRecord> records = fake::makeRecords(4, 10);
+    for (std::size_t i = 6; i < 10; ++i) records[i].tick += 1;
+    EXPECT_EQ(consecutiveTicks(records), 6u);
+    EXPECT_EQ(consecutiveTicks(fake::makeRecords(4, 2500)), kChunkTicks);
+    EXPECT_EQ(consecutiveTicks({}), 0u);
+}
+
+}  // namespace
+}  // namespace passung::store
