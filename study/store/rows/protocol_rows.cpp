@@ -7,6 +7,7 @@
 #include "core/base/json.h"
 #include "core/base/regular_file.h"
 #include "study/measures/measures.h"
+#include "study/plan/participant.h"
 #include "study/store/rows/consent_rows.h"
 #include "study/store/rows/questionnaire_rows.h"
 #include "study/store/rows/slots.h"

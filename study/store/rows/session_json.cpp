@@ -5,8 +5,6 @@
 namespace passung::store {
 namespace {
 
-using JsonObject;
-
 std::string mechanismJson(const DeviceMechanism& m) {
     return JsonObject()
         .number("mass_kg", m.mass_kg)

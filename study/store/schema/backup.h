@@ -3,9 +3,9 @@
 #include <functional>
 #include <string>
 
-#include "study/store/schema/sqlite.h"
-
 namespace passung::store {
+
+class Database;
 
 /// Where the copy of a database lies: beside it (links resolved), with `.backup` after its name; its SHA-256 in
 /// `<backup>.sha256`, as sha256sum writes and checks it. To go back to it, copy it over the database.
