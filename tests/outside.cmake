@@ -1,5 +1,5 @@
-# cmake -DBUILD=... -DTEMP=... -DSOURCE=... -DCXX=... -DVERSION=... -P outside.cmake: installs the core into an empty
-# prefix, builds the project in SOURCE against it and runs it.
+# cmake -DBUILD=... -DTEMP=... -DSOURCE=... -DCXX=... -DVERSION=... -P outside.cmake: installs the libraries into
+# an empty prefix, builds the project in SOURCE against them and runs its programs.
 cmake_policy(VERSION 3.25)
 
 function(run what)
@@ -12,8 +12,11 @@ function(run what)
 endfunction()
 
 file(REMOVE_RECURSE ${TEMP})
-run(install ${CMAKE_COMMAND} --install ${BUILD} --prefix ${TEMP}/prefix --component core)
+foreach(component core engine)
+  run("install ${component}" ${CMAKE_COMMAND} --install ${BUILD} --prefix ${TEMP}/prefix --component ${component})
+endforeach()
 run(configure ${CMAKE_COMMAND} -S ${SOURCE} -B ${TEMP}/build -G Ninja -DCMAKE_BUILD_TYPE=Release
   -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_PREFIX_PATH=${TEMP}/prefix -DPASSUNG_VERSION=${VERSION})
 run(build ${CMAKE_COMMAND} --build ${TEMP}/build)
-run(program ${TEMP}/build/outside)
+run(outside ${TEMP}/build/outside)
+run(engine ${TEMP}/build/engine ${SOURCE}/study.toml ${TEMP}/study.db)
