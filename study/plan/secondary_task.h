@@ -1,9 +1,13 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 namespace passung::protocol {
 
 enum class Stimulus { None, Visual, Vibrotactile, Audio };
-const char* stimulusName(Stimulus stimulus);  // "none", "visual", …: as stored
+inline constexpr std::array kStimulusNames = {"none", "visual", "vibrotactile", "audio"};  // as stored
+inline const char* stimulusName(Stimulus stimulus) { return kStimulusNames[static_cast<std::size_t>(stimulus)]; }
 
 /// A detection-response task beside the trial's own, like that of ISO 17488: a stimulus every few seconds, to be
 /// answered with a button. measures::DetectionSettings says when a press counts.
@@ -19,6 +23,7 @@ struct SecondaryTask {
 /// Who says when a trial begins and ends: the program, which feels and sees the held part; the experimenter, for real
 /// parts in the hand; or the clock alone, for trials in which nothing is to be handled.
 enum class TimedBy { Program, Experimenter, Clock };
-const char* timedByName(TimedBy timed_by);  // "program", "experimenter", "clock": as stored
+inline constexpr std::array kTimedByNames = {"program", "experimenter", "clock"};  // as stored
+inline const char* timedByName(TimedBy timed_by) { return kTimedByNames[static_cast<std::size_t>(timed_by)]; }
 
 }  // namespace passung::protocol

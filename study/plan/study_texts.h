@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -15,7 +17,8 @@ struct StudyText {
 
 /// When instructions are shown: before the session's first trial, before the first trial of a block, after the last.
 enum class ShowAt { SessionStart, BeforeBlock, SessionEnd };
-const char* showAtName(ShowAt moment);  // "session_start", "before_block", "session_end"
+inline constexpr std::array kShowAtNames = {"session_start", "before_block", "session_end"};  // as stored
+inline const char* showAtName(ShowAt moment) { return kShowAtNames[static_cast<std::size_t>(moment)]; }
 
 /// A page for the participant.
 struct Instruction {

@@ -9,9 +9,6 @@
 namespace passung::protocol {
 namespace {
 
-constexpr std::array<const char*, 4> kStimulusNames = {"none", "visual", "vibrotactile", "audio"};
-constexpr std::array<const char*, 3> kTimedByNames = {"program", "experimenter", "clock"};
-
 template <class Enum, std::size_t n>
 Enum named(const std::array<const char*, n>& names, const std::string& name) {
     for (std::size_t i = 0; i < n; ++i)
@@ -74,9 +71,6 @@ void readSecondary(const Node& table, Condition& condition, Errors& errors) {
 }
 
 }  // namespace
-
-const char* stimulusName(Stimulus stimulus) { return kStimulusNames[static_cast<std::size_t>(stimulus)]; }
-const char* timedByName(TimedBy timed_by) { return kTimedByNames[static_cast<std::size_t>(timed_by)]; }
 
 void readConditionExtras(const StudyTables& tables, Condition& condition, Errors& errors) {
     readFeedback(tables.feedback, condition, errors);

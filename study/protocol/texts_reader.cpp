@@ -3,15 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 
 #include "study/protocol/consent_reader.h"
 
 namespace passung::protocol {
 namespace {
-
-constexpr std::array<const char*, 3> kShowAtNames = {"session_start", "before_block", "session_end"};
 
 StudyText& textNamed(StudyPlan& plan, const std::string& name) {
     auto found =
@@ -95,8 +92,6 @@ bool isPicture(std::string_view bytes) {
 }
 
 }  // namespace
-
-const char* showAtName(ShowAt moment) { return kShowAtNames[static_cast<std::size_t>(moment)]; }
 
 void readTexts(const TableReader& root, StudyPlan& plan, Errors& errors) {
     if (const Node* table = root.node("text")) {

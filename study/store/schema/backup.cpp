@@ -10,6 +10,7 @@
 
 #include "core/base/digest.h"
 #include "study/store/schema/private_files.h"
+#include "study/store/schema/sqlite.h"
 
 namespace passung::store {
 namespace {

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/base/regular_file.h"
+#include "study/plan/language.h"
 
 namespace passung::protocol {
 namespace {

@@ -6,8 +6,10 @@
 #include <set>
 
 #include "core/base/digest.h"
+#include "core/base/json.h"
 #include "study/store/people/participant_desk.h"
 #include "study/store/read/verify.h"
+#include "study/store/rows/audit.h"
 #include "study/store/schema/backup.h"
 #include "study/store/schema/revisions.h"
 #include "study/store/schema/sqlite.h"
