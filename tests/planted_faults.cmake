@@ -1,4 +1,4 @@
-# cmake -DCHECK=rooms|texts -DTEMP=... -P planted_faults.cmake: runs the check on a small tree with planted faults.
+# cmake -DCHECK=rooms|texts|generated -DTEMP=... -P planted_faults.cmake: runs the check on a small tree with planted faults.
 # Every planted fault must be reported, and nothing else.
 cmake_policy(VERSION 3.25)
 
@@ -99,6 +99,20 @@ elseif(CHECK STREQUAL "texts")
   file(MAKE_DIRECTORY ${TEMP}/ui)
   file(WRITE ${TEMP}/ui/README.md "${long}")
   list(APPEND expected "ui/README.md:41: ")
+elseif(CHECK STREQUAL "generated")
+  file(WRITE ${TEMP}/tests/rooms.cmake "set(rooms\n  \"core/base     |\"\n  \"core/geometry | core/base\"\n  \"core/shape    | core/base\")\n")
+  file(WRITE ${TEMP}/core/geometry/mesh.h "#include \"core/base/types.h\"\n")
+  file(WRITE ${TEMP}/core/shape/ball.h "#include \"core/base/types.h\"\n")
+  file(MAKE_DIRECTORY ${TEMP}/docs)
+  execute_process(COMMAND ${CMAKE_CURRENT_LIST_DIR}/pages/architecture.sh ${TEMP} OUTPUT_FILE ${TEMP}/docs/architecture.svg)
+  execute_process(COMMAND ${CMAKE_COMMAND} -DROOT=${TEMP} -P ${CMAKE_CURRENT_LIST_DIR}/generated.cmake
+    RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT result EQUAL 0)
+    message(FATAL_ERROR "the check complains of pages that were just written:\n${output}")
+  endif()
+  # An arrow more.
+  file(APPEND ${TEMP}/core/shape/ball.h "#include \"core/geometry/mesh.h\"\n")
+  list(APPEND expected "docs/architecture.svg:1: ")
 endif()
 
 execute_process(COMMAND ${CMAKE_COMMAND} -DROOT=${TEMP} -P ${CMAKE_CURRENT_LIST_DIR}/${CHECK}.cmake
