@@ -1,10 +1,13 @@
-# cmake -DROOT=... -P generated.cmake: pages that are drawn from the tree are what their command writes today: the rooms
-# and their arrows from the includes. Prints every page that differs as file:line: message and fails.
+# cmake -DROOT=... -P generated.cmake: pages that are drawn or written from the tree are what their command writes today:
+# the rooms and their arrows from the includes, measured figures from docs/measured.csv. Prints every page that differs as
+# file:line: message and fails.
 cmake_policy(VERSION 3.25)
 
 set(scripts ${CMAKE_CURRENT_LIST_DIR}/pages)
 set(pages
-  "docs/architecture.svg | architecture.sh | ./dev architecture")
+  "docs/architecture.svg | architecture.sh | ./dev architecture"
+  "docs/MEASURED.md      | measured.sh     | ./dev pages"
+  "README.md             | measured.sh     | ./dev pages")
 
 # The number of the first line in which two texts differ.
 function(first_difference one other result)

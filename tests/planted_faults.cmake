@@ -1,4 +1,4 @@
-# cmake -DCHECK=rooms|texts|generated -DTEMP=... -P planted_faults.cmake: runs the check on a small tree with planted faults.
+# cmake -DCHECK=rooms|texts|links|front_page|generated -DTEMP=... -P planted_faults.cmake: runs the check on a small tree with planted faults.
 # Every planted fault must be reported, and nothing else.
 cmake_policy(VERSION 3.25)
 
@@ -99,20 +99,48 @@ elseif(CHECK STREQUAL "texts")
   file(MAKE_DIRECTORY ${TEMP}/ui)
   file(WRITE ${TEMP}/ui/README.md "${long}")
   list(APPEND expected "ui/README.md:41: ")
+elseif(CHECK STREQUAL "links")
+  allow(README.md "[a card](core/README.md), [its part](core/README.md#how-to-read-it), [elsewhere](https://example.org/x)")
+  allow(README.md "```")
+  allow(README.md "points[0](x) in code is no link")
+  allow(README.md "```")
+  allow(core/README.md "# The core")
+  allow(core/README.md "## How to read it")
+  allow(core/README.md "[back](../README.md) and [down](#how-to-read-it)")
+  plant(README.md "![a picture](core/absent.png)")
+  plant(core/README.md "[back](README.md) [and](../docs/absent.md)")
+  plant(docs/PAGE.md "[a heading](../core/README.md#how-to-write-it)")
+elseif(CHECK STREQUAL "front_page")
+  # 121 lines, 901 words, 31 figures; the names of commits are none.
+  string(REPEAT "one two three four five six seven\n" 117 text)
+  string(REPEAT "0.5 " 31 figures)
+  string(REPEAT "word " 49 words)
+  file(WRITE ${TEMP}/README.md "${text}${figures}\n${words}\n\ncommit `12ab34c`\n")
+  list(APPEND expected "README.md:1: 121 lines" "README.md:1: 901 words" "README.md:1: 31 figures")
 elseif(CHECK STREQUAL "generated")
+  set(begin "<!-- measured: ./dev measure writes what follows -->")
+  set(end "<!-- measured: end -->")
   file(WRITE ${TEMP}/tests/rooms.cmake "set(rooms\n  \"core/base     |\"\n  \"core/geometry | core/base\"\n  \"core/shape    | core/base\")\n")
   file(WRITE ${TEMP}/core/geometry/mesh.h "#include \"core/base/types.h\"\n")
   file(WRITE ${TEMP}/core/shape/ball.h "#include \"core/base/types.h\"\n")
-  file(MAKE_DIRECTORY ${TEMP}/docs)
+  set(header "section,id,what,figure,unit,mark,command,pattern,commit,date,machine,front")
+  set(row "\"commit 1, m\",2026-01-01,\"one, core\",a ball's depth")
+  file(WRITE ${TEMP}/docs/measured.csv "${header}\nDepth,ball,\"ball, pressed\",0.5,mm,<= 1,passung query,,${row}\n")
+  foreach(page README.md docs/MEASURED.md)
+    file(WRITE ${TEMP}/${page} "# A page\n${begin}\n${end}\nIts end.\n")
+    execute_process(COMMAND ${CMAKE_CURRENT_LIST_DIR}/pages/measured.sh ${TEMP} ${page} OUTPUT_VARIABLE text)
+    file(WRITE ${TEMP}/${page} "${text}")
+  endforeach()
   execute_process(COMMAND ${CMAKE_CURRENT_LIST_DIR}/pages/architecture.sh ${TEMP} OUTPUT_FILE ${TEMP}/docs/architecture.svg)
   execute_process(COMMAND ${CMAKE_COMMAND} -DROOT=${TEMP} -P ${CMAKE_CURRENT_LIST_DIR}/generated.cmake
     RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT result EQUAL 0)
     message(FATAL_ERROR "the check complains of pages that were just written:\n${output}")
   endif()
-  # An arrow more.
+  # An arrow more, and a figure that misses its mark.
   file(APPEND ${TEMP}/core/shape/ball.h "#include \"core/geometry/mesh.h\"\n")
-  list(APPEND expected "docs/architecture.svg:1: ")
+  file(WRITE ${TEMP}/docs/measured.csv "${header}\nDepth,ball,\"ball, pressed\",1.5,mm,<= 1,passung query,,${row}\n")
+  list(APPEND expected "docs/architecture.svg:1: " "docs/MEASURED.md:5: " "README.md:3: ")
 endif()
 
 execute_process(COMMAND ${CMAKE_COMMAND} -DROOT=${TEMP} -P ${CMAKE_CURRENT_LIST_DIR}/${CHECK}.cmake
