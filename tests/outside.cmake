@@ -1,5 +1,6 @@
-# cmake -DBUILD=... -DTEMP=... -DSOURCE=... -DCXX=... -DVERSION=... -P outside.cmake: installs the libraries into
-# an empty prefix, builds the project in SOURCE against them and runs its programs.
+# cmake -DBUILD=... -DTEMP=... -DCXX=... and -DSOURCE=... -DVERSION=... or -DPAGE=... -P outside.cmake: installs the
+# libraries into an empty prefix, builds the project in SOURCE against them and runs its programs. PAGE: the project is
+# what the page shows, its block of cmake and its block of cpp, as they stand.
 cmake_policy(VERSION 3.25)
 
 function(run what)
@@ -11,12 +12,36 @@ function(run what)
   message(STATUS "${what}: ok")
 endfunction()
 
+# Writes the only block of `language` in PAGE into `file`, after `before`.
+function(extract language before file)
+  file(READ ${PAGE} text)
+  string(FIND "${text}" "```${language}\n" begin)
+  if(begin EQUAL -1)
+    message(FATAL_ERROR "${PAGE} shows no block of ${language}")
+  endif()
+  string(LENGTH "```${language}\n" fence)
+  math(EXPR begin "${begin} + ${fence}")
+  string(SUBSTRING "${text}" ${begin} -1 text)
+  string(FIND "${text}" "```" end)
+  string(SUBSTRING "${text}" 0 ${end} text)
+  file(WRITE ${file} "${before}${text}")
+endfunction()
+
 file(REMOVE_RECURSE ${TEMP})
+if(PAGE)
+  set(SOURCE ${TEMP}/source)
+  extract(cmake "cmake_minimum_required(VERSION 3.25)\nproject(page LANGUAGES CXX)\n" ${SOURCE}/CMakeLists.txt)
+  extract(cpp "" ${SOURCE}/main.cpp)
+endif()
 foreach(component core engine)
   run("install ${component}" ${CMAKE_COMMAND} --install ${BUILD} --prefix ${TEMP}/prefix --component ${component})
 endforeach()
 run(configure ${CMAKE_COMMAND} -S ${SOURCE} -B ${TEMP}/build -G Ninja -DCMAKE_BUILD_TYPE=Release
   -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_PREFIX_PATH=${TEMP}/prefix -DPASSUNG_VERSION=${VERSION})
 run(build ${CMAKE_COMMAND} --build ${TEMP}/build)
-run(outside ${TEMP}/build/outside)
-run(engine ${TEMP}/build/engine ${SOURCE}/study.toml ${TEMP}/study.db)
+if(PAGE)
+  run(program ${TEMP}/build/mine)
+else()
+  run(outside ${TEMP}/build/outside)
+  run(engine ${TEMP}/build/engine ${SOURCE}/study.toml ${TEMP}/study.db)
+endif()

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 #include "tests/ui/cli/program.h"
 
 namespace passung::test {
@@ -33,6 +35,32 @@ TEST(FirstStudy, TheStudyThatTheTutorialWritesRunsAsItSays) {
                                                     "--simulation", "model", "--repeats", "20"});
     EXPECT_EQ(effect.exit_code, 0) << effect.err;
     EXPECT_NE(tutorial.find("--effect \"clearance:0.25=+0.5\" --simulation model"), std::string::npos);
+}
+
+/// The words of a line of a shell without quotes, up to its comment.
+std::vector<std::string> wordsOf(const std::string& line) {
+    std::istringstream stream(line.substr(0, line.find('#')));
+    return {std::istream_iterator<std::string>(stream), {}};
+}
+
+TEST(FirstStudy, TheSmallestStudyOfTheFrontPageRunsByTheCommandsBelowIt) {
+    // Truth: invariant: what the front page shows is what the program takes.
+    const std::string page = readText(PASSUNG_SOURCE_DIR "/README.md");
+    const TempFolder folder;
+    writeText(folder / "first.toml", codeOf(page, "toml"));
+    int commands = 0;
+    for (const std::string& line : linesOf(codeOf(page, "sh"))) {
+        std::vector<std::string> words = wordsOf(line);
+        ASSERT_GE(words.size(), 2u) << line;
+        ASSERT_EQ(words.front(), "passung") << line;
+        words.erase(words.begin());
+        const Ended ended = runProgram(folder.path(), words);
+        EXPECT_EQ(ended.exit_code, 0) << line << "\n" << ended.err;
+        EXPECT_EQ(ended.err, "") << line;
+        ++commands;
+    }
+    EXPECT_EQ(commands, 3);
+    EXPECT_TRUE(fs::is_regular_file(folder / "tables/codebook.csv"));
 }
 
 }  // namespace
