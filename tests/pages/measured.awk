@@ -73,10 +73,10 @@ END {
     if (PAGE == "front") {
         for (i = 1; i <= front_count; i++) print front[i]
         print ""
-        print "The newest is of commit `" newest_commit "`; machine: " newest_machine "."
+        print "The newest is of commit `" newest_commit "`. Machine: " newest_machine "."
         exit
     }
-    for (i = 1; i <= machine_count; i++) print (machine_count > 1 ? "Machine " i ": " : "The machine: ") machines[i] "."
+    for (i = 1; i <= machine_count; i++) print (machine_count > 1 ? "Machine " i ": " : "Machine: ") machines[i] "."
     if (missed_count > 0) {
         print ""
         print "## Missed marks"
