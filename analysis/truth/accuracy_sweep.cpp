@@ -14,6 +14,7 @@
 #include "core/tick/obstacle_query.h"
 #include "core/tick/penalty.h"
 #include "core/tick/proxy.h"
+#include "core/tick/tick_state.h"
 
 namespace passung::truth {
 
@@ -71,10 +72,10 @@ public:
         tick::TickFrame frame;
         frame.X_WH = X_FS;
         if (!model_.contact.rendersAtHand()) {
-            tick::lookAround(model_, state_, frame, X_FS);
+            tick::lookAround({model_, state_, state_, frame}, X_FS);
             return {std::max(0.0, -state_.clearance), tick::penaltyWrench(weighted_, state_.manifold, X_FS.p)};
         }
-        tick::findContactsAtHand(model_, state_, frame);
+        tick::runStage<tick::kContactsAtHand>(model_, state_, frame);
         const bool summed = model_.contact.variant == model::PenaltyVariant::AreaWeighted;
         return {frame.hand_depth, summed ? tick::weightedWrench(weighted_, frame.load)
                                          : tick::penaltyWrench(weighted_, state_.manifold, X_FS.p)};

@@ -4,70 +4,60 @@
 
 namespace passung::tick {
 
-void clearPushes(TickState& state) noexcept {
-    for (PairAccount& pair : state.pairs) {
-        pair.push = Wrench{};
-        pair.pressure = 0.0;
-    }
+namespace {
+
+/// Adds a force and torque of an obstacle, about the held part's origin, in world axes.
+void add(Push& push, const Wrench& more, double pressure) noexcept {
+    push.wrench.force += more.force;
+    push.wrench.torque += more.torque;
+    push.pressure += pressure;
 }
 
-void addPush(TickState& state, std::uint32_t obstacle, const Wrench& push, double pressure) noexcept {
-    PairAccount& pair = state.pairs[obstacle];
-    pair.push.force += push.force;
-    pair.push.torque += push.torque;
-    pair.pressure += pressure;
+}  // namespace
+
+void clearPushes(Pushes& pushes) noexcept {
+    for (Push& push : pushes.pushes) push = Push{};
 }
 
-void notePushes(const TickModel& model, TickState& state, const ConstrainedMotion& motion,
-                const FrictionPatches& rubbing) noexcept {
-    clearPushes(state);
+void notePushes(const TickModel& model, const Proxy& proxy, const ConstrainedMotion& motion,
+                const FrictionPatches& rubbing, Pushes& pushes) noexcept {
+    clearPushes(pushes);
     const double K = model.contact.stiffness;
     const double turn = model.contact.rotational_stiffness / (model.metric_radius * model.metric_radius);
     for (int i = 0; i < motion.active; ++i) {
         const HeldContact& held = motion.held[static_cast<std::size_t>(i)];
-        const ContactPoint& contact = state.manifold[held.contact];
+        const ContactPoint& contact = proxy.manifold[held.contact];
         const Vec3 push = held.push * contact.gradient.normalized();
-        addPush(state, contact.obstacle, {K * push, turn * (contact.position - state.X_WG.p).cross(push)},
-                K * held.push);
+        add(pushes.pushes[contact.obstacle], {K * push, turn * (contact.position - proxy.X_WG.p).cross(push)},
+            K * held.push);
     }
     for (int p = 0; p < rubbing.count; ++p) {
         const FrictionPatch& patch = rubbing.patch[static_cast<std::size_t>(p)];
         const Vec3 rub = rubAlong(patch);
         const Vec3 torsion = patch.radius * patch.rub.z() * patch.normal;
-        addPush(state, patch.obstacle, {K * rub, turn * ((patch.centre - state.X_WG.p).cross(rub) + torsion)}, 0.0);
+        add(pushes.pushes[patch.obstacle], {K * rub, turn * ((patch.centre - proxy.X_WG.p).cross(rub) + torsion)}, 0.0);
     }
 }
 
-void sharePushes(const TickModel&, TickState& state, TickFrame& frame) noexcept {
-    if (!frame.input_usable) clearPushes(state);
+void sharePushes(const TickModel&, const HandSample& hand, const HandWrench& wrench, Pushes& pushes) noexcept {
+    if (!hand.input_usable) clearPushes(pushes);
     double pressure = 0.0;
-    Wrench rest = frame.F_H_W;
-    for (const PairAccount& pair : state.pairs) {
-        pressure += pair.pressure;
-        rest.force -= pair.push.force;
-        rest.torque -= pair.push.torque;
+    Wrench rest = wrench.F_H_W;
+    for (const Push& push : pushes.pushes) {
+        pressure += push.pressure;
+        rest.force -= push.wrench.force;
+        rest.torque -= push.wrench.torque;
     }
     if (!(pressure > 0.0)) return;
-    for (PairAccount& pair : state.pairs) {
-        const double share = pair.pressure / pressure;
-        pair.push.force += share * rest.force;
-        pair.push.torque += share * rest.torque;
+    for (Push& push : pushes.pushes) {
+        const double share = push.pressure / pressure;
+        push.wrench.force += share * rest.force;
+        push.wrench.torque += share * rest.torque;
     }
 }
 
-void delayPushes(const TickModel& model, TickState& state) noexcept {
-    const auto length = static_cast<std::int64_t>(model.limits.delay_ticks) + 1;
-    const std::size_t count = state.pairs.size();
-    const auto in = static_cast<std::size_t>(state.tick % length) * count;
-    const auto out = static_cast<std::size_t>((state.tick + 1) % length) * count;
-    for (std::size_t i = 0; i < count; ++i) {
-        state.push_line[in + i] = state.pairs[i].push;
-        state.pairs[i].push = state.push_line[out + i];
-    }
-}
-
-void bookPairs(TickState& state, const Vec3& moved, const Vec3& turned, int ticks) noexcept {
-    for (PairAccount& pair : state.pairs) {
+void bookPairs(EnergyAccounts& accounts, const Vec3& moved, const Vec3& turned, int ticks) noexcept {
+    for (PairAccount& pair : accounts.pairs) {
         pair.taken_in -= (pair.sent.force.dot(moved) + pair.sent.torque.dot(turned)) / ticks;
         pair.least = std::min(pair.least, pair.taken_in);
     }

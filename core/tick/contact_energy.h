@@ -1,5 +1,9 @@
 #pragma once
 
+#include "core/motion/friction.h"
+#include "core/tick/energy_account.h"
+#include "core/tick/proxy_state.h"
+#include "core/tick/tick_frame.h"
 #include "core/tick/tick_model.h"
 
 namespace passung::tick {
@@ -22,20 +26,22 @@ namespace passung::tick {
 /// contact has all; none: nobody has.
 
 /// Forgets the pushes of the tick before. rt-safe.
-void clearPushes(TickState& state) noexcept;
-/// Adds a force and torque of `obstacle`, about the held part's origin, in world axes; `pressure`: PairAccount.
-/// rt-safe.
-void addPush(TickState& state, std::uint32_t obstacle, const Wrench& push, double pressure) noexcept;
+void clearPushes(Pushes& pushes) noexcept;
 /// In place of the pushes so far: those of the contacts and patches that hold `motion` of the proxy. rt-safe.
-void notePushes(const TickModel& model, TickState& state, const ConstrainedMotion& motion,
-                const FrictionPatches& rubbing) noexcept;
+void notePushes(const TickModel& model, const Proxy& proxy, const ConstrainedMotion& motion,
+                const FrictionPatches& rubbing, Pushes& pushes) noexcept;
 
 /// Stage, of scenes with obstacles: shares out what else is in F_H_W. After the wrench, before its delay.
-void sharePushes(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+void sharePushes(const TickModel& model, const HandSample& hand, const HandWrench& wrench, Pushes& pushes) noexcept;
+inline constexpr StageOf kContactShares{
+    sharePushes,
+    {.name = "contact shares",
+     .parameters = "",
+     .cost = "a little for each obstacle",
+     .needs = [](const TickModel& model) { return model.hasObstacles(); },
+     .reason = [](const TickModel&) { return "always: the energy account is kept for each obstacle too"; }}};
 
-/// The pushes of `delay_ticks` ago in place of those of now. rt-safe.
-void delayPushes(const TickModel& model, TickState& state) noexcept;
 /// Books what was sent since the good sample before over the handle's motion since then. rt-safe.
-void bookPairs(TickState& state, const Vec3& moved, const Vec3& turned, int ticks) noexcept;
+void bookPairs(EnergyAccounts& accounts, const Vec3& moved, const Vec3& turned, int ticks) noexcept;
 
 }  // namespace passung::tick

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "core/base/types.h"
 
 namespace passung::tick {
@@ -19,10 +21,26 @@ struct EnergyAccount {
 struct PairAccount {
     double taken_in = 0.0;  // [J]
     double least = 0.0;     // of taken_in so far, ≤ 0
-    Wrench push;            // of the obstacle on the held part in this tick, as F_H_W
-    double pressure = 0.0;  // the sum of its forces' sizes [N]; of what has no obstacle: 0
-    Wrench last_sent;       // the pair's share of TickState::last_sent
     Wrench sent;            // of EnergyAccount::sent
+};
+
+/// Owner: energy account.
+struct EnergyAccounts {
+    EnergyAccount energy;
+    std::vector<PairAccount> pairs = std::vector<PairAccount>(1);  // of each obstacle, and of what none pushes: last
+};
+
+/// What one obstacle does to the held part in this tick.
+struct Push {
+    Wrench wrench;          // of it on the held part, as F_H_W
+    double pressure = 0.0;  // the sum of its forces' sizes [N]; of what has no obstacle: 0
+};
+
+/// Handed on: the method of contact notes them, contact shares adds the rest of the wrench, the output delay delays
+/// them, no wrench clears them.
+struct Pushes {
+    static constexpr bool kHandedOn = true;
+    std::vector<Push> pushes = std::vector<Push>(1);  // as EnergyAccounts::pairs
 };
 
 }  // namespace passung::tick

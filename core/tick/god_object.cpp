@@ -17,31 +17,33 @@ struct Place {
     std::size_t contacts;
 };
 
-Place placeOf(const TickState& state) noexcept {
-    return {state.X_WG, state.manifold_reach, state.clearance, state.room, state.manifold.size()};
+Place placeOf(const Proxy& proxy) noexcept {
+    return {proxy.X_WG, proxy.manifold_reach, proxy.clearance, proxy.room, proxy.manifold.size()};
 }
 
 /// From where a step ended in overlap back to where it began. Its contacts are those that `look` left in the scratch
 /// memory, which now holds what the step met.
-void takeBack(TickState& state, const Place& place) noexcept {
-    std::swap(state.manifold, state.scratch);
-    state.X_WG = place.X_WG;
-    state.manifold_reach = place.reach;
-    state.clearance = place.clearance;
-    state.room = place.room;
+void takeBack(const ProxyView& view, const Place& place) noexcept {
+    Proxy& proxy = view.proxy;
+    std::swap(proxy.manifold, view.memory.scratch);
+    proxy.X_WG = place.X_WG;
+    proxy.manifold_reach = place.reach;
+    proxy.clearance = place.clearance;
+    proxy.room = place.room;
 }
 
 /// What the step `u` met and went more than `relieve` into, as contacts of the place where it began (cuts:
 /// god_object.h).
-void addCuts(const TickModel& model, TickState& state, const Pose& X_met, const Motion& u) noexcept {
-    const Surroundings here = surroundings(model, state);
-    const Pose back = state.X_WG * X_met.inverse();
-    for (const ContactPoint& met : state.scratch) {
+void addCuts(const ProxyView& view, const Pose& X_met, const Motion& u) noexcept {
+    const auto& [model, proxy, memory, report] = view;
+    const Surroundings here = surroundings(model, proxy);
+    const Pose back = proxy.X_WG * X_met.inverse();
+    for (const ContactPoint& met : memory.scratch) {
         if (!(met.phi < -model.margins.relieve)) continue;
         ContactPoint cut = met;
         cut.position = back * met.position;
         cut.phi = met.phi - met.gradient.dot(here.wayOf(cut.position, u));
-        if (!state.manifold.tryPush(cut)) return;
+        if (!proxy.manifold.tryPush(cut)) return;
     }
 }
 
@@ -55,102 +57,103 @@ struct Step {
 };
 
 /// Makes what is `allowed` of `wanted`, no farther than is `known`, so that it leaves no more overlap than `accepted`.
-Step makeStep(const TickModel& model, TickState& state, TickFrame& frame, const Motion& wanted,
-              const Surroundings& around, AllowedMotion allowed, double known, double reach, double search,
-              double accepted) noexcept {
-    const Place here = placeOf(state);
+Step makeStep(const MovingProxy& moving, const Motion& wanted, const Surroundings& around, AllowedMotion allowed,
+              double known, double reach, double search, double accepted) noexcept {
+    const TickModel& model = moving.model;
+    Proxy& proxy = moving.proxy;
+    const Place here = placeOf(proxy);
     double share = 1.0;
     for (int tried = 0; tried <= kCuts + kHalvings; ++tried) {
         const double length = longestPath(model, allowed.u);
         if (length < kStill) {
-            state.manifold.keepFirst(here.contacts);
+            proxy.manifold.keepFirst(here.contacts);
             return {.rubbing = allowed.rubbing, .at_rest = true};
         }
         const Motion u = share * (length > known ? known / length : 1.0) * allowed.u;
-        look(model, state, frame, moved(model, here.X_WG, u), reach, search);
-        if (overlap(state) <= accepted) {
+        look(moving, moved(model, here.X_WG, u), reach, search);
+        if (overlap(proxy) <= accepted) {
             return {.u = u,
                     .rubbing = allowed.rubbing,
                     .made = true,
                     .whole = share == 1.0 && length <= known,
                     .halved = share < 1.0};
         }
-        frame.status |= kStepRejected;
-        const Pose X_met = state.X_WG;
-        takeBack(state, here);
+        moving.report.status |= kStepRejected;
+        const Pose X_met = proxy.X_WG;
+        takeBack(moving, here);
         if (tried < kCuts) {
-            addCuts(model, state, X_met, u);
-            allowed = allowedMotion(model, state, frame, wanted, around);
+            addCuts(moving, X_met, u);
+            allowed = allowedMotion(moving, wanted, around);
         } else {
             share *= 0.5;
         }
     }
-    state.manifold.keepFirst(here.contacts);
+    proxy.manifold.keepFirst(here.contacts);
     return {};
 }
 
 }  // namespace
 
-void sweepProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
-    startProxy(model, state, frame);
+void sweepProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, ProxyMotion& motion, QueryMemory& memory,
+                Pushes& pushes, Report& report) noexcept {
+    const MovingProxy moving{{model, proxy, memory, report}, hand, motion, pushes};
+    startProxy(moving);
     const ProxyMargins& margins = model.margins;
     const double longest = kLongestStep * model.finest_cell;
-    const Pose X_before = state.X_WG;
-    double reach = nextReach(model, state);
+    const Pose X_before = proxy.X_WG;
+    double reach = nextReach(model, motion.last_motion);
     double repair = kRepair * model.finest_cell;
     ProxyWay way(model);
-    const double between = std::max(margins.relieve, overlap(state));
+    const double between = std::max(margins.relieve, overlap(proxy));
     bool arrived = false, whole = false;  // whole: the last step was all that was allowed
     for (int sweep = 0; sweep <= kSweeps; ++sweep) {
-        const Motion wanted = unconstrainedMotion(model, state.X_WG, frame.X_WH);
+        const Motion wanted = unconstrainedMotion(model, proxy.X_WG, hand.X_WH);
         const double path = longestPath(model, wanted);
-        const double before = overlap(state);
+        const double before = overlap(proxy);
         arrived = path < kStill && before <= margins.relieve;
         if (arrived) break;
         const double accepted = std::max(margins.accept, before + 0.1 * margins.keep);
-        if (sweep < kSweeps && state.room > path) {
+        if (sweep < kSweeps && proxy.room > path) {
             if (!way.goesOn(model, wanted, path)) break;
-            if (way.bentBy(wanted) > margins.relieve && cutsCorner(model, state, frame, X_before, frame.X_WH, between))
-                break;
-            frame.iterations = static_cast<std::uint32_t>(sweep + 1);
-            arrived = arriveFreely(model, state, frame, path, reach, accepted);
+            if (way.bentBy(wanted) > margins.relieve && cutsCorner(moving, X_before, hand.X_WH, between)) break;
+            report.iterations = static_cast<std::uint32_t>(sweep + 1);
+            arrived = arriveFreely(moving, path, reach, accepted);
             if (arrived) break;
         }
 
-        Surroundings around = surroundings(model, state);
+        Surroundings around = surroundings(model, proxy);
         around.sunk_out = -std::max(margins.keep, before - repair);
-        const AllowedMotion allowed = allowedMotion(model, state, frame, wanted, around);
+        const AllowedMotion allowed = allowedMotion(moving, wanted, around);
         const double step = longestPath(model, allowed.u);
         const double next_reach = std::clamp(kReachGrowth * std::min(step, path), reach, longest);
         // Contacts that held may be left behind by now, so that the way ends only where those of now leave nothing.
         const bool on_the_way = whole && before <= margins.relieve;
         arrived = step < (on_the_way ? std::max(kEnough * model.finest_cell, kRest * way.length()) : kStill);
-        if (arrived && sweep == 0) state.rubbing = allowed.rubbing;
-        const double known = std::max(state.manifold_reach, state.room);
+        if (arrived && sweep == 0) motion.rubbing = allowed.rubbing;
+        const double known = std::max(proxy.manifold_reach, proxy.room);
         const bool stops = !way.goesOn(model, (step > known ? known / step : 1.0) * allowed.u, step);
         arrived = arrived || (on_the_way && stops);
         if (arrived || stops) break;
         if (sweep == kSweeps) break;
-        frame.iterations = static_cast<std::uint32_t>(sweep + 1);
-        const Pose X_here = state.X_WG;
-        const Step made = makeStep(model, state, frame, wanted, around, allowed, known, next_reach,
-                                   std::max(next_reach, path), accepted);
+        report.iterations = static_cast<std::uint32_t>(sweep + 1);
+        const Pose X_here = proxy.X_WG;
+        const Step made =
+            makeStep(moving, wanted, around, allowed, known, next_reach, std::max(next_reach, path), accepted);
         arrived = made.at_rest;
-        if (arrived && sweep == 0) state.rubbing = made.rubbing;
+        if (arrived && sweep == 0) motion.rubbing = made.rubbing;
         if (!made.made) break;
         way.add(made.u);
-        if (way.bentBy(Motion::Zero()) > margins.relieve &&
-            cutsCorner(model, state, frame, X_before, state.X_WG, between)) {
-            look(model, state, frame, X_here, reach, reach);
+        if (way.bentBy(Motion::Zero()) > margins.relieve && cutsCorner(moving, X_before, proxy.X_WG, between)) {
+            look(moving, X_here, reach, reach);
             break;
         }
-        if (!made.halved) state.rubbing = made.rubbing;
-        repair = std::max(0.0, repair - std::max(0.0, before - overlap(state)));
+        if (!made.halved) motion.rubbing = made.rubbing;
+        repair = std::max(0.0, repair - std::max(0.0, before - overlap(proxy)));
         whole = made.whole;
         reach = next_reach;
     }
-    if (!arrived) frame.status |= kIterationLimit;
-    state.last_motion = unconstrainedMotion(model, X_before, state.X_WG).norm();
+    if (!arrived) report.status |= kIterationLimit;
+    motion.last_motion = unconstrainedMotion(model, X_before, proxy.X_WG).norm();
 }
 
 }  // namespace passung::tick

@@ -1,5 +1,8 @@
 #pragma once
 
+#include "core/tick/energy_account.h"
+#include "core/tick/proxy_state.h"
+#include "core/tick/tick_frame.h"
 #include "core/tick/tick_model.h"
 
 namespace passung::tick {
@@ -57,6 +60,21 @@ inline constexpr int kSweeps = 16;
 inline constexpr int kCuts = 4;  // of one step
 
 /// Stage; those of proxy.h follow. rt-safe.
-void sweepProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+void sweepProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, ProxyMotion& motion, QueryMemory& memory,
+                Pushes& pushes, Report& report) noexcept;
+inline constexpr StageOf kProxySweep{
+    sweepProxy,
+    {.name = "proxy sweep",
+     .parameters = "contact.method, stiffness_N_per_m, rotational_stiffness, mode, budget_nodes, two_way; friction",
+     .cost = "a few queries of each obstacle and as many motions under contacts; bounds: kSweeps, kCuts",
+     .needs = [](const TickModel& model) { return model.hasProxyOf(model::ContactMethod::GodObject); },
+     .reason =
+         [](const TickModel& model) {
+             return model.contact.two_way
+                        ? "contact.method is god_object: the proxy follows the hand as far as all contacts within "
+                          "reach let it; contact.two_way: of the held part's points and of the obstacles' points"
+                        : "contact.method is god_object: the proxy follows the hand as far as all contacts within "
+                          "reach let it";
+         }}};
 
 }  // namespace passung::tick

@@ -13,14 +13,14 @@ constexpr double kLeastLever = 0.1;     // per ρ: contacts that a rotation hard
 constexpr double kLargestTurn = 0.035;  // [rad] of one correction
 
 /// Direction of the correction: translation along the penalty force, rotation about its torque, shared by λ.
-Motion correctionOf(const TickModel& model, const TickState& state, double depth) noexcept {
+Motion correctionOf(const TickModel& model, const Proxy& proxy, double depth) noexcept {
     const double rho = model.metric_radius;
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
-    for (const ContactPoint& c : state.manifold) {
+    for (const ContactPoint& c : proxy.manifold) {
         if (!isInside(c)) continue;
         const Vec3 f = -c.phi * c.gradient;
         force += f;
-        torque += (c.position - state.X_WG.p).cross(f);
+        torque += (c.position - proxy.X_WG.p).cross(f);
     }
     const double F = force.norm(), T = torque.norm() / rho;
     Motion u = Motion::Zero();
@@ -30,8 +30,8 @@ Motion correctionOf(const TickModel& model, const TickState& state, double depth
     if (!(T > 0.0)) return u;
     const Vec3 axis = torque.normalized();
     double ph = 0.0, hh = 0.0;
-    for (const ContactPoint& c : state.manifold) {
-        const double lever = c.gradient.dot(axis.cross(c.position - state.X_WG.p));
+    for (const ContactPoint& c : proxy.manifold) {
+        const double lever = c.gradient.dot(axis.cross(c.position - proxy.X_WG.p));
         if (!isInside(c) || !(lever > kLeastLever * rho)) continue;
         ph += -c.phi * lever;
         hh += lever * lever;
@@ -47,103 +47,106 @@ double leftOf(const TickModel& model, double overlap) noexcept {
 }
 
 /// What is around the proxy, with no more asked of what is deeper than `left`.
-Surroundings around(const TickModel& model, const TickState& state, double left) noexcept {
-    Surroundings result = surroundings(model, state);
+Surroundings around(const TickModel& model, const Proxy& proxy, double left) noexcept {
+    Surroundings result = surroundings(model, proxy);
     result.sunk_out = -left;
     return result;
 }
 
 /// Pushes the proxy out of the overlap that a step's linearisation missed, around a rim for instance: the least motion
 /// that obeys the contacts found there.
-void relieve(const TickModel& model, TickState& state, TickFrame& frame, double reach, double left) noexcept {
+void relieve(const ProxyView& view, double reach, double left) noexcept {
+    const auto& [model, proxy, memory, report] = view;
     const double s = model.finest_cell;
-    for (int i = 0; i < kReliefs && overlap(state) > std::max(model.margins.relieve, left); ++i) {
-        const ConstrainedMotion out = constrainMotion(Motion::Zero(), around(model, state, left));
+    for (int i = 0; i < kReliefs && overlap(proxy) > std::max(model.margins.relieve, left); ++i) {
+        const ConstrainedMotion out = constrainMotion(Motion::Zero(), around(model, proxy, left));
         if (longestPath(model, out.u) > kLongestStep * s) return;
-        look(model, state, frame, moved(model, state.X_WG, out.u), reach, reach);
+        look(view, moved(model, proxy.X_WG, out.u), reach, reach);
     }
 }
 
 }  // namespace
 
-void correctProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
-    startProxy(model, state, frame);
-    const double left = leftOf(model, overlap(state));
-    for (int i = 0; i < kCorrections && overlap(state) > std::max(model.margins.accept, left); ++i) {
-        const Pose X_before = state.X_WG;
-        const double depth = overlap(state);
-        Motion u = correctionOf(model, state, depth - left);
+void correctProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, ProxyMotion& motion,
+                  QueryMemory& memory, Pushes& pushes, Report& report) noexcept {
+    const MovingProxy moving{{model, proxy, memory, report}, hand, motion, pushes};
+    startProxy(moving);
+    const double left = leftOf(model, overlap(proxy));
+    for (int i = 0; i < kCorrections && overlap(proxy) > std::max(model.margins.accept, left); ++i) {
+        const Pose X_before = proxy.X_WG;
+        const double depth = overlap(proxy);
+        Motion u = correctionOf(model, proxy, depth - left);
         bool better = false;
         for (int half = 0; half <= kHalvings && !better; ++half, u *= 0.5) {
-            lookAround(model, state, frame, moved(model, X_before, u));
-            better = overlap(state) < depth;
+            lookAround(moving, moved(model, X_before, u));
+            better = overlap(proxy) < depth;
         }
         if (!better) {
-            frame.status |= kStepRejected;
-            lookAround(model, state, frame, X_before);
+            report.status |= kStepRejected;
+            lookAround(moving, X_before);
             return;
         }
     }
 }
 
-void moveProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
+void moveProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, ProxyMotion& motion, QueryMemory& memory,
+               Pushes& pushes, Report& report) noexcept {
+    const MovingProxy moving{{model, proxy, memory, report}, hand, motion, pushes};
     const double s = model.finest_cell;
-    const Pose X_before = state.X_WG;
-    const double left = leftOf(model, overlap(state));
-    double reach = nextReach(model, state);
+    const Pose X_before = proxy.X_WG;
+    const double left = leftOf(model, overlap(proxy));
+    double reach = nextReach(model, motion.last_motion);
     ProxyWay way(model);
-    const double between = std::max(model.margins.relieve, overlap(state));
+    const double between = std::max(model.margins.relieve, overlap(proxy));
     bool arrived = false;
     for (int sub_step = 0; sub_step < kSubSteps; ++sub_step) {
-        const Motion wanted = unconstrainedMotion(model, state.X_WG, frame.X_WH);
+        const Motion wanted = unconstrainedMotion(model, proxy.X_WG, hand.X_WH);
         const double path = longestPath(model, wanted);
         arrived = path < kStill;
         if (arrived) break;
-        frame.iterations = static_cast<std::uint32_t>(sub_step + 1);
-        const Pose X_here = state.X_WG;
-        const double accepted = std::max(model.margins.accept, overlap(state));
-        if (state.room > path) {
+        report.iterations = static_cast<std::uint32_t>(sub_step + 1);
+        const Pose X_here = proxy.X_WG;
+        const double accepted = std::max(model.margins.accept, overlap(proxy));
+        if (proxy.room > path) {
             if (!way.goesOn(model, wanted, path)) break;
-            if (way.bentBy(wanted) > model.margins.relieve &&
-                cutsCorner(model, state, frame, X_before, frame.X_WH, between))
-                break;
+            if (way.bentBy(wanted) > model.margins.relieve && cutsCorner(moving, X_before, hand.X_WH, between)) break;
         }
         // Nothing in the way: arrive.
-        arrived = state.room > path && arriveFreely(model, state, frame, path, reach, accepted);
+        arrived = proxy.room > path && arriveFreely(moving, path, reach, accepted);
         if (arrived) break;
         // Step as far as the contacts are known, farther only where there is proven room.
-        const double known = std::max(state.manifold_reach, state.room);
-        const AllowedMotion allowed = allowedMotion(model, state, frame, wanted, around(model, state, left));
+        const double known = std::max(proxy.manifold_reach, proxy.room);
+        const AllowedMotion allowed = allowedMotion(moving, wanted, around(model, proxy, left));
         Motion u = allowed.u;
         const double step_path = longestPath(model, u);
         arrived = step_path < kStill;
-        if (arrived) state.rubbing = allowed.rubbing;  // at rest
+        if (arrived) motion.rubbing = allowed.rubbing;  // at rest
         if (arrived) break;
         if (step_path > known) u *= known / step_path;
         if (!way.goesOn(model, u, step_path)) break;
         const double next_reach = std::clamp(kReachGrowth * std::min(step_path, path), reach, kLongestStep * s);
         bool good = false, whole = step_path <= known;
         for (int half = 0; half <= kHalvings; ++half, u *= 0.5) {
-            look(model, state, frame, moved(model, X_here, u), next_reach, std::max(next_reach, path));
-            relieve(model, state, frame, next_reach, left);
-            good = overlap(state) <= accepted;
-            if (good && half == 0) state.rubbing = allowed.rubbing;
+            look(moving, moved(model, X_here, u), next_reach, std::max(next_reach, path));
+            relieve(moving, next_reach, left);
+            good = overlap(proxy) <= accepted;
+            if (good && half == 0) motion.rubbing = allowed.rubbing;
             if (good) break;
-            frame.status |= kStepRejected;
+            report.status |= kStepRejected;
             whole = false;
         }
         if (good) {
-            way.add(unconstrainedMotion(model, X_here, state.X_WG));
+            way.add(unconstrainedMotion(model, X_here, proxy.X_WG));
             good = way.bentBy(Motion::Zero()) <= model.margins.relieve ||
-                   !cutsCorner(model, state, frame, X_before, state.X_WG, between);
+                   !cutsCorner(moving, X_before, proxy.X_WG, between);
         }
         arrived = good && whole;  // the whole constrained motion was made
-        if (!good) look(model, state, frame, X_here, next_reach, next_reach);
+        if (!good) look(moving, X_here, next_reach, next_reach);
         if (!good || whole) break;
         reach = next_reach;
     }
-    if (!arrived) frame.status |= kIterationLimit;
-    state.last_motion = unconstrainedMotion(model, X_before, state.X_WG).norm();
+    if (!arrived) report.status |= kIterationLimit;
+    motion.last_motion = unconstrainedMotion(model, X_before, proxy.X_WG).norm();
 }
 
 }  // namespace passung::tick

@@ -1,5 +1,8 @@
 #pragma once
 
+#include "core/tick/energy_account.h"
+#include "core/tick/proxy_state.h"
+#include "core/tick/tick_frame.h"
 #include "core/tick/tick_model.h"
 
 namespace passung::tick {
@@ -59,8 +62,35 @@ inline constexpr int kReliefs = 2;
 inline constexpr int kSubSteps = 12;
 inline constexpr int kCorrections = 3;
 
-/// Stages, in this order; those of proxy.h follow.
-void correctProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept;  // #1, #2
-void moveProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept;     // #3, #4
+/// Stages, in this order; those of proxy.h follow. First #1, #2.
+void correctProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, ProxyMotion& motion,
+                  QueryMemory& memory, Pushes& pushes, Report& report) noexcept;
+inline constexpr StageOf kProxyCorrection{
+    correctProxy,
+    {.name = "proxy correction",
+     .parameters = "contact.method, mode, budget_nodes, two_way",
+     .cost = "nothing, or a few queries of each obstacle; bound: kCorrections",
+     .needs = [](const TickModel& model) { return model.hasProxyOf(model::ContactMethod::GodObjectHeuristic); },
+     .reason =
+         [](const TickModel& model) {
+             return model.contact.two_way
+                        ? "contact.method is god_object_heuristic: steps #1 and #2, contacts at the last proxy "
+                          "and relief of its overlap; contact.two_way: here and below of the held part's "
+                          "points and of the obstacles' points"
+                        : "contact.method is god_object_heuristic: steps #1 and #2, contacts at "
+                          "the last proxy and relief of its overlap";
+         }}};
+
+/// #3, #4.
+void moveProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, ProxyMotion& motion, QueryMemory& memory,
+               Pushes& pushes, Report& report) noexcept;
+inline constexpr StageOf kProxyMotion{
+    moveProxy,
+    {.name = "proxy motion",
+     .parameters = "contact.stiffness_N_per_m, rotational_stiffness, mode, budget_nodes, two_way; friction",
+     .cost = "a few queries of each obstacle and as many motions under contacts; bound: kSubSteps",
+     .needs = [](const TickModel& model) { return model.hasProxyOf(model::ContactMethod::GodObjectHeuristic); },
+     .reason =
+         [](const TickModel&) { return "steps #3 and #4: the proxy follows the hand as far as the contacts let it"; }}};
 
 }  // namespace passung::tick

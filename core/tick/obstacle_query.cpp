@@ -56,7 +56,7 @@ QueryAnswer queryBack(const TickModel& model, const Obstacle& obstacle, const Po
 }  // namespace
 
 QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, QueryRequest request, QueryWorkspace& workspace,
-                           ContactManifold& manifold, std::span<PairAccount> pairs) noexcept {
+                           ContactManifold& manifold, std::span<Push> pushes) noexcept {
     request.mode = model.contact.mode;
     request.max_nodes = model.contact.budget_nodes;
     QueryAnswer all;
@@ -69,9 +69,9 @@ QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, QueryReques
     const auto take = [&](const QueryAnswer& answer) {
         merge(answer, all);
         narrow();
-        if (pairs.empty()) return;
-        pairs[place].push.force += answer.load.force;
-        pairs[place].push.torque += answer.load.torque;
+        if (pushes.empty()) return;
+        pushes[place].wrench.force += answer.load.force;
+        pushes[place].wrench.torque += answer.load.torque;
     };
     for (const Obstacle& obstacle : model.obstacles) {
         const std::size_t first = manifold.size();
@@ -82,11 +82,11 @@ QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, QueryReques
     return all;
 }
 
-void account(const QueryAnswer& answer, TickFrame& frame) noexcept {
-    frame.nodes_visited += static_cast<std::uint32_t>(answer.nodes_visited);
-    frame.quality = std::min(frame.quality, answer.quality);
-    if (answer.budget_reached) frame.status |= kBudgetReached;
-    if (answer.manifold_full) frame.status |= kContactCap;
+void account(const QueryAnswer& answer, Report& report) noexcept {
+    report.nodes_visited += static_cast<std::uint32_t>(answer.nodes_visited);
+    report.quality = std::min(report.quality, answer.quality);
+    if (answer.budget_reached) report.status |= kBudgetReached;
+    if (answer.manifold_full) report.status |= kContactCap;
 }
 
 }  // namespace passung::tick

@@ -2,6 +2,8 @@
 
 #include <span>
 
+#include "core/tick/energy_account.h"
+#include "core/tick/tick_frame.h"
 #include "core/tick/tick_model.h"
 
 namespace passung::tick {
@@ -10,12 +12,12 @@ namespace passung::tick {
 /// obstacles' points against the held part's field: what pokes between the held part's points is found by its own. All
 /// contacts are told as the held part's: gradients away from the obstacle, normals out of the held part. The model's
 /// mode and budget (per obstacle and way) replace those of `request`. Appends to `manifold`; returns the deepest or
-/// closest answer, with nodes added up and the least quality. Each obstacle's own load is added to its push in `pairs`,
-/// if these are given. rt-safe.
+/// closest answer, with nodes added up and the least quality. Each obstacle's own load is added to its push, if
+/// `pushes` are given. rt-safe.
 QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, QueryRequest request, QueryWorkspace& workspace,
-                           ContactManifold& manifold, std::span<PairAccount> pairs = {}) noexcept;
+                           ContactManifold& manifold, std::span<Push> pushes = {}) noexcept;
 
-/// Books a query's cost and completeness in the frame. rt-safe.
-void account(const QueryAnswer& answer, TickFrame& frame) noexcept;
+/// Books a query's cost and completeness. rt-safe.
+void account(const QueryAnswer& answer, Report& report) noexcept;
 
 }  // namespace passung::tick

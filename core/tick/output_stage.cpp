@@ -26,83 +26,91 @@ double factorRising(const Vec3& v, const Vec3& last, const Vec3& at_sample, doub
 }
 
 /// From the handle's origin to the held part's, world axes.
-Vec3 lever(const TickModel& model, const TickFrame& frame) noexcept {
-    return frame.X_WH.q * (model.registration.X_DH.q.conjugate() * model.registration.X_DH.p);
+Vec3 lever(const TickModel& model, const HandSample& hand) noexcept {
+    return hand.X_WH.q * (model.registration.X_DH.q.conjugate() * model.registration.X_DH.p);
 }
 
 /// From the held part's origin and world axes to the handle's origin and device base axes.
-Wrench wrenchOnDevice(const TickModel& model, const TickFrame& frame, const Wrench& F_H_W) noexcept {
+Wrench wrenchOnDevice(const TickModel& model, const HandSample& hand, const Wrench& F_H_W) noexcept {
     const Quat R_BW = model.registration.X_WB.q.conjugate();
-    const Vec3 p_DH_W = lever(model, frame);
+    const Vec3 p_DH_W = lever(model, hand);
     return {R_BW * F_H_W.force, R_BW * (F_H_W.torque + p_DH_W.cross(F_H_W.force))};
 }
 
 /// The pairs' shares of what was sent, of whose force and torque the limits left so much.
-void splitSent(const TickModel& model, TickState& state, const TickFrame& frame, double force_left,
-               double torque_left) noexcept {
-    Wrench rest = state.last_sent;
-    for (PairAccount& pair : state.pairs) {
-        const Wrench push = wrenchOnDevice(model, frame, pair.push);
-        pair.last_sent = {force_left * push.force, torque_left * push.torque};
-        rest.force -= pair.last_sent.force;
-        rest.torque -= pair.last_sent.torque;
+void splitSent(const TickModel& model, const HandSample& hand, const Pushes& pushes, SentWrench& sent,
+               double force_left, double torque_left) noexcept {
+    Wrench rest = sent.last_sent;
+    for (std::size_t i = 0; i < sent.last_shares.size(); ++i) {
+        const Wrench push = wrenchOnDevice(model, hand, pushes.pushes[i].wrench);
+        sent.last_shares[i] = {force_left * push.force, torque_left * push.torque};
+        rest.force -= sent.last_shares[i].force;
+        rest.torque -= sent.last_shares[i].torque;
     }
-    state.pairs.back().last_sent = rest;  // that has no push of its own
+    sent.last_shares.back() = rest;  // that has no push of its own
 }
 
 }  // namespace
 
-Wrench wrenchOnHeldPart(const TickModel& model, const TickFrame& frame, const Wrench& F_D_B) noexcept {
+Wrench wrenchOnHeldPart(const TickModel& model, const HandSample& hand, const Wrench& F_D_B) noexcept {
     const Quat& R_WB = model.registration.X_WB.q;
     const Vec3 force = R_WB * F_D_B.force;
-    return {force, R_WB * F_D_B.torque - lever(model, frame).cross(force)};
+    return {force, R_WB * F_D_B.torque - lever(model, hand).cross(force)};
 }
 
-void delayOutput(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
-    const auto length = static_cast<std::int64_t>(model.limits.delay_ticks) + 1;
-    state.delay_line[static_cast<std::size_t>(state.tick % length)] = frame.input_usable ? frame.F_H_W : Wrench{};
-    frame.F_H_W = state.delay_line[static_cast<std::size_t>((state.tick + 1) % length)];
-    delayPushes(model, state);
+void delayOutput(const TickModel& model, const HandSample& hand, DelayLine& line, Pushes& pushes,
+                 HandWrench& wrench) noexcept {
+    const auto length = static_cast<std::size_t>(model.limits.delay_ticks) + 1;
+    const std::size_t in = line.place, out = (line.place + 1) % length;
+    line.delay_line[in] = hand.input_usable ? wrench.F_H_W : Wrench{};
+    wrench.F_H_W = line.delay_line[out];
+    const std::size_t count = pushes.pushes.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        line.push_line[in * count + i] = pushes.pushes[i].wrench;
+        pushes.pushes[i].wrench = line.push_line[out * count + i];
+    }
+    line.place = out;
 }
 
-void withholdWrench(const TickModel&, TickState& state, TickFrame& frame) noexcept {
-    frame.status |= kWrenchWithheld;
-    clearPushes(state);
-    if (isFinite(frame.F_H_W)) frame.F_H_W = Wrench{};
+void withholdWrench(const TickModel&, Pushes& pushes, HandWrench& wrench, Report& report) noexcept {
+    report.status |= kWrenchWithheld;
+    clearPushes(pushes);
+    if (isFinite(wrench.F_H_W)) wrench.F_H_W = Wrench{};
 }
 
-void limitOutput(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
+void limitOutput(const TickModel& model, const HandSample& hand, const Pushes& pushes, SentWrench& sent,
+                 HandWrench& felt, Command& command, Report& report) noexcept {
     const model::OutputLimits& limits = model.limits;
-    Wrench wrench = wrenchOnDevice(model, frame, frame.F_H_W);
-    if (!isFinite(wrench)) state.latched = true;
-    if (state.latched) frame.status |= kNonFiniteLatched;
-    if (!frame.input_usable || state.latched) {
-        frame.F_D_B = Wrench{};
-        frame.F_H_W = Wrench{};
-        state.last_sent = state.sent_at_sample = Wrench{};
-        for (PairAccount& pair : state.pairs) pair.last_sent = Wrench{};
+    Wrench wrench = wrenchOnDevice(model, hand, felt.F_H_W);
+    if (!isFinite(wrench)) sent.latched = true;
+    if (sent.latched) report.status |= kNonFiniteLatched;
+    if (!hand.input_usable || sent.latched) {
+        command.F_D_B = Wrench{};
+        felt.F_H_W = Wrench{};
+        sent.last_sent = sent.sent_at_sample = Wrench{};
+        for (Wrench& share : sent.last_shares) share = Wrench{};
         return;
     }
     const bool turns = limits.actuates_torque && limits.max_torque != 0.0;
     if (!turns) wrench.torque.setZero();
     const double within =
         std::min(factorWithin(wrench.force, limits.max_force), factorWithin(wrench.torque, limits.max_torque));
-    if (within < 1.0) frame.status |= kForceLimited;
+    if (within < 1.0) report.status |= kForceLimited;
     wrench = {within * wrench.force, within * wrench.torque};
 
     const double rise = limits.max_force_rate * kTickSeconds;
     const double torque_rise = rise * limits.max_torque / limits.max_force;
-    const Wrench &last = state.last_sent, &at_sample = state.sent_at_sample;
+    const Wrench &last = sent.last_sent, &at_sample = sent.sent_at_sample;
     const double force_rising = factorRising(wrench.force, last.force, at_sample.force, rise);
     const double torque_rising = factorRising(wrench.torque, last.torque, at_sample.torque, torque_rise);
-    if (force_rising < 1.0 || torque_rising < 1.0) frame.status |= kRateLimited;
+    if (force_rising < 1.0 || torque_rising < 1.0) report.status |= kRateLimited;
     wrench = {force_rising * wrench.force, torque_rising * wrench.torque};
 
-    frame.F_D_B = wrench;
-    frame.F_H_W = wrenchOnHeldPart(model, frame, wrench);
-    state.last_sent = wrench;
-    if (frame.sample_periods > 0) state.sent_at_sample = wrench;
-    splitSent(model, state, frame, within * force_rising, turns ? within * torque_rising : 0.0);
+    command.F_D_B = wrench;
+    felt.F_H_W = wrenchOnHeldPart(model, hand, wrench);
+    sent.last_sent = wrench;
+    if (hand.sample_periods > 0) sent.sent_at_sample = wrench;
+    splitSent(model, hand, pushes, sent, within * force_rising, turns ? within * torque_rising : 0.0);
 }
 
 }  // namespace passung::tick

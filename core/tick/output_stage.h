@@ -1,23 +1,60 @@
 #pragma once
 
+#include <array>
+#include <vector>
+
+#include "core/tick/energy_account.h"
+#include "core/tick/tick_frame.h"
 #include "core/tick/tick_model.h"
 
 namespace passung::tick {
 
+/// Owner: output delay.
+struct DelayLine {
+    std::size_t place = 0;  // of this tick; the next one is the oldest
+    std::array<Wrench, model::kMaxDelayTicks + 1> delay_line{};
+    std::vector<Wrench> push_line;  // the same of the obstacles' pushes, tick by tick
+};
+
+/// Owner: output limits. Read by the energy account.
+struct SentWrench {
+    Wrench last_sent;                                          // F_D_B of the previous tick
+    Wrench sent_at_sample;                                     // F_D_B of the last tick with a new sample
+    bool latched = false;                                      // a computed wrench was not finite
+    std::vector<Wrench> last_shares = std::vector<Wrench>(1);  // each pair's share of last_sent
+};
+
 /// What a wrench about the handle's origin in the device's base axes is on the held part: about its origin, world axes.
-/// Reads X_WH. rt-safe.
-Wrench wrenchOnHeldPart(const TickModel& model, const TickFrame& frame, const Wrench& F_D_B) noexcept;
+/// rt-safe.
+Wrench wrenchOnHeldPart(const TickModel& model, const HandSample& hand, const Wrench& F_D_B) noexcept;
 
 /// Stage, only if the scene names a delay: the wrench takes effect `delay_ticks` later. What was computed without
 /// usable input takes effect as zero.
-void delayOutput(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+void delayOutput(const TickModel& model, const HandSample& hand, DelayLine& line, Pushes& pushes,
+                 HandWrench& wrench) noexcept;
+inline constexpr StageOf kOutputDelay{delayOutput,
+                                      {.name = "output delay",
+                                       .parameters = "device.delay_ticks",
+                                       .cost = "constant, and a little for each obstacle",
+                                       .before_start = true,
+                                       .needs = [](const TickModel& model) { return model.limits.delay_ticks > 0; },
+                                       .reason = [](const TickModel&) { return "device.delay_ticks is set"; }}};
 
 /// Stage, only if the scene displays no wrench: what was computed goes nowhere; one that is not finite is left for
 /// limitOutput to tell.
-void withholdWrench(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+void withholdWrench(const TickModel& model, Pushes& pushes, HandWrench& wrench, Report& report) noexcept;
+inline constexpr StageOf kNoWrench{
+    withholdWrench,
+    {.name = "no wrench",
+     .parameters = "feedback.kinesthetic",
+     .cost = "constant, and a little for each obstacle",
+     .before_start = true,
+     .needs = [](const TickModel& model) { return !model.display_wrench; },
+     .reason =
+         [](const TickModel&) { return "feedback.kinesthetic is false: contact is computed, nothing is displayed"; }}};
 
 /// Stage, the last of every scene: the one place that a wrench leaves through.
-///   Reads F_H_W (about the held part's origin), writes F_D_B (what is sent) and F_H_W (what the hand then feels).
+///   Leaves F_D_B (what is sent) and F_H_W (what the hand then feels).
 ///   In this order:
 ///   1. input not usable → zero;
 ///   2. not finite → zero, latched until the state is made anew;
@@ -31,6 +68,16 @@ void withholdWrench(const TickModel& model, TickState& state, TickFrame& frame) 
 ///   Invariants: finite; |force| ≤ max_force; |torque| ≤ max_torque. kForceLimited and kRateLimited are set if and only
 ///   if step 3's factor or one of step 4's changed the wrench; steps 1 and 2 are told by kInputRejected and
 ///   kNonFiniteLatched. That a device has no torque is a property of the device, not an event.
-void limitOutput(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+void limitOutput(const TickModel& model, const HandSample& hand, const Pushes& pushes, SentWrench& sent,
+                 HandWrench& felt, Command& command, Report& report) noexcept;
+inline constexpr StageOf kOutputLimits{
+    limitOutput,
+    {.name = "output limits",
+     .parameters = "device.max_force_N, max_torque_Nm, max_force_rate_N_per_s, device.registration",
+     .cost = "constant, and a little for each obstacle",
+     .before_start = true,
+     .needs = [](const TickModel&) { return true; },
+     .reason =
+         [](const TickModel&) { return "always, last: finite, within the device's limits, rising slowly enough"; }}};
 
 }  // namespace passung::tick

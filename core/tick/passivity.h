@@ -1,5 +1,9 @@
 #pragma once
 
+#include "core/tick/energy_account.h"
+#include "core/tick/input_guard.h"
+#include "core/tick/output_stage.h"
+#include "core/tick/tick_frame.h"
 #include "core/tick/tick_model.h"
 
 namespace passung::tick {
@@ -24,13 +28,36 @@ namespace passung::tick {
 /// stays. A held sample books nothing until the next new one comes. After rejected samples the way between is not known
 /// and nothing is booked for it.
 ///
-/// Stage, of every scene: reads the sample, writes E and the handle's velocity.
-void observeEnergy(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+/// Stage, of every scene: E and the handle's velocity, from the sample and what was sent.
+void observeEnergy(const TickModel& model, const InputGuard& guard, const HandSample& hand, const SentWrench& sent,
+                   EnergyAccounts& accounts, EnergyRecord& record) noexcept;
+inline constexpr StageOf kEnergyAccount{
+    observeEnergy,
+    {.name = "energy account",
+     .parameters = "",
+     .cost = "constant, and a little for each obstacle",
+     .before_start = true,
+     .needs = [](const TickModel&) { return true; },
+     .reason =
+         [](const TickModel&) {
+             return "always: what the controller takes in and gives out at the handle is recorded";
+         }}};
 
 /// Stage, only if the scene names the effect: while E < 0, for one tick,
 ///   F += -α v,  T += -α ρ² ω,   α = min(-E / (τ (|v|² + ρ² |ω|²)), α_max)
 /// which takes -E back if the handle goes on as it moves; v, ω from sample to sample, τ the tick, ρ = metric_radius,
 /// α_max the scene's. Nothing at rest. After the wrench and its delay, before the output's limits, which may cut it.
-void dampActivity(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+void dampActivity(const TickModel& model, const HandSample& hand, const EnergyAccounts& accounts, HandWrench& wrench,
+                  Report& report) noexcept;
+inline constexpr StageOf kPassivityController{
+    dampActivity,
+    {.name = "passivity controller",
+     .parameters = "effects.passivity_controller",
+     .cost = "constant",
+     .needs = [](const TickModel& model) { return model.effects.passivity_damping > 0.0; },
+     .reason =
+         [](const TickModel&) {
+             return "effects.passivity_controller is set: a damper takes back energy that was given out";
+         }}};
 
 }  // namespace passung::tick

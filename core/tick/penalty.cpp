@@ -22,25 +22,25 @@ Vec3 dampingAlong(const Vec3& load, const Vec3& velocity, double damping) noexce
     return std::max(along, -size) * direction;
 }
 
-/// `pairs`, so far with sums over their contacts.
-void scalePushes(std::span<PairAccount> pairs, double scale) noexcept {
-    for (PairAccount& pair : pairs) {
-        pair.push = {scale * pair.push.force, scale * pair.push.torque};
-        pair.pressure = pair.push.force.norm();
+/// `pushes`, so far sums over their contacts.
+void scalePushes(std::span<Push> pushes, double scale) noexcept {
+    for (Push& push : pushes) {
+        push.wrench = {scale * push.wrench.force, scale * push.wrench.torque};
+        push.pressure = push.wrench.force.norm();
     }
 }
 
 /// From sample to sample: see renderPenalty.
-void measureHandVelocity(TickState& state, const TickFrame& frame) noexcept {
-    if (!frame.input_usable) {
-        state.has_last_hand = false;
-        state.V_H_last = Twist{};
+void measureHandVelocity(HandVelocity& velocity, const HandSample& hand) noexcept {
+    if (!hand.input_usable) {
+        velocity.has_last_hand = false;
+        velocity.V_H_last = Twist{};
         return;
     }
-    if (frame.sample_periods == 0) return;
-    if (state.has_last_hand) state.V_H_last = twistBetween(state.X_WH_last, frame.X_WH, frame.sample_periods);
-    state.X_WH_last = frame.X_WH;
-    state.has_last_hand = true;
+    if (hand.sample_periods == 0) return;
+    if (velocity.has_last_hand) velocity.V_H_last = twistBetween(velocity.X_WH_last, hand.X_WH, hand.sample_periods);
+    velocity.X_WH_last = hand.X_WH;
+    velocity.has_last_hand = true;
 }
 
 }  // namespace
@@ -49,57 +49,60 @@ QueryRequest penaltyRequest(model::PenaltyVariant variant) noexcept {
     return {.gradients = false, .load = isWeighted(variant), .refine = true};
 }
 
-void findContactsAtHand(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
-    state.X_WG = frame.X_WH;
-    state.manifold.clear();
-    clearPushes(state);
-    const QueryAnswer answer = queryObstacles(model, frame.X_WH, penaltyRequest(model.contact.variant), state.workspace,
-                                              state.manifold, state.pairs);
-    account(answer, frame);
-    frame.load = answer.load;
-    frame.contacts = static_cast<std::uint32_t>(answer.contacts);
-    frame.hand_depth = frame.proxy_depth = std::max(0.0, -answer.phi);
+void findContactsAtHand(const TickModel& model, const HandSample& hand, Proxy& proxy, QueryMemory& memory,
+                        Pushes& pushes, AreaLoad& load, ContactRecord& record, HandDepth& depth,
+                        Report& report) noexcept {
+    proxy.X_WG = hand.X_WH;
+    proxy.manifold.clear();
+    clearPushes(pushes);
+    const QueryAnswer answer = queryObstacles(model, hand.X_WH, penaltyRequest(model.contact.variant), memory.workspace,
+                                              proxy.manifold, pushes.pushes);
+    account(answer, report);
+    load.load = answer.load;
+    record.contacts = static_cast<std::uint32_t>(answer.contacts);
+    depth.hand_depth = record.proxy_depth = std::max(0.0, -answer.phi);
 }
 
-Wrench weightedWrench(const model::ContactSpec& contact, const Wrench& load, std::span<PairAccount> pairs) noexcept {
+Wrench weightedWrench(const model::ContactSpec& contact, const Wrench& load, std::span<Push> pushes) noexcept {
     const double scale = (contact.two_way ? 0.5 : 1.0) * contact.area_stiffness;
-    scalePushes(pairs, scale);
+    scalePushes(pushes, scale);
     return {scale * load.force, scale * load.torque};
 }
 
 Wrench penaltyWrench(const model::ContactSpec& contact, const ContactManifold& manifold, const Vec3& p_WO,
-                     std::span<PairAccount> pairs) noexcept {
-    return penaltyLoad(contact, manifold, p_WO, pairs).wrench;
+                     std::span<Push> pushes) noexcept {
+    return penaltyLoad(contact, manifold, p_WO, pushes).wrench;
 }
 
 PenaltyLoad penaltyLoad(const model::ContactSpec& contact, const ContactManifold& manifold, const Vec3& p_WO,
-                        std::span<PairAccount> pairs) noexcept {
+                        std::span<Push> pushes) noexcept {
     const bool weighted = isWeighted(contact.variant);
     const DepthSum all =
         sumDepths(manifold, weighted, p_WO, [&](const ContactPoint& c, const Vec3& f, const Vec3& moment) {
-            if (pairs.empty()) return;
-            pairs[c.obstacle].push.force += f;
-            pairs[c.obstacle].push.torque += moment;
+            if (pushes.empty()) return;
+            pushes[c.obstacle].wrench.force += f;
+            pushes[c.obstacle].wrench.torque += moment;
         });
     double scale = (contact.two_way ? 0.5 : 1.0) * (weighted ? contact.area_stiffness : contact.stiffness);
     if (contact.variant == model::PenaltyVariant::MaxNormalised) {
         const double coherent = std::max(all.sum.force.norm(), kLeastCoherence * all.depths);
         if (coherent > 0.0) scale = contact.stiffness * all.deepest / coherent;
     }
-    scalePushes(pairs, scale);
+    scalePushes(pushes, scale);
     return {{scale * all.sum.force, scale * all.sum.torque}, scale};
 }
 
-void renderPenalty(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
-    measureHandVelocity(state, frame);
-    Wrench wrench = isWeighted(model.contact.variant)
-                        ? weightedWrench(model.contact, frame.load, state.pairs)
-                        : penaltyWrench(model.contact, state.manifold, frame.X_WH.p, state.pairs);
-    const Vec3 force_damping = dampingAlong(wrench.force, state.V_H_last.v, model.contact.damping);
-    const Vec3 torque_damping = dampingAlong(wrench.torque, state.V_H_last.w, model.contact.rotational_damping);
-    wrench.force += force_damping;
-    wrench.torque += torque_damping;
-    frame.F_H_W = wrench;
+void renderPenalty(const TickModel& model, const HandSample& hand, const Proxy& proxy, const AreaLoad& load,
+                   HandVelocity& velocity, Pushes& pushes, HandWrench& wrench) noexcept {
+    measureHandVelocity(velocity, hand);
+    Wrench F = isWeighted(model.contact.variant)
+                   ? weightedWrench(model.contact, load.load, pushes.pushes)
+                   : penaltyWrench(model.contact, proxy.manifold, hand.X_WH.p, pushes.pushes);
+    const Vec3 force_damping = dampingAlong(F.force, velocity.V_H_last.v, model.contact.damping);
+    const Vec3 torque_damping = dampingAlong(F.torque, velocity.V_H_last.w, model.contact.rotational_damping);
+    F.force += force_damping;
+    F.torque += torque_damping;
+    wrench.F_H_W = F;
 }
 
 }  // namespace passung::tick

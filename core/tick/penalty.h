@@ -2,18 +2,43 @@
 
 #include <span>
 
+#include "core/contact/contact_query.h"
+#include "core/tick/energy_account.h"
+#include "core/tick/proxy_state.h"
+#include "core/tick/tick_frame.h"
 #include "core/tick/tick_model.h"
 
 namespace passung::tick {
+
+/// How the hand moves, from sample to sample. Owner: penalty wrench.
+struct HandVelocity {
+    Pose X_WH_last;  // at the last new sample
+    Twist V_H_last;  // measured there
+    bool has_last_hand = false;
+};
 
 /// What is asked at the device's pose: the deepest point, on the surface between the samples too, and all points inside
 /// obstacles, or where only their area-weighted sum matters that (QueryRequest::load). rt-safe.
 QueryRequest penaltyRequest(model::PenaltyVariant variant) noexcept;
 
-/// Stage: contact at the device's pose.
-///   Reads X_WH; fills the manifold, or the frame's load, by penaltyRequest; writes depth, contacts (points), quality.
-///   The proxy follows the device: X_WG = X_WH.
-void findContactsAtHand(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+/// Stage: contact at the device's pose. Fills the manifold, or the load, by penaltyRequest. The proxy follows the
+/// device: X_WG = X_WH.
+void findContactsAtHand(const TickModel& model, const HandSample& hand, Proxy& proxy, QueryMemory& memory,
+                        Pushes& pushes, AreaLoad& load, ContactRecord& record, HandDepth& depth,
+                        Report& report) noexcept;
+inline constexpr StageOf kContactsAtHand{
+    findContactsAtHand,
+    {.name = "contacts at the hand",
+     .parameters = "contact.method, variant, mode, budget_nodes, two_way",
+     .cost = "a query of each obstacle, with two_way two",
+     .needs = [](const TickModel& model) { return model.rendersAtHand(); },
+     .reason =
+         [](const TickModel& model) {
+             return model.contact.two_way
+                        ? "contact.method is penalty: forces come from the overlap at the device's own pose; "
+                          "contact.two_way: of the held part's points and of the obstacles' points"
+                        : "contact.method is penalty: forces come from the overlap at the device's own pose";
+         }}};
 
 /// Penalty wrench of a manifold on the held part about `p_WO`, world axes (Sagardia 2019, 3.3; McNeely 1999). rt-safe.
 ///   p_i = max(0, -φ_i) depth, n_i the shell's inward normal, a_i area, r_i = P_i - O.
@@ -28,19 +53,18 @@ void findContactsAtHand(const TickModel& model, TickState& state, TickFrame& fra
 /// Limit cases: no depth → zero wrench. Opposite contacts (a peg squeezed in a bore): Σ p_i n_i → 0 while p_max stays,
 /// and the scale of max_normalised would grow without bound; it is therefore held at Σ p_i n_i ≥ kLeastCoherence · Σ
 /// p_i (our addition), which lets the force fade to zero there.
-/// `pairs`, if given, without pushes so far, get each obstacle's part of it.
+/// `pushes`, if given, cleared, get each obstacle's part of it.
 Wrench penaltyWrench(const model::ContactSpec& contact, const ContactManifold& manifold, const Vec3& p_WO,
-                     std::span<PairAccount> pairs = {}) noexcept;
+                     std::span<Push> pushes = {}) noexcept;
 /// The same, and what each point has of it per depth, area-weighted per depth and area [N/m], [N/m³].
 struct PenaltyLoad {
     Wrench wrench;
     double scale = 0.0;
 };
 PenaltyLoad penaltyLoad(const model::ContactSpec& contact, const ContactManifold& manifold, const Vec3& p_WO,
-                        std::span<PairAccount> pairs = {}) noexcept;
-/// The same for area_weighted, of QueryAnswer::load; `pairs`: each obstacle's load so far. rt-safe.
-Wrench weightedWrench(const model::ContactSpec& contact, const Wrench& load,
-                      std::span<PairAccount> pairs = {}) noexcept;
+                        std::span<Push> pushes = {}) noexcept;
+/// The same for area_weighted, of QueryAnswer::load; `pushes`: each obstacle's load so far. rt-safe.
+Wrench weightedWrench(const model::ContactSpec& contact, const Wrench& load, std::span<Push> pushes = {}) noexcept;
 inline constexpr double kLeastCoherence = 0.2;
 
 /// Stage: the wrench of the manifold on the hand, with viscous damping along the force while in contact:
@@ -49,6 +73,14 @@ inline constexpr double kLeastCoherence = 0.2;
 /// v is the change from sample to sample over the time between them, so that a held tick, on which the hand only seems
 /// to stand, keeps the last v and the next sample is not taken for twice as fast. After rejected ticks v starts from
 /// zero: what lies between is no motion.
-void renderPenalty(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+void renderPenalty(const TickModel& model, const HandSample& hand, const Proxy& proxy, const AreaLoad& load,
+                   HandVelocity& velocity, Pushes& pushes, HandWrench& wrench) noexcept;
+inline constexpr StageOf kPenaltyWrench{
+    renderPenalty,
+    {.name = "penalty wrench",
+     .parameters = "contact.variant, stiffness_N_per_m, area_stiffness, damping, rotational_damping, two_way",
+     .cost = "a little for each contact",
+     .needs = [](const TickModel& model) { return model.rendersAtHand(); },
+     .reason = [](const TickModel&) { return "turns the overlap into force and torque by contact.variant"; }}};
 
 }  // namespace passung::tick

@@ -41,8 +41,8 @@ Motion solved(Matrix6 A, Motion b) noexcept {
 /// The equation of one tick: penalty_tool.h.
 class Balance {
 public:
-    Balance(const TickModel& model, const TickState& state, const TickFrame& frame) noexcept
-        : model_(model), X_WH_(frame.X_WH), X_before_(state.X_WG), law_(model.contact) {
+    Balance(const TickModel& model, const HandSample& hand, const Proxy& proxy, const ToolMotion& tool) noexcept
+        : model_(model), X_WH_(hand.X_WH), X_before_(proxy.X_WG), law_(model.contact) {
         const model::ContactSpec& c = model.contact;
         law_.stiffness = c.penalty_stiffness;
         if (c.coupling != model::PenaltyCoupling::Virtual) return;
@@ -50,24 +50,24 @@ public:
         damper_ = split(c.damping / K, c.rotational_damping / turn) / kTickSeconds;
         inertia_ = split(c.tool_mass / K, c.tool_inertia / turn) / (kTickSeconds * kTickSeconds);
         stiff_ += damper_ + inertia_;
-        last_ = state.tool_motion;
-        if (state.has_last_hand) hand_ = unconstrainedMotion(model, state.X_WH_last, frame.X_WH);
+        last_ = tool.last;
+        if (tool.has_last_hand) hand_ = unconstrainedMotion(model, tool.X_WH_last, hand.X_WH);
     }
 
     /// Takes up what is known around the tool.
-    void update(const TickState& state) noexcept {
-        const PenaltyLoad load = penaltyLoad(law_, state.manifold, state.X_WG.p);
+    void update(const Proxy& proxy) noexcept {
+        const PenaltyLoad load = penaltyLoad(law_, proxy.manifold, proxy.X_WG.p);
         scale_ = load.scale / model_.contact.stiffness;
         Motion push;
         push << load.wrench.force, load.wrench.torque / model_.metric_radius;
-        stretch = unconstrainedMotion(model_, state.X_WG, X_WH_);
-        const Motion U = way(state);
+        stretch = unconstrainedMotion(model_, proxy.X_WG, X_WH_);
+        const Motion U = way(proxy);
         open = stretch + push / model_.contact.stiffness + damper_.cwiseProduct(hand_ - U) +
                inertia_.cwiseProduct(last_ - U);
     }
 
     /// The tool's motion in this tick so far.
-    Motion way(const TickState& state) const noexcept { return unconstrainedMotion(model_, X_before_, state.X_WG); }
+    Motion way(const Proxy& proxy) const noexcept { return unconstrainedMotion(model_, X_before_, proxy.X_WG); }
     const model::ContactSpec& law() const noexcept { return law_; }
     double size() const noexcept { return open.cwiseQuotient(stiff_).norm(); }
     /// How far the tool may end from the hand where contacts push it away.
@@ -124,26 +124,27 @@ private:
 };
 
 /// Puts the tool at `X_WG` and looks around: points nearer than `reach`, and up to `search` how far the nearest is.
-void lookAt(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_WG, double reach,
-            double search) noexcept {
-    state.manifold.clear();
+void lookAt(const ProxyView& view, const Pose& X_WG, double reach, double search) noexcept {
+    const auto& [model, proxy, memory, report] = view;
+    proxy.manifold.clear();
     const QueryRequest request{.collect_below = reach, .search_below = std::max(reach, search), .refine = true};
-    const QueryAnswer answer = queryObstacles(model, X_WG, request, state.workspace, state.manifold);
-    account(answer, frame);
-    state.X_WG = X_WG;
-    state.manifold_reach = reach;
-    state.clearance = answer.phi;
+    const QueryAnswer answer = queryObstacles(model, X_WG, request, memory.workspace, proxy.manifold);
+    account(answer, report);
+    proxy.X_WG = X_WG;
+    proxy.manifold_reach = reach;
+    proxy.clearance = answer.phi;
 }
 
-void startTool(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
-    if (frame.relocated) {
-        state.X_WG = frame.X_WH;
-        state.manifold_reach = -1.0;
-        state.has_last_stretch = state.has_last_hand = false;
-        state.tool_motion = Motion::Zero();
+void startTool(const ProxyView& view, const HandSample& hand, ToolMotion& tool) noexcept {
+    Proxy& proxy = view.proxy;
+    if (hand.relocated) {
+        proxy.X_WG = hand.X_WH;
+        proxy.manifold_reach = -1.0;
+        tool.has_last_hand = false;
+        tool.last = Motion::Zero();
     }
-    const double reach = kLongestStep * model.finest_cell;
-    if (state.manifold_reach < 0.0) lookAt(model, state, frame, state.X_WG, reach, reach);
+    const double reach = kLongestStep * view.model.finest_cell;
+    if (proxy.manifold_reach < 0.0) lookAt(view, proxy.X_WG, reach, reach);
 }
 
 /// The share of `u` after which the stretch, now w, is no longer than `longest`.
@@ -155,50 +156,52 @@ double shareWithin(double longest, const Motion& w, const Motion& u) noexcept {
 }
 
 /// Moves by `u`, or as much of it as makes the balance's rest smaller; false, and the tool stays, if none does.
-bool makeStep(const TickModel& model, TickState& state, TickFrame& frame, Balance& balance, const Motion& u,
-              double reach, double search) noexcept {
-    const Pose X_here = state.X_WG;
+bool makeStep(const ProxyView& view, Balance& balance, const Motion& u, double reach, double search) noexcept {
+    const auto& [model, proxy, memory, report] = view;
+    const Pose X_here = proxy.X_WG;
     const double before = balance.size();
     double share = 1.0;
     for (int half = 0; half <= kHalvings; ++half, share *= 0.5) {
-        lookAt(model, state, frame, moved(model, X_here, share * u), reach, search);
-        balance.update(state);
+        lookAt(view, moved(model, X_here, share * u), reach, search);
+        balance.update(proxy);
         if (balance.size() < before) return true;
-        frame.status |= kStepRejected;
+        report.status |= kStepRejected;
     }
-    lookAt(model, state, frame, X_here, reach, reach);
-    balance.update(state);
+    lookAt(view, X_here, reach, reach);
+    balance.update(proxy);
     return false;
 }
 
 }  // namespace
 
-void settleTool(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
-    startTool(model, state, frame);
-    Balance balance(model, state, frame);
-    balance.update(state);
+void settleTool(const TickModel& model, const HandSample& hand, Proxy& proxy, ToolMotion& tool, QueryMemory& memory,
+                Pushes& pushes, Report& report) noexcept {
+    const ProxyView view{model, proxy, memory, report};
+    startTool(view, hand, tool);
+    Balance balance(model, hand, proxy, tool);
+    balance.update(proxy);
     const double longest = balance.longestStretch(), half_cell = kLongestStep * model.finest_cell;
-    const double reach = nextReach(model, state);
+    const double reach = nextReach(model, tool.last_way);
     bool settled = false, held_back = false;
     for (int i = 0; i < kToolSteps; ++i) {
         settled = balance.size() < kSettled;
         if (settled) break;
-        Motion u = balance.step(state.manifold, state.X_WG.p);
-        const double path = longestPath(model, u), farthest = std::max(0.0, state.clearance) + half_cell;
+        Motion u = balance.step(proxy.manifold, proxy.X_WG.p);
+        const double path = longestPath(model, u), farthest = std::max(0.0, proxy.clearance) + half_cell;
         if (path > farthest) u *= farthest / path;
         const double share = shareWithin(longest, balance.stretch, u);
         held_back = share < 1.0;
-        frame.iterations = static_cast<std::uint32_t>(i + 1);
-        if (!makeStep(model, state, frame, balance, share * u, reach, path)) break;
+        report.iterations = static_cast<std::uint32_t>(i + 1);
+        if (!makeStep(view, balance, share * u, reach, path)) break;
     }
-    if (!settled && !(balance.size() < kSettled)) frame.status |= kIterationLimit;
-    const Motion way = balance.way(state);
-    state.last_motion = way.norm();
-    state.tool_motion = held_back ? Motion::Zero() : way;
-    state.X_WH_last = frame.X_WH;
-    state.has_last_hand = true;
-    clearPushes(state);
-    penaltyWrench(balance.law(), state.manifold, state.X_WG.p, state.pairs);
+    if (!settled && !(balance.size() < kSettled)) report.status |= kIterationLimit;
+    const Motion way = balance.way(proxy);
+    tool.last_way = way.norm();
+    tool.last = held_back ? Motion::Zero() : way;
+    tool.X_WH_last = hand.X_WH;
+    tool.has_last_hand = true;
+    clearPushes(pushes);
+    penaltyWrench(balance.law(), proxy.manifold, proxy.X_WG.p, pushes.pushes);
 }
 
 }  // namespace passung::tick

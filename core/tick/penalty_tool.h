@@ -1,8 +1,19 @@
 #pragma once
 
+#include "core/tick/energy_account.h"
+#include "core/tick/proxy_state.h"
+#include "core/tick/tick_frame.h"
 #include "core/tick/tick_model.h"
 
 namespace passung::tick {
+
+/// Owner: penalty tool. Where the tool is, is the proxy.
+struct ToolMotion {
+    Motion last = Motion::Zero();  // U⁻ below; zero where contacts held the tool back [m]
+    double last_way = 0.0;         // |U⁻|, however it ended [m]
+    Pose X_WH_last;                // at the last tick
+    bool has_last_hand = false;
+};
 
 /// The penalty through a coupling: forces come from the overlap of a tool, which a spring holds to the hand. What the
 /// hand feels is that spring (virtual_coupling.h), so that nothing stiffer than it is ever displayed, whatever the
@@ -41,6 +52,22 @@ inline constexpr int kToolSteps = 8;
 inline constexpr double kSettled = 1e-8;  // [m], of q/D
 
 /// Stage. proxy.h's record and virtual_coupling.h follow. rt-safe.
-void settleTool(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+void settleTool(const TickModel& model, const HandSample& hand, Proxy& proxy, ToolMotion& tool, QueryMemory& memory,
+                Pushes& pushes, Report& report) noexcept;
+inline constexpr StageOf kPenaltyTool{
+    settleTool,
+    {.name = "penalty tool",
+     .parameters = "contact.coupling, variant, penalty_stiffness_N_per_m, tool_mass_kg, tool_inertia_kg_m2, stiffness, "
+                   "damping, mode, budget_nodes, two_way",
+     .cost = "a few queries of each obstacle; bound: kToolSteps",
+     .needs = [](const TickModel& model) { return model.hasProxyOf(model::ContactMethod::Penalty); },
+     .reason =
+         [](const TickModel& model) {
+             return model.contact.coupling == model::PenaltyCoupling::Virtual
+                        ? "contact.coupling is virtual: a tool with mass between the hand's spring and the "
+                          "contacts' penalty"
+                        : "contact.coupling is quasi_static: a tool where the hand's spring and the contacts' "
+                          "penalty balance";
+         }}};
 
 }  // namespace passung::tick

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/tick/contact_energy.h"
 #include "core/tick/obstacle_query.h"
@@ -14,19 +15,21 @@ namespace {
 constexpr double kSamePoint = 1e-6;  // [m]: points of one part are farther apart
 
 /// The contacts of now that held the last motion.
-std::span<const std::uint32_t> likelyContacts(const TickModel& model, const TickState& state,
+std::span<const std::uint32_t> likelyContacts(const MovingProxy& moving,
                                               std::array<std::uint32_t, 6>& places) noexcept {
+    const Proxy& proxy = moving.proxy;
+    const HeldPoints& last = moving.motion.held;
     std::size_t found = 0;
     std::array<Vec3, 12> held;
-    const auto count = static_cast<std::size_t>(2 * state.held.count);
+    const auto count = static_cast<std::size_t>(2 * last.count);
     for (std::size_t i = 0; 2 * i < count; ++i) {
-        held[2 * i] = state.X_WG * state.held.point[i].p_G;
-        held[2 * i + 1] = state.held.point[i].p_W;
+        held[2 * i] = proxy.X_WG * last.point[i].p_G;
+        held[2 * i + 1] = last.point[i].p_W;
     }
     if (count == 0) return {};
-    for (std::size_t k = 0; k < state.manifold.size() && found < places.size(); ++k) {
-        const ContactPoint& contact = state.manifold[k];
-        if (contact.phi > model.margins.relieve) continue;  // a contact that held is hardly farther away
+    for (std::size_t k = 0; k < proxy.manifold.size() && found < places.size(); ++k) {
+        const ContactPoint& contact = proxy.manifold[k];
+        if (contact.phi > moving.model.margins.relieve) continue;  // a contact that held is hardly farther away
         for (std::size_t i = 0; i < count; ++i) {
             if (std::abs(contact.position.x() - held[i].x()) > kSamePoint ||
                 (contact.position - held[i]).squaredNorm() > kSamePoint * kSamePoint)
@@ -38,13 +41,13 @@ std::span<const std::uint32_t> likelyContacts(const TickModel& model, const Tick
     return {places.data(), found};
 }
 
-void noteHeld(const ConstrainedMotion& motion, TickState& state) noexcept {
-    state.held.count = motion.active;
-    const Pose X_GW = state.X_WG.inverse();
+void noteHeld(const ConstrainedMotion& motion, const Proxy& proxy, HeldPoints& held) noexcept {
+    held.count = motion.active;
+    const Pose X_GW = proxy.X_WG.inverse();
     for (int i = 0; i < motion.active; ++i) {
         const auto at = static_cast<std::size_t>(i);
-        const Vec3& p = state.manifold[motion.held[at].contact].position;
-        state.held.point[at] = {X_GW * p, p};
+        const Vec3& p = proxy.manifold[motion.held[at].contact].position;
+        held.point[at] = {X_GW * p, p};
     }
 }
 
@@ -69,133 +72,140 @@ double longestPath(const TickModel& model, const Motion& u) noexcept {
     return u.head<3>().norm() + u.tail<3>().norm() / model.metric_radius * model.shell->reach();
 }
 
-double overlap(const TickState& state) noexcept { return std::max(0.0, -state.clearance); }
+double overlap(const Proxy& proxy) noexcept { return std::max(0.0, -proxy.clearance); }
 
 bool isInside(const ContactPoint& contact) noexcept { return contact.phi < 0.0 && !(contact.radius > 0.0); }
 
-void look(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_WG, double reach,
-          double search) noexcept {
-    state.scratch.clear();
+void look(const ProxyView& view, const Pose& X_WG, double reach, double search) noexcept {
+    const auto& [model, proxy, memory, report] = view;
+    memory.scratch.clear();
     QueryRequest request{.collect_below = reach,
                          .search_below = search,
                          .spheres = true,
                          .facing = model.contact.two_way,
                          .edges = true};
-    QueryAnswer answer = queryObstacles(model, X_WG, request, state.workspace, state.scratch);
-    account(answer, frame);
-    std::swap(state.manifold, state.scratch);
-    state.X_WG = X_WG;
-    state.manifold_reach = reach;
-    state.clearance = state.room = answer.phi;
-    for (const ContactPoint& contact : state.manifold) state.room = std::min(state.room, contact.phi);
-    if (!(state.room > reach)) return;
+    QueryAnswer answer = queryObstacles(model, X_WG, request, memory.workspace, memory.scratch);
+    account(answer, report);
+    std::swap(proxy.manifold, memory.scratch);
+    proxy.X_WG = X_WG;
+    proxy.manifold_reach = reach;
+    proxy.clearance = proxy.room = answer.phi;
+    for (const ContactPoint& contact : proxy.manifold) proxy.room = std::min(proxy.room, contact.phi);
+    if (!(proxy.room > reach)) return;
     request.prove = true;
-    state.scratch.clear();
-    answer = queryObstacles(model, X_WG, request, state.workspace, state.scratch);
-    account(answer, frame);
-    state.room = std::max(reach, answer.lower_bound);
+    memory.scratch.clear();
+    answer = queryObstacles(model, X_WG, request, memory.workspace, memory.scratch);
+    account(answer, report);
+    proxy.room = std::max(reach, answer.lower_bound);
 }
 
-bool overlapsBetween(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_from, const Pose& X_to,
-                     double share, double accepted) noexcept {
+bool overlapsBetween(const ProxyView& view, const Pose& X_from, const Pose& X_to, double share,
+                     double accepted) noexcept {
     const Pose X{X_from.q.slerp(share, X_to.q), X_from.p + share * (X_to.p - X_from.p)};
-    state.scratch.clear();
+    view.memory.scratch.clear();
     const QueryRequest request{
-        .collect_below = -1e300, .search_below = -accepted, .facing = model.contact.two_way, .edges = true};
-    const QueryAnswer answer = queryObstacles(model, X, request, state.workspace, state.scratch);
-    account(answer, frame);
+        .collect_below = -1e300, .search_below = -accepted, .facing = view.model.contact.two_way, .edges = true};
+    const QueryAnswer answer = queryObstacles(view.model, X, request, view.memory.workspace, view.memory.scratch);
+    account(answer, view.report);
     return answer.found;
 }
 
-void lookAround(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_WG) noexcept {
-    const double reach = kLongestStep * model.finest_cell;
-    look(model, state, frame, X_WG, reach, reach);
+void lookAround(const ProxyView& view, const Pose& X_WG) noexcept {
+    const double reach = kLongestStep * view.model.finest_cell;
+    look(view, X_WG, reach, reach);
 }
 
-void startProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
-    if (frame.relocated) {
-        state.X_WG = frame.X_WH;
-        state.manifold_reach = -1.0;
-        state.has_last_proxy = state.has_last_stretch = false;
-        state.rubbing = {};
+void startProxy(const MovingProxy& moving) noexcept {
+    Proxy& proxy = moving.proxy;
+    if (moving.hand.relocated) {
+        proxy.X_WG = moving.hand.X_WH;
+        proxy.manifold_reach = -1.0;
+        moving.motion.rubbing = {};
     }
-    if (state.manifold_reach < 0.0) lookAround(model, state, frame, state.X_WG);
-    clearPushes(state);
+    if (proxy.manifold_reach < 0.0) lookAround(moving, proxy.X_WG);
+    clearPushes(moving.pushes);
 }
 
-double nextReach(const TickModel& model, const TickState& state) noexcept {
+double nextReach(const TickModel& model, double last_motion) noexcept {
     const double s = model.finest_cell;
-    return std::clamp(kReachGrowth * state.last_motion, kShortestReach * s, kLongestStep * s);
+    return std::clamp(kReachGrowth * last_motion, kShortestReach * s, kLongestStep * s);
 }
 
-bool arriveFreely(const TickModel& model, TickState& state, TickFrame& frame, double path, double reach,
-                  double accepted) noexcept {
-    const Pose X_here = state.X_WG;
-    look(model, state, frame, frame.X_WH, reach, std::max(reach, 2.0 * path));
-    if (overlap(state) <= accepted) {
-        state.rubbing = {};  // free
-        clearPushes(state);
+bool arriveFreely(const MovingProxy& moving, double path, double reach, double accepted) noexcept {
+    const Pose X_here = moving.proxy.X_WG;
+    look(moving, moving.hand.X_WH, reach, std::max(reach, 2.0 * path));
+    if (overlap(moving.proxy) <= accepted) {
+        moving.motion.rubbing = {};  // free
+        clearPushes(moving.pushes);
         return true;
     }
-    frame.status |= kStepRejected;
-    look(model, state, frame, X_here, reach, reach);
+    moving.report.status |= kStepRejected;
+    look(moving, X_here, reach, reach);
     return false;
 }
 
-Surroundings surroundings(const TickModel& model, const TickState& state) noexcept {
-    return {state.manifold, state.X_WG.p, model.metric_radius, -model.margins.keep};
+Surroundings surroundings(const TickModel& model, const Proxy& proxy) noexcept {
+    return {proxy.manifold, proxy.X_WG.p, model.metric_radius, -model.margins.keep};
 }
 
-AllowedMotion allowedMotion(const TickModel& model, TickState& state, TickFrame& frame, const Motion& wanted,
-                            const Surroundings& around) noexcept {
+AllowedMotion allowedMotion(const MovingProxy& moving, const Motion& wanted, const Surroundings& around) noexcept {
+    const TickModel& model = moving.model;
+    Report& report = moving.report;
     std::array<std::uint32_t, 6> places;
-    const auto likely = likelyContacts(model, state, places);
+    const auto likely = likelyContacts(moving, places);
     AllowedMotion allowed;
     if (model.friction.empty()) {
         const ConstrainedMotion constrained = constrainMotion(wanted, around, likely);
-        if (!constrained.converged) frame.status |= kIterationLimit;
-        note(constrained.iterations, frame.rows_taken);
+        if (!constrained.converged) report.status |= kIterationLimit;
+        note(constrained.iterations, report.rows_taken);
         allowed.u = constrained.u;
-        noteHeld(constrained, state);
-        notePushes(model, state, constrained, allowed.rubbing);
+        noteHeld(constrained, moving.proxy, moving.motion.held);
+        notePushes(model, moving.proxy, constrained, allowed.rubbing, moving.pushes);
     } else {
-        const RubbedMotion rubbed = constrainWithFriction(wanted, around, model.friction, state.rubbing, likely);
-        if (!rubbed.converged || !rubbed.motion.converged) frame.status |= kIterationLimit;
-        note(rubbed.motion.iterations, frame.rows_taken);
-        note(rubbed.sweeps, frame.friction_turns);
+        const RubbedMotion rubbed =
+            constrainWithFriction(wanted, around, model.friction, moving.motion.rubbing, likely);
+        if (!rubbed.converged || !rubbed.motion.converged) report.status |= kIterationLimit;
+        note(rubbed.motion.iterations, report.rows_taken);
+        note(rubbed.sweeps, report.friction_turns);
         allowed = {rubbed.motion.u, rubbed.patches};
-        noteHeld(rubbed.motion, state);
-        notePushes(model, state, rubbed.motion, rubbed.patches);
+        noteHeld(rubbed.motion, moving.proxy, moving.motion.held);
+        notePushes(model, moving.proxy, rubbed.motion, rubbed.patches, moving.pushes);
     }
     return allowed;
 }
 
-void filterProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
+void followHand(const TickModel&, const HandSample& hand, Proxy& proxy) noexcept { proxy.X_WG = hand.X_WH; }
+
+void filterProxy(const TickModel& model, const HandSample& hand, ProxyFilter& filter, Proxy& proxy, QueryMemory& memory,
+                 Report& report) noexcept {
+    if (hand.relocated) filter.has_last_proxy = false;  // the proxy was set to the hand
     const double alpha = 1.0 - std::exp(-2.0 * std::numbers::pi * model.contact.proxy_filter * kTickSeconds);
-    const bool in_contact = state.clearance < model.margins.keep;
-    if (in_contact && state.has_last_proxy) {
-        const Pose X_target = state.X_WG;
-        const Motion u = unconstrainedMotion(model, state.X_WG_last, X_target);
-        const double reach = state.manifold_reach;
-        const double accepted = std::max(model.margins.accept, overlap(state));
-        look(model, state, frame, moved(model, state.X_WG_last, alpha * u), reach, reach);
-        if (overlap(state) > accepted) look(model, state, frame, X_target, reach, reach);
+    const bool in_contact = proxy.clearance < model.margins.keep;
+    if (in_contact && filter.has_last_proxy) {
+        const ProxyView view{model, proxy, memory, report};
+        const Pose X_target = proxy.X_WG;
+        const Motion u = unconstrainedMotion(model, filter.X_WG_last, X_target);
+        const double reach = proxy.manifold_reach;
+        const double accepted = std::max(model.margins.accept, overlap(proxy));
+        look(view, moved(model, filter.X_WG_last, alpha * u), reach, reach);
+        if (overlap(proxy) > accepted) look(view, X_target, reach, reach);
     }
-    state.X_WG_last = state.X_WG;
-    state.has_last_proxy = true;
+    filter.X_WG_last = proxy.X_WG;
+    filter.has_last_proxy = true;
 }
 
-void describeProxy(const TickModel&, TickState& state, TickFrame& frame) noexcept {
-    frame.proxy_depth = overlap(state);
-    for (const ContactPoint& contact : state.manifold) frame.contacts += isInside(contact) ? 1u : 0u;
+void describeProxy(const TickModel&, const Proxy& proxy, ContactRecord& record) noexcept {
+    record.proxy_depth = overlap(proxy);
+    for (const ContactPoint& contact : proxy.manifold) record.contacts += isInside(contact) ? 1u : 0u;
 }
 
-void measureHandDepth(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
-    state.scratch.clear();
+void measureHandDepth(const TickModel& model, const HandSample& hand, QueryMemory& memory, HandDepth& depth,
+                      Report& report) noexcept {
+    memory.scratch.clear();
     const QueryAnswer answer =
-        queryObstacles(model, frame.X_WH, {.collect_below = -1e300}, state.workspace, state.scratch);
-    frame.nodes_visited += static_cast<std::uint32_t>(answer.nodes_visited);
-    frame.hand_depth = std::max(0.0, -answer.phi);
+        queryObstacles(model, hand.X_WH, {.collect_below = -1e300}, memory.workspace, memory.scratch);
+    report.nodes_visited += static_cast<std::uint32_t>(answer.nodes_visited);
+    depth.hand_depth = std::max(0.0, -answer.phi);
 }
 
 }  // namespace passung::tick

@@ -1,6 +1,9 @@
 #pragma once
 
 #include "core/motion/constrained_motion.h"
+#include "core/tick/energy_account.h"
+#include "core/tick/proxy_state.h"
+#include "core/tick/tick_frame.h"
 #include "core/tick/tick_model.h"
 
 namespace passung::tick {
@@ -22,8 +25,23 @@ Motion unconstrainedMotion(const TickModel& model, const Pose& X_WG, const Pose&
 /// No point of the shell moves farther than this [m].
 double longestPath(const TickModel& model, const Motion& u) noexcept;
 
+/// What the methods look at the proxy by.
+struct ProxyView {
+    const TickModel& model;
+    Proxy& proxy;
+    QueryMemory& memory;
+    Report& report;
+};
+
+/// What they move it by, towards the hand.
+struct MovingProxy : ProxyView {
+    const HandSample& hand;
+    ProxyMotion& motion;
+    Pushes& pushes;
+};
+
 /// Of the deepest point that was looked at [m], ≥ 0.
-double overlap(const TickState& state) noexcept;
+double overlap(const Proxy& proxy) noexcept;
 
 /// True for a point inside an obstacle, false for one that is only near and for a sphere that stands in.
 bool isInside(const ContactPoint& contact) noexcept;
@@ -31,48 +49,90 @@ bool isInside(const ContactPoint& contact) noexcept;
 /// Puts the proxy at `X_WG` and looks around: all contacts within `reach`, and up to `search` [m] how far the nearest
 /// one is if none is. Room beyond the reach is used without another look, so that it has to be proven. Where it
 /// overlaps there, the scratch memory then holds what the manifold held before.
-void look(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_WG, double reach,
-          double search) noexcept;
+void look(const ProxyView& view, const Pose& X_WG, double reach, double search) noexcept;
 
 /// True if a point overlaps by more than `accepted` [m] at the pose `share` of the way between two; the proxy and what
 /// is known of it stay. rt-safe.
-bool overlapsBetween(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_from, const Pose& X_to,
-                     double share, double accepted) noexcept;
+bool overlapsBetween(const ProxyView& view, const Pose& X_from, const Pose& X_to, double share,
+                     double accepted) noexcept;
 
 /// What is asked around the proxy when nothing is known of it yet: all contacts that any step could reach, and where
 /// there is none the proof of it. rt-safe.
-void lookAround(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_WG) noexcept;
+void lookAround(const ProxyView& view, const Pose& X_WG) noexcept;
 
 /// Where the input guard believes the device to be elsewhere than it can have come from (a false first reading), the
 /// proxy is set to the hand and its past forgotten: a spring from the old place would throw the hand across the room.
 /// Looks around if nothing is known.
-void startProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+void startProxy(const MovingProxy& moving) noexcept;
 
 /// How far around the proxy to look next, from how far it went in the last tick [m].
-double nextReach(const TickModel& model, const TickState& state) noexcept;
+double nextReach(const TickModel& model, double last_motion) noexcept;
 
 /// Takes the proxy straight to the hand, `path` away, through room that is proven to be free. False, and it stays, if
 /// it would overlap there by more than `accepted`.
-bool arriveFreely(const TickModel& model, TickState& state, TickFrame& frame, double path, double reach,
-                  double accepted) noexcept;
+bool arriveFreely(const MovingProxy& moving, double path, double reach, double accepted) noexcept;
 
-Surroundings surroundings(const TickModel& model, const TickState& state) noexcept;
+Surroundings surroundings(const TickModel& model, const Proxy& proxy) noexcept;
 
 /// What the contacts, and friction, leave of a motion. Begins with the contacts that held the one before.
 struct AllowedMotion {
     Motion u;
     FrictionPatches rubbing;
 };
-AllowedMotion allowedMotion(const TickModel& model, TickState& state, TickFrame& frame, const Motion& wanted,
-                            const Surroundings& around) noexcept;
+AllowedMotion allowedMotion(const MovingProxy& moving, const Motion& wanted, const Surroundings& around) noexcept;
 
-/// Stages that follow the proxy's motion.
+/// Stage of a scene without obstacles: the held part is where the hand is.
+void followHand(const TickModel& model, const HandSample& hand, Proxy& proxy) noexcept;
+inline constexpr StageOf kFreeHand{followHand,
+                                   {.name = "free hand",
+                                    .parameters = "",
+                                    .cost = "constant",
+                                    .needs = [](const TickModel& model) { return !model.hasObstacles(); },
+                                    .reason = [](const TickModel&) { return "the scene has no obstacle"; }}};
+
+// Stages that follow the proxy's motion.
+
+/// Owner: proxy filter.
+struct ProxyFilter {
+    Pose X_WG_last;
+    bool has_last_proxy = false;
+};
+
 /// Low-pass (only if the scene names its corner f_c), while in contact:
 ///   G_k = G_{k-1} ⊕ α (G* ⊖ G_{k-1}),  α = 1 - exp(-2π f_c T); dropped for a tick where it would cost overlap.
-void filterProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
-/// Writes the depths and the number of contacts of the frame's record.
-void describeProxy(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+void filterProxy(const TickModel& model, const HandSample& hand, ProxyFilter& filter, Proxy& proxy, QueryMemory& memory,
+                 Report& report) noexcept;
+inline constexpr StageOf kProxyFilter{
+    filterProxy,
+    {.name = "proxy filter",
+     .parameters = "contact.proxy_filter_hz",
+     .cost = "in contact one query of each obstacle, at most two",
+     .needs =
+         [](const TickModel& model) {
+             return model.hasProxy() && model.contact.proxy_filter > 0.0 &&
+                    model.contact.method != model::ContactMethod::Penalty;
+         },
+     .reason = [](const TickModel&) { return "contact.proxy_filter_hz is set: a low-pass of the proxy in contact"; }}};
+
+/// The depth and the number of contacts, for the record.
+void describeProxy(const TickModel& model, const Proxy& proxy, ContactRecord& record) noexcept;
+inline constexpr StageOf kProxyRecord{
+    describeProxy,
+    {.name = "proxy record",
+     .parameters = "",
+     .cost = "a little for each contact",
+     .needs = [](const TickModel& model) { return model.hasProxy(); },
+     .reason = [](const TickModel&) { return "overlap and contacts at the proxy, for the record"; }}};
+
 /// Depth of the held part at the hand's pose: only for the record, an extra query.
-void measureHandDepth(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+void measureHandDepth(const TickModel& model, const HandSample& hand, QueryMemory& memory, HandDepth& depth,
+                      Report& report) noexcept;
+inline constexpr StageOf kHandDepth{
+    measureHandDepth,
+    {.name = "hand depth",
+     .parameters = "contact.record_hand_depth",
+     .cost = "a query of each obstacle, with two_way two",
+     .needs = [](const TickModel& model) { return model.hasProxy() && model.record_hand_depth; },
+     .reason = [](const TickModel&) { return "the overlap at the device's pose is measured and recorded"; }}};
 
 }  // namespace passung::tick

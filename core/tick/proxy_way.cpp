@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cassert>
 
-#include "core/tick/proxy.h"
-
 namespace passung::tick {
 
 ProxyWay::ProxyWay(const TickModel& model) noexcept : turn_scale_(model.shell->reach() / model.metric_radius) {}
@@ -40,11 +38,10 @@ bool ProxyWay::goesOn(const TickModel& model, const Motion& next, double length)
     return bend <= model.margins.relieve || (length > kLongestStep * s && bend <= kBent * s);
 }
 
-bool cutsCorner(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_from, const Pose& X_to,
-                double accepted) noexcept {
+bool cutsCorner(const ProxyView& view, const Pose& X_from, const Pose& X_to, double accepted) noexcept {
     for (int place = 1; place <= kPlaces; ++place) {
         const double share = static_cast<double>(place) / (kPlaces + 1);
-        if (overlapsBetween(model, state, frame, X_from, X_to, share, accepted)) return true;
+        if (overlapsBetween(view, X_from, X_to, share, accepted)) return true;
     }
     return false;
 }

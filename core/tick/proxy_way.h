@@ -3,6 +3,7 @@
 #include <array>
 
 #include "core/motion/constrained_motion.h"
+#include "core/tick/proxy.h"
 #include "core/tick/tick_model.h"
 
 namespace passung::tick {
@@ -40,7 +41,6 @@ private:
 
 /// True if the straight line from `X_from`, where the tick began, to `X_to` overlaps by more than `accepted` at one of
 /// kPlaces places between its ends; for ways that bend and yet go on. rt-safe.
-bool cutsCorner(const TickModel& model, TickState& state, TickFrame& frame, const Pose& X_from, const Pose& X_to,
-                double accepted) noexcept;
+bool cutsCorner(const ProxyView& view, const Pose& X_from, const Pose& X_to, double accepted) noexcept;
 
 }  // namespace passung::tick

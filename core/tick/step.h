@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "core/tick/tick_model.h"
+#include "core/tick/tick_state.h"
 
 namespace passung::tick {
 
@@ -20,8 +21,8 @@ struct StageWatch {
 };
 
 /// One tick of the haptic loop: a plain function over values. Same model, state and reading: same bits.
-///   It walks the model's stages; each reads and writes only state and frame. Nothing allocates, locks or throws, and
-///   every loop has a bound. rt-safe.
+///   It walks the model's stages; each sees the parts of state and frame that it declares (stage.h). Nothing allocates,
+///   locks or throws, and every loop has a bound. rt-safe.
 TickOutput step(const TickModel& model, TickState& state, const DeviceReading& reading,
                 const StageWatch* watch = nullptr) noexcept;
 

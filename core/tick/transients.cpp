@@ -20,41 +20,40 @@ double sizeOf(const TickModel& model, const Wrench& wrench) noexcept {
 }
 
 /// s of the header.
-double impactSpeed(const TickModel& model, const Ringing& ringing, const TickFrame& frame) noexcept {
-    const Wrench& F = frame.F_H_W;
-    const Twist V = twistBetween(ringing.X_WH_last, frame.X_WH, frame.sample_periods);
+double impactSpeed(const TickModel& model, const Ringing& ringing, const HandSample& hand, const Wrench& F) noexcept {
+    const Twist V = twistBetween(ringing.X_WH_last, hand.X_WH, hand.sample_periods);
     return std::max(0.0, -(F.force.dot(V.v) + F.torque.dot(V.w)) / sizeOf(model, F));
 }
 
 }  // namespace
 
-void renderTransients(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
-    Ringing& ringing = state.ringing;
-    if (!frame.input_usable) {
+void renderTransients(const TickModel& model, const HandSample& hand, const ContactRecord& contacts, Ringing& ringing,
+                      HandWrench& wrench) noexcept {
+    if (!hand.input_usable) {
         ringing = Ringing{};
         return;
     }
-    const model::Transients& t = model.transients;
+    const model::Transients& t = model.effects.transients;
     const double r = std::exp(-kTickSeconds / t.decay);
     const double phi = 2.0 * std::numbers::pi * t.frequency * kTickSeconds;
-    const Wrench contact = frame.F_H_W;
+    const Wrench contact = wrench.F_H_W;
     const Wrench now = ringing.next;
     ringing.next = sum(2.0 * r * std::cos(phi), now, -r * r, ringing.now);
     ringing.now = now;
     const double size = sizeOf(model, contact);
     // A proxy that lags behind in free room pulls too: that is no contact.
-    const bool in_contact = frame.contacts > 0 && size > 0.0;
+    const bool in_contact = contacts.contacts > 0 && size > 0.0;
     const bool begins = in_contact && !ringing.in_contact && ringing.has_last;
     ringing.in_contact = in_contact;
-    if (frame.sample_periods > 0) {
+    if (hand.sample_periods > 0) {
         if (begins) {
-            const double speed = impactSpeed(model, ringing, frame);
+            const double speed = impactSpeed(model, ringing, hand, contact);
             ringing.next = sum(1.0, ringing.next, t.amplitude * speed * r * std::sin(phi) / size, contact);
         }
-        ringing.X_WH_last = frame.X_WH;
+        ringing.X_WH_last = hand.X_WH;
         ringing.has_last = true;
     }
-    frame.F_H_W = sum(1.0, contact, 1.0, now);
+    wrench.F_H_W = sum(1.0, contact, 1.0, now);
 }
 
 }  // namespace passung::tick

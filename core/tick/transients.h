@@ -1,8 +1,17 @@
 #pragma once
 
+#include "core/tick/tick_frame.h"
 #include "core/tick/tick_model.h"
 
 namespace passung::tick {
+
+/// Vibration after impacts. Owner: contact transients.
+struct Ringing {
+    Wrench now, next;  // of this tick and of the coming one, without a further impact
+    Pose X_WH_last;    // at the last new sample
+    bool has_last = false;
+    bool in_contact = false;  // at the last tick
+};
 
 /// Event-based transients: what a tap feels like, a vibration that dies out, added to the contact's own wrench at every
 /// impact. A coupling alone renders all materials alike and soft.
@@ -25,6 +34,15 @@ namespace passung::tick {
 ///
 /// Stage, only if the scene names the effect: after the contact's wrench, before its delay, so that the energy account,
 /// the passivity controller and the output's limits see it as part of the wrench.
-void renderTransients(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+void renderTransients(const TickModel& model, const HandSample& hand, const ContactRecord& contacts, Ringing& ringing,
+                      HandWrench& wrench) noexcept;
+inline constexpr StageOf kTransients{
+    renderTransients,
+    {.name = "contact transients",
+     .parameters = "effects.transients",
+     .cost = "constant",
+     .needs = [](const TickModel& model) { return model.effects.transients.amplitude > 0.0 && model.hasObstacles(); },
+     .reason =
+         [](const TickModel&) { return "effects.transients is set: a decaying vibration is added at every impact"; }}};
 
 }  // namespace passung::tick

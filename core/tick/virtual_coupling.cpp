@@ -16,32 +16,34 @@ Vec3 springAndDamper(const Vec3& x, const Vec3& rate, double stiffness, double d
 }
 
 /// From sample to sample: see renderCoupling.
-void measureRates(TickState& state, const TickFrame& frame, const Vec3& e, const Vec3& psi) noexcept {
-    if (!frame.input_usable) {
-        state.has_last_stretch = false;
-        state.last_stretch_rate = state.last_twist_rate = Vec3::Zero();
+void measureRates(Stretch& stretch, const HandSample& hand, const Vec3& e, const Vec3& psi) noexcept {
+    if (hand.relocated) stretch.has_last_stretch = false;  // the proxy was set to the hand
+    if (!hand.input_usable) {
+        stretch.has_last_stretch = false;
+        stretch.last_stretch_rate = stretch.last_twist_rate = Vec3::Zero();
         return;
     }
-    if (frame.sample_periods == 0) return;
-    if (state.has_last_stretch) {
-        const double elapsed = kTickSeconds * static_cast<double>(frame.sample_periods);
-        state.last_stretch_rate = (e - state.last_stretch) / elapsed;
-        state.last_twist_rate = (psi - state.last_twist) / elapsed;
+    if (hand.sample_periods == 0) return;
+    if (stretch.has_last_stretch) {
+        const double elapsed = kTickSeconds * static_cast<double>(hand.sample_periods);
+        stretch.last_stretch_rate = (e - stretch.last_stretch) / elapsed;
+        stretch.last_twist_rate = (psi - stretch.last_twist) / elapsed;
     }
-    state.last_stretch = e;
-    state.last_twist = psi;
-    state.has_last_stretch = true;
+    stretch.last_stretch = e;
+    stretch.last_twist = psi;
+    stretch.has_last_stretch = true;
 }
 
 }  // namespace
 
-void renderCoupling(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
-    const Vec3 e = state.X_WG.p - frame.X_WH.p;
-    const Vec3 psi = rotationVector(state.X_WG.q * frame.X_WH.q.conjugate());
-    measureRates(state, frame, e, psi);
+void renderCoupling(const TickModel& model, const HandSample& hand, const Proxy& proxy, Stretch& stretch,
+                    HandWrench& wrench) noexcept {
+    const Vec3 e = proxy.X_WG.p - hand.X_WH.p;
+    const Vec3 psi = rotationVector(proxy.X_WG.q * hand.X_WH.q.conjugate());
+    measureRates(stretch, hand, e, psi);
     const model::ContactSpec& c = model.contact;
-    frame.F_H_W.force = springAndDamper(e, state.last_stretch_rate, c.stiffness, c.damping);
-    frame.F_H_W.torque = springAndDamper(psi, state.last_twist_rate, c.rotational_stiffness, c.rotational_damping);
+    wrench.F_H_W.force = springAndDamper(e, stretch.last_stretch_rate, c.stiffness, c.damping);
+    wrench.F_H_W.torque = springAndDamper(psi, stretch.last_twist_rate, c.rotational_stiffness, c.rotational_damping);
 }
 
 }  // namespace passung::tick

@@ -1,11 +1,19 @@
 #pragma once
 
+#include "core/tick/proxy_state.h"
+#include "core/tick/tick_frame.h"
 #include "core/tick/tick_model.h"
 
 namespace passung::tick {
 
+/// Owner: virtual coupling.
+struct Stretch {
+    Vec3 last_stretch = Vec3::Zero(), last_twist = Vec3::Zero();  // at the last new sample
+    Vec3 last_stretch_rate = Vec3::Zero(), last_twist_rate = Vec3::Zero();
+    bool has_last_stretch = false;
+};
+
 /// Stage: a spring and damper between the proxy and the hand (Colgate 1995); steps #6 of the god object.
-///   Reads X_WG, X_WH; writes F_H_W, the wrench on the hand about the held part's origin.
 ///   e = p_WG - p_WH,  ψ = log(R_WG R_WHᵀ)
 ///   F = K e + B ė,   T = K_φ ψ + B_φ ψ̇.
 /// ė and ψ̇ are the changes from sample to sample over the time between them. On a held tick the last rates hold as a
@@ -16,6 +24,14 @@ namespace passung::tick {
 /// braked. It may not pull the hand into the surface it leaves: where the damper would turn F against e (T against ψ),
 /// that part is dropped. Limit cases: a proxy at rest gives ė = -v_H, the usual wall damper; e = 0 gives F = 0, also in
 /// the tick after contact.
-void renderCoupling(const TickModel& model, TickState& state, TickFrame& frame) noexcept;
+void renderCoupling(const TickModel& model, const HandSample& hand, const Proxy& proxy, Stretch& stretch,
+                    HandWrench& wrench) noexcept;
+inline constexpr StageOf kVirtualCoupling{
+    renderCoupling,
+    {.name = "virtual coupling",
+     .parameters = "contact.stiffness_N_per_m, rotational_stiffness, damping, rotational_damping",
+     .cost = "constant",
+     .needs = [](const TickModel& model) { return model.hasProxy(); },
+     .reason = [](const TickModel&) { return "spring and damper between proxy and hand"; }}};
 
 }  // namespace passung::tick

@@ -33,15 +33,15 @@ QueryClock query_clock;
 // The linker sends the tick's calls of tick::queryObstacles to `timed` (CMakeLists.txt): the tick has no clock.
 namespace passung::tick {
 QueryAnswer real(const TickModel& model, const Pose& X_WS, QueryRequest request, QueryWorkspace& workspace,
-                 ContactManifold& manifold, std::span<PairAccount> pairs) noexcept asm("__real_" PASSUNG_QUERY_SYMBOL);
+                 ContactManifold& manifold, std::span<Push> pushes) noexcept asm("__real_" PASSUNG_QUERY_SYMBOL);
 QueryAnswer timed(const TickModel& model, const Pose& X_WS, QueryRequest request, QueryWorkspace& workspace,
-                  ContactManifold& manifold, std::span<PairAccount> pairs) noexcept asm("__wrap_" PASSUNG_QUERY_SYMBOL);
+                  ContactManifold& manifold, std::span<Push> pushes) noexcept asm("__wrap_" PASSUNG_QUERY_SYMBOL);
 
 QueryAnswer timed(const TickModel& model, const Pose& X_WS, QueryRequest request, QueryWorkspace& workspace,
-                  ContactManifold& manifold, std::span<PairAccount> pairs) noexcept {
-    if (!query_clock.running) return real(model, X_WS, request, workspace, manifold, pairs);
+                  ContactManifold& manifold, std::span<Push> pushes) noexcept {
+    if (!query_clock.running) return real(model, X_WS, request, workspace, manifold, pushes);
     const bench::Stopwatch watch;
-    const QueryAnswer answer = real(model, X_WS, request, workspace, manifold, pairs);
+    const QueryAnswer answer = real(model, X_WS, request, workspace, manifold, pushes);
     query_clock.seconds += watch.seconds();
     ++query_clock.queries;
     return answer;
@@ -132,7 +132,7 @@ public:
             const tick::Motion before = std::exchange(wanted_before, wanted);
             if (out.frame.contacts == 0) continue;
             tick::TickFrame frame;
-            tick::lookAround(model_, wide, frame, state.X_WG);
+            tick::lookAround({model_, wide, wide, frame}, state.X_WG);
             takeNearest(wide.manifold, nearest);
             const tick::Surroundings around{nearest, state.X_WG.p, model_.metric_radius, -model_.margins.keep};
             const tick::ConstrainedMotion last = tick::constrainMotion(before, around);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/random.h"
+#include "core/tick/tick_state.h"
 
 namespace passung {
 namespace {
@@ -25,7 +26,7 @@ public:
     tick::TickFrame give(const DeviceReading& reading) {
         tick::TickFrame frame;
         frame.reading = reading;
-        tick::guardInput(model_, state_, frame);
+        tick::runStage<tick::kInputGuard>(model_, state_, frame);
         return frame;
     }
     tick::TickFrame give(const Pose& X_BD) { return give(DeviceReading{X_BD}); }

@@ -59,7 +59,7 @@ public:
         frame.F_H_W = F_H_W;
         frame.sample_periods = sample_periods;
         frame.input_usable = usable;
-        tick::limitOutput(model, state, frame);
+        tick::runStage<tick::kOutputLimits>(model, state, frame);
         return frame;
     }
     /// Asks for a wrench at the handle.

@@ -170,7 +170,7 @@ TEST(PassivityController, IsNoStageOfASceneWithoutIt) {
     const auto has = [](const model::SceneSpec& spec) {
         test::Bench bench(spec);
         for (const auto& stage : bench.model().stages)
-            if (stage.run == tick::dampActivity) return true;
+            if (stage.run == tick::runStage<tick::kPassivityController>) return true;
         return false;
     };
     auto spec = ballOverPlate(0.0);

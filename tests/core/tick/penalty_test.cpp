@@ -35,7 +35,7 @@ public:
                                  .gradient = Vec3::UnitZ(),
                                  .phi = -0.002,
                                  .area = 1e-6});
-        tick::renderPenalty(model_, state_, frame);
+        tick::runStage<tick::kPenaltyWrench>(model_, state_, frame);
         return frame.F_H_W;
     }
 

@@ -251,11 +251,12 @@ TEST(PenaltyTool, SharesItsForceAmongObstaclesAndBooksIt) {
     test::Bench bench(spec);
     const auto out =
         press(bench, {Quat::Identity(), Vec3(0, 0, 0.0105)}, {Quat::Identity(), Vec3(0.002, 0, 0.009)}, 300);
-    const auto& pairs = bench.state().pairs;
-    ASSERT_EQ(pairs.size(), 3u);
-    EXPECT_NEAR(pairs[0].push.force.z(), out.F_D_B.force.z(), 0.01 * out.F_D_B.force.norm());
-    EXPECT_NEAR(pairs[1].push.force.x(), out.F_D_B.force.x(), 0.01 * out.F_D_B.force.norm());
-    EXPECT_LT((pairs[0].push.force + pairs[1].push.force + pairs[2].push.force - out.F_D_B.force).norm(), 1e-9);
+    const auto& pushes = bench.state().pushes;
+    ASSERT_EQ(pushes.size(), 3u);
+    EXPECT_NEAR(pushes[0].wrench.force.z(), out.F_D_B.force.z(), 0.01 * out.F_D_B.force.norm());
+    EXPECT_NEAR(pushes[1].wrench.force.x(), out.F_D_B.force.x(), 0.01 * out.F_D_B.force.norm());
+    EXPECT_LT((pushes[0].wrench.force + pushes[1].wrench.force + pushes[2].wrench.force - out.F_D_B.force).norm(),
+              1e-9);
 }
 
 TEST(PenaltyTool, WithMassSwingsLikeAMassOnASpringAndDamper) {

@@ -26,7 +26,7 @@ public:
         frame.input_usable = usable;
         frame.sample_periods = sample_periods;
         state_.X_WG = X_WG;
-        tick::renderCoupling(model_, state_, frame);
+        tick::runStage<tick::kVirtualCoupling>(model_, state_, frame);
         return frame.F_H_W;
     }
 

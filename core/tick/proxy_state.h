@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+
+#include "core/contact/contact_query.h"
+#include "core/motion/friction.h"
+
+namespace passung::tick {
+
+/// The held part where it is rendered, and what is known around it. Handed on among the stages of one method of
+/// contact, of which a scene has one: free hand; contacts at the hand; penalty tool; proxy sweep, or correction and
+/// motion; and the proxy filter.
+struct Proxy {
+    static constexpr bool kHandedOn = true;
+    Pose X_WG;
+    ContactManifold manifold;      // at X_WG, points with φ < manifold_reach
+    double manifold_reach = -1.0;  // < 0: nothing known
+    double clearance = 0.0;        // least φ of the points that were looked at, as interpolated [m]
+    double room = 0.0;             // least φ known of any point: beyond the reach proven, spheres included [m]
+};
+
+/// Where contacts held the proxy's last motion: each is a point of the held part or of an obstacle.
+struct HeldPoints {
+    struct Point {
+        Vec3 p_G, p_W;  // in the proxy, in the world
+    };
+    std::array<Point, 6> point;
+    int count = 0;
+};
+
+/// What a god object's motion leaves for the next. Handed on from proxy correction to proxy motion, or owned by the
+/// proxy sweep.
+struct ProxyMotion {
+    static constexpr bool kHandedOn = true;
+    FrictionPatches rubbing;   // of the last motion in contact
+    HeldPoints held;           // of the last motion: where the solver of the next one begins
+    double last_motion = 0.0;  // of the proxy, in the metric of metric_radius [m]
+};
+
+/// Memory of queries. Handed on, but what is in it is nobody's: each stage finds it in any state.
+struct QueryMemory {
+    static constexpr bool kHandedOn = true;
+    QueryWorkspace workspace;
+    ContactManifold scratch;
+};
+
+}  // namespace passung::tick

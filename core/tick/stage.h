@@ -1,0 +1,92 @@
+#pragma once
+
+#include <type_traits>
+
+namespace passung::tick {
+
+struct TickModel;
+struct TickState;
+struct TickFrame;
+
+/// A whole that is the product of its parts, each a struct of its own: a reference to the whole is one to any of them,
+/// and no part leads to another. A part says by kHandedOn that several stages of a scene write it, and by kOnlyRead
+/// that none does; every other has one owner in a scene.
+template <class... Part>
+struct Parts : Part... {};
+
+/// What a stage declares beside what its function takes.
+struct StageCard {
+    const char* name;
+    const char* parameters;                   // keys of the scene that it follows; empty: none
+    const char* cost;                         // in a tick
+    bool before_start = false;                // runs also while the start gate is closed
+    bool (*needs)(const TickModel&);          // whether a scene has what it is for
+    const char* (*reason)(const TickModel&);  // why the scene has it
+};
+
+namespace declared {
+
+template <class Part>
+inline constexpr bool kOnlyRead = requires {
+    Part::kOnlyRead;
+};
+template <class Part>
+inline constexpr bool kHandedOn = requires {
+    Part::kHandedOn;
+};
+
+/// True for a reference to one part; a part that is only read, by const reference.
+template <class Argument>
+inline constexpr bool kIsPart = [] {
+    using Part = std::remove_cvref_t<Argument>;
+    constexpr bool whole =
+        std::is_same_v<Part, TickModel> || std::is_same_v<Part, TickState> || std::is_same_v<Part, TickFrame>;
+    constexpr bool reads = std::is_const_v<std::remove_reference_t<Argument>>;
+    return std::is_lvalue_reference_v<Argument> && !whole && (reads || !kOnlyRead<Part>);
+}();
+
+}  // namespace declared
+
+/// One stage of the tick, declared once. Its function takes the model, a const reference to each part that it reads and
+/// a reference to each that it owns or hands on; it sees nothing else. The parts are those of TickState, which last,
+/// and of TickFrame, which die with the tick. An effect that hums:
+///
+///   struct Hum { double phase = 0.0; };                                                   // its own state
+///   void renderHum(const TickModel&, const HandSample&, Hum&, HandWrench&) noexcept;      // reads, owns, hands on
+///   inline constexpr StageOf kHum{renderHum, {.name = "hum", .parameters = "effects.hum", // its card
+///                                             .cost = "constant", .needs = ..., .reason = ...}};
+///
+/// goes into hum.h and hum.cpp, in the room's CMakeLists.txt. Then
+///   - model::Effects (core/scene/scene_spec.h) gets its parameters, which it finds in TickModel::effects,
+///   - TickState the part Hum and AllStages, at its place in the order, kHum (tick_state.h),
+///   - a scene of tests/core/tick/stage_test.cpp the effect: the test says whether the declaration is true.
+/// Memory that depends on the scene is sized in makeState (tick_state.cpp).
+template <class... Argument>
+struct StageOf {
+    static_assert((declared::kIsPart<Argument> && ...), "a stage takes parts by reference, never a whole");
+
+    void (*compute)(const TickModel&, Argument...) noexcept;
+    StageCard card;
+
+    /// Runs it on its parts of `state` and `frame`. rt-safe.
+    void operator()(const TickModel& model, TickState& state, TickFrame& frame) const noexcept {
+        compute(model, partOf<Argument>(state, frame)...);
+    }
+
+private:
+    template <class Wanted>
+    static Wanted partOf(TickState& state, TickFrame& frame) noexcept {
+        if constexpr (std::is_base_of_v<std::remove_cvref_t<Wanted>, TickState>)
+            return state;
+        else
+            return frame;
+    }
+};
+template <class... Argument>
+StageOf(void (*)(const TickModel&, Argument...) noexcept, StageCard) -> StageOf<Argument...>;
+
+/// Stages in the order of the tick.
+template <const auto&... stage>
+struct StageList {};
+
+}  // namespace passung::tick

@@ -1,0 +1,33 @@
+#include "core/tick/tick_state.h"
+
+#include <algorithm>
+
+namespace passung::tick {
+
+TickState makeState(const TickModel& model) {
+    TickState state;
+    state.engaged = model.start_gate.hold_ticks <= 0;
+    state.X_WG = model.X_WG_start;
+    state.pairs.resize(model.obstacles.size() + 1);
+    state.pushes.resize(state.pairs.size());
+    state.last_shares.resize(state.pairs.size());
+    state.push_line.resize(state.pairs.size() * (static_cast<std::size_t>(model.limits.delay_ticks) + 1));
+    // When a budget ends a node stands in by a point and a sphere, and every obstacle may touch every point and every
+    // edge around every station.
+    const auto most = [](const model::SphereTree& shell, const model::EdgeCurves& edges) {
+        return shell.points().size() + 2 * shell.nodes().size() + edges.stations().size();
+    };
+    std::size_t capacity = most(*model.shell, *model.edges) * model.obstacles.size();
+    std::size_t nodes = model.shell->nodes().size();
+    for (const Obstacle& obstacle : model.obstacles) {
+        if (obstacle.shell == nullptr) continue;
+        capacity += most(*obstacle.shell, *obstacle.edges);
+        nodes = std::max(nodes, obstacle.shell->nodes().size());
+    }
+    state.manifold = ContactManifold(capacity);
+    state.scratch = ContactManifold(capacity);
+    state.workspace = QueryWorkspace(nodes);
+    return state;
+}
+
+}  // namespace passung::tick

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/tick/contact_energy.h"
+#include "core/tick/energy_account.h"
+#include "core/tick/god_object.h"
+#include "core/tick/god_object_heuristic.h"
+#include "core/tick/input_guard.h"
+#include "core/tick/output_stage.h"
+#include "core/tick/passivity.h"
+#include "core/tick/penalty.h"
+#include "core/tick/penalty_tool.h"
+#include "core/tick/proxy.h"
+#include "core/tick/proxy_state.h"
+#include "core/tick/stage.h"
+#include "core/tick/tick_frame.h"
+#include "core/tick/transients.h"
+#include "core/tick/virtual_coupling.h"
+
+namespace passung::tick {
+
+// The wholes, for those who walk the stages. No stage includes this header: from its parts no way leads to others.
+
+/// Every stage that a scene may need, in the order of the tick.
+using AllStages = StageList<kInputGuard, kEnergyAccount, kStartGate,             // where the hand is
+                            kFreeHand,                                           // no contact
+                            kContactsAtHand, kPenaltyWrench,                     // direct penalty
+                            kPenaltyTool, kProxySweep,                           // tool, god object
+                            kProxyCorrection, kProxyMotion,                      // its heuristic
+                            kProxyFilter, kProxyRecord, kHandDepth,              // what follows them
+                            kVirtualCoupling,                                    // their wrench
+                            kTransients,                                         // effects
+                            kContactShares, kOutputDelay, kPassivityController,  // what goes out
+                            kNoWrench, kOutputLimits>;
+
+/// Of the ticks so far. Owner: step.
+struct TickCount {
+    static constexpr bool kOnlyRead = true;
+    std::int64_t tick = 0;
+    std::uint64_t hash = 0xcbf29ce484222325u;  // of all outputs, exact bits
+};
+
+/// Everything that a tick carries to the next: the stages' own states. Sized by makeState; a tick never allocates.
+struct TickState : Parts<TickCount, InputGuard, Engagement, EnergyAccounts, Proxy, ProxyMotion, ProxyFilter,
+                         HandVelocity, ToolMotion, Stretch, Ringing, Pushes, DelayLine, SentWrench, QueryMemory> {};
+
+/// What one tick works on; dies with it.
+struct TickFrame
+    : Parts<Reading, HandSample, AreaLoad, ContactRecord, HandDepth, EnergyRecord, HandWrench, Command, Report> {};
+
+/// The state before the first tick, with all memory that the ticks will need.
+TickState makeState(const TickModel& model);
+
+/// Runs a stage on its parts. rt-safe.
+template <const auto& stage>
+void runStage(const TickModel& model, TickState& state, TickFrame& frame) noexcept {
+    stage(model, state, frame);
+}
+
+}  // namespace passung::tick
