@@ -1,0 +1,216 @@
+#include "core/tick/stage.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+#include <string>
+#include <tuple>
+
+#include "core/base/random.h"
+#include "core/tick/step.h"
+#include "tests/support/fields.h"
+#include "tests/support/scenes.h"
+
+// What a stage declares is what it does. That it cannot say otherwise: undeclared_access.cmake.
+
+namespace passung {
+namespace {
+
+using tick::StageList;
+using tick::StageOf;
+using tick::TickFrame;
+using tick::TickState;
+
+constexpr int kTimes = 1000;
+
+template <class Part, class... Argument>
+constexpr bool writes(const StageOf<Argument...>&) {
+    return (std::is_same_v<Argument, Part&> || ...);
+}
+template <class Part, class... Argument>
+constexpr bool reads(const StageOf<Argument...>&) {
+    return (std::is_same_v<Argument, const Part&> || ...);
+}
+
+/// Calls `f` with each part of a whole.
+template <class... Part, class F>
+void eachPart(tick::Parts<Part...>& whole, F f) {
+    (f(static_cast<Part&>(whole)), ...);
+}
+
+/// A held box beside and above a plate, and what the stages of one kind need.
+model::SceneSpec boxOverPlate(model::ContactMethod method) {
+    auto spec = test::scene(model::Box{0.01, 0.01, 0.01}, {Quat::Identity(), Vec3(0, 0, 0.01)},
+                            model::Box{0.03, 0.03, 0.01}, Pose{}, method);
+    spec.parts.push_back(
+        {.name = "post", .geometry = model::Cylinder{0.004, 0.01}, .X_WP = {Quat::Identity(), Vec3(0.01, 0, 0.01)}});
+    spec.contact.spacing = 2.5e-3;
+    spec.contact.damping = 2.0;
+    spec.contact.rotational_damping = 0.001;
+    spec.limits.max_force = 3.0;
+    spec.limits.max_speed = 2.0;
+    spec.limits.quantum = 1e-5;
+    spec.effects.passivity_damping = 10.0;
+    return spec;
+}
+
+/// Scenes that have every stage between them.
+std::vector<model::SceneSpec> scenesOfAllStages() {
+    using enum model::ContactMethod;
+    auto free = boxOverPlate(GodObject);
+    free.parts.resize(1);
+    auto penalty = boxOverPlate(Penalty);
+    penalty.contact.variant = model::PenaltyVariant::AreaWeighted;
+    penalty.limits.delay_ticks = 3;
+    penalty.effects.transients.amplitude = 1.0;
+    penalty.start_gate = {0.1, 3.0, 5};
+    auto tool = boxOverPlate(Penalty);
+    tool.contact.coupling = model::PenaltyCoupling::Virtual;
+    tool.display_wrench = false;
+    auto god_object = boxOverPlate(GodObject);
+    for (auto& part : god_object.parts) part.friction = part.sliding_friction = 0.3;
+    god_object.effects.transients.amplitude = 1.0;
+    god_object.contact.proxy_filter = 50.0;
+    god_object.contact.two_way = true;
+    auto heuristic = boxOverPlate(GodObjectHeuristic);
+    heuristic.contact.proxy_filter = 50.0;
+    heuristic.contact.budget_nodes = 60;
+    return {free, penalty, tool, god_object, heuristic};
+}
+
+/// A hand that presses, slides and turns; samples are lost, lie, and lie for long.
+DeviceReading readingAt(int tick, Random& random) {
+    const double t = tick * kTickSeconds;
+    DeviceReading reading{{rotationFromVector(0.1 * Vec3(std::sin(9 * t), std::cos(7 * t), std::sin(5 * t))),
+                           Vec3(0.006 * std::sin(11 * t), 0.004 * std::sin(6 * t), 0.01 + 0.004 * std::cos(17 * t))}};
+    reading.fresh = random.below(20) != 0;
+    if (random.below(60) == 0 || tick % 500 > 490) reading.X_BD.p.x() += 0.3;
+    if (tick == 0) reading.X_BD.p.z() = 0.3;  // a false first sample: relocated soon after
+    return reading;
+}
+
+struct Checker {
+    const tick::TickModel& model;
+    Random& random;
+    std::map<std::string, int>& times;
+    TickState state_a, state_b;
+    TickFrame frame_a, frame_b;
+
+    /// Runs `stage` from `state` and `frame` as they are, and with random bits in all that it does not declare to
+    /// read: the same bits in what it writes, no other bits in what it does not.
+    template <const auto& stage>
+    void check(const TickState& state, const TickFrame& frame) {
+        int& count = times[stage.card.name];
+        if (count >= kTimes) return;
+        ++count;
+        state_a = state_b = state;
+        frame_a = frame_b = frame;
+        std::map<std::string, std::vector<std::uint64_t>> before;
+        const auto prepare = [&]<class Part>(Part& part) {
+            if (!writes<Part>(stage) && !reads<Part>(stage)) test::scramble(part, random);
+            if constexpr (std::is_same_v<Part, tick::QueryMemory>) test::scramble(part.scratch, random);
+            if (!writes<Part>(stage)) before[typeid(Part).name()] = test::bitsOf(part);
+        };
+        eachPart(state_b, prepare);
+        eachPart(frame_b, prepare);
+        stage(model, state_a, frame_a);
+        stage(model, state_b, frame_b);
+        const auto compare = [&]<class Part>(Part& part) {
+            if constexpr (std::is_same_v<Part, tick::QueryMemory>) {
+                if (writes<Part>(stage)) return;  // nobody looks at what is left there
+            }
+            const std::string name = typeid(Part).name();
+            if (!writes<Part>(stage)) {
+                ASSERT_EQ(test::bitsOf(part), before[name]) << stage.card.name << " wrote " << name;
+            } else {
+                ASSERT_EQ(test::bitsOf(part), bitsAfter<Part>())
+                    << stage.card.name << " read what it does not say: " << name;
+            }
+        };
+        eachPart(state_b, compare);
+        eachPart(frame_b, compare);
+    }
+
+    /// What `Part` became where nothing was scrambled.
+    template <class Part>
+    std::vector<std::uint64_t> bitsAfter() const {
+        if constexpr (std::is_base_of_v<Part, TickState>)
+            return test::bitsOf(static_cast<const Part&>(state_a));
+        else
+            return test::bitsOf(static_cast<const Part&>(frame_a));
+    }
+
+    /// That one of all stages which `run` is.
+    template <const auto&... stage>
+    void checkThat(StageList<stage...>, void (*run)(const tick::TickModel&, TickState&, TickFrame&) noexcept,
+                   const TickState& state, const TickFrame& frame) {
+        ((run == tick::runStage<stage> ? check<stage>(state, frame) : void()), ...);
+    }
+};
+
+template <const auto&... stage>
+std::vector<std::string> namesOf(StageList<stage...>) {
+    return {stage.card.name...};
+}
+
+TEST(Stage, ReadsAndWritesWhatItDeclaresAndNothingElse) {
+    // Truth: invariant. The ticks are those of step(), stage by stage.
+    std::map<std::string, int> times;
+    Random random(3);
+    for (int round = 0; round < 2; ++round)
+        for (const auto& spec : scenesOfAllStages()) {
+            test::Bench bench(spec);
+            Checker checker{bench.model(), random, times, bench.state(), bench.state(), {}, {}};
+            for (int i = 0; i < 1200; ++i) {
+                TickFrame frame;
+                frame.reading = readingAt(i, random);
+                for (const tick::Stage& stage : bench.model().stages) {
+                    if (!bench.state().engaged && !stage.before_start) continue;
+                    checker.checkThat(tick::AllStages{}, stage.run, bench.state(), frame);
+                    if (HasFatalFailure()) return;
+                    stage.run(bench.model(), bench.state(), frame);
+                }
+            }
+        }
+    for (const std::string& name : namesOf(tick::AllStages{})) EXPECT_EQ(times[name], kTimes) << name;
+}
+
+/// How many of a scene's stages write each part, by whether it is handed on.
+struct Writers {
+    std::string part;
+    bool handed_on = false, only_read = false;
+    int count = 0;
+};
+
+template <const auto&... stage>
+std::vector<Writers> writersOf(StageList<stage...>, const std::vector<tick::Stage>& stages) {
+    std::vector<Writers> all;
+    const auto add = [&]<class Part>(Part&) {
+        Writers writers{typeid(Part).name(), tick::declared::kHandedOn<Part>, tick::declared::kOnlyRead<Part>, 0};
+        for (const tick::Stage& entry : stages)
+            writers.count += ((entry.run == tick::runStage<stage> && writes<Part>(stage)) + ...);
+        all.push_back(writers);
+    };
+    TickState state;
+    TickFrame frame;
+    eachPart(state, add);
+    eachPart(frame, add);
+    return all;
+}
+
+TEST(Stage, IsTheOnlyOneOfItsSceneToWriteWhatItOwns) {
+    // Truth: invariant. What several stages of a scene write says that it is handed on, and all is written by somebody.
+    std::set<std::string> written;
+    for (const auto& spec : scenesOfAllStages()) {
+        const test::Bench bench(spec);
+        for (const Writers& part : writersOf(tick::AllStages{}, bench.model().stages)) {
+            EXPECT_LE(part.count, part.handed_on ? 100 : 1) << part.part;
+            if (part.count > 0 || part.only_read) written.insert(part.part);
+        }
+    }
+    for (const Writers& part : writersOf(tick::AllStages{}, {})) EXPECT_TRUE(written.contains(part.part)) << part.part;
+}
+
+}  // namespace
+}  // namespace passung

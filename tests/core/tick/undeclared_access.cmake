@@ -1,0 +1,41 @@
+# cmake -DROOT=... -DCXX=... -DEIGEN=... -P undeclared_access.cmake: what a stage does not declare does not compile.
+# Compiles undeclared_access.cpp as it stands, which must succeed, and with its faults, each of which must be an error at
+# its own line. No header or source of a stage includes the wholes, from which it could reach any part.
+cmake_policy(VERSION 3.25)
+
+set(source ${ROOT}/tests/core/tick/undeclared_access.cpp)
+set(compile ${CXX} -std=c++20 -fsyntax-only -I${ROOT} -isystem ${EIGEN} ${source})
+
+execute_process(COMMAND ${compile} RESULT_VARIABLE result ERROR_VARIABLE output)
+if(NOT result EQUAL 0)
+  message(FATAL_ERROR "the stage without a fault does not compile:\n${output}")
+endif()
+
+execute_process(COMMAND ${compile} -DFAULTS RESULT_VARIABLE result ERROR_VARIABLE output)
+file(STRINGS ${source} lines)
+set(line 0)
+set(faults 0)
+foreach(text IN LISTS lines)
+  math(EXPR line "${line} + 1")
+  if(NOT text MATCHES "// FAULT: (.*)$")
+    continue()
+  endif()
+  set(what "${CMAKE_MATCH_1}")
+  math(EXPR faults "${faults} + 1")
+  if(NOT output MATCHES "undeclared_access[.]cpp:${line}:")
+    message(SEND_ERROR "a stage that ${what} compiles")
+  endif()
+endforeach()
+if(faults LESS 14)
+  message(SEND_ERROR "${faults} faults found of 14: a line with [ ; ] hides others")
+endif()
+
+file(GLOB sources ${ROOT}/core/tick/*.h ${ROOT}/core/tick/*.cpp)
+list(FILTER sources EXCLUDE REGEX "/(step[.](h|cpp)|scene_sequence[.]h|tick_model[.]cpp|tick_state[.]cpp)$")
+foreach(file IN LISTS sources)
+  file(STRINGS ${file} includes REGEX "#include \"core/tick/(tick_state|step|scene_sequence)[.]h\"")
+  if(includes AND NOT file MATCHES "/scene_sequence[.]cpp$")
+    message(SEND_ERROR "${file}: a stage may not include the wholes")
+  endif()
+endforeach()
+message(STATUS "${faults} faults found")
