@@ -4,7 +4,7 @@
 #include <array>
 #include <limits>
 
-#include "core/contact/rim_gradient.h"
+#include "core/contact/contact_finds.h"
 #include "core/contact/surface_descent.h"
 
 namespace passung::tick {
@@ -13,9 +13,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kBatch = 64;  // nodes or points that are looked at together
-constexpr std::uint32_t kNoPoint = ~0u;
-constexpr double kFacing = 0.8;    // cosine between a face's inward normal and φ's gradient
-constexpr double kSettled = 48.0;  // groups in contact: from here on their errors level out, and some are taken whole
+constexpr double kSettled = 48.0;   // groups in contact: from here on their errors level out, and some are taken whole
 
 /// Places in the shell's frame, one after the other, though they are parted in memory.
 struct Batch {
@@ -38,168 +36,146 @@ struct Batch {
 
 }  // namespace
 
-/// State of one traversal; the steps of queryContacts.
+void ContactFinds::refine() noexcept {
+    if (deepest_ == kNoPoint) return;
+    const Descent found = descend(place_.field, place_.S, place_.shell, deepest_, answer.phi);
+    answer.points_tested += found.points_tested;
+    const Vec3 p_F = place_.inField(found.position);
+    const model::FieldSample s = place_.sample(p_F, plan_.request.mode, place_.shell.points()[deepest_].normal);
+    if (s.phi < answer.phi) setDeepest(p_F, s);
+}
+
+QueryAnswer ContactFinds::told(double unproven_area) noexcept {
+    if (plan_.request.load) answer.load = {place_.R_WS * force_, place_.R_WS * moment_};
+    if (answer.found) {
+        answer.closest_W = place_.X_WF * answer.closest_F;
+        const double length = answer.normal_W.norm();
+        answer.normal_W = length > 0.0 ? Vec3(place_.R_WF * (answer.normal_W / length)) : Vec3(Vec3::Zero());
+    }
+    // Rounded sums of areas may exceed the total by a bit.
+    const double area = place_.shell.totalArea();
+    if (area > 0.0) answer.quality = std::max(0.0, 1.0 - unproven_area / area);
+    return answer;
+}
+
+/// The way through one shell's tree; the steps of queryContacts.
 struct Traversal {
+    /// Nodes that wait, in the memory of the workspace.
+    class NodeQueue {
+    public:
+        NodeQueue(std::vector<QueryWorkspace::Entry>& heap, bool ordered) : heap_(heap), ordered_(ordered) {}
+        bool empty() const noexcept { return waiting_ == 0; }
+        std::uint32_t next() const noexcept { return heap_.front().node; }
+        void push(const QueryWorkspace::Entry& entry) noexcept {
+            heap_[waiting_++] = entry;
+            if (ordered_) std::push_heap(heap_.begin(), end(), later);
+        }
+        QueryWorkspace::Entry pop() noexcept {
+            if (ordered_) std::pop_heap(heap_.begin(), end(), later);
+            return heap_[--waiting_];
+        }
+
+    private:
+        static bool later(const QueryWorkspace::Entry& a, const QueryWorkspace::Entry& b) noexcept {
+            return a.order > b.order || (a.order == b.order && a.node > b.node);
+        }
+        std::vector<QueryWorkspace::Entry>::iterator end() noexcept {
+            return heap_.begin() + static_cast<std::ptrdiff_t>(waiting_);
+        }
+        std::vector<QueryWorkspace::Entry>& heap_;
+        std::size_t waiting_ = 0;
+        const bool ordered_;
+    };
+
+    /// Groups of points that lie together, as far as they are near.
+    struct NearGroups {
+        std::size_t count = 0;  // in the workspace
+        int inside = 0;
+        float least = std::numeric_limits<float>::infinity();
+        std::uint32_t lowest = kNoPoint;
+    };
+
+    const ShellInField& place;
+    const QueryPlan& plan;
+    ContactFinds& finds;
+    QueryWorkspace& workspace;
+    const QueryRequest& request;
     const model::DistanceField& field;
     const model::SphereTree& shell;
-    const Pose& X_WF;
-    const model::DistanceField::Placement S;  // the shell in the field
-    const Mat3 R_WF;
-    const Mat3 R_FS;
-    const Vec3 p_FS;
-    const Mat3 R_WS;
-    const Vec3 p_WS;
-    const QueryRequest& request;
-    const bool ordered;  // best first
-    const bool grouped;
-    const bool gradients;
-    const bool facing;
-    const double slack;  // sampleMany is off by at most this next to sample() [m]
-    QueryWorkspace& workspace;
-    ContactManifold& manifold;
-    QueryAnswer answer;
-    std::size_t waiting = 0;
-    double unproven_area = 0.0;
-    std::array<float, model::SphereTree::kChildren> at_centre;
+    NodeQueue queue;
+    NearGroups groups;
     Batch batch;
-    std::uint32_t deepest = kNoPoint;  // the point of the shell that answer.phi belongs to
-    std::size_t near_groups = 0;
-    int groups_inside = 0;
-    float least_in_group = std::numeric_limits<float>::infinity();
-    std::uint32_t lowest_group = kNoPoint;
-    Vec3 force = Vec3::Zero(), moment = Vec3::Zero();  // of the load, in the shell's frame
+    double unproven_area = 0.0;
 
-    Traversal(const model::DistanceField& f, const Pose& X_WF_, const model::SphereTree& s, const Pose& X_FS_,
-              const Pose& X_WS, const QueryRequest& r, QueryWorkspace& w, ContactManifold& m)
-        : field(f),
-          shell(s),
-          X_WF(X_WF_),
-          S(f.place(X_FS_)),
-          R_WF(X_WF_.q.toRotationMatrix()),
-          R_FS(X_FS_.q.toRotationMatrix()),
-          p_FS(X_FS_.p),
-          R_WS(X_WS.q.toRotationMatrix()),
-          p_WS(X_WS.p),
-          request(r),
-          ordered(r.max_nodes > 0 || r.search_below > r.collect_below),
-          grouped(r.load && r.collect_below == 0.0 && !ordered && !r.prove && r.mode == model::FieldMode::Trilinear),
-          gradients(r.gradients && !r.load),
-          facing(r.facing && !(f.sheetOffset() > 0.0)),
-          // No brick spans more: its cells are those asked for, or at most 1/72 of the longest side.
-          slack(0x1p-20 * (f.bounds().size().norm() + 14.0 * f.cell())),
+    Traversal(const ShellInField& in, const QueryPlan& p, ContactFinds& f, QueryWorkspace& w)
+        : place(in),
+          plan(p),
+          finds(f),
           workspace(w),
-          manifold(m) {
-        answer.phi = answer.lower_bound = request.search_below;
-    }
-
-    double pruneAbove() const noexcept {
-        return std::max(request.collect_below, std::min(request.search_below, answer.phi));
-    }
+          request(p.request),
+          field(in.field),
+          shell(in.shell),
+          queue(w.heap_, p.ordered) {}
 
     bool exceedsBudget(const model::SphereNode& node) const noexcept {
         const int children = node.leaf ? 0 : static_cast<int>(node.count);
-        return request.max_nodes > 0 && answer.nodes_visited + children > request.max_nodes;
+        return request.max_nodes > 0 && finds.answer.nodes_visited + children > request.max_nodes;
     }
 
     /// Some nodes that follow each other; `above`: the bound of their parent holds for their points too.
     void push(std::uint32_t begin, std::uint32_t count, double above) noexcept {
+        std::array<float, model::SphereTree::kChildren> at_centre;
         const auto& centres = shell.centres();
-        field.lowerBounds(S, centres.x(begin, count), centres.y(begin, count), centres.z(begin, count),
+        field.lowerBounds(place.S, centres.x(begin, count), centres.y(begin, count), centres.z(begin, count),
                           {at_centre.data(), count});
         for (std::uint32_t i = 0; i < count; ++i) {
             const std::uint32_t node = begin + i;
             const double bound = std::max(above, static_cast<double>(at_centre[i]) - shell.nodes()[node].radius);
-            ++answer.nodes_visited;
-            if (bound >= pruneAbove()) continue;
+            ++finds.answer.nodes_visited;
+            if (bound >= finds.pruneAbove()) continue;
             const bool first = request.max_nodes > 0 && !request.spheres && node < shell.roots().size();
-            workspace.heap_[waiting++] = {bound, first ? -kInfinity : bound, node};
-            if (ordered) std::push_heap(workspace.heap_.begin(), at(waiting), later);
+            queue.push({bound, first ? -kInfinity : bound, node});
         }
     }
 
-    std::uint32_t pop(double& bound) noexcept {
-        if (ordered) std::pop_heap(workspace.heap_.begin(), at(waiting), later);
-        --waiting;
-        bound = workspace.heap_[waiting].bound;
-        return workspace.heap_[waiting].node;
-    }
-
-    /// One point; `above`: a lower bound of φ there that is already known.
-    void evaluate(const Vec3& position, const Vec3& normal, double area, double above, std::uint32_t point) noexcept {
-        ++answer.points_tested;
-        const Vec3 p_F = R_FS * position + p_FS;
-        prove(p_F, above);
-        take(p_F, position, normal, area, field.sample(p_F, request.mode, -(R_FS * normal)), point);
-    }
-
-    void prove(const Vec3& p_F, double above) noexcept {
-        if (!request.prove || above >= answer.lower_bound) return;
-        answer.lower_bound = std::min(answer.lower_bound, std::max(above, field.lowerBound(p_F)));
-    }
-
-    void take(const Vec3& p_F, const Vec3& position, const Vec3& normal, double area, const model::FieldSample& s,
-              std::uint32_t point) noexcept {
-        if (s.phi < answer.phi) {
-            answer.found = true;
-            deepest = point;
-            answer.phi = s.phi;
-            answer.closest_F = p_F;
-            answer.normal_W = s.gradient;
-        }
-        if (s.phi < request.collect_below) collect(position, normal, area, s.phi, s.gradient);
-    }
-
-    void collect(const Vec3& position, const Vec3& normal, double area, double phi, const Vec3& gradient) noexcept {
-        if (facing && area > 0.0 && !(-normal.dot(R_FS.transpose() * gradient) > kFacing * gradient.norm())) return;
-        ++answer.contacts;
-        if (request.load) {
-            const Vec3 f = area * phi * normal;
-            force += f;
-            moment += position.cross(f);
-            return;
-        }
-        ContactPoint contact;
-        contact.position = R_WS * position + p_WS;
-        const bool of_face = facing && area > 0.0;
-        contact.gradient =
-            R_WF * (of_face ? withoutTurnOfRim(gradient, R_FS * normal, phi, field.finestCell()) : gradient);
-        // A sample on an edge has no face of its own: the obstacle's face decides.
-        contact.normal = area > 0.0 || contact.gradient.squaredNorm() < 1e-12 ? Vec3(R_WS * normal)
-                                                                              : Vec3(-contact.gradient.normalized());
-        contact.phi = phi;
-        contact.area = area;
-        if (!manifold.tryPush(contact)) answer.manifold_full = true;
+    /// One sample; `above`: a lower bound of φ there that is already known.
+    void evaluate(const ShellSample& sample, double above) noexcept {
+        ++finds.answer.points_tested;
+        const Vec3 p_F = place.inField(sample.position);
+        if (finds.hasToProve(above)) finds.prove(std::max(above, field.lowerBound(p_F)));
+        finds.take(p_F, sample, place.sample(p_F, request.mode, sample.normal));
     }
 
     /// All points of a leaf.
     void evaluateLeaf(const model::SphereNode& leaf, double above) noexcept {
-        if (request.mode != model::FieldMode::Trilinear) {
+        if (plan.pointwise()) {
             for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
                 const model::SurfacePoint& point = shell.points()[i];
-                evaluate(point.position, point.normal, point.area, above, i);
+                evaluate({point.position, point.normal, point.area, i}, above);
             }
             return;
         }
         batch.append(shell.positions(), leaf.first, leaf.count);
         evaluateBatch();
-        if (request.prove && above < answer.lower_bound) {
+        if (finds.hasToProve(above)) {
             std::array<float, model::SphereTree::kLeafPoints> low;
             const auto& at = shell.positions();
-            field.lowerBounds(S, at.x(leaf.first, leaf.count), at.y(leaf.first, leaf.count),
+            field.lowerBounds(place.S, at.x(leaf.first, leaf.count), at.y(leaf.first, leaf.count),
                               at.z(leaf.first, leaf.count), {low.data(), leaf.count});
             const double least = static_cast<double>(*std::min_element(low.begin(), low.begin() + leaf.count));
-            answer.lower_bound = std::min(answer.lower_bound, std::max(above, least));
+            finds.prove(std::max(above, least));
         }
     }
 
     /// The points of the batch; in FieldMode::Trilinear.
     void evaluateBatch() noexcept {
-        field.sampleMany(S, batch.all(batch.x), batch.all(batch.y), batch.all(batch.z),
+        field.sampleMany(place.S, batch.all(batch.x), batch.all(batch.y), batch.all(batch.z),
                          {batch.read.data(), batch.count});
-        answer.points_tested += static_cast<int>(batch.count);
-        const double read_off = gradients ? slack : 0.0;
+        finds.answer.points_tested += static_cast<int>(batch.count);
+        const double read_off = plan.gradients ? plan.slack : 0.0;
         // Those that matter, without a jump, first.
-        const auto limit = static_cast<float>(std::max(request.collect_below + read_off, answer.phi + slack));
+        const auto limit =
+            static_cast<float>(std::max(request.collect_below + read_off, finds.answer.phi + plan.slack));
         std::array<std::uint32_t, kBatch> near;
         std::size_t nears = 0;
         float least = std::numeric_limits<float>::infinity();
@@ -209,20 +185,19 @@ struct Traversal {
             least = std::min(least, batch.read[i]);
         }
         // Only what is not surely above another is read exactly.
-        const double lowest = std::min(static_cast<double>(least) + 2.0 * slack, answer.phi + slack);
+        const double lowest = std::min(static_cast<double>(least) + 2.0 * plan.slack, finds.answer.phi + plan.slack);
         for (std::size_t k = 0; k < nears; ++k) {
             const double read = static_cast<double>(batch.read[near[k]]);
             const std::uint32_t point = batch.index[near[k]];
-            const Vec3 position = batch.position(near[k]);
             const model::Facing& weight = shell.facings()[point];
-            const Vec3 normal = weight.normal.cast<double>();
-            const auto area = static_cast<double>(weight.area);
-            const bool exactly = gradients || (!request.load && !(area > 0.0));
+            const ShellSample sample{batch.position(near[k]), weight.normal.cast<double>(),
+                                     static_cast<double>(weight.area), point};
+            const bool exactly = plan.gradients || (!request.load && !(sample.area > 0.0));
             if (read < lowest || (exactly && read < request.collect_below + read_off)) {
-                const Vec3 p_F = R_FS * position + p_FS;
-                take(p_F, position, normal, area, field.sample(p_F, request.mode), point);
+                const Vec3 p_F = place.inField(sample.position);
+                finds.take(p_F, sample, field.sample(p_F, request.mode));
             } else if (read < request.collect_below) {
-                collect(position, normal, area, read, Vec3::Zero());
+                finds.collect(sample, read, Vec3::Zero());
             }
         }
         batch.count = 0;
@@ -234,9 +209,9 @@ struct Traversal {
         std::vector<QueryWorkspace::Entry>& heap = workspace.heap_;
         std::size_t next = 0, end = 0, leaves = heap.size();  // nodes wait from the front, leaves from the back
         const auto screen = [&] {
-            field.lowerBounds(S, batch.all(batch.x), batch.all(batch.y), batch.all(batch.z),
+            field.lowerBounds(place.S, batch.all(batch.x), batch.all(batch.y), batch.all(batch.z),
                               {batch.read.data(), batch.count});
-            answer.nodes_visited += static_cast<int>(batch.count);
+            finds.answer.nodes_visited += static_cast<int>(batch.count);
             for (std::size_t i = 0; i < batch.count; ++i) {
                 const std::uint32_t node = batch.index[i];
                 const double bound = static_cast<double>(batch.read[i]) - static_cast<double>(shell.radii()[node]);
@@ -251,9 +226,9 @@ struct Traversal {
                 const model::SphereNode& node = shell.nodes()[heap[next++].node];
                 batch.append(shell.centres(), node.first, node.count);
             }
-        if (grouped) return sweepGroups(leaves);
+        if (plan.grouped) return sweepGroups(leaves);
         while (leaves < heap.size()) {
-            if (request.mode != model::FieldMode::Trilinear) {
+            if (plan.pointwise()) {
                 evaluateLeaf(shell.nodes()[heap[leaves].node], heap[leaves].bound);
                 ++leaves;
                 continue;
@@ -278,137 +253,100 @@ struct Traversal {
         while (leaf < heap.size()) {
             for (; leaf < heap.size(); ++leaf) {
                 const model::SphereNode& node = shell.nodes()[heap[leaf].node];
-                const std::uint32_t groups =
+                const std::uint32_t count =
                     (node.count + model::SphereTree::kGroupPoints - 1) / model::SphereTree::kGroupPoints;
-                if (batch.count + groups > kBatch) break;
-                batch.append(shell.groupPositions(), node.first_group, groups);
+                if (batch.count + count > kBatch) break;
+                batch.append(shell.groupPositions(), node.first_group, count);
             }
             screenGroups();
         }
-        const double share = kSettled / std::max(1, groups_inside);
+        const double share = kSettled / std::max(1, groups.inside);
         const auto within = static_cast<float>(-share), without = static_cast<float>(std::min(1.0, share));
         const auto takeApart = [&](std::uint32_t group) {
             const std::uint32_t first = shell.groupPoints()[group], count = shell.groupPoints()[group + 1] - first;
             if (batch.count + count > kBatch) evaluateBatch();
             batch.append(shell.positions(), first, count);
         };
-        if (lowest_group != kNoPoint) {
-            takeApart(lowest_group);
+        if (groups.lowest != kNoPoint) {
+            takeApart(groups.lowest);
             evaluateBatch();
         }
-        for (std::size_t i = 0; i < near_groups; ++i) {
+        for (std::size_t i = 0; i < groups.count; ++i) {
             const auto& [phi, group] = workspace.near_[i];
-            if (group == lowest_group) continue;
+            if (group == groups.lowest) continue;
             const float radius = shell.groupRadii()[group];
-            const bool may_be_deepest = static_cast<double>(phi - radius) < answer.phi;
+            const bool may_be_deepest = static_cast<double>(phi - radius) < finds.answer.phi;
             if (may_be_deepest || (phi > within * radius && phi < without * radius)) {
                 takeApart(group);
             } else if (phi < 0.0f) {
                 const model::Facing& whole = shell.groupFacings()[group];
-                collect(shell.groupPositions().at(group), whole.normal.cast<double>(), static_cast<double>(whole.area),
-                        static_cast<double>(phi), Vec3::Zero());
-                answer.contacts += static_cast<int>(shell.groupPoints()[group + 1] - shell.groupPoints()[group]) - 1;
+                finds.collect(
+                    {shell.groupPositions().at(group), whole.normal.cast<double>(), static_cast<double>(whole.area)},
+                    static_cast<double>(phi), Vec3::Zero());
+                finds.answer.contacts +=
+                    static_cast<int>(shell.groupPoints()[group + 1] - shell.groupPoints()[group]) - 1;
             }
         }
         if (batch.count > 0) evaluateBatch();
     }
 
     void screenGroups() noexcept {
-        field.sampleMany(S, batch.all(batch.x), batch.all(batch.y), batch.all(batch.z),
+        field.sampleMany(place.S, batch.all(batch.x), batch.all(batch.y), batch.all(batch.z),
                          {batch.read.data(), batch.count});
-        answer.points_tested += static_cast<int>(batch.count);
+        finds.answer.points_tested += static_cast<int>(batch.count);
         for (std::size_t i = 0; i < batch.count; ++i) {
             const std::uint32_t group = batch.index[i];
             if (!(batch.read[i] < shell.groupRadii()[group])) continue;
-            workspace.near_[near_groups++] = {batch.read[i], group};
-            groups_inside += batch.read[i] < 0.0f ? 1 : 0;
-            if (!(batch.read[i] < least_in_group)) continue;
-            least_in_group = batch.read[i];
-            lowest_group = group;
+            workspace.near_[groups.count++] = {batch.read[i], group};
+            groups.inside += batch.read[i] < 0.0f ? 1 : 0;
+            if (!(batch.read[i] < groups.least)) continue;
+            groups.least = batch.read[i];
+            groups.lowest = group;
         }
         batch.count = 0;
     }
 
-    /// The deepest point, between the samples too.
-    void refine() noexcept {
-        if (deepest == kNoPoint) return;
-        const Descent found = descend(field, S, shell, deepest, answer.phi);
-        answer.points_tested += found.points_tested;
-        const Vec3 p_F = R_FS * found.position + p_FS;
-        const model::FieldSample s = field.sample(p_F, request.mode, -(R_FS * shell.points()[deepest].normal));
-        if (!(s.phi < answer.phi)) return;
-        answer.phi = s.phi;
-        answer.closest_F = p_F;
-        answer.normal_W = s.gradient;
-    }
-
-    /// The sphere of a node that is not looked into.
-    void standIn(const model::SphereNode& node, double bound) noexcept {
-        if (!(bound < request.collect_below)) return;
-        const Vec3 centre_F = R_FS * node.centre + p_FS;
-        ContactPoint contact;
-        contact.position = X_WF * centre_F;
-        contact.gradient = R_WF * field.sample(centre_F, request.mode, -(R_FS * node.normal)).gradient;
-        contact.normal = -contact.gradient;
-        contact.phi = bound;
-        contact.radius = node.radius;
-        if (!manifold.tryPush(contact)) answer.manifold_full = true;
-    }
-
     void run() noexcept {
-        if (!ordered && !request.prove) return sweep();
+        if (!plan.ordered && !request.prove) return sweep();
         push(0, static_cast<std::uint32_t>(shell.roots().size()), -kInfinity);
-        while (waiting > 0) {
-            if (request.max_nodes > 0 && exceedsBudget(shell.nodes()[workspace.heap_.front().node])) {
-                answer.budget_reached = true;
+        while (!queue.empty()) {
+            if (request.max_nodes > 0 && exceedsBudget(shell.nodes()[queue.next()])) {
+                finds.answer.budget_reached = true;
                 break;
             }
-            double bound = 0.0;
-            const model::SphereNode& node = shell.nodes()[pop(bound)];
-            if (bound >= pruneAbove()) continue;
+            const QueryWorkspace::Entry entry = queue.pop();
+            const model::SphereNode& node = shell.nodes()[entry.node];
+            if (entry.bound >= finds.pruneAbove()) continue;
             if (node.leaf) {
-                evaluateLeaf(node, bound);
+                evaluateLeaf(node, entry.bound);
                 continue;
             }
-            push(node.first, node.count, bound);
+            push(node.first, node.count, entry.bound);
         }
-        while (waiting > 0) {  // the budget ended
-            double bound = 0.0;
-            const model::SphereNode& node = shell.nodes()[pop(bound)];
-            if (bound >= pruneAbove()) continue;
-            evaluate(node.point, node.normal, node.facing_area, bound, kNoPoint);
-            if (request.spheres) standIn(node, bound);
-            answer.lower_bound = std::min(answer.lower_bound, bound);
-            unproven_area += node.area;
-        }
+        while (!queue.empty()) standIn(queue.pop());  // the budget ended
     }
 
-private:
-    static bool later(const QueryWorkspace::Entry& a, const QueryWorkspace::Entry& b) noexcept {
-        return a.order > b.order || (a.order == b.order && a.node > b.node);
-    }
-    std::vector<QueryWorkspace::Entry>::iterator at(std::size_t i) noexcept {
-        return workspace.heap_.begin() + static_cast<std::ptrdiff_t>(i);
+    /// One point and the sphere of a node that is not looked into.
+    void standIn(const QueryWorkspace::Entry& entry) noexcept {
+        const model::SphereNode& node = shell.nodes()[entry.node];
+        if (entry.bound >= finds.pruneAbove()) return;
+        evaluate({node.point, node.normal, node.facing_area}, entry.bound);
+        if (request.spheres) finds.standIn(node, entry.bound);
+        finds.prove(entry.bound);
+        unproven_area += node.area;
     }
 };
 
 QueryAnswer queryContacts(const model::DistanceField& field, const Pose& X_WF, const model::SphereTree& shell,
                           const Pose& X_WS, const QueryRequest& request, QueryWorkspace& workspace,
                           ContactManifold& manifold) noexcept {
-    const Pose X_FS = X_WF.inverse() * X_WS;
-    Traversal traversal(field, X_WF, shell, X_FS, X_WS, request, workspace, manifold);
+    const ShellInField place(field, X_WF, shell, X_WF.inverse() * X_WS, X_WS);
+    const QueryPlan plan(request, field);
+    ContactFinds finds(place, plan, manifold);
+    Traversal traversal(place, plan, finds, workspace);
     traversal.run();
-    if (request.refine) traversal.refine();
-    QueryAnswer& answer = traversal.answer;
-    if (request.load) answer.load = {traversal.R_WS * traversal.force, traversal.R_WS * traversal.moment};
-    if (answer.found) {
-        answer.closest_W = X_WF * answer.closest_F;
-        const double length = answer.normal_W.norm();
-        answer.normal_W = length > 0.0 ? Vec3(traversal.R_WF * (answer.normal_W / length)) : Vec3(Vec3::Zero());
-    }
-    // Rounded sums of areas may exceed the total by a bit.
-    if (shell.totalArea() > 0.0) answer.quality = std::max(0.0, 1.0 - traversal.unproven_area / shell.totalArea());
-    return answer;
+    if (request.refine) finds.refine();
+    return finds.told(traversal.unproven_area);
 }
 
 }  // namespace passung::tick
