@@ -11,25 +11,25 @@ namespace passung::tick {
 namespace {
 
 /// Where a step begins, and what is known there.
-struct Place {
+struct StepStart {
     Pose X_WG;
     double reach, clearance, room;
     std::size_t contacts;
 };
 
-Place placeOf(const Proxy& proxy) noexcept {
+StepStart startOf(const Proxy& proxy) noexcept {
     return {proxy.X_WG, proxy.manifold_reach, proxy.clearance, proxy.room, proxy.manifold.size()};
 }
 
 /// From where a step ended in overlap back to where it began. Its contacts are those that `look` left in the scratch
 /// memory, which now holds what the step met.
-void takeBack(const ProxyView& view, const Place& place) noexcept {
+void takeBack(const ProxyView& view, const StepStart& start) noexcept {
     Proxy& proxy = view.proxy;
     std::swap(proxy.manifold, view.memory.scratch);
-    proxy.X_WG = place.X_WG;
-    proxy.manifold_reach = place.reach;
-    proxy.clearance = place.clearance;
-    proxy.room = place.room;
+    proxy.X_WG = start.X_WG;
+    proxy.manifold_reach = start.reach;
+    proxy.clearance = start.clearance;
+    proxy.room = start.room;
 }
 
 /// What the step `u` met and went more than `relieve` into, as contacts of the place where it began (cuts:
@@ -56,12 +56,19 @@ struct Step {
     bool at_rest = false;  // nothing is allowed
 };
 
-/// Makes what is `allowed` of `wanted`, no farther than is `known`, so that it leaves no more overlap than `accepted`.
+/// What a step may do, and how to look around where it ends [m].
+struct StepBounds {
+    double known;     // no farther than is known around the proxy
+    double accepted;  // most overlap that it may leave
+    double reach, search;
+};
+
+/// Makes what is `allowed` of `wanted` within `bounds`.
 Step makeStep(const MovingProxy& moving, const Motion& wanted, const Surroundings& around, AllowedMotion allowed,
-              double known, double reach, double search, double accepted) noexcept {
+              const StepBounds& bounds) noexcept {
     const TickModel& model = moving.model;
     Proxy& proxy = moving.proxy;
-    const Place here = placeOf(proxy);
+    const StepStart here = startOf(proxy);
     double share = 1.0;
     for (int tried = 0; tried <= kCuts + kHalvings; ++tried) {
         const double length = longestPath(model, allowed.u);
@@ -69,13 +76,13 @@ Step makeStep(const MovingProxy& moving, const Motion& wanted, const Surrounding
             proxy.manifold.keepFirst(here.contacts);
             return {.rubbing = allowed.rubbing, .at_rest = true};
         }
-        const Motion u = share * (length > known ? known / length : 1.0) * allowed.u;
-        look(moving, moved(model, here.X_WG, u), reach, search);
-        if (overlap(proxy) <= accepted) {
+        const Motion u = share * (length > bounds.known ? bounds.known / length : 1.0) * allowed.u;
+        look(moving, moved(model, here.X_WG, u), bounds.reach, bounds.search);
+        if (overlap(proxy) <= bounds.accepted) {
             return {.u = u,
                     .rubbing = allowed.rubbing,
                     .made = true,
-                    .whole = share == 1.0 && length <= known,
+                    .whole = share == 1.0 && length <= bounds.known,
                     .halved = share < 1.0};
         }
         moving.report.status |= kStepRejected;
@@ -138,7 +145,8 @@ void sweepProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pr
         report.iterations = static_cast<std::uint32_t>(sweep + 1);
         const Pose X_here = proxy.X_WG;
         const Step made =
-            makeStep(moving, wanted, around, allowed, known, next_reach, std::max(next_reach, path), accepted);
+            makeStep(moving, wanted, around, allowed,
+                     {.known = known, .accepted = accepted, .reach = next_reach, .search = std::max(next_reach, path)});
         arrived = made.at_rest;
         if (arrived && sweep == 0) motion.rubbing = made.rubbing;
         if (!made.made) break;
