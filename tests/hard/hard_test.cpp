@@ -4,7 +4,9 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <ostream>
 #include <span>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -22,7 +24,11 @@ struct Hold {
     const Case* what;
     model::ContactMethod method;
     const char* method_name;
+
+    std::string name() const { return std::string(what->name) + "_" + method_name; }
 };
+
+void PrintTo(const Hold& hold, std::ostream* out) { *out << hold.name(); }
 
 /// By default every case is run with one of its methods, in turns, and a quarter of the planted faults is tried;
 /// PASSUNG_LONG=1: all of both. The size of each is another matter: fullSize().
@@ -56,9 +62,7 @@ TEST_P(Hard, CaseHoldsItsMark) {
     EXPECT_EQ(found.broken, "");
 }
 
-INSTANTIATE_TEST_SUITE_P(Table, Hard, testing::ValuesIn(holds()), [](const auto& hold) {
-    return std::string(hold.param.what->name) + "_" + hold.param.method_name;
-});
+INSTANTIATE_TEST_SUITE_P(Table, Hard, testing::ValuesIn(holds()), [](const auto& hold) { return hold.param.name(); });
 
 TEST(HardCases, PenaltyFallsThroughSheetAndThinPlate) {
     // Truth: independent program (FCL): forces from the overlap alone hold nothing back, so that what these cases count

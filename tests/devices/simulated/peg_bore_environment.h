@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <ostream>
 #include <vector>
 
 #include "core/base/types.h"
@@ -16,6 +17,9 @@ namespace passung::simulated {
 class PegBoreEnvironment {
 public:
     enum class Method { Penalty, GodObject };
+    friend void PrintTo(Method method, std::ostream* out) {
+        *out << (method == Method::Penalty ? "penalty" : "god object");
+    }
 
     struct Setup {
         double bore_diameter = 0.021;
