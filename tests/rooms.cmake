@@ -67,7 +67,7 @@ set(libraries
   "libpqxx  | ^pqxx/                           | study/store/transfer tests             | cpp"
   "FCL      | ^fcl/                            | analysis/truth tests                   | cpp"
   "Boost.Math | ^boost/math/                     | analysis/stats tests                   | cpp"
-  "spdlog   | ^spdlog/                         | ui tests                               | cpp"
+  "spdlog   | ^spdlog/                         | study/run tests                        | cpp"
   "CLI11    | ^CLI/                            | ui/cli tests                           | cpp"
   "ODE      | ^ode/                            | tests                                  | cpp"
   "Bullet   | ^(btBullet|Bullet)               | tests                                  | cpp"

@@ -1,7 +1,6 @@
 #include "study/run/run_study.h"
 
 #include <fmt/format.h>
-#include <sys/utsname.h>
 
 #include <filesystem>
 #include <thread>
@@ -18,8 +17,11 @@
 #include "study/run/files/builds.h"
 #include "study/run/files/known_names.h"
 #include "study/run/files/stored_plans.h"
+#include "study/run/log/logged_run.h"
+#include "study/run/log/logged_sink.h"
 #include "study/run/machine/auto_accuracy.h"
 #include "study/run/machine/calibration.h"
+#include "study/run/machine/host.h"
 #include "study/run/machine/stability_report.h"
 #include "study/run/person/simulated_answers.h"
 #include "study/run/person/simulated_timer.h"
@@ -30,10 +32,25 @@ namespace passung::app {
 
 namespace {
 
-std::string hostText() {
-    utsname name{};
-    uname(&name);
-    return std::string(name.sysname) + " " + name.release + " " + name.machine;
+/// For the log.
+std::string sessionText(const session::SessionSetup& setup, const DeviceDescription& device) {
+    return fmt::format("session begins: {}, {} trials, device {} ({})",
+                       setup.timing_measured ? "real time" : "virtual time", setup.trials.size(), device.name,
+                       device.label);
+}
+
+/// For the log.
+const char* openingText(store::OpenOutcome outcome) {
+    switch (outcome) {
+        case store::OpenOutcome::Current:
+            return "store opened";
+        case store::OpenOutcome::Upgraded:
+            return "store opened, its schema upgraded";
+        case store::OpenOutcome::Created:
+            return "store created";
+        default:
+            return "store not opened";
+    }
 }
 
 /// A simulated person has no use for a text.
@@ -191,6 +208,7 @@ private:
             };
         SimulatedTimer timer(person::personOf(plan_.name, code, plan_.seed));
         if (simulates) setup.timer = &timer;  // else somebody is there to say it
+        if (options_.log != nullptr) options_.log->tell(sessionText(setup, apparatus.device()));
         if (options_.performer != nullptr) options_.performer->begins(apparatus, setup);
         struct Over {  // whatever is thrown: before the apparatus goes
             Performer* performer;
@@ -198,7 +216,8 @@ private:
                 if (performer != nullptr) performer->over();
             }
         } const over{options_.performer};
-        session::Session session(std::move(setup), apparatus, sink, {listener_.acknowledge, listener_.trial});
+        LoggedSink logged_sink(sink, options_.log);
+        session::Session session(std::move(setup), apparatus, logged_sink, {listener_.acknowledge, listener_.trial});
         conduct(session, apparatus);
         if (session.state() == session::SessionState::Failed) return session.errors();
         if (session.state() == session::SessionState::Interrupted) return RunEnd::Interrupted;
@@ -245,6 +264,7 @@ store::Store::Opened openForRun(const RunOptions& options, const RunListener& li
     with.group = options.group;
     with.station = options.station;
     auto opened = store::Store::open(options.database, with);
+    if (options.log != nullptr) options.log->tell(openingText(opened.outcome));
     if (!opened.store) return opened;
     if (listener.recovered && !opened.recovery.empty()) listener.recovered(opened.recovery);
     if (listener.warned && !opened.recovery.later_utc.empty())
@@ -270,6 +290,7 @@ Result<Done> loadStoredQuestionnaires(const store::StoreReader& reader, const st
 void backUp(store::Store& store, const RunOptions& options, const RunListener& listener) {
     if (!options.backup) return;
     const auto kept = store.backup();
+    if (!kept && options.log != nullptr) options.log->fail("no backup", kept.errors());
     if (!listener.warned) return;
     if (!kept)
         listener.warned("no backup copy was made: " + kept.errors().front().message);
@@ -310,9 +331,7 @@ Error otherStation(const store::Unfinished& session, const RunOptions& options) 
                  .file = options.database};
 }
 
-}  // namespace
-
-Result<RunEnd> runStudy(const protocol::StudyPlan& plan, RunOptions options, const RunListener& listener) {
+Result<RunEnd> runSessions(const protocol::StudyPlan& plan, RunOptions options, const RunListener& listener) {
     if (Errors why = whyNotPeople(plan, options.participant, options.performer); !why.empty()) return why;
     if (Errors unstable = beyondBorder(plan, knownDevices()); !unstable.empty()) return unstable;
     const auto language = protocol::chooseLanguage(plan, options.language);
@@ -373,7 +392,7 @@ Result<RunEnd> runStudy(const protocol::StudyPlan& plan, RunOptions options, con
     return end;
 }
 
-Result<RunEnd> resumeStudy(const ResumeOptions& resume, RunOptions options, const RunListener& listener) {
+Result<RunEnd> resumeSession(const ResumeOptions& resume, RunOptions options, const RunListener& listener) {
     auto opened = openForRun(options, listener, false);
     if (!opened.store) return opened.errors;
     const auto session = opened.store->unfinished(resume.session);
@@ -395,6 +414,24 @@ Result<RunEnd> resumeStudy(const ResumeOptions& resume, RunOptions options, cons
     const auto end = run.resume(*session);
     backUp(*opened.store, options, listener);
     return end;
+}
+
+void logStart(const RunOptions& options, const std::string& what) {
+    if (options.log == nullptr) return;
+    for (const std::string& who : {options.participant, options.experimenter}) options.log->leaveOut(who);
+    options.log->tell(what);
+}
+
+}  // namespace
+
+Result<RunEnd> runStudy(const protocol::StudyPlan& plan, RunOptions options, const RunListener& listener) {
+    logStart(options, "run of protocol " + sha256Hex(plan.source_text));
+    return logged(options.log, listener, [&](const RunListener& with) { return runSessions(plan, options, with); });
+}
+
+Result<RunEnd> resumeStudy(const ResumeOptions& resume, RunOptions options, const RunListener& listener) {
+    logStart(options, "resumption");
+    return logged(options.log, listener, [&](const RunListener& with) { return resumeSession(resume, options, with); });
 }
 
 }  // namespace passung::app

@@ -7,6 +7,7 @@
 #include "study/plan/study_plan.h"
 #include "study/run/files/mesh_importer.h"
 #include "study/run/files/wall_clock.h"
+#include "study/run/log/study_log.h"
 #include "study/run/loop_apparatus.h"
 #include "study/run/person/person_at_desk.h"
 #include "study/session/session.h"
@@ -32,6 +33,7 @@ struct RunOptions {
     Performer* performer = nullptr;                   // who takes part or watches; null: nobody
     store::UtcClock::Now now = unixMilliseconds;      // in real time; virtual time has none
     ImportLimits import_limits;                       // of every mesh file
+    StudyLog* log = nullptr;                          // of the database; null: none is kept
 };
 
 /// How a run ended that met no error.

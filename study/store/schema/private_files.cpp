@@ -23,6 +23,9 @@ std::string properName(const std::string& path) {
     return error ? path : proper.string();
 }
 
+/// That a file is open to everybody is nobody's decision: such a one becomes the owner's alone.
+mode_t decidedMode(mode_t mode) { return (mode & kOthers) != 0 ? mode & kOwner : mode & kAll; }
+
 /// False if this user may not.
 bool giveMode(const std::string& path, mode_t mode, gid_t group) {
     struct stat file = {};
@@ -49,19 +52,16 @@ void keepPrivate(const std::string& database_path, bool group) {
     const std::string path = properName(database_path);
     struct stat file = {};
     if (stat(path.c_str(), &file) != 0) return;
-    mode_t mode = file.st_mode & kAll;
-    if (group)
-        mode = kGroupToo;
-    else if ((mode & kOthers) != 0)  // an open door is nobody's decision
-        mode &= kOwner;
+    const mode_t mode = group ? kGroupToo : decidedMode(file.st_mode);
     if (!giveMode(path, mode, file.st_gid) && group)
         throw std::runtime_error("belongs to another user, who alone can share it with the group");
     for (const char* beside : kBeside) giveMode(path + beside, mode, file.st_gid);
+    for (const char* log : kLogFiles) giveMode(path + log, mode, file.st_gid);
 }
 
 void shareLike(const std::string& database_path, const std::string& file) {
     struct stat database = {};
-    if (stat(database_path.c_str(), &database) == 0) giveMode(file, database.st_mode & kAll, database.st_gid);
+    if (stat(database_path.c_str(), &database) == 0) giveMode(file, decidedMode(database.st_mode), database.st_gid);
 }
 
 }  // namespace passung::store

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <array>
 #include <string>
 
 namespace passung::store {
 
 // Who may open what holds people's data: nobody but the owner (mode 0600), or, where stations share a study, the
 // owner's group as well (0660). What lies beside a database has its mode and its group.
+
+/// Behind a database's name: the log of what ran on it (study/run/log), the newest part first.
+inline constexpr std::array kLogFiles = {".log", ".1.log", ".2.log"};
 
 /// The file that a link stands for; any other name as it is.
 std::string behindLink(const std::string& path);

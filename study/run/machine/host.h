@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+namespace passung::app {
+
+/// This machine's system, without its name: "Linux 6.1.0 x86_64".
+std::string hostText();
+
+/// The same with the number of its processors.
+std::string machineText();
+
+}  // namespace passung::app
