@@ -50,6 +50,11 @@ void listenForSignals() {
     for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
 }
 
+/// What cannot be logged is warned of.
+app::StudyLog logOf(const std::string& database) {
+    return {database, "passung", [database](const std::string& problem) { warn(database, {problem}); }};
+}
+
 using Perform = std::function<Result<app::RunEnd>(const app::RunOptions&, const app::RunListener&)>;
 
 /// Lets `go` perform sessions and tells of them; `study` is the file that warnings are about, `answers` who answers
@@ -68,6 +73,8 @@ int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, con
             return askConsent(terminal, what.interrupted, clause, text);
         };
     }
+    app::StudyLog log = logOf(what.database);
+    what.log = &log;
     std::string code, participant;
     std::set<std::int64_t> succeeded;  // trials, by the last attempt at each
     std::size_t finished = 0, planned = 0, earlier = 0, invalid = 0;
@@ -157,7 +164,10 @@ int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, con
 
 int run(const RunOptions& options) {
     auto plan = app::readProtocol(options.protocol, options.import_limits);
-    if (!plan) return fail(plan.errors());
+    if (!plan) {
+        if (!options.database.empty()) logOf(options.database).fail("protocol refused", plan.errors());
+        return fail(plan.errors());
+    }
     warn(options.protocol, session::planWarnings(*plan));
     if (options.seed) plan->seed = *options.seed;
 

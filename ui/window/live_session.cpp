@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <utility>
@@ -97,6 +98,9 @@ Result<RunEnd> LiveSession::perform(const RunListener& listener) {
     run.performer = this;
     if (!options_.try_out) run.language = options_.language;
     run.experimenter = options_.experimenter;
+    StudyLog log(run.database, "passung-window",
+                 [](const std::string& problem) { std::fprintf(stderr, "warning: %s\n", problem.c_str()); });
+    run.log = &log;
     run.interrupted = [this] { return ends_.load(); };
     if (!options_.try_out && kind() != protocol::ParticipantKind::Simulated)
         run.ask_consent = [this](const auto& clause, const std::string& text) { return askConsent(clause, text); };
