@@ -382,6 +382,13 @@ private:
         sub->add_option("--seconds", doctor_.seconds, "of the loop check")
             ->check(between(0.1, 3600.0, "a number from 0.1 to 3600"));
         auto* device = sub->add_option("--device", doctor_.device, "tell of this device alone, without a loop check");
+        auto* report = sub->add_option("--report", doctor_.report,
+                                       "file of text that gets all this and the logs of studies, for a bug report; no "
+                                       "log tells of participants or what they did")
+                           ->excludes(device);
+        sub->add_option("--db", doctor_.databases,
+                        "databases whose logs (DB.log) the report takes; default: all here and the windows'")
+            ->needs(report);
         sub->add_flag("--find-stiffness", doctor_.find_stiffness,
                       "try how stiff a wall the device bears (nobody holds it) and keep it as this user's calibration: "
                       "\"max\" of a stiffness then stands for it")

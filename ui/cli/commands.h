@@ -207,8 +207,10 @@ int bench(const BenchOptions& options);
 
 struct DoctorOptions {
     double seconds = 10.0;
-    std::string device;           // preset; empty: all, with a check of the loop
-    bool find_stiffness = false;  // of the device, and keep it
+    std::string device;                  // preset; empty: all, with a check of the loop
+    bool find_stiffness = false;         // of the device, and keep it
+    std::string report;                  // file that gets all this and the logs; empty: none
+    std::vector<std::string> databases;  // whose logs; empty: those that app::loggedDatabases() finds
 };
 int doctor(const DoctorOptions& options);
 

@@ -6,7 +6,10 @@
 #include <string_view>
 
 #include "study/run/files/known_names.h"
+#include "study/run/log/discreet.h"
+#include "study/run/log/study_log.h"
 #include "study/run/machine/calibration.h"
+#include "study/run/machine/host.h"
 #include "study/run/machine/loop_check.h"
 #include "study/run/machine/stability_report.h"
 #include "ui/cli/commands.h"
@@ -16,37 +19,43 @@ namespace passung::cli {
 
 namespace {
 
-void printBounds(const char* unit, double stable, const app::WallBounds& bounds) {
-    const auto cell = [](double bound) { return bound > 0.0 ? fmt::format("{:.4g}", bound) : std::string("none"); };
-    fmt::print("              {:<7}{:>10}{:>10}{:>10}{:>10}{:>12}\n", unit, cell(stable), cell(bounds.border),
-               cell(bounds.linear), cell(bounds.passive), cell(bounds.passive_undamped));
+void print(const std::string& text) {
+    fmt::print("{}", text);
+    std::fflush(stdout);
 }
 
-void printDevice(const DeviceDescription& d) {
-    fmt::print("  {:<12}{}\n", d.name, d.label);
+std::string boundsText(const char* unit, double stable, const app::WallBounds& bounds) {
+    const auto cell = [](double bound) { return bound > 0.0 ? fmt::format("{:.4g}", bound) : std::string("none"); };
+    return fmt::format("              {:<7}{:>10}{:>10}{:>10}{:>10}{:>12}\n", unit, cell(stable), cell(bounds.border),
+                       cell(bounds.linear), cell(bounds.passive), cell(bounds.passive_undamped));
+}
+
+std::string deviceText(const DeviceDescription& d) {
+    std::string text = fmt::format("  {:<12}{}\n", d.name, d.label);
     if (d.mechanism) {
-        printBounds("N/m", d.stable_stiffness_N_per_m,
-                    app::translationBounds(*d.mechanism, d.recommended_damping_Ns_per_m, d.delay_ticks));
+        text += boundsText("N/m", d.stable_stiffness_N_per_m,
+                           app::translationBounds(*d.mechanism, d.recommended_damping_Ns_per_m, d.delay_ticks));
         if (d.actuated_degrees >= 6)
-            printBounds("Nm/rad", d.stable_rotational_stiffness_Nm_per_rad,
-                        app::rotationBounds(*d.mechanism, d.recommended_rotational_damping_Nms_per_rad, d.delay_ticks));
+            text += boundsText(
+                "Nm/rad", d.stable_rotational_stiffness_Nm_per_rad,
+                app::rotationBounds(*d.mechanism, d.recommended_rotational_damping_Nms_per_rad, d.delay_ticks));
     }
-    fmt::print("              {}\n", d.stability_source);
+    return text + fmt::format("              {}\n", d.stability_source);
 }
 
 /// `device` empty: all.
-void printDevices(const std::string& device) {
-    fmt::print(
+std::string devicesText(const std::string& device) {
+    std::string text =
         "devices: stiffness that a study may use (\"max\"), and by the model of the mechanism at the recommended "
-        "damping: exact border, linear rule, passive bound with encoder steps and dry friction, the same undamped\n");
-    fmt::print("  {:<19}{:>10}{:>10}{:>10}{:>10}{:>12}\n", "simulated", "max", "border", "linear", "passive",
-               "(undamped)");
+        "damping: exact border, linear rule, passive bound with encoder steps and dry friction, the same undamped\n";
+    text += fmt::format("  {:<19}{:>10}{:>10}{:>10}{:>10}{:>12}\n", "simulated", "max", "border", "linear", "passive",
+                        "(undamped)");
     for (const DeviceDescription& d : app::knownDevices())
-        if (device.empty() || d.name == device) printDevice(d);
-    fmt::print(
-        "  none: no stiffness has it at that damping; a \"max\" above the border was found on the device, where dry "
-        "friction and the hand damp what the model leaves free\n");
-    fmt::print("  real        none: this version has drivers for simulated devices only\n");
+        if (device.empty() || d.name == device) text += deviceText(d);
+    return text +
+           "  none: no stiffness has it at that damping; a \"max\" above the border was found on the device, where dry "
+           "friction and the hand damp what the model leaves free\n"
+           "  real        none: this version has drivers for simulated devices only\n";
 }
 
 int findStiffness(const simulated::DeviceParams& device) {
@@ -56,7 +65,7 @@ int findStiffness(const simulated::DeviceParams& device) {
     fmt::print("{}: calm up to {:.6g} N/m", device.name, found->calm_stiffness);
     if (found->calm_rotational_stiffness > 0.0) fmt::print(" and {:.6g} Nm/rad", found->calm_rotational_stiffness);
     fmt::print(", kept for this user in {}\n", app::calibrationPath(found->device));
-    printDevices(found->device);
+    print(devicesText(found->device));
     return 0;
 }
 
@@ -67,10 +76,10 @@ std::string limitText(int resource) {
 }
 
 /// The program and the libraries that it was built with.
-void printVersions() {
-    fmt::print("versions\n");
-    const auto line = [](std::string_view name, std::string_view version) {
-        fmt::print("  {:<12}{}\n", name, version);
+std::string versionsText() {
+    std::string text = "versions\n";
+    const auto line = [&text](std::string_view name, std::string_view version) {
+        text += fmt::format("  {:<12}{}\n", name, version);
     };
     line("passung", PASSUNG_VERSION);
     for (std::string_view rest = PASSUNG_LIBRARIES; !rest.empty();) {
@@ -80,22 +89,41 @@ void printVersions() {
         line(library.substr(0, space), library.substr(space + 1));
     }
     line("compiler", __VERSION__);
+    line("machine", app::machineText());
+    return text;
 }
 
-void printLoop(const app::LoopCheck& check) {
-    fmt::print("loop\n");
-    fmt::print("  real-time scheduling  {} (limit of ordinary users: rtprio {})\n",
-               check.scheduling.fifo ? "granted" : "refused", limitText(RLIMIT_RTPRIO));
-    fmt::print("  locked memory         {} (memlock {})\n", check.scheduling.memory_locked ? "granted" : "refused",
-               limitText(RLIMIT_MEMLOCK));
-    if (!check.scheduling.fifo) {
-        fmt::print(
-            "  to grant both: a file in /etc/security/limits.d with rtprio 80 and memlock unlimited for your group\n");
+std::string displayText() {
+    const char* display = std::getenv("DISPLAY");
+    return fmt::format("display\n  {}\n", display != nullptr ? display : "none (DISPLAY is not set)");
+}
+
+std::string loopText(const app::LoopCheck& check) {
+    std::string text = fmt::format("loop\n  real-time scheduling  {} (limit of ordinary users: rtprio {})\n",
+                                   check.scheduling.fifo ? "granted" : "refused", limitText(RLIMIT_RTPRIO));
+    text += fmt::format("  locked memory         {} (memlock {})\n",
+                        check.scheduling.memory_locked ? "granted" : "refused", limitText(RLIMIT_MEMLOCK));
+    if (!check.scheduling.fifo)
+        text +=
+            "  to grant both: a file in /etc/security/limits.d with rtprio 80 and memlock unlimited for your group\n";
+    text += fmt::format("  cycles began late by  p50 {:.1f}  p99 {:.1f}  p99.9 {:.1f}  max {:.1f} µs\n", check.p50_us,
+                        check.p99_us, check.p999_us, check.max_us);
+    text += fmt::format("  a tick computed in    p99 {:.1f} µs\n", check.compute_p99_us);
+    return text + fmt::format("  verdict               {}\n", check.verdict);
+}
+
+/// Everything that a bug report needs: what doctor has said and the logs, in one file of text.
+int writeReport(const DoctorOptions& options, const std::string& said) {
+    const auto databases = options.databases.empty() ? app::loggedDatabases() : options.databases;
+    OutputFile report(options.report);
+    report.write(said);
+    for (const std::string& database : databases) {
+        const std::string log = app::logText(database);
+        report.write(fmt::format("\nlog of {}\n{}", app::discreet(database), log.empty() ? "none\n" : log));
     }
-    fmt::print("  cycles began late by  p50 {:.1f}  p99 {:.1f}  p99.9 {:.1f}  max {:.1f} µs\n", check.p50_us,
-               check.p99_us, check.p999_us, check.max_us);
-    fmt::print("  a tick computed in    p99 {:.1f} µs\n", check.compute_p99_us);
-    fmt::print("  verdict               {}\n", check.verdict);
+    if (const auto done = report.commit(); !done) return fail(done.errors());
+    fmt::print("report: {}: this and {} log{}\n", options.report, databases.size(), databases.size() == 1 ? "" : "s");
+    return 0;
 }
 
 }  // namespace
@@ -110,17 +138,15 @@ int doctor(const DoctorOptions& options) {
                 {{.message = "unknown device; known devices: " + names, .key = "--device", .value = options.device}});
         }
         if (options.find_stiffness) return findStiffness(*device);
-        printDevices(options.device);
+        print(devicesText(options.device));
         return 0;
     }
-    printVersions();
-    printDevices("");
-    const char* display = std::getenv("DISPLAY");
-    fmt::print("display\n  {}\n", display != nullptr ? display : "none (DISPLAY is not set)");
-    fmt::print("loop check: {:.0f} s\n", options.seconds);
-    std::fflush(stdout);
-    printLoop(app::checkLoop(options.seconds));
-    return 0;
+    std::string said = versionsText() + devicesText("") + displayText();
+    said += fmt::format("loop check: {:.0f} s\n", options.seconds);
+    print(said);
+    const std::string loop = loopText(app::checkLoop(options.seconds));
+    print(loop);
+    return options.report.empty() ? 0 : writeReport(options, said + loop);
 }
 
 }  // namespace passung::cli
