@@ -1,5 +1,6 @@
 #include "analysis/export/codebook.h"
 
+#include "analysis/export/columns.h"
 #include "core/base/json.h"
 
 namespace passung::exporter {
@@ -14,33 +15,42 @@ std::string columnJson(const Column& column) {
            "}";
 }
 
+/// A column of a file.
+struct Described {
+    const std::string* file;
+    const Column* column;
+};
+
+ColumnsOf<Described> codebookColumns() {
+    ColumnsOf<Described> columns = {
+        {"file", "File of the export", "text", [](const Described& row) { return *row.file; }}};
+    const ColumnsOf<Column> more = {
+        {"column", "Column of the file", "text", &Column::name},
+        {"label", "What it is", "text", &Column::label},
+        {"unit", "Unit; empty if there is none", "text", &Column::unit},
+        {"type", "Kind of value", "text", &Column::type, {.levels = {"text", "number", "integer", "0/1", "time"}}},
+        {"levels", "All values it can take, parted by ;, if they are a fixed set", "text",
+         [](const Column& column) { return joined(column.levels, "; "); }},
+        {"formula", "How it is computed; empty: as recorded", "text", &Column::formula},
+        {"formula_version", "Counts changes of the formula", "integer", &Column::formula_version},
+        {"missing", "What stands for a missing value", "text", [](const Column&) { return kMissing; }}};
+    append(columns, more, [](const Described& row) -> const Column& { return *row.column; });
+    return columns;
+}
+
 }  // namespace
 
 const char* const kCodebookStart = "{\n  \"producer\": \"passung\",";
 
 Table makeCodebook(std::span<const Table> tables) {
-    Table book{"codebook.csv",
-               "What every column of every file means.",
-               {{"file", "File of the export", "", "text", "", 1, {}},
-                {"column", "Column of the file", "", "text", "", 1, {}},
-                {"label", "What it is", "", "text", "", 1, {}},
-                {"unit", "Unit; empty if there is none", "", "text", "", 1, {}},
-                {"type", "Kind of value", "", "text", "", 1, {"text", "number", "integer", "0/1", "time"}},
-                {"levels", "All values it can take, parted by ;, if they are a fixed set", "", "text", "", 1, {}},
-                {"formula", "How it is computed; empty: as recorded", "", "text", "", 1, {}},
-                {"formula_version", "Counts changes of the formula", "", "integer", "", 1, {}},
-                {"missing", "What stands for a missing value", "", "text", "", 1, {}}},
-               {}};
-    const auto describe = [&book](const Table& table) {
-        for (const Column& c : table.columns) {
-            book.rows.push_back({table.file, c.name, c.label, c.unit, c.type, joined(c.levels, "; "), c.formula,
-                                 cell(c.formula_version), kMissing});
-        }
-    };
-    for (const Table& table : tables) describe(table);
-    const Table itself{book.file, {}, book.columns, {}};
-    describe(itself);
-    return book;
+    const std::string file = "codebook.csv";
+    const ColumnsOf<Described> columns = codebookColumns();
+    const std::vector<Column> itself = descriptions(columns);
+    std::vector<Described> rows;
+    for (const Table& table : tables)
+        for (const Column& column : table.columns) rows.push_back({&table.file, &column});
+    for (const Column& column : itself) rows.push_back({&file, &column});
+    return makeTable(file, "What every column of every file means.", columns, rows);
 }
 
 std::string codebookJson(std::span<const Table> tables) {

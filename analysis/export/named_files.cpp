@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "analysis/export/shared_columns.h"
 #include "core/base/digest.h"
 
 namespace passung::exporter {
@@ -45,6 +46,23 @@ std::vector<Placed> placed(const StudyData& study) {
     return files;
 }
 
+/// A line of files.csv.
+struct FileRow {
+    std::string protocol_sha256, kind, name;
+    std::optional<std::string> sha256;
+    std::string path;  // empty: only its hash is stored
+};
+
+std::vector<FileRow> fileRows(const StudyData& study) {
+    std::vector<FileRow> rows;
+    for (const store::ProtocolRow& protocol : study.protocols)
+        rows.push_back({protocol.sha256, "protocol", protocol.name, protocol.sha256, protocolPath(protocol.sha256)});
+    for (const Placed& file : placed(study))
+        rows.push_back({file.row->protocol_sha256, file.row->kind, file.row->name,
+                        file.row->text ? sha256Hex(*file.row->text) : file.row->sha256, file.path});
+    return rows;
+}
+
 }  // namespace
 
 std::vector<ExportedFile> namedFiles(const StudyData& study) {
@@ -60,28 +78,19 @@ std::vector<ExportedFile> namedFiles(const StudyData& study) {
 }
 
 Table makeFiles(const StudyData& study) {
-    Table table{"files.csv",
-                "One row per protocol and per file that it names; files that it includes stand in its text.",
-                {{"protocol_sha256", "SHA-256 of the protocol's text", "", "text", "", 1, {}},
-                 {"kind",
-                  "What the file is",
-                  "",
-                  "text",
-                  "",
-                  1,
-                  {"protocol", "questionnaire", "questionnaire_texts", "mesh", "picture"}},
-                 {"name", "As the protocol writes it", "", "text", "", 1, {}},
-                 {"sha256", "SHA-256 of its bytes", "", "text", "", 1, {}},
-                 {"path", "Where it is in this export; NA: only its hash is stored", "", "text", "", 1, {}}},
-                {}};
-    for (const store::ProtocolRow& protocol : study.protocols)
-        table.rows.push_back(
-            {protocol.sha256, "protocol", protocol.name, protocol.sha256, protocolPath(protocol.sha256)});
-    for (const Placed& file : placed(study))
-        table.rows.push_back({file.row->protocol_sha256, file.row->kind, file.row->name,
-                              file.row->text ? sha256Hex(*file.row->text) : cell(file.row->sha256),
-                              file.path.empty() ? kMissing : file.path});
-    return table;
+    const ColumnsOf<FileRow> columns = {
+        protocolColumn<FileRow>(),
+        {"kind",
+         "What the file is",
+         "text",
+         &FileRow::kind,
+         {.levels = {"protocol", "questionnaire", "questionnaire_texts", "mesh", "picture"}}},
+        {"name", "As the protocol writes it", "text", &FileRow::name},
+        {"sha256", "SHA-256 of its bytes", "text", &FileRow::sha256},
+        {"path", "Where it is in this export; NA: only its hash is stored", "text", &FileRow::path}};
+    return makeTable("files.csv",
+                     "One row per protocol and per file that it names; files that it includes stand in its text.",
+                     columns, fileRows(study));
 }
 
 }  // namespace passung::exporter

@@ -32,6 +32,8 @@ std::string cell(std::int64_t value) { return std::to_string(value); }
 std::string cell(double value) { return shortest(value); }
 std::string cell(float value) { return shortest(static_cast<double>(value)); }
 std::string cell(bool value) { return value ? "1" : "0"; }
+std::string cell(const std::string& value) { return value; }
+std::string cell(const char* value) { return value; }
 std::string cell(const std::optional<std::string>& value) { return value.value_or(kMissing); }
 std::string cell(const std::optional<std::int64_t>& value) { return value ? cell(*value) : kMissing; }
 std::string cell(const std::optional<double>& value) { return value ? cell(*value) : kMissing; }

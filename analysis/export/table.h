@@ -35,6 +35,8 @@ std::string cell(std::int64_t value);
 std::string cell(double value);
 std::string cell(float value);  // as the double of the same value
 std::string cell(bool value);
+std::string cell(const std::string& value);
+std::string cell(const char* value);
 std::string cell(const std::optional<std::string>& value);
 std::string cell(const std::optional<std::int64_t>& value);
 std::string cell(const std::optional<double>& value);

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "analysis/export/table.h"
+
+namespace passung::exporter {
+
+/// Makes the text of a column's cell from a `Row`: of a member of it, or of what a function says of it.
+template <class Row>
+class Getter {
+public:
+    template <class Get>
+    requires std::invocable<const Get&, const Row&> Getter(Get get)
+        : text_([get](const Row& row) { return cell(std::invoke(get, row)); }) {}
+
+    std::string operator()(const Row& row) const { return text_(row); }
+
+private:
+    std::function<std::string(const Row&)> text_;
+};
+
+/// What some columns have; meanings as in Column.
+struct ColumnDetails {
+    std::string unit = {};
+    std::vector<std::string> levels = {};
+    std::string formula = {};
+    std::int64_t formula_version = 1;
+};
+
+/// A column of a table whose rows are each made from a `Row`: what the codebook says of it, and where its cells come
+/// from. The only place that knows both.
+template <class Row>
+struct ColumnOf {
+    std::string name, label, type;
+    Getter<Row> text;
+    ColumnDetails details = {};
+
+    Column description() const {
+        return {name, label, details.unit, type, details.formula, details.formula_version, details.levels};
+    }
+};
+
+template <class Row>
+using ColumnsOf = std::vector<ColumnOf<Row>>;
+
+template <class Row>
+void append(ColumnsOf<Row>& columns, const std::type_identity_t<ColumnsOf<Row>>& more) {
+    columns.insert(columns.end(), more.begin(), more.end());
+}
+
+/// Appends columns of a part of the row: `part` gives a reference to it.
+template <class Row, class Part, class GetPart>
+void append(ColumnsOf<Row>& columns, const ColumnsOf<Part>& more, GetPart part) {
+    for (const ColumnOf<Part>& column : more)
+        columns.push_back({column.name, column.label, column.type,
+                           [text = column.text, part](const Row& row) { return text(part(row)); }, column.details});
+}
+
+template <class Row>
+std::vector<Column> descriptions(const ColumnsOf<Row>& columns) {
+    std::vector<Column> all;
+    for (const ColumnOf<Row>& column : columns) all.push_back(column.description());
+    return all;
+}
+
+/// A row of the table for each of `rows`.
+template <class Row, class Rows>
+Table makeTable(std::string file, std::string about, const ColumnsOf<Row>& columns, const Rows& rows) {
+    Table table{std::move(file), std::move(about), descriptions(columns), {}};
+    for (const Row& row : rows) {
+        std::vector<std::string>& cells = table.rows.emplace_back();
+        for (const ColumnOf<Row>& column : columns) cells.push_back(column.text(row));
+    }
+    return table;
+}
+
+}  // namespace passung::exporter

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <string>
+
+#include "analysis/export/columns.h"
+#include "analysis/export/study_data.h"
+#include "study/plan/participant.h"
+
+namespace passung::exporter {
+
+// Columns that several tables have, of any row with the members that are named here.
+
+/// participant_id, kind.
+template <class Row>
+ColumnsOf<Row> participantColumns() {
+    return {{"participant_id", "Code of the participant", "text", &Row::participant_id},
+            {"kind",
+             "Real person, pilot or simulated participant",
+             "text",
+             &Row::kind,
+             {.levels = protocol::participantKindNames()}}};
+}
+
+/// session.
+template <class Row>
+ColumnOf<Row> sessionColumn(std::int64_t Row::*ordinal = &Row::session_ordinal) {
+    return {"session", "Number of the participant's session, from 1", "integer", ordinal};
+}
+
+/// participant_id, kind, session.
+template <class Row>
+ColumnsOf<Row> participantSessionColumns() {
+    ColumnsOf<Row> columns = participantColumns<Row>();
+    columns.push_back(sessionColumn<Row>());
+    return columns;
+}
+
+/// participant_id, kind, group.
+template <class Row>
+ColumnsOf<Row> whoColumns() {
+    ColumnsOf<Row> columns = participantColumns<Row>();
+    append(columns, {{"group",
+                      "Group of the between-subjects factors; all if there is none; NA: the place was given back, see "
+                      "order_sequence",
+                      "text", &Row::group}});
+    return columns;
+}
+
+/// order_sequence, by sequenceOf(). Refers to `study`.
+template <class Row>
+ColumnOf<Row> sequenceColumn(const StudyData& study) {
+    return {"order_sequence",
+            "Row of the counterbalancing that the participant has, from 0: sequence_index of participants.csv; NA: the "
+            "place was given back, as after a session that did not complete and by exclusion",
+            "integer", [&study](const Row& row) { return sequenceOf(study, row.participant_id); }};
+}
+
+template <class Row>
+ColumnOf<Row> blockIndexColumn() {
+    return {"block_index", "Number of the block, from 0", "integer", &Row::block_index};
+}
+
+template <class Row>
+ColumnOf<Row> blockColumn() {
+    return {"block", "Name of the block", "text", &Row::block};
+}
+
+/// A column for each factor of the study, by the levels of the row's condition.
+template <class Row, class GetLevels>
+void appendFactors(ColumnsOf<Row>& columns, const StudyData& study, GetLevels levels) {
+    for (const FactorColumn& factor : study.factors)
+        columns.push_back(
+            {factor.column,
+             "Factor " + factor.factor + " (" + factor.kind + ")",
+             "text",
+             [levels, name = factor.factor](const Row& row) { return levelOf(std::invoke(levels, row), name); },
+             {.unit = factor.unit, .levels = factor.levels}});
+}
+
+/// protocol_sha256; `where`: what the label says of the text's place.
+template <class Row>
+ColumnOf<Row> protocolColumn(const std::string& where = "") {
+    return {"protocol_sha256", "SHA-256 of the protocol's text" + where, "text", &Row::protocol_sha256};
+}
+
+inline constexpr const char* kInFolder = ", see protocol/";
+
+// Columns of an attempt.
+ColumnOf<store::AttemptRow> trialIndexColumn();
+ColumnOf<store::AttemptRow> attemptNumberColumn();
+ColumnOf<store::AttemptRow> conditionColumn();
+ColumnOf<store::AttemptRow> validColumn();
+
+/// participant_id, kind, session, trial_index, attempt_no.
+ColumnsOf<store::AttemptRow> attemptColumns();
+
+/// The attempt that a row is about.
+template <class Row>
+const store::AttemptRow& attemptOf(const Row& row) {
+    return *row.attempt;
+}
+
+}  // namespace passung::exporter
