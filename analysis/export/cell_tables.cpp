@@ -1,8 +1,10 @@
 #include "analysis/export/cell_tables.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
+#include "analysis/export/shared_columns.h"
 #include "analysis/export/trial_tables.h"
 
 namespace passung::exporter {
@@ -14,66 +16,82 @@ constexpr const char* kRestricted =
     "area under the Kaplan-Meier curve of time_s with finished from 0 to restricted_to_s, carried on level after the "
     "last time: the mean of min(time_s, restricted_to_s) where whatever is not finished ended at a time-out";
 
-std::vector<Column> cellColumns() {
-    std::vector<Column> columns = whoColumns();
-    const std::vector<Column> more = {
-        sequenceColumn(),
-        {"session", "Number of the participant's session, from 1", "", "integer", "", 1, {}},
-        {"block_index", "Number of the block, from 0", "", "integer", "", 1, {}},
-        {"block", "Name of the block", "", "text", "", 1, {}},
-        {"protocol_sha256", "SHA-256 of the protocol's text", "", "text", "", 1, {}}};
-    columns.insert(columns.end(), more.begin(), more.end());
+/// Columns that the long table and the wide ones begin with. Refers to `study`.
+ColumnsOf<Cell> leadingColumns(const StudyData& study) {
+    ColumnsOf<Cell> columns = whoColumns<Cell>();
+    append(columns, {sequenceColumn<Cell>(study), sessionColumn<Cell>(), blockIndexColumn<Cell>(), blockColumn<Cell>(),
+                     protocolColumn<Cell>()});
     return columns;
 }
 
-std::vector<std::string> cellCells(const StudyData& study, const Cell& c) {
-    return {
-        c.participant_id,    c.kind,  c.group,          sequenceOf(study, c.participant_id), cell(c.session_ordinal),
-        cell(c.block_index), c.block, c.protocol_sha256};
+std::int64_t trialsOf(const Cell& cell) { return static_cast<std::int64_t>(cell.attempts.size()); }
+
+std::int64_t successesOf(const Cell& cell) {
+    return std::count_if(cell.attempts.begin(), cell.attempts.end(),
+                         [](const auto* attempt) { return attempt->outcome == "success"; });
 }
 
-/// Of time_s too: a plain mean of censored times says too little.
+/// NaN without trials.
+double successShare(const Cell& cell) {
+    return static_cast<double>(successesOf(cell)) / static_cast<double>(trialsOf(cell));
+}
+
+/// What is said of a cell's values of a measure, of time_s too: a plain mean of censored times says too little.
 struct Summary {
     const char* name;
-    std::string (*value)(const Cell&, const std::string&);
+    std::string (*text)(const std::vector<double>& values);
     const char* type;
 };
 
 constexpr Summary kSummaries[] = {
-    {"mean", [](const Cell& c, const std::string& m) { return cell(meanOf(valuesOf(c.attempts, m))); }, "number"},
-    {"median", [](const Cell& c, const std::string& m) { return cell(medianOf(valuesOf(c.attempts, m))); }, "number"},
-    {"n",
-     [](const Cell& c, const std::string& m) {
-         return cell(static_cast<std::int64_t>(valuesOf(c.attempts, m).size()));
-     },
-     "integer"}};
+    {"mean", [](const std::vector<double>& values) { return cell(meanOf(values)); }, "number"},
+    {"median", [](const std::vector<double>& values) { return cell(medianOf(values)); }, "number"},
+    {"n", [](const std::vector<double>& values) { return cell(static_cast<std::int64_t>(values.size())); }, "integer"}};
 
-void addSummaries(const StudyData& study, std::vector<Column>& columns) {
-    for (const store::MeasureRow& measure : study.measures) {
-        const Column base = measureColumn(measure);
-        if (isCensored(base.name)) {
-            columns.push_back(
-                {cellColumn(base.name), base.label + ", restricted mean", base.unit, "number", kRestricted, 1, {}});
-            columns.push_back({kHorizon,
-                               "Up to where that mean goes: the shortest time-out of the block's conditions",
-                               "s",
-                               "number",
-                               "where the stored plan tells no time-out: the longest time_s of the block",
-                               1,
-                               {}});
-        }
-        for (const Summary& summary : kSummaries) {
-            const bool counts = summary.type == std::string_view("integer");
-            columns.push_back(
-                {base.name + "." + summary.name,
-                 base.label + ", " + summary.name,
-                 counts ? "" : base.unit,
-                 summary.type,
-                 std::string(summary.name) + " " + kCounted + " that have a value; value: " + base.formula,
-                 base.formula_version,
-                 {}});
-        }
+/// NA of cells whose trials cannot have the measure.
+ColumnOf<Cell> summaryColumn(const Column& measure, const Summary& summary) {
+    const bool counts = summary.type == std::string_view("integer");
+    return {measure.name + "." + summary.name,
+            measure.label + ", " + summary.name,
+            summary.type,
+            [name = measure.name, text = summary.text](const Cell& c) {
+                return canHave(*c.condition, name) ? text(valuesOf(c.attempts, name)) : kMissing;
+            },
+            {.unit = counts ? "" : measure.unit,
+             .formula = std::string(summary.name) + " " + kCounted + " that have a value; value: " + measure.formula,
+             .formula_version = measure.formula_version}};
+}
+
+/// Columns of a measure whose cells hold a restricted mean.
+ColumnsOf<Cell> restrictedColumns(const Column& measure) {
+    return {{cellColumn(measure.name),
+             measure.label + ", restricted mean",
+             "number",
+             [name = measure.name](const Cell& c) { return valueOf(c, name); },
+             {.unit = measure.unit, .formula = kRestricted}},
+            {kHorizon,
+             "Up to where that mean goes: the shortest time-out of the block's conditions",
+             "number",
+             &Cell::horizon_s,
+             {.unit = "s", .formula = "where the stored plan tells no time-out: the longest time_s of the block"}}};
+}
+
+/// Columns of cells_long.csv. Refers to `study`.
+ColumnsOf<Cell> cellColumns(const StudyData& study) {
+    ColumnsOf<Cell> columns = leadingColumns(study);
+    append(columns,
+           {{"condition", "Name of the condition", "text", [](const Cell& c) { return c.condition->condition; }}});
+    appendFactors(columns, study, [](const Cell& c) { return c.condition->levels; });
+    append(columns,
+           {{"n_trials", "Attempts counted", "integer", trialsOf, {.formula = std::string("count ") + kCounted}},
+            {"n_success", "Attempts counted that succeeded", "integer", successesOf},
+            {"success_share", "Share of success", "number", successShare, {.formula = "n_success / n_trials"}}});
+    for (const store::MeasureRow& row : study.measures) {
+        const Column measure = measureColumn(row);
+        if (isCensored(measure.name)) append(columns, restrictedColumns(measure));
+        for (const Summary& summary : kSummaries) columns.push_back(summaryColumn(measure, summary));
     }
+    return columns;
 }
 
 /// What a participant's columns tell apart in a block: the condition's name without the levels that a group or an
@@ -112,41 +130,55 @@ std::vector<WideColumn> wideColumns(const StudyData& study, const std::vector<co
     return columns;
 }
 
-/// The cells of one block that can have the measure.
-Table wideTable(const StudyData& study, const Column& base, const std::vector<const Cell*>& cells, std::string file) {
-    const std::string what = isCensored(base.name) ? "restricted mean" : "mean";
-    Table table{std::move(file),
-                "One row per participant and session, one column per condition of block " + cells.front()->block +
-                    ": " + what + " of " + base.name + ".",
-                cellColumns(),
-                {}};
-    const auto fixed = table.columns.size();
-    const auto columns = wideColumns(study, cells);
-    for (const auto& [condition, part] : columns)
-        table.columns.push_back({base.name + "." + part,
-                                 base.label + ", " + what + " in " + condition,
-                                 base.unit,
-                                 "number",
-                                 isCensored(base.name)
-                                     ? std::string(kRestricted) + "; restricted_to_s: see cells_long.csv"
-                                     : what + " " + kCounted + " that have a value; value: " + base.formula,
-                                 base.formula_version,
-                                 {}});
-    for (std::size_t i = 0; i < cells.size();) {
-        const Cell& first = *cells[i];
-        std::vector<std::string> row = cellCells(study, first);
-        row.resize(fixed + columns.size(), kMissing);
-        for (; i < cells.size() && cells[i]->participant_id == first.participant_id &&
-               cells[i]->protocol_sha256 == first.protocol_sha256 &&
-               cells[i]->session_ordinal == first.session_ordinal && cells[i]->block_index == first.block_index;
-             ++i) {
-            const std::string name = seenName(study, *cells[i]->condition);
-            for (std::size_t k = 0; k < columns.size(); ++k)
-                if (columns[k].name == name) row[fixed + k] = cell(valueOf(*cells[i], base.name));
-        }
-        table.rows.push_back(std::move(row));
+/// A participant's cells of one block in a session.
+struct WideRow {
+    const Cell* first;
+    std::map<std::string, double> values;  // of the measure, by a column's name
+};
+
+bool sameRow(const Cell& a, const Cell& b) {
+    return a.participant_id == b.participant_id && a.protocol_sha256 == b.protocol_sha256 &&
+           a.session_ordinal == b.session_ordinal && a.block_index == b.block_index;
+}
+
+std::vector<WideRow> wideRows(const StudyData& study, const std::string& measure,
+                              const std::vector<const Cell*>& cells) {
+    std::vector<WideRow> rows;
+    for (const Cell* cell : cells) {
+        if (rows.empty() || !sameRow(*rows.back().first, *cell)) rows.push_back({cell, {}});
+        rows.back().values[seenName(study, *cell->condition)] = valueOf(*cell, measure);
     }
-    return table;
+    return rows;
+}
+
+/// The values of the conditions that share a column.
+ColumnOf<WideRow> valueColumn(const Column& measure, const WideColumn& column) {
+    const bool censored = isCensored(measure.name);
+    const std::string what = censored ? "restricted mean" : "mean";
+    return {measure.name + "." + column.part,
+            measure.label + ", " + what + " in " + column.name,
+            "number",
+            [name = column.name](const WideRow& row) {
+                const auto value = row.values.find(name);
+                return value == row.values.end() ? kMissing : cell(value->second);
+            },
+            {.unit = measure.unit,
+             .formula = censored ? std::string(kRestricted) + "; restricted_to_s: see cells_long.csv"
+                                 : what + " " + kCounted + " that have a value; value: " + measure.formula,
+             .formula_version = measure.formula_version}};
+}
+
+/// The cells of one block that can have the measure.
+Table wideTable(const StudyData& study, const Column& measure, const std::vector<const Cell*>& cells,
+                std::string file) {
+    const std::string what = isCensored(measure.name) ? "restricted mean" : "mean";
+    ColumnsOf<WideRow> columns;
+    append(columns, leadingColumns(study), [](const WideRow& row) -> const Cell& { return *row.first; });
+    for (const WideColumn& column : wideColumns(study, cells)) columns.push_back(valueColumn(measure, column));
+    return makeTable(std::move(file),
+                     "One row per participant and session, one column per condition of block " + cells.front()->block +
+                         ": " + what + " of " + measure.name + ".",
+                     columns, wideRows(study, measure.name, cells));
 }
 
 }  // namespace
@@ -156,36 +188,10 @@ std::string cellColumn(const std::string& measure) {
 }
 
 Table makeCells(const StudyData& study, const std::vector<Cell>& cells) {
-    Table table{"cells_long.csv",
-                "One row per participant, session, block and condition that was planned there: means, medians, "
-                "restricted means and counts.",
-                cellColumns(),
-                {}};
-    table.columns.push_back({"condition", "Name of the condition", "", "text", "", 1, {}});
-    appendFactors(table.columns, study);
-    table.columns.push_back({"n_trials", "Attempts counted", "", "integer", std::string("count ") + kCounted, 1, {}});
-    table.columns.push_back({"n_success", "Attempts counted that succeeded", "", "integer", "", 1, {}});
-    table.columns.push_back({"success_share", "Share of success", "", "number", "n_success / n_trials", 1, {}});
-    addSummaries(study, table.columns);
-    for (const Cell& c : cells) {
-        std::vector<std::string> row = cellCells(study, c);
-        row.push_back(c.condition->condition);
-        for (const FactorColumn& factor : study.factors) row.push_back(levelOf(c.condition->levels, factor.factor));
-        const auto trials = static_cast<std::int64_t>(c.attempts.size());
-        const std::int64_t successes = std::count_if(c.attempts.begin(), c.attempts.end(),
-                                                     [](const auto* attempt) { return attempt->outcome == "success"; });
-        row.insert(row.end(),
-                   {cell(trials), cell(successes),
-                    trials == 0 ? kMissing : cell(static_cast<double>(successes) / static_cast<double>(trials))});
-        for (const store::MeasureRow& measure : study.measures) {
-            const std::string& name = measure.measure;
-            const bool can = canHave(*c.condition, name);
-            if (isCensored(name)) row.insert(row.end(), {cell(valueOf(c, name)), cell(c.horizon_s)});
-            for (const Summary& summary : kSummaries) row.push_back(can ? summary.value(c, name) : kMissing);
-        }
-        table.rows.push_back(std::move(row));
-    }
-    return table;
+    return makeTable("cells_long.csv",
+                     "One row per participant, session, block and condition that was planned there: means, medians, "
+                     "restricted means and counts.",
+                     cellColumns(study), cells);
 }
 
 std::vector<Table> makeWide(const StudyData& study, const std::vector<Cell>& cells) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "analysis/export/columns.h"
 #include "analysis/export/counted_forms.h"
 #include "analysis/export/questionnaire_tables.h"
 
@@ -53,60 +54,84 @@ std::string scalesText(const Definition& definition, std::size_t item) {
     return text.empty() ? kMissing : text;
 }
 
-std::vector<Column> keyColumns() {
-    return {{"questionnaire", "Key of the questionnaire", "", "text", "", 1, {}},
-            {"version", "Version of its items and texts", "", "text", "", 1, {}},
-            {"language", "Language of the texts", "", "text", "", 1, {}},
-            {"item", "Its id: column item of questionnaire_items.csv", "", "text", "", 1, {}},
-            {"place", "Its place in the questionnaire's file, from 1", "", "integer", "", 1, {}},
-            {"text", "The item as it is shown", "", "text", "", 1, {}},
-            {"answer", "How it is answered", "", "text", "", 1, {"rating", "choice", "number", "text", "pair"}},
-            {"low", "Smallest answer; NA: none is a number", "", "number", "", 1, {}},
-            {"high", "Largest answer", "", "number", "", 1, {}},
-            {"labels", "What answers stand for, parted by ;", "", "text", "", 1, {}},
+/// The smallest and the largest answer to an item; nothing: none is a number.
+struct Range {
+    std::optional<double> low, high;
+};
+
+Range rangeOf(const questionnaire::Response& response) {
+    if (response.kind == AnswerKind::Text) return {};
+    if (response.kind == AnswerKind::Pair) return {0.0, 1.0};
+    if (response.options.empty()) return {response.low, response.high};
+    const auto [low, high] = std::minmax_element(response.options.begin(), response.options.end(),
+                                                 [](const auto& a, const auto& b) { return a.value < b.value; });
+    return {low->value, high->value};
+}
+
+/// An item of a questionnaire in one language.
+struct KeyRow {
+    const store::QuestionnaireRow* questionnaire;
+    const Definition* definition;
+    std::size_t index;  // in the definition, from 0
+
+    const questionnaire::Item& item() const { return definition->items[index]; }
+};
+
+ColumnsOf<store::QuestionnaireRow> instrumentColumns() {
+    using store::QuestionnaireRow;
+    return {{"questionnaire", "Key of the questionnaire", "text", &QuestionnaireRow::questionnaire},
+            {"version", "Version of its items and texts", "text", &QuestionnaireRow::version},
+            {"language", "Language of the texts", "text", &QuestionnaireRow::language}};
+}
+
+ColumnsOf<KeyRow> keyColumns() {
+    ColumnsOf<KeyRow> columns;
+    append(columns, instrumentColumns(),
+           [](const KeyRow& row) -> const store::QuestionnaireRow& { return *row.questionnaire; });
+    append(columns,
+           {{"item", "Its id: column item of questionnaire_items.csv", "text",
+             [](const KeyRow& row) { return row.item().id; }},
+            {"place", "Its place in the questionnaire's file, from 1", "integer",
+             [](const KeyRow& row) { return static_cast<std::int64_t>(row.index) + 1; }},
+            {"text", "The item as it is shown", "text", [](const KeyRow& row) { return row.item().text; }},
+            {"answer",
+             "How it is answered",
+             "text",
+             [](const KeyRow& row) { return kindName(row.item().response.kind); },
+             {.levels = {"rating", "choice", "number", "text", "pair"}}},
+            {"low", "Smallest answer; NA: none is a number", "number",
+             [](const KeyRow& row) { return rangeOf(row.item().response).low; }},
+            {"high", "Largest answer", "number", [](const KeyRow& row) { return rangeOf(row.item().response).high; }},
+            {"labels", "What answers stand for, parted by ;", "text",
+             [](const KeyRow& row) { return labelsText(*row.definition, row.item()); }},
             {"reversed",
              "1 if scales take low + high - answer: more of it means less of what the scale measures",
-             "",
              "0/1",
-             "",
-             1,
-             {"0", "1"}},
-            {"scales", "Scales that it enters, parted by ;; NA: none", "", "text", "", 1, {}},
-            {"instruction", "What stands above all items", "", "text", "", 1, {}},
-            {"citation", "Where instrument and scoring are from", "", "text", "", 1, {}},
-            {"licence", "Under which the texts stand", "", "text", "", 1, {}}};
+             [](const KeyRow& row) { return row.item().reversed; },
+             {.levels = {"0", "1"}}},
+            {"scales", "Scales that it enters, parted by ;; NA: none", "text",
+             [](const KeyRow& row) { return scalesText(*row.definition, row.index); }},
+            {"instruction", "What stands above all items", "text",
+             [](const KeyRow& row) { return row.definition->instruction; }},
+            {"citation", "Where instrument and scoring are from", "text",
+             [](const KeyRow& row) { return row.definition->citation; }},
+            {"licence", "Under which the texts stand", "text",
+             [](const KeyRow& row) { return row.definition->licence; }}});
+    return columns;
 }
 
 }  // namespace
 
 Table makeQuestionnaireKeys(const StudyData& study) {
-    Table table{"questionnaire_keys.csv",
-                "One row per item of every questionnaire and language that the study has: its text, its answers, its "
-                "polarity and its scales.",
-                keyColumns(),
-                {}};
     Definitions definitions;
-    for (const store::QuestionnaireRow& row : study.definitions) {
-        const Definition* definition = definitions.of(row);
-        if (definition == nullptr) continue;
-        for (std::size_t i = 0; i < definition->items.size(); ++i) {
-            const questionnaire::Item& item = definition->items[i];
-            double low = item.response.low, high = item.response.high;
-            for (const questionnaire::Option& option : item.response.options) {
-                const bool first = &option == item.response.options.data();
-                low = first ? option.value : std::min(low, option.value);
-                high = first ? option.value : std::max(high, option.value);
-            }
-            if (item.response.kind == AnswerKind::Pair) low = 0.0, high = 1.0;
-            const bool text = item.response.kind == AnswerKind::Text;
-            table.rows.push_back({row.questionnaire, row.version, row.language, item.id,
-                                  cell(static_cast<std::int64_t>(i) + 1), item.text, kindName(item.response.kind),
-                                  text ? kMissing : cell(low), text ? kMissing : cell(high),
-                                  labelsText(*definition, item), cell(item.reversed), scalesText(*definition, i),
-                                  definition->instruction, definition->citation, definition->licence});
-        }
-    }
-    return table;
+    std::vector<KeyRow> rows;
+    for (const store::QuestionnaireRow& questionnaire : study.definitions)
+        if (const Definition* definition = definitions.of(questionnaire))
+            for (std::size_t i = 0; i < definition->items.size(); ++i) rows.push_back({&questionnaire, definition, i});
+    return makeTable("questionnaire_keys.csv",
+                     "One row per item of every questionnaire and language that the study has: its text, its answers, "
+                     "its polarity and its scales.",
+                     keyColumns(), rows);
 }
 
 }  // namespace passung::exporter

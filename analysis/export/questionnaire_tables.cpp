@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <map>
-#include <tuple>
+#include <utility>
 
 #include "analysis/export/cells.h"
 #include "analysis/export/counted_forms.h"
+#include "analysis/export/shared_columns.h"
 #include "analysis/export/trial_tables.h"
-#include "study/plan/participant.h"
 #include "study/questionnaire/scoring.h"
 
 namespace passung::exporter {
@@ -16,58 +16,106 @@ namespace {
 using questionnaire::Definition;
 using store::QuestionnaireRunRow;
 
-/// Who was asked what, and when: columns that items and scores begin with.
-std::vector<Column> runColumns() {
-    return {
-        {"participant_id", "Code of the participant", "", "text", "", 1, {}},
-        {"kind", "Real person, pilot or simulated participant", "", "text", "", 1, protocol::participantKindNames()},
-        {"session", "Number of the participant's session, from 1", "", "integer", "", 1, {}},
-        {"questionnaire", "Key of the questionnaire", "", "text", "", 1, {}},
-        {"version", "Version of its items and texts", "", "text", "", 1, {}},
-        {"language", "Language in which it was shown", "", "text", "", 1, {}},
-        {"moment",
-         "When it was asked",
-         "",
-         "text",
-         "",
-         1,
-         {"session_start", "before_block", "after_block", "after_trial", "after_condition", "session_end"}},
-        {"block_index", "Number of the block, from 0; NA at the session's start and end", "", "integer", "", 1, {}},
-        {"block", "Name of the block", "", "text", "", 1, {}},
-        {"trial_index", "The trial that it is about, if it is about one", "", "integer", "", 1, {}},
-        {"condition",
-         "The condition that it is about, if it is about one; its levels: see cells_long.csv",
-         "",
-         "text",
-         "",
-         1,
-         {}},
-        {"completed_utc", "When the last answer was given", "", "time", "", 1, {}},
-        {"counted",
-         "1 if means and reliability count this form: of a counted session (see sessions.csv) the newest one about its "
-         "occasion",
-         "",
-         "0/1",
-         "",
-         1,
-         {"0", "1"}},
-    };
+/// Who was asked what, and when: columns that items and scores begin with. Refers to `counted`.
+ColumnsOf<QuestionnaireRunRow> runColumns(const CountedRuns& counted) {
+    ColumnsOf<QuestionnaireRunRow> columns = participantSessionColumns<QuestionnaireRunRow>();
+    append(columns,
+           {{"questionnaire", "Key of the questionnaire", "text", &QuestionnaireRunRow::questionnaire},
+            {"version", "Version of its items and texts", "text", &QuestionnaireRunRow::version},
+            {"language", "Language in which it was shown", "text", &QuestionnaireRunRow::language},
+            {"moment",
+             "When it was asked",
+             "text",
+             &QuestionnaireRunRow::moment,
+             {.levels = {"session_start", "before_block", "after_block", "after_trial", "after_condition",
+                         "session_end"}}},
+            {"block_index", "Number of the block, from 0; NA at the session's start and end", "integer",
+             &QuestionnaireRunRow::block_index},
+            blockColumn<QuestionnaireRunRow>(),
+            {"trial_index", "The trial that it is about, if it is about one", "integer",
+             &QuestionnaireRunRow::trial_index},
+            {"condition", "The condition that it is about, if it is about one; its levels: see cells_long.csv", "text",
+             &QuestionnaireRunRow::condition},
+            {"completed_utc", "When the last answer was given", "time", &QuestionnaireRunRow::completed_utc},
+            {"counted",
+             "1 if means and reliability count this form: of a counted session (see sessions.csv) the newest one about "
+             "its "
+             "occasion",
+             "0/1",
+             [&counted](const QuestionnaireRunRow& run) {
+                 return std::binary_search(counted.begin(), counted.end(), &run);
+             },
+             {.levels = {"0", "1"}}}});
+    return columns;
 }
 
-std::vector<std::string> runCells(const QuestionnaireRunRow& run, const CountedRuns& counted) {
-    return {run.participant_id,
-            run.kind,
-            cell(run.session_ordinal),
-            run.questionnaire,
-            run.version,
-            run.language,
-            run.moment,
-            cell(run.block_index),
-            cell(run.block),
-            cell(run.trial_index),
-            cell(run.condition),
-            cell(run.completed_utc),
-            cell(std::binary_search(counted.begin(), counted.end(), &run))};
+/// The form that a row is of.
+template <class Row>
+const QuestionnaireRunRow& runOf(const Row& row) {
+    return *row.run;
+}
+
+/// An item of a filled questionnaire.
+struct AnsweredItem {
+    const QuestionnaireRunRow* run;
+    const store::ItemResponseRow* response;
+};
+
+ColumnsOf<store::ItemResponseRow> itemColumns() {
+    using store::ItemResponseRow;
+    return {{"item", "Its id in the questionnaire's file", "text", &ItemResponseRow::item},
+            {"presented_index", "Its place as shown, from 0", "integer", &ItemResponseRow::presented_index},
+            {"value", "The answer as given, before any reversal", "number", &ItemResponseRow::value_num},
+            {"value_text", "The answer, where it is a text", "text", &ItemResponseRow::value_text},
+            {"skipped", "1 if it was left out", "0/1", &ItemResponseRow::skipped, {.levels = {"0", "1"}}},
+            {"response_time_ms",
+             "From showing the item to its last answer; NA where not measured, so always in virtual time",
+             "integer",
+             &ItemResponseRow::rt_ms,
+             {.unit = "ms"}},
+            {"changes", "How often the answer was changed", "integer", &ItemResponseRow::changes}};
+}
+
+/// A scale of a filled questionnaire; nullptr where this program cannot read the questionnaire.
+struct ScoredScale {
+    const QuestionnaireRunRow* run;
+    const store::ScoreRow* score;
+    const Definition* definition;
+    const questionnaire::Scale* scale;
+};
+
+std::string classOf(const ScoredScale& row) {
+    if (row.scale == nullptr || !row.score->value) return {};
+    return std::string(questionnaire::classOf(*row.scale, *row.score->value));
+}
+
+ColumnsOf<store::ScoreRow> scoreCounts() {
+    using store::ScoreRow;
+    return {
+        {"n_items", "Answers that enter; one that enters by two scales counts twice", "integer", &ScoreRow::n_items},
+        {"n_missing", "Of them missing", "integer", &ScoreRow::n_missing},
+        {"scoring_version", "Counts changes of the formulas", "integer", &ScoreRow::scoring_version}};
+}
+
+ColumnsOf<ScoredScale> scoreColumns(const CountedRuns& counted) {
+    ColumnsOf<ScoredScale> columns;
+    append(columns, runColumns(counted), runOf<ScoredScale>);
+    append(columns, {{"scale", "Name of the scale", "text", [](const ScoredScale& row) { return row.score->scale; }},
+                     {"scale_label", "What it measures", "text",
+                      [](const ScoredScale& row) { return row.scale != nullptr ? row.scale->label : kMissing; }},
+                     {"score",
+                      "NA: too many answers are missing",
+                      "number",
+                      [](const ScoredScale& row) { return row.score->value; },
+                      {.formula = "see scale_formula"}},
+                     {"class", "Named range that the score is in; NA without classes", "text", classOf}});
+    append(columns, scoreCounts(), [](const ScoredScale& row) -> const store::ScoreRow& { return *row.score; });
+    append(columns, {{"scale_formula", "How the score is computed", "text", [](const ScoredScale& row) {
+                          return row.scale != nullptr ? questionnaire::formulaText(*row.definition, *row.scale)
+                                                      : kMissing;
+                      }}});
+    append(columns, ColumnsOf<QuestionnaireRunRow>{protocolColumn<QuestionnaireRunRow>(kInFolder)}, runOf<ScoredScale>);
+    return columns;
 }
 
 /// A column of the wide table; sorts by questionnaire, then as the session goes.
@@ -90,126 +138,99 @@ std::string columnName(const WideColumn& column) {
     return column.condition ? name + "." + columnPart(*column.condition) : name;
 }
 
+/// A row of the wide table.
+struct PersonSession {
+    std::string participant_id, kind, protocol_sha256;
+    std::int64_t session_ordinal = 1;
+    std::string group;
+    friend auto operator<=>(const PersonSession&, const PersonSession&) = default;
+};
+
+/// With the scores of all forms of an occasion.
+using ScoredSession = std::pair<const PersonSession, std::map<WideColumn, std::vector<double>>>;
+
+/// Refers to `study`.
+ColumnsOf<PersonSession> personSessionColumns(const StudyData& study) {
+    ColumnsOf<PersonSession> columns = whoColumns<PersonSession>();
+    append(columns,
+           {sequenceColumn<PersonSession>(study), sessionColumn<PersonSession>(), protocolColumn<PersonSession>()});
+    return columns;
+}
+
+/// The mean of an occasion's scores. `run`: one of its forms.
+ColumnOf<ScoredSession> meanScoreColumn(std::string name, const WideColumn& column, const QuestionnaireRunRow& run,
+                                        Definitions& definitions) {
+    const questionnaire::Scale* scale = definitions.scale(run, column.scale);
+    const Definition* definition = definitions.of(run);
+    return {std::move(name),
+            scale != nullptr ? definition->title + ": " + scale->label : column.scale,
+            "number",
+            [column](const ScoredSession& session) {
+                const auto found = session.second.find(column);
+                return found == session.second.end() ? kMissing : cell(meanOf(found->second));
+            },
+            {.formula = scale != nullptr ? "mean over the forms of this occasion of: " +
+                                               questionnaire::formulaText(*definition, *scale)
+                                         : "",
+             .formula_version = definition != nullptr ? definition->scoring_version : 1}};
+}
+
 }  // namespace
 
 Table makeQuestionnaireItems(const StudyData& study) {
-    Table table{"questionnaire_items.csv", "One row per item of every filled questionnaire.", runColumns(), {}};
-    const std::vector<Column> more = {
-        {"item", "Its id in the questionnaire's file", "", "text", "", 1, {}},
-        {"presented_index", "Its place as shown, from 0", "", "integer", "", 1, {}},
-        {"value", "The answer as given, before any reversal", "", "number", "", 1, {}},
-        {"value_text", "The answer, where it is a text", "", "text", "", 1, {}},
-        {"skipped", "1 if it was left out", "", "0/1", "", 1, {"0", "1"}},
-        {"response_time_ms",
-         "From showing the item to its last answer; NA where not measured, so always in virtual time",
-         "ms",
-         "integer",
-         "",
-         1,
-         {}},
-        {"changes", "How often the answer was changed", "", "integer", "", 1, {}},
-        {"protocol_sha256", "SHA-256 of the protocol's text, see protocol/", "", "text", "", 1, {}},
-    };
-    table.columns.insert(table.columns.end(), more.begin(), more.end());
     const CountedRuns counted = countedRuns(study);
-    for (const QuestionnaireRunRow& run : study.questionnaires) {
-        for (const store::ItemResponseRow& item : run.responses) {
-            std::vector<std::string> row = runCells(run, counted);
-            row.insert(row.end(), {item.item, cell(item.presented_index), cell(item.value_num), cell(item.value_text),
-                                   cell(item.skipped), cell(item.rt_ms), cell(item.changes), run.protocol_sha256});
-            table.rows.push_back(std::move(row));
-        }
-    }
-    return table;
+    ColumnsOf<AnsweredItem> columns;
+    append(columns, runColumns(counted), runOf<AnsweredItem>);
+    append(columns, itemColumns(),
+           [](const AnsweredItem& row) -> const store::ItemResponseRow& { return *row.response; });
+    append(columns, ColumnsOf<QuestionnaireRunRow>{protocolColumn<QuestionnaireRunRow>(kInFolder)},
+           runOf<AnsweredItem>);
+    std::vector<AnsweredItem> rows;
+    for (const QuestionnaireRunRow& run : study.questionnaires)
+        for (const store::ItemResponseRow& response : run.responses) rows.push_back({&run, &response});
+    return makeTable("questionnaire_items.csv", "One row per item of every filled questionnaire.", columns, rows);
 }
 
 Table makeQuestionnaireScores(const StudyData& study) {
-    Table table{"questionnaire_scores.csv", "One row per scale of every filled questionnaire.", runColumns(), {}};
-    const std::vector<Column> more = {
-        {"scale", "Name of the scale", "", "text", "", 1, {}},
-        {"scale_label", "What it measures", "", "text", "", 1, {}},
-        {"score", "NA: too many answers are missing", "", "number", "see scale_formula", 1, {}},
-        {"class", "Named range that the score is in; NA without classes", "", "text", "", 1, {}},
-        {"n_items", "Answers that enter; one that enters by two scales counts twice", "", "integer", "", 1, {}},
-        {"n_missing", "Of them missing", "", "integer", "", 1, {}},
-        {"scoring_version", "Counts changes of the formulas", "", "integer", "", 1, {}},
-        {"scale_formula", "How the score is computed", "", "text", "", 1, {}},
-        {"protocol_sha256", "SHA-256 of the protocol's text, see protocol/", "", "text", "", 1, {}},
-    };
-    table.columns.insert(table.columns.end(), more.begin(), more.end());
-    Definitions definitions;
     const CountedRuns counted = countedRuns(study);
-    for (const QuestionnaireRunRow& run : study.questionnaires) {
-        for (const store::ScoreRow& score : run.scores) {
-            const questionnaire::Scale* scale = definitions.scale(run, score.scale);
-            const std::string label(scale != nullptr && score.value ? questionnaire::classOf(*scale, *score.value)
-                                                                    : "");
-            std::vector<std::string> row = runCells(run, counted);
-            row.insert(row.end(),
-                       {score.scale, scale != nullptr ? scale->label : kMissing, cell(score.value),
-                        label.empty() ? kMissing : label, cell(score.n_items), cell(score.n_missing),
-                        cell(score.scoring_version),
-                        scale != nullptr ? questionnaire::formulaText(*definitions.of(run), *scale) : kMissing,
-                        run.protocol_sha256});
-            table.rows.push_back(std::move(row));
-        }
-    }
-    return table;
+    Definitions definitions;
+    std::vector<ScoredScale> rows;
+    for (const QuestionnaireRunRow& run : study.questionnaires)
+        for (const store::ScoreRow& score : run.scores)
+            rows.push_back({&run, &score, definitions.of(run), definitions.scale(run, score.scale)});
+    return makeTable("questionnaire_scores.csv", "One row per scale of every filled questionnaire.",
+                     scoreColumns(counted), rows);
 }
 
 Table makeScoresWide(const StudyData& study) {
-    Table table{
-        "scores_wide.csv",
-        "One row per participant, protocol and session, one column per scale and occasion: mean of the counted forms' "
-        "scores.",
-        whoColumns(),
-        {}};
-    for (const Column& column :
-         {sequenceColumn(), Column{"session", "Number of the participant's session, from 1", "", "integer", "", 1, {}},
-          Column{"protocol_sha256", "SHA-256 of the protocol's text", "", "text", "", 1, {}}})
-        table.columns.push_back(column);
-    using Person = std::tuple<std::string, std::string, std::string, std::int64_t>;
-    std::map<WideColumn, const QuestionnaireRunRow*> columns;
-    std::map<Person, std::map<WideColumn, std::vector<double>>> people;
+    std::map<WideColumn, const QuestionnaireRunRow*> occasions;
+    std::map<PersonSession, std::map<WideColumn, std::vector<double>>> people;
     for (const QuestionnaireRunRow* run : countedRuns(study)) {
-        auto& scores = people[{run->participant_id, run->kind, run->protocol_sha256, run->session_ordinal}];
+        auto& scores = people[{run->participant_id, run->kind, run->protocol_sha256, run->session_ordinal,
+                               groupOf(study, run->participant_id)}];
         for (const store::ScoreRow& score : run->scores) {
             const WideColumn column = wideColumn(*run, score.scale);
-            columns.emplace(column, run);
+            occasions.emplace(column, run);
             if (score.value) scores[column].push_back(*score.value);
         }
     }
+    ColumnsOf<ScoredSession> columns;
+    append(columns, personSessionColumns(study),
+           [](const ScoredSession& session) -> const PersonSession& { return session.first; });
     Definitions definitions;
-    for (const auto& [column, run] : columns) {
+    for (const auto& [column, run] : occasions) {
         std::string name = columnName(column);
         const auto is_taken = [&] {
-            return std::any_of(table.columns.begin(), table.columns.end(),
-                               [&](const Column& other) { return other.name == name; });
+            return std::any_of(columns.begin(), columns.end(), [&](const auto& other) { return other.name == name; });
         };
         while (is_taken()) name += '_';
-        const questionnaire::Scale* scale = definitions.scale(*run, column.scale);
-        const Definition* definition = definitions.of(*run);
-        table.columns.push_back({name,
-                                 scale != nullptr ? definition->title + ": " + scale->label : column.scale,
-                                 "",
-                                 "number",
-                                 scale != nullptr ? "mean over the forms of this occasion of: " +
-                                                        questionnaire::formulaText(*definition, *scale)
-                                                  : "",
-                                 definition != nullptr ? definition->scoring_version : 1,
-                                 {}});
+        columns.push_back(meanScoreColumn(name, column, *run, definitions));
     }
-    for (const auto& [person, scores] : people) {
-        const auto& [participant, kind, protocol, session] = person;
-        std::vector<std::string> row = {
-            participant, kind, groupOf(study, participant), sequenceOf(study, participant), cell(session), protocol};
-        for (const auto& [column, run] : columns) {
-            const auto found = scores.find(column);
-            row.push_back(found == scores.end() ? kMissing : cell(meanOf(found->second)));
-        }
-        table.rows.push_back(std::move(row));
-    }
-    return table;
+    return makeTable(
+        "scores_wide.csv",
+        "One row per participant, protocol and session, one column per scale and occasion: mean of the counted forms' "
+        "scores.",
+        columns, people);
 }
 
 }  // namespace passung::exporter

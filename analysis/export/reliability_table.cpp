@@ -2,6 +2,7 @@
 #include <map>
 #include <tuple>
 
+#include "analysis/export/columns.h"
 #include "analysis/export/counted_forms.h"
 #include "analysis/export/questionnaire_tables.h"
 #include "study/plan/participant.h"
@@ -130,59 +131,82 @@ std::vector<Agreement> agreementsOf(const ScaleForms& scale) {
     return all;
 }
 
-std::string count(std::size_t number) { return cell(static_cast<std::int64_t>(number)); }
+/// How well the items of a scale agree, at one level.
+struct ReliabilityRow {
+    std::string kind, questionnaire, version, moment;
+    std::string scale;
+    std::int64_t items;
+    Agreement agreement;
+};
 
-std::vector<Column> reliabilityColumns() {
+std::vector<ReliabilityRow> reliabilityRows(const StudyData& study) {
+    std::vector<ReliabilityRow> rows;
+    for (const auto& [key, scale] : formsOf(study)) {
+        const auto& [asked, name] = key;
+        const auto& [kind, questionnaire, version, moment] = asked;
+        for (Agreement& agreement : agreementsOf(scale))
+            rows.push_back({kind, questionnaire, version, moment, name, static_cast<std::int64_t>(scale.items),
+                            std::move(agreement)});
+    }
+    return rows;
+}
+
+/// A member of the occasion; NA: the row is about several.
+template <class Member>
+auto ofOccasion(Member member) {
+    return [member](const Agreement& agreement) {
+        return agreement.occasion ? cell((*agreement.occasion).*member) : kMissing;
+    };
+}
+
+ColumnsOf<Agreement> agreementColumns() {
     return {
-        {"kind", "Real people, pilots or simulated participants", "", "text", "", 1, protocol::participantKindNames()},
-        {"questionnaire", "Key of the questionnaire", "", "text", "", 1, {}},
-        {"version", "Version of its items and texts", "", "text", "", 1, {}},
-        {"moment", "When it was asked", "", "text", "", 1, {}},
-        {"scale", "Name of the scale", "", "text", "", 1, {}},
         {"level",
          "occasion: one form a person, at this occasion; between: each person's mean answers over all occasions of the "
          "moment; within: each form's difference from these means",
-         "",
          "text",
-         "",
-         1,
-         {"occasion", "between", "within"}},
-        {"block", "Block of the occasion", "", "text", "", 1, {}},
-        {"condition", "Condition of the occasion", "", "text", "", 1, {}},
-        {"number", "Which of a person's forms about the same occasion, from 1", "", "integer", "", 1, {}},
-        {"n_forms", "Counted forms without a missing item in the scale", "", "integer", "", 1, {}},
-        {"n_participants", "Participants whose forms these are", "", "integer", "", 1, {}},
-        {"n_items", "Items of the scale", "", "integer", "", 1, {}},
-        {"cronbach_alpha",
-         "Internal consistency; forms of one person are never taken for those of several",
-         "",
-         "number",
-         "k/(k-1) (1 - sum of the items' variances / variance of their sum), k items, over participants; within: over "
-         "the differences",
-         2,
-         {}}};
+         &Agreement::level,
+         {.levels = {"occasion", "between", "within"}}},
+        {"block", "Block of the occasion", "text", ofOccasion(&Occasion::block)},
+        {"condition", "Condition of the occasion", "text", ofOccasion(&Occasion::condition)},
+        {"number", "Which of a person's forms about the same occasion, from 1", "integer",
+         ofOccasion(&Occasion::number)},
+        {"n_forms", "Counted forms without a missing item in the scale", "integer",
+         [](const Agreement& agreement) { return static_cast<std::int64_t>(agreement.forms); }},
+        {"n_participants", "Participants whose forms these are", "integer",
+         [](const Agreement& agreement) { return static_cast<std::int64_t>(agreement.people); }}};
+}
+
+ColumnsOf<ReliabilityRow> reliabilityColumns() {
+    ColumnsOf<ReliabilityRow> columns = {
+        {"kind",
+         "Real people, pilots or simulated participants",
+         "text",
+         &ReliabilityRow::kind,
+         {.levels = protocol::participantKindNames()}},
+        {"questionnaire", "Key of the questionnaire", "text", &ReliabilityRow::questionnaire},
+        {"version", "Version of its items and texts", "text", &ReliabilityRow::version},
+        {"moment", "When it was asked", "text", &ReliabilityRow::moment},
+        {"scale", "Name of the scale", "text", &ReliabilityRow::scale}};
+    append(columns, agreementColumns(), [](const ReliabilityRow& row) -> const Agreement& { return row.agreement; });
+    append(columns, {{"n_items", "Items of the scale", "integer", &ReliabilityRow::items},
+                     {"cronbach_alpha",
+                      "Internal consistency; forms of one person are never taken for those of several",
+                      "number",
+                      [](const ReliabilityRow& row) { return questionnaire::cronbachAlpha(row.agreement.answers); },
+                      {.formula = "k/(k-1) (1 - sum of the items' variances / variance of their sum), k items, over "
+                                  "participants; within: over the differences",
+                       .formula_version = 2}}});
+    return columns;
 }
 
 }  // namespace
 
 Table makeReliability(const StudyData& study) {
-    Table table{"questionnaire_reliability.csv",
-                "One row per scale of at least two items and occasion, and, where forms were repeated, between and "
-                "within persons: how well the items agree.",
-                reliabilityColumns(),
-                {}};
-    for (const auto& [key, scale] : formsOf(study)) {
-        const auto& [asked, name] = key;
-        const auto& [kind, questionnaire, version, moment] = asked;
-        for (const Agreement& row : agreementsOf(scale))
-            table.rows.push_back({kind, questionnaire, version, moment, name, row.level,
-                                  row.occasion ? cell(row.occasion->block) : kMissing,
-                                  row.occasion ? cell(row.occasion->condition) : kMissing,
-                                  row.occasion ? cell(row.occasion->number) : kMissing, count(row.forms),
-                                  count(row.people), count(scale.items),
-                                  cell(questionnaire::cronbachAlpha(row.answers))});
-    }
-    return table;
+    return makeTable("questionnaire_reliability.csv",
+                     "One row per scale of at least two items and occasion, and, where forms were repeated, between "
+                     "and within persons: how well the items agree.",
+                     reliabilityColumns(), reliabilityRows(study));
 }
 
 }  // namespace passung::exporter

@@ -103,8 +103,7 @@ Result<StudyData> readStudy(const store::StoreReader& reader) {
     study.measures.erase(counter, study.measures.end());
     findTicks(reader, study.attempts);
     std::set<std::string> taken;
-    for (const Column& column : fixedColumns()) taken.insert(column.name);
-    for (const store::MeasureRow& measure : study.measures) taken.insert(measure.measure);
+    for (const Column& column : trialColumns(study)) taken.insert(column.name);  // not yet those of factors
     if (!study.staircase_steps.empty())
         for (const Table& table : {makeStaircase(study), makeThresholds(study)})
             for (const Column& column : table.columns) taken.insert(column.name);

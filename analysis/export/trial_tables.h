@@ -11,17 +11,10 @@ namespace passung::exporter {
 /// A condition's name as part of a column's name: everything but letters, digits, '.', '-' and '_' becomes '_'.
 std::string columnPart(const std::string& condition);
 
-/// The columns of trials.csv that every study has; factors and measures come in between.
-std::vector<Column> fixedColumns();
+/// The columns of trials.csv.
+std::vector<Column> trialColumns(const StudyData& study);
 
-/// Who it is about: the first columns of several tables.
-std::vector<Column> whoColumns();
-
-/// "order_sequence", by sequenceOf().
-Column sequenceColumn();
-
-void appendFactors(std::vector<Column>& columns, const StudyData& study);
-
+/// The column of a measure where a file has it as it is.
 Column measureColumn(const store::MeasureRow& measure);
 
 /// One row per attempt, whatever became of it.
