@@ -5,6 +5,7 @@
 #include <map>
 
 #include "analysis/export/cell_tables.h"
+#include "analysis/export/shared_columns.h"
 #include "analysis/export/staircase_tables.h"
 
 namespace passung::exporter {
@@ -118,69 +119,87 @@ Kept keptBy(const StudyData& study, const store::AnalysisRow& analysis, const Fa
     return kept;
 }
 
-std::vector<Column> analysisColumns() {
-    return {
-        {"protocol_sha256", "SHA-256 of the protocol's text", "", "text", "", 1, {}},
-        {"analysis", "Number in the protocol, from 1", "", "integer", "", 1, {}},
-        {"outcome", "Measure that is analysed; NA: thresholds", "", "text", "", 1, {}},
-        {"staircase", "Staircase whose thresholds are analysed; NA: a measure", "", "text", "", 1, {}},
-        {"block", "Block whose trials are analysed; NA: of a staircase", "", "text", "", 1, {}},
-        {"factors", "Factors, parted by ;", "", "text", "", 1, {}},
-        {"test", "Test that the protocol names", "", "text", "", 1, {}},
-        {"file", "File that has the values: its rows of this protocol and block, or staircase", "", "text", "", 1, {}},
-        {"value_column", "Its column", "", "text", "", 1, {}},
-        {"r_formula", "The model in R's notation, for the data of r_call", "", "text", "", 1, {}},
-        {"r_call",
-         "The test as a call of R (lmm: with the package lme4) on data: the rows of the file that belong here, "
-         "averaged "
-         "by participant and factors, these as factor(), without whoever lacks a combination: data <- "
-         "aggregate(rows[value_column], lapply(rows[c(\"participant_id\", factors)], factor), mean)",
-         "",
-         "text",
-         "",
-         1,
-         {}},
-        {"n_participants", "Participants who count and were to have the outcome there", "", "integer", "", 1, {}},
-        {"n_complete",
-         "Of these who have a value at every combination of the factors: whom complete cases keep",
-         "",
-         "integer",
-         "",
-         1,
-         {}}};
+/// An analysis where its values are: of a measure in a block, or of a staircase's thresholds.
+struct PlannedTest {
+    const store::AnalysisRow* analysis;
+    Factors factors;
+    std::string block;  // empty: thresholds
+    std::string value;  // its column
+    Kept kept;
+
+    bool ofThresholds() const { return analysis->outcome.empty(); }
+};
+
+ColumnsOf<store::AnalysisRow> analysisColumns() {
+    using store::AnalysisRow;
+    return {protocolColumn<AnalysisRow>(),
+            {"analysis", "Number in the protocol, from 1", "integer", &AnalysisRow::number},
+            {"outcome", "Measure that is analysed; NA: thresholds", "text", &AnalysisRow::outcome},
+            {"staircase", "Staircase whose thresholds are analysed; NA: a measure", "text",
+             [](const AnalysisRow& analysis) { return analysis.outcome.empty() ? analysis.staircase : kMissing; }}};
+}
+
+ColumnsOf<PlannedTest> plannedTestColumns() {
+    ColumnsOf<PlannedTest> columns;
+    append(columns, analysisColumns(),
+           [](const PlannedTest& planned) -> const store::AnalysisRow& { return *planned.analysis; });
+    append(
+        columns,
+        {{"block", "Block whose trials are analysed; NA: of a staircase", "text", &PlannedTest::block},
+         {"factors", "Factors, parted by ;", "text",
+          [](const PlannedTest& planned) { return joined(planned.factors.all, ";"); }},
+         {"test", "Test that the protocol names", "text",
+          [](const PlannedTest& planned) { return planned.analysis->test; }},
+         {"file", "File that has the values: its rows of this protocol and block, or staircase", "text",
+          [](const PlannedTest& planned) { return planned.ofThresholds() ? "thresholds.csv" : "cells_long.csv"; }},
+         {"value_column", "Its column", "text", &PlannedTest::value},
+         {"r_formula", "The model in R's notation, for the data of r_call", "text",
+          [](const PlannedTest& planned) {
+              return formulaText(planned.value, planned.analysis->test, planned.factors);
+          }},
+         {"r_call",
+          "The test as a call of R (lmm: with the package lme4) on data: the rows of the file that belong here, "
+          "averaged "
+          "by participant and factors, these as factor(), without whoever lacks a combination: data <- "
+          "aggregate(rows[value_column], lapply(rows[c(\"participant_id\", factors)], factor), mean)",
+          "text",
+          [](const PlannedTest& planned) { return callText(planned.value, planned.analysis->test, planned.factors); }},
+         {"n_participants", "Participants who count and were to have the outcome there", "integer",
+          [](const PlannedTest& planned) { return planned.kept.counted(); }},
+         {"n_complete", "Of these who have a value at every combination of the factors: whom complete cases keep",
+          "integer", [](const PlannedTest& planned) { return planned.kept.complete(); }}});
+    return columns;
+}
+
+/// Blocks that have cells of the analysis, in their order.
+Names blocksOf(const store::AnalysisRow& analysis, const std::vector<Cell>& cells) {
+    Names blocks;
+    for (const Cell& cell : cells)
+        if ((analysis.block.empty() || analysis.block == cell.block) &&
+            std::find(blocks.begin(), blocks.end(), cell.block) == blocks.end())
+            blocks.push_back(cell.block);
+    return blocks;
 }
 
 }  // namespace
 
 Table makeAnalyses(const StudyData& study, const std::vector<Cell>& cells) {
-    Table table{"analyses.csv", "One row per analysis that the protocol plans, and block.", analysisColumns(), {}};
+    std::vector<PlannedTest> rows;
+    const auto add = [&rows](PlannedTest planned) {
+        if (!planned.kept.people.empty()) rows.push_back(std::move(planned));
+    };
     for (const store::AnalysisRow& analysis : study.analyses) {
         const Factors factors = factorsOf(study, analysis);
-        const bool thresholds = analysis.outcome.empty();
-        const std::string value = !thresholds                      ? cellColumn(analysis.outcome)
-                                  : isLogarithmic(study, analysis) ? kLogThreshold
-                                                                   : kThreshold;
-        const auto add = [&](const std::string& block, const Kept& kept) {
-            if (kept.people.empty()) return;
-            table.rows.push_back({analysis.protocol_sha256, cell(analysis.number),
-                                  thresholds ? kMissing : analysis.outcome, thresholds ? analysis.staircase : kMissing,
-                                  thresholds ? kMissing : block, joined(factors.all, ";"), analysis.test,
-                                  thresholds ? "thresholds.csv" : "cells_long.csv", value,
-                                  formulaText(value, analysis.test, factors), callText(value, analysis.test, factors),
-                                  cell(kept.counted()), cell(kept.complete())});
-        };
-        if (thresholds) {
-            add("", keptBy(study, analysis, factors));
+        if (analysis.outcome.empty()) {
+            const char* value = isLogarithmic(study, analysis) ? kLogThreshold : kThreshold;
+            add({&analysis, factors, "", value, keptBy(study, analysis, factors)});
             continue;
         }
-        std::vector<std::string> blocks;
-        for (const Cell& cell : cells)
-            if ((analysis.block.empty() || analysis.block == cell.block) &&
-                std::find(blocks.begin(), blocks.end(), cell.block) == blocks.end())
-                blocks.push_back(cell.block);
-        for (const std::string& block : blocks) add(block, keptBy(study, analysis, block, cells));
+        for (const std::string& block : blocksOf(analysis, cells))
+            add({&analysis, factors, block, cellColumn(analysis.outcome), keptBy(study, analysis, block, cells)});
     }
-    return table;
+    return makeTable("analyses.csv", "One row per analysis that the protocol plans, and block.", plannedTestColumns(),
+                     rows);
 }
 
 }  // namespace passung::exporter
