@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "analysis/export/status_bits.h"
@@ -39,50 +40,105 @@ public:
         text_.append(digits.data(), end);
         text_ += ',';
     }
-    template <class Number, std::size_t count>
-    void add(const std::array<Number, count>& values) {
-        for (const Number value : values) add(value);
-    }
     void endRow() { text_.back() = '\n'; }
 
 private:
     std::string& text_;
 };
 
+/// What a row of a samples file is made from.
+struct Sample {
+    const TickRecord& record;
+    std::int64_t period;  // after the attempt's first tick
+    const SampleSignals& commanded;
+    measures::CueCommands commands;
+    bool lit;  // the secondary task's stimulus
+};
+
+/// Appends a cell; `offset`: of the value in the record, where the column is a recorded channel.
+using AddCell = void (*)(RowText&, const Sample&, std::size_t offset);
+
+struct SampleColumn {
+    Column column;
+    AddCell add;
+    std::size_t offset = 0;
+};
+
+template <class Number>
+void addRecorded(RowText& row, const Sample& sample, std::size_t offset) {
+    Number value;
+    std::memcpy(&value, reinterpret_cast<const std::byte*>(&sample.record) + offset, sizeof value);
+    row.add(value);
+}
+
+AddCell adderOf(const store::Channel& channel) {
+    if (channel.type == "float64") return addRecorded<double>;
+    if (channel.type == "float32") return addRecorded<float>;
+    if (channel.type == "uint32") return addRecorded<std::uint32_t>;
+    return addRecorded<std::int64_t>;
+}
+
+SampleColumn channelColumn(const store::Channel& channel) {
+    const bool integer = channel.type == "uint32" || channel.type == "int64";
+    return {{channel.name,
+             channel.label,
+             channel.unit == "1" ? "" : channel.unit,
+             integer ? "integer" : "number",
+             channel.name == "status" ? statusBitsText() : "",
+             1,
+             {}},
+            adderOf(channel),
+            channel.offset};
+}
+
+/// A command; NA where the condition does not have it.
+void addCommand(RowText& row, bool has, double command) {
+    row.add(has ? command : std::numeric_limits<double>::quiet_NaN());
+}
+
+std::vector<SampleColumn> makeSampleColumns() {
+    std::vector<SampleColumn> columns = {
+        {{"tick", "Number of the tick in the attempt, from 0", "", "integer", "", 1, {}},
+         [](RowText& row, const Sample& sample, std::size_t) { row.add(sample.record.tick); }},
+        {{"t_s",
+          "Time since the attempt's first tick",
+          "s",
+          "number",
+          "0.001 s x sum of periods over the ticks after the first; a tick that was not recorded counts as one period",
+          2,
+          {}},
+         [](RowText& row, const Sample& sample, std::size_t) {
+             row.add(static_cast<double>(sample.period) / 1000.0);
+         }}};
+    for (const store::Channel& channel : store::tickChannels()) columns.push_back(channelColumn(channel));
+    const auto add = [&](const char* name, const char* label, const char* formula, AddCell add_cell) {
+        columns.push_back({{name, label, "", "number", formula, 1, {}}, add_cell});
+    };
+    add("cue_visual", "Command of the visual cue, 0 to 1", "min(1, hand_depth_m / feedback.cue_full_depth_mm)",
+        [](RowText& row, const Sample& s, std::size_t) {
+            addCommand(row, s.commanded.cues.visual, s.commands.visual);
+        });
+    add("cue_vibration", "Command of the vibrotactile cue, 0 to 1", "min(1, hand_depth_m / feedback.cue_full_depth_mm)",
+        [](RowText& row, const Sample& s, std::size_t) {
+            addCommand(row, s.commanded.cues.vibration, s.commands.vibration);
+        });
+    add("cue_sound", "Command of the audio cue, 0 to 1",
+        "at an impact min(1, speed of the hand / feedback.cue_full_speed_mm_per_s), falling by "
+        "exp(-t / feedback.cue_sound_decay_ms)",
+        [](RowText& row, const Sample& s, std::size_t) { addCommand(row, s.commanded.cues.sound, s.commands.sound); });
+    add("cue_masking", "Command of the masking noise: 1", "1 where feedback.masking_noise = true",
+        [](RowText& row, const Sample& s, std::size_t) { addCommand(row, s.commanded.cues.masking, 1.0); });
+    add("secondary_stimulus", "Command of the secondary task's stimulus, 0 or 1",
+        "1 from onset_s to before off_s of a row of secondary.csv",
+        [](RowText& row, const Sample& s, std::size_t) { addCommand(row, s.commanded.secondary, s.lit ? 1.0 : 0.0); });
+    return columns;
+}
+
 }  // namespace
 
 std::vector<Column> sampleColumns() {
-    std::vector<Column> columns = {
-        {"tick", "Number of the tick in the attempt, from 0", "", "integer", "", 1, {}},
-        {"t_s",
-         "Time since the attempt's first tick",
-         "s",
-         "number",
-         "0.001 s x sum of periods over the ticks after the first; a tick that was not recorded counts as one period",
-         2,
-         {}}};
-    for (const store::Channel& channel : store::tickChannels()) {
-        const bool integer = channel.type == "uint32";
-        columns.push_back({channel.name,
-                           channel.label,
-                           channel.unit == "1" ? "" : channel.unit,
-                           integer ? "integer" : "number",
-                           channel.name == "status" ? statusBitsText() : "",
-                           1,
-                           {}});
-    }
-    const auto add = [&](const char* name, const char* label, const char* formula) {
-        columns.push_back({name, label, "", "number", formula, 1, {}});
-    };
-    add("cue_visual", "Command of the visual cue, 0 to 1", "min(1, hand_depth_m / feedback.cue_full_depth_mm)");
-    add("cue_vibration", "Command of the vibrotactile cue, 0 to 1",
-        "min(1, hand_depth_m / feedback.cue_full_depth_mm)");
-    add("cue_sound", "Command of the audio cue, 0 to 1",
-        "at an impact min(1, speed of the hand / feedback.cue_full_speed_mm_per_s), falling by "
-        "exp(-t / feedback.cue_sound_decay_ms)");
-    add("cue_masking", "Command of the masking noise: 1", "1 where feedback.masking_noise = true");
-    add("secondary_stimulus", "Command of the secondary task's stimulus, 0 or 1",
-        "1 from onset_s to before off_s of a row of secondary.csv");
+    std::vector<Column> columns;
+    for (const SampleColumn& column : makeSampleColumns()) columns.push_back(column.column);
     return columns;
 }
 
@@ -100,48 +156,20 @@ SampleSignals sampleSignals(const StudyData& study, const store::AttemptRow& att
 }
 
 std::string samplesCsv(std::span<const TickRecord> records, const SampleSignals& commanded) {
-    const measures::CueSettings& cues = commanded.cues;
     constexpr std::size_t kTypicalRow = 400;
     std::string text = toCsv(Table{{}, {}, sampleColumns(), {}});
     text.reserve(text.size() + records.size() * kTypicalRow);
     RowText row(text);
     measures::PeriodClock clock;
-    measures::CueSignals signals(cues);
-    const auto orMissing = [](bool has, double command) {
-        return has ? command : std::numeric_limits<double>::quiet_NaN();
-    };
+    measures::CueSignals signals(commanded.cues);
+    const std::vector<SampleColumn> columns = makeSampleColumns();
     std::size_t shown = 0;  // stimuli that are over
-    for (const TickRecord& r : records) {
-        const std::int64_t time = clock.at(r);
-        row.add(r.tick);
-        row.add(static_cast<double>(time) / 1000.0);
-        row.add(r.device_position_m);
-        row.add(r.device_quaternion);
-        row.add(r.input_flags);
-        row.add(r.periods);
-        row.add(r.hand_position_m);
-        row.add(r.hand_quaternion);
-        row.add(r.proxy_position_m);
-        row.add(r.proxy_quaternion);
-        row.add(r.force_N);
-        row.add(r.torque_Nm);
-        row.add(r.hand_depth_m);
-        row.add(r.proxy_depth_m);
-        row.add(r.energy_J);
-        row.add(r.quality);
-        row.add(r.status);
-        row.add(r.contacts);
-        row.add(r.iterations);
-        row.add(r.nodes_visited);
-        row.add(r.hand_energy_J);
-        const measures::CueCommands commands = signals.at(r);
-        row.add(orMissing(cues.visual, commands.visual));
-        row.add(orMissing(cues.vibration, commands.vibration));
-        row.add(orMissing(cues.sound, commands.sound));
-        row.add(orMissing(cues.masking, 1.0));
-        while (shown < commanded.stimuli.size() && commanded.stimuli[shown].second <= time) ++shown;
-        const bool lit = shown < commanded.stimuli.size() && commanded.stimuli[shown].first <= time;
-        row.add(orMissing(commanded.secondary, lit ? 1.0 : 0.0));
+    for (const TickRecord& record : records) {
+        const std::int64_t period = clock.at(record);
+        while (shown < commanded.stimuli.size() && commanded.stimuli[shown].second <= period) ++shown;
+        const bool lit = shown < commanded.stimuli.size() && commanded.stimuli[shown].first <= period;
+        const Sample sample{record, period, commanded, signals.at(record), lit};
+        for (const SampleColumn& column : columns) column.add(row, sample, column.offset);
         row.endRow();
     }
     return text;

@@ -15,15 +15,8 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "chunks are written as the machine holds them");
 static_assert(std::is_standard_layout_v<TickRecord>);
 
-/// Where a column's value lies in a record.
-struct Field {
-    std::size_t offset;
-    std::size_t width;
-};
-
 struct Layout {
     std::vector<Channel> channels;
-    std::vector<Field> fields;
     std::size_t bytes_per_tick = 0;
     std::size_t later_columns = 0;  // at the end, that older chunks may lack
 
@@ -31,25 +24,23 @@ struct Layout {
     std::size_t columnsOf(const Chunk& chunk) const {
         if (chunk.count < 1 || chunk.count > static_cast<std::int64_t>(kChunkTicks)) return 0;
         std::size_t width = bytes_per_tick;
-        for (std::size_t n = fields.size(); n + later_columns >= fields.size(); width -= fields[--n].width)
+        for (std::size_t n = channels.size(); n + later_columns >= channels.size(); width -= channels[--n].width())
             if (chunk.data.size() == static_cast<std::size_t>(chunk.count) * width) return n;
         return 0;
     }
 
     void add(std::string name, std::string type, std::string unit, std::string label, std::size_t offset) {
-        const std::size_t width = type == "float64" || type == "int64" ? 8 : 4;
-        channels.push_back({std::move(name), std::move(type), std::move(unit), std::move(label)});
-        fields.push_back({offset, width});
-        bytes_per_tick += width;
+        channels.push_back({std::move(name), std::move(type), std::move(unit), std::move(label), offset});
+        bytes_per_tick += channels.back().width();
     }
 
     /// `axes` columns of one array, e.g. proxy_x_m, proxy_y_m, proxy_z_m.
     void addAxes(const std::string& stem, std::string_view axes, const std::string& suffix, const std::string& type,
                  const std::string& unit, const std::string& label, std::size_t offset) {
-        const std::size_t width = type == "float64" ? 8 : 4;
-        for (std::size_t i = 0; i < axes.size(); ++i) {
-            const std::string axis(1, axes[i]);
-            add(stem + axis + suffix, type, unit, label + ", " + axis, offset + i * width);
+        for (const char c : axes) {
+            const std::string axis(1, c);
+            add(stem + axis + suffix, type, unit, label + ", " + axis, offset);
+            offset += channels.back().width();
         }
     }
 };
@@ -125,10 +116,11 @@ Chunk encode(const Layout& layout, std::span<const TickRecord> records) {
     chunk.count = static_cast<std::int64_t>(records.size());
     chunk.data.resize(layout.bytes_per_tick * records.size());
     std::byte* out = chunk.data.data();
-    for (const Field& field : layout.fields) {
+    for (const Channel& channel : layout.channels) {
+        const std::size_t width = channel.width();
         for (const TickRecord& record : records) {
-            std::memcpy(out, reinterpret_cast<const std::byte*>(&record) + field.offset, field.width);
-            out += field.width;
+            std::memcpy(out, reinterpret_cast<const std::byte*>(&record) + channel.offset, width);
+            out += width;
         }
     }
     chunk.crc32 = crc32(chunk.data);
@@ -143,11 +135,11 @@ constexpr std::size_t kSizeBytes = 4;  // before the deflated bytes: how many th
 template <class Move>
 void forEachPlanedByte(const Layout& layout, std::size_t columns, std::size_t rows, Move move) {
     std::size_t start = 0;
-    for (const Field& field : std::span(layout.fields).first(columns)) {
-        for (std::size_t byte = 0; byte < field.width; ++byte)
-            for (std::size_t row = 0; row < rows; ++row)
-                move(start + row * field.width + byte, start + byte * rows + row);
-        start += rows * field.width;
+    for (const Channel& channel : std::span(layout.channels).first(columns)) {
+        const std::size_t width = channel.width();
+        for (std::size_t byte = 0; byte < width; ++byte)
+            for (std::size_t row = 0; row < rows; ++row) move(start + row * width + byte, start + byte * rows + row);
+        start += rows * width;
     }
 }
 
@@ -195,12 +187,13 @@ Result<Done> check(const Layout& layout, const Chunk& chunk) {
 void decode(const Layout& layout, const Chunk& chunk, std::span<TickRecord> records, std::size_t skip_rows) {
     const auto rows = static_cast<std::size_t>(chunk.count);
     const std::byte* column = chunk.data.data();
-    for (const Field& field : std::span(layout.fields).first(layout.columnsOf(chunk))) {
+    for (const Channel& channel : std::span(layout.channels).first(layout.columnsOf(chunk))) {
+        const std::size_t width = channel.width();
         for (std::size_t row = 0; row < records.size(); ++row) {
-            std::memcpy(reinterpret_cast<std::byte*>(&records[row]) + field.offset,
-                        column + (skip_rows + row) * field.width, field.width);
+            std::memcpy(reinterpret_cast<std::byte*>(&records[row]) + channel.offset,
+                        column + (skip_rows + row) * width, width);
         }
-        column += rows * field.width;
+        column += rows * width;
     }
 }
 

@@ -21,6 +21,9 @@ struct Channel {
     std::string type;  // "float64", "float32", "uint32", "int64"; little-endian
     std::string unit;  // "1" if it has none
     std::string label;
+    std::size_t offset = 0;  // of the value in a TickRecord
+
+    std::size_t width() const { return type == "float64" || type == "int64" ? 8 : 4; }  // [bytes]
 };
 
 /// Columns of the stream "tick", in the order of the blob.
