@@ -217,7 +217,11 @@ private:
             }
         } const over{options_.performer};
         LoggedSink logged_sink(sink, options_.log);
-        session::Session session(std::move(setup), apparatus, logged_sink, {listener_.acknowledge, listener_.trial});
+        const auto prepares = [this](const session::SessionView& view) {
+            if (options_.performer != nullptr) options_.performer->tells(view);
+        };
+        session::Session session(std::move(setup), apparatus, logged_sink,
+                                 {listener_.acknowledge, listener_.trial, prepares});
         conduct(session, apparatus);
         if (session.state() == session::SessionState::Failed) return session.errors();
         if (session.state() == session::SessionState::Interrupted) return RunEnd::Interrupted;
@@ -234,10 +238,11 @@ private:
         while (!session.isOver()) {
             const auto state = session.state();
             const bool waits = state == session::SessionState::Ready || state == session::SessionState::Paused;
-            if (waits && told != state && listener_.swap && !session.awaitedDevice().empty())
-                listener_.swap(session.awaitedDevice(),
-                               calibrationAdvice(session.awaitedDevice(), plan_.stable_stiffness, began));
-            if (waits && told != state && listener_.state) listener_.state(state);
+            if (waits && told != state && listener_.waits) {
+                const session::SessionView view = session.view();
+                const std::string& device = view.awaited_device;
+                listener_.waits(view, device.empty() ? "" : calibrationAdvice(device, plan_.stable_stiffness, began));
+            }
             told = state;
             if (commands)
                 (*commands)->serve([&](const session::Command& c) { return session.command(c); }, waits);

@@ -48,9 +48,8 @@ struct RunListener {
     std::function<void(const std::string& participant, int number, int of)> session;
     std::function<void(const session::Resumption&)> resumed;  // what an earlier process did of the session
     std::function<void(const session::TrialProgress&)> trial;
-    std::function<void(session::SessionState)> state;  // whenever it waits for a command
-    /// Before that: it waits for this device to be put in place; `advice` on its calibration may be empty.
-    std::function<void(const std::string& device, const std::string& advice)> swap;
+    /// Whenever it begins to wait for a command; `advice` on the calibration of a device that it awaits may be empty.
+    std::function<void(const session::SessionView&, const std::string& advice)> waits;
     std::function<void(const std::string& participant, bool whole)> session_over;  // that was not interrupted
     std::function<void(session::AttemptId, measures::Outcome)> acknowledge;
 };

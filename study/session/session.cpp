@@ -93,6 +93,7 @@ SessionState Session::advance() {
             watchTrial();
             break;
         case SessionState::Ready:
+        case SessionState::Preparing:
         case SessionState::Paused:
         case SessionState::Complete:
         case SessionState::Failed:
@@ -134,6 +135,8 @@ void Session::beginTrial() {
     start.params_json = condition.params_json;
     start.seed = attemptSeed(setup_, trial(), start.attempt_no);
     if (setup_.shown && !std::exchange(view_noted_, true)) note("view_shown", protocol::viewJson(setup_.plan.view));
+    state_ = SessionState::Preparing;
+    if (listener_.prepares) listener_.prepares(view());
     auto stages = apparatus_.prepare(condition, start.seed, start.trial_index);
     if (!stages) return fail("prepare", stages.errors());
     start.stages = *std::move(stages);

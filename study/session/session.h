@@ -14,15 +14,12 @@
 #include "study/session/instruction_desk.h"
 #include "study/session/questionnaire_desk.h"
 #include "study/session/session_setup.h"
+#include "study/session/session_view.h"
 #include "study/session/staircases.h"
 #include "study/session/trial_course.h"
 #include "study/session/trial_sink.h"
 
 namespace passung::session {
-
-/// Ready → BetweenTrials → InTrial → BetweenTrials … → Complete; Paused in place of BetweenTrials when that was asked;
-/// and from all of them → Failed or Interrupted. Only Paused and Ready wait for a command.
-enum class SessionState { Ready, BetweenTrials, InTrial, Paused, Complete, Failed, Interrupted };
 
 /// Runs the planned trials one after another: prepares the apparatus, records every tick into the sink, lets
 /// TrialCourse decide, computes the measures and finishes the attempt durably; between, it does what an experimenter
@@ -53,6 +50,13 @@ public:
     /// accepted or not; whoever wants motors off at once calls the apparatus' halt() first.
     Answer command(const Command& command);
 
+    /// Whether command() would obey now: the only place that decides it. What it cannot foresee is that the data cannot
+    /// be kept.
+    Permission permission(const Command& command) const;
+
+    /// The session as it stands; also while the apparatus prepares a trial.
+    SessionView view() const;
+
     /// Keeps in the data how the participant's window draws from now on, between two calls of advance().
     void drawsWith(const QualityFound& found);
 
@@ -72,12 +76,6 @@ public:
 
     /// Has every main trial an attempt that counts, and every track of a staircase come to its end?
     bool isWhole() const;
-
-    /// The device that is to be put in place while the session is Paused; empty: it waits for none.
-    std::string awaitedDevice() const { return state_ == SessionState::Paused && swapping_ ? device_in_use_ : ""; }
-
-    /// How long the running rest still has to last [periods]; nothing if there is none.
-    std::optional<std::int64_t> restLeft() const { return resting_ ? std::optional(rest_left_) : std::nullopt; }
 
     /// Why the session failed; empty unless state() is Failed.
     const Errors& errors() const { return errors_; }
@@ -127,13 +125,12 @@ private:
     void fail(const char* stage, const Errors& errors);
 
     // session_commands.cpp
-    struct Refusal {
-        WhyNot why;
-        std::string text;
-    };
-    std::optional<Refusal> refusal(const Command& command) const;
-    std::optional<Refusal> refusalByState(const Command& command) const;
-    void logCommand(const Command& command, const std::optional<Refusal>& refused);
+    Permission permissionByState(const Command& command) const;
+    Permission permissionToRepeat() const;
+    Permission permissionToGoBack() const;
+    Permission permissionToInvalidate(const Command& command) const;
+    bool hasTrial() const { return state_ == SessionState::Preparing || state_ == SessionState::InTrial; }
+    void logCommand(const Command& command, const Permission& permission);
     Answer execute(const Command& command);
     Answer pause(const Command& command);
     Answer repeat(const Command& command);

@@ -22,73 +22,89 @@ Answer notKept(const Error& error) { return {false, toString(error), WhyNot::Can
 }  // namespace
 
 Answer Session::command(const Command& command) {
-    const auto refused = refusal(command);
-    logCommand(command, refused);
-    if (refused) return {false, refused->text, refused->why};
+    const Permission permission = this->permission(command);
+    logCommand(command, permission);
+    if (!permission.given()) return {false, permission.text, permission.why};
     Answer answer = execute(command);
     if (state_ == SessionState::Failed && !errors_.empty()) return notKept(errors_.front());
     return answer;
 }
 
-std::optional<Session::Refusal> Session::refusalByState(const Command& command) const {
+Permission Session::permission(const Command& command) const {
+    if (isOver()) return {WhyNot::NoSession, "the session is over"};
+    if (needsText(command.kind) && command.text.empty())
+        return {WhyNot::NeedsText,
+                command.kind == CommandKind::Note ? "a note needs a text" : "to invalidate an attempt needs a reason"};
+    return permissionByState(command);
+}
+
+Permission Session::permissionByState(const Command& command) const {
     switch (command.kind) {
         case CommandKind::Start:
             if (attempt_ && attempt_->course.awaitsExperimenter()) break;
-            if (state_ != SessionState::Ready) return Refusal{WhyNot::BegunAlready, "the session has begun already"};
+            if (state_ != SessionState::Ready) return {WhyNot::BegunAlready, "the session has begun already"};
             break;
         case CommandKind::Done:
         case CommandKind::Failed:
             if (attempt_ && attempt_->course.endsByExperimenter()) break;
             if (attempt_ && attempt_->course.awaitsExperimenter())
-                return Refusal{WhyNot::ClockNotStarted, "the trial's clock has not been started"};
-            return Refusal{WhyNot::NoTrial, "no trial runs that the experimenter times"};
+                return {WhyNot::ClockNotStarted, "the trial's clock has not been started"};
+            return {WhyNot::NoTrial, "no trial runs that the experimenter times"};
         case CommandKind::Continue:
-            if (state_ != SessionState::Paused) return Refusal{WhyNot::NotPaused, "the session is not paused"};
+            if (state_ != SessionState::Paused) return {WhyNot::NotPaused, "the session is not paused"};
             break;
         case CommandKind::Pause:
-            if (state_ == SessionState::Ready) return Refusal{WhyNot::NotBegun, "the session has not begun"};
-            if (state_ == SessionState::Paused) return Refusal{WhyNot::PausedAlready, "the session is paused already"};
+            if (state_ == SessionState::Ready) return {WhyNot::NotBegun, "the session has not begun"};
+            if (state_ == SessionState::Paused) return {WhyNot::PausedAlready, "the session is paused already"};
             if (pause_asked_ && !command.now)
-                return Refusal{WhyNot::PausesAlready, "the session pauses after this trial already"};
+                return {WhyNot::PausesAlready, "the session pauses after this trial already"};
             break;
         case CommandKind::Repeat:
-            if (state_ == SessionState::InTrial) break;
-            if (!last_) return Refusal{WhyNot::NothingEnded, "no trial has ended yet"};
-            if (!agenda_.canGoBack() || agenda_.last() != *last_)
-                return Refusal{WhyNot::RepeatedAlready, nameOf(*last_) + " is to be repeated already"};
-            break;
+            return permissionToRepeat();
         case CommandKind::Skip:
-            if (agenda_.empty()) return Refusal{WhyNot::NothingLeft, "no trial is left"};
+            if (agenda_.empty()) return {WhyNot::NothingLeft, "no trial is left"};
             break;
         case CommandKind::Back:
-            if (!agenda_.canGoBack()) return Refusal{WhyNot::NothingEnded, "there is no earlier trial"};
-            break;
+            return permissionToGoBack();
         case CommandKind::Invalidate:
+            return permissionToInvalidate(command);
         case CommandKind::Note:
         case CommandKind::Abort:
         case CommandKind::Stop:
             break;
     }
-    return std::nullopt;
+    return {};
 }
 
-std::optional<Session::Refusal> Session::refusal(const Command& command) const {
-    if (isOver()) return Refusal{WhyNot::NoSession, "the session is over"};
-    if (command.kind == CommandKind::Note && command.text.empty())
-        return Refusal{WhyNot::NeedsText, "a note needs a text"};
-    if (command.kind != CommandKind::Invalidate) return refusalByState(command);
-    if (command.text.empty()) return Refusal{WhyNot::NeedsText, "to invalidate an attempt needs a reason"};
-    if (command.attempt && attempt_ && *command.attempt == attempt_->id) return std::nullopt;
-    if (!command.attempt && (attempt_ || last_)) return std::nullopt;
-    if (!command.attempt) return Refusal{WhyNot::NothingEnded, "no attempt has ended yet"};
-    if (!placeOf(*command.attempt))
-        return Refusal{WhyNot::UnknownAttempt,
-                       fmt::format("attempt {} is not the newest one of a trial of this session",
-                                   static_cast<std::int64_t>(*command.attempt))};
-    return std::nullopt;
+Permission Session::permissionToRepeat() const {
+    if (attempt_) return {.attempt = attempt_->id};
+    if (hasTrial()) return {};
+    if (!last_) return {WhyNot::NothingEnded, "no trial has ended yet"};
+    if (!agenda_.canGoBack() || agenda_.last() != *last_)
+        return {WhyNot::RepeatedAlready, nameOf(*last_) + " is to be repeated already"};
+    return {.attempt = past_[*last_].last};
 }
 
-void Session::logCommand(const Command& command, const std::optional<Refusal>& refused) {
+Permission Session::permissionToGoBack() const {
+    if (!agenda_.canGoBack()) return {WhyNot::NothingEnded, "there is no earlier trial"};
+    return {.attempt = past_[agenda_.last()].last};
+}
+
+/// Of an attempt that is named, or else of the running one, or else of the last.
+Permission Session::permissionToInvalidate(const Command& command) const {
+    if (attempt_ && command.attempt.value_or(attempt_->id) == attempt_->id) return {.attempt = attempt_->id};
+    if (hasTrial() && !command.attempt) return {};
+    if (!command.attempt && !last_) return {WhyNot::NothingEnded, "no attempt has ended yet"};
+    const auto place = command.attempt ? placeOf(*command.attempt) : last_;
+    if (!place)
+        return {WhyNot::UnknownAttempt, fmt::format("attempt {} is not the newest one of a trial of this session",
+                                                    static_cast<std::int64_t>(*command.attempt))};
+    if (!past_[*place].counting)
+        return {WhyNot::CountsNot, "the attempt of " + nameOf(*place) + " is not valid anyway"};
+    return {.attempt = past_[*place].counting};
+}
+
+void Session::logCommand(const Command& command, const Permission& permission) {
     if (isOver()) return;  // its part of the data is closed
     Event event;
     if (attempt_) event.attempt = attempt_->id;
@@ -96,8 +112,8 @@ void Session::logCommand(const Command& command, const std::optional<Refusal>& r
     event.source = command.source;
     event.event = fmt::format("command_{}", commandName(command.kind));
     JsonObject payload;
-    payload.boolean("accepted", !refused);
-    if (refused) payload.text("refusal", refused->text);
+    payload.boolean("accepted", permission.given());
+    if (!permission.given()) payload.text("refusal", permission.text);
     if (command.now) payload.boolean("now", true);
     if (!command.text.empty()) payload.text("text", command.text);
     if (command.attempt) payload.integer("attempt_id", static_cast<std::int64_t>(*command.attempt));
@@ -188,8 +204,6 @@ Answer Session::invalidate(const Command& command) {
         return accepted("the running attempt of " + nameOf(place) + " will not count");
     }
     const std::size_t place = command.attempt ? *placeOf(*command.attempt) : *last_;
-    if (!past_[place].counting)
-        return {false, "the attempt of " + nameOf(place) + " is not valid anyway", WhyNot::CountsNot};
     const Then then = agenda_.isOver(place) ? thenAfterInvalid(blockOf(place), past_[place].judged) : Then::Done;
     const auto running = attempt_ ? std::optional(agenda_.next()) : std::nullopt;
     if (const auto done = reorder(place, reason, then); !done) return notKept(done.errors().front());

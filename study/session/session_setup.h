@@ -11,6 +11,7 @@
 #include "study/session/instruction_reader.h"
 #include "study/session/questionnaire_source.h"
 #include "study/session/resume.h"
+#include "study/session/session_view.h"
 #include "study/session/trial_sink.h"
 #include "study/session/trial_timer.h"
 
@@ -52,6 +53,8 @@ struct SessionListener {
     /// An attempt is durable: whoever hears this may rely on finding it after a crash.
     std::function<void(AttemptId, measures::Outcome)> acknowledge;
     std::function<void(const TrialProgress&)> progress;
+    /// A trial's scene is about to be built, which may take long: how the session stands until its first look at it.
+    std::function<void(const SessionView&)> prepares = {};
 };
 
 }  // namespace passung::session

@@ -111,17 +111,15 @@ int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, con
         progress.show(
             fmt::format("{}: trial {} of {}, {} succeeded", participant, finished, trial.planned, succeeded.size()));
     };
-    listener.state = [&](session::SessionState state) {
+    listener.waits = [&](const session::SessionView& view, const std::string& advice) {
         progress.show("");
+        if (!view.awaited_device.empty())
+            fmt::print("{}: the next trial is on {}: put it in place{}{}\n", participant, view.awaited_device,
+                       advice.empty() ? "" : "; ", advice);
         fmt::print("{}: {}\n", participant,
-                   state == session::SessionState::Ready ? "waits for `passung session start`"
-                                                         : "paused; `passung session continue` goes on");
+                   view.permission(session::CommandKind::Start).given() ? "waits for `passung session start`"
+                                                                        : "paused; `passung session continue` goes on");
         std::fflush(stdout);
-    };
-    listener.swap = [&](const std::string& device, const std::string& advice) {
-        progress.show("");
-        fmt::print("{}: the next trial is on {}: put it in place{}{}\n", participant, device,
-                   advice.empty() ? "" : "; ", advice);
     };
     listener.session_over = [&](const std::string&, bool whole) {
         progress.show("");

@@ -39,8 +39,7 @@ int tellSession(const SessionOptions& options) {
         session::commandNamed(options.action).value_or(CommandKind::Note);  // the command line has checked it
     command.text = options.text;
     if (options.attempt > 0) command.attempt = session::AttemptId{options.attempt};
-    const bool needs_text = command.kind == CommandKind::Note || command.kind == CommandKind::Invalidate;
-    if (needs_text && command.text.empty())
+    if (session::needsText(command.kind) && command.text.empty())
         return fail({{.message = "needs a text: --text", .file = options.database, .key = options.action}});
 
     const auto answer = app::tellSession(options.database, command);

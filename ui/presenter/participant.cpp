@@ -92,10 +92,11 @@ ParticipantView participantView(const Run& run, bool feels) {
     const RunView& state = run.view();
     ParticipantView view;
     view.screen = screenOf(state.state);
-    if (view.screen == ParticipantScreen::Pause && !state.swaps_to.empty()) view.screen = ParticipantScreen::Swap;
+    if (view.screen == ParticipantScreen::Pause && !state.session.awaited_device.empty())
+        view.screen = ParticipantScreen::Swap;
     if (state.planned > 0) view.share = static_cast<double>(state.finished) / static_cast<double>(state.planned);
     view.brief = run.brief();
-    view.rest = state.rest;
+    view.rest = state.session.rest;
     view.result = run.result();
     view.begun = state.state == RunState::Running;
     if (view.screen == ParticipantScreen::ToStart || view.screen == ParticipantScreen::Task) lookIntoTrial(run, view);

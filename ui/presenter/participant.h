@@ -35,7 +35,7 @@ struct ParticipantView {
     TrialBrief brief;                                          // of the running or last trial
     int interval = 0;                                          // of a pair, 1 or 2; 0: none
     bool begun = false;                                        // ByHand: the clock runs
-    std::optional<RestGlance> rest;
+    std::optional<session::RestView> rest;
     std::optional<TrialResult> result;  // of the last trial
 };
 

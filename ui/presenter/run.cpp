@@ -30,44 +30,6 @@ bool hasEnded(RowState state) { return state >= RowState::Success && state != Ro
 
 }  // namespace
 
-Why RunView::why(CommandKind kind) const {
-    if (!isRunning() || state == RunState::Opening) return Why::NoSession;
-    if (state == RunState::Consenting) return kind == CommandKind::Abort ? Why::Possible : Why::NotBegun;
-    const bool paused = state == RunState::Paused || state == RunState::Stopped;
-    const bool in_trial = state == RunState::ToStart || state == RunState::Running || state == RunState::Preparing;
-    const bool something_ended =
-        std::any_of(rows.begin(), rows.end(), [](const TrialRow& row) { return row.attempts > 0; });
-    switch (kind) {
-        case CommandKind::Start:
-            if (state == RunState::Ready || (by_hand && state == RunState::ToStart)) return Why::Possible;
-            return Why::BegunAlready;
-        case CommandKind::Continue:
-            return paused ? Why::Possible : Why::NotPaused;
-        case CommandKind::Pause:
-            if (state == RunState::Ready) return Why::NotBegun;
-            if (paused) return Why::PausedAlready;
-            return pauses_after ? Why::PausesAlready : Why::Possible;
-        case CommandKind::Repeat:
-            return in_trial || can_go_back ? Why::Possible : Why::NothingEnded;
-        case CommandKind::Invalidate:
-            return in_trial || something_ended ? Why::Possible : Why::NothingEnded;
-        case CommandKind::Back:
-            return can_go_back ? Why::Possible : Why::NothingEnded;
-        case CommandKind::Skip:
-            return number > 0 ? Why::Possible : Why::NothingLeft;
-        case CommandKind::Done:
-        case CommandKind::Failed:
-            if (!in_trial) return Why::NoTrial;
-            if (!by_hand) return Why::NoTrial;
-            return state == RunState::Running ? Why::Possible : Why::ClockNotStarted;
-        case CommandKind::Note:
-        case CommandKind::Abort:
-        case CommandKind::Stop:
-            break;
-    }
-    return Why::Possible;
-}
-
 void Run::open(const protocol::StudyPlan& plan) {
     *this = Run();
     view_.state = RunState::Opening;
@@ -86,7 +48,7 @@ void Run::take(const News& news) {
             if constexpr (std::is_same_v<What, AskedDone>) ask(nullptr, std::nullopt);
             if constexpr (std::is_same_v<What, AttemptPrepared>) prepare(what);
             if constexpr (std::is_same_v<What, BuildProgress>) view_.built = what.share;
-            if constexpr (std::is_same_v<What, SessionGlance>) glance(what);
+            if constexpr (std::is_same_v<What, session::SessionView>) show(what);
             if constexpr (std::is_same_v<What, AttemptEnded>) end(what);
             if constexpr (std::is_same_v<What, CommandAnswered>) answer(what);
             if constexpr (std::is_same_v<What, RunOver>) finish(what);
@@ -122,14 +84,14 @@ void Run::begin(const SessionBegun& begun) {
 void Run::ask(std::shared_ptr<const FormRequest> form, std::optional<PageDue> page) {
     form_ = std::move(form);
     page_ = std::move(page);
-    if (session_ == SessionState::BetweenTrials) view_.state = between();
+    if (view_.session.state == SessionState::BetweenTrials) view_.state = between();
 }
 
 /// What goes on while no trial does.
 RunState Run::between() const {
     if (form_) return form_->consent ? RunState::Consenting : RunState::Answering;
     if (page_) return RunState::Reading;
-    if (view_.rest) return RunState::Resting;
+    if (view_.session.rest) return RunState::Resting;
     return view_.planned > 0 ? RunState::Between : RunState::Opening;
 }
 
@@ -157,17 +119,18 @@ void Run::prepare(const AttemptPrepared& prepared) {
     depth_.clear();
 }
 
-void Run::glance(const SessionGlance& glance) {
+void Run::show(const session::SessionView& session) {
     view_.built.reset();
-    session_ = glance.state;
-    view_.rest = glance.rest;
-    view_.swaps_to = glance.swaps_to;
-    switch (glance.state) {
+    view_.session = session;
+    switch (session.state) {
         case SessionState::Ready:
             view_.state = RunState::Ready;
             break;
         case SessionState::Paused:
             view_.state = stopped_ ? RunState::Stopped : RunState::Paused;
+            break;
+        case SessionState::Preparing:
+            view_.state = RunState::Preparing;
             break;
         case SessionState::InTrial:
             view_.state = started_ >= 0.0 ? RunState::Running : RunState::ToStart;
@@ -180,17 +143,15 @@ void Run::glance(const SessionGlance& glance) {
         case SessionState::Interrupted:
             break;
     }
-    if (glance.state != SessionState::Paused) stopped_ = stopped_ && glance.state == SessionState::InTrial;
-    if (glance.state == SessionState::Paused) view_.pauses_after = false;
-    view_.can_go_back = glance.can_go_back;
-    view_.finished = static_cast<std::size_t>(std::count(glance.over.begin(), glance.over.end(), true));
-    view_.number = glance.next ? static_cast<std::int64_t>(*glance.next) + 1 : 0;
-    for (std::size_t place = 0; place < std::min(glance.over.size(), view_.rows.size()); ++place) {
+    if (session.state != SessionState::Paused) stopped_ = stopped_ && session.state == SessionState::InTrial;
+    view_.finished = static_cast<std::size_t>(std::count(session.over.begin(), session.over.end(), true));
+    view_.number = session.next ? static_cast<std::int64_t>(*session.next) + 1 : 0;
+    for (std::size_t place = 0; place < std::min(session.over.size(), view_.rows.size()); ++place) {
         TrialRow& row = view_.rows[place];
-        const bool next = glance.next == place;
+        const bool next = session.next == place;
         if (next)
-            row.state = glance.state == SessionState::InTrial ? RowState::Running : RowState::Next;
-        else if (glance.over[place])
+            row.state = session.state == SessionState::InTrial ? RowState::Running : RowState::Next;
+        else if (session.over[place])
             row.state = hasEnded(row.state) ? row.state : RowState::Skipped;
         else if (row.state != RowState::Invalid)
             row.state = RowState::Waiting;
@@ -216,23 +177,21 @@ void Run::end(const AttemptEnded& ended) {
 void Run::answer(const CommandAnswered& answered) {
     view_.answered = answered;
     if (!answered.answer.accepted) return;
-    if (answered.command.kind == CommandKind::Pause) view_.pauses_after = answered.answer.after_trial;
     if (answered.command.kind == CommandKind::Stop) {
         stopped_ = true;
         if (view_.state == RunState::Paused) view_.state = RunState::Stopped;
     }
     if (answered.command.kind == CommandKind::Continue) stopped_ = false;
-    if (answered.command.kind == CommandKind::Start && session_ == SessionState::InTrial) startClock();
+    if (answered.command.kind == CommandKind::Start && view_.session.state == SessionState::InTrial) startClock();
 }
 
 void Run::finish(const RunOver& over) {
     view_.built.reset();
     form_.reset();
     page_.reset();
-    view_.rest.reset();
+    view_.session = session::viewWithoutSession();
     view_.state = over.complete ? RunState::Complete : RunState::Incomplete;
     view_.number = 0;
-    view_.pauses_after = false;
     if (over.errors.empty()) return;
     view_.state = RunState::Failed;
     view_.failure = toString(over.errors.front());

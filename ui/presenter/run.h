@@ -82,12 +82,9 @@ struct RunView {
     std::size_t planned = 0, finished = 0;
     std::int64_t number = 0;  // of the running or next trial, from 1; 0: none
     std::string condition;
-    bool pauses_after = false;  // the running trial
-    bool can_go_back = false;
-    bool by_hand = false;            // the experimenter times the running trial
-    std::optional<RestGlance> rest;  // that runs
-    std::string swaps_to;            // device that comes into use now; else empty
-    double trial_s = 0.0;            // since the go
+    bool by_hand = false;  // the experimenter times the running trial
+    session::SessionView session = session::viewWithoutSession();
+    double trial_s = 0.0;  // since the go
     std::vector<TrialRow> rows;
     std::int64_t rows_changed = 0;  // counts up whenever a row does
     LoopView loop;
@@ -101,7 +98,7 @@ struct RunView {
     std::optional<double> built;  // of the scene that is being built: the share that is done
     bool sound = false;           // the trial has something to be heard
 
-    Why why(session::CommandKind kind) const;
+    Why why(session::CommandKind kind) const { return session.permission(kind).why; }
     bool may(session::CommandKind kind) const { return why(kind) == Why::Possible; }
     bool isRunning() const { return state > RunState::Idle && state < RunState::Complete; }
 };
@@ -142,7 +139,7 @@ public:
 private:
     void begin(const SessionBegun& begun);
     void prepare(const AttemptPrepared& prepared);
-    void glance(const SessionGlance& glance);
+    void show(const session::SessionView& session);
     void end(const AttemptEnded& ended);
     void answer(const CommandAnswered& answered);
     void finish(const RunOver& over);
@@ -153,7 +150,6 @@ private:
     void startClock();
 
     RunView view_;
-    session::SessionState session_ = session::SessionState::BetweenTrials;
     std::shared_ptr<const FormRequest> form_;
     std::optional<PageDue> page_;
     TrialBrief brief_;

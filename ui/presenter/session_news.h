@@ -64,24 +64,6 @@ struct BuildProgress {
     double share = 0.0;
 };
 
-/// Of a rest, told once a second.
-struct RestGlance {
-    std::int64_t seconds = 0;  // that it has to last yet, rounded up
-    protocol::RestEnds ends = protocol::RestEnds::ByTime;
-    friend bool operator==(const RestGlance&, const RestGlance&) = default;
-};
-
-/// How things stand; told whenever something of it has changed.
-struct SessionGlance {
-    session::SessionState state = session::SessionState::BetweenTrials;
-    std::optional<std::size_t> next;  // place in the plan of the running or next trial; none: nothing is left
-    std::vector<bool> over;           // by place in the plan
-    bool can_go_back = false;
-    std::optional<RestGlance> rest = {};
-    std::string swaps_to = {};  // the device that comes into use now; else empty
-    friend bool operator==(const SessionGlance&, const SessionGlance&) = default;
-};
-
 /// An attempt is durable.
 struct AttemptEnded {
     std::int64_t trial_index = 0;
@@ -102,7 +84,8 @@ struct RunOver {
     Errors errors;
 };
 
-using News = std::variant<SessionBegun, FormDue, PageDue, AskedDone, AttemptPrepared, BuildProgress, SessionGlance,
-                          AttemptEnded, CommandAnswered, RunOver>;
+/// The session's view is told whenever something of it has changed.
+using News = std::variant<SessionBegun, FormDue, PageDue, AskedDone, AttemptPrepared, BuildProgress,
+                          session::SessionView, AttemptEnded, CommandAnswered, RunOver>;
 
 }  // namespace passung::presenter

@@ -110,6 +110,7 @@ Result<RunEnd> LiveSession::perform(const RunListener& listener) {
 }
 
 std::optional<bool> LiveSession::askConsent(const protocol::ConsentClause& clause, const std::string& text) {
+    show(session::viewBeforeSession());
     return interview_.consent(clause, text, [this] { return ends_.load() || takesAbort(); });
 }
 
@@ -121,10 +122,10 @@ bool LiveSession::takesAbort() {
         commands.swap(commands_);
     }
     for (const session::Command& command : commands) {
-        const bool aborts = command.kind == session::CommandKind::Abort;
-        aborted_ = aborted_ || aborts;
-        session::Answer answer{aborts, "the session does not begin"};
-        if (!aborts) answer = {false, "the session has not begun", session::WhyNot::NotBegun};
+        const session::Permission permission = session::viewBeforeSession().permission(command.kind);
+        aborted_ = aborted_ || permission.given();
+        session::Answer answer{permission.given(), "the session does not begin"};
+        if (!permission.given()) answer = {false, permission.text, permission.why};
         tell(presenter::CommandAnswered{command, std::move(answer)});
     }
     return aborted_;
@@ -207,13 +208,11 @@ bool LiveSession::builds(double share) {
     return !cancelled_;
 }
 
-/// The rest that runs, for the screen of who rests.
-std::optional<presenter::RestGlance> LiveSession::restOf(const session::Session& session) const {
-    const auto left = session.restLeft();
-    if (!left || session.agenda().empty()) return std::nullopt;
-    const auto block = static_cast<std::size_t>(session.agenda().trial(session.agenda().next()).block_index);
-    const double seconds = std::ceil(static_cast<double>(*left) * kTickSeconds);
-    return presenter::RestGlance{static_cast<std::int64_t>(seconds), plan_.blocks.at(block).rest_ends};
+/// What has changed of it reaches the windows.
+void LiveSession::show(session::SessionView view) {
+    if (told_ == view) return;
+    told_ = view;
+    tell(std::move(view));
 }
 
 /// The same press comes twice: from the X server at once, and from the window as soon as it is alive.
@@ -243,18 +242,7 @@ void LiveSession::look(session::Session& session) {
             if (command.source != kWindow) tell(presenter::CommandAnswered{command, std::move(answer)});
         }
     takePictures();
-    presenter::SessionGlance glance;
-    glance.state = session.state();
-    const session::Agenda& agenda = session.agenda();
-    if (!agenda.empty()) glance.next = agenda.next();
-    for (std::size_t place = 0; place < agenda.planned(); ++place) glance.over.push_back(agenda.isOver(place));
-    glance.can_go_back = agenda.canGoBack();
-    glance.rest = restOf(session);
-    glance.swaps_to = session.awaitedDevice();
-    if (told_anything_ && glance == told_) return;
-    told_anything_ = true;
-    told_ = glance;
-    tell(std::move(glance));
+    show(session.view());
 }
 
 void LiveSession::drawsWith(const presenter::QualityFound& found) {

@@ -76,6 +76,7 @@ private:
     session::InstructionReader* reader() override { return &interview_; }
     void begins(session::Apparatus& apparatus, const session::SessionSetup& setup) override;
     void prepares(const protocol::Condition& condition, std::int64_t trial_index, std::uint64_t seed) override;
+    void tells(const session::SessionView& view) override { show(view); }
     bool builds(double share) override;
     void look(session::Session& session) override;
     void over() override;
@@ -85,7 +86,7 @@ private:
     std::optional<bool> askConsent(const protocol::ConsentClause& clause, const std::string& text);
     bool takesAbort();
     bool isKnown(const session::Command& command, session::SessionState state);
-    std::optional<presenter::RestGlance> restOf(const session::Session& session) const;
+    void show(session::SessionView view);
     void tell(presenter::News news);
     void takePictures();
     bool isWanted();
@@ -95,8 +96,7 @@ private:
     std::unique_ptr<Builds> builds_ = openBuilds();
     presenter::SceneArtist artist_{builds_.get()};
     protocol::View look_;  // of the plan that runs, which is the stored one where a session goes on
-    presenter::SessionGlance told_;
-    bool told_anything_ = false;
+    std::optional<session::SessionView> told_;
     bool cancelled_ = false;  // a build
     mouse::Pointer pointer_;
     std::int64_t looked_ns_ = 0;

@@ -62,7 +62,7 @@ QString stateLine(const RunView& view) {
 }
 
 QString stateDetail(const RunView& view) {
-    if (view.pauses_after) return said(QT_TRANSLATE_NOOP("words", "pauses after this trial"));
+    if (view.session.pauses_after) return said(QT_TRANSLATE_NOOP("words", "pauses after this trial"));
     if (view.built)
         return said(QT_TRANSLATE_NOOP("words", "models of the parts are built: %1 %")).arg(qRound(100 * *view.built));
     switch (view.state) {
@@ -73,17 +73,17 @@ QString stateDetail(const RunView& view) {
         case RunState::Running:
             return QString::fromStdString(view.condition);
         case RunState::Resting:
-            if (view.rest && view.rest->seconds > 0)
-                return said(QT_TRANSLATE_NOOP("words", "at least %1 s more")).arg(view.rest->seconds);
+            if (view.session.rest && view.session.rest->seconds > 0)
+                return said(QT_TRANSLATE_NOOP("words", "at least %1 s more")).arg(view.session.rest->seconds);
             return said(QT_TRANSLATE_NOOP("words", "the participant may go on"));
         case RunState::Answering:
         case RunState::Consenting:
         case RunState::Reading:
             return {};
         case RunState::Paused:
-            if (!view.swaps_to.empty())
+            if (!view.session.awaited_device.empty())
                 return said(QT_TRANSLATE_NOOP("words", "change to the device %1, then continue"))
-                    .arg(QString::fromStdString(view.swaps_to));
+                    .arg(QString::fromStdString(view.session.awaited_device));
             [[fallthrough]];
         case RunState::Stopped:
         case RunState::Between:

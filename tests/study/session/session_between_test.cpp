@@ -75,17 +75,18 @@ TEST_F(Between, TheParticipantEndsARestButNotBeforeItsLeastTime) {
     advanceToTrial();
     finishTrial();
     session_->advance();
-    EXPECT_EQ(session_->restLeft(), 100);
+    EXPECT_EQ(apparatus_.waited_ticks, 100);
+    EXPECT_EQ(session_->view().rest, (RestView{1, protocol::RestEnds::ByParticipant}));
     EXPECT_EQ(reader_.asked, 0);
     reader_.rested = false;
     for (int i = 0; i < 30; ++i) session_->advance();
-    EXPECT_EQ(session_->restLeft(), 0);
+    EXPECT_EQ(session_->view().rest, (RestView{0, protocol::RestEnds::ByParticipant}));
     EXPECT_EQ(apparatus_.waited_ticks, 200);
     EXPECT_EQ(sink_.starts.size(), 1u);
     reader_.rested = true;
     advanceToTrial();
     EXPECT_EQ(sink_.starts.size(), 2u);
-    EXPECT_EQ(session_->restLeft(), std::nullopt);
+    EXPECT_EQ(session_->view().rest, std::nullopt);
 }
 
 TEST_F(Between, TheExperimenterEndsARestByContinue) {

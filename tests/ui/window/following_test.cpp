@@ -5,7 +5,7 @@
 #include "tests/ui/cli/small_study.h"
 #include "tests/ui/window/windows.h"
 
-// Pages of data that follow a running session.
+// Pages and commands that follow a running session.
 
 namespace passung::test {
 namespace {
@@ -38,6 +38,20 @@ TEST_F(Following, AFileThatWasWholeIsNotSearchedForDamageAfterEachTrial) {
     settle();
     ASSERT_TRUE(run().view().isRunning()) << "the study was over too soon to say anything";
     EXPECT_EQ(checks.count(), begun);
+}
+
+TEST_F(Following, WhatTheSessionWouldRefuseIsNotOfferedAndSaysWhy) {
+    // Truth: invariant: the session's own reason.
+    open("en", true);
+    click("study-small");
+    click("watch");
+    waitFor(RunState::Running);
+    click("pause");
+    waitFor(RunState::Paused);
+    ASSERT_TRUE(item(app_->experimenter(), "repeat")->isEnabled());
+    click("repeat");
+    waitFor([&] { return !item(app_->experimenter(), "repeat")->isEnabled(); });
+    EXPECT_EQ(item(app_->experimenter(), "repeat")->property("why").toString(), "The trial is repeated already.");
 }
 
 }  // namespace

@@ -142,13 +142,10 @@ public:
     }
     bool builds(double) override { return true; }
     void look(session::Session& session) override {
-        presenter::SessionGlance glance;
-        glance.state = session.state();
-        if (!session.agenda().empty()) glance.next = session.agenda().next();
         moment_.in_trial = false;
         bring();
-        desk_.bring({glance}, {});
-        if (glance.state != session::SessionState::InTrial || !moment_.tick) return;
+        desk_.bring({session.view()}, {});
+        if (session.state() != session::SessionState::InTrial || !moment_.tick) return;
         if (moment_.condition->timed_by != protocol::TimedBy::Program) return;
         moment_.in_trial = desk_.run().view().state == RunState::Running && isTask();
         if (!moment_.in_trial) return;
