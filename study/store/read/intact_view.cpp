@@ -57,7 +57,8 @@ private:
         for (const std::string& key : conditions_)
             database_
                 .prepare(
-                    "INSERT OR IGNORE INTO temp.lost SELECT 'attempt', a.attempt_id FROM attempt a JOIN trial_plan t "
+                    "INSERT OR IGNORE INTO temp.lost(table_name, number) SELECT 'attempt', a.attempt_id FROM attempt a "
+                    "JOIN trial_plan t "
                     "USING(trial_id) JOIN condition c ON c.condition_id=" +
                     condition + " WHERE c.protocol_sha256 || ', ' || c.condition=?")
                 .bind(key)
@@ -74,7 +75,7 @@ private:
         row.participant_id = who.text(0);
         row.session_ordinal = who.integer(1);
         for (const ChunkFault& chunk : damage.chunks) {
-            database_.prepare("INSERT OR IGNORE INTO temp.lost_chunk VALUES(?, ?)")
+            database_.prepare("INSERT OR IGNORE INTO temp.lost_chunk(stream_id, chunk_no) VALUES(?, ?)")
                 .bind(chunk.stream_id, chunk.chunk_no)
                 .run();
             tell(row, chunk.unit, chunk.what);
@@ -120,7 +121,8 @@ private:
             if (unit.ends_with(kSamplesUnit))
                 database_
                     .prepare(
-                        "INSERT OR IGNORE INTO temp.lost_chunk SELECT stream_id, chunk_no FROM sample_chunk WHERE "
+                        "INSERT OR IGNORE INTO temp.lost_chunk(stream_id, chunk_no) SELECT stream_id, chunk_no FROM "
+                        "sample_chunk WHERE "
                         "attempt_id=?")
                     .bind(number)
                     .run();
@@ -143,10 +145,10 @@ private:
     }
 
     void loseNumber(const std::string& table, std::int64_t number) {
-        database_.prepare("INSERT OR IGNORE INTO temp.lost VALUES(?, ?)").bind(table, number).run();
+        database_.prepare("INSERT OR IGNORE INTO temp.lost(table_name, number) VALUES(?, ?)").bind(table, number).run();
     }
     void loseName(const std::string& name) {
-        database_.prepare("INSERT OR IGNORE INTO temp.lost_name VALUES(?)").bind(name).run();
+        database_.prepare("INSERT OR IGNORE INTO temp.lost_name(name) VALUES(?)").bind(name).run();
     }
 
     void hide() {

@@ -13,15 +13,15 @@
 #include "study/store/rows/stable_stiffness_rows.h"
 #include "study/store/rows/staircase_rows.h"
 #include "study/store/samples/sample_codec.h"
+#include "study/store/schema/named_columns.h"
 #include "study/store/schema/open_database.h"
-#include "study/store/schema/sqlite.h"
 #include "study/store/schema/untouched.h"
 
 namespace passung::store {
 namespace {
 
 // Order of protocols wherever it decides about columns or rows.
-constexpr std::string_view kByProtocol = " ORDER BY p.name, p.version, p.protocol_sha256";
+const std::string kByProtocol = " ORDER BY p.name, p.version, p.protocol_sha256";
 
 std::vector<std::string> readArray(const Database& database, const std::string& json) {
     std::vector<std::string> items;
@@ -31,36 +31,55 @@ std::vector<std::string> readArray(const Database& database, const std::string& 
     return items;
 }
 
-template <class Row, class Read>
-std::vector<Row> readAll(Statement statement, Read read) {
-    std::vector<Row> rows;
-    while (statement.step()) rows.push_back(read(statement));
-    return rows;
+/// Makes the columns of a session; those of its devices are read by `database`.
+Selection<SessionRow> sessionColumns(const Database& database) {
+    using Row = SessionRow;
+    return {{"s.session_id", &Row::session_id},
+            {"s.participant_id", &Row::participant_id},
+            {"p.kind", &Row::kind},
+            {"s.ordinal", &Row::ordinal},
+            {"s.station", &Row::station},
+            {"(SELECT json_group_array(json_extract(n.device_json, '$.name')) FROM (SELECT device_json FROM segment "
+             "WHERE session_id=s.session_id ORDER BY segment_id) n)",
+             [&database](const Statement& row, int column, Row& to) {
+                 to.segment_devices = readArray(database, row.text(column));
+             }},
+            {"(SELECT min(json_extract(n.device_json, '$.simulated')) FROM segment n WHERE n.session_id=s.session_id)",
+             &Row::device_simulated},
+            {"s.experimenter", &Row::experimenter},
+            {"s.language", &Row::language},
+            {"s.seed", &Row::seed},
+            {"s.rng", &Row::rng},
+            {"s.epoch", &Row::epoch},
+            {"s.started_utc", &Row::started_utc},
+            {"s.ended_utc", &Row::ended_utc},
+            {"s.end_state", &Row::end_state},
+            {"s.protocol_sha256", &Row::protocol_sha256},
+            {"g.app_version", &Row::app_version},
+            {"(SELECT count(*) FROM segment n WHERE n.session_id=s.session_id)", &Row::segments},
+            {"(SELECT count(*) FROM trial_plan t WHERE t.session_id=s.session_id)", &Row::planned_trials},
+            {"(SELECT count(*) FROM attempt a JOIN trial_plan t USING(trial_id) WHERE t.session_id=s.session_id)",
+             &Row::attempts},
+            {"(SELECT count(*) FROM attempt a JOIN trial_plan t USING(trial_id) WHERE t.session_id=s.session_id "
+             "AND a.valid AND p.status<>'excluded')",
+             &Row::valid_attempts}};
 }
 
-SessionRow readSession(const Statement& row) {
-    SessionRow session;
-    session.session_id = row.text(0);
-    session.participant_id = row.text(1);
-    session.kind = row.text(2);
-    session.ordinal = row.integer(3);
-    session.station = row.text(4);
-    session.device_simulated = row.integer(6) != 0;
-    session.experimenter = row.optionalText(7);
-    session.language = row.text(8);
-    session.seed = static_cast<std::uint64_t>(row.integer(9));
-    session.rng = row.text(10);
-    session.epoch = row.text(11);
-    session.started_utc = row.text(12);
-    session.ended_utc = row.optionalText(13);
-    session.end_state = row.optionalText(14);
-    session.protocol_sha256 = row.text(15);
-    session.app_version = row.text(16);
-    session.segments = row.integer(17);
-    session.planned_trials = row.integer(18);
-    session.attempts = row.integer(19);
-    session.valid_attempts = row.integer(20);
-    return session;
+Selection<ParticipantRow> participantColumns() {
+    using Row = ParticipantRow;
+    return {{"p.participant_id", &Row::participant_id},
+            {"p.kind", &Row::kind},
+            {"p.status", &Row::status},
+            {"p.status_reason", &Row::status_reason},
+            {"p.created_utc", &Row::created_utc},
+            {"d.between_group", &Row::group},
+            {"d.sequence_index", &Row::sequence_index},
+            {"d.replicate", &Row::replicate},
+            {"d.protocol_sha256", &Row::place_sha256},
+            {"(SELECT count(*) FROM session s WHERE s.participant_id=p.participant_id)", &Row::sessions},
+            {"(SELECT a.action FROM audit a WHERE json_extract(a.detail_json, '$.participant')=p.participant_id "
+             "AND a.action IN('withdraw', 'exclude', 'readmit') ORDER BY a.audit_id DESC LIMIT 1)",
+             &Row::standing_by}};
 }
 
 /// The chunks of one attempt in one stream, unpacked, ascending. Throws where one is damaged.
@@ -143,26 +162,25 @@ Result<StoreReader> StoreReader::open(const std::string& path, Damaged damaged) 
 
 Result<std::vector<ProtocolRow>> StoreReader::protocols() const {
     return guarded(path_, [&] {
-        return readAll<ProtocolRow>(
-            database_->prepare("SELECT protocol_sha256, name, version, title, source_text, expanded_json, app_version "
-                               "FROM protocol_version p" +
-                               std::string(kByProtocol)),
-            [&](const Statement& row) {
-                return ProtocolRow{row.text(0), row.text(1), row.text(2), row.text(3),
-                                   row.text(4), row.text(5), row.text(6), readMainBlocks(*database_, row.text(5))};
-            });
+        const Selection<ProtocolRow> columns = {
+            {"protocol_sha256", &ProtocolRow::sha256},  {"name", &ProtocolRow::name},
+            {"version", &ProtocolRow::version},         {"title", &ProtocolRow::title},
+            {"source_text", &ProtocolRow::source_text}, {"expanded_json", &ProtocolRow::expanded_json},
+            {"app_version", &ProtocolRow::app_version}};
+        auto rows = columns.all(*database_, "FROM protocol_version p" + kByProtocol);
+        for (ProtocolRow& row : rows) row.main_blocks = readMainBlocks(*database_, row.expanded_json);
+        return rows;
     });
 }
 
 Result<std::vector<MeshRow>> StoreReader::meshes() const {
     return guarded(path_, [&] {
-        return readAll<MeshRow>(
-            database_->prepare("SELECT m.protocol_sha256, m.mesh, m.sha256, m.bytes FROM mesh_file m "
-                               "JOIN protocol_version p USING(protocol_sha256)" +
-                               std::string(kByProtocol) + ", m.mesh"),
-            [](const Statement& row) {
-                return MeshRow{row.text(0), row.text(1), row.text(2), row.integer(3)};
-            });
+        const Selection<MeshRow> columns = {{"m.protocol_sha256", &MeshRow::protocol_sha256},
+                                            {"m.mesh", &MeshRow::mesh},
+                                            {"m.sha256", &MeshRow::sha256},
+                                            {"m.bytes", &MeshRow::bytes}};
+        return columns.all(
+            *database_, "FROM mesh_file m JOIN protocol_version p USING(protocol_sha256)" + kByProtocol + ", m.mesh");
     });
 }
 
@@ -192,14 +210,15 @@ Result<std::map<std::string, std::string>> StoreReader::questionnaireTexts(const
 
 Result<std::vector<FactorRow>> StoreReader::factors() const {
     return guarded(path_, [&] {
-        return readAll<FactorRow>(
-            database_->prepare("SELECT f.protocol_sha256, f.factor, f.kind, f.unit, f.levels_json "
-                               "FROM factor f JOIN protocol_version p USING(protocol_sha256)" +
-                               std::string(kByProtocol) + ", f.position"),
-            [&](const Statement& row) {
-                return FactorRow{row.text(0), row.text(1), row.text(2), row.text(3),
-                                 readArray(*database_, row.text(4))};
-            });
+        const Selection<FactorRow> columns = {{"f.protocol_sha256", &FactorRow::protocol_sha256},
+                                              {"f.factor", &FactorRow::factor},
+                                              {"f.kind", &FactorRow::kind},
+                                              {"f.unit", &FactorRow::unit},
+                                              {"f.levels_json", [&](const Statement& row, int column, FactorRow& to) {
+                                                   to.levels = readArray(*database_, row.text(column));
+                                               }}};
+        return columns.all(
+            *database_, "FROM factor f JOIN protocol_version p USING(protocol_sha256)" + kByProtocol + ", f.position");
     });
 }
 
@@ -225,40 +244,21 @@ Result<std::vector<QuestionnaireRow>> StoreReader::questionnaires() const {
 
 Result<std::vector<MeasureRow>> StoreReader::measures() const {
     return guarded(path_, [&] {
-        return readAll<MeasureRow>(
-            database_->prepare("SELECT measure, label, unit, formula, formula_version, "
-                               "EXISTS(SELECT 1 FROM protocol_measure d WHERE d.measure=measure.measure) "
-                               "FROM measure ORDER BY position, measure"),
-            [](const Statement& row) {
-                return MeasureRow{row.text(0), row.text(1),    row.text(2),
-                                  row.text(3), row.integer(4), row.integer(5) != 0};
-            });
+        const Selection<MeasureRow> columns = {
+            {"measure", &MeasureRow::measure},
+            {"label", &MeasureRow::label},
+            {"unit", &MeasureRow::unit},
+            {"formula", &MeasureRow::formula},
+            {"formula_version", &MeasureRow::formula_version},
+            {"EXISTS(SELECT 1 FROM protocol_measure d WHERE d.measure=measure.measure)", &MeasureRow::declared}};
+        return columns.all(*database_, "FROM measure ORDER BY position, measure");
     });
 }
 
 Result<std::vector<ParticipantRow>> StoreReader::participants() const {
     return guarded(path_, [&] {
-        return readAll<ParticipantRow>(
-            database_->prepare(
-                "SELECT p.participant_id, p.kind, p.status, p.status_reason, p.created_utc, d.between_group, "
-                "d.sequence_index, d.replicate, d.protocol_sha256, "
-                "(SELECT count(*) FROM session s WHERE s.participant_id=p.participant_id), "
-                "(SELECT a.action FROM audit a WHERE json_extract(a.detail_json, '$.participant')=p.participant_id "
-                "AND a.action IN('withdraw', 'exclude', 'readmit') ORDER BY a.audit_id DESC LIMIT 1) "
-                "FROM participant p LEFT JOIN design_slot d USING(participant_id) ORDER BY p.participant_id"),
-            [](const Statement& row) {
-                return ParticipantRow{row.text(0),
-                                      row.text(1),
-                                      row.text(2),
-                                      row.optionalText(3),
-                                      row.text(4),
-                                      row.optionalText(5),
-                                      row.optionalInteger(6),
-                                      row.optionalInteger(7),
-                                      row.optionalText(8),
-                                      row.integer(9),
-                                      row.optionalText(10)};
-            });
+        return participantColumns().all(
+            *database_, "FROM participant p LEFT JOIN design_slot d USING(participant_id) ORDER BY p.participant_id");
     });
 }
 
@@ -280,27 +280,11 @@ Result<AuditReport> StoreReader::audit() const {
 
 Result<std::vector<SessionRow>> StoreReader::sessions() const {
     return guarded(path_, [&] {
-        return readAll<SessionRow>(
-            database_->prepare(
-                "SELECT s.session_id, s.participant_id, p.kind, s.ordinal, s.station, "
-                "(SELECT json_group_array(json_extract(n.device_json, '$.name')) FROM (SELECT device_json FROM segment "
-                "WHERE session_id=s.session_id ORDER BY segment_id) n), "
-                "(SELECT min(json_extract(n.device_json, '$.simulated')) FROM segment n WHERE "
-                "n.session_id=s.session_id), s.experimenter, "
-                "s.language, s.seed, s.rng, s.epoch, s.started_utc, s.ended_utc, s.end_state, s.protocol_sha256, "
-                "g.app_version, (SELECT count(*) FROM segment n WHERE n.session_id=s.session_id), "
-                "(SELECT count(*) FROM trial_plan t WHERE t.session_id=s.session_id), "
-                "(SELECT count(*) FROM attempt a JOIN trial_plan t USING(trial_id) WHERE t.session_id=s.session_id), "
-                "(SELECT count(*) FROM attempt a JOIN trial_plan t USING(trial_id) WHERE t.session_id=s.session_id "
-                "AND a.valid AND p.status<>'excluded') FROM session s JOIN participant p USING(participant_id) JOIN "
-                "segment g ON g.segment_id="
-                "(SELECT min(n.segment_id) FROM segment n WHERE n.session_id=s.session_id) "
-                "ORDER BY s.participant_id, s.ordinal"),
-            [&](const Statement& row) {
-                SessionRow session = readSession(row);
-                session.segment_devices = readArray(*database_, row.text(5));
-                return session;
-            });
+        return sessionColumns(*database_)
+            .all(*database_,
+                 "FROM session s JOIN participant p USING(participant_id) JOIN segment g ON g.segment_id="
+                 "(SELECT min(n.segment_id) FROM segment n WHERE n.session_id=s.session_id) "
+                 "ORDER BY s.participant_id, s.ordinal");
     });
 }
 

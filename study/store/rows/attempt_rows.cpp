@@ -3,93 +3,94 @@
 #include "study/store/rows/contact_energy_rows.h"
 #include "study/store/rows/delivery_rows.h"
 #include "study/store/rows/presentation_rows.h"
-#include "study/store/schema/sqlite.h"
+#include "study/store/schema/named_columns.h"
 
 namespace passung::store {
 namespace {
 
-constexpr std::string_view kAttemptColumns =
-    "SELECT a.attempt_id, s.session_id, s.participant_id, pa.kind, "
-    "coalesce((SELECT d.between_group FROM design_slot d WHERE d.participant_id=s.participant_id), 'all'), s.ordinal, "
-    // A mouse stands for the device that the condition names.
-    "s.station, CASE json_extract(g.device_json, '$.name') WHEN 'mouse' THEN 'mouse' ELSE "
-    "coalesce(json_extract(a.params_json, '$.device'), json_extract(g.device_json, '$.name')) END, "
-    "t.block_index, t.block, t.phase, t.trial_index, "
-    "t.trial_in_block, t.repetition, a.attempt_no, c.condition, c.levels_json, a.start_ns, a.end_ns, a.outcome, "
-    // Whoever is excluded counts nowhere; their rows stay as they are.
-    "a.valid AND pa.status<>'excluded', "
-    "CASE WHEN a.valid AND pa.status='excluded' THEN 'participant excluded' ELSE a.invalid_reason END, a.params_json, "
-    "a.stages_json, a.seed, a.state_hash, s.protocol_sha256, g.app_version, "
-    "m.loop, m.ticks, m.mean_us, m.sd_us, m.p99_us, m.p999_us, m.max_us, m.overruns, m.dropped_samples, "
-    "json_extract(a.params_json, '$.cues.visual'), json_extract(a.params_json, '$.cues.vibrotactile'), "
-    "json_extract(a.params_json, '$.cues.audio'), json_extract(a.params_json, '$.cues.full_depth_m'), "
-    "json_extract(a.params_json, '$.cues.full_speed_m_per_s'), json_extract(a.params_json, '$.cues.sound_decay_s'), "
-    "coalesce(json_extract(a.params_json, '$.cues.masking_noise'), 0), "
-    "coalesce(json_extract(a.params_json, '$.kinesthetic'), 1), "
-    "coalesce(json_extract(a.params_json, '$.timed_by'), 'program'), "
-    "coalesce(json_extract(a.params_json, '$.secondary.stimulus'), 'none'), "
-    "(SELECT min(e.t_ns) FROM event e WHERE e.attempt_id=a.attempt_id AND e.event='trial_started'), "
-    "coalesce((SELECT p.condition FROM staircase_step f JOIN condition p ON p.condition_id=f.condition_id "
-    "WHERE f.attempt_id=a.attempt_id), c.condition), "
-    "coalesce((SELECT max(r.numerics) FROM stream r WHERE r.segment_id=a.segment_id AND r.stream='tick'), 0) "
-    "FROM attempt a JOIN trial_plan t USING(trial_id) JOIN session s USING(session_id) "
+constexpr const char* kFromAttempts =
+    " FROM attempt a JOIN trial_plan t USING(trial_id) JOIN session s USING(session_id) "
     "JOIN participant pa USING(participant_id) JOIN segment g ON g.segment_id=a.segment_id "
     "JOIN condition c USING(condition_id) LEFT JOIN timing m USING(attempt_id)";
 
-TimingRow readTiming(const Statement& row, int first) {
-    TimingRow timing;
-    timing.loop = row.text(first);
-    timing.ticks = row.integer(first + 1);
-    timing.mean_us = row.optionalReal(first + 2);
-    timing.sd_us = row.optionalReal(first + 3);
-    timing.p99_us = row.optionalReal(first + 4);
-    timing.p999_us = row.optionalReal(first + 5);
-    timing.max_us = row.optionalReal(first + 6);
-    timing.overruns = row.integer(first + 7);
-    timing.dropped_samples = row.integer(first + 8);
-    return timing;
+/// Makes the columns of an attempt; those of its condition's levels are read from `database`.
+Selection<AttemptRow> attemptColumns(const Database& database) {
+    using Row = AttemptRow;
+    return {{"a.attempt_id", &Row::attempt_id},
+            {"s.session_id", &Row::session_id},
+            {"s.participant_id", &Row::participant_id},
+            {"pa.kind", &Row::kind},
+            {"coalesce((SELECT d.between_group FROM design_slot d WHERE d.participant_id=s.participant_id), 'all')",
+             &Row::group},
+            {"s.ordinal", &Row::session_ordinal},
+            {"s.station", &Row::station},
+            // A mouse stands for the device that the condition names.
+            {"CASE json_extract(g.device_json, '$.name') WHEN 'mouse' THEN 'mouse' ELSE "
+             "coalesce(json_extract(a.params_json, '$.device'), json_extract(g.device_json, '$.name')) END",
+             &Row::device},
+            {"t.block_index", &Row::block_index},
+            {"t.block", &Row::block},
+            {"t.phase", &Row::phase},
+            {"t.trial_index", &Row::trial_index},
+            {"t.trial_in_block", &Row::trial_in_block},
+            {"t.repetition", &Row::repetition},
+            {"a.attempt_no", &Row::attempt_no},
+            {"c.condition", &Row::condition},
+            {"c.levels_json", [&database](const Statement& row, int column,
+                                          Row& to) { to.levels = readLevels(database, row.text(column)); }},
+            {"a.start_ns", &Row::start_ns},
+            {"a.end_ns", &Row::end_ns},
+            {"a.outcome", &Row::outcome},
+            // Whoever is excluded counts nowhere; their rows stay as they are.
+            {"a.valid AND pa.status<>'excluded'", &Row::valid},
+            {"CASE WHEN a.valid AND pa.status='excluded' THEN 'participant excluded' ELSE a.invalid_reason END",
+             &Row::invalid_reason},
+            {"a.params_json", &Row::params_json},
+            {"a.stages_json", &Row::stages_json},
+            {"a.seed", &Row::seed},
+            {"a.state_hash", &Row::state_hash},
+            {"s.protocol_sha256", &Row::protocol_sha256},
+            {"g.app_version", &Row::app_version},
+            {"coalesce(json_extract(a.params_json, '$.kinesthetic'), 1)", &Row::kinesthetic},
+            {"coalesce(json_extract(a.params_json, '$.timed_by'), 'program')", &Row::timed_by},
+            {"coalesce(json_extract(a.params_json, '$.secondary.stimulus'), 'none')", &Row::stimulus},
+            {"(SELECT min(e.t_ns) FROM event e WHERE e.attempt_id=a.attempt_id AND e.event='trial_started')",
+             &Row::trial_ns},
+            {"coalesce((SELECT p.condition FROM staircase_step f JOIN condition p ON p.condition_id=f.condition_id "
+             "WHERE f.attempt_id=a.attempt_id), c.condition)",
+             &Row::presented_condition},
+            {"coalesce((SELECT max(r.numerics) FROM stream r WHERE r.segment_id=a.segment_id AND r.stream='tick'), 0)",
+             &Row::numerics}};
 }
 
-AttemptRow readAttempt(const Database& database, const Statement& row) {
-    AttemptRow attempt;
-    attempt.attempt_id = row.integer(0);
-    attempt.session_id = row.text(1);
-    attempt.participant_id = row.text(2);
-    attempt.kind = row.text(3);
-    attempt.group = row.text(4);
-    attempt.session_ordinal = row.integer(5);
-    attempt.station = row.text(6);
-    attempt.device = row.text(7);
-    attempt.block_index = row.integer(8);
-    attempt.block = row.text(9);
-    attempt.phase = row.text(10);
-    attempt.trial_index = row.integer(11);
-    attempt.trial_in_block = row.integer(12);
-    attempt.repetition = row.integer(13);
-    attempt.attempt_no = row.integer(14);
-    attempt.condition = row.text(15);
-    attempt.levels = readLevels(database, row.text(16));
-    attempt.start_ns = row.integer(17);
-    attempt.end_ns = row.optionalInteger(18);
-    attempt.outcome = row.text(19);
-    attempt.valid = row.integer(20) != 0;
-    attempt.invalid_reason = row.optionalText(21);
-    attempt.params_json = row.text(22);
-    attempt.stages_json = row.text(23);
-    attempt.seed = static_cast<std::uint64_t>(row.integer(24));
-    attempt.state_hash = row.text(25);
-    attempt.protocol_sha256 = row.text(26);
-    attempt.app_version = row.text(27);
-    if (!row.isNull(28)) attempt.timing = readTiming(row, 28);
-    if (!row.isNull(37))
-        attempt.cues = {row.integer(37) != 0, row.integer(38) != 0, row.integer(39) != 0, row.real(40),
-                        row.real(41),         row.real(42),         row.integer(43) != 0};
-    attempt.kinesthetic = row.integer(44) != 0;
-    attempt.timed_by = row.text(45);
-    attempt.stimulus = row.text(46);
-    attempt.trial_ns = row.optionalInteger(47);
-    attempt.presented_condition = row.text(48);
-    attempt.numerics = row.integer(49);
+const Selection<TimingRow>& timingColumns() {
+    static const Selection<TimingRow> columns = {{"m.loop", &TimingRow::loop},
+                                                 {"m.ticks", &TimingRow::ticks},
+                                                 {"m.mean_us", &TimingRow::mean_us},
+                                                 {"m.sd_us", &TimingRow::sd_us},
+                                                 {"m.p99_us", &TimingRow::p99_us},
+                                                 {"m.p999_us", &TimingRow::p999_us},
+                                                 {"m.max_us", &TimingRow::max_us},
+                                                 {"m.overruns", &TimingRow::overruns},
+                                                 {"m.dropped_samples", &TimingRow::dropped_samples}};
+    return columns;
+}
+
+const Selection<measures::CueSettings>& cueColumns() {
+    using measures::CueSettings;
+    static const Selection<CueSettings> columns = {
+        {"json_extract(a.params_json, '$.cues.visual')", &CueSettings::visual},
+        {"json_extract(a.params_json, '$.cues.vibrotactile')", &CueSettings::vibration},
+        {"json_extract(a.params_json, '$.cues.audio')", &CueSettings::sound},
+        {"json_extract(a.params_json, '$.cues.full_depth_m')", &CueSettings::full_depth},
+        {"json_extract(a.params_json, '$.cues.full_speed_m_per_s')", &CueSettings::full_speed},
+        {"json_extract(a.params_json, '$.cues.sound_decay_s')", &CueSettings::sound_decay},
+        {"coalesce(json_extract(a.params_json, '$.cues.masking_noise'), 0)", &CueSettings::masking}};
+    return columns;
+}
+
+/// Adds what other tables hold of the attempt.
+void readParts(const Database& database, AttemptRow& attempt) {
     Statement values =
         database.prepare("SELECT measure, value_num FROM attempt_measure WHERE attempt_id=? AND value_num IS NOT NULL");
     values.bind(attempt.attempt_id);
@@ -97,7 +98,6 @@ AttemptRow readAttempt(const Database& database, const Statement& row) {
     attempt.contact_energy = readContactEnergy(database, attempt.attempt_id);
     attempt.delivered = readDelivery(database, attempt.attempt_id);
     attempt.presentation = readPresentation(database, attempt.attempt_id);
-    return attempt;
 }
 
 }  // namespace
@@ -111,13 +111,22 @@ Levels readLevels(const Database& database, const std::string& levels_json) {
 }
 
 std::vector<AttemptRow> readAttempts(const Database& database, std::optional<std::int64_t> only) {
-    const std::string sql = std::string(kAttemptColumns) +
+    const Selection<AttemptRow> columns = attemptColumns(database);
+    const int timing = columns.size(), cues = timing + timingColumns().size();
+    const std::string sql = "SELECT " + columns.text() + ", " + timingColumns().text() + ", " + cueColumns().text() +
+                            kFromAttempts +
                             " WHERE ?1 IS NULL OR a.attempt_id=?1"
                             " ORDER BY s.participant_id, s.ordinal, t.trial_index, a.attempt_no";
     Statement statement = database.prepare(sql);
     statement.bind(only);
     std::vector<AttemptRow> rows;
-    while (statement.step()) rows.push_back(readAttempt(database, statement));
+    while (statement.step()) {
+        AttemptRow attempt = columns.read(statement);
+        if (!statement.isNull(timing)) attempt.timing = timingColumns().read(statement, timing);
+        if (!statement.isNull(cues)) attempt.cues = cueColumns().read(statement, cues);
+        readParts(database, attempt);
+        rows.push_back(std::move(attempt));
+    }
     return rows;
 }
 

@@ -1,13 +1,16 @@
 #include "study/store/rows/contact_energy_rows.h"
 
+#include "study/store/schema/named_columns.h"
+
 namespace passung::store {
 
 void insertContactEnergy(const Database& database, std::int64_t attempt_id,
                          const std::vector<session::ContactEnergy>& pairs) {
-    Statement insert = database.prepare("INSERT INTO contact_energy VALUES(?, ?, ?, ?, ?)");
     std::int64_t place = 0;
     for (const session::ContactEnergy& pair : pairs)
-        insert.bind(attempt_id, place++, nullIfEmpty(pair.obstacle), pair.taken_in_J, pair.least_J).run();
+        insertRow(database, "contact_energy", Named{"attempt_id", attempt_id}, Named{"place", place++},
+                  Named{"obstacle", nullIfEmpty(pair.obstacle)}, Named{"taken_in_J", pair.taken_in_J},
+                  Named{"least_J", pair.least_J});
 }
 
 std::vector<session::ContactEnergy> readContactEnergy(const Database& database, std::int64_t attempt_id) {

@@ -1,6 +1,6 @@
 #include "study/store/rows/event_rows.h"
 
-#include "study/store/schema/sqlite.h"
+#include "study/store/schema/named_columns.h"
 
 namespace passung::store {
 
@@ -8,26 +8,27 @@ void insertEvent(const Database& database, std::int64_t segment_id, const sessio
                  const std::optional<std::string>& utc) {
     std::optional<std::int64_t> attempt_id;
     if (event.attempt) attempt_id = static_cast<std::int64_t>(*event.attempt);
-    database
-        .prepare(
-            "INSERT INTO event(segment_id, attempt_id, t_ns, source, event, payload_json, t_utc) "
-            "VALUES(?, ?, ?, ?, ?, ?, ?)")
-        .bind(segment_id, attempt_id, event.t_ns, event.source, event.event, event.payload_json, utc)
-        .run();
+    insertRow(database, "event", Named{"segment_id", segment_id}, Named{"attempt_id", attempt_id},
+              Named{"t_ns", event.t_ns}, Named{"source", event.source}, Named{"event", event.event},
+              Named{"payload_json", event.payload_json}, Named{"t_utc", utc});
 }
 
 std::vector<EventRow> readEvents(const Database& database) {
-    Statement row =
-        database.prepare(std::string("SELECT s.participant_id, p.kind, s.ordinal, e.t_ns, ") + kEventUtc +
-                         ", t.trial_index, a.attempt_no, e.source, e.event, e.payload_json FROM event e JOIN segment g "
-                         "USING(segment_id) JOIN session s USING(session_id) JOIN participant p USING(participant_id) "
-                         "LEFT JOIN attempt a ON a.attempt_id=e.attempt_id LEFT JOIN trial_plan t USING(trial_id) "
-                         "ORDER BY s.participant_id, s.ordinal, g.segment_id, e.t_ns, e.event_id");
-    std::vector<EventRow> rows;
-    while (row.step())
-        rows.push_back({row.text(0), row.text(1), row.integer(2), row.integer(3), row.text(4), row.optionalInteger(5),
-                        row.optionalInteger(6), row.text(7), row.text(8), row.text(9)});
-    return rows;
+    const Selection<EventRow> columns = {{"s.participant_id", &EventRow::participant_id},
+                                         {"p.kind", &EventRow::kind},
+                                         {"s.ordinal", &EventRow::session_ordinal},
+                                         {"e.t_ns", &EventRow::t_ns},
+                                         {kEventUtc, &EventRow::t_utc},
+                                         {"t.trial_index", &EventRow::trial_index},
+                                         {"a.attempt_no", &EventRow::attempt_no},
+                                         {"e.source", &EventRow::source},
+                                         {"e.event", &EventRow::event},
+                                         {"e.payload_json", &EventRow::payload_json}};
+    return columns.all(database,
+                       "FROM event e JOIN segment g USING(segment_id) JOIN session s USING(session_id) "
+                       "JOIN participant p USING(participant_id) LEFT JOIN attempt a ON a.attempt_id=e.attempt_id "
+                       "LEFT JOIN trial_plan t USING(trial_id) "
+                       "ORDER BY s.participant_id, s.ordinal, g.segment_id, e.t_ns, e.event_id");
 }
 
 }  // namespace passung::store

@@ -2,6 +2,7 @@
 
 #include "core/base/digest.h"
 #include "core/base/regular_file.h"
+#include "study/store/schema/named_columns.h"
 
 namespace passung::store {
 
@@ -17,9 +18,9 @@ Result<std::vector<PictureContent>> readPictures(const protocol::StudyPlan& plan
 
 void insertPictures(const Database& database, const std::string& protocol_sha256,
                     const std::vector<PictureContent>& pictures) {
-    Statement insert = database.prepare("INSERT INTO picture_file VALUES(?, ?, ?, ?)");
     for (const PictureContent& picture : pictures)
-        insert.bind(protocol_sha256, picture.picture, picture.sha256, picture.bytes).run();
+        insertRow(database, "picture_file", Named{"protocol_sha256", protocol_sha256},
+                  Named{"picture", picture.picture}, Named{"sha256", picture.sha256}, Named{"bytes", picture.bytes});
 }
 
 void requirePictures(const Database& database, const std::string& protocol_sha256,

@@ -3,7 +3,7 @@
 #include <map>
 
 #include "study/store/rows/attempt_rows.h"
-#include "study/store/schema/sqlite.h"
+#include "study/store/schema/named_columns.h"
 
 namespace passung::store {
 namespace {
@@ -63,35 +63,39 @@ std::vector<ConditionRow> readConditions(const Database& database) {
 }
 
 std::vector<PlannedCellRow> readPlannedCells(const Database& database) {
-    std::vector<PlannedCellRow> rows;
-    Statement row = database.prepare(
-        "SELECT s.session_id, s.participant_id, s.ordinal, s.protocol_sha256, t.block_index, t.block, c.condition, "
-        "count(*) FROM trial_plan t JOIN session s USING(session_id) JOIN condition c USING(condition_id) "
-        "WHERE t.phase='main' GROUP BY s.session_id, t.block_index, c.condition_id "
-        "ORDER BY s.participant_id, s.ordinal, t.block_index, c.position");
-    while (row.step())
-        rows.push_back({row.text(0), row.text(1), row.integer(2), row.text(3), row.integer(4), row.text(5), row.text(6),
-                        row.integer(7)});
-    return rows;
+    using Row = PlannedCellRow;
+    const Selection<Row> columns = {{"s.session_id", &Row::session_id},   {"s.participant_id", &Row::participant_id},
+                                    {"s.ordinal", &Row::session_ordinal}, {"s.protocol_sha256", &Row::protocol_sha256},
+                                    {"t.block_index", &Row::block_index}, {"t.block", &Row::block},
+                                    {"c.condition", &Row::condition},     {"count(*)", &Row::trials}};
+    return columns.all(database,
+                       "FROM trial_plan t JOIN session s USING(session_id) JOIN condition c USING(condition_id) "
+                       "WHERE t.phase='main' GROUP BY s.session_id, t.block_index, c.condition_id "
+                       "ORDER BY s.participant_id, s.ordinal, t.block_index, c.position");
 }
 
 std::vector<AnalysisRow> readAnalyses(const Database& database) {
-    std::vector<AnalysisRow> rows;
-    Statement row = database.prepare(
-        std::string("SELECT p.protocol_sha256, a.key, coalesce(json_extract(a.value, '$.outcome'), ''), "
-                    "coalesce(json_extract(a.value, '$.staircase'), ''), "
-                    "coalesce(json_extract(a.value, '$.block'), ''), json_extract(a.value, '$.factors'), "
-                    "json_extract(a.value, '$.test') "
-                    "FROM protocol_version p, json_each(p.expanded_json, '$.analyses') a") +
-        kByProtocol + ", a.key");
-    while (row.step())
-        rows.push_back({row.text(0), row.integer(1) + 1, row.text(2), row.text(3), row.text(4),
-                        readTexts(database, row.text(5)), row.text(6)});
-    return rows;
+    using Row = AnalysisRow;
+    const Selection<Row> columns = {{"p.protocol_sha256", &Row::protocol_sha256},
+                                    {"a.key + 1", &Row::number},
+                                    {"json_extract(a.value, '$.outcome')", &Row::outcome},
+                                    {"json_extract(a.value, '$.staircase')", &Row::staircase},
+                                    {"json_extract(a.value, '$.block')", &Row::block},
+                                    {"json_extract(a.value, '$.factors')",
+                                     [&database](const Statement& row, int column, Row& to) {
+                                         to.factors = readTexts(database, row.text(column));
+                                     }},
+                                    {"json_extract(a.value, '$.test')", &Row::test}};
+    return columns.all(database, std::string("FROM protocol_version p, json_each(p.expanded_json, '$.analyses') a") +
+                                     kByProtocol + ", a.key");
 }
 
 std::vector<NamedFileRow> readNamedFiles(const Database& database) {
-    std::vector<NamedFileRow> rows;
+    const Selection<NamedFileRow> columns = {{"f.sha", &NamedFileRow::protocol_sha256},
+                                             {"f.kind", &NamedFileRow::kind},
+                                             {"f.name", &NamedFileRow::name},
+                                             {"f.text", &NamedFileRow::text},
+                                             {"f.sha256", &NamedFileRow::sha256}};
     Statement row = database.prepare(
         "WITH planned AS (SELECT p.protocol_sha256 sha, q.value planned FROM protocol_version p, "
         "json_each(p.expanded_json, '$.questionnaires') q WHERE q.type='object'), file(sha, kind, name, text, sha256) "
@@ -102,21 +106,21 @@ std::vector<NamedFileRow> readNamedFiles(const Database& database) {
         "json_extract(planned, '$.source.definition'), NULL FROM planned "
         "UNION SELECT sha, 'questionnaire_texts', json_extract(planned, '$.texts'), "
         "json_extract(planned, '$.source.texts'), NULL FROM planned WHERE json_extract(planned, '$.texts')<>'') "
-        "SELECT f.sha, f.kind, f.name, f.text, f.sha256 FROM file f "
+        "SELECT " +
+        columns.text() +
+        " FROM file f "
         "JOIN protocol_version p ON p.protocol_sha256=f.sha ORDER BY p.name, p.version, f.sha, f.kind, f.name");
-    while (row.step())
-        rows.push_back({row.text(0), row.text(1), row.text(2), row.optionalText(3), row.optionalText(4)});
-    return rows;
+    return columns.allOf(row);
 }
 
 std::vector<QuestionnaireRow> readQuestionnaires(const Database& database) {
-    std::vector<QuestionnaireRow> rows;
-    Statement row = database.prepare(
-        "SELECT key, version, language, json_extract(definition_json, '$.source.definition'), "
-        "json_extract(definition_json, '$.source.texts') FROM questionnaire "
-        "ORDER BY key, version, language, questionnaire_sha256");
-    while (row.step()) rows.push_back({row.text(0), row.text(1), row.text(2), row.text(3), row.optionalText(4)});
-    return rows;
+    using Row = QuestionnaireRow;
+    const Selection<Row> columns = {{"key", &Row::questionnaire},
+                                    {"version", &Row::version},
+                                    {"language", &Row::language},
+                                    {"json_extract(definition_json, '$.source.definition')", &Row::definition_text},
+                                    {"json_extract(definition_json, '$.source.texts')", &Row::texts_text}};
+    return columns.all(database, "FROM questionnaire ORDER BY key, version, language, questionnaire_sha256");
 }
 
 }  // namespace passung::store

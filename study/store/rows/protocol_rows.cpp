@@ -11,8 +11,8 @@
 #include "study/store/rows/consent_rows.h"
 #include "study/store/rows/questionnaire_rows.h"
 #include "study/store/rows/slots.h"
+#include "study/store/schema/named_columns.h"
 #include "study/store/schema/revisions.h"
-#include "study/store/schema/sqlite.h"
 
 namespace passung::store {
 namespace {
@@ -29,13 +29,13 @@ std::int64_t sequenceCount(const protocol::StudyPlan& plan) {
 }
 
 void insertFactors(const Database& database, const std::string& sha256, const protocol::StudyPlan& plan) {
-    Statement insert = database.prepare("INSERT INTO factor VALUES(?, ?, ?, 'text', ?, ?, ?, ?)");
     std::int64_t position = 0;
     for (const protocol::Factor& factor : plan.factors) {
         const auto unit = factor.unit.empty() ? std::nullopt : std::optional(factor.unit);
         const std::string levels = levelsJson(factor);
-        insert.bind(sha256, factor.name, protocol::factorKindName(factor.kind), unit, factor.name, position++, levels)
-            .run();
+        insertRow(database, "factor", Named{"protocol_sha256", sha256}, Named{"factor", factor.name},
+                  Named{"kind", protocol::factorKindName(factor.kind)}, Named{"data_type", "text"}, Named{"unit", unit},
+                  Named{"label", factor.name}, Named{"position", position++}, Named{"levels_json", levels});
     }
 }
 
@@ -49,11 +49,12 @@ void insertConditions(const Database& database, const std::string& sha256, const
 }
 
 void declareMeasures(const Database& database, const std::string& sha256, const protocol::StudyPlan& plan) {
-    Statement declare = database.prepare("INSERT INTO protocol_measure VALUES(?, ?)");
     for (const measures::Definition& definition : measures::definitions()) {
         const bool declared = plan.measures.empty() || std::find(plan.measures.begin(), plan.measures.end(),
                                                                  definition.name) != plan.measures.end();
-        if (declared) declare.bind(sha256, definition.name).run();
+        if (declared)
+            insertRow(database, "protocol_measure", Named{"protocol_sha256", sha256},
+                      Named{"measure", definition.name});
     }
 }
 
@@ -113,15 +114,14 @@ void requireSeed(const Database& database, const std::string& sha256, std::uint6
 }
 
 void insertMeasures(const Database& database) {
-    Statement insert = database.prepare("INSERT INTO measure VALUES(?, ?, ?, 'number', ?, ?, ?)");
     Statement find = database.prepare("SELECT formula_version FROM measure WHERE measure=?");
     std::int64_t position = 0;
     for (const measures::Definition& definition : measures::definitions()) {
         if (!find.bind(definition.name).step()) {
-            insert
-                .bind(definition.name, definition.label, definition.unit, definition.formula, definition.version,
-                      position)
-                .run();
+            insertRow(database, "measure", Named{"measure", definition.name}, Named{"label", definition.label},
+                      Named{"unit", definition.unit}, Named{"data_type", "number"},
+                      Named{"formula", definition.formula}, Named{"formula_version", definition.version},
+                      Named{"position", position});
         } else if (find.integer(0) != definition.version) {
             throw std::runtime_error("the database holds the measure " + definition.name + " by version " +
                                      find.text(0) + " of its formula, this program computes version " +
@@ -147,22 +147,25 @@ std::string importPlan(const Database& database, const protocol::StudyPlan& plan
         return sha256;
     }
     requireSameStudy(database, plan);
-    database.prepare("INSERT INTO protocol_version VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
-        .bind(sha256, plan.name, plan.version, plan.source_text, plan.expanded_json, schemaNumber(),
-              options.app_version, options.now_utc, plan.title, sequenceCount(plan))
-        .run();
+    insertRow(database, "protocol_version", Named{"protocol_sha256", sha256}, Named{"name", plan.name},
+              Named{"version", plan.version}, Named{"source_text", plan.source_text},
+              Named{"expanded_json", plan.expanded_json}, Named{"schema_version", schemaNumber()},
+              Named{"app_version", options.app_version}, Named{"imported_utc", options.now_utc},
+              Named{"title", plan.title}, Named{"sequences", sequenceCount(plan)});
     storeSeed(database, sha256, plan.seed);
-    Statement insert_mesh = database.prepare("INSERT INTO mesh_file VALUES(?, ?, ?, ?)");
-    for (const MeshContent& mesh : meshes) insert_mesh.bind(sha256, mesh.mesh, mesh.sha256, mesh.bytes).run();
+    for (const MeshContent& mesh : meshes)
+        insertRow(database, "mesh_file", Named{"protocol_sha256", sha256}, Named{"mesh", mesh.mesh},
+                  Named{"sha256", mesh.sha256}, Named{"bytes", mesh.bytes});
     insertPictures(database, sha256, pictures);
     insertFactors(database, sha256, plan);
     insertConditions(database, sha256, plan);
     insertQuestionnaires(database, plan);
     insertMeasures(database);
     declareMeasures(database, sha256, plan);
-    Statement insert_stable = database.prepare("INSERT INTO stable_stiffness VALUES(?, ?, ?, ?, ?)");
     for (const protocol::StableStiffness& stable : plan.stable_stiffness)
-        insert_stable.bind(sha256, stable.device, stable.linear, stable.rotational, stable.origin).run();
+        insertRow(database, "stable_stiffness", Named{"protocol_sha256", sha256}, Named{"device", stable.device},
+                  Named{"stable_stiffness_N_per_m", stable.linear},
+                  Named{"stable_rotational_stiffness_Nm_per_rad", stable.rotational}, Named{"origin", stable.origin});
     insertConsentClauses(database, sha256, plan.consent);
     while (slotCount(database, sha256) < plan.participants)
         insertSlots(database, sha256, protocol::participantKindName(protocol::ParticipantKind::Real));

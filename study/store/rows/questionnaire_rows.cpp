@@ -5,7 +5,7 @@
 #include "core/base/digest.h"
 #include "core/base/json.h"
 #include "study/store/rows/event_rows.h"
-#include "study/store/schema/sqlite.h"
+#include "study/store/schema/named_columns.h"
 
 namespace passung::store {
 namespace {
@@ -20,67 +20,55 @@ std::string definitionJson(const PlannedQuestionnaire& planned) {
 std::string digestOf(const PlannedQuestionnaire& planned) { return sha256Hex(definitionJson(planned)); }
 
 void insertResponses(const Database& database, std::int64_t run_id, const session::QuestionnaireRun& run) {
-    Statement insert = database.prepare("INSERT INTO item_response VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
     const auto& items = run.form.planned.definition.items;
     for (std::size_t shown = 0; shown < run.form.order.size(); ++shown) {
         const std::size_t i = run.form.order[shown];
         const session::ItemAnswer& given = run.filled.answers[i];
         const auto text = given.answer.text.empty() ? std::nullopt : std::optional(given.answer.text);
-        insert
-            .bind(run_id, items[i].id, static_cast<std::int64_t>(shown), given.answer.number, text,
-                  given.answer.missing(), given.response_ms, given.changes)
-            .run();
+        insertRow(database, "item_response", Named{"run_id", run_id}, Named{"item", items[i].id},
+                  Named{"presented_index", static_cast<std::int64_t>(shown)}, Named{"value_num", given.answer.number},
+                  Named{"value_text", text}, Named{"skipped", given.answer.missing()},
+                  Named{"rt_ms", given.response_ms}, Named{"changes", given.changes});
     }
 }
 
 void insertScores(const Database& database, std::int64_t run_id, const session::QuestionnaireRun& run) {
-    Statement insert = database.prepare("INSERT INTO score VALUES(?, ?, ?, ?, ?, ?)");
     const auto& definition = run.form.planned.definition;
     for (std::size_t i = 0; i < run.scores.size(); ++i)
-        insert
-            .bind(run_id, definition.scales[i].name, run.scores[i].value,
-                  static_cast<std::int64_t>(run.scores[i].items), static_cast<std::int64_t>(run.scores[i].missing),
-                  definition.scoring_version)
-            .run();
+        insertRow(database, "score", Named{"run_id", run_id}, Named{"scale", definition.scales[i].name},
+                  Named{"value", run.scores[i].value}, Named{"n_items", static_cast<std::int64_t>(run.scores[i].items)},
+                  Named{"n_missing", static_cast<std::int64_t>(run.scores[i].missing)},
+                  Named{"scoring_version", definition.scoring_version});
 }
 
 /// Unless it is there.
 void insertQuestionnaire(const Database& database, const PlannedQuestionnaire& planned) {
     const std::string json = definitionJson(planned), sha256 = sha256Hex(json);
     const auto& definition = planned.definition;
-    database.prepare("INSERT OR IGNORE INTO questionnaire VALUES(?, ?, ?, ?, ?, ?)")
-        .bind(sha256, definition.key, definition.version, definition.language, definition.licence, json)
-        .run();
-}
-
-template <class Row, class Read>
-std::vector<Row> readOf(const Database& database, std::string_view sql, std::int64_t run_id, Read read) {
-    Statement statement = database.prepare(sql);
-    statement.bind(run_id);
-    std::vector<Row> rows;
-    while (statement.step()) rows.push_back(read(statement));
-    return rows;
+    insertRowIfNew(database, "questionnaire", Named{"questionnaire_sha256", sha256}, Named{"key", definition.key},
+                   Named{"version", definition.version}, Named{"language", definition.language},
+                   Named{"licence", definition.licence}, Named{"definition_json", json});
 }
 
 std::vector<ItemResponseRow> readResponses(const Database& database, std::int64_t run_id) {
-    return readOf<ItemResponseRow>(
-        database,
-        "SELECT item, presented_index, value_num, value_text, skipped, rt_ms, changes FROM item_response "
-        "WHERE run_id=? ORDER BY presented_index",
-        run_id, [](const Statement& row) {
-            ItemResponseRow item{row.text(0),         row.integer(1),         row.optionalReal(2), {},
-                                 row.integer(4) != 0, row.optionalInteger(5), row.integer(6)};
-            if (!row.isNull(3)) item.value_text = row.text(3);
-            return item;
-        });
+    static const Selection<ItemResponseRow> columns = {
+        {"item", &ItemResponseRow::item},           {"presented_index", &ItemResponseRow::presented_index},
+        {"value_num", &ItemResponseRow::value_num}, {"value_text", &ItemResponseRow::value_text},
+        {"skipped", &ItemResponseRow::skipped},     {"rt_ms", &ItemResponseRow::rt_ms},
+        {"changes", &ItemResponseRow::changes}};
+    Statement statement =
+        database.prepare("SELECT " + columns.text() + " FROM item_response WHERE run_id=? ORDER BY presented_index");
+    return columns.allOf(statement.bind(run_id));
 }
 
 std::vector<ScoreRow> readScores(const Database& database, std::int64_t run_id) {
-    return readOf<ScoreRow>(
-        database, "SELECT scale, value, n_items, n_missing, scoring_version FROM score WHERE run_id=? ORDER BY scale",
-        run_id, [](const Statement& row) {
-            return ScoreRow{row.text(0), row.optionalReal(1), row.integer(2), row.integer(3), row.integer(4)};
-        });
+    static const Selection<ScoreRow> columns = {{"scale", &ScoreRow::scale},
+                                                {"value", &ScoreRow::value},
+                                                {"n_items", &ScoreRow::n_items},
+                                                {"n_missing", &ScoreRow::n_missing},
+                                                {"scoring_version", &ScoreRow::scoring_version}};
+    Statement statement = database.prepare("SELECT " + columns.text() + " FROM score WHERE run_id=? ORDER BY scale");
+    return columns.allOf(statement.bind(run_id));
 }
 
 }  // namespace
@@ -138,42 +126,38 @@ void insertQuestionnaireRun(const Database& database, const std::string& session
 }
 
 std::vector<QuestionnaireRunRow> readQuestionnaireRuns(const Database& database) {
+    using Row = QuestionnaireRunRow;
+    static const Selection<Row> columns = {
+        {"s.participant_id", &Row::participant_id},
+        {"p.kind", &Row::kind},
+        {"s.ordinal", &Row::session_ordinal},
+        {"s.session_id", &Row::session_id},
+        {"s.protocol_sha256", &Row::protocol_sha256},
+        {"q.key", &Row::questionnaire},
+        {"q.version", &Row::version},
+        {"q.language", &Row::language},
+        {"json_extract(q.definition_json, '$.source.definition')", &Row::definition_text},
+        {"json_extract(q.definition_json, '$.source.texts')", &Row::texts_text},
+        {"r.moment", &Row::moment},
+        {"r.block_index", &Row::block_index},
+        {"(SELECT t.block FROM trial_plan t WHERE t.session_id=r.session_id AND t.block_index=r.block_index LIMIT 1)",
+         &Row::block},
+        {"(SELECT t.trial_index FROM trial_plan t WHERE t.trial_id=r.trial_id)", &Row::trial_index},
+        {"c.condition", &Row::condition},
+        {"c.position", &Row::condition_position},
+        {"r.started_utc", &Row::started_utc},
+        {"r.completed_utc", &Row::completed_utc}};
     Statement statement = database.prepare(
-        "SELECT r.run_id, s.participant_id, p.kind, s.ordinal, s.session_id, s.protocol_sha256, q.key, q.version, "
-        "q.language, json_extract(q.definition_json, '$.source.definition'), "
-        "json_extract(q.definition_json, '$.source.texts'), r.moment, r.block_index, "
-        "(SELECT t.block FROM trial_plan t WHERE t.session_id=r.session_id AND t.block_index=r.block_index LIMIT 1), "
-        "(SELECT t.trial_index FROM trial_plan t WHERE t.trial_id=r.trial_id), c.condition, c.position, "
-        "r.started_utc, r.completed_utc "
-        "FROM questionnaire_run r JOIN session s USING(session_id) JOIN participant p USING(participant_id) "
+        "SELECT " + columns.text() +
+        ", r.run_id FROM questionnaire_run r JOIN session s USING(session_id) JOIN participant p USING(participant_id) "
         "JOIN questionnaire q USING(questionnaire_sha256) LEFT JOIN condition c USING(condition_id) "
         "ORDER BY s.participant_id, s.ordinal, r.run_id");
-    const auto text = [&](int column) {
-        return statement.isNull(column) ? std::nullopt : std::optional(statement.text(column));
-    };
-    std::vector<QuestionnaireRunRow> rows;
+    std::vector<Row> rows;
     while (statement.step()) {
-        const std::int64_t run_id = statement.integer(0);
-        rows.push_back({statement.text(1),
-                        statement.text(2),
-                        statement.integer(3),
-                        statement.text(4),
-                        statement.text(5),
-                        statement.text(6),
-                        statement.text(7),
-                        statement.text(8),
-                        statement.text(9),
-                        text(10),
-                        statement.text(11),
-                        statement.optionalInteger(12),
-                        text(13),
-                        statement.optionalInteger(14),
-                        text(15),
-                        statement.optionalInteger(16),
-                        statement.text(17),
-                        text(18),
-                        readResponses(database, run_id),
-                        readScores(database, run_id)});
+        rows.push_back(columns.read(statement));
+        const std::int64_t run_id = statement.integer(columns.size());
+        rows.back().responses = readResponses(database, run_id);
+        rows.back().scores = readScores(database, run_id);
     }
     return rows;
 }

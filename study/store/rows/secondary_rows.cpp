@@ -1,5 +1,7 @@
 #include "study/store/rows/secondary_rows.h"
 
+#include "study/store/schema/named_columns.h"
+
 namespace passung::store {
 
 void insertDetections(const Database& database, std::int64_t attempt_id, std::int64_t start_ns,
@@ -7,13 +9,11 @@ void insertDetections(const Database& database, std::int64_t attempt_id, std::in
     const auto ns = [&](const std::optional<std::int64_t>& periods) {
         return periods ? std::optional(start_ns + *periods * kTickNanoseconds) : std::nullopt;
     };
-    Statement insert = database.prepare("INSERT INTO secondary_response VALUES(?, ?, ?, ?, ?, ?)");
     std::int64_t number = 0;
     for (const measures::Detection& d : detections)
-        insert
-            .bind(attempt_id, ++number, ns(d.stimulus), ns(d.off), ns(d.response),
-                  measures::detectionResultName(d.result))
-            .run();
+        insertRow(database, "secondary_response", Named{"attempt_id", attempt_id}, Named{"number", ++number},
+                  Named{"stimulus_ns", ns(d.stimulus)}, Named{"off_ns", ns(d.off)},
+                  Named{"response_ns", ns(d.response)}, Named{"result", measures::detectionResultName(d.result)});
 }
 
 std::vector<DetectionRow> readDetections(const Database& database) {

@@ -43,7 +43,7 @@ std::map<std::string, std::string> erasedPeople(const Database& database, const 
 
 void leaveOut(const Database& database, const std::map<std::string, std::string>& erased) {
     database.execute("CREATE TEMP TABLE left_out(participant_id TEXT PRIMARY KEY)");
-    Statement insert = database.prepare("INSERT INTO temp.left_out VALUES(?)");
+    Statement insert = database.prepare("INSERT INTO temp.left_out(participant_id) VALUES(?)");
     for (const auto& [code, surrogate] : erased) insert.bind(code).run();
 }
 

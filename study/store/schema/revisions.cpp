@@ -3,6 +3,7 @@
 #include <array>
 
 #include "study/store/schema/first_schema.h"
+#include "study/store/schema/named_columns.h"
 #include "study/store/schema/person_identity.h"
 
 namespace passung::store {
@@ -246,9 +247,8 @@ void upgradeSchema(const Database& database, const std::string& applied_utc) {
         if (revision.number <= found) continue;
         database.execute(revision.sql);
         if (revision.fill != nullptr) revision.fill(database);
-        database.prepare("INSERT INTO schema_revision VALUES(?, ?, ?, ?)")
-            .bind(revision.number, revision.sentence, revision.oldest_reader, applied_utc)
-            .run();
+        insertRow(database, "schema_revision", Named{"revision", revision.number}, Named{"sentence", revision.sentence},
+                  Named{"oldest_reader", revision.oldest_reader}, Named{"applied_utc", applied_utc});
     }
     transaction.commit();
 }

@@ -123,7 +123,7 @@ void trustRow(const Database& database, const std::string& table, const std::str
 
 void watchStudyRows(Database& database) {
     database.execute(kMakeDamaged);
-    Statement damaged = database.prepare("INSERT OR IGNORE INTO temp.damaged_row VALUES(?, ?)");
+    Statement damaged = database.prepare("INSERT OR IGNORE INTO temp.damaged_row(table_name, row_key) VALUES(?, ?)");
     for (const RowFault& fault : rowFaults(database, "main"))
         if (!fault.missing) damaged.bind(fault.table, fault.key).run();
     std::map<std::string, Table> tables;

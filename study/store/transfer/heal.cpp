@@ -91,7 +91,7 @@ void Healer::look() {
     kept_ = keptHashes(database_, "main", session_);
     database_.execute("DELETE FROM temp.heal_number; DELETE FROM temp.heal_later");
     numbers_.clear();
-    Statement insert = database_.prepare("INSERT INTO temp.heal_number VALUES(?, ?, ?)");
+    Statement insert = database_.prepare("INSERT INTO temp.heal_number(table_name, there, here) VALUES(?, ?, ?)");
     for (const auto& [name, rows_there] : there_.names) {
         const auto& rows_here = here_.names.at(name);
         std::map<std::string, std::int64_t> by_name;
@@ -126,7 +126,7 @@ void Healer::lookAtLater() {
         const auto change = known.find(sha256);
         return change != known.end() && !change->second;
     };
-    Statement later = database_.prepare("INSERT INTO temp.heal_later VALUES(?, ?, ?)");
+    Statement later = database_.prepare("INSERT INTO temp.heal_later(schema, table_name, number) VALUES(?, ?, ?)");
     std::set<std::string> met;
     unknown_.clear();
     for (const ValueRow& row : here_.rows) {

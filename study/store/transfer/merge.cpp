@@ -151,15 +151,19 @@ private:
         for (const std::string& name : tableNames(database_)) {
             const Table table = describeTable(database_, name);
             if (table.find("protocol_sha256") == nullptr || name == "session" || name == "design_slot") continue;
-            const std::string columns = names(table);
-            database_.execute("INSERT OR IGNORE INTO main." + name + "(" + columns + ") SELECT " + columns +
-                              " FROM source." + name);
+            mergeRows(table);
         }
     }
 
     void mergeMeasures() {
-        database_.execute("INSERT OR IGNORE INTO main.measure SELECT * FROM source.measure");
-        database_.execute("INSERT OR IGNORE INTO main.questionnaire SELECT * FROM source.questionnaire");
+        for (const char* name : {"measure", "questionnaire"}) mergeRows(describeTable(database_, name));
+    }
+
+    /// Adds the rows whose keys the result lacks.
+    void mergeRows(const Table& table) {
+        const std::string columns = names(table);
+        database_.execute("INSERT OR IGNORE INTO main." + table.name + "(" + columns + ") SELECT " + columns +
+                          " FROM source." + table.name);
     }
 
     /// Whoever was erased from the result does not come back with a copy. The other way round nobody but the
@@ -188,7 +192,9 @@ private:
             if (fault.participant_id.empty() && taken_ == Taken::Whole)
                 refuse(titleOf(fault) + " is damaged: passung restore heals it");
             if (fault.participant_id.empty()) continue;
-            database_.prepare("INSERT OR IGNORE INTO temp.left_out VALUES(?)").bind(fault.participant_id).run();
+            database_.prepare("INSERT OR IGNORE INTO temp.left_out(participant_id) VALUES(?)")
+                .bind(fault.participant_id)
+                .run();
         }
     }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "study/store/rows/tombstone.h"
+#include "study/store/schema/session_tables.h"
 
 namespace passung::store {
 namespace {
@@ -18,7 +19,9 @@ std::string rankOf(const std::string& alias) {
 }  // namespace
 
 void mergePeople(const Database& database) {
-    database.execute("INSERT OR IGNORE INTO main.participant SELECT * FROM source.participant WHERE " + kKept);
+    const std::string columns = columnNames(describeTable(database, "participant"));
+    database.execute("INSERT OR IGNORE INTO main.participant(" + columns + ") SELECT " + columns +
+                     " FROM source.participant WHERE " + kKept);
     database.execute(
         "UPDATE main.participant AS m SET status=s.status, status_reason=s.status_reason "
         "FROM source.participant AS s WHERE s.participant_id=m.participant_id AND s." +

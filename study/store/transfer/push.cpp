@@ -101,7 +101,7 @@ private:
             damaged_.insert(fault.participant_id);
         }
         for (const std::string& code : damaged_)
-            database_.prepare("INSERT OR IGNORE INTO temp.left_out VALUES(?)").bind(code).run();
+            database_.prepare("INSERT OR IGNORE INTO temp.left_out(participant_id) VALUES(?)").bind(code).run();
     }
 
     /// The audit's rows mean the same everywhere by their hashes.
@@ -148,7 +148,7 @@ private:
         const std::string columns = joined(copy.columns, nameOf);
         database_.execute("CREATE TEMP TABLE " + copy.name + " AS SELECT " + columns + " FROM main." + copy.name +
                           " LIMIT 0");
-        Statement insert_here = database_.prepare("INSERT INTO temp." + copy.name + " SELECT " +
+        Statement insert_here = database_.prepare("INSERT INTO temp." + copy.name + "(" + columns + ") SELECT " +
                                                   joined(copy.columns, [&, number = 0](const TableColumn&) mutable {
                                                       return "json_extract(?1, '$[" + std::to_string(number++) + "]')";
                                                   }));
@@ -226,7 +226,7 @@ private:
             rows.bind(id);
             while (rows.step()) insert(work, copy, valuesOf(rows, copy.columns), false);
         }
-        work.exec_params("INSERT INTO pushed_session VALUES($1, $2)", id, digest);
+        work.exec_params("INSERT INTO pushed_session(session_id, digest) VALUES($1, $2)", id, digest);
         work.commit();
         ++(found.empty() ? report.sessions : known ? report.healed : report.replaced);
     }

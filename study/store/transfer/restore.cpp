@@ -16,6 +16,7 @@
 #include "study/store/schema/process_lock.h"
 #include "study/store/schema/revisions.h"
 #include "study/store/schema/schema_text.h"
+#include "study/store/schema/session_tables.h"
 #include "study/store/schema/untouched.h"
 #include "study/store/schema/workshop.h"
 #include "study/store/transfer/heal.h"
@@ -73,6 +74,7 @@ void bringBackSessions(const Database& database, std::vector<std::string>& heale
         "IN(SELECT "
         "session_id FROM main.session) AND session_id IN(SELECT session_id FROM main.trial_plan) AND participant_id "
         "IN(SELECT participant_id FROM main.participant)");
+    const std::string columns = columnNames(describeTable(database, "session"));
     while (gone.step()) {
         // Under another id it would be there twice.
         database
@@ -81,7 +83,9 @@ void bringBackSessions(const Database& database, std::vector<std::string>& heale
                 "source.session WHERE session_id=?) AND session_id NOT IN(SELECT session_id FROM main.trial_plan)")
             .bind(gone.text(0))
             .run();
-        database.prepare("INSERT INTO main.session SELECT * FROM source.session WHERE session_id=?")
+        database
+            .prepare("INSERT INTO main.session(" + columns + ") SELECT " + columns +
+                     " FROM source.session WHERE session_id=?")
             .bind(gone.text(0))
             .run();
         healed.push_back(gone.text(1));

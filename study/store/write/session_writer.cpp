@@ -14,7 +14,7 @@
 #include "study/store/rows/secondary_rows.h"
 #include "study/store/rows/session_json.h"
 #include "study/store/rows/staircase_rows.h"
-#include "study/store/schema/sqlite.h"
+#include "study/store/schema/named_columns.h"
 #include "study/store/schema/value_hash.h"
 #include "study/store/write/writer_thread.h"
 
@@ -38,10 +38,11 @@ void insertMeasures(const Database& database, std::int64_t attempt_id, const std
 void insertTiming(const Database& database, std::int64_t attempt_id, const session::LoopHealth& health, bool measured) {
     const auto us = [measured](double value) { return measured ? std::optional(value) : std::nullopt; };
     const auto histogram = measured ? std::optional(histogramJson(health.histogram)) : std::nullopt;
-    database.prepare("INSERT INTO timing VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
-        .bind(attempt_id, health.loop, health.ticks, us(health.mean_us), us(health.sd_us), us(health.p99_us),
-              us(health.p999_us), us(health.max_us), health.overruns, health.dropped_records, histogram)
-        .run();
+    insertRow(database, "timing", Named{"attempt_id", attempt_id}, Named{"loop", health.loop},
+              Named{"ticks", health.ticks}, Named{"mean_us", us(health.mean_us)}, Named{"sd_us", us(health.sd_us)},
+              Named{"p99_us", us(health.p99_us)}, Named{"p999_us", us(health.p999_us)},
+              Named{"max_us", us(health.max_us)}, Named{"overruns", health.overruns},
+              Named{"dropped_samples", health.dropped_records}, Named{"hist_json", histogram});
 }
 
 /// Has every planned main trial an attempt that counts?
@@ -151,10 +152,10 @@ Result<session::AttemptId> SessionWriter::startAttempt(const session::AttemptSta
 
 void SessionWriter::insertChunk(const Database& database, std::int64_t stream_id, std::int64_t chunk_no,
                                 std::int64_t attempt_id, std::int64_t t0_ns, const Chunk& chunk) {
-    database.prepare("INSERT INTO sample_chunk VALUES(?, ?, ?, ?, ?, ?, ?, ?)")
-        .bind(stream_id, chunk_no, attempt_id, chunk.first_tick, chunk.count, t0_ns, chunk.crc32,
-              std::span<const std::byte>(chunk.data))
-        .run();
+    insertRow(database, "sample_chunk", Named{"stream_id", stream_id}, Named{"chunk_no", chunk_no},
+              Named{"attempt_id", attempt_id}, Named{"first_tick", chunk.first_tick}, Named{"n", chunk.count},
+              Named{"t0_ns", t0_ns}, Named{"crc32", chunk.crc32},
+              Named{"data", std::span<const std::byte>(chunk.data)});
 }
 
 void SessionWriter::insertChunks(const Database& database, std::int64_t attempt_id, std::int64_t start_ns,

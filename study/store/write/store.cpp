@@ -11,6 +11,7 @@
 #include "study/store/rows/slots.h"
 #include "study/store/rows/stable_stiffness_rows.h"
 #include "study/store/schema/backup.h"
+#include "study/store/schema/named_columns.h"
 #include "study/store/schema/open_database.h"
 #include "study/store/schema/process_lock.h"
 #include "study/store/write/admission.h"
@@ -155,11 +156,12 @@ SessionWriter::Rows insertSession(const Database& database, const SessionStart& 
     requireSeed(database, start.protocol_sha256, start.seed);
     refuseComplete(database, start.protocol_sha256, start.participant);
     requireAdmission(database, start.protocol_sha256, start.participant);
-    database.prepare("INSERT INTO session VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, NULL, NULL, ?)")
-        .bind(start.session_id, start.participant, start.protocol_sha256, start.ordinal, start.station,
-              nullIfEmpty(start.experimenter), start.language, start.seed, start.random_name, start.clock.at(0),
-              start.clock.epoch() == Epoch::Virtual ? "virtual" : "wall")
-        .run();
+    const char* epoch = start.clock.epoch() == Epoch::Virtual ? "virtual" : "wall";
+    insertRow(database, "session", Named{"session_id", start.session_id}, Named{"participant_id", start.participant},
+              Named{"protocol_sha256", start.protocol_sha256}, Named{"ordinal", start.ordinal},
+              Named{"station", start.station}, Named{"experimenter", nullIfEmpty(start.experimenter)},
+              Named{"language", start.language}, Named{"seed", start.seed}, Named{"rng", start.random_name},
+              Named{"started_utc", start.clock.at(0)}, Named{"epoch", epoch});
     insertTrialPlan(database, start, plan);
     const auto rows = insertSegment(database, start, options, 0);
     transaction.commit();

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "analysis/export/columns.h"
 #include "core/base/random.h"
 #include "tests/analysis/export/csv_reader.h"
 
@@ -22,6 +23,28 @@ TEST(Table, HardTextsComeBackFromAnIndependentReader) {
     const fake::CsvFile back = fake::readCsv(toCsv(table));
     EXPECT_EQ(back.header[0], "first, \"column\"");
     EXPECT_EQ(back.rows, table.rows);
+}
+
+TEST(Table, ACellStandsUnderTheColumnThatSaysWhereItComesFrom) {
+    // Truth: closed form
+    struct Part {
+        std::int64_t number;
+        std::optional<double> width;
+    };
+    struct Row {
+        std::string name;
+        Part part;
+    };
+    const ColumnsOf<Part> of_part = {{"number", "", "integer", &Part::number},
+                                     {"width_m", "", "number", &Part::width, {.unit = "m"}}};
+    ColumnsOf<Row> columns = {{"name", "Its name", "text", &Row::name}};
+    append(columns, of_part, [](const Row& row) -> const Part& { return row.part; });
+    append(columns, {{"long", "", "0/1", [](const Row& row) { return row.name.size() > 3; }, {.levels = {"0", "1"}}}});
+    const Table table = makeTable("t.csv", "", columns, std::vector<Row>{{"peg", {1, 0.5}}, {"block", {2, {}}}});
+    EXPECT_EQ(toCsv(table), "name,number,width_m,long\npeg,1,0.5,0\nblock,2,NA,1\n");
+    EXPECT_EQ(table.columns[0].label, "Its name");
+    EXPECT_EQ(table.columns[2].unit, "m");
+    EXPECT_EQ(table.columns[3].levels, (std::vector<std::string>{"0", "1"}));
 }
 
 TEST(Table, NumbersReadBackToTheSameBitsAndAreShort) {
