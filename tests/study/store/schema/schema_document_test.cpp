@@ -1,0 +1,192 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <utility>
+
+#include "study/store/schema/revisions.h"
+
+namespace passung::store {
+namespace {
+
+/// What the revisions' SQL says of tables and added columns.
+struct Remarks {
+    struct Remark {
+        int revision = 0;
+        std::string text;
+    };
+    std::map<std::string, Remark> tables;                           // by name
+    std::map<std::pair<std::string, std::string>, Remark> columns;  // that were added later, by table and name
+};
+
+/// The word after `start` at the beginning of the line, up to a space or bracket; empty: the line begins otherwise.
+std::string wordAfter(const std::string& line, std::string_view start) {
+    if (!line.starts_with(start)) return {};
+    return line.substr(start.size(), line.find_first_of(" (", start.size()) - start.size());
+}
+
+/// A comment between statements holds until the next one, of several lines as a whole.
+Remarks readRemarks() {
+    Remarks remarks;
+    for (const Revision& revision : revisions()) {
+        std::istringstream sql(revision.sql);
+        std::string comment;
+        bool goes_on = false;
+        for (std::string line; std::getline(sql, line);) {
+            if (line.starts_with("-- ")) {
+                comment = (goes_on ? comment + " " : "") + line.substr(3);
+                goes_on = true;
+                continue;
+            }
+            goes_on = false;
+            if (const std::string table = wordAfter(line, "CREATE TABLE "); !table.empty())
+                remarks.tables[table] = {revision.number, comment};
+            if (const std::string table = wordAfter(line, "ALTER TABLE "); !table.empty()) {
+                const std::string column = wordAfter(line, "ALTER TABLE " + table + " ADD COLUMN ");
+                remarks.columns[{table, column}] = {revision.number, comment};
+            }
+        }
+    }
+    return remarks;
+}
+
+/// A column, or a rule of the table, as its statement has it.
+struct Clause {
+    std::string text, comment;
+};
+
+/// What stands between the brackets of a CREATE TABLE. A comment belongs to the clause of its line.
+std::vector<Clause> clausesOf(const std::string& sql) {
+    std::vector<Clause> clauses(1);
+    int depth = 0;
+    for (std::size_t i = sql.find('('); i < sql.size(); ++i) {
+        const char c = sql[i];
+        if (sql.compare(i, 2, "--") == 0) {
+            const std::size_t end = sql.find('\n', i);
+            Clause& of = clauses.back().text.empty() ? clauses[clauses.size() - 2] : clauses.back();
+            of.comment = sql.substr(i + 3, end - i - 3);
+            i = end - 1;
+            continue;
+        }
+        if (c == '(' && ++depth == 1) continue;
+        if (c == ')' && --depth == 0) break;
+        std::string& text = clauses.back().text;
+        if (c == ',' && depth == 1) {
+            clauses.emplace_back();
+        } else if (c != ' ' && c != '\n') {
+            text += c;
+        } else if (!text.empty() && text.back() != ' ') {
+            text += ' ';
+        }
+    }
+    return clauses;
+}
+
+/// By the end of its name, where a unit or form stands.
+std::string unitOf(const std::string& column) {
+    constexpr std::array<std::pair<std::string_view, const char*>, 16> kEnds = {{{"_N_per_m", "N/m"},
+                                                                                 {"_Nm_per_rad", "N·m/rad"},
+                                                                                 {"_ns", "ns"},
+                                                                                 {"_us", "µs"},
+                                                                                 {"_ms", "ms"},
+                                                                                 {"_um", "µm"},
+                                                                                 {"_mm", "mm"},
+                                                                                 {"_J", "J"},
+                                                                                 {"_hz", "Hz"},
+                                                                                 {"_percent", "%"},
+                                                                                 {"_deg", "°"},
+                                                                                 {"_utc", "ISO 8601, UTC"},
+                                                                                 {"_json", "JSON"},
+                                                                                 {"sha256", "SHA-256"},
+                                                                                 {"_ticks", "ticks"},
+                                                                                 {"_frames", "pictures"}}};
+    for (const auto& [end, unit] : kEnds)
+        if (column.ends_with(end)) return unit;
+    return {};
+}
+
+std::string columnLine(const std::string& table, const Clause& clause, const Remarks& remarks) {
+    std::istringstream words(clause.text);
+    std::string name, type, rule, since, meaning = clause.comment;
+    words >> name >> type >> std::ws;
+    std::getline(words, rule);
+    if (const auto later = remarks.columns.find({table, name}); later != remarks.columns.end()) {
+        since = "since revision " + std::to_string(later->second.revision) + ": " + later->second.text;
+        meaning += (meaning.empty() ? "" : "; ") + since;
+    }
+    return "| `" + name + "` | " + type + " | " + unitOf(name) + " | " + (rule.empty() ? "" : "`" + rule + "`") +
+           " | " + meaning + " |\n";
+}
+
+bool isRuleOfTable(const Clause& clause) {
+    return clause.text.starts_with("PRIMARY KEY") || clause.text.starts_with("UNIQUE") ||
+           clause.text.starts_with("FOREIGN KEY");
+}
+
+std::string tableText(const std::string& name, const std::string& sql, const Remarks& remarks) {
+    const Remarks::Remark& remark = remarks.tables.at(name);
+    std::string text = "\n## " + name + "\n\nRevision " + std::to_string(remark.revision) +
+                       (remark.text.empty() ? "" : ": " + remark.text) +
+                       "\n\n| column | type | unit | rule | meaning |\n| --- | --- | --- | --- | --- |\n";
+    std::string rules;
+    for (const Clause& clause : clausesOf(sql)) {
+        if (isRuleOfTable(clause))
+            rules += "\n`" + clause.text + "`\n";
+        else
+            text += columnLine(name, clause, remarks);
+    }
+    return text + rules;
+}
+
+std::string schemaDocument() {
+    const Database database(":memory:", OpenMode::ReadWrite);
+    upgradeSchema(database, "2000-01-01T00:00:00Z");
+    std::string text =
+        "# Schema of a study's database\n\nMade by a test from the numbered revisions in `schema`. Times in ns are "
+        "monotonic, counted from the segment's zero. NULL means \"not measured\" where nothing else is said. All "
+        "tables "
+        "are STRICT.\n\n"
+        "| revision | what it brought | oldest program that reads it knows revision |\n| --- | --- | --- |\n";
+    for (const Revision& revision : revisions())
+        text += "| " + std::to_string(revision.number) + " | " + revision.sentence + " | " +
+                std::to_string(revision.oldest_reader) + " |\n";
+    const Remarks remarks = readRemarks();
+    Statement tables = database.prepare(
+        "SELECT name, sql FROM sqlite_schema WHERE type='table' AND name NOT LIKE 'sqlite_%' ORDER BY rowid");
+    while (tables.step()) text += tableText(tables.text(0), tables.text(1), remarks);
+    return text;
+}
+
+TEST(SchemaDocument, IsWhatTheCommittedFileSays) {
+    // Truth: regression (study/store/SCHEMA.md; set PASSUNG_WRITE_SCHEMA=1 to write it anew after a new revision).
+    const std::string path = PASSUNG_SOURCE_DIR "/study/store/SCHEMA.md";
+    const std::string text = schemaDocument();
+    if (std::getenv("PASSUNG_WRITE_SCHEMA") != nullptr) std::ofstream(path, std::ios::binary) << text;
+    std::ifstream stream(path, std::ios::binary);
+    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}), text);
+}
+
+TEST(SchemaDocument, HasEveryColumnThatTheDatabaseHas) {
+    // Truth: SQLite's own list of columns.
+    const Database database(":memory:", OpenMode::ReadWrite);
+    upgradeSchema(database, "2000-01-01T00:00:00Z");
+    const std::string text = schemaDocument();
+    Statement columns = database.prepare(
+        "SELECT t.name, c.name, c.type FROM sqlite_schema t, pragma_table_info(t.name) c WHERE t.type='table'");
+    int found = 0;
+    for (; columns.step(); ++found) {
+        const std::size_t table = text.find("\n## " + columns.text(0) + "\n");
+        ASSERT_NE(table, std::string::npos) << columns.text(0);
+        const std::size_t end = text.find("\n## ", table + 1);
+        EXPECT_NE(text.substr(table, end - table).find("\n| `" + columns.text(1) + "` | " + columns.text(2) + " |"),
+                  std::string::npos)
+            << columns.text(0) << "." << columns.text(1);
+    }
+    EXPECT_GT(found, 200);
+}
+
+}  // namespace
+}  // namespace passung::store
