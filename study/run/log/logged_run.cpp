@@ -6,10 +6,6 @@ namespace passung::app {
 
 namespace {
 
-const char* nameOf(session::SessionState state) {
-    return state == session::SessionState::Ready ? "ready" : "paused";  // no other one waits
-}
-
 /// `listener` and, before it, the log. Codes and outcomes stay out.
 RunListener listensToo(StudyLog& log, const RunListener& listener) {
     RunListener both = listener;
@@ -36,13 +32,10 @@ RunListener listensToo(StudyLog& log, const RunListener& listener) {
                              resumed.agenda.planned()));
         if (listener.resumed) listener.resumed(resumed);
     };
-    both.state = [&](session::SessionState state) {
-        log.tell(fmt::format("session {}", nameOf(state)));
-        if (listener.state) listener.state(state);
-    };
-    both.swap = [&](const std::string& device, const std::string& advice) {
-        log.tell(fmt::format("device {} is to be put in place", device));
-        if (listener.swap) listener.swap(device, advice);
+    both.waits = [&](const session::SessionView& view, const std::string& advice) {
+        if (!view.awaited_device.empty()) log.tell(fmt::format("device {} is to be put in place", view.awaited_device));
+        log.tell(view.state == session::SessionState::Ready ? "session ready" : "session paused");
+        if (listener.waits) listener.waits(view, advice);
     };
     both.session_over = [&](const std::string& participant, bool whole) {
         log.tell(whole ? "session complete" : "session over, not complete");
