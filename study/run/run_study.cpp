@@ -269,7 +269,10 @@ store::Store::Opened openForRun(const RunOptions& options, const RunListener& li
     with.group = options.group;
     with.station = options.station;
     auto opened = store::Store::open(options.database, with);
-    if (options.log != nullptr) options.log->tell(openingText(opened.outcome));
+    if (options.log != nullptr) {
+        if (opened.store) options.log->begin();
+        options.log->tell(openingText(opened.outcome));
+    }
     if (!opened.store) return opened;
     if (listener.recovered && !opened.recovery.empty()) listener.recovered(opened.recovery);
     if (listener.warned && !opened.recovery.later_utc.empty())

@@ -65,7 +65,8 @@ struct StudyLog::File {
     std::string database;
     Warn warn;
     std::vector<std::string> left_out = {};
-    std::vector<Line> waiting = {};  // for the database
+    std::vector<Line> waiting = {};  // for begin()
+    bool begun = false;
     std::unique_ptr<spdlog::logger> logger = nullptr;
     bool failed = false;
 
@@ -73,7 +74,11 @@ struct StudyLog::File {
         if (failed) return;
         waiting.push_back({spdlog::log_clock::now(), level, discreet(text, left_out)});
         std::error_code none;
-        if (!logger && !fs::exists(database, none)) return;
+        if (begun || fs::exists(fs::symlink_status(path(), none))) flush();
+    }
+
+    void flush() {
+        if (failed) return;
         try {
             if (!logger) open();
             for (const Line& line : waiting)
@@ -84,6 +89,8 @@ struct StudyLog::File {
         waiting.clear();
         if (failed) logger.reset();
     }
+
+    std::string path() const { return store::behindLink(database) + store::kLogFiles.front(); }
 
     void open() {
         logger = openLogger(store::behindLink(database));
@@ -101,6 +108,11 @@ StudyLog::StudyLog(std::string database, const std::string& program, Warn warn)
 }
 
 StudyLog::~StudyLog() = default;
+
+void StudyLog::begin() {
+    file_->begun = true;
+    file_->flush();
+}
 
 void StudyLog::leaveOut(const std::string& who) { file_->left_out.push_back(who); }
 

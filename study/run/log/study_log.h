@@ -11,7 +11,8 @@ namespace passung::app {
 
 /// The log beside a study's database, DB.log: what ran, on what, how well, and what failed, for a bug report. Never who
 /// took part or what they did: every line passes discreet(). At most kLogBytes a file and store::kLogFiles of them; of
-/// the database's mode and group. Lines wait until there is a database: where none is made, no log is.
+/// the database's mode and group. Lines wait for begin() where no log is yet: beside a file that is no study's none
+/// appears.
 ///   Nothing depends on the log: the first line that cannot be written is told as one warning, and no other is tried.
 /// Used by one thread, never the tick's.
 class StudyLog {
@@ -24,6 +25,8 @@ public:
     StudyLog(const StudyLog&) = delete;
     StudyLog& operator=(const StudyLog&) = delete;
 
+    /// The database is a study's: what waits is written.
+    void begin();
     /// A name or code that no line may hold.
     void leaveOut(const std::string& who);
 

@@ -6,7 +6,8 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <memory>
+#include <utility>
 
 #include "tests/support/temp_folder.h"
 
@@ -20,12 +21,10 @@ protected:
     StudyLogTest() { std::ofstream(database_) << "a database"; }
 
     std::unique_ptr<StudyLog> open() {
-        return std::make_unique<StudyLog>(database_, "test",
-                                          [this](const std::string& what) { warnings_.push_back(what); });
-    }
-    static std::string bytesOf(const std::string& path) {
-        std::ifstream file(path, std::ios::binary);
-        return {std::istreambuf_iterator<char>(file), {}};
+        auto log = std::make_unique<StudyLog>(database_, "test",
+                                              [this](const std::string& what) { warnings_.push_back(what); });
+        log->begin();
+        return log;
     }
     static unsigned modeOf(const std::string& path) {
         struct stat file = {};
@@ -37,20 +36,22 @@ protected:
     std::vector<std::string> warnings_;
 };
 
-TEST_F(StudyLogTest, LinesWaitForADatabaseAndWithoutOneThereIsNoLog) {
-    // Truth: closed form
-    fs::remove(database_);
-    const auto log = open();
+TEST_F(StudyLogTest, LinesWaitForAStudysDatabaseAndBesideAnotherFileIsNoLog) {
+    // Truth: closed form; where a log is already, nothing waits.
+    StudyLog(database_, "refused", {}).tell("never");
+    EXPECT_FALSE(fs::exists(log_));
+    const auto log = std::make_unique<StudyLog>(database_, "test", nullptr);
     log->tell("before");
     EXPECT_FALSE(fs::exists(log_));
-    std::ofstream(database_) << "now";
+    log->begin();
     log->fail("after",
               {{.message = "must be odd", .file = "a.toml", .line = 3, .column = 4, .key = "k", .value = "8"}});
     const std::string text = logText(database_);
     EXPECT_EQ(text.find("test " PASSUNG_VERSION " starts; numerics "), sizeof "2026-01-01T00:00:00.000Z info:");
     EXPECT_LT(text.find(" info: before\n"), text.find(" error: after: a.toml:3:4: error: k: must be odd\n"));
     EXPECT_TRUE(text.ends_with("must be odd\n")) << text;
-    EXPECT_TRUE(warnings_.empty());
+    StudyLog(database_, "later", {}).tell("at once");
+    EXPECT_TRUE(logText(database_).ends_with(" info: at once\n"));
 }
 
 TEST_F(StudyLogTest, IsBoundedInSizeAndCountAndKeepsTheNewest) {

@@ -61,7 +61,7 @@ TEST_F(LogTest, OfARunTellsWhatRanOnWhatAndHowWell) {
 }
 
 TEST_F(LogTest, OfARefusedInputHasItsPlaceAndNotItsValue) {
-    // Truth: closed form; where there is no database, none is begun.
+    // Truth: closed form; where no study ran, none is begun.
     std::string study = readText(folder_ / "study.toml");
     study.replace(study.find("preset = \"sigma7\""), 17, "preset = \"zaubernuss\"");
     writeText(folder_ / "bad.toml", study);
