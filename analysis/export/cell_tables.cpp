@@ -107,24 +107,24 @@ std::string seenName(const StudyData& study, const store::ConditionRow& conditio
 }
 
 /// A wide table's column: the conditions that share it.
-struct WideColumn {
+struct ConditionColumn {
     std::string name, part;
 };
 
 /// The conditions of these cells, as the protocols list them; names whose parts are equal get a '_' more.
-std::vector<WideColumn> wideColumns(const StudyData& study, const std::vector<const Cell*>& cells) {
+std::vector<ConditionColumn> conditionColumns(const StudyData& study, const std::vector<const Cell*>& cells) {
     std::set<const store::ConditionRow*> met;
     for (const Cell* cell : cells) met.insert(cell->condition);
-    std::vector<WideColumn> columns;
+    std::vector<ConditionColumn> columns;
     const auto has = [&](const std::string& text, auto member) {
         return std::any_of(columns.begin(), columns.end(), [&](const auto& column) { return column.*member == text; });
     };
     for (const store::ConditionRow& condition : study.conditions) {
         if (met.count(&condition) == 0) continue;
         const std::string name = seenName(study, condition);
-        if (has(name, &WideColumn::name)) continue;
+        if (has(name, &ConditionColumn::name)) continue;
         std::string part = columnPart(name);
-        while (has(part, &WideColumn::part)) part += '_';
+        while (has(part, &ConditionColumn::part)) part += '_';
         columns.push_back({name, part});
     }
     return columns;
@@ -152,7 +152,7 @@ std::vector<WideRow> wideRows(const StudyData& study, const std::string& measure
 }
 
 /// The values of the conditions that share a column.
-ColumnOf<WideRow> valueColumn(const Column& measure, const WideColumn& column) {
+ColumnOf<WideRow> valueColumn(const Column& measure, const ConditionColumn& column) {
     const bool censored = isCensored(measure.name);
     const std::string what = censored ? "restricted mean" : "mean";
     return {measure.name + "." + column.part,
@@ -174,7 +174,8 @@ Table wideTable(const StudyData& study, const Column& measure, const std::vector
     const std::string what = isCensored(measure.name) ? "restricted mean" : "mean";
     ColumnsOf<WideRow> columns;
     append(columns, leadingColumns(study), [](const WideRow& row) -> const Cell& { return *row.first; });
-    for (const WideColumn& column : wideColumns(study, cells)) columns.push_back(valueColumn(measure, column));
+    for (const ConditionColumn& column : conditionColumns(study, cells))
+        columns.push_back(valueColumn(measure, column));
     return makeTable(std::move(file),
                      "One row per participant and session, one column per condition of block " + cells.front()->block +
                          ": " + what + " of " + measure.name + ".",

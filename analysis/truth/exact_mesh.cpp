@@ -13,7 +13,7 @@ namespace passung::truth {
 namespace {
 
 constexpr int kRayDirections = 5;
-constexpr std::uint32_t kLeafTriangles = 4;
+constexpr std::uint32_t kExactLeafTriangles = 4;
 constexpr std::size_t kDeepest = 64;  // the tree halves its triangles: no branch is longer
 
 double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -113,7 +113,7 @@ std::uint32_t ExactMesh::grow(std::uint32_t first, std::uint32_t end) {
         middles.extend(middleOf(order_[k]));
     }
     nodes_.push_back({box, first, end});
-    if (end - first <= kLeafTriangles) return index;
+    if (end - first <= kExactLeafTriangles) return index;
     Eigen::Index axis = 0;
     middles.size().maxCoeff(&axis);
     const std::uint32_t middle = first + (end - first) / 2;

@@ -10,7 +10,6 @@ namespace passung::model {
 namespace {
 
 using Index = JsonScan::Index;
-constexpr Index kNone = JsonScan::kNone;
 
 std::uint32_t word32(std::string_view bytes, std::size_t at) {
     std::uint32_t value = 0;
@@ -58,8 +57,8 @@ private:
     Index table(const char* name) const { return json_.find(JsonScan::root(), name); }
     Index firstOf(Index list) const {
         const bool holds =
-            list != kNone && (json_.kind(list) == JsonScan::Kind::List || json_.kind(list) == JsonScan::Kind::Object);
-        return holds ? json_.first(list) : kNone;
+            list != JsonScan::kNone && (json_.kind(list) == JsonScan::Kind::List || json_.kind(list) == JsonScan::Kind::Object);
+        return holds ? json_.first(list) : JsonScan::kNone;
     }
 
     /// Every entry of a table with the name by which others mean it.
@@ -67,8 +66,8 @@ private:
     void each(const char* name, const Visit& visit) const {
         const Index list = table(name);
         std::size_t number = 0;
-        const bool named = list != kNone && json_.kind(list) == JsonScan::Kind::Object;
-        for (Index entry = firstOf(list); entry != kNone; entry = json_.next(entry), ++number)
+        const bool named = list != JsonScan::kNone && json_.kind(list) == JsonScan::Kind::Object;
+        for (Index entry = firstOf(list); entry != JsonScan::kNone; entry = json_.next(entry), ++number)
             visit(entry, named ? json_.key(entry) : std::to_string(number));
     }
 
@@ -86,7 +85,7 @@ private:
             const auto stated = json_.number(json_.find(buffer, "byteLength"));
             const Index uri = json_.find(buffer, "uri");
             double there = own_buffer_;
-            if (uri != kNone && json_.kind(uri) == JsonScan::Kind::String) {
+            if (uri != JsonScan::kNone && json_.kind(uri) == JsonScan::Kind::String) {
                 const std::string head = json_.text(uri).substr(0, 5);
                 const auto size =
                     head == "data:" ? std::optional<std::uintmax_t>(json_.length(uri)) : sizeOf_(json_.text(uri));
@@ -114,7 +113,7 @@ private:
     }
 
     double countOf(Index accessor) const {
-        if (accessor == kNone) return 0.0;
+        if (accessor == JsonScan::kNone) return 0.0;
         const auto found = counts_.find(meant(accessor));
         return found != counts_.end() ? found->second : 0.0;
     }
@@ -123,12 +122,12 @@ private:
         double all = 0.0;
         each("meshes", [&](Index mesh, const std::string& name) {
             double corners = 0.0;
-            for (Index p = firstOf(json_.find(mesh, "primitives")); p != kNone; p = json_.next(p)) {
+            for (Index p = firstOf(json_.find(mesh, "primitives")); p != JsonScan::kNone; p = json_.next(p)) {
                 corners += countOf(json_.find(p, "indices"));
                 const Index attributes = json_.find(p, "attributes");
-                for (Index a = firstOf(attributes); a != kNone; a = json_.next(a)) corners += countOf(a);
-                for (Index t = firstOf(json_.find(p, "targets")); t != kNone; t = json_.next(t))
-                    for (Index a = firstOf(t); a != kNone; a = json_.next(a)) corners += countOf(a);
+                for (Index a = firstOf(attributes); a != JsonScan::kNone; a = json_.next(a)) corners += countOf(a);
+                for (Index t = firstOf(json_.find(p, "targets")); t != JsonScan::kNone; t = json_.next(t))
+                    for (Index a = firstOf(t); a != JsonScan::kNone; a = json_.next(a)) corners += countOf(a);
             }
             nesting_[nesting_.number("mesh " + name)].corners = corners;
             all += corners;
@@ -145,13 +144,13 @@ private:
         };
         each("nodes", [&](Index node, const std::string& name) {
             const std::size_t outer = nesting_.number("node " + name);
-            for (Index c = firstOf(json_.find(node, "children")); c != kNone; c = json_.next(c)) add(outer, "node ", c);
-            for (Index m = firstOf(json_.find(node, "meshes")); m != kNone; m = json_.next(m)) add(outer, "mesh ", m);
-            if (const Index mesh = json_.find(node, "mesh"); mesh != kNone) add(outer, "mesh ", mesh);
+            for (Index c = firstOf(json_.find(node, "children")); c != JsonScan::kNone; c = json_.next(c)) add(outer, "node ", c);
+            for (Index m = firstOf(json_.find(node, "meshes")); m != JsonScan::kNone; m = json_.next(m)) add(outer, "mesh ", m);
+            if (const Index mesh = json_.find(node, "mesh"); mesh != JsonScan::kNone) add(outer, "mesh ", mesh);
         });
         const std::size_t all = nesting_.number("all");
         each("scenes", [&](Index scene, const std::string&) {
-            for (Index n = firstOf(json_.find(scene, "nodes")); n != kNone; n = json_.next(n)) add(all, "node ", n);
+            for (Index n = firstOf(json_.find(scene, "nodes")); n != JsonScan::kNone; n = json_.next(n)) add(all, "node ", n);
         });
         return nesting_.tooMuch(all);
     }

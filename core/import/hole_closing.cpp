@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kSampledTriangles = 500;
 constexpr double kBeside = 1e-5;       // of the part's size: how far beside a triangle the winding number is asked for
 constexpr double kFanBeside = 1e-3;    // the same, of the height of a fan's triangle
-constexpr double kFlat = 1e-9;         // height over longest edge: no area that a winding number could tell
+constexpr double kFlatTriangle = 1e-9;         // height over longest edge: no area that a winding number could tell
 constexpr double kHalfwayBand = 0.25;  // a winding number this near to ½ lies between inside and outside
 constexpr std::uint32_t kNowhere = ~0u;
 
@@ -90,7 +90,7 @@ Gap gapOf(const std::vector<Triangle>& fan, const std::vector<Vec3>& vertices, c
         const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
         const Vec3 area = areaVector(vertices, t);
         const double height = 2.0 * area.norm() / longest;
-        if (!(height > kFlat * longest)) continue;
+        if (!(height > kFlatTriangle * longest)) continue;
         const Vec3 beside = kFanBeside * height * area.normalized();
         bool halfway = true;
         for (const double side : {1.0, -1.0}) {

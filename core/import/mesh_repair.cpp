@@ -30,19 +30,19 @@ constexpr double kUnusuallyLong = 10.0, kUnusuallyShort = 1e-4;  // [m]
 
 constexpr double kInsideBalance = 0.5;  // halfway between a sheet (0) and a solid (1)
 
-constexpr std::uint32_t kNone = ~0u;
+constexpr std::uint32_t kNoIndex = ~0u;
 
 /// Lets triangles name `first_at[v]` in place of v and drops unused vertices; vertices keep the order in which
 /// triangles name them. Returns how many used vertices were joined to another.
 std::size_t join(TriangleMesh& mesh, const std::vector<std::uint32_t>& first_at) {
-    std::vector<std::uint32_t> renamed(mesh.vertices.size(), kNone);
+    std::vector<std::uint32_t> renamed(mesh.vertices.size(), kNoIndex);
     std::vector<char> used(mesh.vertices.size(), 0);
     std::vector<Vec3> kept;
     for (Triangle& triangle : mesh.triangles) {
         for (std::uint32_t& v : triangle) {
             used[v] = 1;
             const std::uint32_t representative = first_at[v];
-            if (renamed[representative] == kNone) {
+            if (renamed[representative] == kNoIndex) {
                 renamed[representative] = static_cast<std::uint32_t>(kept.size());
                 kept.push_back(mesh.vertices[representative]);
             }
@@ -153,13 +153,13 @@ void countEdges(const TriangleMesh& mesh, const std::vector<HalfEdge>& edges, Me
 /// seam.)
 void turnQuarrellingTriangles(TriangleMesh& mesh, const std::vector<HalfEdge>& edges, MeshReport& report) {
     struct Neighbour {
-        std::uint32_t triangle = kNone;
+        std::uint32_t triangle = kNoIndex;
         bool quarrels = false;
     };
     std::vector<std::array<Neighbour, 3>> neighbours(mesh.triangles.size());
     const auto link = [&](std::uint32_t from, Neighbour to) {
         for (Neighbour& slot : neighbours[from]) {
-            if (slot.triangle != kNone) continue;
+            if (slot.triangle != kNoIndex) continue;
             slot = to;
             return;
         }
@@ -180,7 +180,7 @@ void turnQuarrellingTriangles(TriangleMesh& mesh, const std::vector<HalfEdge>& e
         std::size_t opponents = 0;
         for (std::size_t k = 0; k < patch.size(); ++k) {
             for (const Neighbour& next : neighbours[patch[k]]) {
-                if (next.triangle == kNone || against[next.triangle] >= 0) continue;
+                if (next.triangle == kNoIndex || against[next.triangle] >= 0) continue;
                 against[next.triangle] = static_cast<signed char>(against[patch[k]] ^ (next.quarrels ? 1 : 0));
                 opponents += against[next.triangle] == 1 ? 1 : 0;
                 patch.push_back(next.triangle);

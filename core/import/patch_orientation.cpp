@@ -16,7 +16,7 @@ constexpr std::size_t kLargePatches = 64;
 constexpr std::size_t kProbes = 24;  // triangles asked for a large patch, at most
 constexpr std::size_t kFewProbes = 3;
 constexpr double kAway = 0.2;     // of the root of a patch's area: how far before and behind it the others are asked
-constexpr double kBeside = 1e-4;  // the same, for what it says itself
+constexpr double kBesidePatch = 1e-4;  // the same, for what it says itself
 constexpr double kDoubt = 0.05;   // evidence below this may be an error of the winding number
 constexpr double kClear = 0.05;   // evidence above this decides the order
 constexpr double kInside = 0.5;
@@ -54,13 +54,13 @@ Patch describe(const TriangleMesh& mesh, const std::vector<std::uint32_t>& trian
             use(middles[k], Vec3(areas[k].normalized()), areas[k].norm());
     };
     ask([&](const Vec3& middle, const Vec3& normal, double area) {
-        const Vec3 beside = kBeside * length * normal;
+        const Vec3 beside = kBesidePatch * length * normal;
         patch.own += area * (patch.tree->windingNumber(middle - beside) + patch.tree->windingNumber(middle + beside));
         asked_area += area;
     });
     patch.own /= asked_area;
     // Round a solid of its own the others need not be asked far away, where a thin wall might end.
-    const double away = (std::abs(patch.own) > kBounds ? kBeside : kAway) * length;
+    const double away = (std::abs(patch.own) > kBounds ? kBesidePatch : kAway) * length;
     ask([&](const Vec3& middle, const Vec3& normal, double) {
         patch.behind.emplace_back(middle - away * normal);
         patch.before.emplace_back(middle + away * normal);

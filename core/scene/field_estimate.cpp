@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "core/field/distance_field.h"
+#include "core/scene/number_text.h"
 
 namespace passung::model {
 
@@ -16,12 +17,6 @@ constexpr double kBytesOfBrick =
 // Bricks that a plane along the axes meets, with a band of a quarter of a brick on both sides, and the coarser ones
 // that they refine: 1.5 (1 + 1/4 + 1/16 ...).
 constexpr double kBricksPerFace = 1.5 * 4.0 / 3.0;
-
-std::string number(const char* format, double value) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), format, value);
-    return text.data();
-}
 
 }  // namespace
 

@@ -18,7 +18,7 @@ namespace {
 constexpr std::array kSteps{3.0, 6.0, 10.0, 18.0, 30.0, 50.0, 80.0, 120.0, 180.0, 250.0, 315.0, 400.0, 500.0};
 constexpr std::array kFineSteps{3.0,   6.0,   10.0,  18.0,  30.0,  50.0,  65.0,  80.0,  100.0, 120.0, 140.0,
                                 160.0, 180.0, 200.0, 225.0, 250.0, 280.0, 315.0, 355.0, 400.0, 450.0, 500.0};
-constexpr double kLargest = kSteps.back();  // [mm]
+constexpr double kLargestSize = kSteps.back();  // [mm]
 
 using Row = std::array<double, kSteps.size()>;
 using FineRow = std::array<double, kFineSteps.size()>;
@@ -185,7 +185,7 @@ Result<LimitDeviations> limitDeviations(std::string_view tolerance_class, double
     const ToleranceClass& c = *parsed;
     // Steps end at whole millimetres: what the conversion of units rounds must not reach the next step.
     const double size = std::round(1e9 * nominal) * 1e-6;  // [mm]
-    if (!(size > 0.0 && size <= kLargest))
+    if (!(size > 0.0 && size <= kLargestSize))
         return Error{.message = "must be above 0 and at most 500 mm for an ISO 286 fit", .key = "nominal_diameter"};
     if (const auto error = missing(c, size)) return *error;
 

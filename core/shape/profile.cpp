@@ -12,7 +12,6 @@ using std::numbers::pi;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-double square(double x) { return x * x; }
 
 double squaredExcess(double ex, double ey) { return square(std::max(ex, 0.0)) + square(std::max(ey, 0.0)); }
 

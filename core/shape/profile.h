@@ -10,6 +10,8 @@
 
 namespace passung::model {
 
+inline double square(double x) { return x * x; }
+
 /// Squared distance of (x, y) to the segment from (ax, ay) to (bx, by).
 double squaredToSegment(double x, double y, double ax, double ay, double bx, double by);
 

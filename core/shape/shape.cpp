@@ -11,7 +11,7 @@ namespace passung::model {
 namespace {
 
 /// Nothing that a hand touches is larger; squares of such lengths stay far from overflow.
-constexpr double kLargest = 1000.0;  // [m]
+constexpr double kLongest = 1000.0;  // [m]
 
 template <class... Ts>
 struct Overloaded : Ts... {
@@ -26,10 +26,10 @@ public:
     explicit Check(const char* kind) : kind_(kind) {}
 
     void length(const char* key, double value) {
-        if (!(value > 0.0 && value <= kLargest)) add(key, value, "must be a length above 0 m, at most 1000 m");
+        if (!(value > 0.0 && value <= kLongest)) add(key, value, "must be a length above 0 m, at most 1000 m");
     }
     void chamfer(double value) {
-        if (!(value >= 0.0 && value <= kLargest)) add("chamfer", value, "must be a length, 0 m or more (0 = sharp)");
+        if (!(value >= 0.0 && value <= kLongest)) add("chamfer", value, "must be a length, 0 m or more (0 = sharp)");
     }
     /// True if it is, by more than rounding: of what is between the two something must be left.
     bool less(const char* key, double value, double limit, const std::string& requirement) {

@@ -8,8 +8,6 @@ namespace passung::model {
 
 namespace {
 
-double square(double x) { return x * x; }
-
 /// Signed distance to a box with half edges h about the origin, from the excesses q = |p| - h.
 template <class Excess>
 double fromExcess(const Excess& q) {

@@ -21,11 +21,6 @@ simulated::HandCoupling handFor(const simulated::DeviceParams& preset) {
     return hand;
 }
 
-Vec3 shortened(const Vec3& v, double longest) noexcept {
-    const double length = v.norm();
-    return length > longest ? Vec3((longest / length) * v) : v;
-}
-
 }  // namespace
 
 DeviceDescription mouseDescription(const simulated::DeviceParams& preset) {

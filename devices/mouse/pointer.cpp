@@ -4,14 +4,10 @@
 
 namespace passung::mouse {
 
-namespace {
-
-Vec3 shortened(const Vec3& v, double longest) {
+Vec3 shortened(const Vec3& v, double longest) noexcept {
     const double length = v.norm();
     return length > longest ? Vec3((longest / length) * v) : v;
 }
-
-}  // namespace
 
 void Pointer::place(const Pose& X_W) {
     const std::lock_guard lock(mutex_);

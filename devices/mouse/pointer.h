@@ -9,6 +9,9 @@
 
 namespace passung::mouse {
 
+/// The vector in its direction, at most `longest` long.
+Vec3 shortened(const Vec3& v, double longest) noexcept;
+
 /// Where somebody with mouse and keyboard wants the held part to be, and what keys act as the handle's buttons. Windows
 /// move it, a device follows it.
 class Pointer {

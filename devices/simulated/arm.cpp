@@ -9,7 +9,6 @@
 namespace passung::simulated {
 namespace {
 
-constexpr double kDt = kTickSeconds;
 constexpr double kPaceSpread = 0.1;      // of the natural logarithm of a trial's pace
 constexpr double kOffsetGain = 2.5;      // [1/s] against friction; × delay < 1/2 keeps it stable
 constexpr double kPressGain = 2.5;       // [1/s]
@@ -51,15 +50,15 @@ void Arm::startReach(const Pose& to, double duration) noexcept {
 }
 
 void Arm::removeOffset(const Percept& percept) noexcept {
-    offset_ = clamped(offset_ + kOffsetGain * kDt * (X_WRef_.p - percept.X_WFelt.p), kMostOffset);
+    offset_ = clamped(offset_ + kOffsetGain * kTickSeconds * (X_WRef_.p - percept.X_WFelt.p), kMostOffset);
     const Vec3 turn = rotationVector(X_WRef_.q * percept.X_WFelt.q.conjugate());
-    turn_offset_ = clamped(turn_offset_ + kOffsetGain * kDt * turn, kMostTurnOffset);
+    turn_offset_ = clamped(turn_offset_ + kOffsetGain * kTickSeconds * turn, kMostTurnOffset);
 }
 
 void Arm::pushAcross(const Percept& percept, const Vec3& axis, double patience) noexcept {
     Vec3 behind = X_WRef_.p - percept.X_WFelt.p;
     behind -= axis * axis.dot(behind);
-    if (behind.norm() > patience) offset_ = clamped(offset_ + kOffsetGain * kDt * behind, kMostOffset);
+    if (behind.norm() > patience) offset_ = clamped(offset_ + kOffsetGain * kTickSeconds * behind, kMostOffset);
 }
 
 double Arm::pressedHeight(double z, double force, double felt_z, double felt_force) const noexcept {
@@ -67,7 +66,7 @@ double Arm::pressedHeight(double z, double force, double felt_z, double felt_for
     const double speed = std::min(kPressGain * missing / params_.stiffness, params_.insert_speed);
     // Never lead by more than twice the force: a wall that vanishes must not be followed by a fall.
     const double lowest = felt_z - 2.0 * force / params_.stiffness;
-    return std::max(z - speed * kDt, std::min(lowest, z));
+    return std::max(z - speed * kTickSeconds, std::min(lowest, z));
 }
 
 bool Arm::touches(const Percept& percept) noexcept {
@@ -81,7 +80,7 @@ bool Arm::goesByCues(const Percept& percept) noexcept {
 }
 
 double Arm::cuedHeight(double z, const Percept& percept) const noexcept {
-    return z + kCueSpeed * (percept.cue - kWantedCue) * kDt;
+    return z + kCueSpeed * (percept.cue - kWantedCue) * kTickSeconds;
 }
 
 double Arm::pressure(const Percept& percept, double force, double felt_force) const noexcept {
@@ -97,7 +96,7 @@ HandCoupling Arm::act(const Pose& X_BD, const Wrench& F_D_B) noexcept {
         startReach(task_.X_WHeldStart, kStartDuration);
         begin();
     }
-    t_ = static_cast<double>(tick_ - phase_start_) * kDt;
+    t_ = static_cast<double>(tick_ - phase_start_) * kTickSeconds;
     choose(senses_.percept());
 
     HandCoupling coupling;
@@ -110,7 +109,7 @@ HandCoupling Arm::act(const Pose& X_BD, const Wrench& F_D_B) noexcept {
     coupling.rotational_damping = params_.rotational_damping;
     coupling.X_BSet = registration_.handleFromPart(
         {(rotationFromVector(turn_offset_) * X_WRef_.q).normalized(), X_WRef_.p + offset_});
-    coupling.F_D_B.force = tremor_.force(static_cast<double>(tick_) * kDt);
+    coupling.F_D_B.force = tremor_.force(static_cast<double>(tick_) * kTickSeconds);
     ++tick_;
     return coupling;
 }

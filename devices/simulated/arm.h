@@ -10,6 +10,8 @@
 
 namespace passung::simulated {
 
+inline constexpr double kPressDuration = 0.15;  // [s] that a button is down; proposed here
+
 /// What every hand has: senses, arm and tremor, an intended pose and the means to bring the held part there. Who
 /// derives from it decides in choose() what is intended.
 class Arm : public TaskHand {

@@ -9,14 +9,12 @@ namespace passung::simulated {
 namespace {
 
 // Habits; proposed here.
-constexpr double kDt = kTickSeconds;
 constexpr double kWave = 0.9;            // [Hz] of pressing
 constexpr double kStroke = 0.5;          // [Hz]
 constexpr double kStrokeWidth = 6e-3;    // [m] to either side
 constexpr double kStrokeForce = 0.7;     // of the force of pressing
 constexpr double kFeltForce = 0.5;       // [N] from which on a contact is judged
 constexpr double kThink = 0.4;           // [s] before the answer, beside the lapse
-constexpr double kPress = 0.15;          // [s] that the button is down
 constexpr double kReturnDuration = 0.9;  // [s] back to the start
 constexpr double kTurns = 2.0 * std::numbers::pi;
 
@@ -59,7 +57,7 @@ void CompareHand::choose(const Percept& percept) noexcept {
             enter(Phase::Answer);
             break;
         case Phase::Answer:
-            if (t_ >= kPress) buttons_ = 0;
+            if (t_ >= kPressDuration) buttons_ = 0;
             break;
     }
     const bool feels = phase_ == Phase::Down || phase_ == Phase::Feel;
@@ -67,7 +65,7 @@ void CompareHand::choose(const Percept& percept) noexcept {
 }
 
 void CompareHand::down(const Percept& percept) noexcept {
-    p_TP_.z() -= pace_ * params_.descend_speed * kDt;
+    p_TP_.z() -= pace_ * params_.descend_speed * kTickSeconds;
     X_WRef_.p = task_.X_WTarget * p_TP_;
     if (!touches(percept)) return;
     touch_ = task_.X_WTarget.inverse() * percept.X_WFelt.p;

@@ -8,7 +8,6 @@ namespace passung::simulated {
 namespace {
 
 // Habits; proposed here.
-constexpr double kDt = kTickSeconds;
 constexpr double kSettle = 0.45;  // [s]
 constexpr double kSpeed = 0.02;   // [m/s] along the line
 constexpr double kBeyond = 2e-3;  // [m] past the end, to be sure
@@ -76,13 +75,13 @@ void FollowHand::follow(const Percept& percept) noexcept {
     const Vec3 felt = X_WT.inverse() * percept.X_WFelt.p;
     const Vec3 force = X_WT.q.conjugate() * percept.F_felt.force;
     if (phase_ == Phase::Down) {
-        height_ -= pace_ * params_.descend_speed * kDt;
+        height_ -= pace_ * params_.descend_speed * kTickSeconds;
         if (touches(percept)) enter(Phase::Follow);
     } else {
         height_ = goesByCues(percept)
                       ? cuedHeight(height_, percept)
                       : pressedHeight(height_, goal_.force, felt.z(), pressure(percept, goal_.force, force.z()));
-        way_ = std::min(way_ + pace_ * kSpeed * kDt, length_ + kBeyond);
+        way_ = std::min(way_ + pace_ * kSpeed * kTickSeconds, length_ + kBeyond);
         if (way_ >= length_ + kBeyond) phase_ = Phase::Done;
     }
     Vec3 p = pointAt(way_);

@@ -16,8 +16,6 @@
 namespace passung::simulated {
 namespace {
 
-constexpr double kDt = kTickSeconds;
-
 // Thresholds of judgement; proposed here.
 constexpr double kSettleDuration = 0.45;  // [s]
 constexpr double kPuzzled = 0.8;          // [s] longer look after a try that failed
@@ -153,7 +151,7 @@ void Hand::settle(const Percept& percept) noexcept {
 }
 
 void Hand::descend(const Percept& percept) noexcept {
-    p_MP_.z() -= pace_ * params_.descend_speed * kDt;
+    p_MP_.z() -= pace_ * params_.descend_speed * kTickSeconds;
     placeReference(p_MP_, turn_);
     best_depth_ = -1.0;
     stalled_ = 0.0;
@@ -170,7 +168,7 @@ void Hand::press(const Percept& percept) noexcept {
         best_depth_ = depth;
         stalled_ = 0.0;
     } else {
-        stalled_ += kDt;
+        stalled_ += kTickSeconds;
     }
     if (depth > kClearlyInside) {
         enter(HandPhase::Insert);
@@ -198,13 +196,13 @@ void Hand::search(const Percept& percept) noexcept {
     const double r = a * spiral_angle_;
     pressWith(params_.press_force, percept);
     const double speed = (cued_ ? kCuedCare : 1.0) * params_.search_speed;
-    spiral_angle_ += kDt * pace_ * speed / std::hypot(r, a);
-    search_time_ += kDt;
+    spiral_angle_ += kTickSeconds * pace_ * speed / std::hypot(r, a);
+    search_time_ += kTickSeconds;
     // After an interruption the tip first comes back to the spiral, no faster than it searches.
     const Vec3 spiral = centre_ + Vec3(r * std::cos(spiral_angle_), r * std::sin(spiral_angle_), 0.0);
     Vec3 step = spiral - p_MP_;
     step.z() = 0.0;
-    const double most = 2.0 * speed * kDt;
+    const double most = 2.0 * speed * kTickSeconds;
     p_MP_ += step.norm() > most ? Vec3(step * (most / step.norm())) : step;
     const double tau = 2.0 * std::numbers::pi * search_time_;
     const Vec3 wobble = params_.search_tilt * Vec3(std::sin(1.3 * tau), std::sin(1.7 * tau), 0.0);
@@ -214,7 +212,7 @@ void Hand::search(const Percept& percept) noexcept {
     const double depth = seenDepth(percept);
     const bool held = search_time_ > kCaughtPause && (feltForce(percept).head<2>().norm() > kCaughtForce ||
                                                       (cued_ && percept.cue > 0.0 && seenCaught(percept)));
-    caught_ = held ? caught_ + kDt : 0.0;
+    caught_ = held ? caught_ + kTickSeconds : 0.0;
     const double widest = std::min(params_.first_search_radius * (attempt_ + 1), params_.last_search_radius);
     if (depth > baseline_ + kDrop || caught_ > kCaughtTime) {
         best_depth_ = depth;
@@ -248,12 +246,12 @@ void Hand::insert(const Percept& percept) noexcept {
     const Vec3 free = told && percept.sees ? seenPosition(percept) : felt;
     const Vec3 free_turn = told && percept.sees ? seenTurn(percept) : feltTurn(percept);
     const double lowest = felt.z() - params_.insert_force / params_.stiffness;
-    if (!seenHeld(percept)) p_MP_.z() = std::max(p_MP_.z() - speed * kDt, std::min(lowest, p_MP_.z()));
+    if (!seenHeld(percept)) p_MP_.z() = std::max(p_MP_.z() - speed * kTickSeconds, std::min(lowest, p_MP_.z()));
     // Giving way: the intention drifts to where the walls have put the part, which takes the side force away.
-    p_MP_.head<2>() += (kDt / kGiveWay) * (free - p_MP_).head<2>();
-    turn_ += (kDt / kGiveWay) * (free_turn - turn_);
-    offset_ -= (kDt / kGiveWay) * offset_;
-    turn_offset_ -= (kDt / kGiveWay) * turn_offset_;
+    p_MP_.head<2>() += (kTickSeconds / kGiveWay) * (free - p_MP_).head<2>();
+    turn_ += (kTickSeconds / kGiveWay) * (free_turn - turn_);
+    offset_ -= (kTickSeconds / kGiveWay) * offset_;
+    turn_offset_ -= (kTickSeconds / kGiveWay) * turn_offset_;
     placeReference(p_MP_, turn_);
 
     if (depth > best_depth_ + kProgress) {
@@ -261,7 +259,7 @@ void Hand::insert(const Percept& percept) noexcept {
         stalled_ = 0.0;
         stalls_ = 0;
     } else {
-        stalled_ += kDt;
+        stalled_ += kTickSeconds;
     }
     bottomed_ = stalled_ > kStallTime && depth > kBottomShare * task_.insertion_depth;
     if (remaining < 0.0 || bottomed_) {
@@ -277,8 +275,8 @@ void Hand::insert(const Percept& percept) noexcept {
 }
 
 void Hand::backOff(const Percept& percept) noexcept {
-    p_MP_.z() =
-        std::max(p_MP_.z(), std::min(p_MP_.z() + 20.0 * kBackOffLift * kDt, feltPosition(percept).z() + kBackOffLift));
+    p_MP_.z() = std::max(
+        p_MP_.z(), std::min(p_MP_.z() + 20.0 * kBackOffLift * kTickSeconds, feltPosition(percept).z() + kBackOffLift));
     placeReference(p_MP_ + wiggle_, turn_ + wiggle_turn_);
     if (t_ < kBackOffDuration) return;
     stalled_ = 0.0;

@@ -6,7 +6,6 @@ namespace {
 // Habits; proposed here.
 constexpr double kLook = 0.4;        // [s] beside the delay of seeing
 constexpr double kCorrection = 0.5;  // [s] for a corrective reach
-constexpr double kPress = 0.15;      // [s] that the button is down
 constexpr int kLooks = 3;
 
 }  // namespace
@@ -50,7 +49,7 @@ void PlaceHand::choose(const Percept& percept) noexcept {
             if (t_ >= params_.visual_delay + kLook / pace_ + (looks_ == 0 ? lapse_ : 0.0)) correct(percept);
             break;
         case Phase::Confirm:
-            if (t_ >= kPress) buttons_ = 0;
+            if (t_ >= kPressDuration) buttons_ = 0;
             break;
     }
 }

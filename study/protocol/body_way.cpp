@@ -19,7 +19,7 @@ constexpr int kMostCells = 48;           // along the longest side of the grid
 constexpr int kMostSteps = 6;            // of cells around one that are taken with it
 constexpr int kDepths = 32;              // of a passage
 constexpr int kPieces = 200;             // of a line, equally long
-constexpr double kRounding = 1e-9;       // of a sum of lengths
+constexpr double kSumRounding = 1e-9;       // of a sum of lengths
 
 /// Obstacles as one distance.
 class Obstacles {
@@ -255,7 +255,7 @@ private:
         const Line line = piecesOf(contour);
         const Without without = withoutRoom(line.places, contour.reach + line.half);
         const double share = static_cast<double>(without.count) / static_cast<double>(line.places.size());
-        if (!(share > 1.0 - contour.coverage + kRounding)) return;
+        if (!(share > 1.0 - contour.coverage + kSumRounding)) return;
         const Vec3 first = 1e3 * (target_->X_WP.inverse() * line.places[without.first]);
         fail("points", fmt::format("the held part's body has no room within reach_mm of {:.0f} % of the line, from "
                                    "{:.3g}, {:.3g}, {:.3g} mm of the target on; `coverage` asks for {:.0f} %",
@@ -293,7 +293,7 @@ private:
     void checkWay(const ContourFollowingTask& contour) {
         if (target_ == nullptr) return;
         const Line line = piecesOf(contour);
-        way("points", line.places, contour.reach + line.half, contour.coverage - kRounding);
+        way("points", line.places, contour.reach + line.half, contour.coverage - kSumRounding);
     }
 
     /// From the start the held part's origin comes within `slack` of a `share` of `goals`.

@@ -31,7 +31,7 @@ double rounded(double value) {
                                                 : 10.0);
 }
 
-std::string millimetres(double metres) { return fmt::format("{:.2g} mm", 1e3 * metres); }
+std::string roundMillimetres(double metres) { return fmt::format("{:.2g} mm", 1e3 * metres); }
 
 /// "a pin 1 mm thick"
 std::string described(const ThinFeature& feature) {
@@ -40,7 +40,7 @@ std::string described(const ThinFeature& feature) {
                                   ? ""
                                   : fmt::format(" at {:.3g}, {:.3g}, {:.3g} mm of its frame", at.x(), at.y(), at.z());
     const char* article = feature.kind == FeatureKind::Edge ? "an" : "a";
-    return fmt::format("{} {} {} thick{}", article, model::featureName(feature.kind), millimetres(feature.size), place);
+    return fmt::format("{} {} {} thick{}", article, model::featureName(feature.kind), roundMillimetres(feature.size), place);
 }
 
 double fieldRadius(const model::ContactSpec& contact) {
@@ -101,7 +101,7 @@ private:
         const model::ContactSpec& contact = scene_.contact;
         const auto& features = geometries_.thin(part, kCoverShare * contact.spacing, ThinIn::Points);
         if (features.empty()) return;
-        const std::string apart = fmt::format("the held part's points, {} apart", millimetres(contact.spacing));
+        const std::string apart = fmt::format("the held part's points, {} apart", roundMillimetres(contact.spacing));
         if (!contact.two_way) {
             report(features, "slips between " + apart, [&](double size) {
                 return fmt::format("two_way = true{}",
@@ -134,7 +134,7 @@ private:
         });
         const bool cells = contact.cell > 0.0;
         report(features,
-               cells ? fmt::format("is lost in the distance field's cells of {}", millimetres(contact.cell))
+               cells ? fmt::format("is lost in the distance field's cells of {}", roundMillimetres(contact.cell))
                      : fmt::format("is lost in the distance field's tolerance of {:.3g} um", 1e6 * contact.tolerance),
                [&](double size) {
                    return cells ? fmt::format("cell_mm of at most {}, or tolerance_um in its place",
@@ -143,7 +143,7 @@ private:
                });
     }
 
-    /// In millimetres, rounded down.
+    /// In roundMillimetres, rounded down.
     static std::string limit(double metres) { return fmt::format("{:.2g}", 0.95e3 * metres); }
 
     template <class Remedy>
@@ -158,7 +158,7 @@ private:
         } else if (!features.empty()) {
             unfelt_.push_back({part_,
                                fmt::format("relief of up to {} {}: it is not felt; {}",
-                                           millimetres(features.back().size), why, remedy(features.front().size)),
+                                           roundMillimetres(features.back().size), why, remedy(features.front().size)),
                                true});
         }
     }

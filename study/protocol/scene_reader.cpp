@@ -84,14 +84,14 @@ model::OutputLimits readLimits(const TableReader& read, const DeviceDescription*
 }
 
 /// A stiffness as a number, and as a fraction of the device's stable `maximum` (0: not known).
-struct Stiffness {
+struct ResolvedStiffness {
     double value = 0.0;
     double fraction = 1.0;
 };
 
 /// `otherwise`: the stiffness on a device that is named but not known.
 /// `scaled`: said of the maximum, may be empty.
-Stiffness resolveStiffness(const TableReader& read, const char* key, double maximum, const DeviceDescription* device,
+ResolvedStiffness resolveStiffness(const TableReader& read, const char* key, double maximum, const DeviceDescription* device,
                            bool device_named, double otherwise, const std::string& scaled) {
     const Node* node = read.node(key);
     if (device_named && device == nullptr) return {otherwise, 1.0};

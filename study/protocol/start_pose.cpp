@@ -11,8 +11,8 @@ namespace passung::protocol {
 namespace {
 
 constexpr double kStepsPerSize = 24.0;        // points are this part of the longest side apart
-constexpr double kChordPerSize = 0.005;       // of the triangles that carry the points
-constexpr double kOnSurface = 1e-9;           // [m]: what rounding leaves of a point on the surface
+constexpr double kChordOfPoints = 0.005;       // of the triangles that carry the points
+constexpr double kSurfaceRounding = 1e-9;           // [m]: what rounding leaves of a point on the surface
 constexpr std::size_t kManyTriangles = 4000;  // of a mesh: then its corners stand for it
 constexpr std::size_t kMostCorners = 6000;
 
@@ -29,7 +29,7 @@ const model::Shape* shapeOf(const model::PartSpec& part) { return std::get_if<mo
 model::TriangleMesh surfaceOf(const model::PartSpec& part, PartGeometries& geometries) {
     if (const auto* shape = shapeOf(part)) {
         const model::TriangleMesh fine = model::tessellate(*shape, 1e-3);  // for its size only
-        return model::tessellate(*shape, kChordPerSize * model::boundsOf(fine).size().maxCoeff());
+        return model::tessellate(*shape, kChordOfPoints * model::boundsOf(fine).size().maxCoeff());
     }
     const PartGeometry* geometry = geometries.of(part);
     return geometry != nullptr ? *geometry->mesh : model::TriangleMesh{};
@@ -52,7 +52,7 @@ void visitPoints(const Placed& part, const Visit& visit) {
         for (int i = 0; i <= n; ++i) {
             for (int k = 0; k <= n - i; ++k) {
                 const Vec3 p = a + (ab * i + ac * k) / n;
-                if (shape == nullptr || model::signedDistance(*shape, p) <= kOnSurface) visit(p);
+                if (shape == nullptr || model::signedDistance(*shape, p) <= kSurfaceRounding) visit(p);
             }
         }
     }

@@ -10,7 +10,7 @@
 namespace passung::store {
 namespace {
 
-std::string rankOf(const std::string& alias) {
+std::string statusRank(const std::string& alias) {
     return "CASE " + alias +
            ".status WHEN 'enrolled' THEN 0 WHEN 'active' THEN 1 WHEN 'complete' THEN 2 WHEN 'withdrawn' THEN 3 "
            "ELSE 4 END";
@@ -25,7 +25,7 @@ void mergePeople(const Database& database) {
     database.execute(
         "UPDATE main.participant AS m SET status=s.status, status_reason=s.status_reason "
         "FROM source.participant AS s WHERE s.participant_id=m.participant_id AND s." +
-        kKept + " AND " + rankOf("s") + ">" + rankOf("m"));
+        kKept + " AND " + statusRank("s") + ">" + statusRank("m"));
     database.execute(
         "INSERT INTO main.consent(participant_id, text_sha256, language, clause, decision, decided_utc) "
         "SELECT participant_id, text_sha256, language, clause, decision, decided_utc FROM source.consent s "

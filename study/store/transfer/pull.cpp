@@ -8,6 +8,7 @@
 
 #include "study/store/schema/revisions.h"
 #include "study/store/schema/row_hash.h"
+#include "study/store/transfer/postgres_message.h"
 
 namespace passung::store {
 namespace {
@@ -111,9 +112,6 @@ private:
     std::map<int, std::string> texts_;
 };
 
-/// PostgreSQL's messages have several lines; the first says what is wrong.
-std::string firstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
-
 }  // namespace
 
 void pullSessions(const std::string& from, const std::string& like, const std::string& to, const std::string& now_utc) {
@@ -136,7 +134,7 @@ void pullSessions(const std::string& from, const std::string& like, const std::s
         while (sessions.step()) pull.session(sessions.text(0));
         transaction.commit();
     } catch (const pqxx::failure& error) {
-        throw std::runtime_error("PostgreSQL: " + firstLine(error.what()));
+        throw std::runtime_error(postgresMessage(error));
     }
 }
 

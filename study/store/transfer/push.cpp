@@ -18,6 +18,7 @@
 #include "study/store/schema/person_identity.h"
 #include "study/store/schema/row_hash.h"
 #include "study/store/schema/session_tables.h"
+#include "study/store/transfer/postgres_message.h"
 #include "study/store/transfer/push_copies.h"
 #include "study/store/transfer/same_study.h"
 
@@ -327,9 +328,6 @@ private:
     std::set<std::string> decided_there_;  // codes that were excluded, withdrew or were readmitted in a newer copy
 };
 
-/// PostgreSQL's messages have several lines; the first says what is wrong.
-std::string firstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
-
 }  // namespace
 
 Result<PushReport> pushDatabase(const std::string& path, const std::string& to) {
@@ -340,7 +338,7 @@ Result<PushReport> pushDatabase(const std::string& path, const std::string& to) 
         try {
             return Push(**opened, to).run();
         } catch (const pqxx::failure& error) {
-            throw std::runtime_error("PostgreSQL: " + firstLine(error.what()));
+            throw std::runtime_error(postgresMessage(error));
         }
     });
 }

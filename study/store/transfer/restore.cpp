@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kSource = "source";
+constexpr const char* kFrom = "source";
 constexpr const char* kOfTheFile = "the file: ";  // how verify begins such a line
 
 bool isServer(const std::string& from) { return from.starts_with("postgresql://") || from.starts_with("postgres://"); }
@@ -95,14 +95,14 @@ void bringBackSessions(const Database& database, std::vector<std::string>& heale
 /// A detail that is no JSON any more is no reason to heal nothing else.
 void healAuditIfRead(const Database& database, std::vector<std::string>& healed) {
     try {
-        for (std::string& line : healAudit(database, kSource)) healed.push_back(std::move(line));
+        for (std::string& line : healAudit(database, kFrom)) healed.push_back(std::move(line));
     } catch (const SqliteError& error) {
         if (isOfTheDisk(error)) throw;
     }
 }
 
 void heal(const Database& database, const std::string& source, std::vector<std::string>& healed) {
-    database.prepare(std::string("ATTACH ? AS ") + kSource).bind(source).run();
+    database.prepare(std::string("ATTACH ? AS ") + kFrom).bind(source).run();
     {
         Transaction transaction(database);
         database.execute("PRAGMA defer_foreign_keys=ON");
@@ -110,9 +110,9 @@ void heal(const Database& database, const std::string& source, std::vector<std::
         const auto add = [&](std::vector<std::string> lines) {
             for (std::string& line : lines) healed.push_back(std::move(line));
         };
-        add(healReferences(database, kSource));
+        add(healReferences(database, kFrom));
         add(healHashNames(database));
-        Healer healer(database, kSource);
+        Healer healer(database, kFrom);
         add(healer.healRows());
         healAuditIfRead(database, healed);
         bringBackSessions(database, healed);
@@ -124,7 +124,7 @@ void heal(const Database& database, const std::string& source, std::vector<std::
         rebuildIndices(database);
         transaction.commit();
     }
-    database.execute(std::string("DETACH ") + kSource);
+    database.execute(std::string("DETACH ") + kFrom);
 }
 
 /// Whoever was erased from the damaged file, as far as it can still tell, is erased from its source.
