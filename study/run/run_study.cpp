@@ -12,7 +12,6 @@
 #include "study/measures/measures.h"
 #include "study/person/simulated_person.h"
 #include "study/plan/language.h"
-#include "study/protocol/planned_questionnaires.h"
 #include "study/run/command_socket.h"
 #include "study/run/files/builds.h"
 #include "study/run/files/known_names.h"
@@ -62,9 +61,13 @@ public:
 /// One participant: enrolled, given a slot, and through all trials.
 class StudyRun {
 public:
-    StudyRun(const protocol::StudyPlan& plan, const RunOptions& options, const RunListener& listener,
-             store::Store& store, std::string protocol_sha256)
-        : plan_(plan), options_(options), listener_(listener), store_(store), sha256_(std::move(protocol_sha256)) {}
+    StudyRun(protocol::FrozenPlan plan, const RunOptions& options, const RunListener& listener, store::Store& store,
+             std::string protocol_sha256)
+        : plan_(std::move(plan)),
+          options_(options),
+          listener_(listener),
+          store_(store),
+          sha256_(std::move(protocol_sha256)) {}
 
     /// All sessions that are left to do; of a participant named by code the next one.
     Result<RunEnd> participant(int number) {
@@ -83,7 +86,7 @@ public:
             return enrolled.errors();
         }
         if (options_.ask_consent) {
-            const auto asked = askForConsent(store_, options_.database, plan_, code, options_.language, clock.at(0),
+            const auto asked = askForConsent(store_, options_.database, *plan_, code, options_.language, clock.at(0),
                                              options_.ask_consent);
             if (!asked) return asked.errors();
         }
@@ -91,7 +94,7 @@ public:
         if (!slot) return slot.errors();
         auto part = store_.nextPart(sha256_, code);
         if (!part) return part.errors();
-        const int last = options_.participant.empty() ? protocol::sessionsOf(plan_) : *part;
+        const int last = options_.participant.empty() ? protocol::sessionsOf(*plan_) : *part;
         if (listener_.session) listener_.session(code, number, options_.simulated);
         for (int p = *part; p <= last; ++p)
             if (auto end = session(code, {static_cast<std::size_t>(slot->number), slot->group}, p);
@@ -102,7 +105,7 @@ public:
 
     Result<RunEnd> resume(const store::Unfinished& session) {
         if (session.age_s)
-            if (const auto old = session::tooOld(plan_.resume, *session.age_s))
+            if (const auto old = session::tooOld(plan_->resume, *session.age_s))
                 return Error{.message = fmt::format("{}, session {}: {}", session.participant, session.ordinal, *old),
                              .file = options_.database};
         // The place that the interruption freed may have another owner by now: one with the same order will do.
@@ -110,7 +113,7 @@ public:
         if (!part) return part.errors();
         const auto fits = [&](const store::Slot& slot) {
             const session::DesignPlace place{static_cast<std::size_t>(slot.number), slot.group};
-            const auto trials = session::planTrials(plan_, place, session.participant, *part);
+            const auto trials = session::planTrials(*plan_, place, session.participant, *part);
             return trials && *trials == session.trials;
         };
         if (const auto slot = store_.assignSlot(sha256_, session.participant, fits); !slot) return slot.errors();
@@ -122,8 +125,8 @@ public:
         auto writer = store_.resumeSession(start, session.used_ns);
         if (!writer) return writer.errors();
 
-        auto resumed =
-            session::resumption(plan_, session.trials, session.attempts, session.crashed, session.forms, session.steps);
+        auto resumed = session::resumption(*plan_, session.trials, session.attempts, session.crashed, session.forms,
+                                           session.steps);
         resumed.start_ns = session.used_ns;
         resumed.quality = session.quality;
         (*writer)->appendEvent(
@@ -131,7 +134,7 @@ public:
         resumed.change.reason = "done again after an interruption";
         if (listener_.resumed) listener_.resumed(resumed);
         if (const auto done = (*writer)->reorder(resumed.change); !done) return done.errors();
-        return perform({plan_, session.trials, session.participant, plan_.seed, measured(), session.ordinal,
+        return perform({plan_, session.trials, session.participant, plan_->seed, measured(), session.ordinal,
                         options_.wait, std::move(resumed)},
                        apparatus, **writer);
     }
@@ -149,8 +152,8 @@ private:
     }
 
     LoopApparatus apparatusOf(const std::string& code) const {
-        const simulated::DeviceParams* device = simulated::findPreset(plan_.conditions.front().device);
-        return LoopApparatus(*device, person::personOf(plan_.name, code, plan_.seed), options_.clock,
+        const simulated::DeviceParams* device = simulated::findPreset(plan_->conditions.front().device);
+        return LoopApparatus(*device, person::personOf(plan_->name, code, plan_->seed), options_.clock,
                              options_.performer, options_.import_limits);
     }
 
@@ -164,7 +167,7 @@ private:
         start.station = options_.station.name;
         start.experimenter = options_.experimenter;
         start.language = options_.language;
-        start.seed = plan_.seed;
+        start.seed = plan_->seed;
         start.clock = clock;
         start.device = apparatus.device();
         if (measured()) start.host = hostText();
@@ -178,17 +181,17 @@ private:
         if (!ordinal) return ordinal.errors();
         LoopApparatus apparatus = apparatusOf(code);
         const auto start =
-            startOf(store::sessionId(plan_.name, code, *ordinal, plan_.seed), code, *ordinal, clockNow(), apparatus);
-        const auto trials = session::planTrials(plan_, place, code, part);
+            startOf(store::sessionId(plan_->name, code, *ordinal, plan_->seed), code, *ordinal, clockNow(), apparatus);
+        const auto trials = session::planTrials(*plan_, place, code, part);
         if (!trials) return trials.errors();
         auto writer = store_.createSession(start, *trials);
         if (!writer) return writer.errors();
-        return perform({plan_, *trials, code, plan_.seed, measured(), *ordinal, options_.wait}, apparatus, **writer);
+        return perform({plan_, *trials, code, plan_->seed, measured(), *ordinal, options_.wait}, apparatus, **writer);
     }
 
     Result<RunEnd> perform(session::SessionSetup setup, LoopApparatus& apparatus, session::TrialSink& sink) {
         const std::string code = setup.participant;
-        SimulatedAnswers simulated(plan_, code);
+        SimulatedAnswers simulated(*plan_, code);
         setup.answers = options_.answers != nullptr ? options_.answers : &simulated;
         // In virtual time nobody can say when a trial begins and ends.
         const bool simulates =
@@ -206,7 +209,7 @@ private:
                 const auto when = calibratedAt(device);
                 return when ? store::UtcClock::wall(*when).at(0) : std::string();
             };
-        SimulatedTimer timer(person::personOf(plan_.name, code, plan_.seed));
+        SimulatedTimer timer(person::personOf(plan_->name, code, plan_->seed));
         if (simulates) setup.timer = &timer;  // else somebody is there to say it
         if (options_.log != nullptr) options_.log->tell(sessionText(setup, apparatus.device()));
         if (options_.performer != nullptr) options_.performer->begins(apparatus, setup);
@@ -241,7 +244,7 @@ private:
             if (waits && told != state && listener_.waits) {
                 const session::SessionView view = session.view();
                 const std::string& device = view.awaited_device;
-                listener_.waits(view, device.empty() ? "" : calibrationAdvice(device, plan_.stable_stiffness, began));
+                listener_.waits(view, device.empty() ? "" : calibrationAdvice(device, plan_->stable_stiffness, began));
             }
             told = state;
             if (commands)
@@ -256,7 +259,7 @@ private:
         }
     }
 
-    const protocol::StudyPlan& plan_;
+    protocol::FrozenPlan plan_;
     const RunOptions& options_;
     const RunListener& listener_;
     store::Store& store_;
@@ -281,18 +284,23 @@ store::Store::Opened openForRun(const RunOptions& options, const RunListener& li
     return opened;
 }
 
-/// The session's questionnaires as the protocol was imported with them, whatever became of their files.
-Result<Done> loadStoredQuestionnaires(const store::StoreReader& reader, const store::Unfinished& session,
-                                      protocol::StudyPlan& plan) {
-    const auto texts = reader.questionnaireTexts(session.protocol_sha256);
+/// What is kept for the session, its questionnaires as the protocol was imported with them, whatever became of their
+/// files.
+Result<Kept> keptFor(const store::Unfinished& session, const StoredPlans& plans, const store::StoreReader& reader,
+                     const protocol::StudyPlan& draft) {
+    auto kept = plans.kept(session.protocol_sha256);
+    if (!kept) return kept;
+    auto texts = reader.questionnaireTexts(session.protocol_sha256);
     if (!texts) return texts.errors();
-    const auto folder = std::filesystem::path(plan.source_path).parent_path();
-    const auto read = [&](const std::string& path) -> Result<std::string> {
-        for (const auto& [file, text] : *texts)
+    const auto folder = std::filesystem::path(draft.source_path).parent_path();
+    kept->questionnaires = [folder, texts = *std::move(texts)](const std::string& path) -> Result<std::string> {
+        for (const auto& [file, text] : texts)
             if ((folder / file).string() == path) return text;
         return Error{.message = "is not stored with the protocol"};
     };
-    return protocol::loadQuestionnaires(plan, read, session.language);
+    kept->language = session.language;
+    kept->seed = session.seed;
+    return kept;
 }
 
 void backUp(store::Store& store, const RunOptions& options, const RunListener& listener) {
@@ -339,36 +347,36 @@ Error otherStation(const store::Unfinished& session, const RunOptions& options) 
                  .file = options.database};
 }
 
-Result<RunEnd> runSessions(const protocol::StudyPlan& plan, RunOptions options, const RunListener& listener) {
-    if (Errors why = whyNotPeople(plan, options.participant, options.performer); !why.empty()) return why;
-    if (Errors unstable = beyondBorder(plan, knownDevices()); !unstable.empty()) return unstable;
-    const auto language = protocol::chooseLanguage(plan, options.language);
+Result<RunEnd> runSessions(const protocol::StudyPlan& draft, RunOptions options, const RunListener& listener) {
+    if (Errors why = whyNotPeople(draft, options.participant, options.performer); !why.empty()) return why;
+    if (Errors unstable = beyondBorder(draft, knownDevices()); !unstable.empty()) return unstable;
+    const auto language = protocol::chooseLanguage(draft, options.language);
     if (!language) return language.errors();
     options.language = *language;
     // A calibration that fails must leave nothing behind: neither a new database nor the protocol in an old one.
     std::vector<store::AccuracyRow> measured;
     const auto measure = [&]() -> Result<Done> {
         const auto builds = openBuilds(options.import_limits);
-        auto rows = measureAccuracy(plan, sha256Hex(plan.source_text), listener.calibrating, builds.get());
+        auto rows = measureAccuracy(draft, sha256Hex(draft.source_text), listener.calibrating, builds.get());
         if (!rows) return rows.errors();
         measured = std::move(*rows);
         return Done{};
     };
-    const bool calibrates = asksForAccuracy(plan);
+    const bool calibrates = asksForAccuracy(draft);
     std::error_code none;
     if (calibrates && !std::filesystem::exists(options.database, none))
         if (const auto done = measure(); !done) return done.errors();
     auto opened = openForRun(options, listener);
     if (!opened.store) return opened.errors;
     if (calibrates && measured.empty()) {
-        const auto known = opened.store->checkProtocol(plan);
+        const auto known = opened.store->checkProtocol(draft);
         if (!known) return known.errors();
         const auto there = opened.store->accuracy(*known);
         if (!there) return there.errors();
         if (there->empty())
             if (const auto done = measure(); !done) return done.errors();
     }
-    auto sha256 = opened.store->importProtocol(plan);
+    auto sha256 = opened.store->importProtocol(draft);
     if (!sha256) return sha256.errors();
     if (!measured.empty()) {
         if (const auto done = opened.store->keepAccuracy(measured); !done) return done.errors();
@@ -378,22 +386,19 @@ Result<RunEnd> runSessions(const protocol::StudyPlan& plan, RunOptions options, 
     if (!kept) return kept.errors();
     if (options.clock == Clock::RealTime && listener.warned && !kept->empty()) {
         const auto builds = openBuilds(options.import_limits);
-        const auto slow = tooSlowHere(plan, *kept, builds.get());
+        const auto slow = tooSlowHere(draft, *kept, builds.get());
         if (!slow) return slow.errors();
         for (const std::string& what : *slow) listener.warned(what);
     }
     const auto stable = opened.store->stableStiffness(*sha256);
     if (!stable) return stable.errors();
-    const auto kept_plan = withKeptStiffness(plan, *stable, options.import_limits);
-    if (!kept_plan) return kept_plan.errors();
+    const auto plan = freeze(draft, {*sha256, *stable, *kept, {}, readFile, options.language}, options.import_limits);
+    if (!plan) return plan.errors();
     if (listener.warned)
-        for (const std::string& difference : stiffnessDifferences(plan, *kept_plan)) listener.warned(difference);
-    if (Errors unstable = beyondBorder(*kept_plan, knownDevices()); !unstable.empty()) return unstable;
-    auto picked = withKeptAccuracy(*kept_plan, *sha256, *opened.store, options.import_limits);
-    if (!picked) return picked.errors();
-    if (const auto done = protocol::loadQuestionnaires(*picked, readFile, options.language); !done)
-        return done.errors();
-    StudyRun run(*picked, options, listener, *opened.store, *sha256);
+        for (const std::string& difference : stiffnessDifferences(draft.stable_stiffness, (*plan)->stable_stiffness))
+            listener.warned(difference);
+    if (Errors unstable = beyondBorder(**plan, knownDevices()); !unstable.empty()) return unstable;
+    StudyRun run(*plan, options, listener, *opened.store, *sha256);
     Result<RunEnd> end = RunEnd::Complete;
     for (int i = 0; i < options.simulated && end && *end == RunEnd::Complete; ++i) end = run.participant(i + 1);
     backUp(*opened.store, options, listener);
@@ -409,16 +414,17 @@ Result<RunEnd> resumeSession(const ResumeOptions& resume, RunOptions options, co
     const auto reader = store::StoreReader::open(options.database);
     if (!reader) return reader.errors();
     StoredPlans plans(*reader, resume.meshes, options.import_limits);
-    const auto stored = plans.plan(session->protocol_sha256);
-    if (!stored) return stored.errors();
-    protocol::StudyPlan plan = **stored;
-    if (const auto done = loadStoredQuestionnaires(*reader, *session, plan); !done) return done.errors();
-    if (Errors why = whyNotPeople(plan, session->participant, options.performer); !why.empty()) return why;
-    if (Errors unstable = beyondBorder(plan, knownDevices()); !unstable.empty()) return unstable;
-    plan.seed = session->seed;
+    const auto draft = plans.draft(session->protocol_sha256);
+    if (!draft) return draft.errors();
+    const auto kept = keptFor(*session, plans, *reader, *draft);
+    if (!kept) return kept.errors();
+    const auto plan = freeze(*draft, *kept, options.import_limits);
+    if (!plan) return plan.errors();
+    if (Errors why = whyNotPeople(**plan, session->participant, options.performer); !why.empty()) return why;
+    if (Errors unstable = beyondBorder(**plan, knownDevices()); !unstable.empty()) return unstable;
     options.clock = session->virtual_time ? Clock::Virtual : Clock::RealTime;
     options.language = session->language;
-    StudyRun run(plan, options, listener, *opened.store, session->protocol_sha256);
+    StudyRun run(*plan, options, listener, *opened.store, session->protocol_sha256);
     const auto end = run.resume(*session);
     backUp(*opened.store, options, listener);
     return end;
@@ -432,9 +438,9 @@ void logStart(const RunOptions& options, const std::string& what) {
 
 }  // namespace
 
-Result<RunEnd> runStudy(const protocol::StudyPlan& plan, RunOptions options, const RunListener& listener) {
-    logStart(options, "run of protocol " + sha256Hex(plan.source_text));
-    return logged(options.log, listener, [&](const RunListener& with) { return runSessions(plan, options, with); });
+Result<RunEnd> runStudy(const protocol::StudyPlan& draft, RunOptions options, const RunListener& listener) {
+    logStart(options, "run of protocol " + sha256Hex(draft.source_text));
+    return logged(options.log, listener, [&](const RunListener& with) { return runSessions(draft, options, with); });
 }
 
 Result<RunEnd> resumeStudy(const ResumeOptions& resume, RunOptions options, const RunListener& listener) {

@@ -55,15 +55,15 @@ struct RunListener {
 };
 
 /// While a session runs, an experimenter may command it through CommandSocket.
-/// Performs the study with simulated participants on the simulated device, each a session of all planned trials, into
-/// the database; a participant whose code is that of a person is refused, for want of a device, unless the performer
-/// brings one for a participant of that kind. Questionnaires may be
-/// answered by somebody all the same: that is a rehearsal, and its data is marked simulated. Whatever was finished
-/// before an error stays in it. An interruption stores the running trial as aborted and closes the session as aborted,
-/// both with the reason "interrupted". What contact.accuracy = "auto" asks for is picked when the protocol first runs
-/// in this database, and kept there; before later runs in real time a machine that is too slow for it is warned of.
-/// Errors before anything is stored: a language that is none of protocol::languagesOf(plan).
-Result<RunEnd> runStudy(const protocol::StudyPlan& plan, RunOptions options, const RunListener& listener);
+/// Performs the study, as freeze() makes it of its draft, with simulated participants on the simulated device, each a
+/// session of all planned trials, into the database; a participant whose code is that of a person is refused, for want
+/// of a device, unless the performer brings one for a participant of that kind. Questionnaires may be answered by
+/// somebody all the same: that is a rehearsal, and its data is marked simulated. Whatever was finished before an error
+/// stays in it. An interruption stores the running trial as aborted and closes the session as aborted, both with the
+/// reason "interrupted". What contact.accuracy = "auto" asks for is picked when the protocol first runs in this
+/// database, and kept there; before later runs in real time a machine that is too slow for it is warned of. Errors
+/// before anything is stored: a language that is none of protocol::languagesOf(plan).
+Result<RunEnd> runStudy(const protocol::StudyPlan& draft, RunOptions options, const RunListener& listener);
 
 struct ResumeOptions {
     std::string session;  // id; empty: the newest one that did not complete

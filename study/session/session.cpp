@@ -36,7 +36,7 @@ std::string pictureFault(const Presentation& given, const protocol::View& view, 
 
 std::uint64_t attemptSeed(const SessionSetup& setup, const design::PlannedTrial& trial, int attempt_no) {
     const std::string purpose = fmt::format("simulated|{}|{}|{}", setup.ordinal, trial.trial_index, attempt_no);
-    return streamSeed(setup.plan.name, protocol::rehearsedCode(setup.participant), trial.phase, purpose, setup.seed);
+    return streamSeed(setup.plan->name, protocol::rehearsedCode(setup.participant), trial.phase, purpose, setup.seed);
 }
 
 Session::Session(SessionSetup setup, Apparatus& apparatus, TrialSink& sink, SessionListener listener)
@@ -44,13 +44,13 @@ Session::Session(SessionSetup setup, Apparatus& apparatus, TrialSink& sink, Sess
       apparatus_(apparatus),
       sink_(sink),
       listener_(std::move(listener)),
-      desk_(setup_.plan,
+      desk_(*setup_.plan,
             {protocol::rehearsedCode(setup_.participant), setup_.seed, setup_.ordinal, setup_.timing_measured},
             setup_.answers, sink),
-      instructions_(setup_.plan, setup_.language, setup_.timing_measured, setup_.reader, sink),
+      instructions_(*setup_.plan, setup_.language, setup_.timing_measured, setup_.reader, sink),
       state_(setup_.waits ? SessionState::Ready : SessionState::BetweenTrials),
       agenda_(setup_.resumed ? setup_.resumed->agenda : Agenda(setup_.trials)),
-      staircases_(setup_.plan, protocol::rehearsedCode(setup_.participant), setup_.seed, setup_.ordinal),
+      staircases_(*setup_.plan, protocol::rehearsedCode(setup_.participant), setup_.seed, setup_.ordinal),
       past_(setup_.resumed ? setup_.resumed->past : std::vector<Past>(setup_.trials.size())),
       last_(setup_.resumed ? setup_.resumed->last : std::nullopt),
       session_ns_(setup_.resumed ? setup_.resumed->start_ns : 0) {
@@ -112,13 +112,13 @@ std::optional<StaircaseStep> Session::nextStep() const {
 /// What the next trial presents.
 const protocol::Condition& Session::conditionOf(const std::optional<StaircaseStep>& step) const {
     const std::size_t shown = step ? step->condition : trial().condition;
-    PASSUNG_ASSERT(shown < setup_.plan.conditions.size());
-    return setup_.plan.conditions[shown];
+    PASSUNG_ASSERT(shown < setup_.plan->conditions.size());
+    return setup_.plan->conditions[shown];
 }
 
 /// Trials of a staircase whose tracks are all finished.
 void Session::leaveOutNeedless() {
-    if (setup_.plan.staircases.empty()) return;
+    if (setup_.plan->staircases.empty()) return;
     agenda_.leaveOut([&](const design::PlannedTrial& planned) { return !staircases_.needs(planned); });
 }
 
@@ -134,7 +134,7 @@ void Session::beginTrial() {
     start.start_ns = session_ns_;
     start.params_json = condition.params_json;
     start.seed = attemptSeed(setup_, trial(), start.attempt_no);
-    if (setup_.shown && !std::exchange(view_noted_, true)) note("view_shown", protocol::viewJson(setup_.plan.view));
+    if (setup_.shown && !std::exchange(view_noted_, true)) note("view_shown", protocol::viewJson(setup_.plan->view));
     state_ = SessionState::Preparing;
     if (listener_.prepares) listener_.prepares(view());
     auto stages = apparatus_.prepare(condition, start.seed, start.trial_index);
@@ -254,7 +254,7 @@ void Session::takeEnd(const Attempt& attempt, const AttemptEnd& end) {
 }
 
 const protocol::Block& Session::blockOf(std::size_t place) const {
-    return setup_.plan.blocks.at(static_cast<std::size_t>(agenda_.trial(place).block_index));
+    return setup_.plan->blocks.at(static_cast<std::size_t>(agenda_.trial(place).block_index));
 }
 
 bool Session::isWhole() const {
@@ -284,7 +284,7 @@ AttemptEnd Session::describeEnd(LoopHealth health) const {
     else if (course.rejectedTicks() > 0)
         end.invalid_reason = fmt::format("no usable device input in {} ticks", course.rejectedTicks());
     else if (static_cast<double>(course.missedCycles()) >
-             setup_.plan.max_missed_share * static_cast<double>(course.length()))
+             setup_.plan->max_missed_share * static_cast<double>(course.length()))
         end.invalid_reason = fmt::format("loop: {} of {} cycles missed", course.missedCycles(), course.length());
     // Nobody looks at the pictures of a simulated participant, and where the program does not time a trial nothing
     // moves.
@@ -293,7 +293,7 @@ AttemptEnd Session::describeEnd(LoopHealth health) const {
                       attempt_->condition.timed_by == protocol::TimedBy::Program;
     if (end.invalid_reason.empty() && seen)
         end.invalid_reason =
-            pictureFault(*health.presentation, setup_.plan.view, static_cast<double>(course.length()) * kTickSeconds);
+            pictureFault(*health.presentation, setup_.plan->view, static_cast<double>(course.length()) * kTickSeconds);
     if (end.invalid_reason.empty()) end.invalid_reason = attempt_->invalidated;
     end.valid = end.invalid_reason.empty();
     end.health = std::move(health);

@@ -11,7 +11,7 @@ namespace passung::session {
 
 /// True while a questionnaire is open, or after it failed.
 bool Session::asksQuestionnaire() {
-    if (setup_.plan.questionnaires.empty()) return false;
+    if (setup_.plan->questionnaires.empty()) return false;
     const auto open = desk_.ask(agenda_.remaining(), session_ns_);
     if (!open) fail("questionnaire", open.errors());
     return !open || *open;
@@ -22,8 +22,8 @@ bool Session::rest() {
     if (rested_for_ != agenda_.next()) {
         rested_for_ = agenda_.next();
         const auto block = static_cast<std::size_t>(trial().block_index);
-        const bool first = trial().trial_in_block == 0 && block < setup_.plan.blocks.size();
-        rest_left_ = first ? std::llround(setup_.plan.blocks[block].rest / kTickSeconds) : 0;
+        const bool first = trial().trial_in_block == 0 && block < setup_.plan->blocks.size();
+        rest_left_ = first ? std::llround(setup_.plan->blocks[block].rest / kTickSeconds) : 0;
         resting_ = rest_left_ > 0;
         rest_told_ = false;
         if (resting_) note("rest_started", "block", trial().block);
@@ -59,7 +59,7 @@ bool Session::isResting(const protocol::Block& block) {
 JsonObject Session::stableStiffnessOf(const char* key, const std::string& device) const {
     JsonObject payload;
     payload.text(key, device);
-    for (const protocol::StableStiffness& stable : setup_.plan.stable_stiffness)
+    for (const protocol::StableStiffness& stable : setup_.plan->stable_stiffness)
         if (stable.device == device)
             payload.number("stable_stiffness_N_per_m", stable.linear)
                 .number("stable_rotational_stiffness_Nm_per_rad", stable.rotational)

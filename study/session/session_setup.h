@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "study/design/trial_order.h"
-#include "study/plan/study_plan.h"
+#include "study/plan/frozen_plan.h"
 #include "study/session/instruction_reader.h"
 #include "study/session/questionnaire_source.h"
 #include "study/session/resume.h"
@@ -18,7 +18,7 @@
 namespace passung::session {
 
 struct SessionSetup {
-    const protocol::StudyPlan& plan;           // outlives the session
+    protocol::FrozenPlan plan;
     std::vector<design::PlannedTrial> trials;  // what is to be done, in this order
     std::string participant;                   // code
     std::uint64_t seed = 0;                    // of the study

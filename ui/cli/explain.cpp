@@ -9,6 +9,7 @@
 #include "study/run/files/builds.h"
 #include "study/run/files/known_names.h"
 #include "study/run/files/protocol_files.h"
+#include "study/run/freeze.h"
 #include "study/run/machine/auto_accuracy.h"
 #include "study/run/machine/calibration.h"
 #include "study/run/machine/stability_report.h"
@@ -109,34 +110,37 @@ void explainStability(const protocol::StudyPlan& plan, std::span<const DeviceDes
     for (const auto& stable : plan.stable_stiffness) fmt::print("  {}: {}\n", stable.device, stable.origin);
 }
 
-/// What accuracy = "auto" picks here, or what the study's database keeps; printed with what was measured.
-Result<Done> explainAccuracy(const std::string& database, protocol::StudyPlan& plan, model::BuildStore* builds,
-                             const app::ImportLimits& limits) {
-    if (!app::asksForAccuracy(plan)) return Done{};
-    const std::string sha256 = sha256Hex(plan.source_text);
-    std::vector<store::AccuracyRow> rows;
+/// What the study's database keeps, or a run that began it now on this machine would keep.
+Result<app::Kept> keptFor(const std::string& database, const protocol::StudyPlan& draft, model::BuildStore* builds) {
+    app::Kept kept{sha256Hex(draft.source_text), draft.stable_stiffness, {}};
     if (!database.empty()) {
         const auto reader = store::StoreReader::open(database);
         if (!reader) return reader.errors();
-        auto kept = reader->accuracy();
-        if (!kept) return kept.errors();
-        rows = std::move(*kept);
-        std::erase_if(rows, [&](const store::AccuracyRow& row) { return row.protocol_sha256 != sha256; });
-    } else {
+        auto stable = reader->stableStiffness(kept.protocol_sha256);
+        if (!stable) return stable.errors();
+        auto accuracy = reader->accuracy();
+        if (!accuracy) return accuracy.errors();
+        kept.stable_stiffness = *std::move(stable);
+        kept.accuracy = *std::move(accuracy);
+        std::erase_if(kept.accuracy,
+                      [&](const store::AccuracyRow& row) { return row.protocol_sha256 != kept.protocol_sha256; });
+    } else if (app::asksForAccuracy(draft)) {
         ProgressLine progress;
         auto measured = app::measureAccuracy(
-            plan, sha256, [&](const std::string& what, double share) { progress.show(progressBar(what, share)); },
-            builds);
+            draft, kept.protocol_sha256,
+            [&](const std::string& what, double share) { progress.show(progressBar(what, share)); }, builds);
         if (!measured) return measured.errors();
-        rows = std::move(*measured);
+        kept.accuracy = *std::move(measured);
     }
-    if (const auto applied = app::applyAccuracy(sha256, rows, plan, limits); !applied) return applied;
+    return kept;
+}
+
+void explainAccuracy(const std::string& database, std::span<const store::AccuracyRow> rows) {
     fmt::print("\nAccuracy, {}\n{}",
                database.empty() ? "measured now on this machine: a study keeps what its first run picks, which --db "
                                   "shows; the keys picked, written into the protocol, hold everywhere"
                                 : "as " + database + " keeps it",
                app::describeAccuracy(rows));
-    return Done{};
 }
 
 Result<Done> explainEffects(const protocol::StudyPlan& plan, model::PartCache& cache) {
@@ -174,32 +178,26 @@ int explain(const ExplainOptions& options) {
         }
         return done ? 0 : fail(done.errors());
     }
-    auto devices = app::knownDevices();
-    auto plan = app::readProtocol(options.file, options.import_limits);
-    if (!plan) return fail(plan.errors());
-    const int participants = options.participants > 0 ? options.participants : plan->participants;
+    const auto draft = app::readProtocol(options.file, options.import_limits);
+    if (!draft) return fail(draft.errors());
+    const int participants = options.participants > 0 ? options.participants : draft->participants;
     if (options.orders == "csv") {
-        const auto sessions = session::plannedSessions(*plan, participants, options.stations);
+        const auto sessions = session::plannedSessions(*draft, participants, options.stations);
         if (!sessions) return fail(sessions.errors());
-        fmt::print("{}", orderCsv(*plan, *sessions));
+        fmt::print("{}", orderCsv(*draft, *sessions));
         return 0;
     }
-    if (!options.database.empty()) {
-        const auto reader = store::StoreReader::open(options.database);
-        if (!reader) return fail(reader.errors());
-        const auto stable = reader->stableStiffness(sha256Hex(plan->source_text));
-        if (!stable) return fail(stable.errors());
-        plan = app::withKeptStiffness(*plan, *stable, options.import_limits);
-        if (!plan) return fail(plan.errors());
-        devices = app::devicesAsKept(*stable);
-    }
-    const auto described = session::describePlan(*plan, participants, options.stations);
+    const auto kept = keptFor(options.database, *draft, store.get());
+    if (!kept) return fail(kept.errors());
+    const auto plan = app::freeze(*draft, *kept, options.import_limits);
+    if (!plan) return fail(plan.errors());
+    const auto described = session::describePlan(**plan, participants, options.stations);
     if (!described) return fail(described.errors());
     fmt::print("{}", *described);
-    explainStability(*plan, devices);
-    if (const auto picked = explainAccuracy(options.database, *plan, store.get(), options.import_limits); !picked)
-        return fail(picked.errors());
-    const auto done = explainEffects(*plan, cache);
+    explainStability(**plan,
+                     options.database.empty() ? app::knownDevices() : app::devicesAsKept(kept->stable_stiffness));
+    if (app::asksForAccuracy(*draft)) explainAccuracy(options.database, kept->accuracy);
+    const auto done = explainEffects(**plan, cache);
     return done ? 0 : fail(done.errors());
 }
 

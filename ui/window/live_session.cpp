@@ -170,7 +170,7 @@ std::unique_ptr<loop::HapticDevice> LiveSession::device(const simulated::DeviceP
 
 void LiveSession::begins(session::Apparatus& apparatus, const session::SessionSetup& setup) {
     interview_.forget();
-    look_ = setup.plan.view;
+    look_ = setup.plan->view;
     presenter::SessionBegun begun{.participant = setup.participant, .trials = setup.trials, .look = look_};
     if (setup.resumed) {
         begun.earlier = setup.resumed->earlier;

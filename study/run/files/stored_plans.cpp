@@ -5,7 +5,6 @@
 
 #include "core/base/digest.h"
 #include "core/base/regular_file.h"
-#include "study/run/machine/auto_accuracy.h"
 #include "study/run/machine/calibration.h"
 
 namespace passung::app {
@@ -20,17 +19,31 @@ StoredPlans::StoredPlans(const store::StoreReader& reader, const std::string& me
     }
 }
 
-Result<const protocol::StudyPlan*> StoredPlans::plan(const std::string& sha256) {
-    if (const auto known = plans_.find(sha256); known != plans_.end()) return &known->second;
+Result<protocol::FrozenPlan> StoredPlans::plan(const std::string& sha256) {
+    if (const auto known = plans_.find(sha256); known != plans_.end()) return known->second;
+    const auto draft = this->draft(sha256);
+    if (!draft) return draft.errors();
+    const auto kept = this->kept(sha256);
+    if (!kept) return kept.errors();
+    const auto plan = freeze(*draft, *kept, limits_);
+    if (plan) plans_.emplace(sha256, *plan);
+    return plan;
+}
+
+Result<protocol::StudyPlan> StoredPlans::draft(const std::string& sha256) const {
     const auto rows = reader_.protocols();
     if (!rows) return rows.errors();
-    for (const auto& row : *rows) {
-        if (row.sha256 != sha256) continue;
-        auto plan = read(row);
-        if (!plan) return plan.errors();
-        return &plans_.emplace(sha256, std::move(*plan)).first->second;
-    }
+    for (const auto& row : *rows)
+        if (row.sha256 == sha256) return read(row);
     return Error{.message = "is not in the database", .key = "protocol", .value = sha256};
+}
+
+Result<Kept> StoredPlans::kept(const std::string& sha256) const {
+    auto stable = reader_.stableStiffness(sha256);
+    if (!stable) return stable.errors();
+    auto accuracy = reader_.accuracy();
+    if (!accuracy) return accuracy.errors();
+    return Kept{sha256, *std::move(stable), *std::move(accuracy)};
 }
 
 /// The stored protocol with the mesh files of the first folder that has them all.
@@ -46,10 +59,6 @@ Result<protocol::StudyPlan> StoredPlans::read(const store::ProtocolRow& row) con
             continue;
         }
         if (const auto same = compareMeshes(row.sha256, *plan); !same) return same.errors();
-        const auto accuracy = reader_.accuracy();
-        if (!accuracy) return accuracy.errors();
-        if (const auto applied = applyAccuracy(row.sha256, *accuracy, *plan, limits_); !applied)
-            return applied.errors();
         return plan;
     }
     errors.push_back({.message = "the stored protocol cannot be read here; its mesh paths start from this folder or "

@@ -6,21 +6,26 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "study/plan/study_plan.h"
-#include "study/run/files/mesh_importer.h"
+#include "study/plan/frozen_plan.h"
+#include "study/run/freeze.h"
 #include "study/store/read/store_reader.h"
 
 namespace passung::app {
 
-/// The protocols of a database as they are stored there, with the accuracy that was picked and the stable stiffness
-/// that was kept; each is read once.
+/// The protocols of a database as it runs them; each is read once.
 class StoredPlans {
 public:
     /// `meshes`: folder that the protocols' mesh paths start from; empty: here, else beside the database.
     StoredPlans(const store::StoreReader& reader, const std::string& meshes, const ImportLimits& limits = {});
 
-    /// Errors: the protocol is not there, or a mesh file of it is missing or another one than at the time.
-    Result<const protocol::StudyPlan*> plan(const std::string& sha256);
+    /// Its questionnaires are not opened. Errors: as of draft() and freeze().
+    Result<protocol::FrozenPlan> plan(const std::string& sha256);
+
+    /// The stored text, read with the stable stiffness that was kept. Errors: the protocol is not there, or a mesh file
+    /// of it is missing or another one than at the time.
+    Result<protocol::StudyPlan> draft(const std::string& sha256) const;
+    /// What is kept for it.
+    Result<Kept> kept(const std::string& sha256) const;
 
 private:
     Result<protocol::StudyPlan> read(const store::ProtocolRow& row) const;
@@ -29,7 +34,7 @@ private:
     const store::StoreReader& reader_;
     std::vector<std::filesystem::path> folders_;
     ImportLimits limits_;
-    std::map<std::string, protocol::StudyPlan> plans_;
+    std::map<std::string, protocol::FrozenPlan> plans_;
 };
 
 }  // namespace passung::app

@@ -240,16 +240,6 @@ Result<std::vector<std::string>> tooSlowHere(const protocol::StudyPlan& plan, st
     return slow;
 }
 
-Result<protocol::StudyPlan> withKeptAccuracy(const protocol::StudyPlan& plan, const std::string& protocol_sha256,
-                                             store::Store& store, const ImportLimits& limits) {
-    protocol::StudyPlan complete = plan;
-    if (!asksForAccuracy(plan)) return complete;
-    const auto rows = store.accuracy(protocol_sha256);
-    if (!rows) return rows.errors();
-    if (const auto applied = applyAccuracy(protocol_sha256, *rows, complete, limits); !applied) return applied.errors();
-    return complete;
-}
-
 std::string describePick(std::span<const store::AccuracyRow> rows) {
     std::string text =
         fmt::format(kHead, "budget [µs]", "p99 [µs]", "depth [µm]", "force [%]", "dir. [°]", "torque [%]", "picked");

@@ -10,7 +10,6 @@
 #include "study/plan/study_plan.h"
 #include "study/run/files/mesh_importer.h"
 #include "study/store/rows/rows.h"
-#include "study/store/write/store.h"
 
 namespace passung::app {
 
@@ -32,10 +31,6 @@ Result<Done> applyAccuracy(const std::string& protocol_sha256, std::span<const s
 /// What picked settings take longer than their budget on this machine, in words, a sentence each.
 Result<std::vector<std::string>> tooSlowHere(const protocol::StudyPlan& plan, std::span<const store::AccuracyRow> rows,
                                              model::BuildStore* builds);
-
-/// The plan with what `store` keeps.
-Result<protocol::StudyPlan> withKeptAccuracy(const protocol::StudyPlan& plan, const std::string& protocol_sha256,
-                                             store::Store& store, const ImportLimits& limits = {});
 
 /// What was picked for each budget and why, in words, the keys that would fix it in a protocol. `rows`: of one
 /// protocol.

@@ -146,22 +146,15 @@ std::vector<DeviceDescription> devicesAsKept(std::span<const protocol::StableSti
     return devices;
 }
 
-Result<protocol::StudyPlan> withKeptStiffness(const protocol::StudyPlan& plan,
-                                              std::span<const protocol::StableStiffness> kept,
-                                              const ImportLimits& limits) {
-    if (std::equal(kept.begin(), kept.end(), plan.stable_stiffness.begin(), plan.stable_stiffness.end(), same))
-        return plan;
-    auto again = readBegunProtocol(plan.source_text, plan.source_path, devicesAsKept(kept), limits);
-    if (!again) return again;
-    again->seed = plan.seed;
-    again->questionnaires = plan.questionnaires;  // their files are not part of the text
-    return again;
+bool sameStiffness(std::span<const protocol::StableStiffness> a, std::span<const protocol::StableStiffness> b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), same);
 }
 
-std::vector<std::string> stiffnessDifferences(const protocol::StudyPlan& now, const protocol::StudyPlan& kept) {
+std::vector<std::string> stiffnessDifferences(std::span<const protocol::StableStiffness> now,
+                                              std::span<const protocol::StableStiffness> kept) {
     std::vector<std::string> sentences;
-    for (std::size_t i = 0; i < std::min(now.stable_stiffness.size(), kept.stable_stiffness.size()); ++i) {
-        const auto &a = now.stable_stiffness[i], &b = kept.stable_stiffness[i];
+    for (std::size_t i = 0; i < std::min(now.size(), kept.size()); ++i) {
+        const auto &a = now[i], &b = kept[i];
         if (same(a, b)) continue;
         sentences.push_back(fmt::format(
             "the study keeps the stable maximum of {} with which it began, {:.6g} N/m and {:.6g} Nm/rad ({}); on this "

@@ -11,7 +11,6 @@
 #include "devices/simulated/presets.h"
 #include "study/plan/study_plan.h"
 #include "study/protocol/calibration.h"
-#include "study/run/files/mesh_importer.h"
 
 namespace passung::app {
 
@@ -41,12 +40,11 @@ Result<std::vector<DeviceDescription>> withCalibrations(std::vector<DeviceDescri
 /// The presets with the stable maxima that a study's database keeps. One from before they were kept has none.
 std::vector<DeviceDescription> devicesAsKept(std::span<const protocol::StableStiffness> kept);
 
-/// The plan with those maxima, read anew from its text where others are in force now.
-Result<protocol::StudyPlan> withKeptStiffness(const protocol::StudyPlan& plan,
-                                              std::span<const protocol::StableStiffness> kept,
-                                              const ImportLimits& limits = {});
+/// Do both stand for the same maxima, whatever their origin?
+bool sameStiffness(std::span<const protocol::StableStiffness> a, std::span<const protocol::StableStiffness> b);
 
 /// What differs between the maxima in force now and those that the study keeps, a sentence each.
-std::vector<std::string> stiffnessDifferences(const protocol::StudyPlan& now, const protocol::StudyPlan& kept);
+std::vector<std::string> stiffnessDifferences(std::span<const protocol::StableStiffness> now,
+                                              std::span<const protocol::StableStiffness> kept);
 
 }  // namespace passung::app

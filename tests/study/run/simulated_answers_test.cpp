@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "study/protocol/protocol_reader.h"
-#include "study/run/machine/calibration.h"
+#include "study/run/freeze.h"
 
 namespace passung::app {
 namespace {
@@ -39,11 +39,11 @@ TEST(SimulatedAnswers, AStudyThatKeepsItsStiffnessKeepsItsQuestionnaires) {
     auto kept = plan.stable_stiffness;
     ASSERT_EQ(kept.size(), 1u);
     kept[0].linear *= 0.5;
-    const auto again = withKeptStiffness(plan, kept);
+    const auto again = freeze(plan, {"", kept, {}});
     ASSERT_TRUE(again);
-    EXPECT_NE(again->conditions[1].scene.contact.stiffness, plan.conditions[1].scene.contact.stiffness);
-    ASSERT_EQ(again->questionnaires.size(), 2u);
-    EXPECT_EQ(again->questionnaires[0].definition.items.size(), 6u);
+    EXPECT_NE((*again)->conditions[1].scene.contact.stiffness, plan.conditions[1].scene.contact.stiffness);
+    ASSERT_EQ((*again)->questionnaires.size(), 2u);
+    EXPECT_EQ((*again)->questionnaires[0].definition.items.size(), 6u);
 }
 
 }  // namespace

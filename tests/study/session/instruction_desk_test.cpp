@@ -51,7 +51,7 @@ protected:
         }
     }
     SessionSetup setup(InstructionReader* reader, const std::string& language, bool timing_measured) {
-        SessionSetup with{plan_, trials_, "P001", 7, timing_measured};
+        SessionSetup with{protocol::FrozenPlan(plan_), trials_, "P001", 7, timing_measured};
         with.language = language;
         with.reader = reader;
         return with;

@@ -136,7 +136,7 @@ protected:
         }
     }
 
-    SessionSetup setup() const { return {plan_, trials_, "P001", 7, false}; }
+    SessionSetup setup() const { return {protocol::FrozenPlan(plan_), trials_, "P001", 7, false}; }
 
     std::vector<StoredAttempt> stored() const {
         std::vector<StoredAttempt> attempts;

@@ -204,7 +204,7 @@ protected:
             log_.push_back("progress " + std::to_string(progress.finished) + "/" + std::to_string(progress.planned));
             trial_times_.push_back(progress.trial_time_s);
         };
-        Session session({plan_, trials_, "P001", 7, false}, apparatus_, sink_, listener);
+        Session session({protocol::FrozenPlan(plan_), trials_, "P001", 7, false}, apparatus_, sink_, listener);
         return session.run();
     }
 

@@ -33,7 +33,7 @@ protected:
             trials_[i].trial_in_block = i > 0 && blocks[i] == blocks[i - 1] ? 1 : 0;
         }
         plan_.blocks[1].rest_ends = rest_ends_;
-        SessionSetup setup{plan_, trials_, "P001", 7, true};
+        SessionSetup setup{protocol::FrozenPlan(plan_), trials_, "P001", 7, true};
         setup.waits = waits;
         setup.reader = &reader_;
         session_.emplace(std::move(setup), apparatus_, sink_, SessionListener{});

@@ -265,7 +265,7 @@ protected:
     }
 
     void beginSession(std::optional<Resumption> resumed) {
-        SessionSetup setup{plan_, trials_, "P001", 7, false};
+        SessionSetup setup{protocol::FrozenPlan(plan_), trials_, "P001", 7, false};
         setup.waits = waits_;
         setup.answers = &*person_;
         setup.reader = &*person_;

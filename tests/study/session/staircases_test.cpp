@@ -60,7 +60,7 @@ protected:
         log_.clear();
         apparatus_.scripts.clear();
         for (const char answer : answers) apparatus_.scripts.push_back(trialOf(answer));
-        SessionSetup setup{plan_, trials_, "P001", 7, false};
+        SessionSetup setup{protocol::FrozenPlan(plan_), trials_, "P001", 7, false};
         setup.resumed = std::move(resumed);
         Session session(std::move(setup), apparatus_, sink_, {});
         while (!session.isOver() && (session.state() == SessionState::InTrial || !apparatus_.scripts.empty()))
@@ -177,7 +177,7 @@ TEST_F(StaircasesTest, ATrialThatGivesItsTrackNoAnswerIsRepeatedUpToTheMaximum) 
     std::deque<Records> scripts(24, trialOf('1'));
     for (const std::size_t i : {0, 1, 2, 18, 19}) scripts[i] = lost();
     apparatus_.scripts = scripts;
-    Session session({plan_, trials_, "P001", 7, false}, apparatus_, sink_, {});
+    Session session({protocol::FrozenPlan(plan_), trials_, "P001", 7, false}, apparatus_, sink_, {});
     ASSERT_TRUE(session.run());
     std::vector<std::int64_t> ends;
     for (std::size_t i = 16; i < sink_.starts.size(); ++i)

@@ -18,7 +18,7 @@ protected:
             condition.task.timeout = 3.0;
         }
         planTrials(std::vector<Records>(trials, script(9000, kNever, kNever)));
-        SessionSetup setup{plan_, trials_, "P001", 7, false};
+        SessionSetup setup{protocol::FrozenPlan(plan_), trials_, "P001", 7, false};
         setup.timer = timer;
         session_.emplace(std::move(setup), apparatus_, sink_, SessionListener{});
     }
@@ -95,7 +95,8 @@ TEST_F(TimedTrial, WaitsForTheExperimenterHoweverLong) {
 TEST_F(TimedTrial, CommandsOfTheClockAreRefusedWhereTheProgramTimes) {
     // Truth: invariant
     planTrials({successScript()});
-    session_.emplace(SessionSetup{plan_, trials_, "P001", 7, false}, apparatus_, sink_, SessionListener{});
+    session_.emplace(SessionSetup{protocol::FrozenPlan(plan_), trials_, "P001", 7, false}, apparatus_, sink_,
+                     SessionListener{});
     look(3);
     EXPECT_FALSE(tell(Kind::Start).accepted);
     EXPECT_EQ(tell(Kind::Done).text, "no trial runs that the experimenter times");
@@ -144,7 +145,8 @@ TEST_F(TimedTrial, ASecondaryTaskIsScoredAndScoredAlikeAgain) {
     for (auto& condition : plan_.conditions)
         condition.secondary = {protocol::Stimulus::Audio, 0.6, 0.8, 0.3, 0.1, 0.5, 1};
     begin(protocol::TimedBy::Clock);
-    const std::uint64_t seed = attemptSeed(SessionSetup{plan_, trials_, "P001", 7, false}, trials_.front(), 1);
+    const std::uint64_t seed =
+        attemptSeed(SessionSetup{protocol::FrozenPlan(plan_), trials_, "P001", 7, false}, trials_.front(), 1);
     const std::int64_t first = measures::StimulusTimes({0.6, 0.8, 0.3, 0.1, 0.5, 1}, seed).next();
     Records& records = apparatus_.scripts.front();
     for (std::int64_t tick = first + 200; tick < first + 260; ++tick)
@@ -172,7 +174,8 @@ TEST_F(TimedTrial, InstructionsAreLoggedAtTheirMoments) {
         trials_[i].block = i == 0 ? "first" : "second";
         trials_[i].block_index = i == 0 ? 0 : 1;
     }
-    session_.emplace(SessionSetup{plan_, trials_, "P001", 7, false}, apparatus_, sink_, SessionListener{});
+    session_.emplace(SessionSetup{protocol::FrozenPlan(plan_), trials_, "P001", 7, false}, apparatus_, sink_,
+                     SessionListener{});
     ASSERT_TRUE(session_->run());
     std::vector<std::string> shown;
     for (const Event& event : sink_.events)

@@ -18,7 +18,8 @@ protected:
             run_.take(view);
             prepared_.push_back(run_.view());
         };
-        session_.emplace(SessionSetup{plan_, trials_, "P001", 7, false, 1, waits}, apparatus_, sink_, listener);
+        session_.emplace(SessionSetup{protocol::FrozenPlan(plan_), trials_, "P001", 7, false, 1, waits}, apparatus_,
+                         sink_, listener);
         run_.open(plan_);
         run_.take(presenter::SessionBegun{"P001", trials_});
     }

@@ -124,8 +124,8 @@ public:
     session::QuestionnaireSource* answers() override { return nullptr; }
     session::InstructionReader* reader() override { return nullptr; }
     void begins(session::Apparatus&, const session::SessionSetup& setup) override {
-        plan_ = &setup.plan;
-        desk_.bring({presenter::SessionBegun{setup.participant, setup.trials, {}, setup.plan.view}}, {});
+        plan_ = &*setup.plan;
+        desk_.bring({presenter::SessionBegun{setup.participant, setup.trials, {}, setup.plan->view}}, {});
     }
     void prepares(const protocol::Condition& condition, std::int64_t trial_index, std::uint64_t) override {
         bring();

@@ -1,0 +1,39 @@
+#include "study/run/freeze.h"
+
+#include "study/plan/plan_contents.h"
+#include "study/protocol/planned_questionnaires.h"
+#include "study/run/files/protocol_files.h"
+#include "study/run/machine/auto_accuracy.h"
+#include "study/run/machine/calibration.h"
+
+namespace passung::app {
+
+namespace {
+
+/// Reads the draft anew where the kept maxima are others.
+Result<Done> keepStiffness(std::span<const protocol::StableStiffness> kept, protocol::StudyPlan& plan,
+                           const ImportLimits& limits) {
+    const auto devices = devicesAsKept(kept);
+    if (sameStiffness(protocol::stableStiffnessOf(plan, devices), plan.stable_stiffness)) return Done{};
+    auto again = readBegunProtocol(plan.source_text, plan.source_path, devices, limits);
+    if (!again) return again.errors();
+    again->seed = plan.seed;
+    again->questionnaires = plan.questionnaires;  // their files are not part of the text
+    plan = *std::move(again);
+    return Done{};
+}
+
+}  // namespace
+
+Result<protocol::FrozenPlan> freeze(protocol::StudyPlan draft, const Kept& kept, const ImportLimits& limits) {
+    if (kept.seed) draft.seed = *kept.seed;
+    if (const auto done = keepStiffness(kept.stable_stiffness, draft, limits); !done) return done.errors();
+    if (const auto done = applyAccuracy(kept.protocol_sha256, kept.accuracy, draft, limits); !done)
+        return done.errors();
+    if (kept.questionnaires)
+        if (const auto done = protocol::loadQuestionnaires(draft, kept.questionnaires, kept.language); !done)
+            return done.errors();
+    return protocol::FrozenPlan(std::move(draft));
+}
+
+}  // namespace passung::app
