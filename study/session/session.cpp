@@ -48,7 +48,7 @@ Session::Session(SessionSetup setup, Apparatus& apparatus, TrialSink& sink, Sess
             {protocol::rehearsedCode(setup_.participant), setup_.seed, setup_.ordinal, setup_.timing_measured},
             setup_.answers, sink),
       instructions_(*setup_.plan, setup_.language, setup_.timing_measured, setup_.reader, sink),
-      state_(setup_.waits ? SessionState::Ready : SessionState::BetweenTrials),
+      state_(setup_.waits ? State(Ready{}) : State(BetweenTrials{})),
       agenda_(setup_.resumed ? setup_.resumed->agenda : Agenda(setup_.trials)),
       staircases_(*setup_.plan, protocol::rehearsedCode(setup_.participant), setup_.seed, setup_.ordinal),
       past_(setup_.resumed ? setup_.resumed->past : std::vector<Past>(setup_.trials.size())),
@@ -61,30 +61,36 @@ Session::Session(SessionSetup setup, Apparatus& apparatus, TrialSink& sink, Sess
 }
 
 Session::~Session() {
-    if (state_ == SessionState::InTrial) apparatus_.stop();
+    if (is<InTrial>()) apparatus_.stop();
 }
 
 Result<Done> Session::run() {
-    while (state_ == SessionState::BetweenTrials || state_ == SessionState::InTrial) advance();
-    if (state_ == SessionState::Failed) return errors_;
+    while (is<BetweenTrials>() || is<InTrial>()) advance();
+    if (is<Failed>()) return errors();
     return Done{};
 }
 
+const Errors& Session::errors() const {
+    static const Errors none;
+    const auto* failed = std::get_if<Failed>(&state_);
+    return failed != nullptr ? failed->errors : none;
+}
+
 void Session::interrupt(const std::string& reason) {
-    const bool complete = state_ != SessionState::InTrial && agenda_.empty() && !desk_.isDue({});
-    if (state_ == SessionState::InTrial) abortRunning(reason, Then::RepeatNow, Decider::Interruption);
+    const bool complete = !is<InTrial>() && agenda_.empty() && !desk_.isDue({});
+    if (is<InTrial>()) abortRunning(reason, Then::RepeatNow, Decider::Interruption);
     if (isOver()) return;
-    if (complete) return finish(SessionState::Complete);
+    if (complete) return finish(Complete{});
     note("session_interrupted", "reason", reason);
-    finish(SessionState::Interrupted);
+    finish(Interrupted{});
 }
 
 SessionState Session::advance() {
-    switch (state_) {
+    switch (state()) {
         case SessionState::BetweenTrials:
             if (asksQuestionnaire()) break;
             if (agenda_.empty()) {
-                if (!instructions_.show(nullptr, session_ns_)) finish(SessionState::Complete);
+                if (!instructions_.show(nullptr, session_ns_)) finish(Complete{});
             } else if (!rest() && !swapsDevice() && !instructions_.show(&trial(), session_ns_)) {
                 beginTrial();
             }
@@ -100,7 +106,7 @@ SessionState Session::advance() {
         case SessionState::Interrupted:
             break;
     }
-    return state_;
+    return state();
 }
 
 /// What a staircase chooses for the next trial; nothing if none governs it.
@@ -135,7 +141,7 @@ void Session::beginTrial() {
     start.params_json = condition.params_json;
     start.seed = attemptSeed(setup_, trial(), start.attempt_no);
     if (setup_.shown && !std::exchange(view_noted_, true)) note("view_shown", protocol::viewJson(setup_.plan->view));
-    state_ = SessionState::Preparing;
+    state_ = Preparing{};
     if (listener_.prepares) listener_.prepares(view());
     auto stages = apparatus_.prepare(condition, start.seed, start.trial_index);
     if (!stages) return fail("prepare", stages.errors());
@@ -144,30 +150,29 @@ void Session::beginTrial() {
     const auto id = sink_.startAttempt(start);
     if (!id) return fail("start attempt", id.errors());
     ++past_[agenda_.next()].attempts;
-    attempt_.emplace(
-        Attempt{*id, condition, TrialCourse(condition.task, *X_WT, start.seed, condition.timed_by), {}, {}});
-    if (condition.secondary.any()) attempt_->secondary.emplace(detectionSettings(condition.secondary), start.seed);
+    InTrial attempt{*id, &condition, TrialCourse(condition.task, *X_WT, start.seed, condition.timed_by), {}, {}};
+    if (condition.secondary.any()) attempt.secondary.emplace(detectionSettings(condition.secondary), start.seed);
     if (setup_.timer != nullptr && condition.timed_by == protocol::TimedBy::Experimenter)
         setup_.timer->begin(condition, start.seed, start.trial_index);
-    attempt_->step = start.staircase;
+    attempt.step = start.staircase;
     apparatus_.start();
-    state_ = SessionState::InTrial;
+    state_ = std::move(attempt);
 }
 
 void Session::watchTrial() {
-    if (setup_.timer != nullptr && attempt_->condition.timed_by == protocol::TimedBy::Experimenter)
-        if (const auto said = setup_.timer->commandAt(attempt_->clock.periods())) static_cast<void>(command(*said));
+    if (setup_.timer != nullptr && attempt().condition->timed_by == protocol::TimedBy::Experimenter)
+        if (const auto said = setup_.timer->commandAt(attempt().clock.periods())) static_cast<void>(command(*said));
     apparatus_.advance(kTicksPerLook);
-    attempt_->silent_looks = takeRecords() > 0 ? 0 : attempt_->silent_looks + 1;
-    const bool silent = attempt_->silent_looks >= kSilentLooks && !attempt_->course.ended();
+    attempt().silent_looks = takeRecords() > 0 ? 0 : attempt().silent_looks + 1;
+    const bool silent = attempt().silent_looks >= kSilentLooks && !attempt().course.ended();
     if (silent) {
         std::vector<TrialEvent> events;
-        attempt_->course.abort(attempt_->next_tick, "the loop delivers no records", events);
+        attempt().course.abort(attempt().next_tick, "the loop delivers no records", events);
         appendEvents(events);
     }
-    if (!attempt_->course.ended()) return;
+    if (!attempt().course.ended()) return;
     finishTrial(silent ? std::optional(Verdict{Then::RepeatNow, Decider::Interruption}) : std::nullopt);
-    if (silent && state_ != SessionState::Failed) {
+    if (silent && !is<Failed>()) {
         Error error;
         error.message = "the haptic loop delivers no records";
         fail("loop", {error});
@@ -180,7 +185,7 @@ std::size_t Session::takeRecords() {
     std::size_t total = 0;
     while (const std::size_t count = apparatus_.takeRecords(buffer)) {
         const std::span<const TickRecord> records = std::span(buffer).first(count);
-        sink_.appendRecords(attempt_->id, records);
+        sink_.appendRecords(attempt().id, records);
         judge(records);
         total += count;
     }
@@ -190,13 +195,13 @@ std::size_t Session::takeRecords() {
 void Session::judge(std::span<const TickRecord> records) {
     std::vector<TrialEvent> events;
     for (const TickRecord& record : records) {
-        attempt_->missing_ticks += record.tick - attempt_->next_tick;
-        attempt_->clock.at(record);
-        attempt_->next_tick = record.tick + 1;
-        if (attempt_->secondary) attempt_->secondary->follow(record);
-        if (attempt_->course.ended()) continue;
-        attempt_->course.follow(record, events);
-        if (attempt_->course.started()) attempt_->records.push_back(record);
+        attempt().missing_ticks += record.tick - attempt().next_tick;
+        attempt().clock.at(record);
+        attempt().next_tick = record.tick + 1;
+        if (attempt().secondary) attempt().secondary->follow(record);
+        if (attempt().course.ended()) continue;
+        attempt().course.follow(record, events);
+        if (attempt().course.started()) attempt().records.push_back(record);
     }
     appendEvents(events);
 }
@@ -205,7 +210,7 @@ void Session::finishTrial(std::optional<Verdict> verdict) {
     LoopHealth health = apparatus_.stop();
     takeRecords();
     // From tick 0 to where a next tick would be.
-    const std::int64_t periods = attempt_->clock.until(std::max(attempt_->next_tick, health.ticks));
+    const std::int64_t periods = attempt().clock.until(std::max(attempt().next_tick, health.ticks));
     AttemptEnd end = describeEnd(std::move(health));
     if (!verdict) verdict = judgeByProtocol(end);
     end.then = verdict->then;
@@ -215,11 +220,11 @@ void Session::finishTrial(std::optional<Verdict> verdict) {
         end.valid = false;
         end.invalid_reason = fmt::format("{}: the trial is repeated", measures::outcomeName(end.outcome));
     }
-    if (attempt_->step)
-        end.staircase = staircases_.take(attempt_->id, trial(), *attempt_->step, end.measures, end.valid);
-    const auto finished = sink_.finishAttempt(attempt_->id, end);
+    if (attempt().step)
+        end.staircase = staircases_.take(attempt().id, trial(), *attempt().step, end.measures, end.valid);
+    const auto finished = sink_.finishAttempt(attempt().id, end);
     session_ns_ += periods * kTickNanoseconds;
-    const Attempt attempt = *std::exchange(attempt_, std::nullopt);
+    const InTrial attempt = std::move(this->attempt());
     if (!finished) return fail("finish attempt", finished.errors());
     takeEnd(attempt, end);
 }
@@ -229,15 +234,15 @@ Session::Verdict Session::judgeByProtocol(const AttemptEnd& end) {
     const int judged = ++past_[agenda_.next()].judged;
     const Then then = thenAfter(block, end.outcome, end.valid, judged);
     // A track that lacks an answer never finishes.
-    const bool lacks = attempt_->step && !attempt_->step->track.empty() &&
+    const bool lacks = attempt().step && !attempt().step->track.empty() &&
                        !(end.valid && staircases_.answerTo(trial(), end.measures).has_value());
     if (then == Then::Done && lacks && judged < block.max_attempts) return {Then::RepeatAtBlockEnd, Decider::Protocol};
     return {then, Decider::Protocol};
 }
 
 /// The attempt is durable: who waits for it is told, and the agenda moves on.
-void Session::takeEnd(const Attempt& attempt, const AttemptEnd& end) {
-    state_ = std::exchange(pause_asked_, false) ? SessionState::Paused : SessionState::BetweenTrials;
+void Session::takeEnd(const InTrial& attempt, const AttemptEnd& end) {
+    state_ = attempt.pauses_after ? State(Paused{}) : State(BetweenTrials{});
     if (listener_.acknowledge) listener_.acknowledge(attempt.id, end.outcome);
     last_ = agenda_.next();
     past_[*last_].last = attempt.id;
@@ -249,7 +254,7 @@ void Session::takeEnd(const Attempt& attempt, const AttemptEnd& end) {
     std::optional<double> trial_time_s;
     for (const measures::Value& value : end.measures)
         if (value.name == "trial_time_s") trial_time_s = value.value;
-    listener_.progress({agenda_.trial(*last_), attempt.condition, end.outcome, end.valid, end.invalid_reason,
+    listener_.progress({agenda_.trial(*last_), *attempt.condition, end.outcome, end.valid, end.invalid_reason,
                         trial_time_s, agenda_.finished(), agenda_.planned() - agenda_.leftOut(), session_ns_});
 }
 
@@ -264,19 +269,19 @@ bool Session::isWhole() const {
 }
 
 AttemptEnd Session::describeEnd(LoopHealth health) const {
-    const TrialCourse& course = attempt_->course;
+    const TrialCourse& course = attempt().course;
     measures::TrialContext context = course.context();
     AttemptEnd end;
-    if (attempt_->secondary) {
-        context.detections = attempt_->secondary->detections(course.startTime(), course.endTime());
+    if (attempt().secondary) {
+        context.detections = attempt().secondary->detections(course.startTime(), course.endTime());
         end.detections = *context.detections;
     }
     end.end_ns = session_ns_ + course.endTime() * kTickNanoseconds;
     end.outcome = context.outcome;
-    end.measures = measures::computeMeasures(attempt_->records, context);
+    end.measures = measures::computeMeasures(attempt().records, context);
     end.timing_measured = setup_.timing_measured;
 
-    health.dropped_records = std::max(health.dropped_records, attempt_->missing_ticks);
+    health.dropped_records = std::max(health.dropped_records, attempt().missing_ticks);
     if (course.state() == TrialState::Aborted)
         end.invalid_reason = course.abortReason();
     else if (health.dropped_records > 0)
@@ -290,11 +295,11 @@ AttemptEnd Session::describeEnd(LoopHealth health) const {
     // moves.
     const bool seen = health.presentation && course.started() &&
                       protocol::kindOfCode(setup_.participant) != protocol::ParticipantKind::Simulated &&
-                      attempt_->condition.timed_by == protocol::TimedBy::Program;
+                      attempt().condition->timed_by == protocol::TimedBy::Program;
     if (end.invalid_reason.empty() && seen)
         end.invalid_reason =
             pictureFault(*health.presentation, setup_.plan->view, static_cast<double>(course.length()) * kTickSeconds);
-    if (end.invalid_reason.empty()) end.invalid_reason = attempt_->invalidated;
+    if (end.invalid_reason.empty()) end.invalid_reason = attempt().invalidated;
     end.valid = end.invalid_reason.empty();
     end.health = std::move(health);
     return end;
@@ -303,22 +308,21 @@ AttemptEnd Session::describeEnd(LoopHealth health) const {
 void Session::appendEvents(const std::vector<TrialEvent>& events) {
     for (const TrialEvent& happened : events) {
         Event event;
-        event.attempt = attempt_->id;
+        event.attempt = attempt().id;
         event.t_ns = session_ns_ + happened.time * kTickNanoseconds;
         event.source = "session";
         event.event = happened.name;
         if (event.event == "aborted")
-            event.payload_json = JsonObject().text("reason", attempt_->course.abortReason()).str();
+            event.payload_json = JsonObject().text("reason", attempt().course.abortReason()).str();
         sink_.appendEvent(event);
     }
 }
 
-void Session::finish(SessionState state) {
-    state_ = state;
-    const auto finished = sink_.finishSession(state == SessionState::Complete && isWhole(), session_ns_);
-    if (finished) return;
-    state_ = SessionState::Failed;
-    if (errors_.empty()) errors_ = finished.errors();  // else most likely the same once more
+void Session::finish(State over) {
+    state_ = std::move(over);
+    const auto finished = sink_.finishSession(is<Complete>() && isWhole(), session_ns_);
+    // Of a session that has failed already most likely the same once more.
+    if (!finished && !is<Failed>()) state_ = Failed{finished.errors()};
 }
 
 void Session::note(const char* name, const std::string& payload_json) {
@@ -335,9 +339,8 @@ void Session::note(const char* name, const char* key, const std::string& text) {
 }
 
 void Session::fail(const char* stage, const Errors& errors) {
-    errors_ = errors;
     note("session_failed", "stage", stage);
-    finish(SessionState::Failed);
+    finish(Failed{errors});
 }
 
 }  // namespace passung::session

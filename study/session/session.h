@@ -4,6 +4,8 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "core/base/json.h"
@@ -68,8 +70,8 @@ public:
     /// Advances until the session waits or is over.
     Result<Done> run();
 
-    SessionState state() const { return state_; }
-    bool isOver() const { return state_ >= SessionState::Complete; }
+    SessionState state() const { return static_cast<SessionState>(state_.index()); }
+    bool isOver() const { return state() >= SessionState::Complete; }
 
     /// What is done and what is to come.
     const Agenda& agenda() const { return agenda_; }
@@ -78,12 +80,25 @@ public:
     bool isWhole() const;
 
     /// Why the session failed; empty unless state() is Failed.
-    const Errors& errors() const { return errors_; }
+    const Errors& errors() const;
 
 private:
-    struct Attempt {
+    /// A rest that runs before a block.
+    struct Rest {
+        std::int64_t left = 0;  // [periods]
+        bool told = false;      // the experimenter was asked to end it
+    };
+
+    // The session's states in the order of SessionState, each with what is valid in it alone.
+    struct Ready {};
+    struct BetweenTrials {
+        std::optional<Rest> rest = {};
+        bool swaps = false;  // device_in_use_ is being put in place
+    };
+    struct Preparing {};
+    struct InTrial {
         AttemptId id;
-        const protocol::Condition& condition;
+        const protocol::Condition* condition;
         TrialCourse course;
         std::vector<TickRecord> records;  // of the running trial, for its measures
         measures::PeriodClock clock;
@@ -93,7 +108,19 @@ private:
         std::optional<StaircaseStep> step = {};
         std::string invalidated = {};  // why the experimenter does not want it to count; empty: nothing against it
         std::optional<measures::DetectionTask> secondary = {};
+        bool pauses_after = false;  // the experimenter asked for it
     };
+    struct Paused {
+        BetweenTrials then = {};  // what Continue goes on with
+        bool stopped = false;     // by an emergency stop
+    };
+    struct Complete {};
+    struct Failed {
+        Errors errors;
+    };
+    struct Interrupted {};
+    using State = std::variant<Ready, BetweenTrials, Preparing, InTrial, Paused, Complete, Failed, Interrupted>;
+    static_assert(std::variant_size_v<State> == static_cast<std::size_t>(SessionState::Interrupted) + 1);
 
     struct Verdict {
         Then then;
@@ -101,8 +128,17 @@ private:
     };
 
     const design::PlannedTrial& trial() const { return agenda_.trial(agenda_.next()); }
+    template <class S>
+    bool is() const {
+        return std::holds_alternative<S>(state_);
+    }
+    InTrial& attempt() { return std::get<InTrial>(state_); }
+    const InTrial& attempt() const { return std::get<InTrial>(state_); }
+    const InTrial* running() const { return std::get_if<InTrial>(&state_); }
+    BetweenTrials& between() { return std::get<BetweenTrials>(state_); }
+
     bool rest();
-    bool isResting(const protocol::Block& block);
+    bool isResting(Rest& rest, const protocol::Block& block);
     bool swapsDevice();
     JsonObject stableStiffnessOf(const char* key, const std::string& device) const;
     std::optional<StaircaseStep> nextStep() const;
@@ -115,11 +151,11 @@ private:
     void judge(std::span<const TickRecord> records);
     void finishTrial(std::optional<Verdict> verdict = {});  // none: as the protocol says
     Verdict judgeByProtocol(const AttemptEnd& end);
-    void takeEnd(const Attempt& attempt, const AttemptEnd& end);
+    void takeEnd(const InTrial& attempt, const AttemptEnd& end);
     AttemptEnd describeEnd(LoopHealth health) const;
     const protocol::Block& blockOf(std::size_t place) const;
     void appendEvents(const std::vector<TrialEvent>& events);
-    void finish(SessionState state);
+    void finish(State over);
     void note(const char* name, const char* key, const std::string& text);  // an event with one text
     void note(const char* name, const std::string& payload_json);
     void fail(const char* stage, const Errors& errors);
@@ -129,10 +165,11 @@ private:
     Permission permissionToRepeat() const;
     Permission permissionToGoBack() const;
     Permission permissionToInvalidate(const Command& command) const;
-    bool hasTrial() const { return state_ == SessionState::Preparing || state_ == SessionState::InTrial; }
+    bool hasTrial() const { return is<Preparing>() || is<InTrial>(); }
     void logCommand(const Command& command, const Permission& permission);
     Answer execute(const Command& command);
     Answer pause(const Command& command);
+    void pauseHere();
     Answer repeat(const Command& command);
     Answer skip(const Command& command);
     Answer invalidate(const Command& command);
@@ -151,22 +188,15 @@ private:
     SessionListener listener_;
     QuestionnaireDesk desk_;
     InstructionDesk instructions_;
-    SessionState state_ = SessionState::BetweenTrials;
-    bool pause_asked_ = false;
-    std::optional<Attempt> attempt_;
+    State state_ = BetweenTrials{};
     Agenda agenda_;
     Staircases staircases_;
     std::vector<Past> past_;                 // by place in the plan
     std::optional<std::size_t> last_;        // place of the newest attempt that ended
     std::optional<std::size_t> rested_for_;  // place of the trial that a rest was last looked for
-    std::int64_t rest_left_ = 0;             // [periods] of the running rest
-    bool resting_ = false;                   // until whoever ends the rest has done so
-    bool rest_told_ = false;                 // the experimenter was asked to
     std::string device_in_use_;              // of the last trial, or being swapped to
-    bool swapping_ = false;                  // until the first trial on it begins
     std::int64_t session_ns_;                // at tick 0 of the running or next attempt
     bool view_noted_ = false;
-    Errors errors_;
 };
 
 /// Seed of everything random in the simulated device and hand during one attempt: the study's stream "simulated" of

@@ -23,33 +23,34 @@ bool Session::rest() {
         rested_for_ = agenda_.next();
         const auto block = static_cast<std::size_t>(trial().block_index);
         const bool first = trial().trial_in_block == 0 && block < setup_.plan->blocks.size();
-        rest_left_ = first ? std::llround(setup_.plan->blocks[block].rest / kTickSeconds) : 0;
-        resting_ = rest_left_ > 0;
-        rest_told_ = false;
-        if (resting_) note("rest_started", "block", trial().block);
+        const std::int64_t length = first ? std::llround(setup_.plan->blocks[block].rest / kTickSeconds) : 0;
+        between().rest.reset();
+        if (length > 0) between().rest = Rest{length};
+        if (between().rest) note("rest_started", "block", trial().block);
     }
-    if (!resting_) return false;
-    const std::int64_t step = std::min(rest_left_, kTicksPerRest);
+    if (!between().rest) return false;
+    Rest& rest = *between().rest;
+    const std::int64_t step = std::min(rest.left, kTicksPerRest);
     if (step > 0) apparatus_.wait(step);
     session_ns_ += step * kTickNanoseconds;
-    rest_left_ -= step;
-    if (isResting(blockOf(agenda_.next()))) return true;
-    resting_ = false;
+    rest.left -= step;
+    if (isResting(rest, blockOf(agenda_.next()))) return true;
+    between().rest.reset();
     note("rest_ended", "block", trial().block);
     return true;
 }
 
 /// Has the rest before the block not lasted long enough, or has who ends it not done so?
-bool Session::isResting(const protocol::Block& block) {
-    if (rest_left_ > 0) return true;
+bool Session::isResting(Rest& rest, const protocol::Block& block) {
+    if (rest.left > 0) return true;
     switch (block.rest_ends) {
         case protocol::RestEnds::ByTime:
             break;
         case protocol::RestEnds::ByParticipant:
             return setup_.reader != nullptr && !setup_.reader->goesOn();
         case protocol::RestEnds::ByExperimenter:
-            if (!setup_.waits || std::exchange(rest_told_, true)) break;
-            state_ = SessionState::Paused;
+            if (!setup_.waits || std::exchange(rest.told, true)) break;
+            pauseHere();
             return true;
     }
     return false;
@@ -74,13 +75,13 @@ bool Session::swapsDevice() {
     device_in_use_ = device;
     if (other) {
         note("swap_device", stableStiffnessOf("to", device).str());
-        swapping_ = true;
+        between().swaps = true;
         if (setup_.waits) {
-            state_ = SessionState::Paused;
+            pauseHere();
             return true;
         }
     }
-    const bool swapped = std::exchange(swapping_, false);
+    const bool swapped = std::exchange(between().swaps, false);
     if (swapped) note("device_swapped", JsonObject().text("to", device).str());
     if ((first || swapped) && setup_.calibrated_utc)
         note("device_calibration",

@@ -26,7 +26,7 @@ Answer Session::command(const Command& command) {
     logCommand(command, permission);
     if (!permission.given()) return {false, permission.text, permission.why};
     Answer answer = execute(command);
-    if (state_ == SessionState::Failed && !errors_.empty()) return notKept(errors_.front());
+    if (!errors().empty()) return notKept(errors().front());
     return answer;
 }
 
@@ -41,22 +41,22 @@ Permission Session::permission(const Command& command) const {
 Permission Session::permissionByState(const Command& command) const {
     switch (command.kind) {
         case CommandKind::Start:
-            if (attempt_ && attempt_->course.awaitsExperimenter()) break;
-            if (state_ != SessionState::Ready) return {WhyNot::BegunAlready, "the session has begun already"};
+            if (running() && running()->course.awaitsExperimenter()) break;
+            if (!is<Ready>()) return {WhyNot::BegunAlready, "the session has begun already"};
             break;
         case CommandKind::Done:
         case CommandKind::Failed:
-            if (attempt_ && attempt_->course.endsByExperimenter()) break;
-            if (attempt_ && attempt_->course.awaitsExperimenter())
+            if (running() && running()->course.endsByExperimenter()) break;
+            if (running() && running()->course.awaitsExperimenter())
                 return {WhyNot::ClockNotStarted, "the trial's clock has not been started"};
             return {WhyNot::NoTrial, "no trial runs that the experimenter times"};
         case CommandKind::Continue:
-            if (state_ != SessionState::Paused) return {WhyNot::NotPaused, "the session is not paused"};
+            if (!is<Paused>()) return {WhyNot::NotPaused, "the session is not paused"};
             break;
         case CommandKind::Pause:
-            if (state_ == SessionState::Ready) return {WhyNot::NotBegun, "the session has not begun"};
-            if (state_ == SessionState::Paused) return {WhyNot::PausedAlready, "the session is paused already"};
-            if (pause_asked_ && !command.now)
+            if (is<Ready>()) return {WhyNot::NotBegun, "the session has not begun"};
+            if (is<Paused>()) return {WhyNot::PausedAlready, "the session is paused already"};
+            if (running() && running()->pauses_after && !command.now)
                 return {WhyNot::PausesAlready, "the session pauses after this trial already"};
             break;
         case CommandKind::Repeat:
@@ -77,7 +77,7 @@ Permission Session::permissionByState(const Command& command) const {
 }
 
 Permission Session::permissionToRepeat() const {
-    if (attempt_) return {.attempt = attempt_->id};
+    if (running()) return {.attempt = running()->id};
     if (hasTrial()) return {};
     if (!last_) return {WhyNot::NothingEnded, "no trial has ended yet"};
     if (!agenda_.canGoBack() || agenda_.last() != *last_)
@@ -92,7 +92,7 @@ Permission Session::permissionToGoBack() const {
 
 /// Of an attempt that is named, or else of the running one, or else of the last.
 Permission Session::permissionToInvalidate(const Command& command) const {
-    if (attempt_ && command.attempt.value_or(attempt_->id) == attempt_->id) return {.attempt = attempt_->id};
+    if (running() && command.attempt.value_or(running()->id) == running()->id) return {.attempt = running()->id};
     if (hasTrial() && !command.attempt) return {};
     if (!command.attempt && !last_) return {WhyNot::NothingEnded, "no attempt has ended yet"};
     const auto place = command.attempt ? placeOf(*command.attempt) : last_;
@@ -107,7 +107,7 @@ Permission Session::permissionToInvalidate(const Command& command) const {
 void Session::logCommand(const Command& command, const Permission& permission) {
     if (isOver()) return;  // its part of the data is closed
     Event event;
-    if (attempt_) event.attempt = attempt_->id;
+    if (running()) event.attempt = running()->id;
     event.t_ns = now();
     event.source = command.source;
     event.event = fmt::format("command_{}", commandName(command.kind));
@@ -124,7 +124,7 @@ void Session::logCommand(const Command& command, const Permission& permission) {
 void Session::drawsWith(const QualityFound& found) {
     if (isOver()) return;
     Event event{.attempt = {}, .t_ns = now(), .source = "window", .event = kQualityEvent};
-    if (attempt_) event.attempt = attempt_->id;
+    if (running()) event.attempt = running()->id;
     event.payload_json = qualityJson(found);
     sink_.appendEvent(event);
 }
@@ -132,15 +132,15 @@ void Session::drawsWith(const QualityFound& found) {
 Answer Session::execute(const Command& command) {
     switch (command.kind) {
         case CommandKind::Start:
-            if (attempt_) return time(command);
-            state_ = SessionState::BetweenTrials;
+            if (running()) return time(command);
+            state_ = BetweenTrials{};
             return accepted("the session begins");
         case CommandKind::Done:
         case CommandKind::Failed:
             return time(command);
         case CommandKind::Continue:
             apparatus_.rearm();
-            state_ = SessionState::BetweenTrials;
+            state_ = BetweenTrials(std::get<Paused>(state_).then);
             return accepted(agenda_.empty() ? "the session ends" : "goes on with " + nameOf(agenda_.next()));
         case CommandKind::Pause:
             return pause(command);
@@ -166,19 +166,18 @@ Answer Session::execute(const Command& command) {
 }
 
 Answer Session::pause(const Command& command) {
-    const bool in_trial = state_ == SessionState::InTrial;
-    if (in_trial && !command.now) {
-        pause_asked_ = true;
+    if (is<InTrial>() && !command.now) {
+        attempt().pauses_after = true;
         return {true, "pauses after " + nameOf(agenda_.next()), WhyNot::Possible, true};
     }
-    if (in_trial) abortRunning(withReason("paused", command.text), Then::RepeatNow);
-    if (!isOver()) state_ = SessionState::Paused;
+    if (is<InTrial>()) abortRunning(withReason("paused", command.text), Then::RepeatNow);
+    pauseHere();
     return accepted("paused");
 }
 
 Answer Session::repeat(const Command& command) {
     const std::string reason = withReason("repeated by the experimenter", command.text);
-    if (state_ == SessionState::InTrial) {
+    if (is<InTrial>()) {
         abortRunning(reason, Then::RepeatNow);
         return accepted(nameOf(*last_) + " begins anew");
     }
@@ -187,7 +186,7 @@ Answer Session::repeat(const Command& command) {
 
 Answer Session::skip(const Command& command) {
     const std::size_t place = agenda_.next();
-    if (state_ == SessionState::InTrial)
+    if (is<InTrial>())
         abortRunning(withReason("skipped by the experimenter", command.text), Then::Done);
     else if (const auto done = sink_.reorder({.steps = {{.trial_index = trial().trial_index}}}); !done)
         return notKept(done.errors().front());
@@ -198,17 +197,17 @@ Answer Session::skip(const Command& command) {
 
 Answer Session::invalidate(const Command& command) {
     const std::string reason = withReason("invalidated by the experimenter", command.text);
-    if (attempt_ && (!command.attempt || *command.attempt == attempt_->id)) {
+    if (running() && (!command.attempt || *command.attempt == running()->id)) {
         const std::size_t place = agenda_.next();
-        attempt_->invalidated = reason;
+        attempt().invalidated = reason;
         return accepted("the running attempt of " + nameOf(place) + " will not count");
     }
     const std::size_t place = command.attempt ? *placeOf(*command.attempt) : *last_;
     const Then then = agenda_.isOver(place) ? thenAfterInvalid(blockOf(place), past_[place].judged) : Then::Done;
-    const auto running = attempt_ ? std::optional(agenda_.next()) : std::nullopt;
+    const auto goes_on = running() ? std::optional(agenda_.next()) : std::nullopt;
     if (const auto done = reorder(place, reason, then); !done) return notKept(done.errors().front());
-    if (running)
-        agenda_.bring(*running);  // it goes on; what is repeated comes after it
+    if (goes_on)
+        agenda_.bring(*goes_on);  // it goes on; what is repeated comes after it
     else
         leaveOutNeedless();
     return accepted("the attempt of " + nameOf(place) + " no longer counts" +
@@ -216,8 +215,7 @@ Answer Session::invalidate(const Command& command) {
 }
 
 Answer Session::goBack(const Command& command) {
-    if (state_ == SessionState::InTrial)
-        abortRunning(withReason("went back by the experimenter", command.text), Then::RepeatNow);
+    if (is<InTrial>()) abortRunning(withReason("went back by the experimenter", command.text), Then::RepeatNow);
     if (isOver()) return {};
     const std::size_t place = agenda_.last();
     const std::string reason = withReason("repeated by the experimenter", command.text);
@@ -226,21 +224,29 @@ Answer Session::goBack(const Command& command) {
     return accepted(nameOf(place) + " is next");
 }
 
+/// Unless the session is paused already, or over.
+void Session::pauseHere() {
+    if (isOver() || is<Paused>()) return;
+    const auto* between = std::get_if<BetweenTrials>(&state_);
+    state_ = Paused{between != nullptr ? *between : BetweenTrials{}};
+}
+
 /// Starts or stops the clock of a trial that the experimenter times, at the next tick.
 Answer Session::time(const Command& command) {
     const std::string name = nameOf(agenda_.next());
     if (command.kind == CommandKind::Start) {
-        attempt_->course.begin();
+        attempt().course.begin();
         return accepted("the clock of " + name + " runs");
     }
-    attempt_->course.conclude(command.kind == CommandKind::Done);
+    attempt().course.conclude(command.kind == CommandKind::Done);
     return accepted(name + (command.kind == CommandKind::Done ? " has succeeded" : " has failed"));
 }
 
 Answer Session::halt(const Command& command) {
     apparatus_.halt();
-    if (state_ == SessionState::InTrial) abortRunning(withReason("emergency stop", command.text), Then::RepeatNow);
-    if (!isOver()) state_ = SessionState::Paused;
+    if (is<InTrial>()) abortRunning(withReason("emergency stop", command.text), Then::RepeatNow);
+    pauseHere();
+    if (auto* paused = std::get_if<Paused>(&state_)) paused->stopped = true;
     return accepted("motors are off, the session is paused");
 }
 
@@ -259,9 +265,9 @@ Result<Done> Session::reorder(std::size_t place, const std::string& reason, Then
 }
 
 void Session::abortRunning(const std::string& reason, Then then, Decider by) {
-    PASSUNG_ASSERT(state_ == SessionState::InTrial);
+    PASSUNG_ASSERT(is<InTrial>());
     std::vector<TrialEvent> events;
-    if (!attempt_->course.ended()) attempt_->course.abort(attempt_->next_tick, reason, events);
+    if (!attempt().course.ended()) attempt().course.abort(attempt().next_tick, reason, events);
     appendEvents(events);
     finishTrial(Verdict{then, by});
 }
@@ -277,7 +283,7 @@ std::string Session::nameOf(std::size_t place) const {
 }
 
 std::int64_t Session::now() const {
-    return session_ns_ + (attempt_ ? attempt_->clock.periods() * kTickNanoseconds : 0);
+    return session_ns_ + (running() ? running()->clock.periods() * kTickNanoseconds : 0);
 }
 
 }  // namespace passung::session

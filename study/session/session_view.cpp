@@ -22,13 +22,18 @@ SessionView viewBeforeSession() {
 }
 
 SessionView Session::view() const {
-    SessionView view{.state = state_};
+    SessionView view{.state = state()};
     if (!agenda_.empty()) view.next = agenda_.next();
     for (std::size_t place = 0; place < agenda_.planned(); ++place) view.over.push_back(agenda_.isOver(place));
-    view.pauses_after = pause_asked_;
-    if (state_ == SessionState::Paused && swapping_) view.awaited_device = device_in_use_;
-    if (resting_ && view.next) {
-        const double seconds = std::ceil(static_cast<double>(rest_left_) * kTickSeconds);
+    view.pauses_after = running() != nullptr && running()->pauses_after;
+    const auto* between = std::get_if<BetweenTrials>(&state_);
+    if (const auto* paused = std::get_if<Paused>(&state_)) {
+        view.stopped = paused->stopped;
+        between = &paused->then;
+        if (between->swaps) view.awaited_device = device_in_use_;
+    }
+    if (between != nullptr && between->rest && view.next) {
+        const double seconds = std::ceil(static_cast<double>(between->rest->left) * kTickSeconds);
         view.rest = RestView{static_cast<std::int64_t>(seconds), blockOf(*view.next).rest_ends};
     }
     for (std::size_t kind = 0; kind < view.commands.size(); ++kind)

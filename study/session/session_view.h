@@ -40,6 +40,7 @@ struct SessionView {
     std::optional<std::size_t> next = {};  // place in the plan of the running or next trial; none: nothing is left
     std::vector<bool> over = {};           // by place in the plan
     bool pauses_after = false;             // the running trial
+    bool stopped = false;                  // an emergency stop is why the session is paused: motors are off
     std::string awaited_device = {};       // to be put in place while the session is Paused; empty: it waits for none
     std::optional<RestView> rest = {};
     /// Of every command, by its kind, with the text that it needs and without the number of an attempt.

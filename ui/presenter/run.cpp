@@ -127,7 +127,7 @@ void Run::show(const session::SessionView& session) {
             view_.state = RunState::Ready;
             break;
         case SessionState::Paused:
-            view_.state = stopped_ ? RunState::Stopped : RunState::Paused;
+            view_.state = session.stopped ? RunState::Stopped : RunState::Paused;
             break;
         case SessionState::Preparing:
             view_.state = RunState::Preparing;
@@ -143,7 +143,6 @@ void Run::show(const session::SessionView& session) {
         case SessionState::Interrupted:
             break;
     }
-    if (session.state != SessionState::Paused) stopped_ = stopped_ && session.state == SessionState::InTrial;
     view_.finished = static_cast<std::size_t>(std::count(session.over.begin(), session.over.end(), true));
     view_.number = session.next ? static_cast<std::int64_t>(*session.next) + 1 : 0;
     for (std::size_t place = 0; place < std::min(session.over.size(), view_.rows.size()); ++place) {
@@ -176,13 +175,8 @@ void Run::end(const AttemptEnded& ended) {
 
 void Run::answer(const CommandAnswered& answered) {
     view_.answered = answered;
-    if (!answered.answer.accepted) return;
-    if (answered.command.kind == CommandKind::Stop) {
-        stopped_ = true;
-        if (view_.state == RunState::Paused) view_.state = RunState::Stopped;
-    }
-    if (answered.command.kind == CommandKind::Continue) stopped_ = false;
-    if (answered.command.kind == CommandKind::Start && view_.session.state == SessionState::InTrial) startClock();
+    const bool starts = answered.answer.accepted && answered.command.kind == CommandKind::Start;
+    if (starts && view_.session.state == SessionState::InTrial) startClock();
 }
 
 void Run::finish(const RunOver& over) {

@@ -162,7 +162,6 @@ private:
     Trace force_, depth_;
     double time_ = 0.0;      // in the attempt [s]
     double started_ = -1.0;  // when the trial began; negative: not yet
-    bool stopped_ = false;
     std::array<float, 1000> durations_us_{};
     std::array<std::uint32_t, 1000> periods_{};
     std::size_t ticks_ = 0;                  // of the attempt

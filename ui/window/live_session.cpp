@@ -215,13 +215,6 @@ void LiveSession::show(session::SessionView view) {
     tell(std::move(view));
 }
 
-/// The same press comes twice: from the X server at once, and from the window as soon as it is alive.
-bool LiveSession::isKnown(const session::Command& command, session::SessionState state) {
-    if (state != session::SessionState::Paused) stopped_ = false;  // it went on meanwhile
-    if (command.kind != session::CommandKind::Stop) return false;
-    return std::exchange(stopped_, true);
-}
-
 void LiveSession::look(session::Session& session) {
     // Here and not with the pictures: how far a held key goes must not depend on how fast they come.
     const std::int64_t now = steadyNanoseconds();
@@ -235,12 +228,12 @@ void LiveSession::look(session::Session& session) {
         found.swap(found_);
     }
     if (found) session.drawsWith(*found);
-    if (session.state() != session::SessionState::Paused) stopped_ = false;
-    for (const session::Command& command : commands)
-        if (!isKnown(command, session.state())) {
-            session::Answer answer = session.command(command);
-            if (command.source != kWindow) tell(presenter::CommandAnswered{command, std::move(answer)});
-        }
+    for (const session::Command& command : commands) {
+        // The same press comes twice: from the X server at once, and from the window as soon as it is alive.
+        if (command.kind == session::CommandKind::Stop && session.view().stopped) continue;
+        session::Answer answer = session.command(command);
+        if (command.source != kWindow) tell(presenter::CommandAnswered{command, std::move(answer)});
+    }
     takePictures();
     show(session.view());
 }

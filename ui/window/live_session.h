@@ -85,7 +85,6 @@ private:
     Result<RunEnd> perform(const RunListener& listener);
     std::optional<bool> askConsent(const protocol::ConsentClause& clause, const std::string& text);
     bool takesAbort();
-    bool isKnown(const session::Command& command, session::SessionState state);
     void show(session::SessionView view);
     void tell(presenter::News news);
     void takePictures();
@@ -102,7 +101,6 @@ private:
     std::int64_t looked_ns_ = 0;
     Interview interview_{[this](presenter::News news) { tell(std::move(news)); }};
     bool aborted_ = false;  // before the session began
-    bool stopped_ = false;  // an emergency stop is why the session is paused
     std::atomic<double> reach_{0.0}, swing_{0.0};
     loop::ScreenRing screen_{4096};
     std::vector<loop::ScreenRing*> screens_{&screen_};

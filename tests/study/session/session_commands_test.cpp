@@ -186,8 +186,10 @@ TEST_F(SessionCommands, TheEmergencyStopHaltsTheMotorsFirstAndPauses) {
     EXPECT_EQ(sink_.ends.at(0).invalid_reason, "emergency stop: smoke");
     for (int i = 0; i < 3; ++i) EXPECT_EQ(session_->advance(), SessionState::Paused);
     EXPECT_EQ(std::count(log_.begin(), log_.end(), "start"), 1);
+    EXPECT_TRUE(session_->view().stopped);
     EXPECT_TRUE(tell(Kind::Continue).accepted);
     EXPECT_EQ(log_.back(), "rearm");
+    EXPECT_FALSE(session_->view().stopped);
     ASSERT_TRUE(session_->run());
     EXPECT_EQ(trialsBegun(), (Order{1, 2, 11})) << "the trial is done again";
 }

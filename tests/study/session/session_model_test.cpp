@@ -456,6 +456,9 @@ protected:
         const bool any_over = std::find(view.over.begin(), view.over.end(), true) != view.over.end();
         EXPECT_EQ(view.permission(Kind::Back).given(), !session_->isOver() && any_over);
         EXPECT_EQ(view.pauses_after, view.permission(Kind::Pause).why == WhyNot::PausesAlready);
+        EXPECT_EQ(view.stopped, apparatus_.halted && !session_->isOver());
+        const bool between = view.state == SessionState::BetweenTrials || view.state == SessionState::Paused;
+        EXPECT_TRUE(between || !view.rest);
     }
 
     void expectWhole() const {

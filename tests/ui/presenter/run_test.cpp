@@ -157,10 +157,10 @@ TEST(Run, AnEmergencyStopIsShownUntilTheSessionGoesOn) {
     // Truth: invariant.
     presenter::Run run = begun();
     run.take(shown(SessionState::InTrial, 0));
-    run.take(CommandAnswered{{.kind = CommandKind::Stop}, {true, ""}});
-    run.take(shown(SessionState::Paused, 0));
+    SessionView stopped = shown(SessionState::Paused, 0);
+    stopped.stopped = true;
+    run.take(stopped);
     EXPECT_EQ(run.view().state, RunState::Stopped);
-    run.take(CommandAnswered{{.kind = CommandKind::Continue}, {true, ""}});
     run.take(shown(SessionState::InTrial, 0));
     run.take(shown(SessionState::Paused, 1));
     EXPECT_EQ(run.view().state, RunState::Paused);
