@@ -20,11 +20,11 @@ Standing standingOf(const store::ParticipantRow& row) {
     return row.standing_by == "withdraw" ? Standing::WithdrawnWithData : Standing::Excluded;
 }
 
-SessionState stateNamed(const std::optional<std::string>& end) {
-    if (!end) return SessionState::Open;
-    return *end == "complete"  ? SessionState::Complete
-           : *end == "crashed" ? SessionState::Crashed
-                               : SessionState::Aborted;
+SessionEnd stateNamed(const std::optional<std::string>& end) {
+    if (!end) return SessionEnd::Open;
+    return *end == "complete"  ? SessionEnd::Complete
+           : *end == "crashed" ? SessionEnd::Crashed
+                               : SessionEnd::Aborted;
 }
 
 Decision decisionNamed(const std::string& decision) {
@@ -121,13 +121,13 @@ std::int64_t RosterPerson::attempts() const {
 
 int RosterPerson::complete() const {
     return static_cast<int>(std::count_if(sessions.begin(), sessions.end(),
-                                          [](const auto& s) { return s.state == SessionState::Complete; }));
+                                          [](const auto& s) { return s.state == SessionEnd::Complete; }));
 }
 
 int RosterPerson::interrupted() const { return static_cast<int>(sessions.size()) - complete(); }
 
 const RosterSession* RosterPerson::resumable() const {
-    return sessions.empty() || sessions.back().state == SessionState::Complete ? nullptr : &sessions.back();
+    return sessions.empty() || sessions.back().state == SessionEnd::Complete ? nullptr : &sessions.back();
 }
 
 const RosterPerson* Roster::find(const std::string& code) const {

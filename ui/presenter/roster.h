@@ -21,13 +21,13 @@ enum class Standing { TakesPart, Withdrawn, WithdrawnWithData, Excluded };
 /// What somebody last decided on a clause. OtherWords: on a text that the protocol no longer has.
 enum class Decision { NotAsked, OtherWords, Yes, No, Withdrawn };
 
-/// Open: it runs, or its program was killed and nobody has opened the database since.
-enum class SessionState { Open, Complete, Aborted, Crashed };
+/// How a stored session ended. Open: it runs, or its program was killed and nobody has opened the database since.
+enum class SessionEnd { Open, Complete, Aborted, Crashed };
 
 struct RosterSession {
     std::string id, started_utc;
     int ordinal = 1;
-    SessionState state = SessionState::Open;
+    SessionEnd state = SessionEnd::Open;
     std::int64_t planned = 0, attempts = 0, valid = 0;
     bool in_form = false;  // the last thing in it is a questionnaire that was not handed in
 };

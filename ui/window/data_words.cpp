@@ -21,11 +21,11 @@ QString kindText(const std::string& kind) {
 }
 
 QString endWord(const std::optional<std::string>& end_state) {
-    using presenter::SessionState;
-    if (!end_state) return sessionWord(SessionState::Open);
-    return sessionWord(*end_state == "complete"  ? SessionState::Complete
-                       : *end_state == "crashed" ? SessionState::Crashed
-                                                 : SessionState::Aborted);
+    using presenter::SessionEnd;
+    if (!end_state) return sessionWord(SessionEnd::Open);
+    return sessionWord(*end_state == "complete"  ? SessionEnd::Complete
+                       : *end_state == "crashed" ? SessionEnd::Crashed
+                                                 : SessionEnd::Aborted);
 }
 
 QString outcomeWord(const std::string& outcome, bool valid) {

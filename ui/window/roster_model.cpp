@@ -37,7 +37,7 @@ Result<Roster> readFrom(const std::string& protocol, const std::string& database
 }
 
 QVariantMap sessionMap(const presenter::RosterSession& session) {
-    const bool whole = session.state == presenter::SessionState::Complete;
+    const bool whole = session.state == presenter::SessionEnd::Complete;
     return {{"name", QString::number(session.ordinal)},
             {"date", minute(session.started_utc)},
             {"word", sessionWord(session.state)},

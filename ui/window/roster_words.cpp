@@ -9,7 +9,7 @@ using presenter::CodeWhy;
 using presenter::Decision;
 using presenter::PersonWhy;
 using presenter::Scope;
-using presenter::SessionState;
+using presenter::SessionEnd;
 using presenter::Standing;
 using protocol::ParticipantKind;
 
@@ -109,15 +109,15 @@ QString decisionSign(Decision decision) {
     return QStringLiteral("✕");
 }
 
-QString sessionWord(SessionState state) {
+QString sessionWord(SessionEnd state) {
     switch (state) {
-        case SessionState::Open:
+        case SessionEnd::Open:
             return said(QT_TRANSLATE_NOOP("roster", "open"));
-        case SessionState::Complete:
+        case SessionEnd::Complete:
             return said(QT_TRANSLATE_NOOP("roster", "complete"));
-        case SessionState::Aborted:
+        case SessionEnd::Aborted:
             return said(QT_TRANSLATE_NOOP("roster", "interrupted"));
-        case SessionState::Crashed:
+        case SessionEnd::Crashed:
             break;
     }
     return said(QT_TRANSLATE_NOOP("roster", "interrupted by a crash"));

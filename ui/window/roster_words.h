@@ -14,7 +14,7 @@ QString standingWord(presenter::Standing standing);
 QString decisionWord(presenter::Decision decision);
 /// A sign that tells decisions apart without colour.
 QString decisionSign(presenter::Decision decision);
-QString sessionWord(presenter::SessionState state);
+QString sessionWord(presenter::SessionEnd state);
 /// How far a session came that ended before its time; `began`: when it did, in words.
 QString cutOffLine(const std::string& code, const QString& began, const presenter::RosterSession& session);
 QString whyNot(presenter::PersonWhy why);

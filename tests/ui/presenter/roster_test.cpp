@@ -87,7 +87,7 @@ TEST_F(RosterOf, SaysOfEverybodyWhatTheyDidAndAgreedTo) {
     const RosterPerson& second = *all.find("P002");
     EXPECT_EQ(second.interrupted(), 1);
     ASSERT_NE(second.resumable(), nullptr);
-    EXPECT_EQ(second.resumable()->state, presenter::SessionState::Aborted);
+    EXPECT_EQ(second.resumable()->state, presenter::SessionEnd::Aborted);
     EXPECT_EQ(whyNotResume(all, second, false), PersonWhy::Possible);
     EXPECT_EQ(whyNotResume(all, second, true), PersonWhy::SessionRuns);
     const RosterPerson& third = *all.find("P003");
