@@ -61,8 +61,8 @@ public:
 /// One participant: enrolled, given a slot, and through all trials.
 class StudyRun {
 public:
-    StudyRun(protocol::FrozenPlan plan, const RunOptions& options, const RunListener& listener, store::Store& store,
-             std::string protocol_sha256)
+    StudyRun(protocol::FrozenPlan plan, const RunOptions& options, const session::SessionListener& listener,
+             store::Store& store, std::string protocol_sha256)
         : plan_(std::move(plan)),
           options_(options),
           listener_(listener),
@@ -95,7 +95,7 @@ public:
         auto part = store_.nextPart(sha256_, code);
         if (!part) return part.errors();
         const int last = options_.participant.empty() ? protocol::sessionsOf(*plan_) : *part;
-        if (listener_.session) listener_.session(code, number, options_.simulated);
+        listener_(session::ParticipantBegins{code, number, options_.simulated});
         for (int p = *part; p <= last; ++p)
             if (auto end = session(code, {static_cast<std::size_t>(slot->number), slot->group}, p);
                 !end || *end == RunEnd::Interrupted)
@@ -117,7 +117,7 @@ public:
             return trials && *trials == session.trials;
         };
         if (const auto slot = store_.assignSlot(sha256_, session.participant, fits); !slot) return slot.errors();
-        if (listener_.session) listener_.session(session.participant, 1, 1);
+        listener_(session::ParticipantBegins{session.participant});
 
         LoopApparatus apparatus = apparatusOf(session.participant);
         const store::UtcClock clock = clockNow(session.used_ns, session.latest_utc);
@@ -132,7 +132,7 @@ public:
         (*writer)->appendEvent(
             {.attempt = {}, .t_ns = session.used_ns, .source = "session", .event = "session_resumed"});
         resumed.change.reason = "done again after an interruption";
-        if (listener_.resumed) listener_.resumed(resumed);
+        listener_(resumed);
         if (const auto done = (*writer)->reorder(resumed.change); !done) return done.errors();
         return perform({plan_, session.trials, session.participant, plan_->seed, measured(), session.ordinal,
                         options_.wait, std::move(resumed)},
@@ -220,31 +220,28 @@ private:
             }
         } const over{options_.performer};
         LoggedSink logged_sink(sink, options_.log);
-        const auto prepares = [this](const session::SessionView& view) {
-            if (options_.performer != nullptr) options_.performer->tells(view);
-        };
-        session::Session session(std::move(setup), apparatus, logged_sink,
-                                 {listener_.acknowledge, listener_.trial, prepares});
+        session::Session session(std::move(setup), apparatus, logged_sink, listener_);
         conduct(session, apparatus);
         if (session.state() == session::SessionState::Failed) return session.errors();
         if (session.state() == session::SessionState::Interrupted) return RunEnd::Interrupted;
-        if (listener_.session_over) listener_.session_over(code, session.isWhole());
+        listener_(session::SessionOver{code, session.isWhole()});
         return RunEnd::Complete;
     }
 
     /// Until it is over: commands, then a step; while it waits, commands only.
     void conduct(session::Session& session, LoopApparatus& apparatus) {
         auto commands = CommandSocket::listen(options_.database, [&apparatus] { apparatus.halt(); });
-        if (!commands && listener_.warned) listener_.warned(toString(commands.errors().front()));
+        if (!commands && options_.warns) listener_(session::Warned{toString(commands.errors().front())});
         const std::int64_t began = unixMilliseconds();
         auto told = session::SessionState::BetweenTrials;
         while (!session.isOver()) {
             const auto state = session.state();
             const bool waits = state == session::SessionState::Ready || state == session::SessionState::Paused;
-            if (waits && told != state && listener_.waits) {
-                const session::SessionView view = session.view();
-                const std::string& device = view.awaited_device;
-                listener_.waits(view, device.empty() ? "" : calibrationAdvice(device, plan_->stable_stiffness, began));
+            if (waits && told != state) {
+                session::SessionWaits event{session.view(), ""};
+                if (const std::string& device = event.view.awaited_device; !device.empty())
+                    event.advice = calibrationAdvice(device, plan_->stable_stiffness, began);
+                listener_(event);
             }
             told = state;
             if (commands)
@@ -261,12 +258,13 @@ private:
 
     protocol::FrozenPlan plan_;
     const RunOptions& options_;
-    const RunListener& listener_;
+    const session::SessionListener& listener_;
     store::Store& store_;
     std::string sha256_;
 };
 
-store::Store::Opened openForRun(const RunOptions& options, const RunListener& listener, bool create = true) {
+store::Store::Opened openForRun(const RunOptions& options, const session::SessionListener& listener,
+                                bool create = true) {
     auto with = openOptionsNow(options.now());
     with.create = create;
     with.group = options.group;
@@ -277,10 +275,12 @@ store::Store::Opened openForRun(const RunOptions& options, const RunListener& li
         options.log->tell(openingText(opened.outcome));
     }
     if (!opened.store) return opened;
-    if (listener.recovered && !opened.recovery.empty()) listener.recovered(opened.recovery);
-    if (listener.warned && !opened.recovery.later_utc.empty())
-        listener.warned("this machine's clock is behind: the database holds the time " + opened.recovery.later_utc +
-                        "; orders and durations do not depend on it, stored dates will");
+    if (const auto& left = opened.recovery; !left.empty())
+        listener(session::RecoveredCrash{left.crashed_attempts, left.crashed_sessions});
+    if (options.warns && !opened.recovery.later_utc.empty())
+        listener(session::Warned{"this machine's clock is behind: the database holds the time " +
+                                 opened.recovery.later_utc +
+                                 "; orders and durations do not depend on it, stored dates will"});
     return opened;
 }
 
@@ -303,16 +303,16 @@ Result<Kept> keptFor(const store::Unfinished& session, const StoredPlans& plans,
     return kept;
 }
 
-void backUp(store::Store& store, const RunOptions& options, const RunListener& listener) {
+void backUp(store::Store& store, const RunOptions& options, const session::SessionListener& listener) {
     if (!options.backup) return;
     const auto kept = store.backup();
     if (!kept && options.log != nullptr) options.log->fail("no backup", kept.errors());
-    if (!listener.warned) return;
+    if (!options.warns) return;
     if (!kept)
-        listener.warned("no backup copy was made: " + kept.errors().front().message);
+        listener(session::Warned{"no backup copy was made: " + kept.errors().front().message});
     else if (!kept->empty())
-        listener.warned("the earlier backup has what the database lacks or has damaged (passung verify): kept as " +
-                        *kept);
+        listener(session::Warned{
+            "the earlier backup has what the database lacks or has damaged (passung verify): kept as " + *kept});
 }
 
 bool isPerson(const std::string& code) {
@@ -347,7 +347,8 @@ Error otherStation(const store::Unfinished& session, const RunOptions& options) 
                  .file = options.database};
 }
 
-Result<RunEnd> runSessions(const protocol::StudyPlan& draft, RunOptions options, const RunListener& listener) {
+Result<RunEnd> runSessions(const protocol::StudyPlan& draft, RunOptions options,
+                           const session::SessionListener& listener) {
     if (Errors why = whyNotPeople(draft, options.participant, options.performer); !why.empty()) return why;
     if (Errors unstable = beyondBorder(draft, knownDevices()); !unstable.empty()) return unstable;
     const auto language = protocol::chooseLanguage(draft, options.language);
@@ -357,7 +358,10 @@ Result<RunEnd> runSessions(const protocol::StudyPlan& draft, RunOptions options,
     std::vector<store::AccuracyRow> measured;
     const auto measure = [&]() -> Result<Done> {
         const auto builds = openBuilds(options.import_limits);
-        auto rows = measureAccuracy(draft, sha256Hex(draft.source_text), listener.calibrating, builds.get());
+        const auto report = [&](const std::string& step, double share) {
+            listener(session::MeasuringAccuracy{step, share});
+        };
+        auto rows = measureAccuracy(draft, sha256Hex(draft.source_text), report, builds.get());
         if (!rows) return rows.errors();
         measured = std::move(*rows);
         return Done{};
@@ -380,23 +384,23 @@ Result<RunEnd> runSessions(const protocol::StudyPlan& draft, RunOptions options,
     if (!sha256) return sha256.errors();
     if (!measured.empty()) {
         if (const auto done = opened.store->keepAccuracy(measured); !done) return done.errors();
-        if (listener.calibrated) listener.calibrated(describePick(measured));
+        listener(session::PickedAccuracy{describePick(measured)});
     }
     const auto kept = opened.store->accuracy(*sha256);
     if (!kept) return kept.errors();
-    if (options.clock == Clock::RealTime && listener.warned && !kept->empty()) {
+    if (options.clock == Clock::RealTime && options.warns && !kept->empty()) {
         const auto builds = openBuilds(options.import_limits);
         const auto slow = tooSlowHere(draft, *kept, builds.get());
         if (!slow) return slow.errors();
-        for (const std::string& what : *slow) listener.warned(what);
+        for (const std::string& what : *slow) listener(session::Warned{what});
     }
     const auto stable = opened.store->stableStiffness(*sha256);
     if (!stable) return stable.errors();
     const auto plan = freeze(draft, {*sha256, *stable, *kept, {}, readFile, options.language}, options.import_limits);
     if (!plan) return plan.errors();
-    if (listener.warned)
+    if (options.warns)
         for (const std::string& difference : stiffnessDifferences(draft.stable_stiffness, (*plan)->stable_stiffness))
-            listener.warned(difference);
+            listener(session::Warned{difference});
     if (Errors unstable = beyondBorder(**plan, knownDevices()); !unstable.empty()) return unstable;
     StudyRun run(*plan, options, listener, *opened.store, *sha256);
     Result<RunEnd> end = RunEnd::Complete;
@@ -405,7 +409,8 @@ Result<RunEnd> runSessions(const protocol::StudyPlan& draft, RunOptions options,
     return end;
 }
 
-Result<RunEnd> resumeSession(const ResumeOptions& resume, RunOptions options, const RunListener& listener) {
+Result<RunEnd> resumeSession(const ResumeOptions& resume, RunOptions options,
+                             const session::SessionListener& listener) {
     auto opened = openForRun(options, listener, false);
     if (!opened.store) return opened.errors;
     const auto session = opened.store->unfinished(resume.session);
@@ -438,14 +443,17 @@ void logStart(const RunOptions& options, const std::string& what) {
 
 }  // namespace
 
-Result<RunEnd> runStudy(const protocol::StudyPlan& draft, RunOptions options, const RunListener& listener) {
+Result<RunEnd> runStudy(const protocol::StudyPlan& draft, RunOptions options,
+                        const session::SessionListener& listener) {
     logStart(options, "run of protocol " + sha256Hex(draft.source_text));
-    return logged(options.log, listener, [&](const RunListener& with) { return runSessions(draft, options, with); });
+    return logged(options.log, listener,
+                  [&](const session::SessionListener& with) { return runSessions(draft, options, with); });
 }
 
-Result<RunEnd> resumeStudy(const ResumeOptions& resume, RunOptions options, const RunListener& listener) {
+Result<RunEnd> resumeStudy(const ResumeOptions& resume, RunOptions options, const session::SessionListener& listener) {
     logStart(options, "resumption");
-    return logged(options.log, listener, [&](const RunListener& with) { return resumeSession(resume, options, with); });
+    return logged(options.log, listener,
+                  [&](const session::SessionListener& with) { return resumeSession(resume, options, with); });
 }
 
 }  // namespace passung::app

@@ -34,25 +34,11 @@ struct RunOptions {
     store::UtcClock::Now now = unixMilliseconds;      // in real time; virtual time has none
     ImportLimits import_limits;                       // of every mesh file
     StudyLog* log = nullptr;                          // of the database; null: none is kept
+    bool warns = false;  // looks for what is unusual and tells of it (session::Warned); else nothing is looked for
 };
 
 /// How a run ended that met no error.
 enum class RunEnd { Complete, Interrupted };
-
-/// What a run tells while it goes on; any of them may be empty.
-struct RunListener {
-    std::function<void(const store::RecoveryReport&)> recovered;
-    std::function<void(const std::string& what, double share)> calibrating;  // for contact.accuracy = "auto"
-    std::function<void(const std::string&)> calibrated;                      // what was picked and why, in words
-    std::function<void(const std::string&)> warned;
-    std::function<void(const std::string& participant, int number, int of)> session;
-    std::function<void(const session::Resumption&)> resumed;  // what an earlier process did of the session
-    std::function<void(const session::TrialProgress&)> trial;
-    /// Whenever it begins to wait for a command; `advice` on the calibration of a device that it awaits may be empty.
-    std::function<void(const session::SessionView&, const std::string& advice)> waits;
-    std::function<void(const std::string& participant, bool whole)> session_over;  // that was not interrupted
-    std::function<void(session::AttemptId, measures::Outcome)> acknowledge;
-};
 
 /// While a session runs, an experimenter may command it through CommandSocket.
 /// Performs the study, as freeze() makes it of its draft, with simulated participants on the simulated device, each a
@@ -62,8 +48,8 @@ struct RunListener {
 /// stays in it. An interruption stores the running trial as aborted and closes the session as aborted, both with the
 /// reason "interrupted". What contact.accuracy = "auto" asks for is picked when the protocol first runs in this
 /// database, and kept there; before later runs in real time a machine that is too slow for it is warned of. Errors
-/// before anything is stored: a language that is none of protocol::languagesOf(plan).
-Result<RunEnd> runStudy(const protocol::StudyPlan& draft, RunOptions options, const RunListener& listener);
+/// before anything is stored: a language that is none of protocol::languagesOf(draft).
+Result<RunEnd> runStudy(const protocol::StudyPlan& draft, RunOptions options, const session::SessionListener& listener);
 
 struct ResumeOptions {
     std::string session;  // id; empty: the newest one that did not complete
@@ -73,6 +59,6 @@ struct ResumeOptions {
 /// Goes on with an interrupted session of the database by its protocol's [resume], in the clock and language that it
 /// had. Of `options`, participant, simulated, clock and language do not matter. Later trials are what the uninterrupted
 /// session's would have been.
-Result<RunEnd> resumeStudy(const ResumeOptions& resume, RunOptions options, const RunListener& listener);
+Result<RunEnd> resumeStudy(const ResumeOptions& resume, RunOptions options, const session::SessionListener& listener);
 
 }  // namespace passung::app

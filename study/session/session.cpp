@@ -142,7 +142,7 @@ void Session::beginTrial() {
     start.seed = attemptSeed(setup_, trial(), start.attempt_no);
     if (setup_.shown && !std::exchange(view_noted_, true)) note("view_shown", protocol::viewJson(setup_.plan->view));
     state_ = Preparing{};
-    if (listener_.prepares) listener_.prepares(view());
+    if (listener_) listener_(view());
     auto stages = apparatus_.prepare(condition, start.seed, start.trial_index);
     if (!stages) return fail("prepare", stages.errors());
     start.stages = *std::move(stages);
@@ -224,9 +224,8 @@ void Session::finishTrial(std::optional<Verdict> verdict) {
         end.staircase = staircases_.take(attempt().id, trial(), *attempt().step, end.measures, end.valid);
     const auto finished = sink_.finishAttempt(attempt().id, end);
     session_ns_ += periods * kTickNanoseconds;
-    const InTrial attempt = std::move(this->attempt());
     if (!finished) return fail("finish attempt", finished.errors());
-    takeEnd(attempt, end);
+    takeEnd(attempt().id, end);
 }
 
 Session::Verdict Session::judgeByProtocol(const AttemptEnd& end) {
@@ -240,22 +239,27 @@ Session::Verdict Session::judgeByProtocol(const AttemptEnd& end) {
     return {then, Decider::Protocol};
 }
 
-/// The attempt is durable: who waits for it is told, and the agenda moves on.
-void Session::takeEnd(const InTrial& attempt, const AttemptEnd& end) {
-    state_ = attempt.pauses_after ? State(Paused{}) : State(BetweenTrials{});
-    if (listener_.acknowledge) listener_.acknowledge(attempt.id, end.outcome);
+/// The attempt is durable: the agenda moves on, and who waits for it is told.
+void Session::takeEnd(AttemptId attempt, const AttemptEnd& end) {
+    state_ = this->attempt().pauses_after ? State(Paused{}) : State(BetweenTrials{});
     last_ = agenda_.next();
-    past_[*last_].last = attempt.id;
-    if (end.valid) past_[*last_].counting = attempt.id;
+    past_[*last_].last = attempt;
+    if (end.valid) past_[*last_].counting = attempt;
     if (end.then == Then::Done) desk_.remember({agenda_.trial(*last_), end.measures});
     agenda_.end(end.then);
     leaveOutNeedless();
-    if (!listener_.progress) return;
-    std::optional<double> trial_time_s;
+    if (!listener_) return;
+    AttemptEnded ended{agenda_.trial(*last_).trial_index,
+                       end.outcome,
+                       end.valid,
+                       end.invalid_reason,
+                       {},
+                       attempt,
+                       agenda_.finished(),
+                       agenda_.planned() - agenda_.leftOut()};
     for (const measures::Value& value : end.measures)
-        if (value.name == "trial_time_s") trial_time_s = value.value;
-    listener_.progress({agenda_.trial(*last_), *attempt.condition, end.outcome, end.valid, end.invalid_reason,
-                        trial_time_s, agenda_.finished(), agenda_.planned() - agenda_.leftOut(), session_ns_});
+        if (value.name == "trial_time_s") ended.trial_time_s = value.value;
+    listener_(ended);
 }
 
 const protocol::Block& Session::blockOf(std::size_t place) const {

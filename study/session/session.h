@@ -15,6 +15,7 @@
 #include "study/session/command.h"
 #include "study/session/instruction_desk.h"
 #include "study/session/questionnaire_desk.h"
+#include "study/session/session_event.h"
 #include "study/session/session_setup.h"
 #include "study/session/session_view.h"
 #include "study/session/staircases.h"
@@ -151,7 +152,7 @@ private:
     void judge(std::span<const TickRecord> records);
     void finishTrial(std::optional<Verdict> verdict = {});  // none: as the protocol says
     Verdict judgeByProtocol(const AttemptEnd& end);
-    void takeEnd(const InTrial& attempt, const AttemptEnd& end);
+    void takeEnd(AttemptId attempt, const AttemptEnd& end);
     AttemptEnd describeEnd(LoopHealth health) const;
     const protocol::Block& blockOf(std::size_t place) const;
     void appendEvents(const std::vector<TrialEvent>& events);

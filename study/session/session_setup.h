@@ -11,7 +11,6 @@
 #include "study/session/instruction_reader.h"
 #include "study/session/questionnaire_source.h"
 #include "study/session/resume.h"
-#include "study/session/session_view.h"
 #include "study/session/trial_sink.h"
 #include "study/session/trial_timer.h"
 
@@ -33,28 +32,6 @@ struct SessionSetup {
     /// When a device was calibrated on this machine [UTC], empty: never. Without it (virtual time) nothing is said.
     std::function<std::string(const std::string& device)> calibrated_utc = {};
     bool shown = false;  // in a window, whose look is logged
-};
-
-/// A trial that is over and durable.
-struct TrialProgress {
-    const design::PlannedTrial& trial;
-    const protocol::Condition& condition;
-    measures::Outcome outcome;
-    bool valid;
-    const std::string& invalid_reason;
-    std::optional<double> trial_time_s;
-    std::size_t finished;     // trials of this session that are over; one that is to be repeated is not
-    std::size_t planned;      // without those that staircases do not need any more
-    std::int64_t session_ns;  // session time after the trial
-};
-
-/// Whom the session tells; either may be empty.
-struct SessionListener {
-    /// An attempt is durable: whoever hears this may rely on finding it after a crash.
-    std::function<void(AttemptId, measures::Outcome)> acknowledge;
-    std::function<void(const TrialProgress&)> progress;
-    /// A trial's scene is about to be built, which may take long: how the session stands until its first look at it.
-    std::function<void(const SessionView&)> prepares = {};
 };
 
 }  // namespace passung::session

@@ -21,20 +21,21 @@ namespace passung::cli {
 namespace {
 
 /// One line per durable attempt to whoever started the program, in one write so that lines never mix.
-void acknowledge(int fd, session::AttemptId attempt, measures::Outcome outcome) {
-    const std::string line = fmt::format("{} {}\n", static_cast<std::int64_t>(attempt), measures::outcomeName(outcome));
+void acknowledge(int fd, const session::AttemptEnded& ended) {
+    const auto attempt = static_cast<std::int64_t>(ended.id);
+    const std::string line = fmt::format("{} {}\n", attempt, measures::outcomeName(ended.outcome));
     if (write(fd, line.data(), line.size()) != static_cast<ssize_t>(line.size())) {
         std::fprintf(stderr, "warning: the acknowledgement of attempt %lld was not taken\n",
                      static_cast<long long>(attempt));
     }
 }
 
-void tellRecovery(const std::string& database, const store::RecoveryReport& report) {
-    for (const auto& attempt : report.crashed_attempts) {
+void tellRecovery(const std::string& database, const session::RecoveredCrash& left) {
+    for (const auto& attempt : left.attempts) {
         fmt::print("{}: {}: was running when an earlier run was killed; kept and marked as crashed\n", database,
                    attempt);
     }
-    for (const auto& session : report.crashed_sessions) {
+    for (const auto& session : left.sessions) {
         fmt::print("{}: {}: ended with an earlier run that was killed; marked as crashed\n", database, session);
     }
     std::fflush(stdout);  // it is said only once: it must not be lost if this run is killed too
@@ -55,7 +56,91 @@ app::StudyLog logOf(const std::string& database) {
     return {database, "passung", [database](const std::string& problem) { warn(database, {problem}); }};
 }
 
-using Perform = std::function<Result<app::RunEnd>(const app::RunOptions&, const app::RunListener&)>;
+/// Tells of a run while it goes on, and counts what it has told.
+class RunTeller {
+public:
+    /// `study`: the file that warnings are about; `acknowledge_fd` below 0: nobody waits for acknowledgements.
+    RunTeller(std::string study, std::string database, int acknowledge_fd)
+        : study_(std::move(study)), database_(std::move(database)), acknowledge_fd_(acknowledge_fd) {}
+
+    void operator()(const session::RecoveredCrash& left) { tellRecovery(database_, left); }
+    void operator()(const session::MeasuringAccuracy& now) { progress_.show(progressBar(now.step, now.share)); }
+    void operator()(const session::PickedAccuracy& picked) {
+        progress_.show("");
+        fmt::print("accuracy = \"auto\": measured on this machine, kept in {} for the whole study\n{}\n", database_,
+                   picked.text);
+    }
+    void operator()(const session::Warned& warned) { warn(study_, {warned.text}); }
+    void operator()(const session::ParticipantBegins& begins) {
+        code_ = begins.participant;
+        participant_ = fmt::format("{} ({} of {})", code_, begins.number, begins.planned);
+        progress_.show(participant_ + ": preparing");
+        count_ = {};
+    }
+    void operator()(const session::Resumption& resumed) {
+        count_.finished = count_.earlier = resumed.agenda.finished();
+        count_.planned = resumed.agenda.planned() - resumed.agenda.leftOut();
+        for (const session::EarlierTrial& trial : resumed.earlier)
+            if (trial.succeeded()) count_.succeeded.insert(resumed.agenda.trial(trial.place).trial_index);
+    }
+    void operator()(const session::SessionView&) {}
+    void operator()(const session::AttemptEnded& ended) {
+        if (acknowledge_fd_ >= 0) acknowledge(acknowledge_fd_, ended);
+        count_.finished = ended.finished;
+        count_.planned = ended.planned;
+        const bool counts = ended.valid && ended.outcome != measures::Outcome::Aborted;
+        count_.succeeded.erase(ended.trial_index);
+        if (counts && ended.outcome == measures::Outcome::Success) count_.succeeded.insert(ended.trial_index);
+        count_.invalid += counts ? 0 : 1;
+        progress_.show(fmt::format("{}: trial {} of {}, {} succeeded", participant_, ended.finished, ended.planned,
+                                   count_.succeeded.size()));
+    }
+    void operator()(const session::SessionWaits& waits) {
+        progress_.show("");
+        if (const std::string& device = waits.view.awaited_device; !device.empty())
+            fmt::print("{}: the next trial is on {}: put it in place{}{}\n", participant_, device,
+                       waits.advice.empty() ? "" : "; ", waits.advice);
+        fmt::print("{}: {}\n", participant_,
+                   waits.view.permission(session::CommandKind::Start).given()
+                       ? "waits for `passung session start`"
+                       : "paused; `passung session continue` goes on");
+        std::fflush(stdout);
+    }
+    void operator()(const session::SessionOver& over) {
+        progress_.show("");
+        fmt::print("{}: {} trials{}, {} succeeded{}\n", participant_, count_.planned,
+                   count_.earlier == 0 ? "" : fmt::format(", {} of them earlier", count_.earlier),
+                   count_.succeeded.size(), count_.invalid == 0 ? "" : fmt::format(", {} invalid", count_.invalid));
+        if (!over.whole)
+            fmt::print("{}: the session is not complete; its place in the design is free again\n", participant_);
+        std::fflush(stdout);
+        count_ = {};  // of the participant's next session
+    }
+
+    /// The run was interrupted: what is done of it, and how it goes on.
+    std::string interruption() {
+        progress_.show("");
+        return fmt::format(
+            "interrupted: {} trials of {} are finished; the running one and the session are stored as aborted; "
+            "`passung resume` goes on with it. Its place in the design is free again: `passung run` with --participant "
+            "{} begins a new session of all trials",
+            count_.finished, count_.planned, code_);
+    }
+
+private:
+    struct Count {                         // of a session's trials
+        std::set<std::int64_t> succeeded;  // by the last attempt at each
+        std::size_t finished = 0, planned = 0, earlier = 0, invalid = 0;
+    };
+
+    std::string study_, database_;
+    int acknowledge_fd_;
+    std::string code_, participant_;
+    Count count_;
+    ProgressLine progress_;
+};
+
+using Perform = std::function<Result<app::RunEnd>(const app::RunOptions&, const session::SessionListener&)>;
 
 /// Lets `go` perform sessions and tells of them; `study` is the file that warnings are about, `answers` who answers
 /// questionnaires.
@@ -75,80 +160,11 @@ int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, con
     }
     app::StudyLog log = logOf(what.database);
     what.log = &log;
-    std::string code, participant;
-    std::set<std::int64_t> succeeded;  // trials, by the last attempt at each
-    std::size_t finished = 0, planned = 0, earlier = 0, invalid = 0;
-    ProgressLine progress;
-    app::RunListener listener;
-    listener.recovered = [&](const store::RecoveryReport& report) { tellRecovery(what.database, report); };
-    listener.calibrating = [&](const std::string& step, double share) { progress.show(progressBar(step, share)); };
-    listener.calibrated = [&](const std::string& picked) {
-        progress.show("");
-        fmt::print("accuracy = \"auto\": measured on this machine, kept in {} for the whole study\n{}\n", what.database,
-                   picked);
-    };
-    listener.warned = [&](const std::string& warning) { warn(study, {warning}); };
-    listener.session = [&](const std::string& who, int number, int of) {
-        code = who;
-        participant = fmt::format("{} ({} of {})", code, number, of);
-        progress.show(participant + ": preparing");
-        succeeded.clear();
-        finished = planned = earlier = invalid = 0;
-    };
-    listener.resumed = [&](const session::Resumption& resumed) {
-        finished = earlier = resumed.agenda.finished();
-        planned = resumed.agenda.planned() - resumed.agenda.leftOut();
-        for (const session::EarlierTrial& trial : resumed.earlier)
-            if (trial.succeeded()) succeeded.insert(resumed.agenda.trial(trial.place).trial_index);
-    };
-    listener.trial = [&](const session::TrialProgress& trial) {
-        finished = trial.finished;
-        planned = trial.planned;
-        const bool counts = trial.valid && trial.outcome != measures::Outcome::Aborted;
-        succeeded.erase(trial.trial.trial_index);
-        if (counts && trial.outcome == measures::Outcome::Success) succeeded.insert(trial.trial.trial_index);
-        invalid += counts ? 0 : 1;
-        progress.show(
-            fmt::format("{}: trial {} of {}, {} succeeded", participant, finished, trial.planned, succeeded.size()));
-    };
-    listener.waits = [&](const session::SessionView& view, const std::string& advice) {
-        progress.show("");
-        if (!view.awaited_device.empty())
-            fmt::print("{}: the next trial is on {}: put it in place{}{}\n", participant, view.awaited_device,
-                       advice.empty() ? "" : "; ", advice);
-        fmt::print("{}: {}\n", participant,
-                   view.permission(session::CommandKind::Start).given() ? "waits for `passung session start`"
-                                                                        : "paused; `passung session continue` goes on");
-        std::fflush(stdout);
-    };
-    listener.session_over = [&](const std::string&, bool whole) {
-        progress.show("");
-        fmt::print("{}: {} trials{}, {} succeeded{}\n", participant, planned,
-                   earlier == 0 ? "" : fmt::format(", {} of them earlier", earlier), succeeded.size(),
-                   invalid == 0 ? "" : fmt::format(", {} invalid", invalid));
-        if (!whole) {
-            fmt::print("{}: the session is not complete; its place in the design is free again\n", participant);
-        }
-        std::fflush(stdout);
-        succeeded.clear();
-        finished = planned = earlier = invalid = 0;  // of the participant's next session
-    };
-    if (acknowledge_fd >= 0) {
-        listener.acknowledge = [&](session::AttemptId attempt, measures::Outcome outcome) {
-            acknowledge(acknowledge_fd, attempt, outcome);
-        };
-    }
-    const auto end = go(what, listener);
+    what.warns = true;
+    RunTeller teller(study, what.database, acknowledge_fd);
+    const auto end = go(what, [&teller](const session::SessionEvent& event) { std::visit(teller, event); });
     if (!end) return fail(end.errors());
-    if (*end == app::RunEnd::Interrupted) {
-        progress.show("");
-        return fail({{.message = fmt::format(
-                          "interrupted: {} trials of {} are finished; the running one and the session are "
-                          "stored as aborted; `passung resume` goes on with it. Its place in the design is free "
-                          "again: `passung run` with --participant {} begins a new session of all trials",
-                          finished, planned, code),
-                      .file = what.database}});
-    }
+    if (*end == app::RunEnd::Interrupted) return fail({{.message = teller.interruption(), .file = what.database}});
 
     const auto reader = store::StoreReader::open(what.database);
     if (!reader) return fail(reader.errors());

@@ -48,12 +48,16 @@ void Run::take(const News& news) {
             if constexpr (std::is_same_v<What, AskedDone>) ask(nullptr, std::nullopt);
             if constexpr (std::is_same_v<What, AttemptPrepared>) prepare(what);
             if constexpr (std::is_same_v<What, BuildProgress>) view_.built = what.share;
-            if constexpr (std::is_same_v<What, session::SessionView>) show(what);
-            if constexpr (std::is_same_v<What, AttemptEnded>) end(what);
+            if constexpr (std::is_same_v<What, session::SessionEvent>) hear(what);
             if constexpr (std::is_same_v<What, CommandAnswered>) answer(what);
             if constexpr (std::is_same_v<What, RunOver>) finish(what);
         },
         news);
+}
+
+void Run::hear(const session::SessionEvent& event) {
+    if (const auto* view = std::get_if<session::SessionView>(&event)) show(*view);
+    if (const auto* ended = std::get_if<session::AttemptEnded>(&event)) end(*ended);
 }
 
 void Run::begin(const SessionBegun& begun) {
@@ -158,7 +162,7 @@ void Run::show(const session::SessionView& session) {
     ++view_.rows_changed;
 }
 
-void Run::end(const AttemptEnded& ended) {
+void Run::end(const session::AttemptEnded& ended) {
     const auto place = static_cast<std::size_t>(ended.trial_index);
     if (place >= view_.rows.size()) return;
     result_.reset();

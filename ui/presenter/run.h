@@ -140,7 +140,8 @@ private:
     void begin(const SessionBegun& begun);
     void prepare(const AttemptPrepared& prepared);
     void show(const session::SessionView& session);
-    void end(const AttemptEnded& ended);
+    void hear(const session::SessionEvent& event);
+    void end(const session::AttemptEnded& ended);
     void answer(const CommandAnswered& answered);
     void finish(const RunOver& over);
     void watch(const TickRecord& record);

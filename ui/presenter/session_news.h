@@ -11,7 +11,7 @@
 #include "study/design/trial_order.h"
 #include "study/measures/measures.h"
 #include "study/session/command.h"
-#include "study/session/session.h"
+#include "study/session/session_event.h"
 #include "ui/presenter/drawn_scene.h"
 #include "ui/presenter/form.h"
 #include "ui/presenter/quality_search.h"
@@ -64,15 +64,6 @@ struct BuildProgress {
     double share = 0.0;
 };
 
-/// An attempt is durable.
-struct AttemptEnded {
-    std::int64_t trial_index = 0;
-    measures::Outcome outcome = measures::Outcome::Aborted;
-    bool valid = false;
-    std::string invalid_reason;
-    std::optional<double> trial_time_s;
-};
-
 struct CommandAnswered {
     session::Command command;
     session::Answer answer;
@@ -86,6 +77,6 @@ struct RunOver {
 
 /// The session's view is told whenever something of it has changed.
 using News = std::variant<SessionBegun, FormDue, PageDue, AskedDone, AttemptPrepared, BuildProgress,
-                          session::SessionView, AttemptEnded, CommandAnswered, RunOver>;
+                          session::SessionEvent, CommandAnswered, RunOver>;
 
 }  // namespace passung::presenter

@@ -65,13 +65,12 @@ void LiveSession::end() {
 }
 
 void LiveSession::main() {
-    RunListener listener;
-    listener.trial = [this](const session::TrialProgress& trial) {
-        tell(presenter::AttemptEnded{trial.trial.trial_index, trial.outcome, trial.valid, trial.invalid_reason,
-                                     trial.trial_time_s});
-    };
     bool whole = false;
-    listener.session_over = [&whole](const std::string&, bool is_whole) { whole = is_whole; };
+    const auto listener = [&](const session::SessionEvent& event) {
+        if (const auto* view = std::get_if<session::SessionView>(&event)) return show(*view);
+        if (const auto* over = std::get_if<session::SessionOver>(&event)) whole = over->whole;
+        tell(event);
+    };
     Errors errors;
     try {
         std::error_code problem;  // shows when the database is opened
@@ -87,7 +86,7 @@ void LiveSession::main() {
     tell(presenter::RunOver{whole, errors});
 }
 
-Result<RunEnd> LiveSession::perform(const RunListener& listener) {
+Result<RunEnd> LiveSession::perform(const session::SessionListener& listener) {
     RunOptions run;
     run.database = options_.database;
     run.participant = options_.participant;

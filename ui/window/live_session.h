@@ -76,13 +76,12 @@ private:
     session::InstructionReader* reader() override { return &interview_; }
     void begins(session::Apparatus& apparatus, const session::SessionSetup& setup) override;
     void prepares(const protocol::Condition& condition, std::int64_t trial_index, std::uint64_t seed) override;
-    void tells(const session::SessionView& view) override { show(view); }
     bool builds(double share) override;
     void look(session::Session& session) override;
     void over() override;
 
     void main();
-    Result<RunEnd> perform(const RunListener& listener);
+    Result<RunEnd> perform(const session::SessionListener& listener);
     std::optional<bool> askConsent(const protocol::ConsentClause& clause, const std::string& text);
     bool takesAbort();
     void show(session::SessionView view);

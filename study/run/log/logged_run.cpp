@@ -6,51 +6,47 @@ namespace passung::app {
 
 namespace {
 
-/// `listener` and, before it, the log. Codes and outcomes stay out.
-RunListener listensToo(StudyLog& log, const RunListener& listener) {
-    RunListener both = listener;
-    both.recovered = [&](const store::RecoveryReport& report) {
-        log.warn(fmt::format("an earlier run was cut off: {} attempts, {} sessions", report.crashed_attempts.size(),
-                             report.crashed_sessions.size()));
-        if (listener.recovered) listener.recovered(report);
-    };
-    both.calibrated = [&](const std::string& picked) {
-        log.tell("accuracy measured and kept");
-        if (listener.calibrated) listener.calibrated(picked);
-    };
-    if (listener.warned)  // what nobody hears of is not looked for
-        both.warned = [&](const std::string& warning) {
-            log.warn(warning);
-            listener.warned(warning);
-        };
-    both.session = [&](const std::string& participant, int number, int of) {
-        log.tell(fmt::format("participant {} of {}", number, of));
-        if (listener.session) listener.session(participant, number, of);
-    };
-    both.resumed = [&](const session::Resumption& resumed) {
+/// What the log is told of each event. Codes and outcomes stay out.
+struct LoggedEvent {
+    StudyLog& log;
+
+    void operator()(const session::RecoveredCrash& left) const {
+        log.warn(fmt::format("an earlier run was cut off: {} attempts, {} sessions", left.attempts.size(),
+                             left.sessions.size()));
+    }
+    void operator()(const session::PickedAccuracy&) const { log.tell("accuracy measured and kept"); }
+    void operator()(const session::Warned& warned) const { log.warn(warned.text); }
+    void operator()(const session::ParticipantBegins& begins) const {
+        log.tell(fmt::format("participant {} of {}", begins.number, begins.planned));
+    }
+    void operator()(const session::Resumption& resumed) const {
         log.tell(fmt::format("session resumed: {} of {} trials are finished", resumed.agenda.finished(),
                              resumed.agenda.planned()));
-        if (listener.resumed) listener.resumed(resumed);
-    };
-    both.waits = [&](const session::SessionView& view, const std::string& advice) {
+    }
+    void operator()(const session::SessionWaits& waits) const {
+        const session::SessionView& view = waits.view;
         if (!view.awaited_device.empty()) log.tell(fmt::format("device {} is to be put in place", view.awaited_device));
         log.tell(view.state == session::SessionState::Ready ? "session ready" : "session paused");
-        if (listener.waits) listener.waits(view, advice);
-    };
-    both.session_over = [&](const std::string& participant, bool whole) {
-        log.tell(whole ? "session complete" : "session over, not complete");
-        if (listener.session_over) listener.session_over(participant, whole);
-    };
-    return both;
-}
+    }
+    void operator()(const session::SessionOver& over) const {
+        log.tell(over.whole ? "session complete" : "session over, not complete");
+    }
+    void operator()(const session::MeasuringAccuracy&) const {}
+    void operator()(const session::SessionView&) const {}
+    void operator()(const session::AttemptEnded&) const {}  // LoggedSink tells of it
+};
 
 }  // namespace
 
-Result<RunEnd> logged(StudyLog* log, const RunListener& listener,
-                      const std::function<Result<RunEnd>(const RunListener&)>& perform) {
-    if (log == nullptr) return perform(listener);
+Result<RunEnd> logged(StudyLog* log, const session::SessionListener& listener,
+                      const std::function<Result<RunEnd>(const session::SessionListener&)>& perform) {
+    const session::SessionListener both = [&](const session::SessionEvent& event) {
+        if (log != nullptr) std::visit(LoggedEvent{*log}, event);
+        if (listener) listener(event);
+    };
+    if (log == nullptr) return perform(both);
     try {
-        const auto end = perform(listensToo(*log, listener));
+        const auto end = perform(both);
         if (!end)
             log->fail("run failed", end.errors());
         else

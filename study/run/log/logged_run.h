@@ -6,9 +6,9 @@
 
 namespace passung::app {
 
-/// What `perform` does with the listener that it is given: `listener` and, if there is one, the log, which learns how
-/// the run ended as well.
-Result<RunEnd> logged(StudyLog* log, const RunListener& listener,
-                      const std::function<Result<RunEnd>(const RunListener&)>& perform);
+/// What `perform` does with the listener that it is given, which is not empty: it hands on to the log, if there is one,
+/// and to `listener`. The log learns how the run ended as well.
+Result<RunEnd> logged(StudyLog* log, const session::SessionListener& listener,
+                      const std::function<Result<RunEnd>(const session::SessionListener&)>& perform);
 
 }  // namespace passung::app

@@ -40,8 +40,6 @@ public:
 
     /// A session begins: `apparatus` may be halted at any time until over().
     virtual void begins(session::Apparatus& apparatus, const session::SessionSetup& setup) = 0;
-    /// How the session stands from now until look(), before it prepares an attempt.
-    virtual void tells(const session::SessionView&) {}
     /// An attempt at this trial is about to begin, now its scene is built. `seed`: of the attempt.
     virtual void prepares(const protocol::Condition& condition, std::int64_t trial_index, std::uint64_t seed) = 0;
     /// Fields and shells of that scene are built; this share of them is done. False: nobody waits for it.

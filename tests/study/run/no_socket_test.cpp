@@ -30,8 +30,10 @@ TEST(NoSocket, ASessionThatWaitsWithoutOneDoesNotSpin) {
         looks.push_back(Clock::now());
         return looks.size() > 20;
     };
-    app::RunListener listener;
-    listener.warned = [&](const std::string& what) { warnings.push_back(what); };
+    options.warns = true;
+    const auto listener = [&](const session::SessionEvent& event) {
+        if (const auto* warned = std::get_if<session::Warned>(&event)) warnings.push_back(warned->text);
+    };
     const auto end = app::runStudy(*plan, options, listener);
     ASSERT_TRUE(end);
     ASSERT_EQ(warnings.size(), 1u) << "there was a socket after all";

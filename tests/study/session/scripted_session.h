@@ -194,15 +194,13 @@ protected:
     }
 
     Result<Done> runSession() {
-        SessionListener listener;
-        listener.acknowledge = [this](AttemptId id, Outcome outcome) {
-            log_.push_back("acknowledge");
-            acknowledged_.push_back(id);
-            EXPECT_EQ(outcome, sink_.ends.back().outcome);
-        };
-        listener.progress = [this](const TrialProgress& progress) {
-            log_.push_back("progress " + std::to_string(progress.finished) + "/" + std::to_string(progress.planned));
-            trial_times_.push_back(progress.trial_time_s);
+        const auto listener = [this](const SessionEvent& event) {
+            const auto* ended = std::get_if<AttemptEnded>(&event);
+            if (ended == nullptr) return;
+            log_.push_back("ended " + std::to_string(ended->finished) + "/" + std::to_string(ended->planned));
+            acknowledged_.push_back(ended->id);
+            EXPECT_EQ(ended->outcome, sink_.ends.back().outcome);
+            trial_times_.push_back(ended->trial_time_s);
         };
         Session session({protocol::FrozenPlan(plan_), trials_, "P001", 7, false}, apparatus_, sink_, listener);
         return session.run();

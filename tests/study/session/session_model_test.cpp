@@ -271,13 +271,14 @@ protected:
         setup.reader = &*person_;
         setup.resumed = std::move(resumed);
         apparatus_.rearm();  // a new one
-        SessionListener listener;
-        listener.acknowledge = [this](AttemptId id, Outcome outcome) {
-            const auto& kept = durable_->attempts.at(static_cast<std::size_t>(id) - 1);
-            ASSERT_TRUE(kept.end) << "is acknowledged before it is durable";
-            EXPECT_EQ(kept.end->outcome, outcome);
+        const auto listener = [this](const SessionEvent& event) {
+            if (const auto* view = std::get_if<SessionView>(&event)) prepared_ = *view;
+            const auto* ended = std::get_if<AttemptEnded>(&event);
+            if (ended == nullptr) return;
+            const auto& kept = durable_->attempts.at(static_cast<std::size_t>(ended->id) - 1);
+            ASSERT_TRUE(kept.end) << "is told of before it is durable";
+            EXPECT_EQ(kept.end->outcome, ended->outcome);
         };
-        listener.prepares = [this](const SessionView& view) { prepared_ = view; };
         session_.emplace(std::move(setup), apparatus_, *durable_, listener);
     }
 

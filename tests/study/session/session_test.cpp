@@ -32,9 +32,9 @@ TEST_F(SessionTest, CallsComeInTheOrderThatKeepsDataSafe) {
     // Truth: invariant: prepared before stored, stopped before finished, durable before acknowledged.
     planTrials({successScript(), successScript()});
     ASSERT_TRUE(runSession());
-    EXPECT_EQ(log_, (Log{"prepare soft", "startAttempt", "start", "appendRecords", "stop", "finishAttempt",
-                         "acknowledge", "progress 1/2", "prepare hard", "startAttempt", "start", "appendRecords",
-                         "stop", "finishAttempt", "acknowledge", "progress 2/2", "finishSession"}));
+    EXPECT_EQ(log_, (Log{"prepare soft", "startAttempt", "start", "appendRecords", "stop", "finishAttempt", "ended 1/2",
+                         "prepare hard", "startAttempt", "start", "appendRecords", "stop", "finishAttempt", "ended 2/2",
+                         "finishSession"}));
     EXPECT_EQ(apparatus_.most_ticks_at_once, Session::kTicksPerLook);
 }
 

@@ -6,6 +6,7 @@ namespace passung {
 namespace {
 
 using namespace presenter;
+using session::AttemptEnded;
 using session::CommandKind;
 using session::SessionState;
 using session::SessionView;

@@ -13,10 +13,9 @@ protected:
     void begin(std::size_t trials, bool waits = false) {
         planTrials(std::vector<Records>(trials, successScript()));
         for (int i = 0; i < 4; ++i) apparatus_.scripts.push_back(successScript());  // of repetitions
-        SessionListener listener;
-        listener.prepares = [this](const SessionView& view) {
-            run_.take(view);
-            prepared_.push_back(run_.view());
+        const auto listener = [this](const SessionEvent& event) {
+            run_.take(event);
+            if (std::holds_alternative<SessionView>(event)) prepared_.push_back(run_.view());
         };
         session_.emplace(SessionSetup{protocol::FrozenPlan(plan_), trials_, "P001", 7, false, 1, waits}, apparatus_,
                          sink_, listener);
