@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "core/base/random.h"
+#include "core/tick/tick_state.h"
 #include "tests/support/scenes.h"
 
 namespace passung {
@@ -163,6 +166,89 @@ TEST(PassivityController, TakesBackWhatWasGivenOut) {
     for (int k = 0; k <= 2 * n; ++k) output = at(-(k <= n ? k : 2 * n - k));
     for (int k = 1; k <= 3; ++k) output = at(k);
     EXPECT_NEAR(output.frame.energy, 0.0, 1e-3 * std::abs(given));
+}
+
+/// The damper alone, on an account that is `energy` [J] below zero, at a handle that moves with V_BD.
+class Damper {
+public:
+    static constexpr double kRadius = 0.03;  // ρ [m]
+
+    Damper() {
+        model.metric_radius = kRadius;
+        model.registration.X_WB = {rotationFromVector(Vec3(0.3, -0.8, 0.5)), Vec3(1, 2, 3)};
+        model.registration.X_DH = {rotationFromVector(Vec3(-0.4, 0.2, 0.9)), Vec3(0.05, -0.02, 0.03)};
+    }
+    /// On the held part, beside what the contact asks for.
+    Wrench damp(double energy, const Twist& V_BD, double most, std::int64_t sample_periods = 1) {
+        model.effects.passivity_damping = most;
+        tick::TickFrame frame;
+        frame.X_WH = X_WH;
+        frame.F_H_W = kContact;
+        frame.sample_periods = sample_periods;
+        tick::TickState state;
+        state.energy.taken_in = energy;
+        state.energy.V_BD = V_BD;
+        tick::runStage<tick::kPassivityController>(model, state, frame);
+        acted = (frame.status & kPassivityActed) != 0;
+        return {frame.F_H_W.force - kContact.force, frame.F_H_W.torque - kContact.torque};
+    }
+    /// Of the held part's origin, world axes, where the handle's is V_BD.
+    Twist ofHeldPart(const Twist& V_BD) const {
+        const Quat& R_WB = model.registration.X_WB.q;
+        const Vec3 lever = X_WH.p - (X_WH * model.registration.X_DH.inverse()).p;
+        const Vec3 w = R_WB * V_BD.w;
+        return {R_WB * V_BD.v + w.cross(lever), w};
+    }
+
+    tick::TickModel model;
+    Pose X_WH{rotationFromVector(Vec3(0.7, 0.1, -0.4)), Vec3(0.2, -0.1, 0.4)};
+    bool acted = false;
+
+private:
+    const Wrench kContact{Vec3(1, -2, 3), Vec3(0.01, 0.02, -0.03)};
+};
+
+TEST(PassivityController, DampsMotionAndRotationSoThatOneTickTakesBackWhatWasGivenOut) {
+    // Truth: closed form. In a tick of a handle that goes on the damper's work is E, half of it where the damping may
+    // be half of what that takes; its force is -α v, its torque -α ρ² ω about the handle, base axes. Handles that move,
+    // turn, and do both.
+    Damper damper;
+    Random random(8);
+    constexpr double rho2 = Damper::kRadius * Damper::kRadius;
+    for (int trial = 0; trial < 200; ++trial) {
+        const auto any = [&] { return Vec3(random.normal(), random.normal(), random.normal()); };
+        const Twist V{trial % 3 == 1 ? Vec3(Vec3::Zero()) : Vec3(0.1 * any()),
+                      trial % 3 == 2 ? Vec3(Vec3::Zero()) : Vec3(3.0 * any())};
+        const double square = V.v.squaredNorm() + rho2 * V.w.squaredNorm(), energy = -random.uniform(1e-6, 1e-3);
+        const double enough = -energy / (kTickSeconds * square);
+        for (const double most : {2.0 * enough, 0.5 * enough}) {
+            const double alpha = std::min(enough, most);
+            const Wrench F = damper.damp(energy, V, most);
+            const Twist V_H = damper.ofHeldPart(V);
+            EXPECT_TRUE(damper.acted);
+            EXPECT_NEAR(kTickSeconds * (F.force.dot(V_H.v) + F.torque.dot(V_H.w)),
+                        most > enough ? energy : 0.5 * energy, -1e-9 * energy);
+            const Quat R_BW = damper.model.registration.X_WB.q.conjugate();
+            const Vec3 lever = damper.X_WH.p - (damper.X_WH * damper.model.registration.X_DH.inverse()).p;
+            const Vec3 torque = R_BW * (F.torque + lever.cross(F.force));
+            EXPECT_NEAR((R_BW * F.force + alpha * V.v).norm(), 0.0, 1e-9 * alpha * std::sqrt(square));
+            EXPECT_NEAR((torque + alpha * rho2 * V.w).norm(), 0.0, 1e-9 * alpha * std::sqrt(square));
+        }
+    }
+}
+
+TEST(PassivityController, DoesNothingWhereNothingIsOwedOrNothingIsKnown) {
+    // Truth: limit cases. An account at or above zero, a handle at rest, a held tick.
+    Damper damper;
+    const Twist V{Vec3(0.1, 0, 0), Vec3(0, 1, 0)};
+    const auto isNothing = [&](const Wrench& F) {
+        return !damper.acted && F.force.norm() == 0.0 && F.torque.norm() == 0.0;
+    };
+    EXPECT_TRUE(isNothing(damper.damp(0.0, V, 10.0)));
+    EXPECT_TRUE(isNothing(damper.damp(1e-4, V, 10.0)));
+    EXPECT_TRUE(isNothing(damper.damp(-1e-4, Twist{}, 10.0)));
+    EXPECT_TRUE(isNothing(damper.damp(-1e-4, V, 10.0, 0)));
+    EXPECT_FALSE(isNothing(damper.damp(-1e-4, V, 10.0, 2)));
 }
 
 TEST(PassivityController, IsNoStageOfASceneWithoutIt) {
