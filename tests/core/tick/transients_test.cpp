@@ -88,9 +88,38 @@ TEST(Transients, OfAnImpactOnAPlaneAreADecayingSineInProportionToItsSpeed) {
     }
 }
 
+/// The whole scene carried by `way`.
+model::SceneSpec carried(model::SceneSpec spec, const Vec3& way) {
+    for (model::PartSpec& part : spec.parts) part.X_WP.p += way;
+    return spec;
+}
+
+TEST(Transients, AreNotThereAtTheFirstSampleWhereverTheSceneLies) {
+    // Truth: closed form, speed zero: where the hand was before its first sample is not known. Above, below and beside
+    // the origin of the world, from where a hand would have come at hundreds of metres per second; so at the start,
+    // when a start gate opens, and after rejected samples.
+    for (const auto method : kMethods) {
+        for (const Vec3& way : {Vec3(0, 0, -0.4), Vec3(0, 0, 0.4), Vec3(0.3, -0.2, -0.1), Vec3(-0.5, 0.1, 0.2)}) {
+            const auto inside = carried(ballOverPlate(method, -1e-3), way);
+            auto gated_spec = inside;
+            gated_spec.start_gate = {0.001, 0.1, 5};
+            Added resting(inside), gated(gated_spec);
+            DeviceReading bad{inside.parts[0].X_WP};
+            bad.fresh = false;
+            for (int i = 0; i < 60; ++i) {
+                const bool lost = i == 30 || i == 31;
+                EXPECT_EQ(resting.step(lost ? bad : DeviceReading{inside.parts[0].X_WP}).norm(), 0.0) << i;
+                EXPECT_EQ(gated.step(inside.parts[0].X_WP).norm(), 0.0) << i;
+            }
+            EXPECT_GT(resting.contact.norm(), 0.5);
+            EXPECT_GT(gated.contact.norm(), 0.5);
+        }
+    }
+}
+
 TEST(Transients, AreNotThereWithoutAnImpact) {
-    // Truth: closed form, speed zero. Contact at the first sample of all; a hand that rests in contact; contact that is
-    // there again after lost samples, however fast the hand was; and no contact at all.
+    // Truth: closed form, speed zero. A hand that rests in contact; contact that is there again after lost samples,
+    // however fast the hand was; and no contact at all.
     for (const auto method : kMethods) {
         const auto inside = ballOverPlate(method, -1e-3);
         Added resting(inside);
