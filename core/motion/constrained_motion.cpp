@@ -5,12 +5,6 @@
 
 namespace passung::tick {
 
-namespace {
-
-constexpr double kFarther = 4.0;  // per removed overlap: a motion that is bent by more has been sent far away
-
-}  // namespace
-
 std::size_t binOf(const Vec3& gradient, const Vec3& lever) noexcept {
     std::size_t bin = 0;
     for (int i = 0; i < 3; ++i) bin = bin << 2 | (gradient[i] < 0.0 ? 2u : 0u) | (lever[i] < 0.0 ? 1u : 0u);

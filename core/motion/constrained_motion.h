@@ -40,6 +40,7 @@ struct ConstrainedMotion {
 };
 
 inline constexpr int kMaxIterations = 200;
+inline constexpr double kFarther = 4.0;           // per overlap to be removed: a motion bent by more went far away
 inline constexpr double kMotionTolerance = 1e-9;  // [m], of a constraint; 2e-7 of a wanted motion above 5 mm
 
 /// The motion nearest to `wanted` that obeys all contacts, by Gauss's principle of least constraint:
@@ -63,10 +64,11 @@ inline constexpr double kMotionTolerance = 1e-9;  // [m], of a constraint; 2e-7 
 /// from there: the same motion in the end, found in as few steps as contacts changed.
 ///
 /// Rows that ask for more than standing still (b_i > 0: overlap to be removed) may have no common solution, or only one
-/// far away (a part pressed between two walls). Then b_i becomes min(b_i, 0), `relaxed`: u = 0 obeys that always, and
-/// |u - w| ≤ |w|. A sphere that stands for points not looked at (ContactPoint::radius > 0) never asks for more than 0.
-/// Contacts whose field is flatter than kLeastGradient (a medial axis) say nothing about direction and are left out.
-/// Limit cases: no contact violated → wanted. One → the projection onto its plane. rt-safe, bounded.
+/// far away (a part pressed between two walls): |u - w| > |w| + kFarther max b_i, as in a wedge whose walls are nearer
+/// than 29 degrees to each other. Then b_i becomes min(b_i, 0), `relaxed`: u = 0 obeys that always, and |u - w| ≤ |w|.
+/// A sphere that stands for points not looked at (ContactPoint::radius > 0) never asks for more than 0. Contacts whose
+/// field is flatter than kLeastGradient (a medial axis) say nothing about direction and are left out. Limit cases: no
+/// contact violated → wanted. One → the projection onto its plane. rt-safe, bounded.
 class MotionSolver {
 public:
     /// `likely`: places in the manifold of at most six contacts that held a motion like those to come.

@@ -310,6 +310,30 @@ TEST(ConstrainedMotion, IsNotSentFarAwayByAWedgeThatIsALittleTooNarrow) {
     EXPECT_LE((result.u - wanted).norm(), wanted.norm() * (1.0 + 1e-9));
 }
 
+TEST(ConstrainedMotion, LeavesAWedgeByAtMostFourTimesItsOverlap) {
+    // Truth: closed form and the header's limit. Walls at half angle θ to the way out, each overlapped by d: the
+    // nearest motion without overlap goes d / sin θ along that way. It is made up to |w| + 4 d, and not beyond.
+    constexpr double d = 2e-6;
+    for (const double far : {1.5, 3.0, 3.9, 4.1, 5.0, 30.0}) {
+        const double sine = 1.0 / far, cosine = std::sqrt(1.0 - sine * sine);
+        std::vector<ContactPoint> contacts;
+        for (const double side : {1.0, -1.0})
+            contacts.push_back(contactAt(Vec3::Zero(), Vec3(sine, side * cosine, 0.0), kKeepOut - d));
+        const auto result = solve(Motion::Zero(), contacts);
+        EXPECT_TRUE(result.converged);
+        EXPECT_EQ(result.relaxed, far > 4.0) << far;
+        Motion truth = Motion::Zero();
+        truth[0] = far > 4.0 ? 0.0 : far * d;
+        EXPECT_NEAR((result.u - truth).norm(), 0.0, 1e-3 * d) << far;
+        Motion back = Motion::Zero();  // a hand that draws deeper into it by d adds its own |w| to both sides
+        back[0] = -d;
+        EXPECT_EQ(solve(back, contacts).relaxed, far > 4.0) << far;
+        Motion aside = Motion::Zero();  // one that draws along the walls' edge by 2 d makes the limit 6 d
+        aside[2] = 2.0 * d;
+        EXPECT_EQ(solve(aside, contacts).relaxed, far > 6.0) << far;
+    }
+}
+
 TEST(ConstrainedMotion, NeverAsksASphereThatStandsInToMoveOut) {
     // Truth: closed form. A sphere that reaches 3 mm into the obstacle may leave, slide, but not go deeper.
     auto sphere = contactAt(Vec3::Zero(), Vec3::UnitZ(), -3e-3);
