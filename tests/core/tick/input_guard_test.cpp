@@ -238,6 +238,29 @@ TEST(InputGuard, FindsADeviceAgainThatWasCarriedWhileItWasSilent) {
     EXPECT_TRUE(guard.give(at(0)).input_usable);
 }
 
+TEST(InputGuard, HoldsAPoseThatFollowedOneHeldTickButNoneThatFollowedRejectedOnes) {
+    // Truth: the stage's contract. The first sample after rejected ones, which are two bad ticks or more, is taken at
+    // its word: denied by the next it is not held, and three samples that agree move the guard. After no bad tick or
+    // one held tick it is confirmed by the sample before it: held, and 200 are needed. Bad ticks, or missed periods.
+    for (int bad = 0; bad <= 4; ++bad) {
+        for (const bool missed : {false, true}) {
+            SCOPED_TRACE(bad);
+            Guard guard;
+            guard.rest(5);
+            for (int i = 0; i < bad && !missed; ++i) guard.give(stale(at(0)));
+            DeviceReading good{at(0.01)};
+            good.periods = missed ? bad + 1 : 1;
+            const auto taken = guard.give(good);
+            EXPECT_EQ(taken.status, 0u);
+            EXPECT_EQ(taken.sample_periods, bad + 1);
+            const bool confirmed = bad <= 1;
+            EXPECT_EQ(guard.give(at(5)).status, kInputJump | (confirmed ? kInputHeld : kInputRejected));
+            EXPECT_EQ(guard.give(at(5)).status, static_cast<std::uint32_t>(kInputJump | kInputRejected));
+            EXPECT_EQ(guard.give(at(5)).relocated, !confirmed);
+        }
+    }
+}
+
 TEST(InputGuard, TakesTheOtherSignOfAQuaternionForTheSameRotation) {
     // Truth: closed form. q and -q: neither a jump nor less allowed to turn.
     Guard guard;
