@@ -207,11 +207,11 @@ TEST(InputGuard, NeverBelievesJumpsThatDoNotAgree) {
 
 TEST(InputGuard, NeverBelievesAWildPlaceThatReturnsOnceInAWhile) {
     // Truth: invariant. The same place each time: between good samples, or among samples that are no pose with more
-    // ticks between than kLongestSearchGap. 200 ticks reach 4 m.
+    // ticks between than kLongestSearchGap. 1 000 ticks reach 20 m.
     Guard among_good, among_nothing;
     among_good.rest(5);
     among_nothing.rest(5);
-    for (int i = 0; i < 200; ++i) {
+    for (int i = 0; i < 1000; ++i) {
         const bool every_second = i % 2 == 0;
         auto frame = among_good.give(at(every_second ? 900 : 0));
         ASSERT_EQ(frame.status, every_second ? static_cast<std::uint32_t>(kInputJump | kInputHeld) : kStatusOk) << i;
@@ -324,6 +324,58 @@ TEST(InputGuard, IsNeverLockedAndSaysExactlyWhenItActs) {
         const double place = random.uniform(-500, 500);
         for (int i = 1; i < tick::kAgreeingSamplesToMove; ++i) guard.give(at(place));
         ASSERT_TRUE(guard.give(at(place + 0.001)).input_usable) << storm;
+    }
+}
+
+TEST(StartGate, OpensAfterSoManyTicksInARowWithinBothTolerances) {
+    // Truth: the stage's contract, at a start pose that is elsewhere and turned. 10 mm and 0.2 rad in any direction:
+    // just within counts, just beyond or without a usable sample begins anew; after more than hold_ticks ticks it is
+    // open and stays so.
+    tick::TickModel model;
+    model.start_gate = {.position_tolerance = 0.01, .angle_tolerance = 0.2, .hold_ticks = 7};
+    model.X_WG_start = {rotationFromVector(Vec3(0.4, -1.1, 0.3)), Vec3(0.3, -0.2, 0.5)};
+    Random random(4);
+    const auto away = [&](double distance, double angle) {
+        const auto any = [&] { return Vec3(random.normal(), random.normal(), random.normal()).normalized(); };
+        const Pose& X = model.X_WG_start;
+        return Pose{rotationFromVector(angle * any()) * X.q, X.p + distance * any()};
+    };
+    struct Tick {
+        double distance, angle;
+        bool usable;
+    };
+    for (const Tick& other : {Tick{0.0101, 0.0, true}, Tick{0.0, 0.201, true}, Tick{0.5, 0.0, true},
+                              Tick{0.0, 3.0, true}, Tick{0.0, 0.0, false}}) {
+        tick::TickState state;
+        const auto engaged = [&](const Tick& t) {
+            tick::TickFrame frame;
+            frame.X_WH = away(t.distance, t.angle);
+            frame.input_usable = t.usable;
+            tick::runStage<tick::kStartGate>(model, state, frame);
+            return state.engaged;
+        };
+        const Tick within{0.0099, 0.199, true};
+        for (int i = 0; i < 20; ++i) EXPECT_FALSE(engaged(other)) << i;
+        for (int i = 0; i < 7; ++i) EXPECT_FALSE(engaged(within)) << i;
+        EXPECT_FALSE(engaged(other));
+        for (int i = 0; i < 7; ++i) EXPECT_FALSE(engaged(within)) << i;
+        EXPECT_TRUE(engaged(within));
+        EXPECT_TRUE(engaged(other));
+    }
+}
+
+TEST(InputGuard, PutsTheHeldPartWhereTheRegistrationSays) {
+    // Truth: closed form. Base in the world, the handle's way scaled but not its rotation, the part off the handle.
+    Random random(6);
+    for (int i = 0; i < 100; ++i) {
+        const auto any = [&] { return Vec3(random.normal(), random.normal(), random.normal()); };
+        const Pose X_WB{rotationFromVector(any()), any()}, X_BD{rotationFromVector(any()), any()},
+            X_DH{rotationFromVector(any()), any()};
+        const double scale = random.uniform(0.2, 5.0);
+        const Pose X_WH = tick::registeredPose({X_WB, scale, X_DH}, X_BD);
+        const Vec3 point = any();  // of the held part
+        const Vec3 expected = X_WB.p + X_WB.q * (scale * X_BD.p + X_BD.q * (X_DH.p + X_DH.q * point));
+        EXPECT_NEAR((X_WH * point - expected).norm(), 0.0, 1e-12);
     }
 }
 

@@ -477,6 +477,85 @@ TEST(OutputStage, KeepsItsContractUnderHostileInput) {
     }
 }
 
+TEST(OutputStage, SharesOutWhatItSendsAsThePushesShareWhatWasAskedFor) {
+    // Truth: closed form. One factor for all forces and one for all torques, about the handle in base axes: what the
+    // limits leave of the whole they leave of each push, and what has no push of its own, last, is the rest. A device
+    // without torque sends none of anybody. Where nothing is sent nobody has a share.
+    for (const bool turns : {true, false}) {
+        LastStage last;
+        last.model.limits.actuates_torque = turns;
+        last.state.pushes.resize(3);
+        last.state.last_shares.resize(3);
+        Random random(14);
+        int limited = 0;
+        for (int i = 0; i < 500; ++i) {
+            const auto any = [&] { return Vec3(random.normal(), random.normal(), random.normal()); };
+            const Pose X_WH{rotationFromVector(any()), any()};
+            Wrench whole{any(), 0.01 * any()};
+            for (std::size_t k = 0; k < 2; ++k) {
+                Wrench& push = last.state.pushes[k].wrench;
+                push = {4.0 * any(), 0.05 * any()};
+                whole.force += push.force;
+                whole.torque += push.torque;
+            }
+            const bool usable = i % 50 != 49;
+            const auto frame = last.limit(whole, X_WH, 1, usable);
+            const Wrench asked = last.atHandle(whole, X_WH);
+            const double force_left = frame.F_D_B.force.norm() / asked.force.norm();
+            const double torque_left = frame.F_D_B.torque.norm() / asked.torque.norm();
+            EXPECT_EQ(torque_left > 0.0, turns && usable);
+            limited += usable && force_left < 0.999 ? 1 : 0;
+            Wrench rest = frame.F_D_B;
+            for (std::size_t k = 0; k < 2; ++k) {
+                const Wrench push = last.atHandle(last.state.pushes[k].wrench, X_WH);
+                const Wrench& share = last.state.last_shares[k];
+                EXPECT_NEAR((share.force - force_left * push.force).norm(), 0.0, 1e-12);
+                EXPECT_NEAR((share.torque - torque_left * push.torque).norm(), 0.0, 1e-12);
+                rest.force -= share.force;
+                rest.torque -= share.torque;
+            }
+            EXPECT_NEAR((last.state.last_shares[2].force - rest.force).norm(), 0.0, 1e-12);
+            EXPECT_NEAR((last.state.last_shares[2].torque - rest.torque).norm(), 0.0, 1e-12);
+        }
+        EXPECT_GT(limited, 100);
+    }
+}
+
+TEST(OutputStage, DelaysForceTorqueAndPushesBySoManyTicks) {
+    // Truth: closed form, y_k = x_{k-n}, zero before the first; what was asked for without usable input is zero. Up to
+    // the longest delay, several times round the line.
+    for (const int n : {1, 2, 7, model::kMaxDelayTicks}) {
+        tick::TickModel model;
+        model.limits.delay_ticks = n;
+        tick::TickState state;
+        state.pushes.resize(2);
+        state.push_line.resize(2 * (model::kMaxDelayTicks + 1));
+        Random random(2);
+        std::vector<Wrench> asked, pushed;
+        for (int i = 0; i < 3 * n + 20; ++i) {
+            const auto any = [&] { return Vec3(random.normal(), random.normal(), random.normal()); };
+            tick::TickFrame frame;
+            frame.input_usable = i % 5 != 3;
+            frame.F_H_W = {any(), any()};
+            asked.push_back(frame.input_usable ? frame.F_H_W : Wrench{});
+            for (tick::Push& push : state.pushes) {
+                push.wrench = {any(), any()};
+                pushed.push_back(push.wrench);
+            }
+            tick::runStage<tick::kOutputDelay>(model, state, frame);
+            const auto then = static_cast<std::size_t>(std::max(0, i - n));
+            const Wrench expected = i < n ? Wrench{} : asked[then];
+            EXPECT_EQ(frame.F_H_W.force, expected.force) << n << ' ' << i;
+            EXPECT_EQ(frame.F_H_W.torque, expected.torque) << n << ' ' << i;
+            for (std::size_t k = 0; k < 2; ++k) {
+                const Wrench push = i < n ? Wrench{} : pushed[2 * then + k];
+                EXPECT_EQ(state.pushes[k].wrench.force, push.force) << n << ' ' << i;
+                EXPECT_EQ(state.pushes[k].wrench.torque, push.torque) << n << ' ' << i;
+            }
+        }
+    }
+}
+
 TEST(OutputStage, ScalesAHugeWrenchInsteadOfDroppingIt) {
     // Truth: closed form. The square of 1e200 N is not finite; the direction is, and it is kept.
     LastStage last;

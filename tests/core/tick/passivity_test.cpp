@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/base/random.h"
@@ -136,6 +137,81 @@ TEST(EnergyAccount, OfAFastMotionIsOffByLessThanItsBound) {
         force = output.F_D_B.force.z();
     }
     EXPECT_GT(changed, K * 4e-3);
+}
+
+TEST(EnergyAccount, BooksForcesAndTorquesOnTheMotionThatIsCertain) {
+    // Truth: the header's equations, by the readings themselves and not their steps: y, the place nearest to the one
+    // before within half an encoder step of each reading, in every coordinate; E -= F̄ · Δy + T̄ · Δψ with the means of
+    // what was sent since the good sample before. Rotation about one axis, where turns add up. Fast and slow handles,
+    // held and rejected ticks, two pairs that are booked likewise; the velocity is that of the readings.
+    Random random(31);
+    for (int run = 0; run < 40; ++run) {
+        const auto any = [&] { return Vec3(random.normal(), random.normal(), random.normal()); };
+        const auto anyWrench = [&] { return Wrench{any(), 0.1 * any()}; };
+        tick::TickModel model;
+        model.limits.quantum = run % 4 == 0 ? 0.0 : 1e-4;
+        model.limits.rotational_quantum = run % 3 == 0 ? 0.0 : 2e-3;
+        const Vec3 q = Vec3::Constant(0.5 * model.limits.quantum),
+                   r = Vec3::Constant(0.5 * model.limits.rotational_quantum);
+        const double speed = run % 2 == 0 ? 2e-4 : 2e-5;
+        const Vec3 axis = any().normalized();
+        tick::TickState state;
+        state.pairs.resize(2);
+        state.last_shares.resize(2);
+        Vec3 x = any(), x_before = x, y = x, psi = Vec3::Zero();
+        double angle = 0.3, angle_before = angle;
+        bool known = false;
+        int ticks = 0;
+        std::array<Wrench, 3> sum{};  // the whole, and of each pair
+        std::array<double, 3> energy{};
+        for (int i = 0; i < 300; ++i) {
+            state.last_sent = anyWrench();
+            for (Wrench& share : state.last_shares) share = anyWrench();
+            const Wrench sent[] = {state.last_sent, state.last_shares[0], state.last_shares[1]};
+            for (std::size_t k = 0; k < 3; ++k) {
+                sum[k].force += sent[k].force;
+                sum[k].torque += sent[k].torque;
+            }
+            ++ticks;
+            tick::TickFrame frame;
+            const auto kind = random.below(12);
+            frame.input_usable = kind != 0;
+            frame.sample_periods = kind < 3 ? 0 : ticks + static_cast<int>(random.below(3));
+            if (kind >= 3) {
+                x += speed * any();
+                angle += 20.0 * speed * random.normal();
+            }
+            state.X_BD_good = {rotationFromVector(angle * axis), x};
+            tick::runStage<tick::kEnergyAccount>(model, state, frame);
+            if (kind == 0) {
+                known = false;
+            } else if (kind >= 3) {
+                if (known) {
+                    const Vec3 y_now = y.cwiseMin(x + q).cwiseMax(x - q), turn = angle * axis;
+                    const Vec3 psi_now = psi.cwiseMin(turn + r).cwiseMax(turn - r);
+                    for (std::size_t k = 0; k < 3; ++k)
+                        energy[k] -= (sum[k].force.dot(y_now - y) + sum[k].torque.dot(psi_now - psi)) / ticks;
+                    y = y_now;
+                    psi = psi_now;
+                    const double elapsed = 1e-3 * static_cast<double>(frame.sample_periods);
+                    EXPECT_NEAR((state.energy.V_BD.v - (x - x_before) / elapsed).norm(), 0.0, 1e-9);
+                    EXPECT_NEAR((state.energy.V_BD.w - (angle - angle_before) / elapsed * axis).norm(), 0.0, 1e-9);
+                } else {
+                    y = x;
+                    psi = angle * axis;
+                    EXPECT_EQ(state.energy.V_BD.v.norm() + state.energy.V_BD.w.norm(), 0.0) << "not known yet";
+                }
+                x_before = x;
+                angle_before = angle;
+                known = true;
+                ticks = 0;
+                sum = {};
+            }
+            ASSERT_NEAR(frame.energy, energy[0], 1e-12) << i;
+            ASSERT_NEAR(state.pairs[0].taken_in, energy[1], 1e-12) << i;
+            ASSERT_NEAR(state.pairs[1].taken_in, energy[2], 1e-12) << i;
+        }
+    }
 }
 
 TEST(PassivityController, TakesBackWhatWasGivenOut) {
