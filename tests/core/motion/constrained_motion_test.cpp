@@ -222,6 +222,74 @@ TEST(ConstrainedMotion, LosesNothingOfManyContacts) {
     }
 }
 
+TEST(ConstrainedMotion, MeetsItsConditionsWhereverTheBodyLies) {
+    // Truth: closed form (the conditions of Karush, Kuhn and Tucker) with the header's a_i and b_i: a body that lies
+    // and contacts that press off the origin, gradients longer and shorter than 1, overlaps beyond what is kept, of
+    // which the deepest come out first, spheres that ask for nothing, gradients too short to say anything. Cold, warm,
+    // and with the wrong contacts first.
+    Random random(23);
+    int relaxed = 0, held_contacts = 0, deep = 0;
+    for (int trial = 0; trial < 3000; ++trial) {
+        const Vec3 origin = randomVector(random, 0.5);
+        const double rho = random.uniform(0.005, 0.05), keep_out = -2e-6, sunk_out = -5e-6;
+        const std::uint64_t count = 1 + random.below(trial % 10 == 0 ? 120 : 7);
+        ContactManifold manifold(count);
+        for (std::uint64_t i = 0; i < count; ++i) {
+            const double length = random.below(12) == 0 ? random.uniform(0.0, 0.0999) : random.uniform(0.101, 1.4);
+            auto contact = contactAt(origin + randomVector(random, 0.02),
+                                     length * (Vec3::UnitZ() + randomVector(random, 0.7)).normalized(),
+                                     random.uniform(-8e-6, 3e-5));
+            if (random.below(8) == 0) contact.radius = 1e-3;
+            ASSERT_TRUE(manifold.tryPush(contact));
+        }
+        const tick::Surroundings around{manifold, origin, rho, keep_out, sunk_out};
+        const Motion wanted = randomMotion(random, std::pow(10.0, random.uniform(-6.0, -4.0)));
+        std::vector<std::uint32_t> likely;
+        for (int round = 0; round < 3; ++round) {
+            const auto result = tick::constrainMotion(wanted, around, likely);
+            ASSERT_TRUE(result.converged);
+            const auto rowOf = [&](const ContactPoint& c) {
+                Row row;
+                row.a << c.gradient, (c.position - origin).cross(c.gradient) / rho;
+                row.b = (c.phi < keep_out ? sunk_out : keep_out) - c.phi;
+                if (result.relaxed || c.radius > 0.0) row.b = std::min(row.b, 0.0);
+                return row;
+            };
+            for (const ContactPoint& c : manifold) {
+                const Row row = rowOf(c);
+                if (c.gradient.norm() > tick::kLeastGradient) {
+                    ASSERT_GE(row.a.dot(result.u), row.b - 1.001 * tick::kMotionTolerance) << trial;
+                }
+            }
+            Motion pushed = wanted;
+            double size = wanted.norm();
+            for (int i = 0; i < result.active; ++i) {
+                const auto& held = result.held[static_cast<std::size_t>(i)];
+                const ContactPoint& c = manifold[held.contact];
+                const Row row = rowOf(c);
+                ASSERT_GT(c.gradient.norm(), tick::kLeastGradient);
+                ASSERT_GE(held.push, 0.0);
+                ASSERT_NEAR(row.a.dot(result.u), row.b, 1e-9 * (1.0 + size)) << trial;
+                pushed += held.push / c.gradient.norm() * row.a;
+                size += held.push;
+                deep += row.b > 0.0 && c.phi < keep_out ? 1 : 0;
+            }
+            ASSERT_LT((pushed - result.u).norm(), 1e-9 * size) << trial;
+            relaxed += result.relaxed ? 1 : 0;
+            held_contacts += result.active;
+            likely.clear();
+            if (round == 0)
+                for (int i = 0; i < result.active; ++i)
+                    likely.push_back(result.held[static_cast<std::size_t>(i)].contact);
+            else
+                for (int i = 0; i < 6; ++i) likely.push_back(static_cast<std::uint32_t>(random.below(count)));
+        }
+    }
+    EXPECT_GT(relaxed, 30);
+    EXPECT_GT(deep, 300);
+    EXPECT_GT(held_contacts, 3000);
+}
+
 TEST(ConstrainedMotion, BeginsWarmAndEndsWhereItEndsCold) {
     // Truth: invariant (the nearest motion is one). A hand that goes on by 1 % of its pull a tick: begun with what held
     // before, the same motion in fewer steps; begun with any contacts, the same motion.
@@ -325,6 +393,10 @@ TEST(ConstrainedMotion, LeavesAWedgeByAtMostFourTimesItsOverlap) {
         Motion truth = Motion::Zero();
         truth[0] = far > 4.0 ? 0.0 : far * d;
         EXPECT_NEAR((result.u - truth).norm(), 0.0, 1e-3 * d) << far;
+        auto sphere = contactAt(Vec3::Zero(), Vec3::UnitZ(), -3e-3);  // asks for nothing, however deep it reaches
+        sphere.radius = 0.005;
+        contacts.push_back(sphere);
+        EXPECT_EQ(solve(Motion::Zero(), contacts).relaxed, far > 4.0) << far;
         Motion back = Motion::Zero();  // a hand that draws deeper into it by d adds its own |w| to both sides
         back[0] = -d;
         EXPECT_EQ(solve(back, contacts).relaxed, far > 4.0) << far;

@@ -223,6 +223,75 @@ TEST(Friction, HoldsInATightFitOfManyContacts) {
     EXPECT_GT(settled, kRuns / 4);
 }
 
+TEST(Friction, BalancesTheSpringByWhatItTells) {
+    // Truth: closed form, the header's u = w + Σ λ_i a_i + Σ_p B_pᵀ x_p with all that is told: contacts with what they
+    // push, patches with centre, radius and rub; the patches press with what the contacts push with. A body that lies
+    // off the origin, two obstacles of their own coefficients, overlap to be removed.
+    Random random(41);
+    int balanced = 0, rubbing = 0;
+    const Friction friction[] = {{.at_rest = 0.6, .sliding = 0.4}, {.at_rest = 0.2, .sliding = 0.2}};
+    for (int trial = 0; trial < 3000; ++trial) {
+        const auto any = [&](double size) {
+            return Vec3(random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size));
+        };
+        const Vec3 origin = any(0.5);
+        const double rho = random.uniform(0.005, 0.05);
+        std::vector<ContactPoint> contacts;
+        const std::uint64_t count = 1 + random.below(trial % 10 == 0 ? 40 : 5);
+        for (std::uint64_t i = 0; i < count; ++i) {
+            const bool wall = random.below(3) == 0;
+            contacts.push_back(contactAt(origin + any(0.02), wall ? Vec3(Vec3::UnitX()) : Vec3(Vec3::UnitZ())));
+            contacts.back().gradient *= random.uniform(0.8, 1.2);
+            contacts.back().obstacle = wall ? 1 : 0;
+            contacts.back().phi = random.uniform(-3e-6, 2e-6);
+            contacts.back().area = random.uniform(1e-7, 1e-5);
+        }
+        const auto manifold = manifoldOf(contacts);
+        const tick::Surroundings around{manifold, origin, rho, kKeepOut, -2e-6};
+        Motion wanted;
+        wanted << any(2e-4) - Vec3(1e-4, 0, 1e-4), any(1e-4);
+        const RubbedMotion found = tick::constrainWithFriction(wanted, around, friction, {});
+        ASSERT_LE(found.motion.active, 6);
+        Motion sum = wanted;
+        double push = 0.0, pressure = 0.0;
+        for (int i = 0; i < found.motion.active; ++i) {
+            const auto& held = found.motion.held[static_cast<std::size_t>(i)];
+            const ContactPoint& c = contacts[held.contact];
+            const Vec3 force = held.push * c.gradient.normalized(), lever = c.position - origin;
+            sum.head<3>() += force;
+            sum.tail<3>() += lever.cross(force) / rho;
+            push += held.push;
+            ASSERT_GE(held.push, 0.0);
+        }
+        for (int p = 0; p < found.patches.count; ++p) {
+            const auto& patch = found.patches.patch[static_cast<std::size_t>(p)];
+            const Vec3 rubbed = tick::rubAlong(patch), lever = patch.centre - origin;
+            sum.head<3>() += rubbed;
+            sum.tail<3>() += (lever.cross(rubbed) + patch.radius * patch.rub.z() * patch.normal) / rho;
+            pressure += patch.pressure;
+            rubbing += patch.rub.norm() > 1e-9 ? 1 : 0;
+            const Vec3 dx = found.motion.u.head<3>() + (found.motion.u.tail<3>() / rho).cross(lever);
+            const double along = (dx - patch.normal * patch.normal.dot(dx)).norm();
+            const double turning = patch.radius / rho * patch.normal.dot(found.motion.u.tail<3>());
+            ASSERT_NEAR(patch.slip, std::hypot(along, turning), 1e-6 * wanted.norm()) << trial;
+            const Friction& rough = friction[patch.obstacle];
+            ASSERT_LE(patch.rub.norm(), rough.at_rest * patch.pressure * (1.0 + 1e-6) + 1e-9 * wanted.norm());
+        }
+        ASSERT_NEAR(push, pressure, 1e-9 * (push + wanted.norm())) << trial;
+        if (!found.converged || found.sweeps == tick::kRubSweeps) continue;
+        ++balanced;
+        for (const ContactPoint& c : contacts) {
+            const double b = (c.phi < kKeepOut ? -2e-6 : kKeepOut) - c.phi;
+            const double bound = found.motion.relaxed ? std::min(b, 0.0) : b;
+            const Vec3 dx = found.motion.u.head<3>() + (found.motion.u.tail<3>() / rho).cross(c.position - origin);
+            ASSERT_GE(c.gradient.dot(dx), bound - 2e-9 - 1e-6 * wanted.norm()) << trial;
+        }
+        ASSERT_LT((sum - found.motion.u).norm(), 1e-5 * wanted.norm()) << trial;
+    }
+    EXPECT_GT(balanced, 2500);
+    EXPECT_GT(rubbing, 1000);
+}
+
 TEST(Friction, DoesNotCreepAtRest) {
     // Truth: invariant. A disc drawn aside within its cone, 10 000 times from where it came to: no drift.
     const auto contacts = disc(0.005, 0.5e-3);

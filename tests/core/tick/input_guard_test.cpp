@@ -13,6 +13,8 @@ namespace passung {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+// As input_guard.h says in words: three, a fifth of a second, and down to 250 Hz.
+constexpr int kFew = 3, kMany = 200, kLongestGap = 4;
 constexpr std::uint32_t kWhatIsWrong = kDeviceStale | kInputNotAPose | kInputJump;
 constexpr std::uint32_t kWhatIsDone = kInputHeld | kInputRejected;
 
@@ -131,7 +133,7 @@ TEST(InputGuard, ForgetsAWildFirstSampleWithinThreeGoodOnes) {
     for (const Pose& wild : {at(999), at(-3), turned(3)}) {
         Guard guard;
         guard.give(wild);
-        for (int i = 1; i < tick::kAgreeingSamples; ++i) {
+        for (int i = 1; i < kFew; ++i) {
             const auto frame = guard.give(at(0.001 * i));
             EXPECT_FALSE(frame.input_usable) << i;
             EXPECT_EQ(frame.status, static_cast<std::uint32_t>(kInputJump | kInputRejected)) << i;
@@ -148,26 +150,27 @@ TEST(InputGuard, ForgetsAWildFirstSampleWithinThreeGoodOnes) {
 }
 
 TEST(InputGuard, BelievesThreeSamplesThatAgreeAgainstAFirstThatNobodyConfirmed) {
-    // Truth: invariant. Zero, zero, then there; also for a device that has a new sample on every other tick only, and
-    // then moves up to 40 mm from one to the next.
-    for (const bool slow : {false, true}) {
-        Guard guard;
-        guard.give(at(0));
-        std::vector<bool> usable;
-        for (int i = 0; i < 3; ++i) {
-            if (slow && i > 0) usable.push_back(guard.give(stale(at(0))).input_usable);
-            usable.push_back(guard.give(at(5 + (slow ? 0.03 : 0.015) * i)).input_usable);
+    // Truth: invariant. Zero, zero, then there; also for a device that has a new sample on every fourth tick only, and
+    // then moves up to 80 mm from one to the next; not for one that is slower or moves farther.
+    for (const int gap : {1, 2, 3, 4, 5}) {
+        for (const double speed : {0.015, 0.0199, 0.0201}) {
+            Guard guard;
+            guard.give(at(0));
+            for (int i = 0; i <= 2 * gap; ++i) {
+                const bool fresh = i % gap == 0;
+                const auto frame = guard.give(fresh ? DeviceReading{at(5 + speed * i)} : stale(at(0)));
+                const bool believed = i == 2 * gap && gap <= kLongestGap && speed < 0.02;
+                EXPECT_EQ(frame.input_usable, believed) << gap << ' ' << i;
+                EXPECT_EQ(frame.relocated, believed) << gap << ' ' << i;
+            }
         }
-        EXPECT_EQ(usable, slow ? (std::vector<bool>{false, false, false, false, true})
-                               : (std::vector<bool>{false, false, true}));
-        EXPECT_EQ(guard.give(at(5.045)).X_WH.p.x(), 5.045);
     }
 }
 
 TEST(InputGuard, LetsADriverRepeatOneWrongPoseForAFifthOfASecond) {
     // Truth: invariant. 5 m away is out of reach for 250 ticks: zero all the while, and back at once; after
     // kAgreeingSamplesToMove of them the device is believed to be there.
-    for (const int wrong : {2, 3, 10, tick::kAgreeingSamplesToMove - 1}) {
+    for (const int wrong : {2, 3, 10, kMany - 1}) {
         Guard guard;
         guard.rest(5);
         for (int i = 0; i < wrong; ++i) {
@@ -182,7 +185,7 @@ TEST(InputGuard, LetsADriverRepeatOneWrongPoseForAFifthOfASecond) {
     Guard guard;
     guard.rest(5);
     tick::TickFrame frame;
-    for (int i = 0; i < tick::kAgreeingSamplesToMove; ++i) frame = guard.give(at(5));
+    for (int i = 0; i < kMany; ++i) frame = guard.give(at(5));
     EXPECT_TRUE(frame.relocated);
     EXPECT_EQ(frame.X_WH.p.x(), 5.0);
 }
@@ -216,7 +219,7 @@ TEST(InputGuard, NeverBelievesAWildPlaceThatReturnsOnceInAWhile) {
         auto frame = among_good.give(at(every_second ? 900 : 0));
         ASSERT_EQ(frame.status, every_second ? static_cast<std::uint32_t>(kInputJump | kInputHeld) : kStatusOk) << i;
         ASSERT_EQ(frame.X_WH.p.x(), 0.0) << i;
-        frame = among_nothing.give(at(i % (tick::kLongestSearchGap + 1) == 0 ? 900 : kNan));
+        frame = among_nothing.give(at(i % (kLongestGap + 1) == 0 ? 900 : kNan));
         ASSERT_EQ(frame.input_usable, i == 0) << i;
         ASSERT_EQ(frame.X_WH.p.x(), 0.0) << i;
     }
@@ -322,7 +325,7 @@ TEST(InputGuard, IsNeverLockedAndSaysExactlyWhenItActs) {
             }
         }
         const double place = random.uniform(-500, 500);
-        for (int i = 1; i < tick::kAgreeingSamplesToMove; ++i) guard.give(at(place));
+        for (int i = 1; i < kMany; ++i) guard.give(at(place));
         ASSERT_TRUE(guard.give(at(place + 0.001)).input_usable) << storm;
     }
 }

@@ -480,7 +480,7 @@ TEST(OutputStage, KeepsItsContractUnderHostileInput) {
 TEST(OutputStage, SharesOutWhatItSendsAsThePushesShareWhatWasAskedFor) {
     // Truth: closed form. One factor for all forces and one for all torques, about the handle in base axes: what the
     // limits leave of the whole they leave of each push, and what has no push of its own, last, is the rest. A device
-    // without torque sends none of anybody. Where nothing is sent nobody has a share.
+    // without torque sends none of anybody. Without usable input nobody has a share. Pushes that cancel are whole.
     for (const bool turns : {true, false}) {
         LastStage last;
         last.model.limits.actuates_torque = turns;
@@ -518,6 +518,13 @@ TEST(OutputStage, SharesOutWhatItSendsAsThePushesShareWhatWasAskedFor) {
             EXPECT_NEAR((last.state.last_shares[2].torque - rest.torque).norm(), 0.0, 1e-12);
         }
         EXPECT_GT(limited, 100);
+        const Wrench push{Vec3(1, 2, 3), Vec3::Zero()};
+        last.state.pushes[0].wrench = push;
+        last.state.pushes[1].wrench = {-push.force, Vec3::Zero()};
+        last.limit(Wrench{}, Pose{});
+        const Vec3 force = last.atHandle(push, Pose{}).force;
+        EXPECT_NEAR((last.state.last_shares[0].force - force).norm(), 0.0, 1e-12);
+        EXPECT_NEAR((last.state.last_shares[1].force + force).norm(), 0.0, 1e-12);
     }
 }
 
