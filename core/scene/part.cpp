@@ -14,6 +14,7 @@
 #include "core/field/shape_bound.h"
 #include "core/geometry/triangle_tree.h"
 #include "core/scene/mesh_source.h"
+#include "core/scene/number_text.h"
 #include "core/shell/shell_bytes.h"
 
 namespace passung::model {
@@ -33,12 +34,6 @@ constexpr double kFinestShare = 1.0 / 1024;        // chooseCell stops there
 constexpr std::size_t kErrorProbes = 400;
 constexpr int kMostTries = 4000;  // to find so many points
 constexpr double kProbeQuantile = 0.9;
-
-std::string number(const char* format, double value) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), format, value);
-    return text.data();
-}
 
 std::string inMillimetres(double metres) { return number("%.3g mm", 1e3 * metres); }
 
@@ -179,9 +174,9 @@ Result<DistanceField> buildField(const Part& part, const PartNeeds& needs) {
     return DistanceField::build(source, cell, band, accuracy);
 }
 
-/// What decides the bits of a field or shell: the program's text, the geometry, what was asked for.
+/// What decides the bits of a field or shell: their format, the geometry, what was asked for.
 std::string storeKey(const char* what, const Part& part, std::initializer_list<double> values) {
-    std::string key = std::string(what) + " " PASSUNG_MODEL_DIGEST " ";
+    std::string key = std::string(what) + " " + std::to_string(kKeptFormat) + " ";
     const auto append = [&](double value) { key += number("%a ", value); };
     if (part.shape) {
         key += std::string(kindName(*part.shape)) + " ";

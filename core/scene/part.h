@@ -48,8 +48,12 @@ inline constexpr double kMaxShellPoints = 2e6;
 /// because the unit is not what its author meant, and what to change; nothing if they are not. SI units.
 std::optional<std::string> tooManyPoints(const Vec3& size, double area, double spacing);
 
-/// With a store, field and shell are taken from it if they are there for this geometry, these needs and this version of
-/// the program, else kept there; they are the same bits. One that is damaged is built anew, which a note tells.
+/// Of the fields and shells in a store: whoever changes a bit of what is built from the same geometry and needs counts
+/// on. tests/core/scene/kept_format_test.cpp holds the bits of this one.
+inline constexpr int kKeptFormat = 1;
+
+/// With a store, field and shell are taken from it if they are there for this geometry, these needs and kKeptFormat,
+/// else kept there; they are the same bits. One that is damaged is built anew, which a note tells.
 /// Errors: unreadable mesh, invalid shape, a field too large, a shell of too many points.
 Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs, BuildStore* store = nullptr);
 
