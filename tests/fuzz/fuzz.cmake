@@ -1,29 +1,47 @@
-# cmake -DFUZZER=... -DFOLDER=... -DSECONDS=... -P fuzz.cmake: runs a fuzzer over a small corpus of its own. What it
-# finds stays in FOLDER.
+# cmake -DNAME=mesh_import -DFUZZER=... -DFOLDER=... -DSECONDS=... -P fuzz.cmake: runs a fuzzer over a small corpus of
+# its own. What it finds stays in FOLDER.
 cmake_policy(VERSION 3.25)
 file(REMOVE_RECURSE ${FOLDER})
 file(MAKE_DIRECTORY ${FOLDER}/corpus)
 
-# The first letter is the format: see mesh_import_fuzz.cpp. A tetrahedron in each.
-set(vertices "0 0 0\n9 0 0\n0 9 0\n0 0 9\n")
-set(faces "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n")
-set(head "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\n")
-string(APPEND head "property list uchar int vertex_indices\nend_header\n")
-file(WRITE ${FOLDER}/corpus/off "oOFF\n4 4 0\n${vertices}${faces}")
-file(WRITE ${FOLDER}/corpus/obj "wv 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nv 9 9 0\nf 1 3 2\nf 1/2 2//4 4\nf -2 3 4 5\n")
-file(WRITE ${FOLDER}/corpus/ply "pply\nformat ascii 1.0\n${head}${vertices}${faces}")
-file(WRITE ${FOLDER}/corpus/ply_little "pply\nformat binary_little_endian 1.0\n${head}aaaabbbbccccddddeeeeffffgggghhhh")
-file(WRITE ${FOLDER}/corpus/ply_big "pply\nformat binary_big_endian 1.0\n${head}aaaabbbbccccddddeeeeffffgggghhhh")
-set(facet "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 9 0 0\nvertex 0 9 0\nendloop\nendfacet\n")
-file(WRITE ${FOLDER}/corpus/stl "ssolid a\n${facet}${facet}endsolid a\n")
-string(REPEAT "aaaabbbbcc" 15 records)
-file(WRITE ${FOLDER}/corpus/stl_binary "b${records}")
-# For field_bytes_fuzz.cpp.
-file(WRITE ${FOLDER}/corpus/edits "eaaaa1aabb2qrst3")
-file(WRITE ${FOLDER}/corpus/cut "taaaabbbb1")
+if(NAME STREQUAL "mesh_import")
+  # The first letter is the format: see mesh_import_fuzz.cpp. A tetrahedron in each.
+  set(vertices "0 0 0\n9 0 0\n0 9 0\n0 0 9\n")
+  set(faces "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n")
+  set(head "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\n")
+  string(APPEND head "property list uchar int vertex_indices\nend_header\n")
+  file(WRITE ${FOLDER}/corpus/off "oOFF\n4 4 0\n${vertices}${faces}")
+  file(WRITE ${FOLDER}/corpus/obj "wv 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nv 9 9 0\nf 1 3 2\nf 1/2 2//4 4\nf -2 3 4 5\n")
+  file(WRITE ${FOLDER}/corpus/ply "pply\nformat ascii 1.0\n${head}${vertices}${faces}")
+  file(WRITE ${FOLDER}/corpus/ply_little "pply\nformat binary_little_endian 1.0\n${head}aaaabbbbccccddddeeeeffffgggghhhh")
+  file(WRITE ${FOLDER}/corpus/ply_big "pply\nformat binary_big_endian 1.0\n${head}aaaabbbbccccddddeeeeffffgggghhhh")
+  set(facet "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 9 0 0\nvertex 0 9 0\nendloop\nendfacet\n")
+  file(WRITE ${FOLDER}/corpus/stl "ssolid a\n${facet}${facet}endsolid a\n")
+  string(REPEAT "aaaabbbbcc" 15 records)
+  file(WRITE ${FOLDER}/corpus/stl_binary "b${records}")
+elseif(NAME STREQUAL "field_bytes")
+  file(WRITE ${FOLDER}/corpus/edits "eaaaa1aabb2qrst3")
+  file(WRITE ${FOLDER}/corpus/cut "taaaabbbb1")
+elseif(NAME STREQUAL "protocol")
+  file(GLOB studies ${CMAKE_CURRENT_LIST_DIR}/../../protocols/*/study.toml)
+  foreach(study IN LISTS studies)
+    get_filename_component(folder ${study} DIRECTORY)
+    get_filename_component(folder ${folder} NAME)
+    configure_file(${study} ${FOLDER}/corpus/${folder} COPYONLY)
+  endforeach()
+elseif(NAME STREQUAL "trajectory")
+  file(WRITE ${FOLDER}/corpus/path "t_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,0.01,1,0,0,0\n0.5,nan,0,0,1,0,0,0\n1,0,1e-3,0,0,0,1,0\n")
+elseif(NAME STREQUAL "command_socket")
+  file(WRITE ${FOLDER}/corpus/note "note|0|the lamp flickered")
+  file(WRITE ${FOLDER}/corpus/stop "stop|0|")
+  file(WRITE ${FOLDER}/corpus/invalidate "invalidate|12|slipped")
+elseif(NAME STREQUAL "database")
+  file(WRITE ${FOLDER}/corpus/edits "aaaa1aabb2qrst3")
+  file(WRITE ${FOLDER}/corpus/cut "taaaabbbb1")
+endif()
 
 execute_process(
-  COMMAND ${FUZZER} -max_total_time=${SECONDS} -max_len=8192 -timeout=20 -rss_limit_mb=2000 -seed=1
+  COMMAND ${FUZZER} -max_total_time=${SECONDS} -max_len=10000 -timeout=20 -rss_limit_mb=4000 -seed=1
     -print_final_stats=1 -artifact_prefix=${FOLDER}/ ${FOLDER}/corpus
   RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
 string(REGEX MATCHALL "stat::[^\n]*" stats "${output}")
