@@ -10,6 +10,7 @@
 #include "ui/presenter/axis.h"
 #include "ui/window/data_words.h"
 #include "ui/window/registry_words.h"
+#include "ui/window/text.h"
 
 namespace passung::window {
 
@@ -18,8 +19,6 @@ using presenter::Recorded;
 namespace {
 
 using Found = std::shared_ptr<Recorded>;  // shared: through the event loop; null: no database
-
-QString text(const std::string& s) { return QString::fromStdString(s); }
 
 Result<Found> readFrom(const std::string& database, store::Damaged damaged) {
     if (!std::filesystem::exists(database)) return Found();

@@ -1,5 +1,7 @@
 #include "ui/window/form_model.h"
 
+#include "ui/window/text.h"
+
 #include <QtCore/QCoreApplication>
 #include <utility>
 
@@ -11,8 +13,6 @@ using presenter::ItemLook;
 using presenter::RunState;
 
 namespace {
-
-QString text(const std::string& s) { return QString::fromStdString(s); }
 
 QString lookName(ItemLook look) {
     switch (look) {

@@ -4,7 +4,7 @@
 
 namespace passung::window {
 
-using Screen = presenter::ParticipantScreen;
+using presenter::ParticipantScreen;
 using Kind = presenter::TrialBrief::Kind;
 
 Guide::Guide(Desk& desk, Speech& speech) : desk_(desk), speech_(speech) {
@@ -17,7 +17,7 @@ Guide::Guide(Desk& desk, Speech& speech) : desk_(desk), speech_(speech) {
 
 void Guide::look() {
     view_ = presenter::participantView(desk_.run(), !desk_.byMouse());
-    if (view_.screen != Screen::Question) pressed_ = 0;
+    if (view_.screen != ParticipantScreen::Question) pressed_ = 0;
     if (const auto& page = desk_.run().page(); page && reading() && page->number != page_) {
         page_ = page->number;
         page_clock_.start();
@@ -27,8 +27,9 @@ void Guide::look() {
 
 bool Guide::handling() const {
     return desk_.byMouse() && !desk_.run().view().awaits_picture &&
-           (view_.screen == Screen::ToStart || view_.screen == Screen::Task || view_.screen == Screen::Question ||
-            view_.screen == Screen::Idle || view_.screen == Screen::ByHand || view_.screen == Screen::Wait);
+           (view_.screen == ParticipantScreen::ToStart || view_.screen == ParticipantScreen::Task ||
+            view_.screen == ParticipantScreen::Question || view_.screen == ParticipantScreen::Idle ||
+            view_.screen == ParticipantScreen::ByHand || view_.screen == ParticipantScreen::Wait);
 }
 
 QString Guide::taskLine() const {
@@ -50,31 +51,31 @@ QString Guide::taskLine() const {
 
 QString Guide::line() const {
     switch (view_.screen) {
-        case Screen::Form:
-        case Screen::Page:
+        case ParticipantScreen::Form:
+        case ParticipantScreen::Page:
             return {};
-        case Screen::Welcome:
+        case ParticipantScreen::Welcome:
             return speech_(QT_TRANSLATE_NOOP("participant", "Welcome"));
-        case Screen::Wait:
+        case ParticipantScreen::Wait:
             return speech_(QT_TRANSLATE_NOOP("participant", "One moment"));
-        case Screen::ToStart:
+        case ParticipantScreen::ToStart:
             return speech_(QT_TRANSLATE_NOOP("participant", "Move to the start"));
-        case Screen::Task:
+        case ParticipantScreen::Task:
             return taskLine();
-        case Screen::Question:
+        case ParticipantScreen::Question:
             return QString::fromStdString(view_.brief.question);
-        case Screen::ByHand:
+        case ParticipantScreen::ByHand:
             return view_.begun ? speech_(QT_TRANSLATE_NOOP("participant", "Go"))
                                : speech_(QT_TRANSLATE_NOOP("participant", "Take the real part"));
-        case Screen::Idle:
+        case ParticipantScreen::Idle:
             return speech_(QT_TRANSLATE_NOOP("participant", "Leave the device at rest"));
-        case Screen::Rest:
+        case ParticipantScreen::Rest:
             return speech_(QT_TRANSLATE_NOOP("participant", "Rest"));
-        case Screen::Swap:
+        case ParticipantScreen::Swap:
             return speech_(QT_TRANSLATE_NOOP("participant", "Another device"));
-        case Screen::Pause:
+        case ParticipantScreen::Pause:
             return speech_(QT_TRANSLATE_NOOP("participant", "Pause"));
-        case Screen::Thanks:
+        case ParticipantScreen::Thanks:
             break;
     }
     return speech_(QT_TRANSLATE_NOOP("participant", "Thank you!"));
@@ -87,11 +88,11 @@ QString Guide::keysLine() const {
 
 QString Guide::hint() const {
     switch (view_.screen) {
-        case Screen::Welcome:
+        case ParticipantScreen::Welcome:
             return speech_(QT_TRANSLATE_NOOP("participant", "It begins in a moment."));
-        case Screen::ToStart:
+        case ParticipantScreen::ToStart:
             return speech_(QT_TRANSLATE_NOOP("participant", "Hold the part still where its pale image is."));
-        case Screen::Task:
+        case ParticipantScreen::Task:
             if (!desk_.byMouse()) return {};
             if (view_.brief.kind == Kind::Placement)
                 return speech_(QT_TRANSLATE_NOOP("participant",
@@ -101,34 +102,34 @@ QString Guide::hint() const {
                        "participant",
                        "Drag: move · wheel or Shift + drag: depth · right button or Ctrl + drag: turn")) +
                    "\n" + keysLine();
-        case Screen::ByHand:
+        case ParticipantScreen::ByHand:
             if (view_.begun) return speech_(QT_TRANSLATE_NOOP("participant", "The experimenter stops the time."));
             return speech_(QT_TRANSLATE_NOOP("participant", "The experimenter says when to begin."));
-        case Screen::Idle:
+        case ParticipantScreen::Idle:
             return speech_(QT_TRANSLATE_NOOP("participant", "Answer the signals only."));
-        case Screen::Rest:
+        case ParticipantScreen::Rest:
             if (restSeconds() > 0 || !view_.rest) return {};
             if (mayGoOn()) return speech_(QT_TRANSLATE_NOOP("participant", "Go on when you are ready."));
             return speech_(QT_TRANSLATE_NOOP("participant", "It goes on in a moment."));
-        case Screen::Swap:
+        case ParticipantScreen::Swap:
             return speech_(
                 QT_TRANSLATE_NOOP("participant", "The experimenter sets it up. Please keep your hands away from it."));
-        case Screen::Pause:
+        case ParticipantScreen::Pause:
             return speech_(
                 QT_TRANSLATE_NOOP("participant", "You may let go. It goes on when the experimenter says so."));
-        case Screen::Thanks:
+        case ParticipantScreen::Thanks:
             return speech_(QT_TRANSLATE_NOOP("participant", "That was all. Please tell the experimenter."));
-        case Screen::Form:
-        case Screen::Page:
-        case Screen::Wait:
-        case Screen::Question:
+        case ParticipantScreen::Form:
+        case ParticipantScreen::Page:
+        case ParticipantScreen::Wait:
+        case ParticipantScreen::Question:
             break;
     }
     return {};
 }
 
 QString Guide::result() const {
-    const bool shown = view_.screen == Screen::Wait || view_.screen == Screen::ToStart;
+    const bool shown = view_.screen == ParticipantScreen::Wait || view_.screen == ParticipantScreen::ToStart;
     if (!view_.result || !shown) return {};
     const QString how = view_.result->success ? speech_(QT_TRANSLATE_NOOP("participant", "Success"))
                                               : speech_(QT_TRANSLATE_NOOP("participant", "Not this time"));
@@ -155,7 +156,7 @@ QString Guide::goOnWord() const {
 }
 
 QStringList Guide::answers() const {
-    if (view_.screen != Screen::Question) return {};
+    if (view_.screen != ParticipantScreen::Question) return {};
     return {speech_(QT_TRANSLATE_NOOP("participant", "The first")),
             speech_(QT_TRANSLATE_NOOP("participant", "The second"))};
 }

@@ -10,7 +10,7 @@ namespace passung::window {
 
 namespace {
 
-constexpr int kFrame = 16;  // [ms]
+constexpr int kReplayFrame = 16;  // [ms]
 constexpr auto kColumns = static_cast<std::size_t>(presenter::Trace::kSeconds / presenter::Trace::kStretch);
 
 using Read = std::shared_ptr<presenter::Playback>;  // shared: through the event loop
@@ -43,7 +43,7 @@ Result<Read> readFrom(const std::string& database, const std::string& meshes, st
 
 ReplayModel::ReplayModel() {
     timer_.setTimerType(Qt::PreciseTimer);
-    timer_.setInterval(kFrame);
+    timer_.setInterval(kReplayFrame);
     connect(&timer_, &QTimer::timeout, this, [this] {
         if (!playback_ || !playback_->pass(1e-3 * static_cast<double>(since_.restart()))) return;
         look();

@@ -8,6 +8,7 @@
 #include "study/run/files/protocol_files.h"
 #include "study/store/schema/backup.h"
 #include "ui/window/roster_words.h"
+#include "ui/window/text.h"
 
 namespace passung::window {
 
@@ -19,8 +20,6 @@ using protocol::ParticipantKind;
 namespace {
 
 QString said(const char* text) { return QCoreApplication::translate("roster", text); }
-
-QString text(const std::string& s) { return QString::fromStdString(s); }
 
 /// "2026-11-22 05:44" of a time as it is stored.
 QString minute(const std::string& utc) { return text(utc.substr(0, 16)).replace('T', ' '); }

@@ -6,12 +6,11 @@
 #include "study/run/files/protocol_files.h"
 #include "ui/presenter/study_desk.h"
 #include "ui/window/registry_words.h"
+#include "ui/window/text.h"
 
 namespace passung::window {
 
 namespace {
-
-QString text(const std::string& s) { return QString::fromStdString(s); }
 
 QVariantMap cardMap(const presenter::StudyCard& card) {
     QVariantList factors, problems, warnings, questionnaires;

@@ -16,12 +16,11 @@
 #include "ui/window/registry_words.h"
 #include "ui/window/roster_words.h"
 #include "ui/window/study_words.h"
+#include "ui/window/text.h"
 
 namespace passung::window {
 
 namespace {
-
-QString text(const std::string& s) { return QString::fromStdString(s); }
 
 QStringList texts(const std::vector<std::string>& all) {
     QStringList list;
