@@ -56,7 +56,7 @@ function(passung_one_piece target)
 endfunction()
 
 # Rooms in which nothing is hot: they wait for files and people, and -O1 compiles them in half the time.
-set(PASSUNG_COLD_OPTIONS $<$<CONFIG:Release>:-O1>)
+set(PASSUNG_COLD_OPTIONS $<$<NOT:$<CONFIG:Debug>>:-O1>)
 set(PASSUNG_COLD_ROOMS "^(analysis/(export|power)|study/(plan|protocol|run|session|store/(schema|rows|read|write|people|transfer))|ui/.*)$")
 
 # Rooms that the tick runs stay in many pieces, so that an edit there is tested soon.
