@@ -262,6 +262,8 @@ TEST(Friction, BalancesTheSpringByWhatItTells) {
             sum.tail<3>() += lever.cross(force) / rho;
             push += held.push;
             ASSERT_GE(held.push, 0.0);
+            for (int k = 0; k < i; ++k)
+                ASSERT_NE(held.contact, found.motion.held[static_cast<std::size_t>(k)].contact) << "told twice";
         }
         for (int p = 0; p < found.patches.count; ++p) {
             const auto& patch = found.patches.patch[static_cast<std::size_t>(p)];
