@@ -81,7 +81,11 @@ public:
         DeviceReading reading{X_};
         if (random_.below(50) == 0) reading.periods = 1 + static_cast<std::uint32_t>(random_.below(5));
         if (left_ == 0) return reading;
-        --left_;
+        if (--left_ == 0 && random_.below(3) == 0) {  // one good sample, then the next bad time
+            kind_ = random_.below(9);
+            left_ = 1 + random_.below(30);
+            return reading;
+        }
         switch (kind_) {
             case 0:
                 reading.fresh = false;
