@@ -56,8 +56,8 @@ public:
 private:
     Index table(const char* name) const { return json_.find(JsonScan::root(), name); }
     Index firstOf(Index list) const {
-        const bool holds =
-            list != JsonScan::kNone && (json_.kind(list) == JsonScan::Kind::List || json_.kind(list) == JsonScan::Kind::Object);
+        const bool holds = list != JsonScan::kNone &&
+                           (json_.kind(list) == JsonScan::Kind::List || json_.kind(list) == JsonScan::Kind::Object);
         return holds ? json_.first(list) : JsonScan::kNone;
     }
 
@@ -144,13 +144,16 @@ private:
         };
         each("nodes", [&](Index node, const std::string& name) {
             const std::size_t outer = nesting_.number("node " + name);
-            for (Index c = firstOf(json_.find(node, "children")); c != JsonScan::kNone; c = json_.next(c)) add(outer, "node ", c);
-            for (Index m = firstOf(json_.find(node, "meshes")); m != JsonScan::kNone; m = json_.next(m)) add(outer, "mesh ", m);
+            for (Index c = firstOf(json_.find(node, "children")); c != JsonScan::kNone; c = json_.next(c))
+                add(outer, "node ", c);
+            for (Index m = firstOf(json_.find(node, "meshes")); m != JsonScan::kNone; m = json_.next(m))
+                add(outer, "mesh ", m);
             if (const Index mesh = json_.find(node, "mesh"); mesh != JsonScan::kNone) add(outer, "mesh ", mesh);
         });
         const std::size_t all = nesting_.number("all");
         each("scenes", [&](Index scene, const std::string&) {
-            for (Index n = firstOf(json_.find(scene, "nodes")); n != JsonScan::kNone; n = json_.next(n)) add(all, "node ", n);
+            for (Index n = firstOf(json_.find(scene, "nodes")); n != JsonScan::kNone; n = json_.next(n))
+                add(all, "node ", n);
         });
         return nesting_.tooMuch(all);
     }

@@ -9,10 +9,10 @@ namespace passung::model {
 namespace {
 
 constexpr std::size_t kSampledTriangles = 500;
-constexpr double kBeside = 1e-5;       // of the part's size: how far beside a triangle the winding number is asked for
-constexpr double kFanBeside = 1e-3;    // the same, of the height of a fan's triangle
-constexpr double kFlatTriangle = 1e-9;         // height over longest edge: no area that a winding number could tell
-constexpr double kHalfwayBand = 0.25;  // a winding number this near to ½ lies between inside and outside
+constexpr double kBeside = 1e-5;        // of the part's size: how far beside a triangle the winding number is asked for
+constexpr double kFanBeside = 1e-3;     // the same, of the height of a fan's triangle
+constexpr double kFlatTriangle = 1e-9;  // height over longest edge: no area that a winding number could tell
+constexpr double kHalfwayBand = 0.25;   // a winding number this near to ½ lies between inside and outside
 constexpr std::uint32_t kNowhere = ~0u;
 
 using Loop = std::vector<std::uint32_t>;

@@ -15,10 +15,10 @@ namespace {
 constexpr std::size_t kLargePatches = 64;
 constexpr std::size_t kProbes = 24;  // triangles asked for a large patch, at most
 constexpr std::size_t kFewProbes = 3;
-constexpr double kAway = 0.2;     // of the root of a patch's area: how far before and behind it the others are asked
+constexpr double kAway = 0.2;  // of the root of a patch's area: how far before and behind it the others are asked
 constexpr double kBesidePatch = 1e-4;  // the same, for what it says itself
-constexpr double kDoubt = 0.05;   // evidence below this may be an error of the winding number
-constexpr double kClear = 0.05;   // evidence above this decides the order
+constexpr double kDoubt = 0.05;        // evidence below this may be an error of the winding number
+constexpr double kClear = 0.05;        // evidence above this decides the order
 constexpr double kInside = 0.5;
 constexpr double kBounds = 0.5;  // |B| above this: the patch bounds a solid of its own
 constexpr int kSweeps = 4;

@@ -12,7 +12,6 @@ using std::numbers::pi;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-
 double squaredExcess(double ex, double ey) { return square(std::max(ex, 0.0)) + square(std::max(ey, 0.0)); }
 
 /// Squared distance to the edge where the slopes of two perpendicular sides meet: (x0 + t, y0 + t, t), low ≤ t ≤ high.

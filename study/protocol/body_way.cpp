@@ -19,7 +19,7 @@ constexpr int kMostCells = 48;           // along the longest side of the grid
 constexpr int kMostSteps = 6;            // of cells around one that are taken with it
 constexpr int kDepths = 32;              // of a passage
 constexpr int kPieces = 200;             // of a line, equally long
-constexpr double kSumRounding = 1e-9;       // of a sum of lengths
+constexpr double kSumRounding = 1e-9;    // of a sum of lengths
 
 /// Obstacles as one distance.
 class Obstacles {

@@ -40,7 +40,8 @@ std::string described(const ThinFeature& feature) {
                                   ? ""
                                   : fmt::format(" at {:.3g}, {:.3g}, {:.3g} mm of its frame", at.x(), at.y(), at.z());
     const char* article = feature.kind == FeatureKind::Edge ? "an" : "a";
-    return fmt::format("{} {} {} thick{}", article, model::featureName(feature.kind), roundMillimetres(feature.size), place);
+    return fmt::format("{} {} {} thick{}", article, model::featureName(feature.kind), roundMillimetres(feature.size),
+                       place);
 }
 
 double fieldRadius(const model::ContactSpec& contact) {

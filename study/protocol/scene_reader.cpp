@@ -91,8 +91,9 @@ struct ResolvedStiffness {
 
 /// `otherwise`: the stiffness on a device that is named but not known.
 /// `scaled`: said of the maximum, may be empty.
-ResolvedStiffness resolveStiffness(const TableReader& read, const char* key, double maximum, const DeviceDescription* device,
-                           bool device_named, double otherwise, const std::string& scaled) {
+ResolvedStiffness resolveStiffness(const TableReader& read, const char* key, double maximum,
+                                   const DeviceDescription* device, bool device_named, double otherwise,
+                                   const std::string& scaled) {
     const Node* node = read.node(key);
     if (device_named && device == nullptr) return {otherwise, 1.0};
     const bool limited = maximum > 0.0;

@@ -11,8 +11,8 @@ namespace passung::protocol {
 namespace {
 
 constexpr double kStepsPerSize = 24.0;        // points are this part of the longest side apart
-constexpr double kChordOfPoints = 0.005;       // of the triangles that carry the points
-constexpr double kSurfaceRounding = 1e-9;           // [m]: what rounding leaves of a point on the surface
+constexpr double kChordOfPoints = 0.005;      // of the triangles that carry the points
+constexpr double kSurfaceRounding = 1e-9;     // [m]: what rounding leaves of a point on the surface
 constexpr std::size_t kManyTriangles = 4000;  // of a mesh: then its corners stand for it
 constexpr std::size_t kMostCorners = 6000;
 

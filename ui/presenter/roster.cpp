@@ -22,9 +22,7 @@ Standing standingOf(const store::ParticipantRow& row) {
 
 SessionEnd stateNamed(const std::optional<std::string>& end) {
     if (!end) return SessionEnd::Open;
-    return *end == "complete"  ? SessionEnd::Complete
-           : *end == "crashed" ? SessionEnd::Crashed
-                               : SessionEnd::Aborted;
+    return *end == "complete" ? SessionEnd::Complete : *end == "crashed" ? SessionEnd::Crashed : SessionEnd::Aborted;
 }
 
 Decision decisionNamed(const std::string& decision) {
@@ -120,8 +118,8 @@ std::int64_t RosterPerson::attempts() const {
 }
 
 int RosterPerson::complete() const {
-    return static_cast<int>(std::count_if(sessions.begin(), sessions.end(),
-                                          [](const auto& s) { return s.state == SessionEnd::Complete; }));
+    return static_cast<int>(
+        std::count_if(sessions.begin(), sessions.end(), [](const auto& s) { return s.state == SessionEnd::Complete; }));
 }
 
 int RosterPerson::interrupted() const { return static_cast<int>(sessions.size()) - complete(); }
