@@ -26,7 +26,7 @@ std::vector<Place> placesOf(const Allocation& allocation, std::string_view strat
 
 std::vector<std::size_t> rowsOf(const Design& design) {
     std::vector<std::size_t> rows;
-    for (const Wheel& wheel : wheelsOf(design)) rows.push_back(rowsOf(wheel));
+    for (const CounterbalancingFactor& balancing : counterbalancingFactorsOf(design)) rows.push_back(rowsOf(balancing));
     return rows;
 }
 

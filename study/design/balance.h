@@ -10,15 +10,15 @@
 namespace passung::design {
 
 /// How even the orders of some slots are in one thing that takes turns.
-struct WheelBalance {
-    Wheel wheel;
-    std::size_t rows = 0;  // of the wheel's list of orders
+struct FactorBalance {
+    CounterbalancingFactor balancing;
+    std::size_t rows = 0;  // of the counterbalancing factor's list of orders
     Balance counts;        // of an assignment `positions` alone, which are its pairs
     bool even = false;
 };
 
 /// Of everything that takes turns, for participants with these slots; none without slots.
-std::vector<WheelBalance> balancesOf(const Design& design, std::span<const std::size_t> slots);
+std::vector<FactorBalance> balancesOf(const Design& design, std::span<const std::size_t> slots);
 
 /// How many participants show all rows in all groups equally often.
 std::size_t evenNumber(const Design& design);

@@ -62,18 +62,19 @@ Cells cellsOf(const BlockPlan& block, const Cells& cells) {
     return chosen;
 }
 
-std::size_t rowsOf(const Wheel& wheel) {
-    if (wheel.items < 2) return 1;
-    if (wheel.what == Wheel::What::Assignment) return wheel.items;
-    return wheel.order == Order::Williams ? williamsRows(wheel.items) : permutationCount(wheel.items);
+std::size_t rowsOf(const CounterbalancingFactor& balancing) {
+    if (balancing.items < 2) return 1;
+    if (balancing.what == CounterbalancingFactor::What::Assignment) return balancing.items;
+    return balancing.order == Order::Williams ? williamsRows(balancing.items) : permutationCount(balancing.items);
 }
 
-std::vector<Wheel> wheelsOf(const Design& design) {
-    std::vector<Wheel> wheels;
-    const auto add = [&](const Wheel& wheel) {
-        if (std::find(wheels.begin(), wheels.end(), wheel) == wheels.end()) wheels.push_back(wheel);
+std::vector<CounterbalancingFactor> counterbalancingFactorsOf(const Design& design) {
+    std::vector<CounterbalancingFactor> balancings;
+    const auto add = [&](const CounterbalancingFactor& balancing) {
+        if (std::find(balancings.begin(), balancings.end(), balancing) == balancings.end())
+            balancings.push_back(balancing);
     };
-    if (design.conditions.empty()) return wheels;
+    if (design.conditions.empty()) return balancings;
     // Every group sees equally many; which conditions these are does not depend on the slot.
     const auto group = groupsOf(design).front();
     for (const BlockPlan& block : design.blocks) {
@@ -85,26 +86,26 @@ std::vector<Wheel> wheelsOf(const Design& design) {
         }
         const std::size_t cells = withinCells(design, group, false, &block).size();
         if (block.blocked && isCounterbalanced(block.blocked_order))
-            add({Wheel::What::Levels, block.blocked, block.blocked_order, parts.size()});
+            add({CounterbalancingFactor::What::Levels, block.blocked, block.blocked_order, parts.size()});
         if (isCounterbalanced(block.order))
-            add({Wheel::What::Conditions, block.blocked, block.order,
+            add({CounterbalancingFactor::What::Conditions, block.blocked, block.order,
                  block.blocked && !parts.empty() ? cells / parts.size() : cells});
     }
     for (std::size_t f = 0; f < design.factors.size(); ++f)
         if (design.factors[f].kind == FactorKind::Nuisance)
-            add({Wheel::What::Assignment, f, Order::Listed, design.factors[f].levels});
-    return wheels;
+            add({CounterbalancingFactor::What::Assignment, f, Order::Listed, design.factors[f].levels});
+    return balancings;
 }
 
 std::size_t sequencesOf(const Design& design) {
     std::size_t product = 1;
-    for (const Wheel& wheel : wheelsOf(design)) product *= rowsOf(wheel);
+    for (const CounterbalancingFactor& balancing : counterbalancingFactorsOf(design)) product *= rowsOf(balancing);
     return product;
 }
 
-std::size_t rowOf(const std::vector<Wheel>& wheels, std::size_t which, std::size_t slot) {
-    for (std::size_t i = 0; i < which; ++i) slot /= rowsOf(wheels[i]);
-    return slot % rowsOf(wheels[which]);
+std::size_t rowOf(const std::vector<CounterbalancingFactor>& balancings, std::size_t which, std::size_t slot) {
+    for (std::size_t i = 0; i < which; ++i) slot /= rowsOf(balancings[i]);
+    return slot % rowsOf(balancings[which]);
 }
 
 std::vector<std::vector<std::size_t>> groupsOf(const Design& design) {
@@ -129,16 +130,17 @@ std::vector<std::size_t> relabelling(std::size_t items, std::string_view study, 
 Cells cellsOf(const Design& design, std::size_t group, std::size_t slot, std::string_view study, std::uint64_t seed) {
     const auto groups = groupsOf(design);
     PASSUNG_ASSERT(group < groups.size());
-    const auto wheels = wheelsOf(design);
+    const auto balancings = counterbalancingFactorsOf(design);
     struct Assignment {
         std::vector<std::size_t> labels;
         std::size_t row;
     };
     std::vector<Assignment> assignments;  // one per nuisance factor
-    for (std::size_t w = 0; w < wheels.size(); ++w)
-        if (wheels[w].what == Wheel::What::Assignment)
-            assignments.push_back({relabelling(wheels[w].items, study, design.factors[*wheels[w].factor].name, seed),
-                                   rowOf(wheels, w, slot)});
+    for (std::size_t w = 0; w < balancings.size(); ++w)
+        if (balancings[w].what == CounterbalancingFactor::What::Assignment)
+            assignments.push_back(
+                {relabelling(balancings[w].items, study, design.factors[*balancings[w].factor].name, seed),
+                 rowOf(balancings, w, slot)});
     const auto choose = [&](bool catches) {
         std::vector<std::size_t> chosen;
         const auto cells = withinCells(design, groups[group], catches);

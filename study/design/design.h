@@ -77,7 +77,7 @@ struct Design {
 };
 
 /// Something that takes turns over the participants. Row r of it goes to the slots whose digit is r, see rowOf().
-struct Wheel {
+struct CounterbalancingFactor {
     enum class What {
         Conditions,  // the order of a pass
         Levels,      // the order of a blocked factor's levels
@@ -88,20 +88,20 @@ struct Wheel {
     Order order = Order::Williams;
     std::size_t items = 0;
 
-    friend bool operator==(const Wheel&, const Wheel&) = default;
+    friend bool operator==(const CounterbalancingFactor&, const CounterbalancingFactor&) = default;
 };
 
-std::size_t rowsOf(const Wheel& wheel);
+std::size_t rowsOf(const CounterbalancingFactor& balancing);
 
 /// Each once, in the order of the blocks that need them; assignments last.
-std::vector<Wheel> wheelsOf(const Design& design);
+std::vector<CounterbalancingFactor> counterbalancingFactorsOf(const Design& design);
 
-/// How many slots show every combination of all wheels' rows: their product.
+/// How many slots show every combination of all counterbalancing factors' rows: their product.
 std::size_t sequencesOf(const Design& design);
 
-/// The row of wheel `which` for a slot: mixed radix, the first wheel turning fastest. Never slot mod rows for each of
-/// them: rows with a common divisor would confound what they balance.
-std::size_t rowOf(const std::vector<Wheel>& wheels, std::size_t which, std::size_t slot);
+/// The row of counterbalancing factor `which` for a slot: mixed radix, the first counterbalancing factor turning
+/// fastest. Never slot mod rows for each of them: rows with a common divisor would confound what they balance.
+std::size_t rowOf(const std::vector<CounterbalancingFactor>& balancings, std::size_t which, std::size_t slot);
 
 /// The combinations of levels of the between factors, in the order of the conditions; one empty one without such.
 std::vector<std::vector<std::size_t>> groupsOf(const Design& design);

@@ -23,33 +23,36 @@ namespace {
 /// only for n = 2. Odd n: forward in the first n rows, which end with r + (n + 1)/2, backward in the reversed ones,
 /// which begin with r + (n + 1)/2 and end with r; after n passes the other half. No condition follows itself inside a
 /// half.
-std::size_t rowOfPass(const Wheel& wheel, std::size_t row, std::size_t pass) {
-    const std::size_t n = wheel.items, rows = rowsOf(wheel);
-    if (wheel.order != Order::Williams || rows == n) return (row + pass) % rows;
+std::size_t rowOfPass(const CounterbalancingFactor& balancing, std::size_t row, std::size_t pass) {
+    const std::size_t n = balancing.items, rows = rowsOf(balancing);
+    if (balancing.order != Order::Williams || rows == n) return (row + pass) % rows;
     const std::size_t half = (row / n + pass / n) % 2, step = pass % n;
     return half * n + (row % n + (half == 0 ? step : n - step)) % n;
 }
 
-/// Row of a counterbalanced wheel in a pass as numbers 0 … items-1.
-std::vector<std::size_t> turnOf(const Design& design, const Wheel& wheel, const SessionKey& key, std::size_t pass) {
-    const auto wheels = wheelsOf(design);
-    const auto which = static_cast<std::size_t>(std::find(wheels.begin(), wheels.end(), wheel) - wheels.begin());
-    PASSUNG_ASSERT(which < wheels.size());
-    const std::size_t row = rowOfPass(wheel, rowOf(wheels, which, key.slot), pass);
-    if (wheel.items < 2) return std::vector<std::size_t>(wheel.items, 0);
-    if (wheel.order == Order::Permutations) return permutation(wheel.items, row);
-    const auto phase = wheel.what == Wheel::What::Levels ? design.factors[*wheel.factor].name : std::string();
-    const auto labels = relabelling(wheel.items, key.study, phase, key.seed);
-    auto turn = williamsSquare(wheel.items)[row];
+/// Row of a counterbalanced counterbalancing factor in a pass as numbers 0 … items-1.
+std::vector<std::size_t> turnOf(const Design& design, const CounterbalancingFactor& balancing, const SessionKey& key,
+                                std::size_t pass) {
+    const auto balancings = counterbalancingFactorsOf(design);
+    const auto which =
+        static_cast<std::size_t>(std::find(balancings.begin(), balancings.end(), balancing) - balancings.begin());
+    PASSUNG_ASSERT(which < balancings.size());
+    const std::size_t row = rowOfPass(balancing, rowOf(balancings, which, key.slot), pass);
+    if (balancing.items < 2) return std::vector<std::size_t>(balancing.items, 0);
+    if (balancing.order == Order::Permutations) return permutation(balancing.items, row);
+    const auto phase =
+        balancing.what == CounterbalancingFactor::What::Levels ? design.factors[*balancing.factor].name : std::string();
+    const auto labels = relabelling(balancing.items, key.study, phase, key.seed);
+    auto turn = williamsSquare(balancing.items)[row];
     for (auto& entry : turn) entry = labels[entry];
     return turn;
 }
 
-/// 0 … items-1 in the order of the wheel in a pass, from 0; of other orders as listed.
-std::vector<std::size_t> arrange(const Design& design, const Wheel& wheel, const SessionKey& key,
+/// 0 … items-1 in the order of the counterbalancing factor in a pass, from 0; of other orders as listed.
+std::vector<std::size_t> arrange(const Design& design, const CounterbalancingFactor& balancing, const SessionKey& key,
                                  std::size_t pass = 0) {
-    if (isCounterbalanced(wheel.order)) return turnOf(design, wheel, key, pass);
-    std::vector<std::size_t> listed(wheel.items);
+    if (isCounterbalanced(balancing.order)) return turnOf(design, balancing, key, pass);
+    std::vector<std::size_t> listed(balancing.items);
     std::iota(listed.begin(), listed.end(), std::size_t{0});
     return listed;
 }
@@ -87,7 +90,8 @@ std::vector<BlockPool> poolsOf(const Design& design, const BlockPlan& block, con
     const auto catch_parts = partedBy(design, block.blocked, cells.catches);
     std::vector<std::size_t> levels{0};
     if (block.blocked)
-        levels = arrange(design, {Wheel::What::Levels, block.blocked, block.blocked_order, parts.size()}, key);
+        levels = arrange(design,
+                         {CounterbalancingFactor::What::Levels, block.blocked, block.blocked_order, parts.size()}, key);
     if (block.blocked && block.blocked_order == Order::Random) {
         Random random(streamSeed(key.study, key.participant, block.name, "blocked_order", key.seed));
         shuffle(levels, random);
@@ -98,8 +102,8 @@ std::vector<BlockPool> poolsOf(const Design& design, const BlockPlan& block, con
         const auto passOf = [&](int repetition) {
             std::vector<std::size_t> pass;
             for (const std::size_t i :
-                 arrange(design, {Wheel::What::Conditions, block.blocked, block.order, part.size()}, key,
-                         static_cast<std::size_t>(repetition - 1)))
+                 arrange(design, {CounterbalancingFactor::What::Conditions, block.blocked, block.order, part.size()},
+                         key, static_cast<std::size_t>(repetition - 1)))
                 pass.push_back(part[i]);
             return pass;
         };

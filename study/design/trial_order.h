@@ -16,9 +16,9 @@ struct SessionKey {
     std::string_view study;        // name
     std::uint64_t seed = 0;        // of the study
     std::string_view participant;  // code
-    std::size_t slot = 0;          // running number in the group, from 0: decides the rows of all wheels
-    std::size_t group = 0;         // index into groupsOf()
-    int session = 1;               // of the participant, from 1
+    std::size_t slot = 0;   // running number in the group, from 0: decides the rows of all counterbalancing factors
+    std::size_t group = 0;  // index into groupsOf()
+    int session = 1;        // of the participant, from 1
 };
 
 /// One trial of a session. Indices count from 0, repetitions from 1.

@@ -126,9 +126,10 @@ std::string orderText(const std::vector<OrderedBlock>& order) {
 
 /// The design is one Williams square for everybody.
 bool isPlainSquare(const design::Design& design) {
-    const auto wheels = design::wheelsOf(design);
-    return wheels.size() == 1 && wheels[0].what == design::Wheel::What::Conditions && !wheels[0].factor &&
-           wheels[0].order == design::Order::Williams && design::groupsOf(design).size() == 1;
+    const auto balancings = design::counterbalancingFactorsOf(design);
+    return balancings.size() == 1 && balancings[0].what == design::CounterbalancingFactor::What::Conditions &&
+           !balancings[0].factor && balancings[0].order == design::Order::Williams &&
+           design::groupsOf(design).size() == 1;
 }
 
 }  // namespace
@@ -191,7 +192,7 @@ Result<std::string> describePlan(const protocol::StudyPlan& plan, int participan
     }
     const auto design = protocol::designOf(plan);
     text += stations == 1 && !places.empty() && isPlainSquare(design)
-                ? design::balanceSentence(places.size(), design::wheelsOf(design)[0].items) + ".\n"
+                ? design::balanceSentence(places.size(), design::counterbalancingFactorsOf(design)[0].items) + ".\n"
                 : describeBalance(plan, places);
 
     text += fmt::format("\nDuration\n  {}{} a participant,", mayEndEarly(plan) ? "at most " : "",

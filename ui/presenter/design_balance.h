@@ -13,7 +13,7 @@ namespace passung::presenter {
 struct GroupBalance {
     std::string group;
     std::size_t participants = 0;
-    std::vector<design::WheelBalance> wheels;
+    std::vector<design::FactorBalance> balancings;
 };
 
 /// How even a design is for those who have these places of it.

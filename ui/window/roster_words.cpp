@@ -19,23 +19,23 @@ QString said(const char* text) { return QCoreApplication::translate("roster", te
 
 QString range(const design::CountRange& range) { return QString::fromStdString(design::rangeText(range)); }
 
-QString wheelName(const design::WheelBalance& of, const std::vector<std::string>& factors) {
-    const QString factor = of.wheel.factor ? QString::fromStdString(factors[*of.wheel.factor]) : QString();
-    switch (of.wheel.what) {
-        case design::Wheel::What::Conditions:
+QString factorName(const design::FactorBalance& of, const std::vector<std::string>& factors) {
+    const QString factor = of.balancing.factor ? QString::fromStdString(factors[*of.balancing.factor]) : QString();
+    switch (of.balancing.what) {
+        case design::CounterbalancingFactor::What::Conditions:
             return factor.isEmpty() ? said(QT_TRANSLATE_NOOP("roster", "Conditions"))
                                     : said(QT_TRANSLATE_NOOP("roster", "Conditions within %1")).arg(factor);
-        case design::Wheel::What::Levels:
+        case design::CounterbalancingFactor::What::Levels:
             return said(QT_TRANSLATE_NOOP("roster", "Levels of %1")).arg(factor);
-        case design::Wheel::What::Assignment:
+        case design::CounterbalancingFactor::What::Assignment:
             break;
     }
     return said(QT_TRANSLATE_NOOP("roster", "Assignment of %1")).arg(factor);
 }
 
-QString balanceLine(const design::WheelBalance& of, const std::vector<std::string>& factors) {
-    const bool assigned = of.wheel.what == design::Wheel::What::Assignment;
-    const QString name = wheelName(of, factors);
+QString balanceLine(const design::FactorBalance& of, const std::vector<std::string>& factors) {
+    const bool assigned = of.balancing.what == design::CounterbalancingFactor::What::Assignment;
+    const QString name = factorName(of, factors);
     const QString counts =
         assigned ? said(QT_TRANSLATE_NOOP("roster", "%1 (%2 rows): each pair %3 times"))
                        .arg(name)
@@ -231,7 +231,7 @@ QStringList balanceLines(const presenter::DesignBalance& balance) {
             lines << said(QT_TRANSLATE_NOOP("roster", "Group %1, participants: %2"))
                          .arg(QString::fromStdString(group.group))
                          .arg(group.participants);
-        for (const auto& wheel : group.wheels) lines << balanceLine(wheel, balance.factors);
+        for (const auto& balancing : group.balancings) lines << balanceLine(balancing, balance.factors);
     }
     if (balance.even_number > 1)
         lines << said(QT_TRANSLATE_NOOP("roster", "Even with multiples of %1 participants; %2 are planned."))

@@ -85,10 +85,10 @@ TEST(Design, NestedSquaresAreNotConfounded) {
         for (const std::size_t inner : {2u, 3u, 4u, 6u}) {
             const auto design = crossed({{"device", FactorKind::Within, outer}, {"method", FactorKind::Within, inner}},
                                         {blockedBy(0, Order::Williams)});
-            const auto wheels = wheelsOf(design);
+            const auto balancings = counterbalancingFactorsOf(design);
             std::set<std::pair<std::size_t, std::size_t>> pairs;
             for (std::size_t slot = 0; slot < sequencesOf(design); ++slot)
-                pairs.insert({rowOf(wheels, 0, slot), rowOf(wheels, 1, slot)});
+                pairs.insert({rowOf(balancings, 0, slot), rowOf(balancings, 1, slot)});
             EXPECT_EQ(pairs.size(), williamsRows(outer) * williamsRows(inner)) << outer << ' ' << inner;
             EXPECT_EQ(pairs.size(), sequencesOf(design));
         }

@@ -167,10 +167,10 @@ TEST_F(RosterOf, ShowsThePlacesOfTheDesignAndHowEvenTheyAre) {
                   i);
         EXPECT_EQ(all.balance.even_number, 4u);
         ASSERT_EQ(all.balance.groups.size(), 1u);
-        ASSERT_EQ(all.balance.groups[0].wheels.size(), 1u);
-        EXPECT_EQ(all.balance.groups[0].wheels[0].even, i == 4);
-        EXPECT_EQ(all.balance.groups[0].wheels[0].counts.positions.high, 1);
-        EXPECT_EQ(all.balance.groups[0].wheels[0].counts.positions.low, i == 4 ? 1 : 0);
+        ASSERT_EQ(all.balance.groups[0].balancings.size(), 1u);
+        EXPECT_EQ(all.balance.groups[0].balancings[0].even, i == 4);
+        EXPECT_EQ(all.balance.groups[0].balancings[0].counts.positions.high, 1);
+        EXPECT_EQ(all.balance.groups[0].balancings[0].counts.positions.low, i == 4 ? 1 : 0);
     }
 }
 
