@@ -6,20 +6,20 @@ RowLayout {
     id: form
     property bool pilot: false
     property bool typed: false // the code is somebody's own
-    readonly property string why: roster.known ? (roster.people, roster.whyNotEnrol(code.text, pilot)) : ""
+    readonly property string why: participants.known ? (participants.people, participants.whyNotEnrol(code.text, pilot)) : ""
     spacing: 12
     height: look.scale * 38
 
     function propose() {
         typed = false;
-        code.text = roster.proposedCode(pilot);
+        code.text = participants.proposedCode(pilot);
     }
 
     Connections {
-        target: roster
+        target: participants
         function onChanged() {
             if (!form.typed)
-                code.text = roster.proposedCode(form.pilot);
+                code.text = participants.proposedCode(form.pilot);
         }
     }
     Component.onCompleted: propose()
@@ -49,9 +49,9 @@ RowLayout {
         objectName: "enrol"
         text: qsTr("Enrol")
         kind: "main"
-        why: !roster.known || roster.busy ? qsTr("Reading …") : form.why
+        why: !participants.known || participants.busy ? qsTr("Reading …") : form.why
         onClicked: if (why === "") {
-            roster.enrol(code.text, form.pilot);
+            participants.enrol(code.text, form.pilot);
             form.typed = false;
         }
     }

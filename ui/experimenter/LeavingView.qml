@@ -5,7 +5,7 @@ import QtQuick.Layouts
 Item {
     id: view
     property int scope: 0
-    readonly property var state_: roster.leaving
+    readonly property var state_: participants.leaving
     onVisibleChanged: if (visible) {
         scope = 0;
         reason.clear();
@@ -142,9 +142,9 @@ Item {
             visible: !view.state_.confirms
             tall: true
             text: qsTr("Continue …")
-            why: view.state_.open ? roster.whyNotChoose(view.scope, reason.text) : ""
+            why: view.state_.open ? participants.whyNotChoose(view.scope, reason.text) : ""
             onClicked: {
-                roster.chooseLeaving(view.scope, reason.text);
+                participants.chooseLeaving(view.scope, reason.text);
                 back.forceActiveFocus(Qt.TabFocusReason);
             }
         }
@@ -156,15 +156,15 @@ Item {
             tall: true
             kind: "stop"
             text: view.state_.erases ? qsTr("Erase for good") : qsTr("Yes, end their part")
-            why: view.state_.confirms ? roster.whyNotConfirm(typed.text) : ""
-            onClicked: roster.confirmLeaving(typed.text, backupToo.checked)
+            why: view.state_.confirms ? participants.whyNotConfirm(typed.text) : ""
+            onClicked: participants.confirmLeaving(typed.text, backupToo.checked)
         }
         ActionButton {
             id: back
             objectName: "leavingBack"
             Layout.fillWidth: true
             text: view.state_.confirms ? qsTr("Back") : qsTr("Cancel")
-            onClicked: view.state_.confirms ? roster.backLeaving() : roster.closeLeaving()
+            onClicked: view.state_.confirms ? participants.backLeaving() : participants.closeLeaving()
         }
     }
 }

@@ -9,8 +9,8 @@ ColumnLayout {
 
     StudyBar {
         Layout.fillWidth: true
-        told: roster.told
-        failed: roster.failed
+        told: participants.told
+        failed: participants.failed
         Say {
             anchors.verticalCenter: parent.verticalCenter
             quiet: true
@@ -22,9 +22,9 @@ ColumnLayout {
             implicitWidth: look.scale * 130
             placeholderText: qsTr("Initials")
             Accessible.name: qsTr("Experimenter (initials)")
-            text: roster.experimenter
+            text: participants.experimenter
             maximumLength: 40
-            onTextEdited: roster.experimenter = text
+            onTextEdited: participants.experimenter = text
         }
     }
 
@@ -38,10 +38,10 @@ ColumnLayout {
             spacing: 16
             Panel {
                 title: qsTr("PARTICIPANTS")
-                extra: roster.people.length
+                extra: participants.people.length
                 Layout.fillWidth: true
                 Layout.fillHeight: true
-                RosterList {
+                ParticipantList {
                     anchors.fill: parent
                     anchors.bottomMargin: enrolment.height + 12
                 }
@@ -54,7 +54,7 @@ ColumnLayout {
             }
             Panel {
                 title: qsTr("PLACES IN THE DESIGN")
-                extra: qsTr("%1 of %2 taken").arg(roster.places.filter(p => p.owner !== "").length).arg(roster.places.length)
+                extra: qsTr("%1 of %2 taken").arg(participants.places.filter(p => p.owner !== "").length).arg(participants.places.length)
                 Layout.fillWidth: true
                 Layout.preferredHeight: look.scale * 178
                 PlacesView {
@@ -69,12 +69,12 @@ ColumnLayout {
             pad: 22
             PersonView {
                 anchors.fill: parent
-                visible: !roster.leaving.open
+                visible: !participants.leaving.open
                 onBegun: page.begun()
             }
             LeavingView {
                 anchors.fill: parent
-                visible: roster.leaving.open
+                visible: participants.leaving.open
             }
         }
     }

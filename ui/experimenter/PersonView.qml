@@ -5,7 +5,7 @@ import QtQuick.Layouts
 Item {
     id: view
     signal begun
-    readonly property var who: roster.person
+    readonly property var who: participants.person
     readonly property bool there: who.code !== undefined
 
     Say {
@@ -93,7 +93,7 @@ Item {
             Column {
                 width: parent.width
                 spacing: 10
-                visible: roster.clauses.length > 0
+                visible: participants.clauses.length > 0
                 Heading {
                     text: qsTr("CONSENT")
                 }
@@ -114,7 +114,7 @@ Item {
                             }
                             Say {
                                 Layout.fillWidth: true
-                                text: roster.clauses[clause.index]
+                                text: participants.clauses[clause.index]
                             }
                             Say {
                                 quiet: true
@@ -133,9 +133,9 @@ Item {
                                     font.pixelSize: look.scale * 12
                                     text: modelData[1]
                                     objectName: "consent-" + clause.index + "-" + modelData[0]
-                                    Accessible.name: roster.clauses[clause.index] + ": " + text
-                                    why: run.running ? qsTr("A session is running.") : roster.busy ? qsTr("Reading …") : ""
-                                    onClicked: roster.decide(clause.index, modelData[0])
+                                    Accessible.name: participants.clauses[clause.index] + ": " + text
+                                    why: run.running ? qsTr("A session is running.") : participants.busy ? qsTr("Reading …") : ""
+                                    onClicked: participants.decide(clause.index, modelData[0])
                                 }
                             }
                         }
@@ -169,9 +169,9 @@ Item {
                     ActionButton {
                         objectName: "readmit"
                         text: qsTr("Readmit")
-                        why: (roster.person, roster.whyNotReadmit(reason.text))
+                        why: (participants.person, participants.whyNotReadmit(reason.text))
                         onClicked: {
-                            roster.readmit(reason.text);
+                            participants.readmit(reason.text);
                             reason.clear();
                         }
                     }
@@ -202,7 +202,7 @@ Item {
             kind: "main"
             text: qsTr("Resume the session")
             why: view.there ? view.who.whyNotResume : ""
-            onClicked: if (roster.start(true, app.language))
+            onClicked: if (participants.start(true, app.language))
                 view.begun()
         }
         ActionButton {
@@ -212,7 +212,7 @@ Item {
             kind: tall ? "main" : "plain"
             text: view.there && view.who.canResume ? qsTr("Start a new session instead") : qsTr("Start the session")
             why: view.there ? view.who.whyNotStart : ""
-            onClicked: if (roster.start(false, app.language))
+            onClicked: if (participants.start(false, app.language))
                 view.begun()
         }
         ActionButton {
@@ -220,7 +220,7 @@ Item {
             Layout.fillWidth: true
             text: qsTr("End their part …")
             why: run.running ? qsTr("A session is running.") : ""
-            onClicked: roster.openLeaving()
+            onClicked: participants.openLeaving()
         }
     }
 }

@@ -13,7 +13,7 @@ Flickable {
             width: parent.width
             spacing: 6
             Repeater {
-                model: roster.places
+                model: participants.places
                 Rectangle {
                     id: place
                     required property var modelData
@@ -54,7 +54,7 @@ Flickable {
             width: parent.width
             spacing: 3
             Repeater {
-                model: roster.balance
+                model: participants.balance
                 Say {
                     required property string modelData
                     width: sheet.width

@@ -2,7 +2,7 @@
 
 namespace passung::presenter {
 
-void LeavingDialog::open(RosterPerson person) {
+void LeavingDialog::open(ParticipantEntry person) {
     person_ = std::move(person);
     leaving_ = {};
     step_ = Step::Choose;

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "ui/presenter/roster.h"
+#include "ui/presenter/participants.h"
 
 namespace passung::presenter {
 
@@ -30,7 +30,7 @@ class LeavingDialog {
 public:
     enum class Step { Closed, Choose, Confirm };
 
-    void open(RosterPerson person);
+    void open(ParticipantEntry person);
     void close() { step_ = Step::Closed; }
     Step step() const { return step_; }
     const std::string& code() const { return person_.code; }
@@ -48,7 +48,7 @@ public:
 
 private:
     Step step_ = Step::Closed;
-    RosterPerson person_;
+    ParticipantEntry person_;
     Leaving leaving_;
 };
 

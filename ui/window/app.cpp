@@ -39,7 +39,7 @@ App::App(const AppOptions& options)
       desk_(options.data),
       memory_(QString::fromStdString(options.data) + "/windows.ini", QSettings::IniFormat),
       studies_(desk_, options.protocols, options.data),
-      roster_(desk_, studies_),
+      participants_(desk_, studies_),
       records_(desk_, studies_, replay_),
       details_(desk_, studies_),
       run_(desk_),
@@ -60,7 +60,7 @@ App::App(const AppOptions& options)
     context.setContextProperty("app", this);
     context.setContextProperty("look", &look_);
     context.setContextProperty("studies", &studies_);
-    context.setContextProperty("roster", &roster_);
+    context.setContextProperty("participants", &participants_);
     context.setContextProperty("cutOff", &cut_off_);
     context.setContextProperty("records", &records_);
     context.setContextProperty("replay", &replay_);
@@ -145,9 +145,9 @@ void App::remember() {
     page_ = memory_.value("page", "studies").toString();
     if (page_ == "session") page_ = "studies";  // there is none yet
     if (cut_off_.find()) page_ = "participants";
-    roster_.setProperty("experimenter", memory_.value("experimenter").toString());
-    connect(&roster_, &RosterModel::experimenterChanged, this,
-            [this] { memory_.setValue("experimenter", roster_.experimenter()); });
+    participants_.setProperty("experimenter", memory_.value("experimenter").toString());
+    connect(&participants_, &ParticipantsModel::experimenterChanged, this,
+            [this] { memory_.setValue("experimenter", participants_.experimenter()); });
 }
 
 void App::setPage(const QString& page) {
@@ -165,7 +165,7 @@ void App::setLanguage(const QString& language) {
         QCoreApplication::installTranslator(&translator_);
     engine_.retranslate();
     studies_.retranslate();
-    roster_.retranslate();
+    participants_.retranslate();
     records_.retranslate();
     details_.retranslate();
     run_.retranslate();

@@ -15,9 +15,9 @@
 #include "ui/window/form_model.h"
 #include "ui/window/guide.h"
 #include "ui/window/look.h"
+#include "ui/window/participants_model.h"
 #include "ui/window/places.h"
 #include "ui/window/quality_finder.h"
-#include "ui/window/roster_model.h"
 #include "ui/window/run_model.h"
 #include "ui/window/screen.h"
 #include "ui/window/screen_choice.h"
@@ -54,7 +54,7 @@ public:
 
     Desk& desk() { return desk_; }
     Studies& studies() { return studies_; }
-    RosterModel& roster() { return roster_; }
+    ParticipantsModel& participants() { return participants_; }
     DataModel& records() { return records_; }
     ReplayModel& replay() { return replay_; }
     StudyModel& details() { return details_; }
@@ -79,8 +79,8 @@ private:
     Desk desk_;
     QSettings memory_;  // of what the next start finds as it was
     Studies studies_;
-    RosterModel roster_;
-    CutOff cut_off_{desk_, studies_, roster_, memory_};
+    ParticipantsModel participants_;
+    CutOff cut_off_{desk_, studies_, participants_, memory_};
     ReplayModel replay_;
     DataModel records_;
     StudyModel details_;

@@ -9,9 +9,9 @@ constexpr const char* kCode = "running/code";
 
 }  // namespace
 
-CutOff::CutOff(Desk& desk, Studies& studies, RosterModel& roster, QSettings& memory)
-    : desk_(desk), studies_(studies), roster_(roster), memory_(memory) {
-    connect(&roster_, &RosterModel::began, this, [this](const QString& study, const QString& code) {
+CutOff::CutOff(Desk& desk, Studies& studies, ParticipantsModel& participants, QSettings& memory)
+    : desk_(desk), studies_(studies), participants_(participants), memory_(memory) {
+    connect(&participants_, &ParticipantsModel::began, this, [this](const QString& study, const QString& code) {
         leave();
         memory_.setValue(kStudy, study);
         memory_.setValue(kCode, code);
@@ -20,7 +20,7 @@ CutOff::CutOff(Desk& desk, Studies& studies, RosterModel& roster, QSettings& mem
     connect(&desk_, &Desk::happened, this, [this] {
         if (desk_.run().view().state >= presenter::RunState::Complete) forget();
     });
-    connect(&roster_, &RosterModel::changed, this, &CutOff::changed);
+    connect(&participants_, &ParticipantsModel::changed, this, &CutOff::changed);
 }
 
 void CutOff::forget() {
@@ -36,18 +36,18 @@ void CutOff::close() {
 bool CutOff::find() {
     if (!memory_.contains(kStudy) || !studies_.chooseFile(memory_.value(kStudy).toString())) return false;
     code_ = memory_.value(kCode).toString();
-    roster_.select(code_);
+    participants_.select(code_);
     emit changed();
     return true;
 }
 
 /// Of whom it was, as long as they are the ones whom the page is about.
 QString CutOff::about(const char* what) const {
-    const QVariantMap person = roster_.person();
+    const QVariantMap person = participants_.person();
     return code_.isEmpty() || person["code"].toString() != code_ ? QString() : person[what].toString();
 }
 
-bool CutOff::resume(const QString& language) { return !question().isEmpty() && roster_.start(true, language); }
+bool CutOff::resume(const QString& language) { return !question().isEmpty() && participants_.start(true, language); }
 
 void CutOff::leave() {
     if (code_.isEmpty()) return;

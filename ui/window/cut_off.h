@@ -4,7 +4,7 @@
 #include <QtCore/QSettings>
 
 #include "ui/window/desk.h"
-#include "ui/window/roster_model.h"
+#include "ui/window/participants_model.h"
 #include "ui/window/studies.h"
 
 namespace passung::window {
@@ -17,7 +17,7 @@ class CutOff : public QObject {
 
 public:
     /// `memory`: keeps whose session runs, for the next start.
-    CutOff(Desk& desk, Studies& studies, RosterModel& roster, QSettings& memory);
+    CutOff(Desk& desk, Studies& studies, ParticipantsModel& participants, QSettings& memory);
 
     QString question() const { return about("cutOff"); }
     QString whyNot() const { return about("whyNotResume"); }
@@ -38,7 +38,7 @@ private:
 
     Desk& desk_;
     Studies& studies_;
-    RosterModel& roster_;
+    ParticipantsModel& participants_;
     QSettings& memory_;
     QString code_;  // whose session it was; empty: nothing is asked
 };

@@ -4,7 +4,7 @@
 
 #include "study/measures/measures.h"
 #include "ui/presenter/run.h"
-#include "ui/window/roster_words.h"
+#include "ui/window/participants_words.h"
 #include "ui/window/words.h"
 
 namespace passung::window {

@@ -13,8 +13,8 @@
 #include "study/run/files/protocol_files.h"
 #include "study/run/machine/auto_accuracy.h"
 #include "study/store/read/store_reader.h"
+#include "ui/window/participants_words.h"
 #include "ui/window/registry_words.h"
-#include "ui/window/roster_words.h"
 #include "ui/window/study_words.h"
 #include "ui/window/text.h"
 

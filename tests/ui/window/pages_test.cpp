@@ -13,7 +13,7 @@
 #include "tests/ui/cli/small_study.h"
 #include "tests/ui/window/windows.h"
 #include "ui/presenter/study_desk.h"
-#include "ui/window/roster_words.h"
+#include "ui/window/participants_words.h"
 #include "ui/window/study_words.h"
 
 namespace passung {
@@ -302,7 +302,7 @@ TEST_F(Pages, TryOutsSayWhatTheyLeaveOut) {
 
 TEST(CutOffLine, TellsATrialFromAQuestionnaire) {
     // Truth: closed form
-    presenter::RosterSession session;
+    presenter::SessionEntry session;
     session.planned = 4;
     session.valid = 1;
     EXPECT_TRUE(window::cutOffLine("P001", "today", session).endsWith("was cut off in trial 2 of 4."));

@@ -120,7 +120,7 @@ protected:
 
     /// Waits for the database to be read or written.
     void settle() {
-        waitFor([&] { return !app_->roster().busy() && !app_->records().busy(); });
+        waitFor([&] { return !app_->participants().busy() && !app_->records().busy(); });
     }
 
     /// Drags by `step` again and again; a trial that ends meanwhile takes the part back to its start.

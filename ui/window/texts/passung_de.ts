@@ -551,7 +551,7 @@
     </message>
 </context>
 <context>
-    <name>RosterList</name>
+    <name>ParticipantList</name>
     <message>
         <source>Code</source>
         <translation>Code</translation>
@@ -1466,7 +1466,7 @@
     </message>
 </context>
 <context>
-    <name>roster</name>
+    <name>participants</name>
     <message>
         <source>%1 is enrolled.</source>
         <translation>%1 ist aufgenommen.</translation>

@@ -1,4 +1,4 @@
-#include "ui/presenter/roster.h"
+#include "ui/presenter/participants.h"
 
 #include <algorithm>
 #include <map>
@@ -46,55 +46,55 @@ Decision decisionOn(const protocol::ConsentClause& clause, const std::vector<con
 }
 
 /// At least as many as are planned, and on to the last one that is taken.
-void fillPlaces(const protocol::StudyPlan& plan, Roster& roster) {
-    std::vector<const RosterPerson*> owners;
-    for (const RosterPerson& person : roster.people)
+void fillPlaces(const protocol::StudyPlan& plan, Participants& participants) {
+    std::vector<const ParticipantEntry*> owners;
+    for (const ParticipantEntry& person : participants.people)
         if (person.kind == ParticipantKind::Real && person.place) owners.push_back(&person);
     std::size_t count = static_cast<std::size_t>(std::max(plan.participants, 1));
     std::size_t found = 0;
     do {
         found = 0;
-        roster.places.clear();
+        participants.places.clear();
         for (const session::DesignPlace& at : session::firstPlaces(plan, count)) {
-            RosterPlace place{at, {}, false};
-            for (const RosterPerson* owner : owners)
+            PlaceEntry place{at, {}, false};
+            for (const ParticipantEntry* owner : owners)
                 if (owner->place->slot == at.slot && owner->place->group == at.group) {
                     place.owner = owner->code;
                     place.done = owner->complete() > 0;
                     ++found;
                 }
-            roster.places.push_back(std::move(place));
+            participants.places.push_back(std::move(place));
         }
         count *= 2;
     } while (found < owners.size() && count < 100'000);  // another version's places may never be met
-    while (roster.places.size() > static_cast<std::size_t>(std::max(plan.participants, 1)) &&
-           roster.places.back().owner.empty())
-        roster.places.pop_back();
+    while (participants.places.size() > static_cast<std::size_t>(std::max(plan.participants, 1)) &&
+           participants.places.back().owner.empty())
+        participants.places.pop_back();
     std::vector<session::DesignPlace> taken;
-    for (const RosterPerson* owner : owners) taken.push_back(*owner->place);
-    roster.balance = designBalance(plan, taken);
+    for (const ParticipantEntry* owner : owners) taken.push_back(*owner->place);
+    participants.balance = designBalance(plan, taken);
 }
 
-RosterPerson personOf(const store::ParticipantRow& row, const Roster& roster, const std::string& sha256,
-                      std::size_t sequences) {
-    RosterPerson person;
+ParticipantEntry personOf(const store::ParticipantRow& row, const Participants& participants, const std::string& sha256,
+                          std::size_t sequences) {
+    ParticipantEntry person;
     person.code = row.participant_id;
     person.enrolled_utc = row.created_utc;
     person.kind = protocol::participantKindNamed(row.kind).value_or(ParticipantKind::Simulated);
     person.standing = standingOf(row);
     person.reason = row.status_reason.value_or("");
-    const auto group = std::find(roster.groups.begin(), roster.groups.end(), row.group.value_or(""));
-    if (row.sequence_index && row.place_sha256 == sha256 && group != roster.groups.end())
+    const auto group = std::find(participants.groups.begin(), participants.groups.end(), row.group.value_or(""));
+    if (row.sequence_index && row.place_sha256 == sha256 && group != participants.groups.end())
         person.place = session::DesignPlace{
             static_cast<std::size_t>(*row.replicate) * sequences + static_cast<std::size_t>(*row.sequence_index),
-            static_cast<std::size_t>(group - roster.groups.begin())};
+            static_cast<std::size_t>(group - participants.groups.begin())};
     return person;
 }
 
 /// Which of the sessions that can be resumed were cut off in a questionnaire.
-Result<Done> findOpenForms(const store::StoreReader& reader, Roster& roster) {
-    std::map<std::pair<std::string, std::int64_t>, RosterSession*> resumable;
-    for (RosterPerson& person : roster.people)
+Result<Done> findOpenForms(const store::StoreReader& reader, Participants& participants) {
+    std::map<std::pair<std::string, std::int64_t>, SessionEntry*> resumable;
+    for (ParticipantEntry& person : participants.people)
         if (person.resumable() != nullptr)
             resumable[{person.code, person.sessions.back().ordinal}] = &person.sessions.back();
     if (resumable.empty()) return Done{};
@@ -111,40 +111,40 @@ Result<Done> findOpenForms(const store::StoreReader& reader, Roster& roster) {
 
 }  // namespace
 
-std::int64_t RosterPerson::attempts() const {
+std::int64_t ParticipantEntry::attempts() const {
     std::int64_t count = 0;
-    for (const RosterSession& session : sessions) count += session.attempts;
+    for (const SessionEntry& session : sessions) count += session.attempts;
     return count;
 }
 
-int RosterPerson::complete() const {
+int ParticipantEntry::complete() const {
     return static_cast<int>(
         std::count_if(sessions.begin(), sessions.end(), [](const auto& s) { return s.state == SessionEnd::Complete; }));
 }
 
-int RosterPerson::interrupted() const { return static_cast<int>(sessions.size()) - complete(); }
+int ParticipantEntry::interrupted() const { return static_cast<int>(sessions.size()) - complete(); }
 
-const RosterSession* RosterPerson::resumable() const {
+const SessionEntry* ParticipantEntry::resumable() const {
     return sessions.empty() || sessions.back().state == SessionEnd::Complete ? nullptr : &sessions.back();
 }
 
-const RosterPerson* Roster::find(const std::string& code) const {
+const ParticipantEntry* Participants::find(const std::string& code) const {
     const auto found =
         std::find_if(people.begin(), people.end(), [&](const auto& person) { return person.code == code; });
     return found == people.end() ? nullptr : &*found;
 }
 
-Roster emptyRoster(const protocol::StudyPlan& plan) {
-    Roster roster;
-    roster.clauses = plan.consent;
-    roster.groups = protocol::groupNames(plan);
-    roster.sessions = protocol::sessionsOf(plan);
-    roster.for_people = protocol::isForPeople(plan);
-    fillPlaces(plan, roster);
-    return roster;
+Participants noParticipants(const protocol::StudyPlan& plan) {
+    Participants participants;
+    participants.clauses = plan.consent;
+    participants.groups = protocol::groupNames(plan);
+    participants.sessions = protocol::sessionsOf(plan);
+    participants.for_people = protocol::isForPeople(plan);
+    fillPlaces(plan, participants);
+    return participants;
 }
 
-Result<Roster> readRoster(const protocol::StudyPlan& plan, const store::StoreReader& reader) {
+Result<Participants> readParticipants(const protocol::StudyPlan& plan, const store::StoreReader& reader) {
     const auto protocols = reader.protocols();
     if (!protocols) return protocols.errors();
     const auto people = reader.participants();
@@ -156,20 +156,20 @@ Result<Roster> readRoster(const protocol::StudyPlan& plan, const store::StoreRea
     const auto forms = reader.questionnaireRuns();
     if (!forms) return forms.errors();
 
-    Roster roster = emptyRoster(plan);
+    Participants participants = noParticipants(plan);
     const std::string sha256 = sha256Hex(plan.source_text);
-    roster.other_version =
+    participants.other_version =
         std::none_of(protocols->begin(), protocols->end(), [&](const auto& row) { return row.sha256 == sha256; });
     for (const ParticipantKind kind : kKinds) {
         const auto erased = reader.erasedCodesTo(kind);
         if (!erased) return erased.errors();
-        roster.erased_to[static_cast<std::size_t>(kind)] = *erased;
+        participants.erased_to[static_cast<std::size_t>(kind)] = *erased;
     }
     std::map<std::string, std::vector<const store::ConsentRow*>> decided;
     for (const auto& row : *consents) decided[row.participant_id].push_back(&row);
     const std::size_t sequences = design::sequencesOf(protocol::designOf(plan));
     for (const auto& row : *people) {
-        RosterPerson person = personOf(row, roster, sha256, sequences);
+        ParticipantEntry person = personOf(row, participants, sha256, sequences);
         for (const auto& clause : plan.consent) person.consent.push_back(decisionOn(clause, decided[person.code]));
         for (const auto& session : *sessions)
             if (session.participant_id == person.code)
@@ -181,47 +181,48 @@ Result<Roster> readRoster(const protocol::StudyPlan& plan, const store::StoreRea
         person.forms = std::count_if(forms->begin(), forms->end(), [&](const auto& form) {
             return form.participant_id == person.code && form.completed_utc;
         });
-        roster.people.push_back(std::move(person));
+        participants.people.push_back(std::move(person));
     }
-    if (const auto found = findOpenForms(reader, roster); !found) return found.errors();
-    fillPlaces(plan, roster);
-    return roster;
+    if (const auto found = findOpenForms(reader, participants); !found) return found.errors();
+    fillPlaces(plan, participants);
+    return participants;
 }
 
-PersonWhy whyNotStart(const Roster& roster, const RosterPerson& person, bool session_runs) {
+PersonWhy whyNotStart(const Participants& participants, const ParticipantEntry& person, bool session_runs) {
     if (session_runs) return PersonWhy::SessionRuns;
     if (person.standing != Standing::TakesPart) return PersonWhy::TakesNoPart;
     if (person.kind == ParticipantKind::Simulated) return PersonWhy::Simulated;
-    if (!roster.for_people) return PersonWhy::CueWithoutOutput;
-    return person.complete() >= roster.sessions ? PersonWhy::AllDone : PersonWhy::Possible;
+    if (!participants.for_people) return PersonWhy::CueWithoutOutput;
+    return person.complete() >= participants.sessions ? PersonWhy::AllDone : PersonWhy::Possible;
 }
 
-PersonWhy whyNotResume(const Roster& roster, const RosterPerson& person, bool session_runs) {
+PersonWhy whyNotResume(const Participants& participants, const ParticipantEntry& person, bool session_runs) {
     if (session_runs) return PersonWhy::SessionRuns;
     if (person.standing != Standing::TakesPart) return PersonWhy::TakesNoPart;
     if (person.kind == ParticipantKind::Simulated) return PersonWhy::Simulated;
-    if (!roster.for_people) return PersonWhy::CueWithoutOutput;
+    if (!participants.for_people) return PersonWhy::CueWithoutOutput;
     return person.resumable() == nullptr ? PersonWhy::NothingInterrupted : PersonWhy::Possible;
 }
 
-PersonWhy whyNotReadmit(const RosterPerson& person, const std::string& reason, bool session_runs) {
+PersonWhy whyNotReadmit(const ParticipantEntry& person, const std::string& reason, bool session_runs) {
     if (session_runs) return PersonWhy::SessionRuns;
     if (person.standing != Standing::Excluded)
         return person.standing == Standing::TakesPart ? PersonWhy::NotOut : PersonWhy::OwnWish;
     return reason.empty() ? PersonWhy::NeedsReason : PersonWhy::Possible;
 }
 
-CodeWhy whyNotEnrol(const Roster& roster, const std::string& code, ParticipantKind kind) {
+CodeWhy whyNotEnrol(const Participants& participants, const std::string& code, ParticipantKind kind) {
     if (!protocol::isParticipantCode(code)) return CodeWhy::NotACode;
     if (protocol::kindOfCode(code) != kind) return CodeWhy::WrongLetter;
-    if (roster.find(code) != nullptr) return CodeWhy::Taken;
-    return protocol::participantNumber(code) <= roster.erased_to[static_cast<std::size_t>(kind)] ? CodeWhy::MayBeErased
-                                                                                                 : CodeWhy::Possible;
+    if (participants.find(code) != nullptr) return CodeWhy::Taken;
+    return protocol::participantNumber(code) <= participants.erased_to[static_cast<std::size_t>(kind)]
+               ? CodeWhy::MayBeErased
+               : CodeWhy::Possible;
 }
 
-std::string proposedCode(const Roster& roster, ParticipantKind kind) {
-    std::int64_t number = roster.erased_to[static_cast<std::size_t>(kind)] + 1;
-    while (roster.find(protocol::participantCode(kind, number)) != nullptr) ++number;
+std::string proposedCode(const Participants& participants, ParticipantKind kind) {
+    std::int64_t number = participants.erased_to[static_cast<std::size_t>(kind)] + 1;
+    while (participants.find(protocol::participantCode(kind, number)) != nullptr) ++number;
     return protocol::participantCode(kind, number);
 }
 

@@ -1,4 +1,4 @@
-#include "ui/window/roster_model.h"
+#include "ui/window/participants_model.h"
 
 #include <QtCore/QCoreApplication>
 #include <algorithm>
@@ -7,35 +7,35 @@
 #include "study/plan/language.h"
 #include "study/run/files/protocol_files.h"
 #include "study/store/schema/backup.h"
-#include "ui/window/roster_words.h"
+#include "ui/window/participants_words.h"
 #include "ui/window/text.h"
 
 namespace passung::window {
 
+using presenter::ParticipantEntry;
+using presenter::Participants;
 using presenter::PersonWhy;
-using presenter::Roster;
-using presenter::RosterPerson;
 using protocol::ParticipantKind;
 
 namespace {
 
-QString said(const char* text) { return QCoreApplication::translate("roster", text); }
+QString said(const char* text) { return QCoreApplication::translate("participants", text); }
 
 /// "2026-11-22 05:44" of a time as it is stored.
 QString minute(const std::string& utc) { return text(utc.substr(0, 16)).replace('T', ' '); }
 
 ParticipantKind kindOf(bool pilot) { return pilot ? ParticipantKind::Pilot : ParticipantKind::Real; }
 
-Result<Roster> readFrom(const std::string& protocol, const std::string& database) {
+Result<Participants> readFrom(const std::string& protocol, const std::string& database) {
     const auto plan = app::readProtocol(protocol);
     if (!plan) return plan.errors();
-    if (!std::filesystem::exists(database)) return presenter::emptyRoster(*plan);
+    if (!std::filesystem::exists(database)) return presenter::noParticipants(*plan);
     const auto reader = store::StoreReader::open(database);
     if (!reader) return reader.errors();
-    return presenter::readRoster(*plan, *reader);
+    return presenter::readParticipants(*plan, *reader);
 }
 
-QVariantMap sessionMap(const presenter::RosterSession& session) {
+QVariantMap sessionMap(const presenter::SessionEntry& session) {
     const bool whole = session.state == presenter::SessionEnd::Complete;
     return {{"name", QString::number(session.ordinal)},
             {"date", minute(session.started_utc)},
@@ -44,7 +44,7 @@ QVariantMap sessionMap(const presenter::RosterSession& session) {
             {"trials", QStringLiteral("%1 / %2").arg(session.valid).arg(session.planned)}};
 }
 
-QVariantMap personMap(const Roster& roster, const RosterPerson& person) {
+QVariantMap personMap(const Participants& participants, const ParticipantEntry& person) {
     QVariantList consent;
     for (const presenter::Decision decision : person.consent)
         consent.append(QVariantMap{{"sign", decisionSign(decision)},
@@ -57,7 +57,8 @@ QVariantMap personMap(const Roster& roster, const RosterPerson& person) {
     QString place;
     if (person.place) {
         place = QString::number(person.place->slot + 1);
-        if (roster.groups.size() > 1) place += QStringLiteral(" · ") + text(roster.groups[person.place->group]);
+        if (participants.groups.size() > 1)
+            place += QStringLiteral(" · ") + text(participants.groups[person.place->group]);
     }
     return {{"code", text(person.code)},
             {"kind", kindWord(person.kind)},
@@ -69,15 +70,15 @@ QVariantMap personMap(const Roster& roster, const RosterPerson& person) {
             {"place", place},
             {"complete", person.complete()},
             {"interrupted", person.interrupted()},
-            {"of", roster.sessions},
+            {"of", participants.sessions},
             {"consent", consent}};
 }
 
 }  // namespace
 
-RosterModel::RosterModel(Desk& desk, Studies& studies) : desk_(desk), studies_(studies) {
+ParticipantsModel::ParticipantsModel(Desk& desk, Studies& studies) : desk_(desk), studies_(studies) {
     connect(&studies_, &Studies::chosenChanged, this, [this] {
-        roster_.reset();
+        participants_.reset();
         selected_.clear();
         told_.clear();
         dialog_.close();
@@ -91,43 +92,45 @@ RosterModel::RosterModel(Desk& desk, Studies& studies) : desk_(desk), studies_(s
     refresh();
 }
 
-QString RosterModel::database() const { return text(studies_.database()); }
+QString ParticipantsModel::database() const { return text(studies_.database()); }
 
-const RosterPerson* RosterModel::person_() const { return roster_ ? roster_->find(selected_) : nullptr; }
+const ParticipantEntry* ParticipantsModel::person_() const {
+    return participants_ ? participants_->find(selected_) : nullptr;
+}
 
-std::string RosterModel::by() const {
+std::string ParticipantsModel::by() const {
     const std::string name = experimenter_.trimmed().toStdString();
     return name.empty() ? "experimenter" : name;
 }
 
-void RosterModel::refresh() {
+void ParticipantsModel::refresh() {
     const presenter::StudyCard* card = studies_.card();
     if (card == nullptr || !card->sound) {
-        roster_.reset();
+        participants_.reset();
         emit changed();
         return;
     }
     const int asked = ++asked_;
     worker_.run([protocol = card->path, database = studies_.database()] { return readFrom(protocol, database); },
-                [this, asked](Result<Roster> roster) {
+                [this, asked](Result<Participants> participants) {
                     if (asked != asked_) return;
-                    if (roster) {
-                        roster_ = *std::move(roster);
+                    if (participants) {
+                        participants_ = *std::move(participants);
                         if (person_() == nullptr) selected_.clear();
                     } else {
-                        tell(roster.errors(), {});
+                        tell(participants.errors(), {});
                     }
                     emit changed();
                 });
     emit changed();
 }
 
-void RosterModel::tell(const Result<Done>& came, const QString& done) {
+void ParticipantsModel::tell(const Result<Done>& came, const QString& done) {
     failed_ = !came;
     told_ = came ? done : text(toString(came.errors().front()));
 }
 
-void RosterModel::act(const Work& work, const QString& done) {
+void ParticipantsModel::act(const Work& work, const QString& done) {
     const presenter::StudyCard* card = studies_.card();
     if (card == nullptr || sessionRuns()) return;
     app::DeskAccess access{.database = studies_.database(), .by = by(), .create = true};
@@ -149,67 +152,69 @@ void RosterModel::act(const Work& work, const QString& done) {
     emit changed();
 }
 
-QStringList RosterModel::clauses() const {
+QStringList ParticipantsModel::clauses() const {
     QStringList names;
-    if (roster_)
-        for (const auto& clause : roster_->clauses) names.append(text(clause.clause));
+    if (participants_)
+        for (const auto& clause : participants_->clauses) names.append(text(clause.clause));
     return names;
 }
 
-QVariantList RosterModel::people() const {
+QVariantList ParticipantsModel::people() const {
     QVariantList all;
-    if (roster_)
-        for (const RosterPerson& person : roster_->people) all.append(personMap(*roster_, person));
+    if (participants_)
+        for (const ParticipantEntry& person : participants_->people) all.append(personMap(*participants_, person));
     return all;
 }
 
-QVariantMap RosterModel::person() const {
-    const RosterPerson* person = person_();
+QVariantMap ParticipantsModel::person() const {
+    const ParticipantEntry* person = person_();
     if (person == nullptr) return {};
-    QVariantMap map = personMap(*roster_, *person);
+    QVariantMap map = personMap(*participants_, *person);
     QVariantList sessions;
     for (const auto& session : person->sessions) sessions.append(sessionMap(session));
     map["sessions"] = sessions;
-    map["whyNotStart"] = whyNot(presenter::whyNotStart(*roster_, *person, sessionRuns()));
-    map["whyNotResume"] = whyNot(presenter::whyNotResume(*roster_, *person, sessionRuns()));
-    const presenter::RosterSession* broken = person->resumable();
+    map["whyNotStart"] = whyNot(presenter::whyNotStart(*participants_, *person, sessionRuns()));
+    map["whyNotResume"] = whyNot(presenter::whyNotResume(*participants_, *person, sessionRuns()));
+    const presenter::SessionEntry* broken = person->resumable();
     map["canResume"] = broken != nullptr;
     map["cutOff"] = broken ? cutOffLine(person->code, minute(broken->started_utc), *broken) : QString();
     return map;
 }
 
-void RosterModel::select(const QString& code) {
+void ParticipantsModel::select(const QString& code) {
     if (code == selected()) return;
     selected_ = code.toStdString();
     dialog_.close();
     emit changed();
 }
 
-QVariantList RosterModel::places() const {
+QVariantList ParticipantsModel::places() const {
     QVariantList all;
-    if (!roster_) return all;
-    for (const auto& place : roster_->places)
-        all.append(
-            QVariantMap{{"name", QString::number(place.at.slot + 1)},
-                        {"group", roster_->groups.size() > 1 ? text(roster_->groups[place.at.group]) : QString()},
-                        {"owner", text(place.owner)},
-                        {"done", place.done}});
+    if (!participants_) return all;
+    for (const auto& place : participants_->places)
+        all.append(QVariantMap{
+            {"name", QString::number(place.at.slot + 1)},
+            {"group", participants_->groups.size() > 1 ? text(participants_->groups[place.at.group]) : QString()},
+            {"owner", text(place.owner)},
+            {"done", place.done}});
     return all;
 }
 
-QStringList RosterModel::balance() const { return roster_ ? balanceLines(roster_->balance) : QStringList(); }
-
-QString RosterModel::proposedCode(bool pilot) const {
-    return roster_ ? text(presenter::proposedCode(*roster_, kindOf(pilot))) : QString();
+QStringList ParticipantsModel::balance() const {
+    return participants_ ? balanceLines(participants_->balance) : QStringList();
 }
 
-QString RosterModel::whyNotEnrol(const QString& code, bool pilot) const {
-    if (!roster_) return {};
+QString ParticipantsModel::proposedCode(bool pilot) const {
+    return participants_ ? text(presenter::proposedCode(*participants_, kindOf(pilot))) : QString();
+}
+
+QString ParticipantsModel::whyNotEnrol(const QString& code, bool pilot) const {
+    if (!participants_) return {};
     if (sessionRuns()) return whyNot(PersonWhy::SessionRuns);
-    return whyNot(presenter::whyNotEnrol(*roster_, code.toStdString(), kindOf(pilot)), kindOf(pilot));
+    return whyNot(presenter::whyNotEnrol(*participants_, code.toStdString(), kindOf(pilot)), kindOf(pilot));
 }
 
-void RosterModel::enrol(const QString& code, bool pilot) {
+void ParticipantsModel::enrol(const QString& code, bool pilot) {
     if (!whyNotEnrol(code, pilot).isEmpty()) return;
     selected_ = code.toStdString();
     act(
@@ -219,14 +224,14 @@ void RosterModel::enrol(const QString& code, bool pilot) {
             if (!enrolled) return enrolled.errors();
             return Done{};
         },
-        said(QT_TRANSLATE_NOOP("roster", "%1 is enrolled.")).arg(code));
+        said(QT_TRANSLATE_NOOP("participants", "%1 is enrolled.")).arg(code));
 }
 
-bool RosterModel::start(bool resume, const QString& language) {
-    const RosterPerson* person = person_();
+bool ParticipantsModel::start(bool resume, const QString& language) {
+    const ParticipantEntry* person = person_();
     if (person == nullptr || studies_.card() == nullptr) return false;
-    const PersonWhy why = resume ? presenter::whyNotResume(*roster_, *person, sessionRuns())
-                                 : presenter::whyNotStart(*roster_, *person, sessionRuns());
+    const PersonWhy why = resume ? presenter::whyNotResume(*participants_, *person, sessionRuns())
+                                 : presenter::whyNotStart(*participants_, *person, sessionRuns());
     if (why != PersonWhy::Possible) return false;
     const auto plan = app::readProtocol(studies_.card()->path);
     if (!plan) {
@@ -249,10 +254,10 @@ bool RosterModel::start(bool resume, const QString& language) {
     return true;
 }
 
-void RosterModel::decide(int clause, const QString& decision) {
-    const RosterPerson* person = person_();
-    if (person == nullptr || clause < 0 || clause >= static_cast<int>(roster_->clauses.size())) return;
-    const auto& asked = roster_->clauses[static_cast<std::size_t>(clause)];
+void ParticipantsModel::decide(int clause, const QString& decision) {
+    const ParticipantEntry* person = person_();
+    if (person == nullptr || clause < 0 || clause >= static_cast<int>(participants_->clauses.size())) return;
+    const auto& asked = participants_->clauses[static_cast<std::size_t>(clause)];
     const auto answer = decision == "yes"  ? store::Consent::Yes
                         : decision == "no" ? store::Consent::No
                                            : store::Consent::Withdrawn;
@@ -263,16 +268,17 @@ void RosterModel::decide(int clause, const QString& decision) {
             if (!decided) return decided.errors();
             return Done{};
         },
-        said(QT_TRANSLATE_NOOP("roster", "%1: the decision on “%2” is stored.")).arg(selected(), text(asked.clause)));
+        said(QT_TRANSLATE_NOOP("participants", "%1: the decision on “%2” is stored."))
+            .arg(selected(), text(asked.clause)));
 }
 
-QString RosterModel::whyNotReadmit(const QString& reason) const {
-    const RosterPerson* person = person_();
+QString ParticipantsModel::whyNotReadmit(const QString& reason) const {
+    const ParticipantEntry* person = person_();
     if (person == nullptr) return {};
     return whyNot(presenter::whyNotReadmit(*person, reason.trimmed().toStdString(), sessionRuns()));
 }
 
-void RosterModel::readmit(const QString& reason) {
+void ParticipantsModel::readmit(const QString& reason) {
     if (person_() == nullptr || !whyNotReadmit(reason).isEmpty()) return;
     act(
         [code = selected_, why = reason.trimmed().toStdString()](store::Store&, store::ParticipantDesk& desk,
@@ -281,10 +287,10 @@ void RosterModel::readmit(const QString& reason) {
             if (!placed) return placed.errors();
             return Done{};
         },
-        said(QT_TRANSLATE_NOOP("roster", "%1 takes part again.")).arg(selected()));
+        said(QT_TRANSLATE_NOOP("participants", "%1 takes part again.")).arg(selected()));
 }
 
-QVariantMap RosterModel::leaving() const {
+QVariantMap ParticipantsModel::leaving() const {
     using Step = presenter::LeavingDialog::Step;
     const bool confirms = dialog_.step() == Step::Confirm;
     std::error_code none;
@@ -296,38 +302,38 @@ QVariantMap RosterModel::leaving() const {
             {"lines", confirms ? leavingLines(dialog_.leaving()) : QStringList()}};
 }
 
-void RosterModel::openLeaving() {
+void ParticipantsModel::openLeaving() {
     if (person_() == nullptr) return;
     dialog_.open(*person_());
     emit changed();
 }
 
-void RosterModel::closeLeaving() {
+void ParticipantsModel::closeLeaving() {
     dialog_.close();
     emit changed();
 }
 
-QString RosterModel::whyNotChoose(int scope, const QString& reason) const {
+QString ParticipantsModel::whyNotChoose(int scope, const QString& reason) const {
     return whyNot(
         dialog_.whyNotChoose(static_cast<presenter::Scope>(scope), reason.trimmed().toStdString(), sessionRuns()));
 }
 
-void RosterModel::chooseLeaving(int scope, const QString& reason) {
+void ParticipantsModel::chooseLeaving(int scope, const QString& reason) {
     if (!whyNotChoose(scope, reason).isEmpty()) return;
     dialog_.choose(static_cast<presenter::Scope>(scope), reason.trimmed().toStdString());
     emit changed();
 }
 
-void RosterModel::backLeaving() {
+void ParticipantsModel::backLeaving() {
     dialog_.back();
     emit changed();
 }
 
-QString RosterModel::whyNotConfirm(const QString& typed) const {
+QString ParticipantsModel::whyNotConfirm(const QString& typed) const {
     return whyNot(dialog_.whyNotConfirm(typed.trimmed().toStdString(), sessionRuns()));
 }
 
-void RosterModel::confirmLeaving(const QString& typed, bool backupToo) {
+void ParticipantsModel::confirmLeaving(const QString& typed, bool backupToo) {
     const auto leaving = dialog_.confirm(typed.trimmed().toStdString(), sessionRuns(), backupToo);
     if (!leaving) return;
     const app::DeskAccess access{.database = studies_.database(), .by = by()};
@@ -335,23 +341,24 @@ void RosterModel::confirmLeaving(const QString& typed, bool backupToo) {
         [access, what = *leaving] { return app::leave(access, what); },
         [this, what = *leaving](const Result<app::Left>& left) {
             tell(left ? Result<Done>(Done{}) : Result<Done>(left.errors()),
-                 said(QT_TRANSLATE_NOOP("roster", "%1 has left the study.")).arg(text(what.code)));
+                 said(QT_TRANSLATE_NOOP("participants", "%1 has left the study.")).arg(text(what.code)));
             if (left && left->backup)
-                told_ += " " + said(QT_TRANSLATE_NOOP("roster", "They were erased from the backup too."));
+                told_ += " " + said(QT_TRANSLATE_NOOP("participants", "They were erased from the backup too."));
             if (left && !left->backup_problem.empty())
-                told_ += " " + said(QT_TRANSLATE_NOOP("roster", "They could not be erased from the backup: %1"))
+                told_ += " " + said(QT_TRANSLATE_NOOP("participants", "They could not be erased from the backup: %1"))
                                    .arg(text(left->backup_problem));
             if (left && !left->copies.empty()) {
                 QStringList copies;
                 for (const auto& copy : left->copies) copies.append(text(copy));
-                told_ += " " + said(QT_TRANSLATE_NOOP("roster", "Delete these copies too: %1")).arg(copies.join(", "));
+                told_ +=
+                    " " + said(QT_TRANSLATE_NOOP("participants", "Delete these copies too: %1")).arg(copies.join(", "));
             }
             refresh();
         });
     emit changed();
 }
 
-void RosterModel::retranslate() {
+void ParticipantsModel::retranslate() {
     told_.clear();  // said in the language before
     emit changed();
 }

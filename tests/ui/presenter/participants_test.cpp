@@ -1,4 +1,4 @@
-#include "ui/presenter/roster.h"
+#include "ui/presenter/participants.h"
 
 #include <gtest/gtest.h>
 
@@ -23,9 +23,9 @@ protocol::StudyPlan planWithConsent() {
 }
 
 /// A study with people in every state.
-class RosterOf : public testing::Test {
+class ParticipantsOf : public testing::Test {
 protected:
-    RosterOf() {
+    ParticipantsOf() {
         store_ = fake::openStore(folder_ / "s.db");
         sha256_ = require(store_->importProtocol(plan_));
     }
@@ -56,7 +56,9 @@ protected:
         require(writer->finishSession(whole, 1'000'000'000));
     }
 
-    Roster roster() const { return require(readRoster(plan_, require(store::StoreReader::open(folder_ / "s.db")))); }
+    Participants participants() const {
+        return require(readParticipants(plan_, require(store::StoreReader::open(folder_ / "s.db"))));
+    }
 
     fake::TempFolder folder_;
     protocol::StudyPlan plan_ = planWithConsent();
@@ -64,7 +66,7 @@ protected:
     std::string sha256_;
 };
 
-TEST_F(RosterOf, SaysOfEverybodyWhatTheyDidAndAgreedTo) {
+TEST_F(ParticipantsOf, SaysOfEverybodyWhatTheyDidAndAgreedTo) {
     // Truth: invariant, the study as it was made here.
     for (const char* code : {"P001", "P002", "P003"}) enrol(code);
     enrol("T001", ParticipantKind::Pilot);
@@ -75,43 +77,43 @@ TEST_F(RosterOf, SaysOfEverybodyWhatTheyDidAndAgreedTo) {
     store::ParticipantDesk desk(*store_, kActor);
     require(desk.decide("P003", {"photos"}, "de", store::Consent::No));
 
-    const Roster all = roster();
+    const Participants all = participants();
     ASSERT_EQ(all.people.size(), 4u);
-    const RosterPerson& first = *all.find("P001");
+    const ParticipantEntry& first = *all.find("P001");
     EXPECT_EQ(first.complete(), 1);
     EXPECT_EQ(first.interrupted(), 0);
     EXPECT_EQ(first.attempts(), 2);
     EXPECT_EQ(first.consent, (std::vector{Decision::Yes, Decision::Yes}));
     EXPECT_EQ(whyNotStart(all, first, false), PersonWhy::AllDone);
     EXPECT_EQ(whyNotResume(all, first, false), PersonWhy::NothingInterrupted);
-    const RosterPerson& second = *all.find("P002");
+    const ParticipantEntry& second = *all.find("P002");
     EXPECT_EQ(second.interrupted(), 1);
     ASSERT_NE(second.resumable(), nullptr);
     EXPECT_EQ(second.resumable()->state, presenter::SessionEnd::Aborted);
     EXPECT_EQ(whyNotResume(all, second, false), PersonWhy::Possible);
     EXPECT_EQ(whyNotResume(all, second, true), PersonWhy::SessionRuns);
-    const RosterPerson& third = *all.find("P003");
+    const ParticipantEntry& third = *all.find("P003");
     EXPECT_EQ(third.consent, (std::vector{Decision::NotAsked, Decision::No}));
     EXPECT_EQ(whyNotStart(all, third, false), PersonWhy::Possible);
     EXPECT_EQ(all.find("T001")->kind, ParticipantKind::Pilot);
 
     // A cue that nothing here can give keeps people and pilots from beginning and from going on.
-    Roster shaking = all;
+    Participants shaking = all;
     shaking.for_people = false;
     EXPECT_EQ(whyNotStart(shaking, third, false), PersonWhy::CueWithoutOutput);
     EXPECT_EQ(whyNotStart(shaking, *all.find("T001"), false), PersonWhy::CueWithoutOutput);
     EXPECT_EQ(whyNotResume(shaking, second, false), PersonWhy::CueWithoutOutput);
     EXPECT_TRUE(all.for_people);
     plan_.conditions.front().cues.vibrotactile = true;
-    EXPECT_FALSE(roster().for_people);
+    EXPECT_FALSE(participants().for_people);
     plan_.conditions.front().cues.vibrotactile = false;
 
     // With another wording nobody has agreed to it.
     plan_.consent[0].texts = {{"en", "All of it?"}};
-    EXPECT_EQ(roster().find("P001")->consent[0], Decision::OtherWords);
+    EXPECT_EQ(participants().find("P001")->consent[0], Decision::OtherWords);
 }
 
-TEST_F(RosterOf, SaysWhoseSessionWasCutOffInAQuestionnaire) {
+TEST_F(ParticipantsOf, SaysWhoseSessionWasCutOffInAQuestionnaire) {
     // Truth: closed form: a form that was shown last and not handed in.
     const std::vector<std::vector<std::string>> ways = {
         {},
@@ -124,23 +126,23 @@ TEST_F(RosterOf, SaysWhoseSessionWasCutOffInAQuestionnaire) {
         consent(code);
         session(code, false, ways[i]);
     }
-    const Roster all = roster();
+    const Participants all = participants();
     for (std::size_t i = 0; i < ways.size(); ++i)
         EXPECT_EQ(all.people[i].resumable()->in_form, i % 2 == 1) << all.people[i].code;
 }
 
-TEST_F(RosterOf, ProposesCodesByTheStoresRulesAndRefusesOthersWithAReason) {
+TEST_F(ParticipantsOf, ProposesCodesByTheStoresRulesAndRefusesOthersWithAReason) {
     // Truth: independent program, the store's own rules.
-    EXPECT_EQ(proposedCode(emptyRoster(plan_), ParticipantKind::Real), "P001");
+    EXPECT_EQ(proposedCode(noParticipants(plan_), ParticipantKind::Real), "P001");
     for (const char* code : {"P001", "P002", "P003"}) enrol(code);
     for (const auto kind : {ParticipantKind::Real, ParticipantKind::Pilot})
-        EXPECT_EQ(proposedCode(roster(), kind), require(store_->nextCode(kind)));
+        EXPECT_EQ(proposedCode(participants(), kind), require(store_->nextCode(kind)));
     store::ParticipantDesk desk(*store_, kActor);
     require(desk.erase("P003"));
-    EXPECT_EQ(proposedCode(roster(), ParticipantKind::Real), "P004");
+    EXPECT_EQ(proposedCode(participants(), ParticipantKind::Real), "P004");
     EXPECT_EQ(require(store_->nextCode(ParticipantKind::Real)), "P004");
 
-    const Roster all = roster();
+    const Participants all = participants();
     const struct {
         const char* code;
         CodeWhy why;
@@ -154,14 +156,14 @@ TEST_F(RosterOf, ProposesCodesByTheStoresRulesAndRefusesOthersWithAReason) {
     }
 }
 
-TEST_F(RosterOf, ShowsThePlacesOfTheDesignAndHowEvenTheyAre) {
+TEST_F(ParticipantsOf, ShowsThePlacesOfTheDesignAndHowEvenTheyAre) {
     // Truth: closed form. A Williams square of 4 has 4 rows; with all of them every position counts once.
     for (int i = 1; i <= 4; ++i) {
         const std::string code = "P00" + std::to_string(i);
         enrol(code);
         consent(code);
         session(code, true);
-        const Roster all = roster();
+        const Participants all = participants();
         ASSERT_EQ(all.places.size(), 4u);
         EXPECT_EQ(std::count_if(all.places.begin(), all.places.end(), [](const auto& p) { return !p.owner.empty(); }),
                   i);
@@ -174,13 +176,13 @@ TEST_F(RosterOf, ShowsThePlacesOfTheDesignAndHowEvenTheyAre) {
     }
 }
 
-TEST_F(RosterOf, WhoLeavesIsAskedAboutTwiceAndToldWhatItDoes) {
+TEST_F(ParticipantsOf, WhoLeavesIsAskedAboutTwiceAndToldWhatItDoes) {
     // Truth: invariant, the store's own rules.
     enrol("P001");
     consent("P001");
     session("P001", false);
     LeavingDialog dialog;
-    dialog.open(*roster().find("P001"));
+    dialog.open(*participants().find("P001"));
     EXPECT_FALSE(dialog.confirm("P001", false)) << "without the second question";
     EXPECT_EQ(dialog.whyNotChoose(Scope::Dismiss, "", false), PersonWhy::NeedsReason);
     EXPECT_EQ(dialog.whyNotChoose(Scope::Erase, "", true), PersonWhy::SessionRuns);
@@ -197,7 +199,7 @@ TEST_F(RosterOf, WhoLeavesIsAskedAboutTwiceAndToldWhatItDoes) {
 
     store::ParticipantDesk desk(*store_, kActor);
     require(desk.exclude("P001", leaving->reason));
-    Roster all = roster();
+    Participants all = participants();
     EXPECT_EQ(all.find("P001")->standing, Standing::Excluded);
     EXPECT_EQ(all.find("P001")->reason, "fell asleep");
     EXPECT_EQ(whyNotStart(all, *all.find("P001"), false), PersonWhy::TakesNoPart);
@@ -207,27 +209,27 @@ TEST_F(RosterOf, WhoLeavesIsAskedAboutTwiceAndToldWhatItDoes) {
     EXPECT_EQ(dialog.whyNotChoose(Scope::Stop, "", false), PersonWhy::OutAlready);
     require(desk.readmit("P001", "was awake"));
     require(desk.exclude("P001", "", "withdraw"));
-    all = roster();
+    all = participants();
     EXPECT_EQ(all.find("P001")->standing, Standing::WithdrawnWithData);
     EXPECT_EQ(whyNotReadmit(*all.find("P001"), "was awake", false), PersonWhy::OwnWish);
     EXPECT_FALSE(desk.readmit("P001", "was awake"));
 }
 
-TEST_F(RosterOf, APlaceIsFreedExceptByWhoCompletedAndOnlyStops) {
+TEST_F(ParticipantsOf, APlaceIsFreedExceptByWhoCompletedAndOnlyStops) {
     // Truth: independent program: whether the store has the place free afterwards.
     for (const bool whole : {false, true}) {
         for (const Scope scope : {Scope::Stop, Scope::Exclude}) {
-            const std::string code = proposedCode(roster(), ParticipantKind::Real);
+            const std::string code = proposedCode(participants(), ParticipantKind::Real);
             enrol(code);
             consent(code);
             session(code, whole);
             if (!whole) require(store_->assignSlot(sha256_, code));  // the session's end gave it back
             LeavingDialog dialog;
-            dialog.open(*roster().find(code));
+            dialog.open(*participants().find(code));
             dialog.choose(scope, "");
             store::ParticipantDesk desk(*store_, kActor);
             require(scope == Scope::Stop ? desk.withdraw(code, "") : desk.exclude(code, "", "withdraw"));
-            EXPECT_EQ(dialog.leaving().frees_place, !roster().find(code)->place) << code;
+            EXPECT_EQ(dialog.leaving().frees_place, !participants().find(code)->place) << code;
         }
     }
 }

@@ -8,7 +8,7 @@
 #include "study/plan/study_plan.h"
 #include "study/store/people/participant_desk.h"
 #include "ui/presenter/leaving.h"
-#include "ui/presenter/roster.h"
+#include "ui/presenter/participants.h"
 #include "ui/presenter/study_desk.h"
 #include "ui/window/desk.h"
 #include "ui/window/studies.h"
@@ -17,7 +17,7 @@
 namespace passung::window {
 
 /// Who takes part in the chosen study, for QML. The database is read and written in a thread of its own.
-class RosterModel : public QObject {
+class ParticipantsModel : public QObject {
     Q_OBJECT
     Q_PROPERTY(bool busy READ busy NOTIFY changed)
     Q_PROPERTY(bool known READ known NOTIFY changed)  // the list is there
@@ -34,10 +34,10 @@ class RosterModel : public QObject {
     Q_PROPERTY(QString experimenter MEMBER experimenter_ NOTIFY experimenterChanged)
 
 public:
-    RosterModel(Desk& desk, Studies& studies);
+    ParticipantsModel(Desk& desk, Studies& studies);
 
     bool busy() const { return worker_.busy(); }
-    bool known() const { return roster_.has_value(); }
+    bool known() const { return participants_.has_value(); }
     QString database() const;
     QString told() const { return told_; }
     bool failed() const { return failed_; }
@@ -80,7 +80,7 @@ signals:
 
 private:
     bool sessionRuns() const { return desk_.run().view().isRunning(); }
-    const presenter::RosterPerson* person_() const;
+    const presenter::ParticipantEntry* person_() const;
     std::string by() const;
     using Work = std::function<Result<Done>(store::Store&, store::ParticipantDesk&, const protocol::StudyPlan&)>;
     void act(const Work& work, const QString& done);
@@ -88,7 +88,7 @@ private:
 
     Desk& desk_;
     Studies& studies_;
-    std::optional<presenter::Roster> roster_;
+    std::optional<presenter::Participants> participants_;
     presenter::LeavingDialog dialog_;
     std::string selected_;
     QString told_, experimenter_;

@@ -8,7 +8,7 @@ Item {
     Row {
         id: head
         x: 30
-        visible: roster.people.length > 0
+        visible: participants.people.length > 0
         Repeater {
             model: [qsTr("Code"), qsTr("Kind"), qsTr("Sessions"), qsTr("Consent"), qsTr("Place"), qsTr("State")]
             Say {
@@ -23,7 +23,7 @@ Item {
     }
     ListView {
         id: list
-        objectName: "roster"
+        objectName: "participants"
         anchors.fill: parent
         anchors.topMargin: look.scale * 24
         anchors.leftMargin: -6
@@ -31,23 +31,23 @@ Item {
         clip: true
         activeFocusOnTab: true
         keyNavigationEnabled: true
-        model: roster.people
+        model: participants.people
         Accessible.role: Accessible.List
         Accessible.name: qsTr("Participants")
-        onModelChanged: currentIndex = roster.people.findIndex(p => p.code === roster.selected)
+        onModelChanged: currentIndex = participants.people.findIndex(p => p.code === participants.selected)
         Keys.onUpPressed: pick(Math.max(0, currentIndex - 1))
         Keys.onDownPressed: pick(Math.min(count - 1, currentIndex + 1))
         function pick(index) {
             if (index < 0 || index >= count)
                 return;
-            roster.selected = roster.people[index].code;
+            participants.selected = participants.people[index].code;
             forceActiveFocus();
         }
         delegate: Rectangle {
             id: line
             required property var modelData
             required property int index
-            readonly property bool chosen: modelData.code === roster.selected
+            readonly property bool chosen: modelData.code === participants.selected
             objectName: "person-" + modelData.code
             width: list.width
             height: look.scale * 40
@@ -133,7 +133,7 @@ Item {
     Say {
         objectName: "nobody"
         anchors.centerIn: parent
-        visible: roster.known && roster.people.length === 0
+        visible: participants.known && participants.people.length === 0
         quiet: true
         font.pixelSize: look.scale * 16
         text: qsTr("Nobody is enrolled yet.")

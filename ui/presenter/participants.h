@@ -24,7 +24,7 @@ enum class Decision { NotAsked, OtherWords, Yes, No, Withdrawn };
 /// How a stored session ended. Open: it runs, or its program was killed and nobody has opened the database since.
 enum class SessionEnd { Open, Complete, Aborted, Crashed };
 
-struct RosterSession {
+struct SessionEntry {
     std::string id, started_utc;
     int ordinal = 1;
     SessionEnd state = SessionEnd::Open;
@@ -32,14 +32,14 @@ struct RosterSession {
     bool in_form = false;  // the last thing in it is a questionnaire that was not handed in
 };
 
-struct RosterPerson {
+struct ParticipantEntry {
     std::string code, enrolled_utc;
     protocol::ParticipantKind kind = protocol::ParticipantKind::Real;
     Standing standing = Standing::TakesPart;
     std::string reason;                         // of the standing
     std::optional<session::DesignPlace> place;  // in this version's design
     std::vector<Decision> consent;              // by clause
-    std::vector<RosterSession> sessions;        // by ordinal
+    std::vector<SessionEntry> sessions;         // by ordinal
     std::int64_t forms = 0;                     // questionnaires that were answered
 
     std::int64_t attempts() const;
@@ -47,34 +47,34 @@ struct RosterPerson {
     /// Sessions that ended before their last trial.
     int interrupted() const;
     /// The session that can be gone on with; null: none.
-    const RosterSession* resumable() const;
+    const SessionEntry* resumable() const;
 };
 
 /// A place of the design; real participants take them in this order.
-struct RosterPlace {
+struct PlaceEntry {
     session::DesignPlace at;
     std::string owner;  // empty: free
     bool done = false;  // its owner completed a session
 };
 
 /// Who takes part in a study, as an experimenter looks after them.
-struct Roster {
+struct Participants {
     std::vector<protocol::ConsentClause> clauses;
     std::vector<std::string> groups;
-    std::vector<RosterPerson> people;  // by code
-    std::vector<RosterPlace> places;
+    std::vector<ParticipantEntry> people;  // by code
+    std::vector<PlaceEntry> places;
     DesignBalance balance;                    // of the real participants who have a place
     int sessions = 1;                         // of each participant
     bool for_people = true;                   // every cue of the study has an output here
     bool other_version = false;               // the database holds the study, but not this version of it
     std::array<std::int64_t, 3> erased_to{};  // by kind: codes up to this number are not given again
 
-    const RosterPerson* find(const std::string& code) const;
+    const ParticipantEntry* find(const std::string& code) const;
 };
 
 /// Of a study without a database: nobody is enrolled.
-Roster emptyRoster(const protocol::StudyPlan& plan);
-Result<Roster> readRoster(const protocol::StudyPlan& plan, const store::StoreReader& reader);
+Participants noParticipants(const protocol::StudyPlan& plan);
+Result<Participants> readParticipants(const protocol::StudyPlan& plan, const store::StoreReader& reader);
 
 /// Why something cannot be done with a participant now.
 enum class PersonWhy {
@@ -91,15 +91,15 @@ enum class PersonWhy {
     NeedsCode,         // the code is to be typed to confirm
     CueWithoutOutput,  // of the study's: nothing here can give it to a person
 };
-PersonWhy whyNotStart(const Roster& roster, const RosterPerson& person, bool session_runs);
-PersonWhy whyNotResume(const Roster& roster, const RosterPerson& person, bool session_runs);
-PersonWhy whyNotReadmit(const RosterPerson& person, const std::string& reason, bool session_runs);
+PersonWhy whyNotStart(const Participants& participants, const ParticipantEntry& person, bool session_runs);
+PersonWhy whyNotResume(const Participants& participants, const ParticipantEntry& person, bool session_runs);
+PersonWhy whyNotReadmit(const ParticipantEntry& person, const std::string& reason, bool session_runs);
 
 /// Why a code cannot be enrolled.
 enum class CodeWhy { Possible, NotACode, WrongLetter, Taken, MayBeErased };
-CodeWhy whyNotEnrol(const Roster& roster, const std::string& code, protocol::ParticipantKind kind);
+CodeWhy whyNotEnrol(const Participants& participants, const std::string& code, protocol::ParticipantKind kind);
 
 /// The first code that may be given to the next participant of this kind.
-std::string proposedCode(const Roster& roster, protocol::ParticipantKind kind);
+std::string proposedCode(const Participants& participants, protocol::ParticipantKind kind);
 
 }  // namespace passung::presenter

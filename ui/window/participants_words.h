@@ -3,11 +3,11 @@
 #include <QtCore/QString>
 
 #include "ui/presenter/leaving.h"
-#include "ui/presenter/roster.h"
+#include "ui/presenter/participants.h"
 
 namespace passung::window {
 
-// What a roster means, in the language of the windows.
+// What a participants means, in the language of the windows.
 
 QString kindWord(protocol::ParticipantKind kind);
 QString standingWord(presenter::Standing standing);
@@ -16,7 +16,7 @@ QString decisionWord(presenter::Decision decision);
 QString decisionSign(presenter::Decision decision);
 QString sessionWord(presenter::SessionEnd state);
 /// How far a session came that ended before its time; `began`: when it did, in words.
-QString cutOffLine(const std::string& code, const QString& began, const presenter::RosterSession& session);
+QString cutOffLine(const std::string& code, const QString& began, const presenter::SessionEntry& session);
 QString whyNot(presenter::PersonWhy why);
 QString whyNot(presenter::CodeWhy why, protocol::ParticipantKind kind);
 /// What a participant's leaving does, a sentence each.
