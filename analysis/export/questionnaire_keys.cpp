@@ -55,11 +55,11 @@ std::string scalesText(const Definition& definition, std::size_t item) {
 }
 
 /// The smallest and the largest answer to an item; nothing: none is a number.
-struct Range {
+struct AnswerRange {
     std::optional<double> low, high;
 };
 
-Range rangeOf(const questionnaire::Response& response) {
+AnswerRange rangeOf(const questionnaire::Response& response) {
     if (response.kind == AnswerKind::Text) return {};
     if (response.kind == AnswerKind::Pair) return {0.0, 1.0};
     if (response.options.empty()) return {response.low, response.high};

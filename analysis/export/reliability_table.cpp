@@ -26,17 +26,17 @@ struct ScaleForm {
 using Asked = std::tuple<std::string, std::string, std::string, std::string>;
 
 /// Which of the occasions of that moment; each person has one form there.
-struct Occasion {
+struct RatingMoment {
     std::optional<std::int64_t> block_index, condition_position;
     std::optional<std::string> block, condition;
     std::int64_t number = 1;  // of this person's forms about the same
-    friend auto operator<=>(const Occasion&, const Occasion&) = default;
+    friend auto operator<=>(const RatingMoment&, const RatingMoment&) = default;
 };
 
 /// The forms of one scale.
 struct ScaleForms {
     std::size_t items = 0;
-    std::map<Occasion, std::vector<ScaleForm>> occasions;
+    std::map<RatingMoment, std::vector<ScaleForm>> occasions;
 };
 
 /// The aligned answers to a scale's items; nothing if one is missing.
@@ -59,12 +59,12 @@ using AllForms = std::map<std::pair<Asked, std::string>, ScaleForms>;  // by sca
 AllForms formsOf(const StudyData& study) {
     AllForms all;
     Definitions definitions;
-    std::map<std::tuple<std::string, Asked, Occasion>, std::int64_t> numbers;  // of a person's forms about the same
+    std::map<std::tuple<std::string, Asked, RatingMoment>, std::int64_t> numbers;  // of a person's forms about the same
     for (const QuestionnaireRunRow* run : countedRuns(study)) {
         const Definition* definition = definitions.of(*run);
         if (definition == nullptr) continue;
         const Asked asked{run->kind, run->questionnaire, run->version, run->moment};
-        Occasion occasion{run->block_index, run->condition_position, run->block, run->condition, 0};
+        RatingMoment occasion{run->block_index, run->condition_position, run->block, run->condition, 0};
         occasion.number = ++numbers[{run->participant_id, asked, occasion}];
         for (const questionnaire::Scale& scale : definition->scales) {
             using questionnaire::Formula;
@@ -111,7 +111,7 @@ Parted partedByPerson(const ScaleForms& scale) {
 /// Forms, or what is made of them, over which alpha is taken.
 struct Agreement {
     const char* level;
-    std::optional<Occasion> occasion;
+    std::optional<RatingMoment> occasion;
     std::size_t forms, people;
     std::vector<Answers> answers;
 };
@@ -167,10 +167,10 @@ ColumnsOf<Agreement> agreementColumns() {
          "text",
          &Agreement::level,
          {.levels = {"occasion", "between", "within"}}},
-        {"block", "Block of the occasion", "text", ofOccasion(&Occasion::block)},
-        {"condition", "Condition of the occasion", "text", ofOccasion(&Occasion::condition)},
+        {"block", "Block of the occasion", "text", ofOccasion(&RatingMoment::block)},
+        {"condition", "Condition of the occasion", "text", ofOccasion(&RatingMoment::condition)},
         {"number", "Which of a person's forms about the same occasion, from 1", "integer",
-         ofOccasion(&Occasion::number)},
+         ofOccasion(&RatingMoment::number)},
         {"n_forms", "Counted forms without a missing item in the scale", "integer",
          [](const Agreement& agreement) { return static_cast<std::int64_t>(agreement.forms); }},
         {"n_participants", "Participants whose forms these are", "integer",

@@ -20,9 +20,9 @@ std::string padded(std::int64_t number) {
 }
 
 /// Appends numbers to a text without a string of their own: a study has tens of millions of them.
-class RowText {
+class NumberText {
 public:
-    explicit RowText(std::string& text) : text_(text) {}
+    explicit NumberText(std::string& text) : text_(text) {}
 
     template <class Number>
     void add(Number value) {
@@ -56,7 +56,7 @@ struct Sample {
 };
 
 /// Appends a cell; `offset`: of the value in the record, where the column is a recorded channel.
-using AddCell = void (*)(RowText&, const Sample&, std::size_t offset);
+using AddCell = void (*)(NumberText&, const Sample&, std::size_t offset);
 
 struct SampleColumn {
     Column column;
@@ -65,7 +65,7 @@ struct SampleColumn {
 };
 
 template <class Number>
-void addRecorded(RowText& row, const Sample& sample, std::size_t offset) {
+void addRecorded(NumberText& row, const Sample& sample, std::size_t offset) {
     Number value;
     std::memcpy(&value, reinterpret_cast<const std::byte*>(&sample.record) + offset, sizeof value);
     row.add(value);
@@ -92,14 +92,14 @@ SampleColumn channelColumn(const store::Channel& channel) {
 }
 
 /// A command; NA where the condition does not have it.
-void addCommand(RowText& row, bool has, double command) {
+void addCommand(NumberText& row, bool has, double command) {
     row.add(has ? command : std::numeric_limits<double>::quiet_NaN());
 }
 
 std::vector<SampleColumn> makeSampleColumns() {
     std::vector<SampleColumn> columns = {
         {{"tick", "Number of the tick in the attempt, from 0", "", "integer", "", 1, {}},
-         [](RowText& row, const Sample& sample, std::size_t) { row.add(sample.record.tick); }},
+         [](NumberText& row, const Sample& sample, std::size_t) { row.add(sample.record.tick); }},
         {{"t_s",
           "Time since the attempt's first tick",
           "s",
@@ -107,7 +107,7 @@ std::vector<SampleColumn> makeSampleColumns() {
           "0.001 s x sum of periods over the ticks after the first; a tick that was not recorded counts as one period",
           2,
           {}},
-         [](RowText& row, const Sample& sample, std::size_t) {
+         [](NumberText& row, const Sample& sample, std::size_t) {
              row.add(static_cast<double>(sample.period) / 1000.0);
          }}};
     for (const store::Channel& channel : store::tickChannels()) columns.push_back(channelColumn(channel));
@@ -115,22 +115,25 @@ std::vector<SampleColumn> makeSampleColumns() {
         columns.push_back({{name, label, "", "number", formula, 1, {}}, add_cell});
     };
     add("cue_visual", "Command of the visual cue, 0 to 1", "min(1, hand_depth_m / feedback.cue_full_depth_mm)",
-        [](RowText& row, const Sample& s, std::size_t) {
+        [](NumberText& row, const Sample& s, std::size_t) {
             addCommand(row, s.commanded.cues.visual, s.commands.visual);
         });
     add("cue_vibration", "Command of the vibrotactile cue, 0 to 1", "min(1, hand_depth_m / feedback.cue_full_depth_mm)",
-        [](RowText& row, const Sample& s, std::size_t) {
+        [](NumberText& row, const Sample& s, std::size_t) {
             addCommand(row, s.commanded.cues.vibration, s.commands.vibration);
         });
     add("cue_sound", "Command of the audio cue, 0 to 1",
         "at an impact min(1, speed of the hand / feedback.cue_full_speed_mm_per_s), falling by "
         "exp(-t / feedback.cue_sound_decay_ms)",
-        [](RowText& row, const Sample& s, std::size_t) { addCommand(row, s.commanded.cues.sound, s.commands.sound); });
+        [](NumberText& row, const Sample& s, std::size_t) {
+            addCommand(row, s.commanded.cues.sound, s.commands.sound);
+        });
     add("cue_masking", "Command of the masking noise: 1", "1 where feedback.masking_noise = true",
-        [](RowText& row, const Sample& s, std::size_t) { addCommand(row, s.commanded.cues.masking, 1.0); });
+        [](NumberText& row, const Sample& s, std::size_t) { addCommand(row, s.commanded.cues.masking, 1.0); });
     add("secondary_stimulus", "Command of the secondary task's stimulus, 0 or 1",
-        "1 from onset_s to before off_s of a row of secondary.csv",
-        [](RowText& row, const Sample& s, std::size_t) { addCommand(row, s.commanded.secondary, s.lit ? 1.0 : 0.0); });
+        "1 from onset_s to before off_s of a row of secondary.csv", [](NumberText& row, const Sample& s, std::size_t) {
+            addCommand(row, s.commanded.secondary, s.lit ? 1.0 : 0.0);
+        });
     return columns;
 }
 
@@ -159,7 +162,7 @@ std::string samplesCsv(std::span<const TickRecord> records, const SampleSignals&
     constexpr std::size_t kTypicalRow = 400;
     std::string text = toCsv(Table{{}, {}, sampleColumns(), {}});
     text.reserve(text.size() + records.size() * kTypicalRow);
-    RowText row(text);
+    NumberText row(text);
     measures::PeriodClock clock;
     measures::CueSignals signals(commanded.cues);
     const std::vector<SampleColumn> columns = makeSampleColumns();

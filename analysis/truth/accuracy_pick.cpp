@@ -95,10 +95,10 @@ void join(Spread& into, const Spread& other, const Join& joined) {
 
 /// Of the same setting elsewhere: the larger errors, and `joined` times.
 template <class Join>
-void merge(AccuracyRow& row, const AccuracyRow& other, const Join& joined) {
+void merge(SettingCost& row, const SettingCost& other, const Join& joined) {
     join(row.time, other.time, joined);
-    for (Spread AccuracyRow::*error :
-         {&AccuracyRow::depth, &AccuracyRow::force, &AccuracyRow::direction, &AccuracyRow::torque})
+    for (Spread SettingCost::*error :
+         {&SettingCost::depth, &SettingCost::force, &SettingCost::direction, &SettingCost::torque})
         join(row.*error, other.*error, [](double a, double b) { return std::fmax(a, b); });
     row.points = std::max(row.points, other.points);
     row.field_bytes += other.field_bytes;
@@ -135,8 +135,8 @@ public:
         return length;
     }
 
-    Result<AccuracyRow> measure(const AccuracySetting& setting) {
-        std::optional<AccuracyRow> all;
+    Result<SettingCost> measure(const AccuracySetting& setting) {
+        std::optional<SettingCost> all;
         for (Scene& scene : scenes_) {
             for (model::ContactSpec contact : scene.contacts) {
                 if (!contact.two_way && scene.both_ways) contact.two_way = scene.both_ways(setting.spacing);
@@ -158,9 +158,9 @@ private:
         std::function<bool(double)> both_ways;
     };
 
-    Result<AccuracyRow> measureScene(const AccuracySetting& setting, const model::ContactSpec& contact,
+    Result<SettingCost> measureScene(const AccuracySetting& setting, const model::ContactSpec& contact,
                                      std::vector<Pair>& pairs) {
-        std::optional<AccuracyRow> sum;
+        std::optional<SettingCost> sum;
         for (Pair& pair : pairs) {
             if (contact.two_way && pair.two_way_poses.empty()) {
                 auto both = judgedBothWays(pair, store_);
@@ -176,7 +176,7 @@ private:
             const auto field = get(pair.obstacle), shell = get(pair.held);
             if (!field) return field.errors();
             if (!shell) return shell.errors();
-            const AccuracyRow row =
+            const SettingCost row =
                 measureSetting(setting, contact, *field, *shell, contact.two_way ? pair.two_way_poses : pair.poses,
                                pair.timed, kRepetitions, pair.lever);
             if (sum)
@@ -194,7 +194,7 @@ private:
 
 }  // namespace
 
-Result<std::vector<AccuracyRow>> measureCandidates(const std::vector<AskedScene>& scenes,
+Result<std::vector<SettingCost>> measureCandidates(const std::vector<AskedScene>& scenes,
                                                    std::span<const double> budgets, const StepReport& report,
                                                    model::BuildStore* store) {
     Candidates candidates(store);
@@ -205,7 +205,7 @@ Result<std::vector<AccuracyRow>> measureCandidates(const std::vector<AskedScene>
         });
         if (!added) return added.errors();
     }
-    std::vector<AccuracyRow> rows;
+    std::vector<SettingCost> rows;
     const std::vector<double> spacings = defaultSpacings(candidates.length());
     const auto [least, most] = std::minmax_element(budgets.begin(), budgets.end());
     const bool budgeted = std::all_of(scenes.begin(), scenes.end(), [](const AskedScene& scene) {
@@ -247,7 +247,7 @@ Result<double> timeOfSetting(const std::vector<AskedScene>& scenes, const Accura
     return row->time.p99;
 }
 
-std::optional<std::size_t> pickFinest(std::span<const AccuracyRow> rows, double budget) {
+std::optional<std::size_t> pickFinest(std::span<const SettingCost> rows, double budget) {
     std::optional<std::size_t> best;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         if (!(rows[i].time.p99 <= budget) || std::isnan(rows[i].depth.p99)) continue;

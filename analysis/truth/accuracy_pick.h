@@ -26,7 +26,7 @@ struct AskedScene {
 /// from run to run. Errors: a part cannot be built, an obstacle (in two-way contact also a held part) without an
 /// inside, a held part that never meets an obstacle.
 /// @pre at least one budget, one scene, one contact of each, and an obstacle in each.
-Result<std::vector<AccuracyRow>> measureCandidates(const std::vector<AskedScene>& scenes,
+Result<std::vector<SettingCost>> measureCandidates(const std::vector<AskedScene>& scenes,
                                                    std::span<const double> budgets, const StepReport& report,
                                                    model::BuildStore* store);
 
@@ -36,6 +36,6 @@ Result<double> timeOfSetting(const std::vector<AskedScene>& scenes, const Accura
 
 /// The row with the smallest error (p99 of the depth) among those whose time (p99) fits `budget` [s]; the
 /// faster of two that err alike.
-std::optional<std::size_t> pickFinest(std::span<const AccuracyRow> rows, double budget);
+std::optional<std::size_t> pickFinest(std::span<const SettingCost> rows, double budget);
 
 }  // namespace passung::truth

@@ -112,15 +112,15 @@ Axis axisAround(double low, double high, double at_low, double at_high) {
 struct Panel {
     const char* title;
     const char* axis;
-    std::function<double(const AccuracyRow&)> error;
-    bool AccuracyRow::*front;
+    std::function<double(const SettingCost&)> error;
+    bool SettingCost::*front;
 };
 
-double timeOf(const AccuracyRow& row) { return 1e6 * row.time.p99; }
+double timeOf(const SettingCost& row) { return 1e6 * row.time.p99; }
 
-std::vector<double> spacingsOf(const std::vector<AccuracyRow>& rows) {
+std::vector<double> spacingsOf(const std::vector<SettingCost>& rows) {
     std::vector<double> spacings;
-    for (const AccuracyRow& row : rows) spacings.push_back(row.setting.spacing);
+    for (const SettingCost& row : rows) spacings.push_back(row.setting.spacing);
     std::sort(spacings.begin(), spacings.end(), std::greater<>());
     spacings.erase(std::unique(spacings.begin(), spacings.end()), spacings.end());
     return spacings;
@@ -150,12 +150,12 @@ void drawAxes(Svg& svg, const Axis& x, const Axis& y, const char* label) {
 }
 
 /// The settings of the front in a column to its right, in the order of their errors, each tied to its mark.
-void drawLabels(Svg& svg, const std::vector<const AccuracyRow*>& front, const Axis& x, const Axis& y,
-                const std::function<double(const AccuracyRow&)>& shown) {
+void drawLabels(Svg& svg, const std::vector<const SettingCost*>& front, const Axis& x, const Axis& y,
+                const std::function<double(const SettingCost&)>& shown) {
     const double column = x.at_high + 22;
     double next = y.at_high + 6;
     std::vector<double> places;
-    for (const AccuracyRow* row : front) {
+    for (const SettingCost* row : front) {
         places.push_back(std::max(next, y.at(shown(*row))));
         next = places.back() + kLabelStep;
     }
@@ -174,10 +174,10 @@ void drawLabels(Svg& svg, const std::vector<const AccuracyRow*>& front, const Ax
     }
 }
 
-void drawPanel(Svg& svg, const Panel& panel, const std::vector<AccuracyRow>& rows, const std::vector<double>& spacings,
+void drawPanel(Svg& svg, const Panel& panel, const std::vector<SettingCost>& rows, const std::vector<double>& spacings,
                double left) {
     double low = std::numeric_limits<double>::infinity(), high = 0.0, fast = low, slow = 0.0;
-    for (const AccuracyRow& row : rows) {
+    for (const SettingCost& row : rows) {
         const double error = panel.error(row);
         if (!std::isfinite(error)) continue;
         fast = std::min(fast, timeOf(row));
@@ -193,11 +193,11 @@ void drawPanel(Svg& svg, const Panel& panel, const std::vector<AccuracyRow>& row
     low = std::max(low, kLeastShare * high);
     const Axis x = axisAround(fast, slow, left, left + kPlotWidth);
     const Axis y = axisAround(low, high, kTop + kPlotHeight, kTop);
-    const auto shown = [&](const AccuracyRow& row) { return std::max(low, panel.error(row)); };
+    const auto shown = [&](const SettingCost& row) { return std::max(low, panel.error(row)); };
     drawAxes(svg, x, y, panel.axis);
 
-    std::vector<const AccuracyRow*> front;
-    for (const AccuracyRow& row : rows) {
+    std::vector<const SettingCost*> front;
+    for (const SettingCost& row : rows) {
         if (!std::isfinite(panel.error(row))) continue;
         if (row.*panel.front)
             front.push_back(&row);
@@ -207,17 +207,17 @@ void drawPanel(Svg& svg, const Panel& panel, const std::vector<AccuracyRow>& row
                      colourOf(spacings, row.setting.spacing).c_str());
     }
     std::sort(front.begin(), front.end(),
-              [](const AccuracyRow* a, const AccuracyRow* b) { return a->time.p99 < b->time.p99; });
+              [](const SettingCost* a, const SettingCost* b) { return a->time.p99 < b->time.p99; });
     drawLabels(svg, front, x, y, shown);
     std::string path;
-    for (const AccuracyRow* row : front) path += fmt::format("{:.1f},{:.1f} ", x.at(timeOf(*row)), y.at(shown(*row)));
+    for (const SettingCost* row : front) path += fmt::format("{:.1f},{:.1f} ", x.at(timeOf(*row)), y.at(shown(*row)));
     svg.add(R"(<polyline points="{}" fill="none" stroke="{}" stroke-width="1.8"/>)", path, kFront);
-    for (const AccuracyRow* row : front)
+    for (const SettingCost* row : front)
         svg.mark(x.at(timeOf(*row)), y.at(shown(*row)), 6, row->setting.mode, colourOf(spacings, row->setting.spacing),
                  1.0, kFront);
 }
 
-void drawLegend(Svg& svg, const std::vector<AccuracyRow>& rows, const std::vector<double>& spacings) {
+void drawLegend(Svg& svg, const std::vector<SettingCost>& rows, const std::vector<double>& spacings) {
     double x = kLeft, y = kHeight - 66;
     const auto word = [&](const std::string& text, double width) {
         svg.text(x, y + 4.5, text, kPlain);
@@ -235,7 +235,7 @@ void drawLegend(Svg& svg, const std::vector<AccuracyRow>& rows, const std::vecto
     word("interpolation of the field:", 182);
     for (const model::FieldMode mode : model::kFieldModes) {
         const bool used =
-            std::any_of(rows.begin(), rows.end(), [&](const AccuracyRow& row) { return row.setting.mode == mode; });
+            std::any_of(rows.begin(), rows.end(), [&](const SettingCost& row) { return row.setting.mode == mode; });
         if (!used) continue;
         svg.mark(x, y, 6, mode, "#FFFFFF", 1.0, kInk);
         x += 13;
@@ -263,7 +263,7 @@ bool isPictureOf(const std::string& picture, const PictureText& text) {
     return picture.find(">" + escaped(titleOf(text)) + "</text>") != std::string::npos;
 }
 
-std::string accuracyPicture(const std::vector<AccuracyRow>& rows, const PictureText& text) {
+std::string accuracyPicture(const std::vector<SettingCost>& rows, const PictureText& text) {
     Svg svg;
     svg.add(R"(<svg xmlns="http://www.w3.org/2000/svg" width="{0}" height="{1}" viewBox="0 0 {0} {1}" )"
             R"(font-family="Liberation Sans, DejaVu Sans, Arial, sans-serif">)",
@@ -278,10 +278,10 @@ std::string accuracyPicture(const std::vector<AccuracyRow>& rows, const PictureT
         kPlain);
     const std::vector<double> spacings = spacingsOf(rows);
     const std::array panels{
-        Panel{"Depth in contact", "error of the depth [µm]", [](const AccuracyRow& row) { return 1e6 * row.depth.p99; },
-              &AccuracyRow::on_depth_front},
+        Panel{"Depth in contact", "error of the depth [µm]", [](const SettingCost& row) { return 1e6 * row.depth.p99; },
+              &SettingCost::on_depth_front},
         Panel{"Force in contact (poses with at least 1 % of the largest force)", "error of the force's magnitude [%]",
-              [](const AccuracyRow& row) { return 100.0 * row.force.p99; }, &AccuracyRow::on_force_front}};
+              [](const SettingCost& row) { return 100.0 * row.force.p99; }, &SettingCost::on_force_front}};
     for (std::size_t i = 0; i < panels.size(); ++i)
         drawPanel(svg, panels[i], rows, spacings, kLeft + static_cast<double>(i) * kPitch);
     drawLegend(svg, rows, spacings);

@@ -15,7 +15,7 @@ struct PictureText {
 
 /// An SVG of two panels, error over time: of the signed distance and of the force; every setting a mark, coloured by
 /// the point spacing, shaped by the mode; each Pareto front a line, its settings written beside it.
-std::string accuracyPicture(const std::vector<AccuracyRow>& rows, const PictureText& text);
+std::string accuracyPicture(const std::vector<SettingCost>& rows, const PictureText& text);
 
 /// Is `picture` one of the same two parts, by their names?
 bool isPictureOf(const std::string& picture, const PictureText& text);

@@ -42,7 +42,7 @@ Result<Built> build(const model::PartSpec& spec, const model::PartNeeds& needs, 
 }
 
 /// What the tick's query says at one pose.
-struct Answer {
+struct PoseReading {
     double depth = 0.0;
     Wrench wrench;
 };
@@ -68,7 +68,7 @@ public:
         weighted_.two_way = contact.two_way;
     }
 
-    Answer at(const Pose& X_FS) {
+    PoseReading at(const Pose& X_FS) {
         tick::TickFrame frame;
         frame.X_WH = X_FS;
         if (!model_.contact.rendersAtHand()) {
@@ -100,7 +100,7 @@ private:
 struct ErrorLists {
     std::vector<double> depth, force, direction, torque;
 
-    void add(const Answer& answer, const PoseTruth& truth, double lever, double least_force) {
+    void add(const PoseReading& answer, const PoseTruth& truth, double lever, double least_force) {
         if (truth.inContact() || answer.depth > 0.0)
             depth.push_back(std::abs(answer.depth - std::max(0.0, -truth.distance)));
         const double size = truth.wrench.force.norm();
@@ -112,7 +112,7 @@ struct ErrorLists {
                                            answer.wrench.force.dot(truth.wrench.force)));
     }
 
-    void summarise(AccuracyRow& row) const {
+    void summarise(SettingCost& row) const {
         row.depth = spreadOf(depth);
         row.force = spreadOf(force);
         row.direction = spreadOf(direction);
@@ -170,15 +170,15 @@ void compare(const AccuracySetting& setting, query::PartQuery& query, const std:
 
 /// Marks who is faster than all that are as good, by an error `of` a row.
 template <class ErrorOf, class Flag>
-void markFront(std::vector<AccuracyRow>& rows, const ErrorOf& of, Flag flag) {
-    std::vector<AccuracyRow*> order;
-    for (AccuracyRow& row : rows)
+void markFront(std::vector<SettingCost>& rows, const ErrorOf& of, Flag flag) {
+    std::vector<SettingCost*> order;
+    for (SettingCost& row : rows)
         if (std::isfinite(of(row))) order.push_back(&row);
-    std::stable_sort(order.begin(), order.end(), [&](const AccuracyRow* a, const AccuracyRow* b) {
+    std::stable_sort(order.begin(), order.end(), [&](const SettingCost* a, const SettingCost* b) {
         return std::pair(a->time.p99, of(*a)) < std::pair(b->time.p99, of(*b));
     });
     double best = kUnlimited;
-    for (AccuracyRow* row : order) {
+    for (SettingCost* row : order) {
         row->*flag = of(*row) < best;
         best = std::min(best, of(*row));
     }
@@ -206,20 +206,20 @@ Spread spreadOf(std::vector<double> values) {
             .max = values.back()};
 }
 
-void markFronts(std::vector<AccuracyRow>& rows) {
+void markFronts(std::vector<SettingCost>& rows) {
     markFront(
-        rows, [](const AccuracyRow& row) { return row.depth.p99; }, &AccuracyRow::on_depth_front);
+        rows, [](const SettingCost& row) { return row.depth.p99; }, &SettingCost::on_depth_front);
     markFront(
-        rows, [](const AccuracyRow& row) { return row.force.p99; }, &AccuracyRow::on_force_front);
+        rows, [](const SettingCost& row) { return row.force.p99; }, &SettingCost::on_force_front);
 }
 
-AccuracyRow measureSetting(const AccuracySetting& setting, model::ContactSpec contact, const SharedPart& field,
+SettingCost measureSetting(const AccuracySetting& setting, model::ContactSpec contact, const SharedPart& field,
                            const SharedPart& shell, const std::vector<JudgedPose>& poses,
                            const std::vector<Pose>& timed, int repetitions, double lever) {
     contact.mode = setting.mode;
     contact.budget_nodes = setting.budget_nodes;
     const model::SphereTree& points = *shell->shell;
-    AccuracyRow row{.setting = setting};
+    SettingCost row{.setting = setting};
     row.points = points.points().size();
     row.field_bytes = static_cast<double>(field->field->memoryBytes());
     row.shell_bytes = static_cast<double>(points.nodes().size_bytes() + points.points().size_bytes());
@@ -265,7 +265,7 @@ Result<AccuracyResult> sweepAccuracy(const model::PartSpec& field, const model::
             if (!shell_part) return shell_part.errors();
             for (const model::FieldMode mode : space.modes) {
                 for (const int budget : space.budgets) {
-                    AccuracyRow row = measureSetting({mode, tolerance, spacing, budget}, contact, field_part->part,
+                    SettingCost row = measureSetting({mode, tolerance, spacing, budget}, contact, field_part->part,
                                                      shell_part->part, poses, timed, space.repetitions, lever);
                     row.field_build = field_part->seconds;
                     row.shell_build = shell_part->seconds;

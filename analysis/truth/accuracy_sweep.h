@@ -43,7 +43,7 @@ Spread spreadOf(std::vector<double> values);
 inline constexpr double kLeastForce = 0.01;
 
 /// What one setting costs and how much it errs. SI units; errors are absolute values against PoseTruth.
-struct AccuracyRow {
+struct SettingCost {
     AccuracySetting setting;
     std::size_t points = 0;     // of SHELL
     Spread time = {};           // of a tick's query with its penalty wrench, on its core [s]
@@ -68,7 +68,7 @@ using SharedPart = std::shared_ptr<const model::Part>;
 /// memory of a row. Of `contact` count method, variant and two_way: the query is that of the tick's own stages.
 /// Wrenches are the area-weighted penalty of the contacts that it finds, whatever the tick makes of them.
 /// @pre `field` holds a field, `shell` a shell, for two-way contact both.
-AccuracyRow measureSetting(const AccuracySetting& setting, model::ContactSpec contact, const SharedPart& field,
+SettingCost measureSetting(const AccuracySetting& setting, model::ContactSpec contact, const SharedPart& field,
                            const SharedPart& shell, const std::vector<JudgedPose>& poses,
                            const std::vector<Pose>& timed, int repetitions, double lever);
 
@@ -80,7 +80,7 @@ struct Disagreement {
 };
 
 struct AccuracyResult {
-    std::vector<AccuracyRow> rows;
+    std::vector<SettingCost> rows;
     std::vector<Disagreement> disagreements;
     std::size_t compared = 0;   // answers that were compared with FCL and the true depth
     std::size_t undecided = 0;  // of them: the stated bound leaves open whether the surfaces meet
@@ -98,6 +98,6 @@ Result<AccuracyResult> sweepAccuracy(const model::PartSpec& field, const model::
                                      model::BuildStore* store = nullptr);
 
 /// Marks the rows that no other beats in both time (p99) and error (p99): of the depth, and of the force.
-void markFronts(std::vector<AccuracyRow>& rows);
+void markFronts(std::vector<SettingCost>& rows);
 
 }  // namespace passung::truth

@@ -16,13 +16,13 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 std::string cell(double value) { return std::isnan(value) ? "NA" : fmt::format("{:.6g}", value); }
 
 template <class Item>
-struct Column {
+struct ItemColumn {
     std::string name, unit, meaning;
     std::function<std::string(const Item&)> text;
 };
 
 template <class Item>
-std::string csv(const std::vector<Column<Item>>& columns, const std::vector<Item>& items) {
+std::string csv(const std::vector<ItemColumn<Item>>& columns, const std::vector<Item>& items) {
     std::string text;
     for (const auto& column : columns) text += (text.empty() ? "" : ",") + column.name;
     for (const Item& item : items) {
@@ -32,14 +32,14 @@ std::string csv(const std::vector<Column<Item>>& columns, const std::vector<Item
     return text + '\n';
 }
 
-using RowColumns = std::vector<Column<AccuracyRow>>;
+using RowColumns = std::vector<ItemColumn<SettingCost>>;
 
 /// mean, p99 and max of one error, times `factor`.
 void addSpread(RowColumns& columns, const std::string& name, const std::string& unit, const std::string& meaning,
-               double factor, Spread AccuracyRow::*spread) {
+               double factor, Spread SettingCost::*spread) {
     const auto add = [&](const char* what, const char* words, double Spread::*value) {
         columns.push_back({name + "_" + what + "_" + unit, unit, std::string(words) + meaning,
-                           [=](const AccuracyRow& row) { return cell(factor * row.*spread.*value); }});
+                           [=](const SettingCost& row) { return cell(factor * row.*spread.*value); }});
     };
     add("mean", "mean over poses of ", &Spread::mean);
     add("p99", "99th percentile (nearest rank) over poses of ", &Spread::p99);
@@ -47,7 +47,7 @@ void addSpread(RowColumns& columns, const std::string& name, const std::string& 
 }
 
 RowColumns rowColumns() {
-    using Row = AccuracyRow;
+    using Row = SettingCost;
     RowColumns columns{
         {"mode", "", "interpolation of the field",
          [](const Row& r) { return std::string(model::modeName(r.setting.mode)); }},
@@ -100,8 +100,8 @@ RowColumns rowColumns() {
     return columns;
 }
 
-std::vector<Column<JudgedPose>> poseColumns() {
-    std::vector<Column<JudgedPose>> columns;
+std::vector<ItemColumn<JudgedPose>> poseColumns() {
+    std::vector<ItemColumn<JudgedPose>> columns;
     const auto add = [&](const std::string& name, const char* unit, const char* meaning, auto value) {
         columns.push_back({name, unit, meaning, [value](const JudgedPose& pose) {
                                const double v = value(pose);
@@ -137,18 +137,18 @@ std::vector<Column<JudgedPose>> poseColumns() {
 }
 
 /// The rows of one front from fast to accurate.
-std::vector<const AccuracyRow*> front(const std::vector<AccuracyRow>& rows, bool AccuracyRow::*flag) {
-    std::vector<const AccuracyRow*> on;
-    for (const AccuracyRow& row : rows)
+std::vector<const SettingCost*> front(const std::vector<SettingCost>& rows, bool SettingCost::*flag) {
+    std::vector<const SettingCost*> on;
+    for (const SettingCost& row : rows)
         if (row.*flag) on.push_back(&row);
     std::sort(on.begin(), on.end(),
-              [](const AccuracyRow* a, const AccuracyRow* b) { return a->time.p99 < b->time.p99; });
+              [](const SettingCost* a, const SettingCost* b) { return a->time.p99 < b->time.p99; });
     return on;
 }
 
 }  // namespace
 
-std::string accuracyCsv(const std::vector<AccuracyRow>& rows) { return csv(rowColumns(), rows); }
+std::string accuracyCsv(const std::vector<SettingCost>& rows) { return csv(rowColumns(), rows); }
 
 std::string posesCsv(const std::vector<JudgedPose>& poses) { return csv(poseColumns(), poses); }
 
@@ -170,21 +170,21 @@ std::string settingText(const AccuracySetting& setting) {
                        model::modeName(setting.mode), budget);
 }
 
-std::string frontText(const std::vector<AccuracyRow>& rows) {
+std::string frontText(const std::vector<SettingCost>& rows) {
     std::string text;
-    const auto add = [&](const char* title, bool AccuracyRow::*flag, auto error, const char* unit) {
+    const auto add = [&](const char* title, bool SettingCost::*flag, auto error, const char* unit) {
         text += fmt::format("{}\n  {:>10} {:>10}  {:>10}      {}\n", title, "median", "p99", "p99 error",
                             "field tolerance, point spacing, mode, node budget");
-        for (const AccuracyRow* row : front(rows, flag))
+        for (const SettingCost* row : front(rows, flag))
             text += fmt::format("  {:>7.1f} µs {:>7.1f} µs  {:>10.3g} {:<4} {}\n", 1e6 * row->time.median,
                                 1e6 * row->time.p99, error(*row), unit, settingText(row->setting));
     };
     add(
-        "Depth: settings that no other beats in both time and error", &AccuracyRow::on_depth_front,
-        [](const AccuracyRow& row) { return 1e6 * row.depth.p99; }, "µm");
+        "Depth: settings that no other beats in both time and error", &SettingCost::on_depth_front,
+        [](const SettingCost& row) { return 1e6 * row.depth.p99; }, "µm");
     add(
-        "Force: settings that no other beats in both time and error", &AccuracyRow::on_force_front,
-        [](const AccuracyRow& row) { return 100.0 * row.force.p99; }, "%");
+        "Force: settings that no other beats in both time and error", &SettingCost::on_force_front,
+        [](const SettingCost& row) { return 100.0 * row.force.p99; }, "%");
     return text;
 }
 

@@ -8,7 +8,7 @@
 namespace passung::truth {
 
 /// CSV: a header and one line per setting.
-std::string accuracyCsv(const std::vector<AccuracyRow>& rows);
+std::string accuracyCsv(const std::vector<SettingCost>& rows);
 
 /// CSV: the poses and their truth. Its first seven columns are what `passung query --poses` reads.
 std::string posesCsv(const std::vector<JudgedPose>& poses);
@@ -20,6 +20,6 @@ std::string accuracyCodebook();
 std::string settingText(const AccuracySetting& setting);
 
 /// For a terminal: the settings on each front, from fast to accurate.
-std::string frontText(const std::vector<AccuracyRow>& rows);
+std::string frontText(const std::vector<SettingCost>& rows);
 
 }  // namespace passung::truth

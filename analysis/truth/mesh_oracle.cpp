@@ -10,21 +10,21 @@
 namespace passung::truth {
 namespace {
 
-using Surface = fcl::BVHModel<fcl::OBBRSSd>;
+using FclSurface = fcl::BVHModel<fcl::OBBRSSd>;
 
 // FCL's distance leaves the face out of a triangle whose doubled area squared is below 1e-15: in metres, of edges below
 // 0.2 mm. Then it says 0 of triangles that are apart, or takes an edge for the nearest. Its lengths are therefore
 // smaller units; a power of two, so that nothing is rounded by it.
 constexpr double kPerMetre = 65536.0;
 
-std::unique_ptr<Surface> surfaceOf(const model::TriangleMesh& mesh) {
+std::unique_ptr<FclSurface> surfaceOf(const model::TriangleMesh& mesh) {
     std::vector<Vec3> vertices;
     vertices.reserve(mesh.vertices.size());
     for (const Vec3& v : mesh.vertices) vertices.push_back(kPerMetre * v);
     std::vector<fcl::Triangle> triangles;
     triangles.reserve(mesh.triangles.size());
     for (const model::Triangle& t : mesh.triangles) triangles.emplace_back(t[0], t[1], t[2]);
-    auto surface = std::make_unique<Surface>();
+    auto surface = std::make_unique<FclSurface>();
     surface->beginModel();
     surface->addSubModel(vertices, triangles);
     surface->endModel();
@@ -43,7 +43,7 @@ Error notFinite() { return {.message = "pose of B in A: every component must be 
 }  // namespace
 
 struct MeshOracle::Surfaces {
-    std::unique_ptr<Surface> a, b;
+    std::unique_ptr<FclSurface> a, b;
 };
 
 const char* toString(Relation relation) {

@@ -22,9 +22,9 @@ Descent descend(const model::DistanceField& field, const model::DistanceField::P
     const model::SurfaceWalk& surface = shell.surface();
     const model::SurfacePoint& from = shell.points()[start];
     if (from.triangle >= surface.size()) return {from.position, 0};
-    std::array<model::SurfaceWalk::Place, kDirections> tried;
+    std::array<model::SurfaceWalk::WalkPlace, kDirections> tried;
     std::array<float, kDirections> x, y, z, read;
-    model::SurfaceWalk::Place best{from.triangle, from.position.cast<float>()};
+    model::SurfaceWalk::WalkPlace best{from.triangle, from.position.cast<float>()};
     auto least = static_cast<float>(phi);
     const auto cover = static_cast<float>(shell.coverRadius());
     float length = kFirstStep * cover;

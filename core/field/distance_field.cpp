@@ -28,7 +28,7 @@ constexpr auto kCellEdge = [] {
 }  // namespace
 
 struct DistanceField::Cell : Spot {
-    Corners stored;  // φ = low + step · stored
+    CornerValues stored;  // φ = low + step · stored
 
     double corner(std::size_t i) const noexcept { return low + step * stored[i]; }
 };
@@ -55,14 +55,14 @@ double DistanceField::boxDistance(const Vec3& p) const noexcept {
     return (surface_bounds_.low - p).cwiseMax(p - surface_bounds_.high).cwiseMax(0.0).norm();
 }
 
-DistanceField::Place DistanceField::descend(std::int32_t root, const Vec3& in_root) const noexcept {
+DistanceField::CellPlace DistanceField::descend(std::int32_t root, const Vec3& in_root) const noexcept {
     // The place in cells of the last level that may be; those of a level above are its leading bits, exactly.
     constexpr int kBits = 3 + kMostLevels;
     constexpr double kPlaces = 1 << kBits;
     const auto x = static_cast<unsigned>(static_cast<int>(in_root.x() * kPlaces));
     const auto y = static_cast<unsigned>(static_cast<int>(in_root.y() * kPlaces));
     const auto z = static_cast<unsigned>(static_cast<int>(in_root.z() * kPlaces));
-    Place place{static_cast<std::size_t>(root), 0, 0, {}};
+    CellPlace place{static_cast<std::size_t>(root), 0, 0, {}};
     for (; place.level < kMostLevels; ++place.level) {
         const int bit = kBits - 1 - place.level;
         place.octant = (x >> bit & 1u) | (y >> bit & 1u) << 1 | (z >> bit & 1u) << 2;
@@ -98,7 +98,7 @@ bool DistanceField::find(const Vec3& p, Spot& spot) const noexcept {
         spot.first = 0;
         return true;
     }
-    const Place place = descend(root, in_root);
+    const CellPlace place = descend(root, in_root);
     const double cells = static_cast<double>(kBrickCells << place.level);  // along the root's edge
     const auto [x, y, z] = place.cell;
     spot.u = in_root * cells - Vec3(x, y, z);
@@ -186,7 +186,7 @@ double DistanceField::bound(const Cell& cell, double way, double phi) const noex
     Cell cell;
     if (!locate(p, cell)) return boxDistance(p) - sheet_offset_ - arithmetic_;
     if (!bound_proven_) return -farthestSurface(cell);
-    const Corners w = trilinearWeights(cell.u);
+    const CornerValues w = trilinearWeights(cell.u);
     const double off = rounding(cell);
     double mean = 0.0, mean_square = 0.0;
     for (std::size_t i = 0; i < 8; ++i) {
@@ -213,7 +213,7 @@ double DistanceField::errorBound(const Vec3& p, FieldMode mode) const noexcept {
         mode == FieldMode::Layered ? cell.edge * (cornerAt(nearestCorner(cell.u)) - cell.u).norm() : 0.0;
     if (!bound_proven_) return std::abs(sample(p, mode).phi) + aside + farthestSurface(cell);
     if (mode == FieldMode::Layered) return 0.5 * cell.edge + 2.0 * aside + rounding(cell);
-    const Corners w = trilinearWeights(cell.u);
+    const CornerValues w = trilinearWeights(cell.u);
     double ways = 0.0;
     for (std::size_t i = 0; i < 8; ++i) ways += w[i] * (cornerAt(i) - cell.u).norm();
     const double trilinear = cell.low + cell.step * trilinearValue(cell.stored, cell.u);

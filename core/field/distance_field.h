@@ -180,7 +180,7 @@ private:
                                                kIndexPerBrick * sizeof(std::int32_t);
 
     /// The smallest brick that holds a point.
-    struct Place {
+    struct CellPlace {
         std::size_t brick;
         int level;                // 0: largest cells
         unsigned octant;          // of the brick
@@ -198,7 +198,7 @@ private:
         double slack, most;        // k, and e if |φ| ≤ bounded_within_ [m]: see errorBound
         bool in_brick;             // else on the coarse grid, where floats are stored
     };
-    Place descend(std::int32_t root, const Vec3& in_root) const noexcept;  // in_root in [0, 1)³
+    CellPlace descend(std::int32_t root, const Vec3& in_root) const noexcept;  // in_root in [0, 1)³
     bool find(const Vec3& p, Spot& spot) const noexcept;
     bool locate(const Vec3& p, Cell& cell) const noexcept;
     FieldSample sampleOutside(const Vec3& p) const noexcept;

@@ -86,10 +86,10 @@ struct DistanceField::Builder {
     double allowed(double phi) const;
     SurfaceBlock blockAt(const Vec3& corner) const;
     Nodes store(std::size_t brick, const Nodes& phi);
-    double distanceIn(const Corners& values, std::span<const std::uint32_t> triangles, const Vec3& origin,
+    double distanceIn(const CornerValues& values, std::span<const std::uint32_t> triangles, const Vec3& origin,
                       const Vec3& u) const;
     static Nodes bends(const Nodes& nodes);
-    double errorOf(const Corners& values, const Vec3& u, double distance) const;
+    double errorOf(const CornerValues& values, const Vec3& u, double distance) const;
     double wrongDepth(const Nodes& nodes, const Nodes& bends, const SurfaceBlock& block, const Vec3& corner, int x,
                       int y, int z) const;
     std::array<double, 8> measure(const Nodes& nodes, const SurfaceBlock& block, const Vec3& corner) const;

@@ -38,7 +38,7 @@ double DistanceField::Builder::allowed(double phi) const {
 }
 
 /// Exact distance at `u` in a cell with its first corner at `origin`.
-double DistanceField::Builder::distanceIn(const Corners& values, std::span<const std::uint32_t> triangles,
+double DistanceField::Builder::distanceIn(const CornerValues& values, std::span<const std::uint32_t> triangles,
                                           const Vec3& origin, const Vec3& u) const {
     if (!triangles.empty()) return exact.source.distance_to(origin + cell * u, triangles);
     const unsigned near = nearestCorner(u);
@@ -63,7 +63,7 @@ DistanceField::Builder::Nodes DistanceField::Builder::bends(const Nodes& nodes) 
 }
 
 /// What interpolation of a cell errs by at `u`, where the exact distance is d; 0 behind the offset of a sheet.
-double DistanceField::Builder::errorOf(const Corners& values, const Vec3& u, double d) const {
+double DistanceField::Builder::errorOf(const CornerValues& values, const Vec3& u, double d) const {
     const double offset = field.sheet_offset_;
     if (d < offset) return 0.0;
     const double phi = trilinearValue(values, u);
@@ -75,7 +75,7 @@ double DistanceField::Builder::errorOf(const Corners& values, const Vec3& u, dou
 double DistanceField::Builder::wrongDepth(const Nodes& nodes, const Nodes& bends, const SurfaceBlock& block,
                                           const Vec3& corner, int x, int y, int z) const {
     constexpr double kNever = std::numeric_limits<double>::infinity();
-    Corners values;
+    CornerValues values;
     double least = kNever, bend = 0.0;
     for (std::size_t i = 0; i < 8; ++i) {
         const std::size_t at =
@@ -135,7 +135,7 @@ void DistanceField::Builder::measureLandmarks() {
         const std::int32_t root = field.brick_of_cell_[field.coarseCell(
             static_cast<int>(whole.x()), static_cast<int>(whole.y()), static_cast<int>(whole.z()))];
         if (root < 0) continue;
-        const Place place = field.descend(root, g - whole);
+        const CellPlace place = field.descend(root, g - whole);
         if (place.brick < first) continue;
         if (std::abs(field.sample(p, FieldMode::Trilinear).phi) > accuracy.tolerance)
             wrong[place.brick - first][place.octant] = 0.0;

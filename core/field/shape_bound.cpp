@@ -89,7 +89,7 @@ double pieceDistance(const KeyedBorePlate& s, Piece piece, const Vec3& p) { retu
 struct Cube {
     Vec3 low;
     double cell;
-    Corners phi;
+    CornerValues phi;
 
     Cube(const SurfaceBlock& block, const Vec3& block_low, double edge, const std::array<int, 3>& at)
         : low(block_low + edge * Vec3(at[0], at[1], at[2])), cell(edge) {

@@ -40,7 +40,7 @@ SurfaceWalk::SurfaceWalk(const TriangleMesh& mesh) {
     });
 }
 
-SurfaceWalk::Place SurfaceWalk::moved(Place place, Eigen::Vector3f step) const noexcept {
+SurfaceWalk::WalkPlace SurfaceWalk::moved(WalkPlace place, Eigen::Vector3f step) const noexcept {
     const Face* face = &faces_[place.triangle];
     step -= face->normal.dot(step) * face->normal;
     std::size_t entry = 3;

@@ -14,7 +14,7 @@ namespace passung::model {
 class SurfaceWalk {
 public:
     /// A point of the surface, on one of its triangles.
-    struct Place {
+    struct WalkPlace {
         std::uint32_t triangle;
         Eigen::Vector3f position;
     };
@@ -34,7 +34,7 @@ public:
     /// goes on as if both triangles were laid flat. It ends early at an edge that is not shared by exactly two
     /// triangles, at a triangle without area, and in the last of kMostFaces triangles. rt-safe.
     /// @pre place.triangle < size()
-    Place moved(Place place, Eigen::Vector3f step) const noexcept;
+    WalkPlace moved(WalkPlace place, Eigen::Vector3f step) const noexcept;
     static constexpr int kMostFaces = 8;
 
 private:

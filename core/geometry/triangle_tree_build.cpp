@@ -18,7 +18,7 @@ constexpr double kFarRadii = 2.0;  // a cluster is far at this many of its radii
 constexpr double kNeedle = 1e-4;   // height over longest edge, below which a triangle is treated with care
 
 /// A triangle while the tree is built.
-struct Item {
+struct TreeTriangle {
     Vec3 low, high, centre;
     std::uint32_t index;
 };
@@ -44,7 +44,8 @@ int binOf(double centre, double low, double extent) {
 }
 
 /// Cheapest of the kBins - 1 splits along an axis by the surface area heuristic: {cost, bins on the left}.
-std::pair<double, int> cheapestSplit(const Item* items, std::uint32_t count, int axis, double low, double extent) {
+std::pair<double, int> cheapestSplit(const TreeTriangle* items, std::uint32_t count, int axis, double low,
+                                     double extent) {
     std::array<Bin, kBins> bins;
     for (std::uint32_t i = 0; i < count; ++i) {
         Bin& bin = bins[static_cast<std::size_t>(binOf(items[i].centre[axis], low, extent))];
@@ -70,7 +71,7 @@ std::pair<double, int> cheapestSplit(const Item* items, std::uint32_t count, int
 
 /// Sorts `items` into two groups, in the middle if `by_halves`, else where it is cheapest; how many are in the first.
 /// Never 0, never all.
-std::uint32_t split(Item* items, std::uint32_t count, bool by_halves) {
+std::uint32_t split(TreeTriangle* items, std::uint32_t count, bool by_halves) {
     Bounds centres;
     for (std::uint32_t i = 0; i < count; ++i) centres.extend(items[i].centre);
     int axis = 0;
@@ -90,13 +91,13 @@ std::uint32_t split(Item* items, std::uint32_t count, bool by_halves) {
         }
         if (best_axis >= 0) {
             const double low = centres.low[best_axis], extent = centres.size()[best_axis];
-            const Item* middle = std::stable_partition(items, items + count, [&](const Item& item) {
+            const TreeTriangle* middle = std::stable_partition(items, items + count, [&](const TreeTriangle& item) {
                 return binOf(item.centre[best_axis], low, extent) < best_bins;
             });
             return static_cast<std::uint32_t>(middle - items);
         }
     }
-    std::sort(items, items + count, [axis](const Item& a, const Item& b) {
+    std::sort(items, items + count, [axis](const TreeTriangle& a, const TreeTriangle& b) {
         return std::pair(a.centre[axis], a.index) < std::pair(b.centre[axis], b.index);
     });
     return count / 2;
@@ -112,7 +113,7 @@ bool isNeedle(const Vec3& a, const Vec3& b, const Vec3& c) {
 TriangleTree::TriangleTree(const TriangleMesh& mesh) {
     PASSUNG_ASSERT(!mesh.triangles.empty());
     const std::size_t n = mesh.triangles.size();
-    std::vector<Item> items(n);
+    std::vector<TreeTriangle> items(n);
     for (std::size_t i = 0; i < n; ++i) {
         Bounds box;
         for (const std::uint32_t v : mesh.triangles[i]) box.extend(mesh.vertices[v]);
@@ -146,7 +147,7 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
 
     corners_.reserve(n);
     original_.reserve(n);
-    for (const Item& item : items) {
+    for (const TreeTriangle& item : items) {
         const Triangle& t = mesh.triangles[item.index];
         const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
         corners_.push_back({a, b, c, isNeedle(a, b, c)});

@@ -16,7 +16,7 @@ constexpr double kTouching = 1e-9;
 /// Of one triangle: a pile of thousands upon one place is found by fewer.
 constexpr std::size_t kMostNeighbours = 256;
 
-struct Corners {
+struct CyclicCorners {
     std::array<Vec3, 3> at;
     const Vec3& operator[](std::size_t k) const { return at[k % 3]; }
 };
@@ -29,7 +29,7 @@ double volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
 }
 
 /// Strictly: through the triangle's inside, with the ends on two sides of its plane.
-bool passesThrough(const Vec3& from, const Vec3& to, const Corners& t) {
+bool passesThrough(const Vec3& from, const Vec3& to, const CyclicCorners& t) {
     const double from_side = volume(t[0], t[1], t[2], from), to_side = volume(t[0], t[1], t[2], to);
     if (!(from_side * to_side < 0.0)) return false;
     const double first = volume(from, to, t[0], t[1]), second = volume(from, to, t[1], t[2]),
@@ -37,7 +37,7 @@ bool passesThrough(const Vec3& from, const Vec3& to, const Corners& t) {
     return (first > 0.0 && second > 0.0 && third > 0.0) || (first < 0.0 && second < 0.0 && third < 0.0);
 }
 
-bool cross(const Corners& a, const Corners& b) {
+bool cross(const CyclicCorners& a, const CyclicCorners& b) {
     for (std::size_t k = 0; k < 3; ++k)
         if (passesThrough(a[k], a[k + 1], b) || passesThrough(b[k], b[k + 1], a)) return true;
     return false;
@@ -50,13 +50,13 @@ Crossings crossingsOf(const TriangleMesh& mesh) {
     const TriangleTree tree(mesh);
     const auto cornersOf = [&](std::size_t i) {
         const Triangle& t = mesh.triangles[i];
-        return Corners{{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]}};
+        return CyclicCorners{{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]}};
     };
     Crossings found;
     std::vector<char> crossing(mesh.triangles.size(), 0);
     std::vector<std::uint32_t> near;
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-        const Corners corners = cornersOf(i);
+        const CyclicCorners corners = cornersOf(i);
         Bounds box;
         for (const Vec3& corner : corners.at) box.extend(corner);
         tree.collectWithin(box, kMostNeighbours, near);

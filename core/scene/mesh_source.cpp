@@ -2,7 +2,7 @@
 
 namespace passung::model {
 
-Result<ImportedMesh> importMesh(const MeshFile& file, BuildStore* store) {
+Result<ImportedMesh> importMeshFile(const MeshFile& file, BuildStore* store) {
     if (auto* source = dynamic_cast<MeshSource*>(store)) return source->importMesh(file.path, file.metres_per_unit);
     return importMesh(file.path, file.metres_per_unit);
 }

@@ -18,6 +18,6 @@ public:
 };
 
 /// By the store if it is a MeshSource, else in this process.
-Result<ImportedMesh> importMesh(const MeshFile& file, BuildStore* store);
+Result<ImportedMesh> importMeshFile(const MeshFile& file, BuildStore* store);
 
 }  // namespace passung::model

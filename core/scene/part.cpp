@@ -73,7 +73,7 @@ double probedError(const DistanceSource& source, const TriangleMesh& mesh, doubl
         const Vec3 u(random.uniform(), random.uniform(), random.uniform());
         const double truth = signedAt(p);
         if (std::abs(truth) < nearest) continue;
-        Corners corners{};
+        CornerValues corners{};
         for (std::size_t c = 0; c < 8; ++c) corners[c] = signedAt(p + cell * (cornerAt(c) - u));
         errors.push_back(std::abs(trilinearValue(corners, u) - truth));
     }
@@ -234,7 +234,7 @@ Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs, BuildStore*
         part.report.format = kindName(*shape);
     } else {
         const auto& file = std::get<MeshFile>(spec.geometry);
-        auto imported = importMesh(file, store);
+        auto imported = importMeshFile(file, store);
         if (!imported) return imported.errors();
         part.mesh = std::move(imported->mesh);
         part.report = std::move(imported->report);

@@ -36,7 +36,7 @@ void TimedStore::keep(const std::string& name, std::string_view bytes) {
 }
 
 Result<ImportedMesh> TimedStore::importMesh(const std::string& path, double metres_per_unit) {
-    return model::importMesh(MeshFile{path, metres_per_unit}, store_);
+    return model::importMeshFile(MeshFile{path, metres_per_unit}, store_);
 }
 
 double TimedStore::seconds() const {

@@ -14,7 +14,7 @@ namespace {
 
 using std::numbers::pi;
 using Index = TriangleBuilder::Index;
-using Ring = TriangleBuilder::Ring;
+using PointRing = TriangleBuilder::Ring;
 
 constexpr int kFewestSegments = 12;
 constexpr int kMostSegments = 2048;        // then the chord error is 1.2e-6 of the radius
@@ -70,19 +70,19 @@ int rowsFor(double radius, double chord_error) {
     return rows;
 }
 
-/// Rows of octants from the north pole over the equator to the south pole. Ring i has 4i vertices.
+/// Rows of octants from the north pole over the equator to the south pole. PointRing i has 4i vertices.
 TriangleMesh tessellateShape(const Sphere& sphere, double chord_error) {
     const double radius = 0.5 * sphere.diameter;
     const int rows = rowsFor(radius, chord_error);
     TriangleBuilder builder;
     const auto makeRing = [&](int i, double hemisphere) {
-        if (i == 0) return Ring{builder.vertex(0.0, 0.0, hemisphere * radius)};
+        if (i == 0) return PointRing{builder.vertex(0.0, 0.0, hemisphere * radius)};
         if (i == rows) return builder.ring(radius, 0.0, 4 * i);
         const double theta = 0.5 * pi * i / rows;
         return builder.ring(radius * std::sin(theta), hemisphere * radius * std::cos(theta), 4 * i);
     };
     // `small` has 4i vertices, `large` 4(i+1); `small` lies nearer to the pole.
-    const auto joinRings = [&](const Ring& small, const Ring& large, int i, bool north) {
+    const auto joinRings = [&](const PointRing& small, const PointRing& large, int i, bool north) {
         for (int q = 0; q < 4; ++q) {
             const auto inner = [&](int j) {
                 return small[static_cast<std::size_t>(i == 0 ? 0 : (q * i + j) % (4 * i))];
@@ -99,10 +99,10 @@ TriangleMesh tessellateShape(const Sphere& sphere, double chord_error) {
             }
         }
     };
-    Ring previous = makeRing(0, 1.0);
+    PointRing previous = makeRing(0, 1.0);
     for (int m = 1; m <= 2 * rows; ++m) {
         const bool north = m <= rows;
-        const Ring next = makeRing(north ? m : 2 * rows - m, north ? 1.0 : -1.0);
+        const PointRing next = makeRing(north ? m : 2 * rows - m, north ? 1.0 : -1.0);
         north ? joinRings(previous, next, m - 1, true) : joinRings(next, previous, 2 * rows - m, false);
         previous = next;
     }
@@ -111,8 +111,8 @@ TriangleMesh tessellateShape(const Sphere& sphere, double chord_error) {
 
 TriangleMesh tessellateShape(const Box& box, double) {
     TriangleBuilder builder;
-    const Ring low = builder.rectangle(0.5 * box.width, 0.5 * box.depth, -0.5 * box.height);
-    const Ring high = builder.rectangle(0.5 * box.width, 0.5 * box.depth, 0.5 * box.height);
+    const PointRing low = builder.rectangle(0.5 * box.width, 0.5 * box.depth, -0.5 * box.height);
+    const PointRing high = builder.rectangle(0.5 * box.width, 0.5 * box.depth, 0.5 * box.height);
     builder.band(low, high);
     builder.quad(high[0], high[1], high[2], high[3]);
     builder.quad(low[3], low[2], low[1], low[0]);
@@ -121,7 +121,7 @@ TriangleMesh tessellateShape(const Box& box, double) {
 
 TriangleMesh tessellateShape(const Sheet& sheet, double) {
     TriangleBuilder builder;
-    const Ring corners = builder.rectangle(0.5 * sheet.width, 0.5 * sheet.depth, 0.0);
+    const PointRing corners = builder.rectangle(0.5 * sheet.width, 0.5 * sheet.depth, 0.0);
     builder.quad(corners[0], corners[1], corners[2], corners[3]);
     return builder.take();
 }
@@ -130,8 +130,8 @@ TriangleMesh tessellateShape(const Cylinder& cylinder, double chord_error) {
     const double radius = 0.5 * cylinder.diameter, half = 0.5 * cylinder.length;
     const int segments = segmentsFor(radius, chord_error);
     TriangleBuilder builder;
-    const Ring low = builder.ring(radius, -half, segments);
-    const Ring high = builder.ring(radius, half, segments);
+    const PointRing low = builder.ring(radius, -half, segments);
+    const PointRing high = builder.ring(radius, half, segments);
     builder.disc(low, -half, false);
     builder.band(low, high);
     builder.disc(high, half, true);
@@ -156,7 +156,7 @@ TriangleMesh tessellateShape(const Torus& torus, double chord_error) {
     const double radius = 0.5 * torus.diameter, tube = 0.5 * torus.tube_diameter;
     const TorusSteps steps = stepsFor(torus, chord_error);
     TriangleBuilder builder;
-    std::vector<Ring> rings;
+    std::vector<PointRing> rings;
     for (int k = 0; k < steps.along_tube; ++k) {
         const auto [c, s] = TriangleBuilder::direction(k, steps.along_tube);
         rings.push_back(builder.ring(radius + tube * c, tube * s, steps.around));
@@ -169,10 +169,10 @@ TriangleMesh tessellateShape(const Peg& peg, double chord_error) {
     const double radius = 0.5 * peg.diameter;
     const int segments = segmentsFor(radius, chord_error);
     TriangleBuilder builder;
-    const Ring edge = builder.ring(radius, peg.chamfer, segments);
-    const Ring end = builder.ring(radius, peg.length, segments);
+    const PointRing edge = builder.ring(radius, peg.chamfer, segments);
+    const PointRing end = builder.ring(radius, peg.length, segments);
     if (peg.chamfer > 0.0) {
-        const Ring tip = builder.ring(radius - peg.chamfer, 0.0, segments);
+        const PointRing tip = builder.ring(radius - peg.chamfer, 0.0, segments);
         builder.disc(tip, 0.0, false);
         builder.band(tip, edge);
     } else {
@@ -189,14 +189,14 @@ TriangleMesh tessellateShape(const BorePlate& plate, double chord_error) {
     const double floor_z = through ? -plate.height : -plate.bore_depth;
     const int segments = segmentsFor(mouth, chord_error);
     TriangleBuilder builder;
-    const Ring top = builder.rectangle(0.5 * plate.width, 0.5 * plate.depth, 0.0);
-    const Ring bottom = builder.rectangle(0.5 * plate.width, 0.5 * plate.depth, -plate.height);
-    const Ring neck = builder.ring(bore, -plate.chamfer, segments);
-    const Ring end = builder.ring(bore, floor_z, segments);
+    const PointRing top = builder.rectangle(0.5 * plate.width, 0.5 * plate.depth, 0.0);
+    const PointRing bottom = builder.rectangle(0.5 * plate.width, 0.5 * plate.depth, -plate.height);
+    const PointRing neck = builder.ring(bore, -plate.chamfer, segments);
+    const PointRing end = builder.ring(bore, floor_z, segments);
     builder.band(bottom, top);
     builder.band(neck, end);  // the wall faces the axis
     if (plate.chamfer > 0.0) {
-        const Ring rim = builder.ring(mouth, 0.0, segments);
+        const PointRing rim = builder.ring(mouth, 0.0, segments);
         builder.faceWithHole(top, rim, true);
         builder.band(rim, neck);
     } else {
@@ -216,13 +216,13 @@ TriangleMesh tessellatePeg(const AnyPeg& peg, double chord_error) {
     const auto profile = profileOf(peg);
     const ProfileSteps steps = profile.stepsFor(-peg.chamfer, 0.0, chord_error);
     TriangleBuilder builder;
-    Ring last;
+    PointRing last;
     for (const double t : steps.levels) {
-        const Ring next = builder.ring(profile.grown(t).outline(steps).points, peg.chamfer + t);
+        const PointRing next = builder.ring(profile.grown(t).outline(steps).points, peg.chamfer + t);
         last.empty() ? builder.disc(next, 0.0, false) : builder.band(last, next);
         last = next;
     }
-    const Ring end = builder.ring(profile.outline(steps).points, peg.length);
+    const PointRing end = builder.ring(profile.outline(steps).points, peg.length);
     builder.band(last, end);
     builder.disc(end, peg.length, true);
     return builder.take();
@@ -235,11 +235,11 @@ TriangleMesh tessellatePocketPlate(const Plate& plate, double chord_error) {
     const bool through = plate.bore_depth >= plate.height;
     const double floor_z = through ? -plate.height : -plate.bore_depth;
     TriangleBuilder builder;
-    const Ring top = builder.rectangle(0.5 * plate.width, 0.5 * plate.depth, 0.0);
-    const Ring bottom = builder.rectangle(0.5 * plate.width, 0.5 * plate.depth, -plate.height);
+    const PointRing top = builder.rectangle(0.5 * plate.width, 0.5 * plate.depth, 0.0);
+    const PointRing bottom = builder.rectangle(0.5 * plate.width, 0.5 * plate.depth, -plate.height);
     builder.band(bottom, top);
     const Outline outline = profile.outline(steps);
-    Ring last = builder.ring(outline.points, floor_z);
+    PointRing last = builder.ring(outline.points, floor_z);
     if (through) {
         builder.faceWithHole(bottom, last, outline.on_axis, false);
     } else {
@@ -247,7 +247,7 @@ TriangleMesh tessellatePocketPlate(const Plate& plate, double chord_error) {
         builder.quad(bottom[3], bottom[2], bottom[1], bottom[0]);
     }
     for (const double t : steps.levels) {
-        const Ring next = builder.ring(profile.grown(t).outline(steps).points, t - plate.chamfer);
+        const PointRing next = builder.ring(profile.grown(t).outline(steps).points, t - plate.chamfer);
         builder.band(next, last);  // the wall faces the axis
         last = next;
     }

@@ -36,7 +36,7 @@ struct Seed {
     Vec3 inward;  // unit
 };
 
-struct Judged {
+struct JudgedFeature {
     bool thin = false;
     double near = 0.0, far = 0.0;  // radius of the largest ball within kNear and kFelt radii
     bool looked_at = true;
@@ -69,7 +69,7 @@ public:
         return tree_.closest(p - radius_ * n, radius_).distance >= kRoom * radius_;
     }
 
-    Judged judge(const Seed& seed, Work& work) const {
+    JudgedFeature judge(const Seed& seed, Work& work) const {
         const double near = largestWithin(seed, kNear * radius_, work),
                      far = largestWithin(seed, kFelt * radius_, work);
         if (far >= kRoom * radius_) return {false, near, far};
@@ -245,9 +245,9 @@ double median(std::vector<double> values) {
 }
 
 /// Every seed, in rounds, each of which is spread over the part; the rounds end when the work is too much.
-std::vector<Judged> judgeAll(const Search& search, const std::vector<Seed>& seeds, SearchLimit& limit) {
+std::vector<JudgedFeature> judgeAll(const Search& search, const std::vector<Seed>& seeds, SearchLimit& limit) {
     const std::size_t n = seeds.size(), rounds = (n + kSeedsPerRound - 1) / kSeedsPerRound;
-    std::vector<Judged> judged(n, Judged{.looked_at = false});
+    std::vector<JudgedFeature> judged(n, JudgedFeature{.looked_at = false});
     limit.work = 0;
     for (std::size_t round = 0; round < rounds && limit.work <= limit.most_work; ++round) {
         const std::size_t count = (n - round + rounds - 1) / rounds;
@@ -259,12 +259,12 @@ std::vector<Judged> judgeAll(const Search& search, const std::vector<Seed>& seed
         limit.work = std::accumulate(work.begin(), work.end(), limit.work);
     }
     limit.left_out = static_cast<std::size_t>(
-        std::count_if(judged.begin(), judged.end(), [](const Judged& seed) { return !seed.looked_at; }));
+        std::count_if(judged.begin(), judged.end(), [](const JudgedFeature& seed) { return !seed.looked_at; }));
     return judged;
 }
 
 /// One feature of the seeds in `members`.
-ThinFeature summarise(const std::vector<Seed>& seeds, const std::vector<Judged>& judged,
+ThinFeature summarise(const std::vector<Seed>& seeds, const std::vector<JudgedFeature>& judged,
                       const std::vector<std::size_t>& members) {
     Bounds bounds;
     std::vector<double> far, near;
@@ -365,7 +365,7 @@ std::vector<ThinFeature> thinFeatures(const TriangleMesh& mesh, const TriangleTr
     const Search search(tree, radius);
     const std::vector<Seed> seeds = seedsOf(mesh, search, radius, where);
     SearchLimit usual;
-    const std::vector<Judged> judged = judgeAll(search, seeds, limit != nullptr ? *limit : usual);
+    const std::vector<JudgedFeature> judged = judgeAll(search, seeds, limit != nullptr ? *limit : usual);
     std::vector<std::size_t> thin;
     for (std::size_t i = 0; i < seeds.size(); ++i)
         if (judged[i].thin) thin.push_back(i);

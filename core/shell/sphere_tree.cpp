@@ -18,19 +18,19 @@ constexpr float kMostFacing = 1.0f;
 constexpr std::size_t kBatch = 64;  // nodes that one thread summarises at a time
 
 /// A point while clusters are formed.
-struct Item {
+struct ClusterPoint {
     std::array<float, 3> position, normal;
     std::uint32_t index;
     bool face;  // else on an edge or a corner
 };
 
-struct Range {
+struct PointRange {
     std::uint32_t begin, end;
     std::uint32_t count() const { return end - begin; }
 };
 
 /// Least and largest of three coordinates.
-struct Spread {
+struct Extent {
     std::array<float, 3> low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
     void extend(const std::array<float, 3>& v) {
         for (std::size_t k = 0; k < 3; ++k) {
@@ -48,40 +48,40 @@ struct Spread {
 };
 
 /// Halves `range` where its faces turn too far; else returns its beginning.
-std::uint32_t partFacing(std::vector<Item>& items, const Range& range) {
+std::uint32_t partFacing(std::vector<ClusterPoint>& items, const PointRange& range) {
     const auto begin = items.begin() + range.begin, end = items.begin() + range.end;
-    Spread facing;
+    Extent facing;
     for (auto i = begin; i != end; ++i)
         if (i->face) facing.extend(i->normal);
     const std::size_t axis = facing.longest();
     if (!(facing.side(axis) > kMostFacing)) return range.begin;
     const float middle = 0.5f * (facing.low[axis] + facing.high[axis]);
-    const auto half = std::partition(begin, end, [&](const Item& item) { return item.normal[axis] < middle; });
+    const auto half = std::partition(begin, end, [&](const ClusterPoint& item) { return item.normal[axis] < middle; });
     return static_cast<std::uint32_t>(half - items.begin());
 }
 
 /// Halves `range` across its longest side if it is more than `whole`; else returns its beginning.
-std::uint32_t halve(std::vector<Item>& items, const Range& range, std::uint32_t whole) {
+std::uint32_t halve(std::vector<ClusterPoint>& items, const PointRange& range, std::uint32_t whole) {
     if (range.count() <= whole) return range.begin;
     const auto begin = items.begin() + range.begin, end = items.begin() + range.end;
-    Spread place;
+    Extent place;
     for (auto i = begin; i != end; ++i) place.extend(i->position);
     const std::size_t axis = place.longest();
     // Whole leaves on one side, so that leaves are full.
     const std::uint32_t leaves = (range.count() + whole - 1) / whole;
     const auto half = begin + static_cast<std::ptrdiff_t>(leaves / 2 * whole);
-    std::nth_element(begin, half, end, [axis](const Item& a, const Item& b) {
+    std::nth_element(begin, half, end, [axis](const ClusterPoint& a, const ClusterPoint& b) {
         return a.position[axis] < b.position[axis] || (a.position[axis] == b.position[axis] && a.index < b.index);
     });
     return static_cast<std::uint32_t>(half - items.begin());
 }
 
-std::uint32_t halveToLeaves(std::vector<Item>& items, const Range& range) {
+std::uint32_t halveToLeaves(std::vector<ClusterPoint>& items, const PointRange& range) {
     return halve(items, range, SphereTree::kLeafPoints);
 }
 
 /// Neighbours of a leaf next to each other, down to its groups.
-void arrangeGroups(std::vector<Item>& items, const Range& range) {
+void arrangeGroups(std::vector<ClusterPoint>& items, const PointRange& range) {
     const std::uint32_t middle = halve(items, range, SphereTree::kGroupPoints);
     if (middle == range.begin) return;
     arrangeGroups(items, {range.begin, middle});
@@ -90,7 +90,7 @@ void arrangeGroups(std::vector<Item>& items, const Range& range) {
 
 /// Splits ranges by `cut`, the largest first, until there are kChildren or none can be split.
 template <class Cut>
-void splitAll(std::vector<Item>& items, std::vector<Range>& ranges, const Cut& cut) {
+void splitAll(std::vector<ClusterPoint>& items, std::vector<PointRange>& ranges, const Cut& cut) {
     std::vector<bool> whole(ranges.size(), false);
     while (ranges.size() < SphereTree::kChildren) {
         std::size_t largest = ranges.size();
@@ -102,7 +102,7 @@ void splitAll(std::vector<Item>& items, std::vector<Range>& ranges, const Cut& c
             whole[largest] = true;
             continue;
         }
-        const Range right{middle, ranges[largest].end};
+        const PointRange right{middle, ranges[largest].end};
         ranges[largest].end = middle;
         const auto next = static_cast<std::ptrdiff_t>(largest + 1);
         ranges.insert(ranges.begin() + next, right);
@@ -112,18 +112,18 @@ void splitAll(std::vector<Item>& items, std::vector<Range>& ranges, const Cut& c
 
 /// Up to kChildren parts of `range`; one part if it is a leaf. A direction's box is halved at most once along each
 /// axis, so that eight parts are enough to part what faces apart.
-std::vector<Range> part(std::vector<Item>& items, const Range& range) {
-    std::vector<Range> ranges{range};
+std::vector<PointRange> part(std::vector<ClusterPoint>& items, const PointRange& range) {
+    std::vector<PointRange> ranges{range};
     splitAll(items, ranges, partFacing);
     splitAll(items, ranges, halveToLeaves);
     return ranges;
 }
 
 /// Eight roots next to each other, so that the first spheres are as small as can be; of a small shell what faces apart.
-std::vector<Range> partRoots(std::vector<Item>& items) {
-    const Range all{0, static_cast<std::uint32_t>(items.size())};
+std::vector<PointRange> partRoots(std::vector<ClusterPoint>& items) {
+    const PointRange all{0, static_cast<std::uint32_t>(items.size())};
     if (all.count() <= SphereTree::kChildren * SphereTree::kLeafPoints) return part(items, all);
-    std::vector<Range> ranges{all};
+    std::vector<PointRange> ranges{all};
     splitAll(items, ranges, halveToLeaves);
     return ranges;
 }
@@ -159,7 +159,7 @@ void summarise(std::span<const SurfacePoint> below, SphereNode& node) {
 
 SphereTree::SphereTree(const PointShell& shell, const TriangleMesh& mesh)
     : surface_(mesh), total_area_(shell.total_area), cover_radius_(shell.cover_radius), rounding_(shell.rounding) {
-    std::vector<Item> items;
+    std::vector<ClusterPoint> items;
     items.reserve(shell.points.size());
     double sum = 0.0, largest = 0.0;
     for (const SurfacePoint& point : shell.points) {
@@ -172,7 +172,7 @@ SphereTree::SphereTree(const PointShell& shell, const TriangleMesh& mesh)
     gyration_radius_ = std::sqrt(sum / static_cast<double>(shell.points.size()));
     reach_ = std::sqrt(largest);
 
-    std::vector<Range> ranges = partRoots(items);
+    std::vector<PointRange> ranges = partRoots(items);
     root_count_ = ranges.size();
     levels_ = 1;
     std::size_t level_end = root_count_;
@@ -182,8 +182,8 @@ SphereTree::SphereTree(const PointShell& shell, const TriangleMesh& mesh)
             ++levels_;
             level_end = ranges.size();
         }
-        const Range range = ranges[i];
-        const std::vector<Range> parts = part(items, range);
+        const PointRange range = ranges[i];
+        const std::vector<PointRange> parts = part(items, range);
         SphereNode& node = nodes_[i];
         node.leaf = parts.size() == 1;
         node.first = node.leaf ? range.begin : static_cast<std::uint32_t>(ranges.size());
@@ -197,7 +197,7 @@ SphereTree::SphereTree(const PointShell& shell, const TriangleMesh& mesh)
     }
 
     points_.reserve(items.size());
-    for (const Item& item : items) {
+    for (const ClusterPoint& item : items) {
         points_.push_back(shell.points[item.index]);
         positions_.add(item.position[0], item.position[1], item.position[2]);
         facings_.push_back(facingOf(points_.back().normal, points_.back().area));

@@ -7,7 +7,7 @@ namespace passung::tick {
 namespace {
 
 /// Adds a force and torque of an obstacle, about the held part's origin, in world axes.
-void add(Push& push, const Wrench& more, double pressure) noexcept {
+void add(ObstaclePush& push, const Wrench& more, double pressure) noexcept {
     push.wrench.force += more.force;
     push.wrench.torque += more.torque;
     push.pressure += pressure;
@@ -16,7 +16,7 @@ void add(Push& push, const Wrench& more, double pressure) noexcept {
 }  // namespace
 
 void clearPushes(Pushes& pushes) noexcept {
-    for (Push& push : pushes.pushes) push = Push{};
+    for (ObstaclePush& push : pushes.pushes) push = ObstaclePush{};
 }
 
 void notePushes(const TickModel& model, const Proxy& proxy, const ConstrainedMotion& motion,
@@ -43,13 +43,13 @@ void sharePushes(const TickModel&, const HandSample& hand, const HandWrench& wre
     if (!hand.input_usable) clearPushes(pushes);
     double pressure = 0.0;
     Wrench rest = wrench.F_H_W;
-    for (const Push& push : pushes.pushes) {
+    for (const ObstaclePush& push : pushes.pushes) {
         pressure += push.pressure;
         rest.force -= push.wrench.force;
         rest.torque -= push.wrench.torque;
     }
     if (!(pressure > 0.0)) return;
-    for (Push& push : pushes.pushes) {
+    for (ObstaclePush& push : pushes.pushes) {
         const double share = push.pressure / pressure;
         push.wrench.force += share * rest.force;
         push.wrench.torque += share * rest.torque;

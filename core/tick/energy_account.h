@@ -31,7 +31,7 @@ struct EnergyAccounts {
 };
 
 /// What one obstacle does to the held part in this tick.
-struct Push {
+struct ObstaclePush {
     Wrench wrench;          // of it on the held part, as F_H_W
     double pressure = 0.0;  // the sum of its forces' sizes [N]; of what has no obstacle: 0
 };
@@ -40,7 +40,7 @@ struct Push {
 /// them, no wrench clears them.
 struct Pushes {
     static constexpr bool kHandedOn = true;
-    std::vector<Push> pushes = std::vector<Push>(1);  // as EnergyAccounts::pairs
+    std::vector<ObstaclePush> pushes = std::vector<ObstaclePush>(1);  // as EnergyAccounts::pairs
 };
 
 }  // namespace passung::tick

@@ -56,7 +56,7 @@ QueryAnswer queryBack(const TickModel& model, const Obstacle& obstacle, const Po
 }  // namespace
 
 QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, QueryRequest request, QueryWorkspace& workspace,
-                           ContactManifold& manifold, std::span<Push> pushes) noexcept {
+                           ContactManifold& manifold, std::span<ObstaclePush> pushes) noexcept {
     request.mode = model.contact.mode;
     request.max_nodes = model.contact.budget_nodes;
     QueryAnswer all;

@@ -15,7 +15,7 @@ namespace passung::tick {
 /// closest answer, with nodes added up and the least quality. Each obstacle's own load is added to its push, if
 /// `pushes` are given. rt-safe.
 QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, QueryRequest request, QueryWorkspace& workspace,
-                           ContactManifold& manifold, std::span<Push> pushes = {}) noexcept;
+                           ContactManifold& manifold, std::span<ObstaclePush> pushes = {}) noexcept;
 
 /// Books a query's cost and completeness. rt-safe.
 void account(const QueryAnswer& answer, Report& report) noexcept;

@@ -79,7 +79,7 @@ void withholdWrench(const TickModel&, Pushes& pushes, HandWrench& wrench, Report
 }
 
 void limitOutput(const TickModel& model, const HandSample& hand, const Pushes& pushes, SentWrench& sent,
-                 HandWrench& felt, Command& command, Report& report) noexcept {
+                 HandWrench& felt, CommandedWrench& command, Report& report) noexcept {
     const model::OutputLimits& limits = model.limits;
     Wrench wrench = wrenchOnDevice(model, hand, felt.F_H_W);
     if (!isFinite(wrench)) sent.latched = true;

@@ -69,7 +69,7 @@ inline constexpr StageOf kNoWrench{
 ///   if step 3's factor or one of step 4's changed the wrench; steps 1 and 2 are told by kInputRejected and
 ///   kNonFiniteLatched. That a device has no torque is a property of the device, not an event.
 void limitOutput(const TickModel& model, const HandSample& hand, const Pushes& pushes, SentWrench& sent,
-                 HandWrench& felt, Command& command, Report& report) noexcept;
+                 HandWrench& felt, CommandedWrench& command, Report& report) noexcept;
 inline constexpr StageOf kOutputLimits{
     limitOutput,
     {.name = "output limits",

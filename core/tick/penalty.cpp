@@ -23,8 +23,8 @@ Vec3 dampingAlong(const Vec3& load, const Vec3& velocity, double damping) noexce
 }
 
 /// `pushes`, so far sums over their contacts.
-void scalePushes(std::span<Push> pushes, double scale) noexcept {
-    for (Push& push : pushes) {
+void scalePushes(std::span<ObstaclePush> pushes, double scale) noexcept {
+    for (ObstaclePush& push : pushes) {
         push.wrench = {scale * push.wrench.force, scale * push.wrench.torque};
         push.pressure = push.wrench.force.norm();
     }
@@ -63,19 +63,19 @@ void findContactsAtHand(const TickModel& model, const HandSample& hand, Proxy& p
     depth.hand_depth = record.proxy_depth = std::max(0.0, -answer.phi);
 }
 
-Wrench weightedWrench(const model::ContactSpec& contact, const Wrench& load, std::span<Push> pushes) noexcept {
+Wrench weightedWrench(const model::ContactSpec& contact, const Wrench& load, std::span<ObstaclePush> pushes) noexcept {
     const double scale = (contact.two_way ? 0.5 : 1.0) * contact.area_stiffness;
     scalePushes(pushes, scale);
     return {scale * load.force, scale * load.torque};
 }
 
 Wrench penaltyWrench(const model::ContactSpec& contact, const ContactManifold& manifold, const Vec3& p_WO,
-                     std::span<Push> pushes) noexcept {
+                     std::span<ObstaclePush> pushes) noexcept {
     return penaltyLoad(contact, manifold, p_WO, pushes).wrench;
 }
 
 PenaltyLoad penaltyLoad(const model::ContactSpec& contact, const ContactManifold& manifold, const Vec3& p_WO,
-                        std::span<Push> pushes) noexcept {
+                        std::span<ObstaclePush> pushes) noexcept {
     const bool weighted = isWeighted(contact.variant);
     const DepthSum all =
         sumDepths(manifold, weighted, p_WO, [&](const ContactPoint& c, const Vec3& f, const Vec3& moment) {

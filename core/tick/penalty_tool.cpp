@@ -39,9 +39,9 @@ Motion solved(Matrix6 A, Motion b) noexcept {
 }
 
 /// The equation of one tick: penalty_tool.h.
-class Balance {
+class ToolBalance {
 public:
-    Balance(const TickModel& model, const HandSample& hand, const Proxy& proxy, const ToolMotion& tool) noexcept
+    ToolBalance(const TickModel& model, const HandSample& hand, const Proxy& proxy, const ToolMotion& tool) noexcept
         : model_(model), X_WH_(hand.X_WH), X_before_(proxy.X_WG), law_(model.contact) {
         const model::ContactSpec& c = model.contact;
         law_.stiffness = c.penalty_stiffness;
@@ -156,7 +156,7 @@ double shareWithin(double longest, const Motion& w, const Motion& u) noexcept {
 }
 
 /// Moves by `u`, or as much of it as makes the balance's rest smaller; false, and the tool stays, if none does.
-bool makeStep(const ProxyView& view, Balance& balance, const Motion& u, double reach, double search) noexcept {
+bool makeStep(const ProxyView& view, ToolBalance& balance, const Motion& u, double reach, double search) noexcept {
     const auto& [model, proxy, memory, report] = view;
     const Pose X_here = proxy.X_WG;
     const double before = balance.size();
@@ -178,7 +178,7 @@ void settleTool(const TickModel& model, const HandSample& hand, Proxy& proxy, To
                 Pushes& pushes, Report& report) noexcept {
     const ProxyView view{model, proxy, memory, report};
     startTool(view, hand, tool);
-    Balance balance(model, hand, proxy, tool);
+    ToolBalance balance(model, hand, proxy, tool);
     balance.update(proxy);
     const double longest = balance.longestStretch(), half_cell = kLongestStep * model.finest_cell;
     const double reach = nextReach(model, tool.last_way);

@@ -56,7 +56,7 @@ struct HandWrench {
 };
 
 /// Owner: output limits.
-struct Command {
+struct CommandedWrench {
     Wrench F_D_B;  // what is sent: on the hand, about the handle's origin, device base axes
 };
 

@@ -46,8 +46,8 @@ struct TickState : Parts<TickCount, InputGuard, Engagement, EnergyAccounts, Prox
                          HandVelocity, ToolMotion, Stretch, Ringing, Pushes, DelayLine, SentWrench, QueryMemory> {};
 
 /// What one tick works on; dies with it.
-struct TickFrame
-    : Parts<Reading, HandSample, AreaLoad, ContactRecord, HandDepth, EnergyRecord, HandWrench, Command, Report> {};
+struct TickFrame : Parts<Reading, HandSample, AreaLoad, ContactRecord, HandDepth, EnergyRecord, HandWrench,
+                         CommandedWrench, Report> {};
 
 /// The state before the first tick, with all memory that the ticks will need.
 TickState makeState(const TickModel& model);

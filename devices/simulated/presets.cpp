@@ -201,12 +201,12 @@ DeviceParams touch() {
     };
 }
 
-struct StableStiffness {
+struct PresetStiffness {
     double value = 0.0;
     std::string source;
 };
 
-StableStiffness stableStiffness(const loop::SampledWall& wall, const Sourced& vendor, const char* unit) {
+PresetStiffness stableStiffness(const loop::SampledWall& wall, const Sourced& vendor, const char* unit) {
     const double border = loop::stableStiffnessBorder(wall);
     const double share = kStableShare * border;
     if (vendor.value > 0 && vendor.value < share)
@@ -279,7 +279,7 @@ DeviceDescription describe(const DeviceParams& p) {
                                   .quantum_m = p.quantum.value,
                                   .rotational_quantum_rad = p.rotational_quantum.value};
 
-    const StableStiffness linear = stableStiffness({.mass = p.mass.value,
+    const PresetStiffness linear = stableStiffness({.mass = p.mass.value,
                                                     .damping = p.damping.value,
                                                     .stiffness = 0,
                                                     .virtual_damping = p.recommended_damping.value,
@@ -292,7 +292,7 @@ DeviceDescription describe(const DeviceParams& p) {
         d.stability_source += "; rotation: torque is not actuated";
         return d;
     }
-    const StableStiffness rotational = stableStiffness({.mass = p.inertia.value,
+    const PresetStiffness rotational = stableStiffness({.mass = p.inertia.value,
                                                         .damping = p.rotational_damping.value,
                                                         .stiffness = 0,
                                                         .virtual_damping = p.recommended_rotational_damping.value,

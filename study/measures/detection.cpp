@@ -93,8 +93,8 @@ std::vector<Detection> DetectionTask::detections(std::optional<std::int64_t> sta
     return result;
 }
 
-const std::vector<Definition>& detectionDefinitions() {
-    static const std::vector<Definition> all = {
+const std::vector<MeasureDefinition>& detectionDefinitions() {
+    static const std::vector<MeasureDefinition> all = {
         {"secondary_stimuli", "Stimuli of the secondary task", "1",
          "number of hits and misses: stimuli with an onset from the start tick to the end tick that were answered by "
          "then, or whose last moment for a response was not after it; empty without the task"},

@@ -65,7 +65,7 @@ private:
 };
 
 /// Measures of the task, in column order: part of definitions().
-const std::vector<Definition>& detectionDefinitions();
+const std::vector<MeasureDefinition>& detectionDefinitions();
 
 /// Their values, in this order; all empty for a trial without the task (nullptr).
 std::vector<Value> detectionValues(const std::vector<Detection>* detections);

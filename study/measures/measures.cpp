@@ -353,11 +353,11 @@ std::optional<Outcome> outcomeNamed(std::string_view name) {
     return std::nullopt;
 }
 
-const std::vector<Definition>& definitions() {
-    static const std::vector<Definition> all = [] {
-        std::vector<Definition> result;
+const std::vector<MeasureDefinition>& definitions() {
+    static const std::vector<MeasureDefinition> all = [] {
+        std::vector<MeasureDefinition> result;
         for (const Measure& measure : measures()) result.push_back(measure.definition);
-        for (const Definition& definition : detectionDefinitions()) result.push_back(definition);
+        for (const MeasureDefinition& definition : detectionDefinitions()) result.push_back(definition);
         return result;
     }();
     return all;

@@ -62,7 +62,7 @@ struct TrialContext {
 };
 
 /// A measure's definition: name (the column; its unit is the suffix), label, unit, formula.
-struct Definition {
+struct MeasureDefinition {
     std::string name;
     std::string label;
     std::string unit;     // "s", "m", "N", "1" …
@@ -71,7 +71,7 @@ struct Definition {
 };
 
 /// All measures, in column order.
-const std::vector<Definition>& definitions();
+const std::vector<MeasureDefinition>& definitions();
 
 struct Value {
     std::string name;

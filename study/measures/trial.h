@@ -35,7 +35,7 @@ struct Trial {
 inline double seconds(std::int64_t from, std::int64_t to) { return static_cast<double>(to - from) / kPeriodsPerSecond; }
 
 struct Measure {
-    Definition definition;
+    MeasureDefinition definition;
     Optional (*compute)(const Trial&);
 };
 

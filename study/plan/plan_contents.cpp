@@ -7,7 +7,7 @@
 
 namespace passung::protocol {
 
-std::vector<MeshSource> meshesOf(const StudyPlan& plan, const std::string& study) {
+std::vector<NamedMesh> meshesOf(const StudyPlan& plan, const std::string& study) {
     const auto folder = std::filesystem::path(study).parent_path();
     std::map<std::string, std::string> names;  // by path
     const auto list = [&](const model::SceneSpec& scene) {
@@ -22,7 +22,7 @@ std::vector<MeshSource> meshesOf(const StudyPlan& plan, const std::string& study
         list(condition.scene);
         if (condition.comparison) list(*condition.comparison);
     }
-    std::vector<MeshSource> meshes;
+    std::vector<NamedMesh> meshes;
     for (const auto& [path, name] : names) meshes.push_back({name, path});
     return meshes;
 }

@@ -10,7 +10,7 @@
 namespace passung::protocol {
 
 /// The mesh files that conditions of the plan name, each once; names are relative to `study`, the plan's own file.
-std::vector<MeshSource> meshesOf(const StudyPlan& plan, const std::string& study);
+std::vector<NamedMesh> meshesOf(const StudyPlan& plan, const std::string& study);
 
 /// What the devices that conditions of the plan name display stably, by name; of `devices` those that are known.
 std::vector<StableStiffness> stableStiffnessOf(const StudyPlan& plan, std::span<const DeviceDescription> devices);

@@ -126,7 +126,7 @@ struct ConsentClause {
 };
 
 /// A mesh file that a study names.
-struct MeshSource {
+struct NamedMesh {
     std::string name;  // as the protocol writes it
     std::string path;  // as it can be opened from here
 };
@@ -152,7 +152,7 @@ struct StudyPlan {
     View view;
     double max_missed_share = 0.01;                 // of a trial's cycles: an attempt that missed more is not valid
     std::vector<std::string> measures;              // names, all known to study/measures
-    std::vector<MeshSource> meshes;                 // each once; their content is no part of the text
+    std::vector<NamedMesh> meshes;                  // each once; their content is no part of the text
     std::vector<std::string> languages;             // of the texts, in the order of the file
     std::vector<StudyText> texts;                   // every one in all of these languages
     std::vector<Instruction> instructions;          // in the order in which they are shown

@@ -196,7 +196,7 @@ LevelPattern readPattern(const Node& table, const std::string& path, const std::
     LevelPattern pattern(factors.size());
     if (table.entries.empty()) errors.push_back(errorAt(table.place, path, "", "names no factor"));
     for (const Entry& entry : table.entries) {
-        const auto report = [&](const Place& place, std::string value, std::string message) {
+        const auto report = [&](const TextPosition& place, std::string value, std::string message) {
             errors.push_back(errorAt(place, path + "." + entry.key, std::move(value), std::move(message)));
         };
         std::string fault;

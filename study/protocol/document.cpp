@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMostShown = 200;  // bytes of a key or value in a message
 
-Place placeOf(const toml::source_region& region, const std::string& file) {
+TextPosition placeOf(const toml::source_region& region, const std::string& file) {
     // The parser leaves 0 where a value has no place of its own (the top-level table).
     return {file, std::max(1, static_cast<int>(region.begin.line)), std::max(1, static_cast<int>(region.begin.column))};
 }
@@ -127,7 +127,7 @@ std::optional<std::string> otherKind(const Node& document, FileKind wanted) {
     return fmt::format("is {}; wanted here is {}", name(*kind), name(wanted));
 }
 
-Node emptyTable(const Place& place) {
+Node emptyTable(const TextPosition& place) {
     Node node;
     node.place = place;
     return node;
@@ -201,7 +201,7 @@ std::string valueText(const Node& node) {
     return fmt::format("[{}]", text);
 }
 
-Error errorAt(const Place& place, std::string key, std::string value, std::string message) {
+Error errorAt(const TextPosition& place, std::string key, std::string value, std::string message) {
     return {.message = std::move(message),
             .file = place.file,
             .line = place.line,

@@ -11,7 +11,7 @@
 namespace passung::protocol {
 
 /// Where something stands in a text; line and column count from 1.
-struct Place {
+struct TextPosition {
     std::string file;
     int line = 1;
     int column = 1;
@@ -24,7 +24,7 @@ struct Entry;
 struct Node {
     enum class Kind { Boolean, Integer, Number, Text, List, Table, Other };
     Kind kind = Kind::Table;
-    Place place;
+    TextPosition place;
     bool boolean = false;
     std::int64_t integer = 0;
     double number = 0.0;         // of integers too
@@ -39,7 +39,7 @@ struct Node {
 
 struct Entry {
     std::string key;
-    Place place;
+    TextPosition place;
     Node value;
 };
 
@@ -53,7 +53,7 @@ std::optional<FileKind> kindOf(const Node& document);  // nothing: none of them
 std::optional<std::string> otherKind(const Node& document, FileKind wanted);
 
 /// A table without keys that stands at `place`.
-Node emptyTable(const Place& place);
+Node emptyTable(const TextPosition& place);
 
 /// Parses TOML; `file` is the name in places. Errors: the parser's, at its place.
 Result<Node> parseDocument(const std::string& text, const std::string& file);
@@ -67,7 +67,7 @@ std::string valueText(const Node& node);
 /// A value as the label of a level: a text without its quotes, 1.0 as 1.
 std::string labelText(const Node& node);
 
-Error errorAt(const Place& place, std::string key, std::string value, std::string message);
+Error errorAt(const TextPosition& place, std::string key, std::string value, std::string message);
 
 /// Sorts by place and removes what was found twice (the same line is read once for every condition).
 void tidy(Errors& errors);

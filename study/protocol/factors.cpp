@@ -93,7 +93,7 @@ private:
             report(value.place, valueText(value), "a value needs the factor's key; without a key use set");
     }
 
-    void report(const Place& place, std::string value, std::string message) {
+    void report(const TextPosition& place, std::string value, std::string message) {
         errors_.push_back(errorAt(place, factor_.pathOf("levels"), std::move(value), std::move(message)));
     }
 

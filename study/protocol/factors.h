@@ -11,9 +11,9 @@ namespace passung::protocol {
 
 /// One key of the study that a level changes.
 struct Override {
-    std::string path;   // "contact.method", "part.plate.shape.bore_diameter", "task.timeout_s"
-    Place path_place;   // where the path is written
-    const Node* value;  // in the study's document
+    std::string path;         // "contact.method", "part.plate.shape.bore_diameter", "task.timeout_s"
+    TextPosition path_place;  // where the path is written
+    const Node* value;        // in the study's document
 };
 
 /// A factor and what each of its levels changes.

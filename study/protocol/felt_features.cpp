@@ -49,7 +49,7 @@ double fieldRadius(const model::ContactSpec& contact) {
 }
 
 bool isSheet(const model::PartSpec& part, PartGeometries& geometries) {
-    const PartGeometry* geometry = geometries.of(part);
+    const PartSurface* geometry = geometries.of(part);
     return geometry != nullptr && geometry->sheet;
 }
 
@@ -175,7 +175,7 @@ private:
 ContactDefaults defaultsFor(const model::SceneSpec& scene, PartGeometries& geometries) {
     ContactDefaults defaults;
     const model::PartSpec* held = heldPart(scene);
-    const PartGeometry* geometry = held != nullptr ? geometries.of(*held) : nullptr;
+    const PartSurface* geometry = held != nullptr ? geometries.of(*held) : nullptr;
     if (geometry == nullptr || !(geometry->longest() > 0.0)) return defaults;
     const double spacing = rounded(kSpacingShare * geometry->longest());
     const double feature = smallestFeature(scene, spacing, geometries);
@@ -183,7 +183,7 @@ ContactDefaults defaultsFor(const model::SceneSpec& scene, PartGeometries& geome
     defaults.spacing = std::max(spacing > feature ? rounded(feature) : spacing, fewest);
     double largest = 0.0;
     for (const model::PartSpec& part : scene.parts)
-        if (const PartGeometry* other = geometries.of(part); other != nullptr)
+        if (const PartSurface* other = geometries.of(part); other != nullptr)
             largest = std::max(largest, other->longest());
     const double fine = std::min(kToleranceShare * geometry->longest(), kFeatureTolerance * std::max(feature, 1e-9));
     defaults.tolerance = std::max(rounded(fine), kFinestTolerance * largest);

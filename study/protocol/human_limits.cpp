@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "study/protocol/distinct_conditions.h"
-#include "study/protocol/part_geometry.h"
+#include "study/protocol/part_surface.h"
 #include "study/protocol/scene_node.h"
 
 namespace passung::protocol {

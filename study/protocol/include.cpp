@@ -60,7 +60,7 @@ public:
     const Errors& errors() const { return errors_; }
 
 private:
-    void put(const std::string& line, const Place& place) {
+    void put(const std::string& line, const TextPosition& place) {
         if (full_) return;
         full_ = result_.text.size() + line.size() > kMostProtocolBytes;
         if (full_)
@@ -73,7 +73,7 @@ private:
     }
 
     /// The rows of a table in the place of its line.
-    void list(const Directive& directive, const Place& place) {
+    void list(const Directive& directive, const TextPosition& place) {
         found_ = true;
         const auto path = (std::filesystem::path(place.file).parent_path() / directive.file).string();
         const auto text = readFile(path);
@@ -90,7 +90,7 @@ private:
         for (const ListedLine& line : *lines) put(line.text, {path, line.line, 1});
     }
 
-    void include(const Directive& directive, const Place& place) {
+    void include(const Directive& directive, const TextPosition& place) {
         found_ = true;
         const auto report = [&](std::string message) {
             errors_.push_back(errorAt(place, "include", fmt::format("\"{}\"", directive.file), std::move(message)));
@@ -129,7 +129,7 @@ Result<IncludedText> includeFiles(const std::string& text, const std::string& pa
     return result;
 }
 
-void relocate(const IncludedText& included, Place& place) {
+void relocate(const IncludedText& included, TextPosition& place) {
     if (included.lines.empty()) return;
     const auto line = std::min(static_cast<std::size_t>(std::max(place.line, 1)), included.lines.size());
     place.file = included.lines[line - 1].file;

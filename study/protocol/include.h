@@ -10,7 +10,7 @@ namespace passung::protocol {
 /// A study's text with every included file in the place of its line, and where each line of it was written.
 struct IncludedText {
     std::string text;
-    std::vector<Place> lines;  // column 1; empty if nothing was included: text and file are the same then
+    std::vector<TextPosition> lines;  // column 1; empty if nothing was included: text and file are the same then
 };
 
 /// Replaces each line `include = "FILE"` by the lines of FILE, which may include others, and each line
@@ -21,7 +21,7 @@ struct IncludedText {
 Result<IncludedText> includeFiles(const std::string& text, const std::string& path);
 
 /// Moves a place in the text to where its line was written.
-void relocate(const IncludedText& included, Place& place);
+void relocate(const IncludedText& included, TextPosition& place);
 void relocate(const IncludedText& included, Node& document);
 
 }  // namespace passung::protocol

@@ -506,7 +506,7 @@ Read readText(const std::string& text, const std::string& path, std::span<const 
     auto document = parseDocument(included->text, path);
     if (!document) {
         Error error = document.errors().front();
-        Place place{path, error.line, error.column};
+        TextPosition place{path, error.line, error.column};
         relocate(*included, place);
         error.file = place.file;
         error.line = place.line;

@@ -180,7 +180,7 @@ private:
             const bool wanted = item.response.kind == AnswerKind::Pair;
             if (pair == nullptr && !wanted) continue;
             const auto fail = [&](const char* message) {
-                const Place& place = pair != nullptr ? pair->place : tables[i].place;
+                const TextPosition& place = pair != nullptr ? pair->place : tables[i].place;
                 errors_.push_back(errorAt(place, "item.pair", pair != nullptr ? valueText(*pair) : "", message));
             };
             if (!wanted || pair == nullptr || pair->items.size() != 2) {

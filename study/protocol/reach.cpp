@@ -121,7 +121,7 @@ private:
 
     /// Some place of the target comes within reach of the held part.
     void check(const DiscriminationPairTask&) {
-        const PartGeometry* held = geometries_.of(held_);
+        const PartSurface* held = geometries_.of(held_);
         if (target_ == nullptr || held == nullptr || geometries_.of(*target_) == nullptr) return;
         const model::Registration& r = scene_.registration;
         const Quat handle = r.X_WB.q.conjugate() * held_.X_WP.q * r.X_DH.q.conjugate();
@@ -218,7 +218,7 @@ private:
     }
 
     void checkUnits() {
-        const PartGeometry* geometry = geometries_.of(held_);
+        const PartSurface* geometry = geometries_.of(held_);
         if (geometry == nullptr || !(geometry->longest() > 0.0)) return;
         const double size = geometry->longest();
         if (size < kSmallPart || size > kLargePart)

@@ -6,7 +6,7 @@
 #include "core/base/device_description.h"
 #include "study/plan/study_plan.h"
 #include "study/protocol/factors.h"
-#include "study/protocol/part_geometry.h"
+#include "study/protocol/part_surface.h"
 
 namespace passung::protocol {
 

@@ -8,7 +8,7 @@
 #include "core/base/device_description.h"
 #include "core/scene/scene_spec.h"
 #include "study/protocol/document.h"
-#include "study/protocol/part_geometry.h"
+#include "study/protocol/part_surface.h"
 #include "study/protocol/table_reader.h"
 
 namespace passung::protocol {
@@ -18,7 +18,7 @@ struct SceneContent {
     model::SceneSpec scene;
     std::string device;            // preset, empty if none is named
     double accuracy_budget = 0.0;  // [s] > 0: contact.accuracy is "auto"
-    Place accuracy_place;          // of that budget
+    TextPosition accuracy_place;   // of that budget
     bool allow_unstable = false;
     bool parts_sound = false;  // what is said of parts, and the unit
     bool sound = false;        // everything but the device

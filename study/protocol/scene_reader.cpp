@@ -188,7 +188,7 @@ void checkSizes(const TableReader& contact_table, const model::SceneSpec& scene,
         if (excess) contact_table.fail(key, fmt::format("part {}: {}", part.name, *excess));
     };
     for (const auto& part : scene.parts) {
-        const PartGeometry* geometry = geometries.of(part);
+        const PartSurface* geometry = geometries.of(part);
         if (geometry == nullptr) continue;
         if (part.held || contact.two_way)
             refuse("spacing_mm", part, model::tooManyPoints(geometry->size, geometry->area, contact.spacing));

@@ -14,7 +14,7 @@ namespace passung::protocol {
 /// A staircase as written, with what its levels put into the scene.
 struct StaircaseContent {
     Staircase staircase;
-    Place key_place, measure_place;
+    TextPosition key_place, measure_place;
     std::vector<Node> values;  // a number for each level, placed where it is written
 
     /// What level number `level` changes.

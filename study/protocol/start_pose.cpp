@@ -31,7 +31,7 @@ model::TriangleMesh surfaceOf(const model::PartSpec& part, PartGeometries& geome
         const model::TriangleMesh fine = model::tessellate(*shape, 1e-3);  // for its size only
         return model::tessellate(*shape, kChordOfPoints * model::boundsOf(fine).size().maxCoeff());
     }
-    const PartGeometry* geometry = geometries.of(part);
+    const PartSurface* geometry = geometries.of(part);
     return geometry != nullptr ? *geometry->mesh : model::TriangleMesh{};
 }
 

@@ -3,7 +3,7 @@
 #include "core/base/result.h"
 #include "core/scene/scene_spec.h"
 #include "study/protocol/document.h"
-#include "study/protocol/part_geometry.h"
+#include "study/protocol/part_surface.h"
 
 namespace passung::protocol {
 

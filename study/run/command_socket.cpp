@@ -20,8 +20,8 @@ namespace passung::app {
 namespace {
 
 namespace fs = std::filesystem;
-using session::Answer;
 using session::Command;
+using session::Reply;
 
 // A request is name, attempt (0: none) and text with a zero byte after the first two; an answer '0' (accepted) or '1',
 // then the text. Both end where the sender closes its side.
@@ -105,7 +105,7 @@ std::optional<Command> commandFrom(std::string_view message) {
     return command;
 }
 
-void answer(int connection, const Answer& what) {
+void answer(int connection, const Reply& what) {
     sendAll(connection, (what.accepted ? '0' : '1') + what.text);
     close(connection);
 }
@@ -173,17 +173,17 @@ std::deque<CommandSocket::Request> CommandSocket::takeAll(bool wait) {
     return std::exchange(requests_, {});
 }
 
-void CommandSocket::serve(const std::function<Answer(const Command&)>& obey, bool wait) {
+void CommandSocket::serve(const std::function<Reply(const Command&)>& obey, bool wait) {
     for (const Request& request : takeAll(wait)) answer(request.connection, obey(request.command));
 }
 
-Result<std::optional<Answer>> tellSession(const std::string& database, const Command& command) {
+Result<std::optional<Reply>> tellSession(const std::string& database, const Command& command) {
     const Address address(socketPath(database));
     const int connection = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
     if (connection < 0) return socketError(database, "no socket");
     if (!address.fits() || connect(connection, address.get(), Address::size()) != 0) {
         close(connection);
-        return std::optional<Answer>();
+        return std::optional<Reply>();
     }
     const auto attempt = command.attempt ? static_cast<std::int64_t>(*command.attempt) : 0;
     std::string message(session::commandName(command.kind));
@@ -192,7 +192,7 @@ Result<std::optional<Answer>> tellSession(const std::string& database, const Com
     const auto reply = sent ? receiveAll(connection, std::chrono::seconds(kAnswerSeconds)) : std::nullopt;
     close(connection);
     if (!reply || reply->empty()) return Error{.message = "the running session did not answer", .file = database};
-    return std::optional(Answer{reply->front() == '0', reply->substr(1)});
+    return std::optional(Reply{reply->front() == '0', reply->substr(1)});
 }
 
 }  // namespace passung::app

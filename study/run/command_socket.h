@@ -30,7 +30,7 @@ public:
 
     /// Lets `obey` answer the commands that have come, in the order of their arrival; if there is none and `wait`,
     /// waits kServeWait for one.
-    void serve(const std::function<session::Answer(const session::Command&)>& obey, bool wait);
+    void serve(const std::function<session::Reply(const session::Command&)>& obey, bool wait);
 
 private:
     struct Request {
@@ -53,6 +53,6 @@ private:
 };
 
 /// Tells the session that runs on this database; nothing if none does. Errors: it does not answer.
-Result<std::optional<session::Answer>> tellSession(const std::string& database, const session::Command& command);
+Result<std::optional<session::Reply>> tellSession(const std::string& database, const session::Command& command);
 
 }  // namespace passung::app

@@ -25,7 +25,7 @@ Result<Done> keepStiffness(std::span<const protocol::StableStiffness> kept, prot
 
 }  // namespace
 
-Result<protocol::FrozenPlan> freeze(protocol::StudyPlan draft, const Kept& kept, const ImportLimits& limits) {
+Result<protocol::FrozenPlan> freeze(protocol::StudyPlan draft, const KeptPlan& kept, const ImportLimits& limits) {
     if (kept.seed) draft.seed = *kept.seed;
     if (const auto done = keepStiffness(kept.stable_stiffness, draft, limits); !done) return done.errors();
     if (const auto done = applyAccuracy(kept.protocol_sha256, kept.accuracy, draft, limits); !done)

@@ -14,7 +14,7 @@
 namespace passung::app {
 
 /// What a database keeps of a protocol, and of the session that is to run.
-struct Kept {
+struct KeptPlan {
     std::string protocol_sha256;
     std::vector<protocol::StableStiffness> stable_stiffness;  // none: the devices' rated ones
     std::vector<store::AccuracyRow> accuracy;                 // rows of other protocols do not count
@@ -27,6 +27,6 @@ struct Kept {
 /// The plan as the database runs it; the draft as it was read stays what it is. What other stable maxima than the
 /// draft's change is read anew from its text. Errors: a stiffness above a kept maximum; a budget of accuracy = "auto"
 /// that nothing was picked for; a questionnaire that cannot be read.
-Result<protocol::FrozenPlan> freeze(protocol::StudyPlan draft, const Kept& kept, const ImportLimits& limits = {});
+Result<protocol::FrozenPlan> freeze(protocol::StudyPlan draft, const KeptPlan& kept, const ImportLimits& limits = {});
 
 }  // namespace passung::app

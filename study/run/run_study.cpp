@@ -286,8 +286,8 @@ store::Store::Opened openForRun(const RunOptions& options, const session::Sessio
 
 /// What is kept for the session, its questionnaires as the protocol was imported with them, whatever became of their
 /// files.
-Result<Kept> keptFor(const store::Unfinished& session, const StoredPlans& plans, const store::StoreReader& reader,
-                     const protocol::StudyPlan& draft) {
+Result<KeptPlan> keptFor(const store::Unfinished& session, const StoredPlans& plans, const store::StoreReader& reader,
+                         const protocol::StudyPlan& draft) {
     auto kept = plans.kept(session.protocol_sha256);
     if (!kept) return kept;
     auto texts = reader.questionnaireTexts(session.protocol_sha256);

@@ -66,7 +66,7 @@ struct Command {
 };
 
 /// What came of a command; for people. What was accepted is in the data when the answer is given.
-struct Answer {
+struct Reply {
     bool accepted = false;
     std::string text;  // what happens now, or why not
     WhyNot why = WhyNot::Possible;

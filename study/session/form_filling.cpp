@@ -6,7 +6,7 @@
 
 namespace passung::session {
 
-FormFilling::FormFilling(const Form& form, std::int64_t now_ms) : form_(form), sheet_(items().size()) {
+FormFilling::FormFilling(const ShownQuestionnaire& form, std::int64_t now_ms) : form_(form), sheet_(items().size()) {
     show(0, now_ms);
 }
 

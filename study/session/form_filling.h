@@ -13,7 +13,7 @@ namespace passung::session {
 /// time it is, in ms from anywhere; nothing here waits or shows anything.
 class FormFilling {
 public:
-    FormFilling(const Form& form, std::int64_t now_ms);
+    FormFilling(const ShownQuestionnaire& form, std::int64_t now_ms);
 
     /// True once every item was answered or left out; back() still leads to the last one.
     bool atEnd() const { return shown_ == form_.order.size(); }
@@ -23,7 +23,7 @@ public:
     const questionnaire::Item& item() const { return items()[form_.order[shown_]]; }
     /// What was answered to it; missing if nothing yet. @pre not atEnd()
     const questionnaire::Answer& answer() const { return sheet_.answer(form_.order[shown_]); }
-    const Form& form() const { return form_; }
+    const ShownQuestionnaire& form() const { return form_; }
 
     /// Answers the item that is shown and shows the next one. A missing answer leaves it out. Returns what is wrong
     /// with the answer, and then nothing has changed; empty: nothing. @pre not atEnd()
@@ -39,7 +39,7 @@ private:
     const std::vector<questionnaire::Item>& items() const { return form_.planned.definition.items; }
     void show(std::size_t shown, std::int64_t now_ms);
 
-    Form form_;
+    ShownQuestionnaire form_;
     std::size_t shown_ = 0;
     AnswerSheet sheet_;
 };

@@ -22,7 +22,7 @@ std::string textOf(const Occasion& occasion, const protocol::PlannedQuestionnair
                        text(occasion.trial_index), text(occasion.condition));
 }
 
-Error faultOf(const Form& form, std::string message) {
+Error faultOf(const ShownQuestionnaire& form, std::string message) {
     Error error;
     error.key = "questionnaire " + form.planned.definition.key;
     error.message = std::move(message);
@@ -63,9 +63,9 @@ std::set<std::string> QuestionnaireDesk::formsAbout(const design::PlannedTrial& 
     return ids;
 }
 
-std::optional<Form> QuestionnaireDesk::nextDue(std::span<const design::PlannedTrial> to_do) const {
+std::optional<ShownQuestionnaire> QuestionnaireDesk::nextDue(std::span<const design::PlannedTrial> to_do) const {
     for (const Occasion& due : occasionsBetween(plan_, finished_.empty() ? nullptr : &finished_.back().trial, to_do)) {
-        Form form = formOf(due);
+        ShownQuestionnaire form = formOf(due);
         if (answered_.count(form.id()) == 0) return form;
     }
     return std::nullopt;
@@ -92,7 +92,7 @@ Result<bool> QuestionnaireDesk::ask(std::span<const design::PlannedTrial> to_do,
 }
 
 /// The first time that it is.
-void QuestionnaireDesk::noteShown(const Form& form, std::int64_t session_ns) {
+void QuestionnaireDesk::noteShown(const ShownQuestionnaire& form, std::int64_t session_ns) {
     if (std::exchange(shown_, form.id()) == form.id()) return;
     sink_.appendEvent(
         {.attempt = {},
@@ -103,9 +103,9 @@ void QuestionnaireDesk::noteShown(const Form& form, std::int64_t session_ns) {
              JsonObject().text("questionnaire", form.planned.definition.key).text("form", form.id()).str()});
 }
 
-Form QuestionnaireDesk::formOf(const Occasion& occasion) const {
+ShownQuestionnaire QuestionnaireDesk::formOf(const Occasion& occasion) const {
     const protocol::PlannedQuestionnaire& planned = plan_.questionnaires[occasion.questionnaire];
-    Form form{planned, occasion, textOf(occasion, planned, key_.ordinal), {}, {}};
+    ShownQuestionnaire form{planned, occasion, textOf(occasion, planned, key_.ordinal), {}, {}};
     const std::uint64_t seed =
         streamSeed(plan_.name, key_.participant, planned.definition.key, "item_order|" + form.occasion_text, key_.seed);
     form.order = questionnaire::presentedOrder(planned.definition, seed);
@@ -114,7 +114,8 @@ Form QuestionnaireDesk::formOf(const Occasion& occasion) const {
     return form;
 }
 
-Result<Done> QuestionnaireDesk::store(const Form& form, const FilledForm& filled, std::int64_t session_ns) {
+Result<Done> QuestionnaireDesk::store(const ShownQuestionnaire& form, const FilledForm& filled,
+                                      std::int64_t session_ns) {
     const questionnaire::Definition& definition = form.planned.definition;
     if (filled.answers.size() != definition.items.size()) return faultOf(form, "not every item has an answer");
     std::vector<questionnaire::Answer> answers;

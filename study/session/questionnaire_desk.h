@@ -48,11 +48,11 @@ public:
                 const std::vector<StoredForm>& forms);
 
 private:
-    std::optional<Form> nextDue(std::span<const design::PlannedTrial> to_do) const;
+    std::optional<ShownQuestionnaire> nextDue(std::span<const design::PlannedTrial> to_do) const;
     std::set<std::string> formsAbout(const design::PlannedTrial& trial) const;  // ids
-    void noteShown(const Form& form, std::int64_t session_ns);
-    Form formOf(const Occasion& occasion) const;
-    Result<Done> store(const Form& form, const FilledForm& filled, std::int64_t session_ns);
+    void noteShown(const ShownQuestionnaire& form, std::int64_t session_ns);
+    ShownQuestionnaire formOf(const Occasion& occasion) const;
+    Result<Done> store(const ShownQuestionnaire& form, const FilledForm& filled, std::int64_t session_ns);
 
     const protocol::StudyPlan& plan_;
     DeskKey key_;

@@ -36,7 +36,7 @@ inline std::string formId(const Occasion& occasion, const std::string& occasion_
 }
 
 /// A questionnaire as it is to be shown.
-struct Form {
+struct ShownQuestionnaire {
     const protocol::PlannedQuestionnaire& planned;
     Occasion occasion;
     std::string occasion_text;                 // unique in the study for a participant; part of random streams
@@ -63,7 +63,7 @@ public:
     virtual ~QuestionnaireSource() = default;
     /// The answers; nothing while the person is still at it. Called again and again with the same form, returns
     /// quickly.
-    virtual std::optional<FilledForm> fill(const Form& form) = 0;
+    virtual std::optional<FilledForm> fill(const ShownQuestionnaire& form) = 0;
     /// The form of the last call is not to be filled now: whoever shows it takes it away.
     virtual void withdraw() {}
 };
@@ -76,7 +76,7 @@ struct StoredForm {
 
 /// A form with its answers and scores, to be stored.
 struct QuestionnaireRun {
-    const Form& form;
+    const ShownQuestionnaire& form;
     const FilledForm& filled;
     std::vector<questionnaire::Score> scores;
     std::int64_t started_ns = 0, completed_ns = 0;  // session time, which stands still meanwhile

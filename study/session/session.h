@@ -51,7 +51,7 @@ public:
 
     /// What an experimenter wants, between two calls of advance(). Every command is logged as an event "command_…",
     /// accepted or not; whoever wants motors off at once calls the apparatus' halt() first.
-    Answer command(const Command& command);
+    Reply command(const Command& command);
 
     /// Whether command() would obey now: the only place that decides it. What it cannot foresee is that the data cannot
     /// be kept.
@@ -168,15 +168,15 @@ private:
     Permission permissionToInvalidate(const Command& command) const;
     bool hasTrial() const { return is<Preparing>() || is<InTrial>(); }
     void logCommand(const Command& command, const Permission& permission);
-    Answer execute(const Command& command);
-    Answer pause(const Command& command);
+    Reply execute(const Command& command);
+    Reply pause(const Command& command);
     void pauseHere();
-    Answer repeat(const Command& command);
-    Answer skip(const Command& command);
-    Answer invalidate(const Command& command);
-    Answer goBack(const Command& command);
-    Answer halt(const Command& command);
-    Answer time(const Command& command);
+    Reply repeat(const Command& command);
+    Reply skip(const Command& command);
+    Reply invalidate(const Command& command);
+    Reply goBack(const Command& command);
+    Reply halt(const Command& command);
+    Reply time(const Command& command);
     Result<Done> reorder(std::size_t place, const std::string& reason, Then then);
     void abortRunning(const std::string& reason, Then then, Decider by = Decider::Experimenter);
     std::optional<std::size_t> placeOf(AttemptId attempt) const;

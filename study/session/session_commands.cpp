@@ -15,17 +15,17 @@ std::string withReason(std::string what, const std::string& reason) {
     return reason.empty() ? what : what + ": " + reason;
 }
 
-Answer accepted(std::string text) { return {true, std::move(text)}; }
+Reply accepted(std::string text) { return {true, std::move(text)}; }
 
-Answer notKept(const Error& error) { return {false, toString(error), WhyNot::CannotBeKept}; }
+Reply notKept(const Error& error) { return {false, toString(error), WhyNot::CannotBeKept}; }
 
 }  // namespace
 
-Answer Session::command(const Command& command) {
+Reply Session::command(const Command& command) {
     const Permission permission = this->permission(command);
     logCommand(command, permission);
     if (!permission.given()) return {false, permission.text, permission.why};
-    Answer answer = execute(command);
+    Reply answer = execute(command);
     if (!errors().empty()) return notKept(errors().front());
     return answer;
 }
@@ -129,7 +129,7 @@ void Session::drawsWith(const QualityFound& found) {
     sink_.appendEvent(event);
 }
 
-Answer Session::execute(const Command& command) {
+Reply Session::execute(const Command& command) {
     switch (command.kind) {
         case CommandKind::Start:
             if (running()) return time(command);
@@ -165,7 +165,7 @@ Answer Session::execute(const Command& command) {
     return {};
 }
 
-Answer Session::pause(const Command& command) {
+Reply Session::pause(const Command& command) {
     if (is<InTrial>() && !command.now) {
         attempt().pauses_after = true;
         return {true, "pauses after " + nameOf(agenda_.next()), WhyNot::Possible, true};
@@ -175,7 +175,7 @@ Answer Session::pause(const Command& command) {
     return accepted("paused");
 }
 
-Answer Session::repeat(const Command& command) {
+Reply Session::repeat(const Command& command) {
     const std::string reason = withReason("repeated by the experimenter", command.text);
     if (is<InTrial>()) {
         abortRunning(reason, Then::RepeatNow);
@@ -184,7 +184,7 @@ Answer Session::repeat(const Command& command) {
     return goBack(command);
 }
 
-Answer Session::skip(const Command& command) {
+Reply Session::skip(const Command& command) {
     const std::size_t place = agenda_.next();
     if (is<InTrial>())
         abortRunning(withReason("skipped by the experimenter", command.text), Then::Done);
@@ -195,7 +195,7 @@ Answer Session::skip(const Command& command) {
     return accepted(nameOf(place) + " is left out");
 }
 
-Answer Session::invalidate(const Command& command) {
+Reply Session::invalidate(const Command& command) {
     const std::string reason = withReason("invalidated by the experimenter", command.text);
     if (running() && (!command.attempt || *command.attempt == running()->id)) {
         const std::size_t place = agenda_.next();
@@ -214,7 +214,7 @@ Answer Session::invalidate(const Command& command) {
                     (agenda_.isOver(place) ? "" : ", it is repeated"));
 }
 
-Answer Session::goBack(const Command& command) {
+Reply Session::goBack(const Command& command) {
     if (is<InTrial>()) abortRunning(withReason("went back by the experimenter", command.text), Then::RepeatNow);
     if (isOver()) return {};
     const std::size_t place = agenda_.last();
@@ -232,7 +232,7 @@ void Session::pauseHere() {
 }
 
 /// Starts or stops the clock of a trial that the experimenter times, at the next tick.
-Answer Session::time(const Command& command) {
+Reply Session::time(const Command& command) {
     const std::string name = nameOf(agenda_.next());
     if (command.kind == CommandKind::Start) {
         attempt().course.begin();
@@ -242,7 +242,7 @@ Answer Session::time(const Command& command) {
     return accepted(name + (command.kind == CommandKind::Done ? " has succeeded" : " has failed"));
 }
 
-Answer Session::halt(const Command& command) {
+Reply Session::halt(const Command& command) {
     apparatus_.halt();
     if (is<InTrial>()) abortRunning(withReason("emergency stop", command.text), Then::RepeatNow);
     pauseHere();

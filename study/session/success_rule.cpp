@@ -15,7 +15,7 @@ SuccessRule::SuccessRule(const protocol::PegInHoleTask& task, const Pose& X_WT)
 
 bool SuccessRule::isRestingInBore(const TickRecord& record, std::int64_t time) const {
     if (known_ < kSpeedTicks) return false;
-    const Place& before = places_[static_cast<std::size_t>(record.tick % kSpeedTicks)];
+    const PlaceTime& before = places_[static_cast<std::size_t>(record.tick % kSpeedTicks)];
     const double max_step = max_speed_ * static_cast<double>(time - before.time) * kTickSeconds;
     return measures::tipDepthInBore(record, X_TW_, clearance_) >= min_depth_ && measures::isClearOfWalls(record) &&
            (measures::proxyPosition(record) - before.position).norm() < max_step;

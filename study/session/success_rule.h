@@ -37,11 +37,11 @@ private:
     double min_depth_;  // [m]
     double max_speed_;  // [m/s]
     std::int64_t hold_periods_;
-    struct Place {
+    struct PlaceTime {
         Vec3 position;
         std::int64_t time;  // [periods]
     };
-    std::array<Place, kSpeedTicks> places_;  // the proxy at tick k stands at k modulo kSpeedTicks
+    std::array<PlaceTime, kSpeedTicks> places_;  // the proxy at tick k stands at k modulo kSpeedTicks
     measures::PeriodClock clock_;
     std::int64_t known_ = 0;  // consecutive ticks seen
     std::int64_t last_tick_ = 0;

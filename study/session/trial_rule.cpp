@@ -15,9 +15,9 @@ constexpr std::int64_t kWayBackLimit = 60'000;  // [periods]
 }  // namespace
 
 TrialRule::TrialRule(const protocol::Task& task, const Pose& X_WT, std::uint64_t attempt_seed)
-    : X_WT_(X_WT), form_(makeForm(task, X_WT, attempt_seed)) {}
+    : X_WT_(X_WT), form_(makeRule(task, X_WT, attempt_seed)) {}
 
-TrialRule::Form TrialRule::makeForm(const protocol::Task& task, const Pose& X_WT, std::uint64_t attempt_seed) {
+TrialRule::AnyRule TrialRule::makeRule(const protocol::Task& task, const Pose& X_WT, std::uint64_t attempt_seed) {
     if (const auto* peg = std::get_if<protocol::PegInHoleTask>(&task.form))
         return Insertion{*peg, SuccessRule(*peg, X_WT)};
     if (const auto* passage = std::get_if<protocol::NarrowPassageTask>(&task.form)) {

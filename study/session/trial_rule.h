@@ -71,10 +71,10 @@ private:
         int comparison_interval;
         measures::PairWatch watch;
     };
-    using Form = std::variant<Insertion, Passage, Contour, Placement, Pair>;
+    using AnyRule = std::variant<Insertion, Passage, Contour, Placement, Pair>;
     using Verdict = std::optional<TrialState>;
 
-    static Form makeForm(const protocol::Task& task, const Pose& X_WT, std::uint64_t attempt_seed);
+    static AnyRule makeRule(const protocol::Task& task, const Pose& X_WT, std::uint64_t attempt_seed);
     Verdict judge(Insertion& form, const TickRecord& record, std::int64_t time, std::vector<TrialEvent>& events) const;
     Verdict judge(Passage& form, const TickRecord& record, std::int64_t time, std::vector<TrialEvent>& events) const;
     Verdict judge(Contour& form, const TickRecord& record, std::int64_t time, std::vector<TrialEvent>& events) const;
@@ -82,7 +82,7 @@ private:
     Verdict judge(Pair& form, const TickRecord& record, std::int64_t time, std::vector<TrialEvent>& events) const;
 
     Pose X_WT_;
-    Form form_;
+    AnyRule form_;
 };
 
 }  // namespace passung::session

@@ -186,10 +186,10 @@ void runStages(Random& random) {
             if (random.below(2000) == 0) asked.force *= 1e200;
             frame.F_H_W = asked;
             if (random.below(3000) == 0) frame.F_H_W.torque.y() = std::numeric_limits<double>::infinity();
-            for (tick::Push& push : state.pushes) push.wrench = anyWrench(random, 1.0, 0.01);
+            for (tick::ObstaclePush& push : state.pushes) push.wrench = anyWrench(random, 1.0, 0.01);
             if (model.limits.delay_ticks > 0) tick::runStage<tick::kOutputDelay>(model, state, frame);
             delay_bits.add(frame.F_H_W);
-            for (const tick::Push& push : state.pushes) delay_bits.add(push.wrench);
+            for (const tick::ObstaclePush& push : state.pushes) delay_bits.add(push.wrench);
             if (run % 2 == 0) tick::runStage<tick::kPassivityController>(model, state, frame);
             damper_bits.add(frame.F_H_W);
             damper_bits.add(std::uint64_t{frame.status});

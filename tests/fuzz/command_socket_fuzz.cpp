@@ -27,7 +27,7 @@ public:
     Session() : database_(folder_ / "study.db"), socket_(*app::CommandSocket::listen(database_, [] {})) {
         thread_ = std::thread([this] {
             while (!ended_)
-                socket_->serve([](const session::Command&) { return session::Answer{.accepted = true}; }, true);
+                socket_->serve([](const session::Command&) { return session::Reply{.accepted = true}; }, true);
         });
     }
     ~Session() {

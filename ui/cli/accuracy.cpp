@@ -72,7 +72,7 @@ private:
     std::vector<fs::path> made_;  // innermost first
 };
 
-truth::AccuracySpace spaceOf(const AccuracyOptions& options, double length) {
+truth::AccuracySpace spaceOf(const AccuracyArguments& options, double length) {
     truth::AccuracySpace space;
     space.modes.clear();
     for (const model::FieldMode mode : model::kFieldModes)
@@ -96,7 +96,7 @@ Result<Done> writeFile(const fs::path& path, const std::string& text) {
 
 std::string nameOf(const std::string& path) { return fs::path(path).stem().string(); }
 
-Result<Done> writeAll(const AccuracyOptions& options, const truth::AccuracyResult& result,
+Result<Done> writeAll(const AccuracyArguments& options, const truth::AccuracyResult& result,
                       const std::vector<truth::JudgedPose>& poses) {
     const fs::path folder(options.out);
     truth::PictureText text{nameOf(options.field), nameOf(options.shell), poses.size(), 0};
@@ -126,7 +126,7 @@ int printDisagreements(const truth::AccuracyResult& result) {
 
 }  // namespace
 
-int accuracy(const AccuracyOptions& options) {
+int accuracy(const AccuracyArguments& options) {
     const auto field = partArgument(options.field, options.field_unit.empty() ? options.unit : options.field_unit);
     if (!field) return fail(field.errors());
     const auto shell = partArgument(options.shell, options.shell_unit.empty() ? options.unit : options.shell_unit);

@@ -33,7 +33,7 @@ fs::path findBench() {
 
 }  // namespace
 
-int bench(const BenchOptions& options) {
+int bench(const BenchArguments& options) {
     const fs::path program = findBench();
     if (program.empty())
         return fail(

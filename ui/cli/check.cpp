@@ -31,7 +31,7 @@ std::optional<int> checkQuestionnaire(const std::string& path) {
 
 }  // namespace
 
-int check(const CheckOptions& options) {
+int check(const CheckArguments& options) {
     if (const auto code = checkQuestionnaire(options.protocol)) return *code;
     auto [plan, errors, for_people] = app::examineProtocol(options.protocol, options.import_limits);
     for (const Errors& more : {app::beyondBorder(plan, app::knownDevices()), for_people})

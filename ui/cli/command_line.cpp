@@ -139,7 +139,7 @@ private:
             ->check(between(64.0, 1048576.0, "a number from 64 to 1048576"));
     }
 
-    static void addStation(CLI::App* sub, StationOptions& options) {
+    static void addStation(CLI::App* sub, StationArguments& options) {
         auto* letter = sub->add_option("--station", options.station,
                                        "letter of this station, where several run the study with a database each: it "
                                        "takes places of the design and codes that no other one takes");
@@ -152,7 +152,7 @@ private:
     void addParticipantCommands() {
         CLI::App& desk = *app_.add_subcommand("participant", "who takes part: codes and consent, never names");
         desk.require_subcommand(1);
-        const auto action = [&](const char* name, const char* help, int (*function)(const ParticipantOptions&)) {
+        const auto action = [&](const char* name, const char* help, int (*function)(const ParticipantArguments&)) {
             auto* sub = command(desk, name, help, participant_, function);
             sub->add_option("DB", participant_.database, "database of a study")->required();
             return sub;
@@ -430,25 +430,25 @@ private:
 
     CLI::App app_;
     std::function<int()> chosen_;
-    CheckOptions check_;
-    ExplainOptions explain_;
-    RunOptions run_;
-    ParticipantOptions participant_;
-    ResumeOptions resume_;
-    SessionOptions session_;
-    ExportOptions export_;
-    MergeOptions merge_;
-    PushOptions push_;
-    VerifyOptions verify_;
-    RestoreOptions restore_;
-    ReplayOptions replay_;
-    PowerOptions power_;
-    MeshOptions mesh_;
-    QueryOptions query_;
-    SimulateOptions simulate_;
-    AccuracyOptions accuracy_;
-    BenchOptions bench_;
-    DoctorOptions doctor_;
+    CheckArguments check_;
+    ExplainArguments explain_;
+    RunArguments run_;
+    ParticipantArguments participant_;
+    ResumeArguments resume_;
+    SessionArguments session_;
+    ExportArguments export_;
+    MergeArguments merge_;
+    PushArguments push_;
+    VerifyArguments verify_;
+    RestoreArguments restore_;
+    ReplayArguments replay_;
+    PowerArguments power_;
+    MeshArguments mesh_;
+    QueryArguments query_;
+    SimulateArguments simulate_;
+    AccuracyArguments accuracy_;
+    BenchArguments bench_;
+    DoctorArguments doctor_;
 };
 
 }  // namespace

@@ -15,13 +15,13 @@ namespace passung::cli {
 /// Becomes the program passung-window if there is a display; returns if there is none, or no such program beside this.
 void openWindows();
 
-struct CheckOptions {
+struct CheckArguments {
     std::string protocol;
     app::ImportLimits import_limits;
 };
-int check(const CheckOptions& options);
+int check(const CheckArguments& options);
 
-struct ExplainOptions {
+struct ExplainArguments {
     std::string file;      // protocol or scene
     int participants = 0;  // 0: as many as the protocol plans
     int stations = 1;      // where they take part in turn
@@ -29,15 +29,15 @@ struct ExplainOptions {
     std::string orders;    // "csv": a row for each planned trial and nothing else; empty: as text among the rest
     app::ImportLimits import_limits;
 };
-int explain(const ExplainOptions& options);
+int explain(const ExplainArguments& options);
 
 /// One of several places with a database of its own; both or neither.
-struct StationOptions {
+struct StationArguments {
     std::string station;  // capital letter; empty: the only one
     int stations = 0;
 };
 
-struct RunOptions {
+struct RunArguments {
     std::string protocol;
     std::string database;     // empty: the study's name with .db
     std::string participant;  // empty: the next free codes
@@ -45,7 +45,7 @@ struct RunOptions {
     bool real_time = false;
     bool wait = false;  // for `passung session start`
     std::optional<std::uint64_t> seed;
-    StationOptions station;
+    StationArguments station;
     bool no_backup = false;
     bool group = false;
     int acknowledge_fd = -1;            // open file descriptor that gets a line per durable attempt
@@ -53,25 +53,25 @@ struct RunOptions {
     std::string language;               // empty: the first that the protocol has
     app::ImportLimits import_limits;
 };
-int run(const RunOptions& options);
+int run(const RunArguments& options);
 
-struct ResumeOptions {
+struct ResumeArguments {
     std::string database;
     std::string session;  // id; empty: the newest one that did not complete
     std::string meshes;   // folder that the protocol's mesh paths start from; empty: here, else beside the database
-    StationOptions station;
+    StationArguments station;
     bool no_backup = false;
-    int acknowledge_fd = -1;  // as of RunOptions
+    int acknowledge_fd = -1;  // as of RunArguments
     std::string answers = "simulated";
     app::ImportLimits import_limits;
 };
-int resume(const ResumeOptions& options);
+int resume(const ResumeArguments& options);
 
-struct ParticipantOptions {
+struct ParticipantArguments {
     std::string database;
     std::string code;  // empty: the first unused one
     std::string kind = "real";
-    StationOptions station;
+    StationArguments station;
     std::string protocol;              // study file; empty: the database has it
     std::vector<std::string> clauses;  // empty: all
     std::string decision = "yes";      // "no", "withdrawn"
@@ -82,63 +82,63 @@ struct ParticipantOptions {
     std::string by = "experimenter";
     bool group = false;
 };
-int enrolParticipant(const ParticipantOptions& options);
-int listParticipants(const ParticipantOptions& options);
-int decideConsent(const ParticipantOptions& options);
-int withdrawParticipant(const ParticipantOptions& options);
-int excludeParticipant(const ParticipantOptions& options);
-int readmitParticipant(const ParticipantOptions& options);
-int auditParticipants(const ParticipantOptions& options);
-struct SessionOptions {
+int enrolParticipant(const ParticipantArguments& options);
+int listParticipants(const ParticipantArguments& options);
+int decideConsent(const ParticipantArguments& options);
+int withdrawParticipant(const ParticipantArguments& options);
+int excludeParticipant(const ParticipantArguments& options);
+int readmitParticipant(const ParticipantArguments& options);
+int auditParticipants(const ParticipantArguments& options);
+struct SessionArguments {
     std::string action;  // one of session::kCommandNames
     std::string database;
     std::string text;          // the reason, or the note
     std::int64_t attempt = 0;  // 0: the running or the last one
 };
 /// An experimenter's command to the session that runs on the database.
-int tellSession(const SessionOptions& options);
+int tellSession(const SessionArguments& options);
 
-struct ExportOptions {
+struct ExportArguments {
     std::string database;
     std::string out;
     bool no_samples = false;
     bool group = false;
 };
-int exportData(const ExportOptions& options);
+int exportData(const ExportArguments& options);
 
-struct MergeOptions {
+struct MergeArguments {
     std::vector<std::string> databases;
     std::string out;
     bool group = false;
 };
-int merge(const MergeOptions& options);
+int merge(const MergeArguments& options);
 
-struct PushOptions {
+struct PushArguments {
     std::string database;
     std::string to;  // of PostgreSQL, as libpq reads it
 };
-int push(const PushOptions& options);
+int push(const PushArguments& options);
 
-struct VerifyOptions {
+struct VerifyArguments {
     std::string database;
 };
-int verify(const VerifyOptions& options);
+int verify(const VerifyArguments& options);
 
-struct RestoreOptions {
+struct RestoreArguments {
     std::string database;
     std::string from;  // a file, or PostgreSQL
 };
-int restore(const RestoreOptions& options);
+int restore(const RestoreArguments& options);
 
-struct ReplayOptions {
+struct ReplayArguments {
     std::string database;
     std::int64_t attempt = 0;  // 0: all of them
     std::string meshes;  // folder that the protocol's mesh paths start from; empty: here, else beside the database
     app::ImportLimits import_limits;
 };
-int replay(const ReplayOptions& options);
+int replay(const ReplayArguments& options);
 
-struct PowerOptions {
+struct PowerArguments {
     std::string protocol;  // empty with merge
     std::string effect;    // FACTOR:LEVEL=DELTA
     std::string against;   // level; empty: the factor's first other one
@@ -153,16 +153,16 @@ struct PowerOptions {
     std::string out;                 // file of results; empty: printed only
     std::vector<std::string> merge;  // files of results to put together instead
 };
-int power(const PowerOptions& options);
+int power(const PowerArguments& options);
 
-struct MeshOptions {
+struct MeshArguments {
     std::string file;
     std::string unit = "mm";
     app::ImportLimits import_limits;
 };
-int mesh(const MeshOptions& options);
+int mesh(const MeshArguments& options);
 
-struct QueryOptions {
+struct QueryArguments {
     std::string field, shell, poses, out;
     std::string unit = "mm", field_unit, shell_unit;  // empty: unit
     double tolerance_um = 20.0, cell_mm = 0.0, spacing_mm = 1.0;
@@ -174,15 +174,15 @@ struct QueryOptions {
     std::string patches;  // file; empty: none
     app::ImportLimits import_limits;
 };
-int query(const QueryOptions& options);
+int query(const QueryArguments& options);
 
-struct SimulateOptions {
+struct SimulateArguments {
     std::string scene, trajectory, out;
     app::ImportLimits import_limits;
 };
-int simulate(const SimulateOptions& options);
+int simulate(const SimulateArguments& options);
 
-struct AccuracyOptions {
+struct AccuracyArguments {
     std::string field, shell, out;
     std::string poses;  // empty: along generated contact paths
     int paths = 12;
@@ -196,22 +196,22 @@ struct AccuracyOptions {
     std::string unit = "mm", field_unit, shell_unit;  // empty: unit
     app::ImportLimits import_limits;
 };
-int accuracy(const AccuracyOptions& options);
+int accuracy(const AccuracyArguments& options);
 
-struct BenchOptions {
+struct BenchArguments {
     std::string out, filter;
     bool check = false;  // compare with the marks
 };
 /// Becomes the program passung-bench; returns only if there is none.
-int bench(const BenchOptions& options);
+int bench(const BenchArguments& options);
 
-struct DoctorOptions {
+struct DoctorArguments {
     double seconds = 10.0;
     std::string device;                  // preset; empty: all, with a check of the loop
     bool find_stiffness = false;         // of the device, and keep it
     std::string report;                  // file that gets all this and the logs; empty: none
     std::vector<std::string> databases;  // whose logs; empty: those that app::loggedDatabases() finds
 };
-int doctor(const DoctorOptions& options);
+int doctor(const DoctorArguments& options);
 
 }  // namespace passung::cli

@@ -113,7 +113,7 @@ std::string loopText(const app::LoopCheck& check) {
 }
 
 /// Everything that a bug report needs: what doctor has said and the logs, in one file of text.
-int writeReport(const DoctorOptions& options, const std::string& said) {
+int writeReport(const DoctorArguments& options, const std::string& said) {
     const auto databases = options.databases.empty() ? app::loggedDatabases() : options.databases;
     OutputFile report(options.report);
     report.write(said);
@@ -128,7 +128,7 @@ int writeReport(const DoctorOptions& options, const std::string& said) {
 
 }  // namespace
 
-int doctor(const DoctorOptions& options) {
+int doctor(const DoctorArguments& options) {
     if (!options.device.empty()) {
         const simulated::DeviceParams* device = simulated::findPreset(options.device);
         if (device == nullptr) {

@@ -111,8 +111,9 @@ void explainStability(const protocol::StudyPlan& plan, std::span<const DeviceDes
 }
 
 /// What the study's database keeps, or a run that began it now on this machine would keep.
-Result<app::Kept> keptFor(const std::string& database, const protocol::StudyPlan& draft, model::BuildStore* builds) {
-    app::Kept kept{sha256Hex(draft.source_text), draft.stable_stiffness, {}};
+Result<app::KeptPlan> keptFor(const std::string& database, const protocol::StudyPlan& draft,
+                              model::BuildStore* builds) {
+    app::KeptPlan kept{sha256Hex(draft.source_text), draft.stable_stiffness, {}};
     if (!database.empty()) {
         const auto reader = store::StoreReader::open(database);
         if (!reader) return reader.errors();
@@ -157,7 +158,7 @@ Result<Done> explainEffects(const protocol::StudyPlan& plan, model::PartCache& c
 
 }  // namespace
 
-int explain(const ExplainOptions& options) {
+int explain(const ExplainArguments& options) {
     const auto store = app::openBuilds(options.import_limits);
     model::PartCache cache(store.get());
     const auto is_study = isStudy(options.file);

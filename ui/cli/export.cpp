@@ -8,7 +8,7 @@
 
 namespace passung::cli {
 
-int exportData(const ExportOptions& options) {
+int exportData(const ExportArguments& options) {
     const auto reader = store::StoreReader::open(
         options.database, options.no_samples ? store::Damaged::LeftOut : store::Damaged::LeftOutWithSamples);
     if (!reader) return fail(reader.errors());

@@ -9,7 +9,7 @@
 
 namespace passung::cli {
 
-int merge(const MergeOptions& options) {
+int merge(const MergeArguments& options) {
     if (const auto fine = refuseOverwriting(options.out, options.databases); !fine) return fail(fine.errors());
     auto open = app::openOptionsNow();
     open.group = options.group;

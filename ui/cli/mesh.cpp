@@ -41,7 +41,7 @@ std::string originOf(const Vec3& low, const Vec3& high) {
 
 }  // namespace
 
-int mesh(const MeshOptions& options) {
+int mesh(const MeshArguments& options) {
     const auto spec = partArgument(options.file, options.unit);
     if (!spec) return fail(spec.errors());
     const auto part = model::buildPart(*spec, {}, app::openBuilds(options.import_limits).get());

@@ -24,7 +24,7 @@ namespace passung::cli {
 namespace {
 
 /// What `work` does at the study's desk as an exit code. The database has to be there unless `create`.
-int atTheDesk(const ParticipantOptions& options, bool create,
+int atTheDesk(const ParticipantArguments& options, bool create,
               const std::function<Result<Done>(store::Store&, store::ParticipantDesk&)>& work) {
     const auto station = stationOf(options.station);
     if (!station) return fail(station.errors());
@@ -45,7 +45,7 @@ std::string consentText(const std::vector<store::ConsentRow>& consents, const st
 
 }  // namespace
 
-int enrolParticipant(const ParticipantOptions& options) {
+int enrolParticipant(const ParticipantArguments& options) {
     std::optional<protocol::StudyPlan> plan;
     if (!options.protocol.empty()) {
         auto read = app::readProtocol(options.protocol);
@@ -62,7 +62,7 @@ int enrolParticipant(const ParticipantOptions& options) {
     });
 }
 
-int listParticipants(const ParticipantOptions& options) {
+int listParticipants(const ParticipantArguments& options) {
     const auto reader = store::StoreReader::open(options.database);
     if (!reader) return fail(reader.errors());
     const auto people = reader->participants();
@@ -87,7 +87,7 @@ int listParticipants(const ParticipantOptions& options) {
     return 0;
 }
 
-int decideConsent(const ParticipantOptions& options) {
+int decideConsent(const ParticipantArguments& options) {
     const auto decision = options.decision == "yes"  ? store::Consent::Yes
                           : options.decision == "no" ? store::Consent::No
                                                      : store::Consent::Withdrawn;
@@ -102,7 +102,7 @@ int decideConsent(const ParticipantOptions& options) {
 namespace {
 
 /// Asked where somebody can answer; nothing if nobody does.
-std::optional<bool> takesBackupAlong(const ParticipantOptions& options) {
+std::optional<bool> takesBackupAlong(const ParticipantArguments& options) {
     const std::string backup = store::backupPath(options.database);
     std::error_code none;
     if (!options.backup.empty()) return options.backup == "erase";
@@ -118,7 +118,7 @@ std::optional<bool> takesBackupAlong(const ParticipantOptions& options) {
     return std::nullopt;
 }
 
-void tellErasure(const ParticipantOptions& options, const app::Left& left) {
+void tellErasure(const ParticipantArguments& options, const app::Left& left) {
     fmt::print("{}: erased from {}; the audit says {} in its place\n", options.code, options.database, left.surrogate);
     const std::string backup = store::backupPath(options.database);
     if (left.backup) fmt::print("{}: erased from the backup {} too\n", options.code, backup);
@@ -133,7 +133,7 @@ void tellErasure(const ParticipantOptions& options, const app::Left& left) {
 
 }  // namespace
 
-int withdrawParticipant(const ParticipantOptions& options) {
+int withdrawParticipant(const ParticipantArguments& options) {
     const auto station = stationOf(options.station);
     if (!station) return fail(station.errors());
     presenter::Leaving leaving;
@@ -158,7 +158,7 @@ int withdrawParticipant(const ParticipantOptions& options) {
     return left->backup_problem.empty() ? 0 : 1;
 }
 
-int excludeParticipant(const ParticipantOptions& options) {
+int excludeParticipant(const ParticipantArguments& options) {
     return atTheDesk(options, false, [&](store::Store&, store::ParticipantDesk& desk) -> Result<Done> {
         if (const auto done = desk.exclude(options.code, options.reason); !done) return done;
         fmt::print("{}: excluded; the data counts nowhere any more and the place in the design is free\n",
@@ -167,7 +167,7 @@ int excludeParticipant(const ParticipantOptions& options) {
     });
 }
 
-int readmitParticipant(const ParticipantOptions& options) {
+int readmitParticipant(const ParticipantArguments& options) {
     return atTheDesk(options, false, [&](store::Store&, store::ParticipantDesk& desk) -> Result<Done> {
         const auto placed = desk.readmit(options.code, options.reason);
         if (!placed) return placed.errors();
@@ -177,7 +177,7 @@ int readmitParticipant(const ParticipantOptions& options) {
     });
 }
 
-int auditParticipants(const ParticipantOptions& options) {
+int auditParticipants(const ParticipantArguments& options) {
     const auto reader = store::StoreReader::open(options.database);
     if (!reader) return fail(reader.errors());
     const auto report = reader->audit();

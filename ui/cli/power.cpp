@@ -32,7 +32,7 @@ Result<Done> writeResult(const power::PowerResult& result, const std::string& fi
     return out.commit();
 }
 
-int mergeFiles(const PowerOptions& options) {
+int mergeFiles(const PowerArguments& options) {
     if (!options.out.empty())
         if (const auto fine = refuseOverwriting(options.out, options.merge); !fine) return fail(fine.errors());
     std::vector<power::PowerResult> shards;
@@ -50,7 +50,7 @@ int mergeFiles(const PowerOptions& options) {
 }
 
 /// The result that an earlier run left in the file, if there is one; an error if it is something else.
-Result<std::optional<power::PowerResult>> finishedBefore(const PowerOptions& options, const power::PowerJob& job,
+Result<std::optional<power::PowerResult>> finishedBefore(const PowerArguments& options, const power::PowerJob& job,
                                                          const power::Shard& shard) {
     std::error_code none;
     if (options.out.empty() || !std::filesystem::exists(options.out, none)) return std::optional<power::PowerResult>{};
@@ -63,7 +63,7 @@ Result<std::optional<power::PowerResult>> finishedBefore(const PowerOptions& opt
 
 }  // namespace
 
-int power(const PowerOptions& options) {
+int power(const PowerArguments& options) {
     if (!options.merge.empty()) return mergeFiles(options);
     auto plan = app::readProtocol(options.protocol);
     if (!plan) return fail(plan.errors());

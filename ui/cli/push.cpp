@@ -7,7 +7,7 @@
 
 namespace passung::cli {
 
-int push(const PushOptions& options) {
+int push(const PushArguments& options) {
     const auto report = store::pushDatabase(options.database, options.to);
     if (!report) return fail(report.errors());
     for (const std::string& session : report->unfinished)

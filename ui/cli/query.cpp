@@ -115,7 +115,7 @@ std::string patchesJson(std::size_t row, const query::PartQueryResult& result, d
 
 }  // namespace
 
-int query(const QueryOptions& options) {
+int query(const QueryArguments& options) {
     for (const std::string& out : {options.out, options.patches}) {
         if (out.empty()) continue;
         if (const auto free = refuseOverwriting(out, {options.field, options.shell, options.poses}); !free)

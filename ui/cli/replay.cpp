@@ -24,7 +24,7 @@ enum class Verdict { Same, Differs, NotProven, NotComparable, Damaged };
 /// Replays attempts of one database; parts and protocols are built once.
 class Replays {
 public:
-    Replays(const store::StoreReader& reader, const ReplayOptions& options,
+    Replays(const store::StoreReader& reader, const ReplayArguments& options,
             const std::vector<store::DetectionRow>& detections)
         : reader_(reader),
           store_(app::openBuilds(options.import_limits)),
@@ -153,7 +153,7 @@ private:
 
 }  // namespace
 
-int replay(const ReplayOptions& options) {
+int replay(const ReplayArguments& options) {
     const auto reader = store::StoreReader::open(options.database, store::Damaged::HandedOut);
     if (!reader) return fail(reader.errors());
     std::vector<store::AttemptRow> attempts;

@@ -8,7 +8,7 @@
 
 namespace passung::cli {
 
-int restore(const RestoreOptions& options) {
+int restore(const RestoreArguments& options) {
     const auto report = store::restoreDatabase(options.database, options.from, app::openOptionsNow());
     if (!report) return fail(report.errors());
     for (const std::string& healed : report->healed) fmt::print("{}: {}: healed\n", options.database, healed);

@@ -140,12 +140,12 @@ private:
     ProgressLine progress_;
 };
 
-using Perform = std::function<Result<app::RunEnd>(const app::RunOptions&, const session::SessionListener&)>;
+using PerformSessions = std::function<Result<app::RunEnd>(const app::RunOptions&, const session::SessionListener&)>;
 
 /// Lets `go` perform sessions and tells of them; `study` is the file that warnings are about, `answers` who answers
 /// questionnaires.
 int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, const std::string& answers,
-         const Perform& go) {
+         const PerformSessions& go) {
     listenForSignals();
     Terminal terminal;
     TerminalAnswers at_terminal(terminal, answers);
@@ -176,7 +176,7 @@ int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, con
 
 }  // namespace
 
-int run(const RunOptions& options) {
+int run(const RunArguments& options) {
     auto plan = app::readProtocol(options.protocol, options.import_limits);
     if (!plan) {
         if (!options.database.empty()) logOf(options.database).fail("protocol refused", plan.errors());
@@ -203,7 +203,7 @@ int run(const RunOptions& options) {
                 [&](const auto& with, const auto& listener) { return app::runStudy(*plan, with, listener); });
 }
 
-int resume(const ResumeOptions& options) {
+int resume(const ResumeArguments& options) {
     app::RunOptions what;
     what.database = options.database;
     const auto station = stationOf(options.station);

@@ -33,7 +33,7 @@ int tellDatabase(const std::string& database, const Command& command) {
 
 }  // namespace
 
-int tellSession(const SessionOptions& options) {
+int tellSession(const SessionArguments& options) {
     Command command;
     command.kind =
         session::commandNamed(options.action).value_or(CommandKind::Note);  // the command line has checked it

@@ -37,7 +37,7 @@ void writeRow(fmt::memory_buffer& text, std::int64_t tick, const tick::TickOutpu
 
 }  // namespace
 
-int simulate(const SimulateOptions& options) {
+int simulate(const SimulateArguments& options) {
     if (const auto free = refuseOverwriting(options.out, {options.scene, options.trajectory}); !free)
         return fail(free.errors());
     const auto source = readFile(options.scene);

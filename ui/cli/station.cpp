@@ -4,7 +4,7 @@
 
 namespace passung::cli {
 
-Result<store::Station> stationOf(const StationOptions& options) {
+Result<store::Station> stationOf(const StationArguments& options) {
     if (options.station.empty()) return store::Station{};
     const int index = options.station[0] - 'A';
     if (index >= options.stations)

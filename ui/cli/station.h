@@ -6,6 +6,6 @@
 namespace passung::cli {
 
 /// The station that two options name. Errors: a letter that so many stations do not have.
-Result<store::Station> stationOf(const StationOptions& options);
+Result<store::Station> stationOf(const StationArguments& options);
 
 }  // namespace passung::cli

@@ -102,7 +102,7 @@ std::optional<std::string> Terminal::line() {
     return std::nullopt;
 }
 
-void TerminalAnswers::begin(const session::Form& form) {
+void TerminalAnswers::begin(const session::ShownQuestionnaire& form) {
     filling_ = std::make_unique<session::FormFilling>(form, steadyMilliseconds());
     leaves_out_ = false;
     const auto& definition = form.planned.definition;
@@ -155,7 +155,7 @@ bool TerminalAnswers::take(const std::string& line) {
     return false;
 }
 
-std::optional<session::FilledForm> TerminalAnswers::fill(const session::Form& form) {
+std::optional<session::FilledForm> TerminalAnswers::fill(const session::ShownQuestionnaire& form) {
     if (!filling_ || filling_->form().id() != form.id()) begin(form);
     const auto line = terminal_.line();
     if (!line || !take(*line)) return std::nullopt;

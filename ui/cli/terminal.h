@@ -32,11 +32,11 @@ public:
     TerminalAnswers(Terminal& terminal, std::string answered_by)
         : terminal_(terminal), answered_by_(std::move(answered_by)) {}
 
-    std::optional<session::FilledForm> fill(const session::Form& form) override;
+    std::optional<session::FilledForm> fill(const session::ShownQuestionnaire& form) override;
     void withdraw() override { filling_.reset(); }
 
 private:
-    void begin(const session::Form& form);
+    void begin(const session::ShownQuestionnaire& form);
     void prompt() const;
     bool take(const std::string& line);
     void takeAnswer(const std::string& line);

@@ -7,7 +7,7 @@
 
 namespace passung::cli {
 
-int verify(const VerifyOptions& options) {
+int verify(const VerifyArguments& options) {
     const auto found = store::verifyDatabase(options.database);
     if (!found) return fail(found.errors());
     for (const std::string& damage : found->damages) fmt::print(stderr, "{}: error: {}\n", options.database, damage);

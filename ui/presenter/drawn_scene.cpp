@@ -80,7 +80,7 @@ Result<std::shared_ptr<const ShadedMesh>> SceneArtist::surfaceOf(const model::Pa
     if (const auto known = surfaces_.find(key); known != surfaces_.end()) return known->second;
     model::TriangleMesh mesh;
     if (file != nullptr) {
-        auto read = model::importMesh(*file, builds_);
+        auto read = model::importMeshFile(*file, builds_);
         if (!read) return read.errors();
         mesh = std::move(read->mesh);
     } else {

@@ -12,16 +12,16 @@ constexpr double kKeyTurn = 0.6;         // [rad/s]
 constexpr double kFine = 0.1;            // share of both
 
 /// Right, up and away as a person sees them, but level with the ground.
-struct View {
+struct ViewAxes {
     Vec3 right, up = Vec3::UnitZ(), away;
-    explicit View(const Camera& camera) : right(camera.X_WC.q * Vec3::UnitX()), away(up.cross(right)) {}
+    explicit ViewAxes(const Camera& camera) : right(camera.X_WC.q * Vec3::UnitX()), away(up.cross(right)) {}
     Vec3 at(const Vec3& v) const { return v.x() * right + v.y() * up + v.z() * away; }
 };
 
 }  // namespace
 
 PartMotion dragMotion(const Camera& camera, double height_px, DragPlane plane, double right_px, double down_px) {
-    const View view(camera);
+    const ViewAxes view(camera);
     const double scale = camera.metresPerPixel(height_px);
     switch (plane) {
         case DragPlane::Upright:
@@ -35,13 +35,13 @@ PartMotion dragMotion(const Camera& camera, double height_px, DragPlane plane, d
 }
 
 PartMotion wheelMotion(const Camera& camera, DragPlane plane, double notches) {
-    const View view(camera);
+    const ViewAxes view(camera);
     if (plane == DragPlane::Turn) return {Vec3::Zero(), kTurnPerNotch * notches * view.away};
     return {kNotch * notches * view.away, Vec3::Zero()};
 }
 
 PartMotion keyMotion(const Camera& camera, const HeldKeys& keys, double seconds) {
-    const View view(camera);
+    const ViewAxes view(camera);
     if (keys.fine) seconds *= kFine;
     return {kKeySpeed * seconds * view.at(keys.move), kKeyTurn * seconds * view.at(keys.turn)};
 }

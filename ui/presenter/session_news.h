@@ -66,7 +66,7 @@ struct BuildProgress {
 
 struct CommandAnswered {
     session::Command command;
-    session::Answer answer;
+    session::Reply answer;
 };
 
 /// The run is over, and why.

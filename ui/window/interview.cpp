@@ -9,7 +9,7 @@ namespace {
 
 constexpr auto kMoment = std::chrono::milliseconds(20);
 
-presenter::FormRequest requestOf(const session::Form& form) {
+presenter::FormRequest requestOf(const session::ShownQuestionnaire& form) {
     return {form.id(), false, form.planned.definition, form.order};
 }
 
@@ -62,7 +62,7 @@ std::optional<bool> Interview::consent(const protocol::ConsentClause& clause, co
     return std::nullopt;
 }
 
-std::optional<session::FilledForm> Interview::fill(const session::Form& form) {
+std::optional<session::FilledForm> Interview::fill(const session::ShownQuestionnaire& form) {
     if (std::exchange(form_, form.id()) != form_)
         ask(presenter::FormDue{std::make_shared<const presenter::FormRequest>(requestOf(form))});
     auto filled = take(filled_);

@@ -28,7 +28,7 @@ public:
     /// Shows a clause until it is decided; nothing if `stop` says so first.
     std::optional<bool> consent(const protocol::ConsentClause& clause, const std::string& text,
                                 const std::function<bool()>& stop);
-    std::optional<session::FilledForm> fill(const session::Form& form) override;
+    std::optional<session::FilledForm> fill(const session::ShownQuestionnaire& form) override;
     void withdraw() override;
     std::optional<session::PageRead> read(const session::Page& page) override;
     bool goesOn() override;

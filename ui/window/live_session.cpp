@@ -123,7 +123,7 @@ bool LiveSession::takesAbort() {
     for (const session::Command& command : commands) {
         const session::Permission permission = session::viewBeforeSession().permission(command.kind);
         aborted_ = aborted_ || permission.given();
-        session::Answer answer{permission.given(), "the session does not begin"};
+        session::Reply answer{permission.given(), "the session does not begin"};
         if (!permission.given()) answer = {false, permission.text, permission.why};
         tell(presenter::CommandAnswered{command, std::move(answer)});
     }
@@ -230,7 +230,7 @@ void LiveSession::look(session::Session& session) {
     for (const session::Command& command : commands) {
         // The same press comes twice: from the X server at once, and from the window as soon as it is alive.
         if (command.kind == session::CommandKind::Stop && session.view().stopped) continue;
-        session::Answer answer = session.command(command);
+        session::Reply answer = session.command(command);
         if (command.source != kWindow) tell(presenter::CommandAnswered{command, std::move(answer)});
     }
     takePictures();
@@ -246,9 +246,10 @@ void LiveSession::drawsWith(const presenter::QualityFound& found) {
 bool LiveSession::isWanted() {
     const std::lock_guard lock(mutex_);
     return std::any_of(commands_.begin(), commands_.end(), [](const session::Command& command) {
-        using Kind = session::CommandKind;
-        const bool later = command.kind == Kind::Note || command.kind == Kind::Start || command.kind == Kind::Done ||
-                           command.kind == Kind::Failed || (command.kind == Kind::Pause && !command.now);
+        using session::CommandKind;
+        const bool later = command.kind == CommandKind::Note || command.kind == CommandKind::Start ||
+                           command.kind == CommandKind::Done || command.kind == CommandKind::Failed ||
+                           (command.kind == CommandKind::Pause && !command.now);
         return !later;
     });
 }

@@ -31,9 +31,9 @@ struct Ended {
 };
 
 /// Settings of a new process: nothing to read, its errors to nobody, its answer to `to`; signals as they are by nature.
-class Surroundings {
+class ProcessSettings {
 public:
-    explicit Surroundings(int to) {
+    explicit ProcessSettings(int to) {
         posix_spawn_file_actions_init(&files_);
         posix_spawn_file_actions_addopen(&files_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
         posix_spawn_file_actions_adddup2(&files_, to, STDOUT_FILENO);
@@ -46,12 +46,12 @@ public:
         posix_spawnattr_setsigdefault(&attributes_, &all);
         posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
     }
-    ~Surroundings() {
+    ~ProcessSettings() {
         posix_spawn_file_actions_destroy(&files_);
         posix_spawnattr_destroy(&attributes_);
     }
-    Surroundings(const Surroundings&) = delete;
-    Surroundings& operator=(const Surroundings&) = delete;
+    ProcessSettings(const ProcessSettings&) = delete;
+    ProcessSettings& operator=(const ProcessSettings&) = delete;
 
     const posix_spawn_file_actions_t* files() const { return &files_; }
     const posix_spawnattr_t* attributes() const { return &attributes_; }
@@ -82,7 +82,7 @@ std::optional<Ended> runToEnd(const std::vector<std::string>& words, std::uintma
     if (pipe2(ends.data(), O_CLOEXEC) != 0) return std::nullopt;
     pid_t child = -1;
     const int failure = [&] {
-        const Surroundings around(ends[1]);
+        const ProcessSettings around(ends[1]);
         return posix_spawn(&child, argv[0], around.files(), around.attributes(), argv.data(), environ);
     }();
     close(ends[1]);

@@ -38,12 +38,12 @@ Result<protocol::StudyPlan> StoredPlans::draft(const std::string& sha256) const 
     return Error{.message = "is not in the database", .key = "protocol", .value = sha256};
 }
 
-Result<Kept> StoredPlans::kept(const std::string& sha256) const {
+Result<KeptPlan> StoredPlans::kept(const std::string& sha256) const {
     auto stable = reader_.stableStiffness(sha256);
     if (!stable) return stable.errors();
     auto accuracy = reader_.accuracy();
     if (!accuracy) return accuracy.errors();
-    return Kept{sha256, *std::move(stable), *std::move(accuracy)};
+    return KeptPlan{sha256, *std::move(stable), *std::move(accuracy)};
 }
 
 /// The stored protocol with the mesh files of the first folder that has them all.
@@ -72,7 +72,7 @@ Result<Done> StoredPlans::compareMeshes(const std::string& sha256, const protoco
     const auto rows = reader_.meshes();
     if (!rows) return rows.errors();
     Errors errors;
-    for (const protocol::MeshSource& mesh : plan.meshes) {
+    for (const protocol::NamedMesh& mesh : plan.meshes) {
         const auto stored = std::find_if(rows->begin(), rows->end(), [&](const store::MeshRow& row) {
             return row.protocol_sha256 == sha256 && row.mesh == mesh.name;
         });

@@ -25,7 +25,7 @@ public:
     /// of it is missing or another one than at the time.
     Result<protocol::StudyPlan> draft(const std::string& sha256) const;
     /// What is kept for it.
-    Result<Kept> kept(const std::string& sha256) const;
+    Result<KeptPlan> kept(const std::string& sha256) const;
 
 private:
     Result<protocol::StudyPlan> read(const store::ProtocolRow& row) const;

@@ -27,7 +27,7 @@ void WatchedStore::keep(const std::string& name, std::string_view bytes) {
 }
 
 Result<model::ImportedMesh> WatchedStore::importMesh(const std::string& path, double metres_per_unit) {
-    return model::importMesh(model::MeshFile{path, metres_per_unit}, store_);
+    return model::importMeshFile(model::MeshFile{path, metres_per_unit}, store_);
 }
 
 void WatchedStore::tell() const {

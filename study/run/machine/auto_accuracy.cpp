@@ -79,7 +79,7 @@ std::vector<truth::AskedScene> distinctScenes(const protocol::StudyPlan& plan, m
 /// Nothing where a spread is of no pose at all.
 std::optional<double> asMeasured(double value) { return std::isnan(value) ? std::nullopt : std::optional(value); }
 
-store::AccuracyRow asStored(const std::string& protocol_sha256, std::int64_t number, const truth::AccuracyRow& row) {
+store::AccuracyRow asStored(const std::string& protocol_sha256, std::int64_t number, const truth::SettingCost& row) {
     return {.protocol_sha256 = protocol_sha256,
             .candidate = number,
             .mode = model::modeName(row.setting.mode),
@@ -172,10 +172,10 @@ Result<std::vector<store::AccuracyRow>> measureAccuracy(const protocol::StudyPla
     if (!measured) return measured.errors();
     protocol::PartGeometries geometries(builds);
     std::vector<store::AccuracyRow> rows;
-    std::vector<truth::AccuracyRow> felt;  // with what may be picked, and where it stands in `rows`
+    std::vector<truth::SettingCost> felt;  // with what may be picked, and where it stands in `rows`
     std::vector<std::size_t> places;
     double fastest = std::numeric_limits<double>::infinity();
-    for (const truth::AccuracyRow& row : *measured) {
+    for (const truth::SettingCost& row : *measured) {
         rows.push_back(asStored(protocol_sha256, static_cast<std::int64_t>(rows.size()), row));
         if (!feelsEverywhere(plan, row.setting, geometries)) continue;
         felt.push_back(row);

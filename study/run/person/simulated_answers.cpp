@@ -20,7 +20,7 @@ double meanOf(const std::vector<const session::FinishedTrial*>& trials, std::str
     return count > 0.0 ? sum / count : absent;
 }
 
-person::Experience experienceOf(const session::Form& form) {
+person::Experience experienceOf(const session::ShownQuestionnaire& form) {
     if (form.trials.empty()) return {};
     // Without contact there was no force and no depth.
     return person::experienceOf(meanOf(form.trials, "mean_force_N", 0.0), meanOf(form.trials, "trial_time_s", 0.0),
@@ -35,7 +35,7 @@ SimulatedAnswers::SimulatedAnswers(const protocol::StudyPlan& plan, std::string 
       participant_(std::move(participant)),
       style_(person::drawRatingStyle(streamSeed(plan.name, participant_, "rating", "simulated", plan.seed))) {}
 
-std::optional<session::FilledForm> SimulatedAnswers::fill(const session::Form& form) {
+std::optional<session::FilledForm> SimulatedAnswers::fill(const session::ShownQuestionnaire& form) {
     const auto& definition = form.planned.definition;
     const std::uint64_t seed =
         streamSeed(plan_.name, participant_, definition.key, "simulated|" + form.occasion_text, plan_.seed);

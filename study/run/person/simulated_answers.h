@@ -14,7 +14,7 @@ public:
     /// The plan outlives this.
     SimulatedAnswers(const protocol::StudyPlan& plan, std::string participant);
 
-    std::optional<session::FilledForm> fill(const session::Form& form) override;
+    std::optional<session::FilledForm> fill(const session::ShownQuestionnaire& form) override;
 
 private:
     const protocol::StudyPlan& plan_;

@@ -12,7 +12,7 @@ namespace {
 /// Gathers what is damaged in temp.lost, by table and number, and hides it.
 class IntactView {
 public:
-    IntactView(const Database& database, Samples samples)
+    IntactView(const Database& database, SampleCheck samples)
         : database_(database), samples_(samples), tables_(sessionTables(database)) {
         database_.execute(
             "CREATE TEMP TABLE lost(table_name TEXT, number INTEGER, PRIMARY KEY(table_name, number)); CREATE TEMP "
@@ -170,15 +170,15 @@ private:
     }
 
     const Database& database_;
-    const Samples samples_;
-    const std::vector<Table> tables_;
+    const SampleCheck samples_;
+    const std::vector<SessionTable> tables_;
     std::vector<DamageRow> rows_;
     std::set<std::string> conditions_;  // keys of damaged ones
 };
 
 }  // namespace
 
-std::vector<DamageRow> leaveOutDamaged(const Database& database, Samples samples) {
+std::vector<DamageRow> leaveOutDamaged(const Database& database, SampleCheck samples) {
     database.execute("PRAGMA query_only=OFF");  // for tables in `temp`; the file is not written
     return IntactView(database, samples).run();
 }

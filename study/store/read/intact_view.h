@@ -11,6 +11,6 @@ namespace passung::store {
 /// Puts views before the tables of a connection, so that whoever reads it meets nothing that is damaged: sessions,
 /// attempts, forms, events, notes, chunks of samples, people. Returns what was left out, and what of the study's own
 /// rows is damaged and read as it stands. For this room only: throws.
-std::vector<DamageRow> leaveOutDamaged(const Database& database, Samples samples);
+std::vector<DamageRow> leaveOutDamaged(const Database& database, SampleCheck samples);
 
 }  // namespace passung::store

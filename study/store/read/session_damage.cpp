@@ -44,8 +44,8 @@ std::string chunkFault(const std::string& stream, const std::string& encoding, s
     return sound ? "" : sound.errors().front().message;
 }
 
-SessionDamage damageOf(const Database& database, const std::vector<Table>& tables, const std::string& schema,
-                       const std::string& session_id, Samples samples) {
+SessionDamage damageOf(const Database& database, const std::vector<SessionTable>& tables, const std::string& schema,
+                       const std::string& session_id, SampleCheck samples) {
     SessionDamage damage;
     Statement session =
         database.prepare("SELECT participant_id || ', session ' || ordinal, end_state IS NOT NULL FROM " + schema +
@@ -55,7 +55,7 @@ SessionDamage damageOf(const Database& database, const std::vector<Table>& table
     damage.name = session.text(0);
     const bool over = session.integer(1) != 0;
     const SessionValues values = sessionValues(database, tables, schema, session_id);
-    if (samples == Samples::LookedAt) findChunkFaults(database, schema, session_id, values, damage);
+    if (samples == SampleCheck::LookedAt) findChunkFaults(database, schema, session_id, values, damage);
     const KeptHashes kept = keptHashes(database, schema, session_id);
     damage.list = !kept.list_whole;
     damage.hashed = over && !kept.units.empty();

@@ -33,10 +33,10 @@ struct SessionDamage {
 };
 
 /// Whether the bytes of samples are looked at, which takes nearly all of the time.
-enum class Samples { LookedAt, LeftOut };
+enum class SampleCheck { LookedAt, LeftOut };
 
-SessionDamage damageOf(const Database& database, const std::vector<Table>& tables, const std::string& schema,
-                       const std::string& session_id, Samples samples = Samples::LookedAt);
+SessionDamage damageOf(const Database& database, const std::vector<SessionTable>& tables, const std::string& schema,
+                       const std::string& session_id, SampleCheck samples = SampleCheck::LookedAt);
 
 /// Why the chunk cannot be read; empty: it can.
 std::string chunkFault(const std::string& stream, const std::string& encoding, std::int64_t first_tick,

@@ -150,7 +150,7 @@ Result<StoreReader> StoreReader::open(const std::string& path, Damaged damaged) 
         (*database)->execute("BEGIN; SELECT count(*) FROM schema_revision");
         if (!leaves_out) return Done{};
         const auto rows =
-            leaveOutDamaged(**database, damaged == Damaged::LeftOut ? Samples::LeftOut : Samples::LookedAt);
+            leaveOutDamaged(**database, damaged == Damaged::LeftOut ? SampleCheck::LeftOut : SampleCheck::LookedAt);
         damages.insert(damages.end(), rows.begin(), rows.end());
         return Done{};
     });

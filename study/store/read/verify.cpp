@@ -19,9 +19,9 @@ std::string oneLine(std::string text) {
 }
 
 /// Looks at one database; what cannot be read is a damage and not the end.
-class Look {
+class Inspection {
 public:
-    Look(const Database& database, const std::vector<std::string>& schema_faults) : database_(database) {
+    Inspection(const Database& database, const std::vector<std::string>& schema_faults) : database_(database) {
         for (const std::string& fault : schema_faults)
             found_.damages.push_back("the file: " + fault + " is not as it was written");
     }
@@ -113,7 +113,7 @@ Result<Verification> verifyDatabase(const std::string& path) {
     if (!opened) return opened.errors();
     return guarded(path, [&] {
         (*opened)->execute("BEGIN");
-        return Look(**opened, schema_faults).run();
+        return Inspection(**opened, schema_faults).run();
     });
 }
 

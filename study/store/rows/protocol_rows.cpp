@@ -49,7 +49,7 @@ void insertConditions(const Database& database, const std::string& sha256, const
 }
 
 void declareMeasures(const Database& database, const std::string& sha256, const protocol::StudyPlan& plan) {
-    for (const measures::Definition& definition : measures::definitions()) {
+    for (const measures::MeasureDefinition& definition : measures::definitions()) {
         const bool declared = plan.measures.empty() || std::find(plan.measures.begin(), plan.measures.end(),
                                                                  definition.name) != plan.measures.end();
         if (declared)
@@ -97,7 +97,7 @@ void requireSameStudy(const Database& database, const protocol::StudyPlan& plan)
 
 Result<std::vector<MeshContent>> readMeshes(const protocol::StudyPlan& plan) {
     std::vector<MeshContent> meshes;
-    for (const protocol::MeshSource& mesh : plan.meshes) {
+    for (const protocol::NamedMesh& mesh : plan.meshes) {
         const auto bytes = readRegularFile(mesh.path, kMostMeshBytes);
         if (!bytes) return bytes.errors();
         meshes.push_back({mesh.name, sha256Hex(*bytes), static_cast<std::int64_t>(bytes->size())});
@@ -116,7 +116,7 @@ void requireSeed(const Database& database, const std::string& sha256, std::uint6
 void insertMeasures(const Database& database) {
     Statement find = database.prepare("SELECT formula_version FROM measure WHERE measure=?");
     std::int64_t position = 0;
-    for (const measures::Definition& definition : measures::definitions()) {
+    for (const measures::MeasureDefinition& definition : measures::definitions()) {
         if (!find.bind(definition.name).step()) {
             insertRow(database, "measure", Named{"measure", definition.name}, Named{"label", definition.label},
                       Named{"unit", definition.unit}, Named{"data_type", "number"},

@@ -13,7 +13,7 @@ namespace {
 constexpr std::array<const char*, 3> kApart = {"schema_revision", "audit", "row_hash"};
 
 /// Columns that name a row in every file: the primary key, or what else is unique where that only numbers.
-std::vector<std::string> namingColumns(const Database& database, const Table& table) {
+std::vector<std::string> namingColumns(const Database& database, const SessionTable& table) {
     std::vector<std::string> names;
     if (table.number() == nullptr) {
         for (const TableColumn& column : table.columns)
@@ -35,14 +35,14 @@ std::vector<std::string> namingColumns(const Database& database, const Table& ta
     return names;
 }
 
-bool hasRowId(const Database& database, const Table& table) {
+bool hasRowId(const Database& database, const SessionTable& table) {
     return database.integer("SELECT wr FROM pragma_table_list WHERE schema='main' AND name='" + table.name + "'") == 0;
 }
 
 /// Reads rows of one table.
 class Rows {
 public:
-    Rows(const Database& database, const Table& table)
+    Rows(const Database& database, const SessionTable& table)
         : table_(table), names_(namingColumns(database, table)), numbered_(hasRowId(database, table)) {
         const TableColumn* who = table.find("participant_id");
         of_person_ = who != nullptr && who->filled;
@@ -71,7 +71,7 @@ public:
     }
 
 private:
-    const Table& table_;
+    const SessionTable& table_;
     std::vector<std::string> names_;
     bool numbered_, of_person_ = false;
 };
@@ -79,7 +79,7 @@ private:
 constexpr const char* kMakeDamaged =
     "CREATE TEMP TABLE IF NOT EXISTS damaged_row(table_name TEXT, row_key TEXT, PRIMARY KEY(table_name, row_key))";
 
-void keep(const Database& database, const Table& table, const StudyRow& row, const char* how) {
+void keep(const Database& database, const SessionTable& table, const StudyRow& row, const char* how) {
     database
         .prepare(std::string("INSERT OR ") + how +
                  " INTO main.row_hash(table_name, row_key, participant_id, sha256) SELECT ?1, ?2, ?3, ?4 WHERE NOT "
@@ -90,16 +90,16 @@ void keep(const Database& database, const Table& table, const StudyRow& row, con
 
 }  // namespace
 
-std::vector<Table> studyTables(const Database& database) {
+std::vector<SessionTable> studyTables(const Database& database) {
     std::set<std::string> apart(kApart.begin(), kApart.end());
-    for (const Table& table : sessionTables(database)) apart.insert(table.name);
-    std::vector<Table> tables;
+    for (const SessionTable& table : sessionTables(database)) apart.insert(table.name);
+    std::vector<SessionTable> tables;
     for (const std::string& name : tableNames(database))
         if (apart.count(name) == 0) tables.push_back(describeTable(database, name));
     return tables;
 }
 
-std::string keyExpression(const Database& database, const Table& table) {
+std::string keyExpression(const Database& database, const SessionTable& table) {
     const std::vector<std::string> names = namingColumns(database, table);
     std::string key;
     for (const TableColumn& column : table.columns)
@@ -108,7 +108,7 @@ std::string keyExpression(const Database& database, const Table& table) {
     return key;
 }
 
-std::vector<StudyRow> studyRows(const Database& database, const std::string& schema, const Table& table) {
+std::vector<StudyRow> studyRows(const Database& database, const std::string& schema, const SessionTable& table) {
     const Rows reader(database, table);
     std::vector<StudyRow> all;
     Statement rows = database.prepare(reader.query(schema));
@@ -126,13 +126,13 @@ void watchStudyRows(Database& database) {
     Statement damaged = database.prepare("INSERT OR IGNORE INTO temp.damaged_row(table_name, row_key) VALUES(?, ?)");
     for (const RowFault& fault : rowFaults(database, "main"))
         if (!fault.missing) damaged.bind(fault.table, fault.key).run();
-    std::map<std::string, Table> tables;
-    for (Table& table : studyTables(database)) tables.emplace(table.name, std::move(table));
+    std::map<std::string, SessionTable> tables;
+    for (SessionTable& table : studyTables(database)) tables.emplace(table.name, std::move(table));
     std::set<std::string> names;
     for (const auto& [name, table] : tables) names.insert(name);
     database.watch(names, [tables](const Database& changed_database, const Database::ChangedRows& changed) {
         for (const auto& [name, rowid] : changed) {
-            const Table& table = tables.at(name);
+            const SessionTable& table = tables.at(name);
             const Rows reader(changed_database, table);
             Statement row = changed_database.prepare(reader.query("main") + " WHERE rowid=?");
             if (row.bind(rowid).step()) keep(changed_database, table, reader.read(row), "REPLACE");
@@ -146,7 +146,7 @@ void watchStudyRows(Database& database) {
 
 void sealNewRows(const Database& database) {
     database.execute(kMakeDamaged);
-    for (const Table& table : studyTables(database))
+    for (const SessionTable& table : studyTables(database))
         for (const StudyRow& row : studyRows(database, "main", table)) keep(database, table, row, "IGNORE");
 }
 
@@ -156,7 +156,7 @@ std::vector<RowFault> rowFaults(const Database& database, const std::string& sch
                                         schema + ".row_hash");
     while (hashes.step()) kept[hashes.text(0)][hashes.text(1)] = {hashes.text(2), hashes.text(3)};
     std::vector<RowFault> faults;
-    for (const Table& table : studyTables(database)) {
+    for (const SessionTable& table : studyTables(database)) {
         auto& of_table = kept[table.name];
         std::vector<StudyRow> rows;
         try {

@@ -42,16 +42,16 @@ std::vector<RowFault> rowFaults(const Database& database, const std::string& sch
 std::string titleOf(const RowFault& fault);
 
 /// The tables in question.
-std::vector<Table> studyTables(const Database& database);
+std::vector<SessionTable> studyTables(const Database& database);
 
 /// An expression of the row's name (StudyRow::key) in SQL.
-std::string keyExpression(const Database& database, const Table& table);
+std::string keyExpression(const Database& database, const SessionTable& table);
 
 /// A row's name and hash, to be found in every copy of the file.
 struct StudyRow {
     std::string key, participant_id, sha256;
     std::int64_t rowid = 0;  // 0: the table has none
 };
-std::vector<StudyRow> studyRows(const Database& database, const std::string& schema, const Table& table);
+std::vector<StudyRow> studyRows(const Database& database, const std::string& schema, const SessionTable& table);
 
 }  // namespace passung::store

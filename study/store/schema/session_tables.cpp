@@ -10,14 +10,14 @@
 namespace passung::store {
 namespace {
 
-const Table* findTable(const std::vector<Table>& tables, const std::string& name) {
+const SessionTable* findTable(const std::vector<SessionTable>& tables, const std::string& name) {
     const auto found =
-        std::find_if(tables.begin(), tables.end(), [&](const Table& table) { return table.name == name; });
+        std::find_if(tables.begin(), tables.end(), [&](const SessionTable& table) { return table.name == name; });
     return found == tables.end() ? nullptr : &*found;
 }
 
 /// The column by which a row belongs to a row of another table of `tables`.
-const TableColumn* belongsBy(const std::vector<Table>& tables, const Table& table) {
+const TableColumn* belongsBy(const std::vector<SessionTable>& tables, const SessionTable& table) {
     for (const TableColumn& column : table.columns)
         if (column.filled && column.parent != table.name && findTable(tables, column.parent) != nullptr) return &column;
     return nullptr;
@@ -42,13 +42,13 @@ void addValue(Sha256& digest, const Statement& row, int column, const TableColum
 
 }  // namespace
 
-const TableColumn* Table::find(const std::string& column) const {
+const TableColumn* SessionTable::find(const std::string& column) const {
     const auto found =
         std::find_if(columns.begin(), columns.end(), [&](const TableColumn& c) { return c.name == column; });
     return found == columns.end() ? nullptr : &*found;
 }
 
-const TableColumn* Table::number() const {
+const TableColumn* SessionTable::number() const {
     const TableColumn* number = nullptr;
     for (const TableColumn& column : columns) {
         if (column.key == 0) continue;
@@ -58,8 +58,8 @@ const TableColumn* Table::number() const {
     return number;
 }
 
-Table describeTable(const Database& database, const std::string& name) {
-    Table table{name, {}};
+SessionTable describeTable(const Database& database, const std::string& name) {
+    SessionTable table{name, {}};
     Statement columns = database.prepare(
         "SELECT name, type, pk, \"notnull\", trim(dflt_value, char(39)) FROM pragma_table_info(?) ORDER BY cid");
     columns.bind(name);
@@ -86,7 +86,7 @@ Table describeTable(const Database& database, const std::string& name) {
     return table;
 }
 
-std::string columnNames(const Table& table) {
+std::string columnNames(const SessionTable& table) {
     std::string names;
     for (const TableColumn& column : table.columns) names += (names.empty() ? "" : ", ") + column.name;
     return names;
@@ -100,11 +100,11 @@ std::vector<std::string> tableNames(const Database& database) {
     return names;
 }
 
-std::vector<Table> sessionTables(const Database& database) {
-    std::vector<Table> others;
+std::vector<SessionTable> sessionTables(const Database& database) {
+    std::vector<SessionTable> others;
     for (const std::string& name : tableNames(database)) others.push_back(describeTable(database, name));
-    std::vector<Table> tables{describeTable(database, "session")};
-    std::erase_if(others, [](const Table& table) { return table.name == "session"; });
+    std::vector<SessionTable> tables{describeTable(database, "session")};
+    std::erase_if(others, [](const SessionTable& table) { return table.name == "session"; });
     for (bool grown = true; grown;) {
         grown = false;
         for (auto table = others.begin(); table != others.end() && !grown; ++table) {
@@ -118,27 +118,29 @@ std::vector<Table> sessionTables(const Database& database) {
     return tables;
 }
 
-std::string rowsOfSession(const std::vector<Table>& tables, const Table& table, const std::string& schema) {
+std::string rowsOfSession(const std::vector<SessionTable>& tables, const SessionTable& table,
+                          const std::string& schema) {
     if (table.name == "session") return "session_id=?1";
     const TableColumn* by = belongsBy(tables, table);
-    const Table& parent = *findTable(tables, by->parent);
+    const SessionTable& parent = *findTable(tables, by->parent);
     return by->name + " IN (SELECT " + by->parent_column + " FROM " + schema + "." + parent.name + " WHERE " +
            rowsOfSession(tables, parent, schema) + ")";
 }
 
-const Table* numberedBy(const std::vector<Table>& tables, const Table& table, const TableColumn& column) {
+const SessionTable* numberedBy(const std::vector<SessionTable>& tables, const SessionTable& table,
+                               const TableColumn& column) {
     if (const TableColumn* own = table.number(); own != nullptr && own->name == column.name) return &table;
-    const Table* parent = column.parent.empty() ? nullptr : findTable(tables, column.parent);
+    const SessionTable* parent = column.parent.empty() ? nullptr : findTable(tables, column.parent);
     if (parent == nullptr) return nullptr;
     const TableColumn* there = parent->find(column.parent_column);
     return there == nullptr ? nullptr : numberedBy(tables, *parent, *there);
 }
 
-std::string sessionDigest(const Database& database, const std::vector<Table>& tables, const std::string& schema,
+std::string sessionDigest(const Database& database, const std::vector<SessionTable>& tables, const std::string& schema,
                           const std::string& session_id) {
     Sha256 digest;
     std::map<std::string, std::int64_t> bases;
-    for (const Table& table : tables) {
+    for (const SessionTable& table : tables) {
         const TableColumn* number = table.number();
         if (number == nullptr) continue;
         Statement least = database.prepare("SELECT coalesce(min(" + number->name + "), 0) FROM " + schema + "." +
@@ -146,7 +148,7 @@ std::string sessionDigest(const Database& database, const std::vector<Table>& ta
         least.bind(session_id).step();
         bases[table.name] = least.integer(0);
     }
-    for (const Table& table : tables) {
+    for (const SessionTable& table : tables) {
         std::string columns, order;
         for (const TableColumn& column : table.columns) {
             // Numbers of conditions differ between files as well; their names do not.
@@ -164,7 +166,7 @@ std::string sessionDigest(const Database& database, const std::vector<Table>& ta
             for (std::size_t i = 0; i < table.columns.size(); ++i) {
                 TableColumn column = table.columns[i];
                 if (column.parent == "condition") column.type = "TEXT";
-                const Table* numbered = numberedBy(tables, table, column);
+                const SessionTable* numbered = numberedBy(tables, table, column);
                 addValue(digest, rows, static_cast<int>(i), column, numbered ? bases[numbered->name] : 0);
             }
         }

@@ -21,7 +21,7 @@ struct TableColumn {
     std::optional<std::string> fallback = {};  // its default as text; empty: NULL
 };
 
-struct Table {
+struct SessionTable {
     std::string name;
     std::vector<TableColumn> columns;
 
@@ -30,26 +30,28 @@ struct Table {
     const TableColumn* number() const;
 };
 
-Table describeTable(const Database& database, const std::string& name);
+SessionTable describeTable(const Database& database, const std::string& name);
 
 /// "a, b, c": all columns, as they stand in a statement.
-std::string columnNames(const Table& table);
+std::string columnNames(const SessionTable& table);
 
 /// Names of all tables of the file, in the order in which the schema made them.
 std::vector<std::string> tableNames(const Database& database);
 
 /// The table `session` and every table whose rows belong to one session; parents come before their children.
-std::vector<Table> sessionTables(const Database& database);
+std::vector<SessionTable> sessionTables(const Database& database);
 
 /// Condition on the rows of `table` that belong to the session ?1, in the attached database `schema`.
-std::string rowsOfSession(const std::vector<Table>& tables, const Table& table, const std::string& schema);
+std::string rowsOfSession(const std::vector<SessionTable>& tables, const SessionTable& table,
+                          const std::string& schema);
 
 /// The table of `tables` that this column takes its numbers from: its own, or that which it refers to; nullptr: it is
 /// no number of a row.
-const Table* numberedBy(const std::vector<Table>& tables, const Table& table, const TableColumn& column);
+const SessionTable* numberedBy(const std::vector<SessionTable>& tables, const SessionTable& table,
+                               const TableColumn& column);
 
 /// SHA-256 over everything that a session is, whatever numbers its rows have in this file.
-std::string sessionDigest(const Database& database, const std::vector<Table>& tables, const std::string& schema,
+std::string sessionDigest(const Database& database, const std::vector<SessionTable>& tables, const std::string& schema,
                           const std::string& session_id);
 
 }  // namespace passung::store

@@ -77,17 +77,17 @@ private:
 };
 
 /// Reads one table's rows of a session.
-class TableReader {
+class RowReader {
 public:
-    TableReader(const std::vector<Table>& tables, const Table& table, const RowNames& names)
+    RowReader(const std::vector<SessionTable>& tables, const SessionTable& table, const RowNames& names)
         : table_(table), names_(names) {
         for (const TableColumn& column : table.columns) {
-            const Table* numbered = numberedBy(tables, table, column);
+            const SessionTable* numbered = numberedBy(tables, table, column);
             refers_to_.push_back(numbered == nullptr ? "" : numbered->name);
         }
     }
 
-    std::string query(const std::vector<Table>& tables, const std::string& schema) const {
+    std::string query(const std::vector<SessionTable>& tables, const std::string& schema) const {
         std::string columns;
         for (const TableColumn& column : table_.columns) {
             std::string value = "t." + column.name;
@@ -144,12 +144,12 @@ private:
         return table;
     }
 
-    const Table& table_;
+    const SessionTable& table_;
     const RowNames& names_;
     std::vector<std::string> refers_to_;  // by column: the table whose numbers it holds; empty: none
 };
 
-bool holdsHashes(const Table& table) {
+bool holdsHashes(const SessionTable& table) {
     return std::find(kHashTables.begin(), kHashTables.end(), table.name) != kHashTables.end();
 }
 
@@ -187,13 +187,13 @@ LaterChanges laterChanges(const Database& database, const std::string& schema, c
     return changes;
 }
 
-SessionValues sessionValues(const Database& database, const std::vector<Table>& tables, const std::string& schema,
-                            const std::string& session_id) {
+SessionValues sessionValues(const Database& database, const std::vector<SessionTable>& tables,
+                            const std::string& schema, const std::string& session_id) {
     const RowNames names(database, schema, session_id);
     SessionValues values;
-    for (const Table& table : tables) {
+    for (const SessionTable& table : tables) {
         if (holdsHashes(table)) continue;
-        const TableReader reader(tables, table, names);
+        const RowReader reader(tables, table, names);
         Statement rows = database.prepare(reader.query(tables, schema));
         rows.bind(session_id);
         while (rows.step()) values.rows.push_back(reader.read(rows));

@@ -34,8 +34,8 @@ struct SessionValues {
     /// Of tables that others refer to, by number: "trial 4, attempt 1".
     std::map<std::string, std::map<std::int64_t, std::string>> names;
 };
-SessionValues sessionValues(const Database& database, const std::vector<Table>& tables, const std::string& schema,
-                            const std::string& session_id);
+SessionValues sessionValues(const Database& database, const std::vector<SessionTable>& tables,
+                            const std::string& schema, const std::string& session_id);
 
 /// Hash by unit, without what people changed later; and of what they changed, what is not there as it was left.
 struct UnitHashes {

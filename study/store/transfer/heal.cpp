@@ -51,7 +51,7 @@ std::vector<std::string> Healer::healSession(const std::string& session_id) {
         healList();
         look();
     }
-    const auto rest = [&] { return damageOf(database_, tables_, "main", session_id, Samples::LeftOut); };
+    const auto rest = [&] { return damageOf(database_, tables_, "main", session_id, SampleCheck::LeftOut); };
     const auto fitChanges = [&] {
         const SessionDamage now = rest();
         if ((now.changes || !now.units.empty()) && healChanges())
@@ -184,7 +184,7 @@ bool Healer::healChanges() {
             source_ + ".later_change WHERE session_id=?")
         .bind(session_)
         .run();
-    const SessionDamage damage = damageOf(database_, tables_, "main", session_, Samples::LeftOut);
+    const SessionDamage damage = damageOf(database_, tables_, "main", session_, SampleCheck::LeftOut);
     if (damage.changes || !damage.units.empty()) return false;
     point.keep();
     return true;
@@ -218,11 +218,12 @@ bool Healer::replaceUnit(const std::string& unit) {
             const std::string child = unit.substr(name.size() + 2);
             if (unit == name + kSamplesUnit) return replaceSamples(there), true;
             const auto found =
-                std::find_if(tables_.begin(), tables_.end(), [&](const Table& t) { return t.name == child; });
+                std::find_if(tables_.begin(), tables_.end(), [&](const SessionTable& t) { return t.name == child; });
             if (found != tables_.end()) return replaceChildren(owner, there, *found), true;
         }
     }
-    const auto found = std::find_if(tables_.begin(), tables_.end(), [&](const Table& t) { return t.name == unit; });
+    const auto found =
+        std::find_if(tables_.begin(), tables_.end(), [&](const SessionTable& t) { return t.name == unit; });
     if (found == tables_.end()) return false;
     if (unit == "session")
         copy(*found, "t.session_id=?2", 0);
@@ -231,17 +232,17 @@ bool Healer::replaceUnit(const std::string& unit) {
     return true;
 }
 
-const Table& Healer::table(const std::string& name) const {
-    return *std::find_if(tables_.begin(), tables_.end(), [&](const Table& table) { return table.name == name; });
+const SessionTable& Healer::table(const std::string& name) const {
+    return *std::find_if(tables_.begin(), tables_.end(), [&](const SessionTable& table) { return table.name == name; });
 }
 
 /// The columns of a row t there as they are to be here. A number by which nothing refers to the row is ?3; where that
 /// is NULL, the one that it has there; where that is taken, a new one.
-std::string Healer::valuesOf(const Table& table) const {
+std::string Healer::valuesOf(const SessionTable& table) const {
     std::string values;
     for (const TableColumn& column : table.columns) {
         std::string value = "t." + column.name;
-        const Table* numbered = numberedBy(tables_, table, column);
+        const SessionTable* numbered = numberedBy(tables_, table, column);
         if (numbered != nullptr && numbers_.count(numbered->name) != 0)
             value =
                 "(SELECT here FROM temp.heal_number WHERE table_name='" + numbered->name + "' AND there=" + value + ")";
@@ -257,7 +258,7 @@ std::string Healer::valuesOf(const Table& table) const {
 }
 
 /// Rows of a table that others refer to: in their place, so that what belongs to them stays. ?1: `key`, ?2: session.
-void Healer::copy(const Table& table, const std::string& where, std::int64_t key) {
+void Healer::copy(const SessionTable& table, const std::string& where, std::int64_t key) {
     std::string keys, changes;
     for (const TableColumn& column : table.columns) {
         std::string& list = column.key > 0 ? keys : changes;
@@ -272,7 +273,7 @@ void Healer::copy(const Table& table, const std::string& where, std::int64_t key
 }
 
 /// Rows that were added later are no part of what the run wrote: they stay.
-std::string Healer::notLater(const Table& table, const std::string& schema) const {
+std::string Healer::notLater(const SessionTable& table, const std::string& schema) const {
     const TableColumn* number = table.number();
     if (number == nullptr) return "";
     return " AND t." + number->name + " NOT IN (SELECT number FROM temp.heal_later WHERE schema='" + schema +
@@ -280,7 +281,7 @@ std::string Healer::notLater(const Table& table, const std::string& schema) cons
 }
 
 /// Rows of a table that no other refers to. As many as were here get the numbers of those.
-void Healer::replaceRows(const Table& table, const std::string& where_here, std::int64_t here,
+void Healer::replaceRows(const SessionTable& table, const std::string& where_here, std::int64_t here,
                          const std::string& where_there, std::int64_t there) {
     const std::string those = " t WHERE (?1=?1 OR ?2=?2) AND ";
     const std::string rows_here = where_here + notLater(table, "main");
@@ -322,7 +323,7 @@ void Healer::replaceOwner(const std::string& owner, std::int64_t there) {
 }
 
 /// What belongs to it in one table.
-void Healer::replaceChildren(const std::string& owner, std::int64_t there, const Table& child) {
+void Healer::replaceChildren(const std::string& owner, std::int64_t there, const SessionTable& child) {
     const std::string column = table(owner).number()->name;
     const auto where = [&](const std::string& schema) {
         std::string text = "t." + column + "=?1";

@@ -28,7 +28,7 @@ private:
     bool healChunk(const ChunkFault& fault);
     void healList();
     bool healChanges();
-    bool healRow(const Table& table, const RowFault& fault, const std::vector<StudyRow>& rows_here);
+    bool healRow(const SessionTable& table, const RowFault& fault, const std::vector<StudyRow>& rows_here);
     bool healUnit(const std::string& unit);
     bool replaceUnit(const std::string& unit);
     void look();
@@ -36,20 +36,20 @@ private:
     bool mayLoseLater(const std::string& unit) const;
 
     void replaceOwner(const std::string& owner, std::int64_t there);
-    void replaceChildren(const std::string& owner, std::int64_t there, const Table& child);
+    void replaceChildren(const std::string& owner, std::int64_t there, const SessionTable& child);
     void replaceSamples(std::int64_t there);
     void keepLaterInvalidation(std::int64_t here, const std::string& valid, const std::string& reason);
 
-    const Table& table(const std::string& name) const;
-    std::string valuesOf(const Table& table) const;
-    void copy(const Table& table, const std::string& where, std::int64_t key);
-    void replaceRows(const Table& table, const std::string& where_here, std::int64_t here,
+    const SessionTable& table(const std::string& name) const;
+    std::string valuesOf(const SessionTable& table) const;
+    void copy(const SessionTable& table, const std::string& where, std::int64_t key);
+    void replaceRows(const SessionTable& table, const std::string& where_here, std::int64_t here,
                      const std::string& where_there, std::int64_t there);
-    std::string notLater(const Table& table, const std::string& schema) const;
+    std::string notLater(const SessionTable& table, const std::string& schema) const;
 
     const Database& database_;
     const std::string source_;
-    const std::vector<Table> tables_;
+    const std::vector<SessionTable> tables_;
     std::string session_;
     SessionValues here_, there_;
     UnitHashes hashes_here_, hashes_there_;

@@ -10,7 +10,7 @@ namespace passung::store {
 namespace {
 
 /// Heals one column that refers to a parent; returns how many rows.
-std::int64_t healColumn(const Database& database, const std::string& source, const Table& table,
+std::int64_t healColumn(const Database& database, const std::string& source, const SessionTable& table,
                         const TableColumn& column) {
     std::string same, equal;
     for (const TableColumn& other : table.columns) {
@@ -34,7 +34,7 @@ std::int64_t healColumn(const Database& database, const std::string& source, con
 std::vector<std::string> healReferences(const Database& database, const std::string& source) {
     std::vector<std::string> healed;
     for (const BrokenReference& broken : brokenReferences(database)) {
-        const Table table = describeTable(database, broken.table);
+        const SessionTable table = describeTable(database, broken.table);
         for (const TableColumn& column : table.columns) {
             if (column.parent != broken.parent) continue;
             if (const std::int64_t rows = healColumn(database, source, table, column); rows > 0)
@@ -53,7 +53,7 @@ std::vector<std::string> healHashNames(const Database& database) {
         StudyRow row;
     };
     std::map<std::string, Named> nameless;  // rows without a kept hash, by the hash that they have
-    for (const Table& table : studyTables(database)) {
+    for (const SessionTable& table : studyTables(database)) {
         Statement kept = database.prepare("SELECT 1 FROM main.row_hash WHERE +table_name=? AND +row_key=?");
         for (const StudyRow& row : studyRows(database, "main", table))
             if (!kept.bind(table.name, row.key).step()) nameless.emplace(row.sha256, Named{table.name, row});

@@ -6,10 +6,10 @@ namespace passung::store {
 
 std::vector<std::string> Healer::healRows() {
     std::vector<std::string> healed;
-    const std::vector<Table> tables = studyTables(database_);
+    const std::vector<SessionTable> tables = studyTables(database_);
     for (const RowFault& fault : rowFaults(database_, "main")) {
         const auto table =
-            std::find_if(tables.begin(), tables.end(), [&](const Table& t) { return t.name == fault.table; });
+            std::find_if(tables.begin(), tables.end(), [&](const SessionTable& t) { return t.name == fault.table; });
         if (table == tables.end() || !healRow(*table, fault, studyRows(database_, "main", *table))) continue;
         trustRow(database_, fault.table, fault.key);
         healed.push_back(titleOf(fault));
@@ -19,7 +19,7 @@ std::vector<std::string> Healer::healRows() {
 
 /// The row there that has the hash which was kept here takes the damaged one's place. Where the name itself is damaged,
 /// that is the one row that nobody knows.
-bool Healer::healRow(const Table& table, const RowFault& fault, const std::vector<StudyRow>& rows_here) {
+bool Healer::healRow(const SessionTable& table, const RowFault& fault, const std::vector<StudyRow>& rows_here) {
     Statement find = database_.prepare("SELECT sha256 FROM main.row_hash WHERE table_name=? AND row_key=?");
     if (!find.bind(table.name, fault.key).step()) return false;
     const std::string kept = find.text(0);

@@ -34,7 +34,7 @@ bool Healer::healChunk(const ChunkFault& fault) {
 
 /// What a chunk says of itself; its bytes only where it is not here at all.
 void Healer::replaceSamples(std::int64_t there) {
-    const Table& chunks = table("sample_chunk");
+    const SessionTable& chunks = table("sample_chunk");
     Statement rows = database_.prepare(
         "SELECT t.stream_id, t.chunk_no, n.here, t.first_tick, t.n, t.crc32, t.data, s.stream, s.encoding FROM " +
         source_ + ".sample_chunk t JOIN " + source_ +

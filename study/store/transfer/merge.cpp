@@ -140,7 +140,7 @@ private:
     }
 
     /// Names of the columns but the one that numbers the rows.
-    static std::string names(const Table& table) {
+    static std::string names(const SessionTable& table) {
         std::string text;
         for (const TableColumn& column : table.columns)
             if (&column != table.number()) text += (text.empty() ? "" : ", ") + column.name;
@@ -149,7 +149,7 @@ private:
 
     void mergeProtocols() {
         for (const std::string& name : tableNames(database_)) {
-            const Table table = describeTable(database_, name);
+            const SessionTable table = describeTable(database_, name);
             if (table.find("protocol_sha256") == nullptr || name == "session" || name == "design_slot") continue;
             mergeRows(table);
         }
@@ -160,7 +160,7 @@ private:
     }
 
     /// Adds the rows whose keys the result lacks.
-    void mergeRows(const Table& table) {
+    void mergeRows(const SessionTable& table) {
         const std::string columns = names(table);
         database_.execute("INSERT OR IGNORE INTO main." + table.name + "(" + columns + ") SELECT " + columns +
                           " FROM source." + table.name);
@@ -305,7 +305,7 @@ private:
     std::vector<RowFault> damaged_rows_;  // of the source
     bool study_damaged_ = false;          // rows that everybody needs cannot be trusted
     std::string other_study_;             // why the source seems to be of another study
-    std::vector<Table> tables_;
+    std::vector<SessionTable> tables_;
     std::map<std::string, std::string> left_out_;  // code → surrogate
 };
 

@@ -20,8 +20,8 @@ std::string contents(const std::string& schema) {
            " AND end_state='complete'";
 }
 
-std::int64_t least(const Database& database, const std::vector<Table>& tables, const std::string& source,
-                   const Table& table, const TableColumn& number, const std::string& id) {
+std::int64_t least(const Database& database, const std::vector<SessionTable>& tables, const std::string& source,
+                   const SessionTable& table, const TableColumn& number, const std::string& id) {
     Statement find = database.prepare("SELECT coalesce(min(" + number.name + "), 0) FROM " + source + "." + table.name +
                                       " WHERE " + rowsOfSession(tables, table, source));
     find.bind(id).step();
@@ -35,19 +35,19 @@ bool sessionLacks(const Database& database, const std::string& one, const std::s
     return find.bind(id).step();
 }
 
-void copySession(const Database& database, const std::vector<Table>& tables, const std::string& source,
+void copySession(const Database& database, const std::vector<SessionTable>& tables, const std::string& source,
                  const std::string& id) {
     std::map<std::string, std::int64_t> offsets;
-    for (const Table& table : tables)
+    for (const SessionTable& table : tables)
         if (const TableColumn* number = table.number())
             offsets[table.name] =
                 database.integer("SELECT coalesce(max(" + number->name + "), 0) FROM main." + table.name) -
                 least(database, tables, source, table, *number, id) + 1;
-    for (const Table& table : tables) {
+    for (const SessionTable& table : tables) {
         std::string values;
         for (const TableColumn& column : table.columns) {
             std::string value = column.name;
-            const Table* numbered = numberedBy(tables, table, column);
+            const SessionTable* numbered = numberedBy(tables, table, column);
             if (numbered != nullptr)
                 value += " + " + std::to_string(offsets[numbered->name]);
             else if (column.parent == "condition")

@@ -13,7 +13,7 @@ bool sessionLacks(const Database& database, const std::string& one, const std::s
 
 /// Copies a session with all that belongs to it from the attached database `source` into the main one, under numbers
 /// that are free there. @pre it is not there, its conditions are
-void copySession(const Database& database, const std::vector<Table>& tables, const std::string& source,
+void copySession(const Database& database, const std::vector<SessionTable>& tables, const std::string& source,
                  const std::string& id);
 
 }  // namespace passung::store

@@ -19,7 +19,7 @@ public:
     Pull(pqxx::work& work, const Database& here) : work_(work), here_(here), tables_(sessionTables(here)) {}
 
     void study() {
-        for (const Table& table : studyTables(here_)) {
+        for (const SessionTable& table : studyTables(here_)) {
             std::vector<TableColumn> columns;
             for (const TableColumn& column : table.columns)
                 if (&column != table.number() && isThere(table.name, column.name)) columns.push_back(column);
@@ -29,7 +29,7 @@ public:
 
     void session(const std::string& id) {
         offsets_.clear();
-        for (const Table& table : tables_) {
+        for (const SessionTable& table : tables_) {
             if (table.number() == nullptr || !isThere(table.name, table.number()->name)) continue;
             const std::string number = table.number()->name;
             const auto least = work_.exec_params(
@@ -38,7 +38,7 @@ public:
             offsets_[table.name] = here_.integer("SELECT coalesce(max(" + number + "), 0) + 1 FROM " + table.name) -
                                    least[0][0].as<std::int64_t>();
         }
-        for (const Table& table : tables_) {
+        for (const SessionTable& table : tables_) {
             std::vector<TableColumn> columns;
             for (const TableColumn& column : table.columns)
                 if (isThere(table.name, column.name)) columns.push_back(column);
@@ -56,7 +56,7 @@ private:
                     .empty();
     }
 
-    void rows(const Table& table, const std::vector<TableColumn>& columns, const std::string& where,
+    void rows(const SessionTable& table, const std::vector<TableColumn>& columns, const std::string& where,
               const std::string& id) {
         std::string there, here, values;
         for (const TableColumn& column : columns) {
@@ -84,10 +84,11 @@ private:
         }
     }
 
-    void bind(Statement& insert, int index, const Table& table, const TableColumn& column, const pqxx::field& field) {
+    void bind(Statement& insert, int index, const SessionTable& table, const TableColumn& column,
+              const pqxx::field& field) {
         if (field.is_null()) return insert.bindAt(index, nullptr);
         const std::string text = field.c_str();
-        const Table* numbered = numberedBy(tables_, table, column);
+        const SessionTable* numbered = numberedBy(tables_, table, column);
         if (column.type == "INTEGER" && column.parent != "condition") {
             const auto offset = numbered == nullptr ? offsets_.end() : offsets_.find(numbered->name);
             insert.bindAt(index, field.as<std::int64_t>() + (offset == offsets_.end() ? 0 : offset->second));
@@ -105,7 +106,7 @@ private:
 
     pqxx::work& work_;
     const Database& here_;
-    std::vector<Table> tables_;
+    std::vector<SessionTable> tables_;
     std::map<std::string, std::int64_t> offsets_;
     // Bound by reference, so they last until the row is inserted.
     std::vector<std::byte> bytes_;

@@ -31,7 +31,7 @@ public:
     Push(const Database& database, const std::string& to) : database_(database), there_(to) {}
 
     PushReport run() {
-        const std::vector<Table> tables = sessionTables(database_);
+        const std::vector<SessionTable> tables = sessionTables(database_);
         const std::vector<Copy> study = studyCopies(database_), sessions = sessionCopies(tables);
         const std::string name = database_.text("SELECT name FROM protocol_version LIMIT 1");
         if (name.empty()) throw std::runtime_error("holds no study yet");
@@ -203,7 +203,7 @@ private:
     }
 
     void pushSession(const std::string& id, const std::string& name, const std::vector<Copy>& copies,
-                     const std::vector<Table>& tables, PushReport& report) {
+                     const std::vector<SessionTable>& tables, PushReport& report) {
         if (const SessionDamage damage = damageOf(database_, tables, "main", id); damage.any()) {
             for (const std::string& line : damage.lines()) report.damaged.push_back(name + ", " + line);
             return;

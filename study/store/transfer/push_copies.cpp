@@ -40,7 +40,7 @@ Values valuesOf(const Statement& row, const std::vector<TableColumn>& columns) {
 
 std::vector<Copy> studyCopies(const Database& database) {
     const auto copyOf = [&](const std::string& name, std::vector<std::string> keys, std::string where = "") {
-        Table table = describeTable(database, name);
+        SessionTable table = describeTable(database, name);
         const TableColumn* number = table.number();
         const std::string numbering = number != nullptr ? number->name : "";
         std::erase_if(table.columns, [&](const TableColumn& column) { return column.name == numbering; });
@@ -54,7 +54,7 @@ std::vector<Copy> studyCopies(const Database& database) {
     };
     std::vector<Copy> copies;
     for (const std::string& name : tableNames(database)) {
-        const Table table = describeTable(database, name);
+        const SessionTable table = describeTable(database, name);
         if (name == "session" || name == "design_slot" || table.find("protocol_sha256") == nullptr) continue;
         copies.push_back(copyOf(name, name == "condition" ? std::vector<std::string>{"protocol_sha256", "condition"}
                                                           : std::vector<std::string>{}));
@@ -67,9 +67,9 @@ std::vector<Copy> studyCopies(const Database& database) {
     return copies;
 }
 
-std::vector<Copy> sessionCopies(const std::vector<Table>& tables) {
+std::vector<Copy> sessionCopies(const std::vector<SessionTable>& tables) {
     std::vector<Copy> copies;
-    for (const Table& table : tables) {
+    for (const SessionTable& table : tables) {
         Copy copy{table.name, table.columns, {}, "REFERENCES session ON DELETE CASCADE", {}};
         for (const TableColumn& column : table.columns)
             if (column.key > 0) copy.keys.push_back(column.name);

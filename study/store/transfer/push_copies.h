@@ -38,6 +38,6 @@ Values valuesOf(const Statement& row, const std::vector<TableColumn>& columns);
 /// Rows that do not belong to a session. Their numbers mean nothing outside this file and stay here.
 std::vector<Copy> studyCopies(const Database& database);
 
-std::vector<Copy> sessionCopies(const std::vector<Table>& tables);
+std::vector<Copy> sessionCopies(const std::vector<SessionTable>& tables);
 
 }  // namespace passung::store

@@ -8,8 +8,8 @@
 namespace passung::truth {
 namespace {
 
-AccuracyRow rowAt(double time, double error) {
-    AccuracyRow row;
+SettingCost rowAt(double time, double error) {
+    SettingCost row;
     row.time.p99 = time;
     row.depth.p99 = error;
     return row;
@@ -18,7 +18,7 @@ AccuracyRow rowAt(double time, double error) {
 TEST(AccuracyPick, TakesTheSmallestErrorThatFitsAndTheFasterOfEquals) {
     // Truth: closed form. By hand: 2 fits 10 and errs least among those; 3 errs as much but is slower; 4 errs less but
     // takes 11.
-    const std::vector<AccuracyRow> rows{rowAt(1, 90), rowAt(5, 40), rowAt(8, 7), rowAt(9, 7), rowAt(11, 1)};
+    const std::vector<SettingCost> rows{rowAt(1, 90), rowAt(5, 40), rowAt(8, 7), rowAt(9, 7), rowAt(11, 1)};
     EXPECT_EQ(pickFinest(rows, 10.0), 2u);
     EXPECT_EQ(pickFinest(rows, 11.0), 4u);
     EXPECT_EQ(pickFinest(rows, 1.0), 0u);
@@ -35,7 +35,7 @@ protected:
         scene_.parts[1].geometry = model::Sphere{0.002};
         scene_.parts[1].held = true;
     }
-    Result<std::vector<AccuracyRow>> measure(const std::vector<double>& budgets) {
+    Result<std::vector<SettingCost>> measure(const std::vector<double>& budgets) {
         return measureCandidates(
             {{&scene_, {contact_}}}, budgets, [](const std::string&, double) {}, nullptr);
     }
@@ -55,7 +55,7 @@ TEST_F(BallOnCube, MeasuresEverySpacingForALargeBudgetAndOnlyTheCoarsestForNone)
     contact_.method = model::ContactMethod::Penalty;
     const auto first = measure({1e-12});
     ASSERT_TRUE(first);
-    for (const AccuracyRow& row : *first) EXPECT_EQ(row.setting.spacing, coarsest);
+    for (const SettingCost& row : *first) EXPECT_EQ(row.setting.spacing, coarsest);
     EXPECT_GT(std::count_if(first->begin(), first->end(), [](const auto& row) { return row.setting.budget_nodes > 0; }),
               0);
     EXPECT_EQ(pickFinest(*first, 1e-12), std::nullopt);

@@ -12,8 +12,8 @@
 namespace passung::truth {
 namespace {
 
-AccuracyRow rowAt(double time, double depth, double force) {
-    AccuracyRow row;
+SettingCost rowAt(double time, double depth, double force) {
+    SettingCost row;
     row.time = {time, time, time, time};
     row.depth = {depth, depth, depth, depth};
     row.force = {force, force, force, force};
@@ -23,7 +23,7 @@ AccuracyRow rowAt(double time, double depth, double force) {
 TEST(AccuracyFront, HoldsExactlyTheRowsThatNoOtherBeatsInBoth) {
     // Truth: closed form. By hand: depth: (1, 9), (2, 5), (4, 1) are on the front; (3, 6) is beaten by (2, 5), (4,
     // 2) by (4, 1). Force has its own front; a row without a force is on none.
-    std::vector<AccuracyRow> rows{rowAt(3, 6, 1), rowAt(1, 9, 8), rowAt(4, 2, 0.5), rowAt(2, 5, Spread::kNone),
+    std::vector<SettingCost> rows{rowAt(3, 6, 1), rowAt(1, 9, 8), rowAt(4, 2, 0.5), rowAt(2, 5, Spread::kNone),
                                   rowAt(4, 1, 0.7)};
     markFronts(rows);
     const std::vector<bool> depth{false, true, false, true, true}, force{true, true, true, false, false};
@@ -59,7 +59,7 @@ TEST_F(BallOnCube, ErrsByNoMoreThanTheSpacingAdmitsAndLessWithFinerPoints) {
     ASSERT_EQ(result->rows.size(), 20u);  // 5 modes x 2 spacings x 2 budgets
     EXPECT_TRUE(result->disagreements.empty()) << result->disagreements.front().what;
     EXPECT_EQ(result->compared, 20u * 4u);
-    for (const AccuracyRow& row : result->rows) {
+    for (const SettingCost& row : result->rows) {
         if (row.setting.budget_nodes > 0) continue;
         // A layer is off by half a cell besides, and cells are at most 1/72 of the cube's side.
         const double layer = row.setting.mode == model::FieldMode::Layered ? 0.5 * 0.04 / 72 : 0.0;
@@ -70,7 +70,7 @@ TEST_F(BallOnCube, ErrsByNoMoreThanTheSpacingAdmitsAndLessWithFinerPoints) {
         EXPECT_GT(row.field_bytes, 0.0);
     }
     const auto find = [&](double spacing) {
-        return std::find_if(result->rows.begin(), result->rows.end(), [&](const AccuracyRow& row) {
+        return std::find_if(result->rows.begin(), result->rows.end(), [&](const SettingCost& row) {
             return row.setting.mode == model::FieldMode::Trilinear && row.setting.spacing == spacing &&
                    row.setting.budget_nodes == 0;
         });
@@ -134,7 +134,7 @@ TEST_F(BallOnCube, TablesHaveACellForEveryColumnAndThePictureEveryFrontSetting) 
         EXPECT_EQ(text.find(",,"), std::string::npos);
     }
     const std::string picture = accuracyPicture(result->rows, {"cube <1>", "ball", judged.size(), 3});
-    for (const AccuracyRow& row : result->rows) {
+    for (const SettingCost& row : result->rows) {
         const bool shown = picture.find(settingText(row.setting) + "<") != std::string::npos;
         EXPECT_EQ(shown, row.on_depth_front || row.on_force_front) << settingText(row.setting);
     }

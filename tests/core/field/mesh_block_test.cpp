@@ -86,7 +86,7 @@ TEST(MeshBlock, DistanceTurnsInNoCellByMoreThanItsSlack) {
             for (std::size_t i = 0; i < SurfaceBlock::kAllCells; ++i) {
                 const Vec3 place = placeOf(i, SurfaceBlock::kCells);
                 const Vec3 u(random.uniform(), random.uniform(), random.uniform());
-                const Corners w = trilinearWeights(u);
+                const CornerValues w = trilinearWeights(u);
                 double value = 0.0, way = 0.0;
                 for (std::size_t k = 0; k < 8; ++k) {
                     const Vec3 node = place + cornerAt(k);
@@ -131,7 +131,7 @@ TEST(MeshBlock, SlackHoldsWhereSolidsOverlapOrContainEachOther) {
             for (std::size_t k = 0; k < SurfaceBlock::kAllCells; ++k) {
                 const Vec3 place = placeOf(k, SurfaceBlock::kCells);
                 const Vec3 u(random.uniform(), random.uniform(), random.uniform());
-                const Corners w = trilinearWeights(u);
+                const CornerValues w = trilinearWeights(u);
                 double value = 0.0, way = 0.0;
                 for (std::size_t c = 0; c < 8; ++c) {
                     const Vec3 node = place + cornerAt(c);

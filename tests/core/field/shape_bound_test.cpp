@@ -41,7 +41,7 @@ double errorAt(const Shape& shape, const SurfaceBlock& block, const Vec3& low, d
                const Vec3& in_octant) {
     const Vec3 in_block = in_octant + 4.0 * cornerAt(octant);
     const Vec3 whole = in_block.array().floor().min(7.0);
-    Corners values{};
+    CornerValues values{};
     for (std::size_t i = 0; i < 8; ++i) {
         const Vec3 at = whole + cornerAt(i);
         values[i] = block.node[static_cast<std::size_t>(

@@ -545,7 +545,7 @@ TEST(OutputStage, DelaysForceTorqueAndPushesBySoManyTicks) {
             frame.input_usable = i % 5 != 3;
             frame.F_H_W = {any(), any()};
             asked.push_back(frame.input_usable ? frame.F_H_W : Wrench{});
-            for (tick::Push& push : state.pushes) {
+            for (tick::ObstaclePush& push : state.pushes) {
                 push.wrench = {any(), any()};
                 pushed.push_back(push.wrench);
             }

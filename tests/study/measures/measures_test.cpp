@@ -49,7 +49,7 @@ TEST(Measures, EveryDefinitionHasAUniqueNameThatEndsInItsUnit) {
     const std::map<std::string, std::string> suffixes = {{"s", "_s"},    {"m", "_m"},    {"rad", "_rad"}, {"N", "_N"},
                                                          {"N m", "_Nm"}, {"N s", "_Ns"}, {"J", "_J"},     {"1", ""}};
     std::set<std::string> names;
-    for (const Definition& definition : definitions()) {
+    for (const MeasureDefinition& definition : definitions()) {
         EXPECT_TRUE(names.insert(definition.name).second) << definition.name;
         ASSERT_TRUE(suffixes.contains(definition.unit)) << definition.unit;
         EXPECT_TRUE(definition.name.ends_with(suffixes.at(definition.unit))) << definition.name;

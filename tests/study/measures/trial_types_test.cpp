@@ -42,7 +42,7 @@ TrialContext contextOf(std::int64_t end_tick, Outcome outcome = Outcome::Success
 TEST(TrialTypes, DeclareTheMeasuresThatOnlyTheirTrialsHave) {
     // Truth: invariant: every declared name is a measure, and no trial of another type has a value for it.
     std::vector<std::string> known;
-    for (const Definition& definition : definitions()) known.push_back(definition.name);
+    for (const MeasureDefinition& definition : definitions()) known.push_back(definition.name);
     const std::vector<TickRecord> records(100, recordAt(0, Vec3::Zero()));
     for (const protocol::TrialType& type : protocol::trialTypes()) {
         const std::array types{&type};

@@ -23,7 +23,8 @@ TEST(SimulatedAnswers, AFormsTrialsDecideAndNothingElse) {
     const session::FinishedTrial good{{}, {{"success", 1.0}, {"mean_force_N", 2.0}}};
     const session::FinishedTrial bad{{}, {{"success", 0.0}, {"mean_force_N", 2.0}}};
     const auto performance = [&](const session::FinishedTrial& trial) {
-        const session::Form form{plan.questionnaires[0], {}, "1|after_block|1||", {0, 1, 2, 3, 4, 5}, {&trial, &trial}};
+        const session::ShownQuestionnaire form{
+            plan.questionnaires[0], {}, "1|after_block|1||", {0, 1, 2, 3, 4, 5}, {&trial, &trial}};
         const auto filled = SimulatedAnswers(plan, "S001").fill(form);
         EXPECT_EQ(filled->answered_by, "simulated");
         EXPECT_FALSE(filled->answers[3].response_ms);

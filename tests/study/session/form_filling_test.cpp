@@ -18,7 +18,7 @@ protected:
         }
     }
     FormFilling filling(std::int64_t now_ms) const {
-        return FormFilling(Form{planned_, {}, "1|session_end|||", {2, 1, 0}, {}}, now_ms);
+        return FormFilling(ShownQuestionnaire{planned_, {}, "1|session_end|||", {2, 1, 0}, {}}, now_ms);
     }
 
     protocol::PlannedQuestionnaire planned_;

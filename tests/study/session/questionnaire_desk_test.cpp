@@ -35,7 +35,7 @@ public:
     int withdrawn = 0;
 
     void withdraw() override { ++withdrawn; }
-    std::optional<FilledForm> fill(const Form& form) override {
+    std::optional<FilledForm> fill(const ShownQuestionnaire& form) override {
         if (looked_++ < looks) return std::nullopt;
         looked_ = 0;
         occasions.push_back(form.planned.definition.key + " " + form.occasion_text);

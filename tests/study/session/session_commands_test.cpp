@@ -17,7 +17,7 @@ protected:
         session_.emplace(SessionSetup{protocol::FrozenPlan(plan_), trials_, "P001", 7, false, 1, waits}, apparatus_,
                          sink_, SessionListener{});
     }
-    Answer tell(Kind kind, const std::string& text = {}, std::optional<AttemptId> attempt = {}) {
+    Reply tell(Kind kind, const std::string& text = {}, std::optional<AttemptId> attempt = {}) {
         return session_->command({kind, text, attempt});
     }
     /// Until so many attempts have ended and no trial runs.
@@ -73,7 +73,7 @@ TEST_F(SessionCommands, APauseNowAbortsTheRunningAttemptWhichIsDoneAgain) {
     begin(2);
     enterTrial();
     EXPECT_TRUE(tell(Kind::Pause).after_trial);
-    const Answer now = session_->command({.kind = Kind::Pause, .text = "no picture", .source = "window", .now = true});
+    const Reply now = session_->command({.kind = Kind::Pause, .text = "no picture", .source = "window", .now = true});
     EXPECT_TRUE(now.accepted);
     EXPECT_FALSE(now.after_trial);
     EXPECT_EQ(session_->state(), SessionState::Paused);

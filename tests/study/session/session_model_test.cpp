@@ -189,7 +189,7 @@ public:
 
     std::int64_t answers = 0;
 
-    std::optional<FilledForm> fill(const Form& form) override {
+    std::optional<FilledForm> fill(const ShownQuestionnaire& form) override {
         const auto stored = sink_.forms.find(form.id());
         if (stored != sink_.forms.end()) {
             EXPECT_LT(stored->second.second, sink_.changes) << "is asked again: " << form.id();
@@ -359,7 +359,7 @@ protected:
         trace(std::string(commandName(command.kind)) + (may.given() ? "" : " (refused: " + may.text + ")"));
         const std::size_t logged = durable_->commands.size();
         const std::int64_t changes = durable_->changes, notes = durable_->notes;
-        const Answer answer = session_->command(command);
+        const Reply answer = session_->command(command);
         ++told_[static_cast<std::size_t>(command.kind)][answer.accepted ? 1 : 0];
         EXPECT_EQ(answer.accepted, may.given()) << answer.text;
         EXPECT_EQ(answer.why, may.why);

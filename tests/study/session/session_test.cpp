@@ -91,7 +91,7 @@ TEST_F(SessionTest, WaitsForTheExperimenterWhenADeviceIsSwapped) {
 /// Answers 1 to the only item of every form, at the second look.
 class Answering : public QuestionnaireSource {
 public:
-    std::optional<FilledForm> fill(const Form&) override {
+    std::optional<FilledForm> fill(const ShownQuestionnaire&) override {
         if (++looks_ % 2 == 1) return std::nullopt;
         return FilledForm{{{{1.0, ""}, {}, 0}}, "simulated"};
     }

@@ -22,7 +22,7 @@ protected:
         setup.timer = timer;
         session_.emplace(std::move(setup), apparatus_, sink_, SessionListener{});
     }
-    Answer tell(Kind kind) { return session_->command({.kind = kind}); }
+    Reply tell(Kind kind) { return session_->command({.kind = kind}); }
     void look(int times) {
         for (int i = 0; i < times; ++i) session_->advance();
     }

@@ -48,7 +48,7 @@ inline Result<Done> storeForm(store::SessionWriter& writer, const protocol::Stud
                               const session::Occasion& occasion, const std::vector<std::optional<double>>& numbers,
                               std::int64_t time_ns, const std::string& text = "") {
     const auto& planned = plan.questionnaires.at(occasion.questionnaire);
-    session::Form form{planned, occasion, "", {}, {}};
+    session::ShownQuestionnaire form{planned, occasion, "", {}, {}};
     session::FilledForm filled{{}, "participant"};
     std::vector<questionnaire::Answer> answers;
     for (std::size_t i = 0; i < numbers.size(); ++i) {

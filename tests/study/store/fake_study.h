@@ -166,7 +166,7 @@ inline session::AttemptEnd attemptEnd(std::int64_t trial_index, std::size_t tick
     end.end_ns = trial_index * 10'000'000'000 + static_cast<std::int64_t>(ticks) * kTickNanoseconds;
     end.outcome = measures::Outcome::Success;
     end.timing_measured = timing_measured;
-    for (const measures::Definition& definition : measures::definitions()) {
+    for (const measures::MeasureDefinition& definition : measures::definitions()) {
         end.measures.push_back({definition.name, std::nullopt});
         if (definition.name == "completion_time_s")
             end.measures.back().value = 1.0 + 0.1 * static_cast<double>(trial_index);

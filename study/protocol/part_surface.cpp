@@ -1,4 +1,4 @@
-#include "study/protocol/part_geometry.h"
+#include "study/protocol/part_surface.h"
 
 #include <fmt/format.h>
 
@@ -14,41 +14,41 @@ constexpr int kBallSteps = 12;           // of the search for a ball, along each
 constexpr double kOnSurface = 1e-9;      // of the part's size: rounding
 constexpr double kChordPerSize = 0.005;  // of triangles that give a shape's bounds
 
-PartGeometry solid(const Vec3& size, double area) { return {size, area, false, nullptr, nullptr}; }
+PartSurface solid(const Vec3& size, double area) { return {size, area, false, nullptr, nullptr}; }
 
-PartGeometry roundExtent(double diameter, double length) {
+PartSurface roundExtent(double diameter, double length) {
     return solid({diameter, diameter, length}, std::numbers::pi * diameter * (0.5 * diameter + length));
 }
 
-PartGeometry blockExtent(double x, double y, double z) { return solid({x, y, z}, 2.0 * (x * y + y * z + z * x)); }
+PartSurface blockExtent(double x, double y, double z) { return solid({x, y, z}, 2.0 * (x * y + y * z + z * x)); }
 
 struct GeometryOf {
-    PartGeometry operator()(const model::Sphere& s) const {
+    PartSurface operator()(const model::Sphere& s) const {
         return solid(Vec3::Constant(s.diameter), std::numbers::pi * s.diameter * s.diameter);
     }
-    PartGeometry operator()(const model::Box& s) const { return blockExtent(s.width, s.depth, s.height); }
-    PartGeometry operator()(const model::Cylinder& s) const { return roundExtent(s.diameter, s.length); }
-    PartGeometry operator()(const model::Torus& s) const {
+    PartSurface operator()(const model::Box& s) const { return blockExtent(s.width, s.depth, s.height); }
+    PartSurface operator()(const model::Cylinder& s) const { return roundExtent(s.diameter, s.length); }
+    PartSurface operator()(const model::Torus& s) const {
         const double outer = s.diameter + s.tube_diameter;
         return solid({outer, outer, s.tube_diameter},
                      std::numbers::pi * std::numbers::pi * s.diameter * s.tube_diameter);
     }
-    PartGeometry operator()(const model::Sheet& s) const {
-        PartGeometry sheet = solid({s.width, s.depth, 0.0}, s.width * s.depth);
+    PartSurface operator()(const model::Sheet& s) const {
+        PartSurface sheet = solid({s.width, s.depth, 0.0}, s.width * s.depth);
         sheet.sheet = true;
         return sheet;
     }
-    PartGeometry operator()(const model::Peg& s) const { return roundExtent(s.diameter, s.length); }
-    PartGeometry operator()(const model::SquarePeg& s) const { return blockExtent(s.width, s.depth, s.length); }
-    PartGeometry operator()(const model::KeyedPeg& s) const { return roundExtent(s.diameter, s.length); }
+    PartSurface operator()(const model::Peg& s) const { return roundExtent(s.diameter, s.length); }
+    PartSurface operator()(const model::SquarePeg& s) const { return blockExtent(s.width, s.depth, s.length); }
+    PartSurface operator()(const model::KeyedPeg& s) const { return roundExtent(s.diameter, s.length); }
     template <class Plate>
-    PartGeometry operator()(const Plate& plate) const {
+    PartSurface operator()(const Plate& plate) const {
         return blockExtent(plate.width, plate.depth, plate.height);
     }
 };
 
-std::unique_ptr<PartGeometry> asGeometry(model::ImportedMesh mesh) {
-    auto geometry = std::make_unique<PartGeometry>();
+std::unique_ptr<PartSurface> asGeometry(model::ImportedMesh mesh) {
+    auto geometry = std::make_unique<PartSurface>();
     geometry->size = mesh.report.size;
     geometry->area = mesh.report.area;
     geometry->sheet = mesh.report.kind == model::SurfaceKind::OpenSheet;
@@ -68,12 +68,12 @@ std::string geometryKey(const model::PartSpec& part) {
     return key;
 }
 
-const PartGeometry* PartGeometries::of(const model::PartSpec& part) {
+const PartSurface* PartGeometries::of(const model::PartSpec& part) {
     const auto [place, fresh] = geometries_.try_emplace(geometryKey(part));
     if (fresh) {
         if (const auto* shape = std::get_if<model::Shape>(&part.geometry))
-            place->second = std::make_unique<PartGeometry>(std::visit(GeometryOf{}, *shape));
-        else if (auto mesh = model::importMesh(std::get<model::MeshFile>(part.geometry), builds_))
+            place->second = std::make_unique<PartSurface>(std::visit(GeometryOf{}, *shape));
+        else if (auto mesh = model::importMeshFile(std::get<model::MeshFile>(part.geometry), builds_))
             place->second = asGeometry(*std::move(mesh));
         else
             problems_[place->first] = mesh.errors();
@@ -94,7 +94,7 @@ const std::vector<model::ThinFeature>& PartGeometries::thin(const model::PartSpe
     if (!fresh) return place->second;
     if (const auto* shape = std::get_if<model::Shape>(&part.geometry))
         return place->second = model::thinFeatures(*shape, radius, where);
-    const PartGeometry* geometry = of(part);
+    const PartSurface* geometry = of(part);
     if (geometry == nullptr) return place->second;
     if (geometry->sheet) return place->second = {{model::FeatureKind::Wall, 0.0, Vec3::Zero()}};
     // Of all radii together, which conditions and their levels may make as many of as they like.
@@ -112,14 +112,14 @@ double PartGeometries::remembered(const std::string& question, const std::functi
 }
 
 model::Bounds PartGeometries::boundsOf(const model::PartSpec& part) {
-    const PartGeometry& geometry = *of(part);
+    const PartSurface& geometry = *of(part);
     if (const auto* shape = std::get_if<model::Shape>(&part.geometry))
         return model::boundsOf(model::tessellate(*shape, kChordPerSize * geometry.longest()));
     return model::boundsOf(*geometry.mesh);
 }
 
 PartGeometries::Ball PartGeometries::ballAtOrigin(const model::PartSpec& part) {
-    const PartGeometry* geometry = of(part);
+    const PartSurface* geometry = of(part);
     if (geometry == nullptr || geometry->sheet) return {};
     const double outside = signedDistance(part, Vec3::Zero());
     if (outside > kOnSurface * geometry->longest()) return {};
@@ -128,7 +128,7 @@ PartGeometries::Ball PartGeometries::ballAtOrigin(const model::PartSpec& part) {
 
 PartGeometries::Ball PartGeometries::largestBall(const model::PartSpec& part) {
     const auto [place, fresh] = balls_.try_emplace(geometryKey(part));
-    const PartGeometry* geometry = of(part);
+    const PartSurface* geometry = of(part);
     if (!fresh || geometry == nullptr || geometry->sheet) return place->second;
     Ball& best = place->second;
     const auto tryAt = [&](const Vec3& p) {
@@ -153,7 +153,7 @@ PartGeometries::Ball PartGeometries::largestBall(const model::PartSpec& part) {
 
 double PartGeometries::signedDistance(const model::PartSpec& part, const Vec3& p) {
     if (const auto* shape = std::get_if<model::Shape>(&part.geometry)) return model::signedDistance(*shape, p);
-    const PartGeometry& geometry = *of(part);
+    const PartSurface& geometry = *of(part);
     const double distance = geometry.tree->closest(p).distance;
     return !geometry.sheet && geometry.tree->inside(p) ? -distance : distance;
 }

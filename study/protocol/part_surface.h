@@ -16,7 +16,7 @@
 namespace passung::protocol {
 
 /// A part as geometry alone, part frame.
-struct PartGeometry {
+struct PartSurface {
     Vec3 size = Vec3::Zero();  // [m]
     double area = 0.0;         // of the surface, of shapes roughly: without bores, chamfers, keys [m²]
     bool sheet = false;        // has no inside
@@ -35,7 +35,7 @@ public:
     explicit PartGeometries(model::BuildStore* builds = nullptr) : builds_(builds) {}
 
     /// nullptr if the mesh cannot be read: problems() says why.
-    const PartGeometry* of(const model::PartSpec& part);
+    const PartSurface* of(const model::PartSpec& part);
     Errors problems(const model::PartSpec& part);
 
     /// See model::thinFeatures; one model::SearchLimit for all questions about one geometry; nothing of a mesh that
@@ -66,7 +66,7 @@ public:
 
 private:
     model::BuildStore* builds_;
-    std::map<std::string, std::unique_ptr<PartGeometry>> geometries_;
+    std::map<std::string, std::unique_ptr<PartSurface>> geometries_;
     std::map<std::string, Errors> problems_;  // of those that are null
     std::map<std::string, std::vector<model::ThinFeature>> thin_;
     std::map<std::string, std::size_t> work_left_;  // for thin()
