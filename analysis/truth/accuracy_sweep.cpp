@@ -72,7 +72,7 @@ public:
         tick::TickFrame frame;
         frame.X_WH = X_FS;
         if (!model_.contact.rendersAtHand()) {
-            tick::lookAround({model_, state_, state_, frame}, X_FS);
+            tick::surveyContacts({model_, state_, state_, frame}, X_FS);
             return {std::max(0.0, -state_.clearance), tick::penaltyWrench(weighted_, state_.manifold, X_FS.p)};
         }
         tick::runStage<tick::kContactsAtHand>(model_, state_, frame);

@@ -78,12 +78,12 @@ void correctProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, 
         Motion u = correctionOf(model, proxy, depth - left);
         bool better = false;
         for (int half = 0; half <= kHalvings && !better; ++half, u *= 0.5) {
-            lookAround(moving, moved(model, X_before, u));
+            surveyContacts(moving, moved(model, X_before, u));
             better = overlap(proxy) < depth;
         }
         if (!better) {
             report.status |= kStepRejected;
-            lookAround(moving, X_before);
+            surveyContacts(moving, X_before);
             return;
         }
     }

@@ -110,7 +110,7 @@ bool overlapsBetween(const ProxyView& view, const Pose& X_from, const Pose& X_to
     return answer.found;
 }
 
-void lookAround(const ProxyView& view, const Pose& X_WG) noexcept {
+void surveyContacts(const ProxyView& view, const Pose& X_WG) noexcept {
     const double reach = kLongestStep * view.model.finest_cell;
     look(view, X_WG, reach, reach);
 }
@@ -122,7 +122,7 @@ void startProxy(const MovingProxy& moving) noexcept {
         proxy.manifold_reach = -1.0;
         moving.motion.rubbing = {};
     }
-    if (proxy.manifold_reach < 0.0) lookAround(moving, proxy.X_WG);
+    if (proxy.manifold_reach < 0.0) surveyContacts(moving, proxy.X_WG);
     clearPushes(moving.pushes);
 }
 

@@ -58,7 +58,7 @@ bool overlapsBetween(const ProxyView& view, const Pose& X_from, const Pose& X_to
 
 /// What is asked around the proxy when nothing is known of it yet: all contacts that any step could reach, and where
 /// there is none the proof of it. rt-safe.
-void lookAround(const ProxyView& view, const Pose& X_WG) noexcept;
+void surveyContacts(const ProxyView& view, const Pose& X_WG) noexcept;
 
 /// Where the input guard believes the device to be elsewhere than it can have come from (a false first reading), the
 /// proxy is set to the hand and its past forgotten: a spring from the old place would throw the hand across the room.

@@ -44,9 +44,10 @@ Session::Session(SessionSetup setup, Apparatus& apparatus, TrialSink& sink, Sess
       apparatus_(apparatus),
       sink_(sink),
       listener_(std::move(listener)),
-      desk_(*setup_.plan,
-            {protocol::rehearsedCode(setup_.participant), setup_.seed, setup_.ordinal, setup_.timing_measured},
-            setup_.answers, sink),
+      questionnaires_(
+          *setup_.plan,
+          {protocol::rehearsedCode(setup_.participant), setup_.seed, setup_.ordinal, setup_.timing_measured},
+          setup_.answers, sink),
       instructions_(*setup_.plan, setup_.language, setup_.timing_measured, setup_.reader, sink),
       state_(setup_.waits ? State(Ready{}) : State(BetweenTrials{})),
       agenda_(setup_.resumed ? setup_.resumed->agenda : Agenda(setup_.trials)),
@@ -54,7 +55,7 @@ Session::Session(SessionSetup setup, Apparatus& apparatus, TrialSink& sink, Sess
       past_(setup_.resumed ? setup_.resumed->past : std::vector<Past>(setup_.trials.size())),
       last_(setup_.resumed ? setup_.resumed->last : std::nullopt),
       session_ns_(setup_.resumed ? setup_.resumed->start_ns : 0) {
-    if (setup_.resumed) desk_.resume(setup_.resumed->finished, agenda_.remaining(), setup_.resumed->forms);
+    if (setup_.resumed) questionnaires_.resume(setup_.resumed->finished, agenda_.remaining(), setup_.resumed->forms);
     if (setup_.resumed)
         for (ToldStep& told : setup_.resumed->steps) staircases_.restore(std::move(told));
     leaveOutNeedless();
@@ -77,7 +78,7 @@ const Errors& Session::errors() const {
 }
 
 void Session::interrupt(const std::string& reason) {
-    const bool complete = !is<InTrial>() && agenda_.empty() && !desk_.isDue({});
+    const bool complete = !is<InTrial>() && agenda_.empty() && !questionnaires_.isDue({});
     if (is<InTrial>()) abortRunning(reason, Then::RepeatNow, Decider::Interruption);
     if (isOver()) return;
     if (complete) return finish(Complete{});
@@ -162,9 +163,9 @@ void Session::beginTrial() {
 void Session::watchTrial() {
     if (setup_.timer != nullptr && attempt().condition->timed_by == protocol::TimedBy::Experimenter)
         if (const auto said = setup_.timer->commandAt(attempt().clock.periods())) static_cast<void>(command(*said));
-    apparatus_.advance(kTicksPerLook);
-    attempt().silent_looks = takeRecords() > 0 ? 0 : attempt().silent_looks + 1;
-    const bool silent = attempt().silent_looks >= kSilentLooks && !attempt().course.ended();
+    apparatus_.advance(kTicksPerPoll);
+    attempt().silent_polls = takeRecords() > 0 ? 0 : attempt().silent_polls + 1;
+    const bool silent = attempt().silent_polls >= kSilentPolls && !attempt().course.ended();
     if (silent) {
         std::vector<TrialEvent> events;
         attempt().course.abort(attempt().next_tick, "the loop delivers no records", events);
@@ -245,7 +246,7 @@ void Session::takeEnd(AttemptId attempt, const AttemptEnd& end) {
     last_ = agenda_.next();
     past_[*last_].last = attempt;
     if (end.valid) past_[*last_].counting = attempt;
-    if (end.then == Then::Done) desk_.remember({agenda_.trial(*last_), end.measures});
+    if (end.then == Then::Done) questionnaires_.remember({agenda_.trial(*last_), end.measures});
     agenda_.end(end.then);
     leaveOutNeedless();
     if (!listener_) return;

@@ -13,8 +13,8 @@
 #include "study/measures/detection.h"
 #include "study/session/apparatus.h"
 #include "study/session/command.h"
-#include "study/session/instruction_desk.h"
-#include "study/session/questionnaire_desk.h"
+#include "study/session/instruction_course.h"
+#include "study/session/questionnaire_course.h"
 #include "study/session/session_event.h"
 #include "study/session/session_setup.h"
 #include "study/session/session_view.h"
@@ -31,9 +31,9 @@ namespace passung::session {
 /// attempts finished before it stay as they are.
 class Session {
 public:
-    static constexpr std::int64_t kTicksPerLook = 20;
+    static constexpr std::int64_t kTicksPerPoll = 20;
     static constexpr std::int64_t kTicksPerRest = 100;  // of a rest at a time
-    static constexpr int kSilentLooks = 50;             // looks without any record after which the loop counts as dead
+    static constexpr int kSilentPolls = 50;             // looks without any record after which the loop counts as dead
 
     Session(SessionSetup setup, Apparatus& apparatus, TrialSink& sink, SessionListener listener);
     ~Session();  // stops the apparatus if a trial is running
@@ -45,7 +45,7 @@ public:
     /// experimenter ends the rest), have another device than the last trial's put in place
     /// (events swap_device and device_swapped; between them a session whose setup waits for commands is Paused until
     /// the experimenter says Continue), look whether the instructions before the next trial are read, begin it, watch
-    /// the running one for kTicksPerLook, or close the session; nothing in Ready and Paused. Whatever is to be done to
+    /// the running one for kTicksPerPoll, or close the session; nothing in Ready and Paused. Whatever is to be done to
     /// a session from outside is done between two calls.
     SessionState advance();
 
@@ -105,7 +105,7 @@ private:
         measures::PeriodClock clock;
         std::int64_t next_tick = 0;
         std::int64_t missing_ticks = 0;
-        int silent_looks = 0;
+        int silent_polls = 0;
         std::optional<StaircaseStep> step = {};
         std::string invalidated = {};  // why the experimenter does not want it to count; empty: nothing against it
         std::optional<measures::DetectionTask> secondary = {};
@@ -187,8 +187,8 @@ private:
     Apparatus& apparatus_;
     TrialSink& sink_;
     SessionListener listener_;
-    QuestionnaireDesk desk_;
-    InstructionDesk instructions_;
+    QuestionnaireCourse questionnaires_;
+    InstructionCourse instructions_;
     State state_ = BetweenTrials{};
     Agenda agenda_;
     Staircases staircases_;

@@ -12,7 +12,7 @@ namespace passung::session {
 /// True while a questionnaire is open, or after it failed.
 bool Session::asksQuestionnaire() {
     if (setup_.plan->questionnaires.empty()) return false;
-    const auto open = desk_.ask(agenda_.remaining(), session_ns_);
+    const auto open = questionnaires_.ask(agenda_.remaining(), session_ns_);
     if (!open) fail("questionnaire", open.errors());
     return !open || *open;
 }

@@ -259,7 +259,7 @@ Result<Done> Session::reorder(std::size_t place, const std::string& reason, Then
     if (!done) return done;
     if (past_[place].counting) staircases_.forget(*past_[place].counting);
     past_[place].counting.reset();
-    if (then != Then::Done) desk_.forget(agenda_.trial(place));
+    if (then != Then::Done) questionnaires_.forget(agenda_.trial(place));
     agenda_.redo(place, then);
     return done;
 }

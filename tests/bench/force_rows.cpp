@@ -132,7 +132,7 @@ public:
             const tick::Motion before = std::exchange(wanted_before, wanted);
             if (out.frame.contacts == 0) continue;
             tick::TickFrame frame;
-            tick::lookAround({model_, wide, wide, frame}, state.X_WG);
+            tick::surveyContacts({model_, wide, wide, frame}, state.X_WG);
             takeNearest(wide.manifold, nearest);
             const tick::Surroundings around{nearest, state.X_WG.p, model_.metric_radius, -model_.margins.keep};
             const tick::ConstrainedMotion last = tick::constrainMotion(before, around);

@@ -10,25 +10,25 @@
 #include <optional>
 
 #include "study/run/files/protocol_files.h"
-#include "study/store/people/participant_desk.h"
+#include "study/store/people/participant_records.h"
 #include "study/store/read/store_reader.h"
 #include "study/store/schema/backup.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 #include "ui/cli/places.h"
 #include "ui/cli/station.h"
-#include "ui/presenter/study_desk.h"
+#include "ui/presenter/participant_access.h"
 
 namespace passung::cli {
 
 namespace {
 
 /// What `work` does at the study's desk as an exit code. The database has to be there unless `create`.
-int atTheDesk(const ParticipantArguments& options, bool create,
-              const std::function<Result<Done>(store::Store&, store::ParticipantDesk&)>& work) {
+int withParticipants(const ParticipantArguments& options, bool create,
+                     const std::function<Result<Done>(store::Store&, store::ParticipantRecords&)>& work) {
     const auto station = stationOf(options.station);
     if (!station) return fail(station.errors());
-    const auto done = app::atTheDesk({options.database, options.by, *station, create, options.group}, work);
+    const auto done = app::withParticipants({options.database, options.by, *station, create, options.group}, work);
     return done ? 0 : fail(done.errors());
 }
 
@@ -52,14 +52,15 @@ int enrolParticipant(const ParticipantArguments& options) {
         if (!read) return fail(read.errors());
         plan = *std::move(read);
     }
-    return atTheDesk(options, plan.has_value(), [&](store::Store& store, store::ParticipantDesk& desk) -> Result<Done> {
-        if (plan)
-            if (const auto imported = store.importProtocol(*plan); !imported) return imported.errors();
-        const auto code = app::enrolAt(store, desk, *protocol::participantKindNamed(options.kind), options.code);
-        if (!code) return code.errors();
-        fmt::print("{}: {} participant, enrolled\n", *code, options.kind);
-        return Done{};
-    });
+    return withParticipants(
+        options, plan.has_value(), [&](store::Store& store, store::ParticipantRecords& desk) -> Result<Done> {
+            if (plan)
+                if (const auto imported = store.importProtocol(*plan); !imported) return imported.errors();
+            const auto code = app::enrolAt(store, desk, *protocol::participantKindNamed(options.kind), options.code);
+            if (!code) return code.errors();
+            fmt::print("{}: {} participant, enrolled\n", *code, options.kind);
+            return Done{};
+        });
 }
 
 int listParticipants(const ParticipantArguments& options) {
@@ -91,7 +92,7 @@ int decideConsent(const ParticipantArguments& options) {
     const auto decision = options.decision == "yes"  ? store::Consent::Yes
                           : options.decision == "no" ? store::Consent::No
                                                      : store::Consent::Withdrawn;
-    return atTheDesk(options, false, [&](store::Store&, store::ParticipantDesk& desk) -> Result<Done> {
+    return withParticipants(options, false, [&](store::Store&, store::ParticipantRecords& desk) -> Result<Done> {
         const auto decided = desk.decide(options.code, options.clauses, options.language, decision);
         if (!decided) return decided.errors();
         fmt::print("{}: {}: {}\n", options.code, options.decision, fmt::join(*decided, ", "));
@@ -159,7 +160,7 @@ int withdrawParticipant(const ParticipantArguments& options) {
 }
 
 int excludeParticipant(const ParticipantArguments& options) {
-    return atTheDesk(options, false, [&](store::Store&, store::ParticipantDesk& desk) -> Result<Done> {
+    return withParticipants(options, false, [&](store::Store&, store::ParticipantRecords& desk) -> Result<Done> {
         if (const auto done = desk.exclude(options.code, options.reason); !done) return done;
         fmt::print("{}: excluded; the data counts nowhere any more and the place in the design is free\n",
                    options.code);
@@ -168,7 +169,7 @@ int excludeParticipant(const ParticipantArguments& options) {
 }
 
 int readmitParticipant(const ParticipantArguments& options) {
-    return atTheDesk(options, false, [&](store::Store&, store::ParticipantDesk& desk) -> Result<Done> {
+    return withParticipants(options, false, [&](store::Store&, store::ParticipantRecords& desk) -> Result<Done> {
         const auto placed = desk.readmit(options.code, options.reason);
         if (!placed) return placed.errors();
         fmt::print("{}: takes part again and the data counts{}\n", options.code,

@@ -34,39 +34,39 @@ bool isBeside(const Response& response) {
     return response.options.size() <= kMostBeside && letters <= kBesideLetters;
 }
 
-ItemLook lookOf(const Item& item, bool consent) {
-    if (consent) return ItemLook::Decision;
+ItemControl lookOf(const Item& item, bool consent) {
+    if (consent) return ItemControl::Decision;
     switch (item.response.kind) {
         case AnswerKind::Choice:
-            return ItemLook::Options;
+            return ItemControl::Options;
         case AnswerKind::Number:
-            return ItemLook::Number;
+            return ItemControl::Number;
         case AnswerKind::Text:
-            return ItemLook::Text;
+            return ItemControl::Text;
         case AnswerKind::Pair:
-            return ItemLook::Pair;
+            return ItemControl::Pair;
         case AnswerKind::Rating:
             break;
     }
     const int steps = stepsOf(item.response);
-    if (steps == 0 || steps > kMostTicks) return ItemLook::Line;
-    return steps <= kMostPoints ? ItemLook::Points : ItemLook::Ticks;
+    if (steps == 0 || steps > kMostTicks) return ItemControl::Line;
+    return steps <= kMostPoints ? ItemControl::Points : ItemControl::Ticks;
 }
 
 /// Height of a row in those of a scale.
-double heightOf(const Item& item, ItemLook look) {
+double heightOf(const Item& item, ItemControl look) {
     switch (look) {
-        case ItemLook::Pair:
-        case ItemLook::Decision:
+        case ItemControl::Pair:
+        case ItemControl::Decision:
             return kPage;
-        case ItemLook::Text:
+        case ItemControl::Text:
             return 2.0;
-        case ItemLook::Options:
+        case ItemControl::Options:
             return isBeside(item.response) ? 1.0 : 0.5 + 0.5 * static_cast<double>(item.response.options.size());
-        case ItemLook::Points:
-        case ItemLook::Ticks:
-        case ItemLook::Line:
-        case ItemLook::Number:
+        case ItemControl::Points:
+        case ItemControl::Ticks:
+        case ItemControl::Line:
+        case ItemControl::Number:
             break;
     }
     return 1.0;
@@ -95,9 +95,9 @@ std::string trimmed(const std::string& text) {
 }
 
 /// What a label means: of a point its value, of an option its own, of a pair 0 or 1.
-double valueOf(const Item& item, ItemLook look, std::size_t label) {
-    if (look == ItemLook::Points) return item.response.low + item.response.step * static_cast<double>(label);
-    if (look == ItemLook::Pair) return static_cast<double>(label);
+double valueOf(const Item& item, ItemControl look, std::size_t label) {
+    if (look == ItemControl::Points) return item.response.low + item.response.step * static_cast<double>(label);
+    if (look == ItemControl::Pair) return static_cast<double>(label);
     return item.response.options[label].value;
 }
 
@@ -158,14 +158,14 @@ FormRow Form::rowOf(std::size_t row) const {
     shown.open = told_ && isOpen(row);
     shown.beside = isBeside(response);
     const int steps = stepsOf(response);
-    if (shown.look == ItemLook::Ticks) shown.ticks = steps;
-    if (shown.look == ItemLook::Points)
+    if (shown.look == ItemControl::Ticks) shown.ticks = steps;
+    if (shown.look == ItemControl::Points)
         for (int point = 0; point < steps; ++point)
             shown.labels.push_back(fmt::format("{:g}", response.low + point * response.step));
-    if (shown.look == ItemLook::Decision) shown.labels.resize(response.options.size());
-    if (shown.look == ItemLook::Options)
+    if (shown.look == ItemControl::Decision) shown.labels.resize(response.options.size());
+    if (shown.look == ItemControl::Options)
         for (const auto& option : response.options) shown.labels.push_back(option.label);
-    if (shown.look == ItemLook::Pair) shown.labels = {item(asked.of.first).text, item(asked.of.second).text};
+    if (shown.look == ItemControl::Pair) shown.labels = {item(asked.of.first).text, item(asked.of.second).text};
     for (std::size_t label = 0; label < shown.labels.size() && shown.value; ++label)
         if (std::abs(valueOf(asked, shown.look, label) - *shown.value) < 1e-9) shown.picked = label;
     return shown;
@@ -205,7 +205,7 @@ void Form::choose(std::size_t row, std::size_t label, std::int64_t now_ms) {
 void Form::pick(std::size_t row, std::size_t label, std::int64_t now_ms) {
     choose(row, label, now_ms);
     // A pair has a page of its own: nothing is left to do there, except at the end of the form.
-    if (rowOf(row).look == ItemLook::Pair && !isOpen(row) && page_ + 2 < starts_.size()) turnTo(page_ + 1, now_ms);
+    if (rowOf(row).look == ItemControl::Pair && !isOpen(row) && page_ + 2 < starts_.size()) turnTo(page_ + 1, now_ms);
 }
 
 void Form::place(std::size_t row, double value, std::int64_t now_ms) {
@@ -246,25 +246,25 @@ void Form::step(std::size_t row, int by, std::int64_t now_ms) {
     if (!shown.labels.empty()) {
         const auto last = static_cast<int>(shown.labels.size()) - 1;
         const int now = shown.picked ? static_cast<int>(*shown.picked) + by : by > 0 ? 0 : last;
-        if (shown.look == ItemLook::Points && !shown.picked)
+        if (shown.look == ItemControl::Points && !shown.picked)
             return choose(row, static_cast<std::size_t>(last / 2), now_ms);
         return choose(row, static_cast<std::size_t>(std::clamp(now, 0, last)), now_ms);
     }
-    if (shown.look != ItemLook::Ticks && shown.look != ItemLook::Line) return;
-    const double width = shown.look == ItemLook::Line ? 0.01 * (response.high - response.low) : response.step;
+    if (shown.look != ItemControl::Ticks && shown.look != ItemControl::Line) return;
+    const double width = shown.look == ItemControl::Line ? 0.01 * (response.high - response.low) : response.step;
     place(row, shown.value ? *shown.value + by * width : 0.5 * (response.low + response.high), now_ms);
 }
 
 void Form::end(std::size_t row, bool high, std::int64_t now_ms) {
     const FormRow shown = rowOf(row);
     if (!shown.labels.empty()) return choose(row, high ? shown.labels.size() - 1 : 0, now_ms);
-    if (shown.look == ItemLook::Ticks || shown.look == ItemLook::Line)
+    if (shown.look == ItemControl::Ticks || shown.look == ItemControl::Line)
         place(row, high ? shown.high : shown.low, now_ms);
 }
 
 bool Form::digit(std::size_t row, int digit, std::int64_t now_ms) {
     const FormRow shown = rowOf(row);
-    if (shown.look == ItemLook::Points) {
+    if (shown.look == ItemControl::Points) {
         const auto named = std::find(shown.labels.begin(), shown.labels.end(), std::to_string(digit));
         const bool numbers = item(itemOf(row)).response.low >= 0.0;  // else the first point is number 1
         if (numbers && named == shown.labels.end()) return false;
@@ -275,7 +275,7 @@ bool Form::digit(std::size_t row, int digit, std::int64_t now_ms) {
         pick(row, static_cast<std::size_t>(digit - 1), now_ms);
         return true;
     }
-    if (shown.look != ItemLook::Ticks && shown.look != ItemLook::Line) return false;
+    if (shown.look != ItemControl::Ticks && shown.look != ItemControl::Line) return false;
     place(row, shown.low + 0.1 * digit * (shown.high - shown.low), now_ms);
     return true;
 }

@@ -21,7 +21,7 @@ struct FormRequest {
 };
 
 /// How an item is answered on a screen.
-enum class ItemLook {
+enum class ItemControl {
     Points,    // a rating of few points, each to be picked
     Ticks,     // of many: a scale with a mark for each, such as the 21 of the NASA-TLX
     Line,      // without steps, or of very many: a visual analogue scale
@@ -37,7 +37,7 @@ enum class FormFault { None, NoNumber, OutOfRange };
 /// An item on the page that is shown.
 struct FormRow {
     std::size_t number = 0;  // as presented, from 1
-    ItemLook look = ItemLook::Points;
+    ItemControl look = ItemControl::Points;
     std::string text, low_anchor, high_anchor;
     std::vector<std::string> labels;    // of points, options or the pair; of a decision two without words
     std::optional<std::size_t> picked;  // of the labels

@@ -60,11 +60,11 @@ FiveNumbers fiveNumbers(std::vector<double> values) {
     return {values.front(), quantile(0.25), quantile(0.5), quantile(0.75), values.back()};
 }
 
-std::vector<ConditionLook> lookAt(const Recorded& recorded, const std::string& measure, const std::string& kind) {
+std::vector<ConditionSummary> lookAt(const Recorded& recorded, const std::string& measure, const std::string& kind) {
     const auto cells = exporter::cellsOf(recorded.data);
-    std::vector<ConditionLook> looks;
+    std::vector<ConditionSummary> looks;
     for (const store::ConditionRow& row : recorded.data.conditions) {
-        ConditionLook look;
+        ConditionSummary look;
         look.condition = row.condition;
         bool met = false;
         std::set<std::string> people;

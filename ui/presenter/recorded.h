@@ -37,7 +37,7 @@ struct FiveNumbers {
 FiveNumbers fiveNumbers(std::vector<double> values);
 
 /// A measure under one condition: the values of the attempts that count in means.
-struct ConditionLook {
+struct ConditionSummary {
     std::string condition, version;  // version of the protocol, where several ran
     std::size_t participants = 0;
     std::vector<double> values;  // by participant, then as they were made
@@ -45,6 +45,6 @@ struct ConditionLook {
 };
 
 /// Of participants of one kind only: kinds are never mixed. As the protocol lists its conditions.
-std::vector<ConditionLook> lookAt(const Recorded& recorded, const std::string& measure, const std::string& kind);
+std::vector<ConditionSummary> lookAt(const Recorded& recorded, const std::string& measure, const std::string& kind);
 
 }  // namespace passung::presenter

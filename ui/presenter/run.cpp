@@ -250,7 +250,7 @@ void Run::see(std::int64_t began_ns, std::int64_t presented_ns) {
     on_screen_ns_ = began_ns;
 }
 
-void Run::lookAtPictures(std::int64_t now_ns) {
+void Run::checkPictures(std::int64_t now_ns) {
     constexpr std::int64_t kSecond = 1'000'000'000;
     while (!presented_ns_.empty() && presented_ns_.front() <= now_ns - kSecond) presented_ns_.pop_front();
     const bool runs = view_.state == RunState::ToStart || view_.state == RunState::Running;

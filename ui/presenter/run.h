@@ -113,7 +113,7 @@ public:
     void take(std::span<const TickRecord> records);
     /// The display has got a picture that shows this tick [ns], both on one clock.
     void see(std::int64_t began_ns, std::int64_t presented_ns);
-    void lookAtPictures(std::int64_t now_ns);
+    void checkPictures(std::int64_t now_ns);
     void drawsWith(const QualityFound& found) { view_.quality = found; }
     void awaitsPicture(bool awaits) { view_.awaits_picture = awaits; }
     /// What the participant's window shows from now on. The command that the session then needs, if any.

@@ -35,7 +35,7 @@ QVariantList numbers(const std::vector<double>& values) {
     return all;
 }
 
-QVariantMap lookMap(const presenter::ConditionLook& look) {
+QVariantMap lookMap(const presenter::ConditionSummary& look) {
     const presenter::FiveNumbers& n = look.numbers;
     return {{"condition", text(look.version.empty() ? look.condition : look.condition + " (" + look.version + ")")},
             {"participants", static_cast<int>(look.participants)},

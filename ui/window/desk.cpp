@@ -106,11 +106,11 @@ void Desk::drawsWith(const presenter::QualityFound& found) {
 }
 
 /// The pictures that the participant's window has shown, and which attempt it waits to show.
-void Desk::lookAtPictures() {
+void Desk::checkPictures() {
     std::array<app::Picture, 64> pictures;
     while (const std::size_t count = frames_.takeForScreen(pictures))
         for (std::size_t i = 0; i < count; ++i) run_.see(pictures[i].began_ns, pictures[i].presented_ns);
-    run_.lookAtPictures(app::steadyNanoseconds());
+    run_.checkPictures(app::steadyNanoseconds());
     const bool awaits =
         run_.view().state == presenter::RunState::Preparing && !run_.view().built && !frames_.hasShown(awaited_);
     if (awaits == run_.view().awaits_picture) return;
@@ -154,7 +154,7 @@ void Desk::show(const std::vector<presenter::News>& news, const std::optional<lo
             prepares = true;
         }
     }
-    lookAtPictures();
+    checkPictures();
     if (run_.view().sound && !speaker_) speaker_ = openSpeaker(sound_);
     if (byMouse() && newest && run_.last()) {
         const auto& p = run_.last()->hand_position_m;

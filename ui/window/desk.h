@@ -74,7 +74,7 @@ private:
     void take(std::span<const loop::ScreenTick> ticks);
     void show(const std::vector<presenter::News>& news, const std::optional<loop::ScreenTick>& newest);
     void end();
-    void lookAtPictures();
+    void checkPictures();
 
     std::string data_;
     app::FrameClock frames_;

@@ -9,28 +9,28 @@ namespace passung::window {
 
 using presenter::FormFault;
 using presenter::FormRow;
-using presenter::ItemLook;
+using presenter::ItemControl;
 using presenter::RunState;
 
 namespace {
 
-QString lookName(ItemLook look) {
+QString lookName(ItemControl look) {
     switch (look) {
-        case ItemLook::Points:
+        case ItemControl::Points:
             return QStringLiteral("points");
-        case ItemLook::Ticks:
+        case ItemControl::Ticks:
             return QStringLiteral("ticks");
-        case ItemLook::Line:
+        case ItemControl::Line:
             return QStringLiteral("line");
-        case ItemLook::Options:
+        case ItemControl::Options:
             return QStringLiteral("options");
-        case ItemLook::Pair:
+        case ItemControl::Pair:
             return QStringLiteral("pair");
-        case ItemLook::Decision:
+        case ItemControl::Decision:
             return QStringLiteral("decision");
-        case ItemLook::Number:
+        case ItemControl::Number:
             return QStringLiteral("number");
-        case ItemLook::Text:
+        case ItemControl::Text:
             break;
     }
     return QStringLiteral("text");
@@ -82,15 +82,15 @@ QVariantList FormModel::rows() const {
     for (const FormRow& row : view_.rows) {
         QStringList labels;
         for (const std::string& label : row.labels) labels.append(text(label));
-        if (row.look == ItemLook::Decision)
+        if (row.look == ItemControl::Decision)
             labels = {speech_(QT_TRANSLATE_NOOP("participant", "I agree")),
                       speech_(QT_TRANSLATE_NOOP("participant", "I do not agree"))};
         QString range;
-        if (row.look == ItemLook::Number)
+        if (row.look == ItemControl::Number)
             range = speech_(QT_TRANSLATE_NOOP("participant", "%1 to %2"))
                         .arg(speech_.number(row.low, 0), speech_.number(row.high, 0));
         QString question = text(row.text);
-        if (row.look == ItemLook::Pair)
+        if (row.look == ItemControl::Pair)
             question = speech_(QT_TRANSLATE_NOOP("participant", "Which of the two mattered more?"));
         all.append(QVariantMap{{"number", static_cast<int>(row.number)},
                                {"look", lookName(row.look)},

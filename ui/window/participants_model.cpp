@@ -133,17 +133,19 @@ void ParticipantsModel::tell(const Result<Done>& came, const QString& done) {
 void ParticipantsModel::act(const Work& work, const QString& done) {
     const presenter::StudyCard* card = studies_.card();
     if (card == nullptr || sessionRuns()) return;
-    app::DeskAccess access{.database = studies_.database(), .by = by(), .create = true};
+    app::ParticipantAccess access{.database = studies_.database(), .by = by(), .create = true};
     worker_.run(
         [work, access, protocol = card->path]() -> Result<Done> {
             const auto plan = app::readProtocol(protocol);
             if (!plan) return plan.errors();
             std::error_code problem;  // shows when the database is opened
             std::filesystem::create_directories(std::filesystem::path(access.database).parent_path(), problem);
-            return app::atTheDesk(access, [&](store::Store& store, store::ParticipantDesk& desk) -> Result<Done> {
-                if (const auto imported = store.importProtocol(*plan); !imported) return imported.errors();
-                return work(store, desk, *plan);
-            });
+            return app::withParticipants(access,
+                                         [&](store::Store& store, store::ParticipantRecords& desk) -> Result<Done> {
+                                             if (const auto imported = store.importProtocol(*plan); !imported)
+                                                 return imported.errors();
+                                             return work(store, desk, *plan);
+                                         });
         },
         [this, done](const Result<Done>& came) {
             tell(came, done);
@@ -218,7 +220,7 @@ void ParticipantsModel::enrol(const QString& code, bool pilot) {
     if (!whyNotEnrol(code, pilot).isEmpty()) return;
     selected_ = code.toStdString();
     act(
-        [code = selected_, kind = kindOf(pilot)](store::Store& store, store::ParticipantDesk& desk,
+        [code = selected_, kind = kindOf(pilot)](store::Store& store, store::ParticipantRecords& desk,
                                                  const protocol::StudyPlan&) -> Result<Done> {
             const auto enrolled = app::enrolAt(store, desk, kind, code);
             if (!enrolled) return enrolled.errors();
@@ -263,7 +265,7 @@ void ParticipantsModel::decide(int clause, const QString& decision) {
                                            : store::Consent::Withdrawn;
     act(
         [code = person->code, name = asked.clause, language = asked.texts.front().first, answer](
-            store::Store&, store::ParticipantDesk& desk, const protocol::StudyPlan&) -> Result<Done> {
+            store::Store&, store::ParticipantRecords& desk, const protocol::StudyPlan&) -> Result<Done> {
             const auto decided = desk.decide(code, {name}, language, answer);
             if (!decided) return decided.errors();
             return Done{};
@@ -281,7 +283,7 @@ QString ParticipantsModel::whyNotReadmit(const QString& reason) const {
 void ParticipantsModel::readmit(const QString& reason) {
     if (person_() == nullptr || !whyNotReadmit(reason).isEmpty()) return;
     act(
-        [code = selected_, why = reason.trimmed().toStdString()](store::Store&, store::ParticipantDesk& desk,
+        [code = selected_, why = reason.trimmed().toStdString()](store::Store&, store::ParticipantRecords& desk,
                                                                  const protocol::StudyPlan&) -> Result<Done> {
             const auto placed = desk.readmit(code, why);
             if (!placed) return placed.errors();
@@ -336,7 +338,7 @@ QString ParticipantsModel::whyNotConfirm(const QString& typed) const {
 void ParticipantsModel::confirmLeaving(const QString& typed, bool backupToo) {
     const auto leaving = dialog_.confirm(typed.trimmed().toStdString(), sessionRuns(), backupToo);
     if (!leaving) return;
-    const app::DeskAccess access{.database = studies_.database(), .by = by()};
+    const app::ParticipantAccess access{.database = studies_.database(), .by = by()};
     worker_.run(
         [access, what = *leaving] { return app::leave(access, what); },
         [this, what = *leaving](const Result<app::Left>& left) {

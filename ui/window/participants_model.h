@@ -6,10 +6,10 @@
 #include <optional>
 
 #include "study/plan/study_plan.h"
-#include "study/store/people/participant_desk.h"
+#include "study/store/people/participant_records.h"
 #include "ui/presenter/leaving.h"
+#include "ui/presenter/participant_access.h"
 #include "ui/presenter/participants.h"
-#include "ui/presenter/study_desk.h"
 #include "ui/window/desk.h"
 #include "ui/window/studies.h"
 #include "ui/window/worker.h"
@@ -82,7 +82,7 @@ private:
     bool sessionRuns() const { return desk_.run().view().isRunning(); }
     const presenter::ParticipantEntry* person_() const;
     std::string by() const;
-    using Work = std::function<Result<Done>(store::Store&, store::ParticipantDesk&, const protocol::StudyPlan&)>;
+    using Work = std::function<Result<Done>(store::Store&, store::ParticipantRecords&, const protocol::StudyPlan&)>;
     void act(const Work& work, const QString& done);
     void tell(const Result<Done>& came, const QString& done);
 

@@ -4,7 +4,7 @@
 
 #include "study/run/files/known_names.h"
 #include "study/run/files/protocol_files.h"
-#include "ui/presenter/study_desk.h"
+#include "ui/presenter/participant_access.h"
 #include "ui/window/registry_words.h"
 #include "ui/window/text.h"
 

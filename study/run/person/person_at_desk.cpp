@@ -9,7 +9,7 @@
 #include "core/base/digest.h"
 #include "study/plan/plan_warnings.h"
 #include "study/protocol/consent_reader.h"
-#include "study/store/people/participant_desk.h"
+#include "study/store/people/participant_records.h"
 #include "study/store/read/store_reader.h"
 
 namespace passung::app {
@@ -45,7 +45,7 @@ Result<Done> askForConsent(store::Store& store, const std::string& database, con
     if (!reader) return reader.errors();
     const auto decisions = reader->consents();
     if (!decisions) return decisions.errors();
-    store::ParticipantDesk desk(store, {"participant", now_utc});
+    store::ParticipantRecords desk(store, {"participant", now_utc});
     for (const protocol::ConsentClause& clause : plan.consent) {
         if (isDecided(clause, *decisions, participant)) continue;
         const auto text = std::find_if(clause.texts.begin(), clause.texts.end(),

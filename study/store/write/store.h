@@ -130,7 +130,7 @@ public:
     Result<Done> addNote(std::int64_t attempt_id, const std::string& text);
 
 private:
-    friend class ParticipantDesk;
+    friend class ParticipantRecords;
     Result<std::string> importOrCheck(const protocol::StudyPlan& plan, bool keep);
     Store(OpenOptions options, std::unique_ptr<ProcessLock> lock, std::unique_ptr<WriterThread> thread);
 

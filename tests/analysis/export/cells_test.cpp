@@ -8,7 +8,7 @@
 #include <set>
 
 #include "analysis/export/export.h"
-#include "study/store/people/participant_desk.h"
+#include "study/store/people/participant_records.h"
 #include "tests/analysis/export/csv_reader.h"
 #include "tests/study/store/fake_study.h"
 
@@ -192,7 +192,7 @@ TEST_F(BlockedStudy, WhoIsExcludedIsInNoCell) {
     // Truth: invariant; the trials stay, and say why they do not count.
     {
         const auto store = fake::openStore(folder_ / "s.db");
-        require(store::ParticipantDesk(*store, {"e", ""}).exclude("S001", "asleep"));
+        require(store::ParticipantRecords(*store, {"e", ""}).exclude("S001", "asleep"));
     }
     exportNow();
     for (const char* file : {"cells_long.csv", "wide_time_s_insert.csv", "wide_time_s_line.csv"}) {

@@ -7,7 +7,7 @@
 
 #include "analysis/export/export.h"
 #include "study/questionnaire/cronbach_alpha.h"
-#include "study/store/people/participant_desk.h"
+#include "study/store/people/participant_records.h"
 #include "tests/analysis/export/csv_reader.h"
 #include "tests/study/store/fake_questionnaire.h"
 
@@ -151,7 +151,7 @@ TEST_F(QuestionnaireTables, WhoIsExcludedCountsNowhere) {
     // Truth: invariant: without S001 everything that counts is S002's alone; the forms stay in the long tables.
     {
         const auto store = fake::openStore(folder_ / "s.db");
-        require(store::ParticipantDesk(*store, {"e", ""}).exclude("S001", "asleep"));
+        require(store::ParticipantRecords(*store, {"e", ""}).exclude("S001", "asleep"));
     }
     exportNow();
     const auto wide = csv("scores_wide.csv");
@@ -200,7 +200,7 @@ TEST_F(QuestionnaireTables, NoCellOfAnyTableIsEmpty) {
     // is excluded without a reason. The codebook says of itself where it is empty.
     {
         auto store = fake::openStore(folder_ / "s.db");
-        require(store::ParticipantDesk(*store, {"e", ""}).exclude("S001", ""));
+        require(store::ParticipantRecords(*store, {"e", ""}).exclude("S001", ""));
     }
     exportNow();
     int tables = 0;

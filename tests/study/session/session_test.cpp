@@ -35,7 +35,7 @@ TEST_F(SessionTest, CallsComeInTheOrderThatKeepsDataSafe) {
     EXPECT_EQ(log_, (Log{"prepare soft", "startAttempt", "start", "appendRecords", "stop", "finishAttempt", "ended 1/2",
                          "prepare hard", "startAttempt", "start", "appendRecords", "stop", "finishAttempt", "ended 2/2",
                          "finishSession"}));
-    EXPECT_EQ(apparatus_.most_ticks_at_once, Session::kTicksPerLook);
+    EXPECT_EQ(apparatus_.most_ticks_at_once, Session::kTicksPerPoll);
 }
 
 TEST_F(SessionTest, RestsBeforeABlockAndSaysWhenTheDeviceIsSwapped) {

@@ -86,7 +86,7 @@ TEST_F(TimedTrial, WaitsForTheExperimenterHoweverLong) {
     // Truth: invariant: a hand that never comes to the start pose aborts a trial that the program times, no other.
     begin(protocol::TimedBy::Experimenter);
     apparatus_.scripts.front() = script(TrialCourse::kStartLimit + 500, kNever, kNever);
-    look(static_cast<int>(TrialCourse::kStartLimit / Session::kTicksPerLook) + 10);
+    look(static_cast<int>(TrialCourse::kStartLimit / Session::kTicksPerPoll) + 10);
     EXPECT_EQ(session_->state(), SessionState::InTrial);
     session_->interrupt("enough");
     EXPECT_EQ(sink_.ends.front().outcome, Outcome::Aborted);

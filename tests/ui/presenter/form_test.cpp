@@ -9,7 +9,7 @@ using presenter::Form;
 using presenter::FormFault;
 using presenter::FormRequest;
 using presenter::FormView;
-using presenter::ItemLook;
+using presenter::ItemControl;
 using questionnaire::AnswerKind;
 using questionnaire::Item;
 
@@ -77,14 +77,14 @@ TEST(Form, ShowsItemsAsPresentedOnPagesThatAreAboutEquallyFull) {
 TEST(Form, LooksFollowFromHowItemsAreAnswered) {
     // Truth: closed form
     const auto lookOf = [](const Item& item) { return formOf({item}).view().rows.front().look; };
-    EXPECT_EQ(lookOf(rating("likert", 1, 7, 1)), ItemLook::Points);
-    EXPECT_EQ(lookOf(rating("tlx", 0, 100, 5)), ItemLook::Ticks);
+    EXPECT_EQ(lookOf(rating("likert", 1, 7, 1)), ItemControl::Points);
+    EXPECT_EQ(lookOf(rating("tlx", 0, 100, 5)), ItemControl::Ticks);
     EXPECT_EQ(formOf({rating("tlx", 0, 100, 5)}).view().rows.front().ticks, 21);
-    EXPECT_EQ(lookOf(rating("vas", 0, 100, 0)), ItemLook::Line);
-    EXPECT_EQ(lookOf(rating("percent", 0, 100, 1)), ItemLook::Line);
-    EXPECT_EQ(lookOf(choice("side", {{7, "left"}, {9, "right"}})), ItemLook::Options);
-    EXPECT_EQ(lookOf(number("age", 16, 120)), ItemLook::Number);
-    EXPECT_EQ(lookOf(itemOf(AnswerKind::Text, "words")), ItemLook::Text);
+    EXPECT_EQ(lookOf(rating("vas", 0, 100, 0)), ItemControl::Line);
+    EXPECT_EQ(lookOf(rating("percent", 0, 100, 1)), ItemControl::Line);
+    EXPECT_EQ(lookOf(choice("side", {{7, "left"}, {9, "right"}})), ItemControl::Options);
+    EXPECT_EQ(lookOf(number("age", 16, 120)), ItemControl::Number);
+    EXPECT_EQ(lookOf(itemOf(AnswerKind::Text, "words")), ItemControl::Text);
 }
 
 TEST(Form, CountsTheTimeFromShowingToTheLastAnswerAndEveryChange) {
@@ -137,7 +137,7 @@ TEST(Form, OpenItemsArePointedOutOnceAndThenLeftOut) {
 TEST(Form, AClauseOfConsentMustBeDecided) {
     // Truth: invariant
     Form form = formOf({choice("data", {{1, ""}, {0, ""}})}, {}, true);
-    EXPECT_EQ(form.view().rows[0].look, ItemLook::Decision);
+    EXPECT_EQ(form.view().rows[0].look, ItemControl::Decision);
     for (int i = 0; i < 3; ++i) form.next(i);
     EXPECT_FALSE(form.isDone());
     EXPECT_TRUE(form.digit(0, 2, 5));

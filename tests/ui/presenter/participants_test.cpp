@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "study/store/people/participant_desk.h"
+#include "study/store/people/participant_records.h"
 #include "tests/study/store/fake_study.h"
 #include "ui/presenter/leaving.h"
 
@@ -31,12 +31,12 @@ protected:
     }
 
     void enrol(const std::string& code, ParticipantKind kind = ParticipantKind::Real) {
-        store::ParticipantDesk desk(*store_, kActor);
+        store::ParticipantRecords desk(*store_, kActor);
         require(desk.enrol(code, kind, "2001-02-03T04:05:06.000Z"));
     }
 
     void consent(const std::string& code) {
-        store::ParticipantDesk desk(*store_, kActor);
+        store::ParticipantRecords desk(*store_, kActor);
         require(desk.decide(code, {}, "en", store::Consent::Yes));
     }
 
@@ -74,7 +74,7 @@ TEST_F(ParticipantsOf, SaysOfEverybodyWhatTheyDidAndAgreedTo) {
     session("P001", true);
     consent("P002");
     session("P002", false);
-    store::ParticipantDesk desk(*store_, kActor);
+    store::ParticipantRecords desk(*store_, kActor);
     require(desk.decide("P003", {"photos"}, "de", store::Consent::No));
 
     const Participants all = participants();
@@ -137,7 +137,7 @@ TEST_F(ParticipantsOf, ProposesCodesByTheStoresRulesAndRefusesOthersWithAReason)
     for (const char* code : {"P001", "P002", "P003"}) enrol(code);
     for (const auto kind : {ParticipantKind::Real, ParticipantKind::Pilot})
         EXPECT_EQ(proposedCode(participants(), kind), require(store_->nextCode(kind)));
-    store::ParticipantDesk desk(*store_, kActor);
+    store::ParticipantRecords desk(*store_, kActor);
     require(desk.erase("P003"));
     EXPECT_EQ(proposedCode(participants(), ParticipantKind::Real), "P004");
     EXPECT_EQ(require(store_->nextCode(ParticipantKind::Real)), "P004");
@@ -197,7 +197,7 @@ TEST_F(ParticipantsOf, WhoLeavesIsAskedAboutTwiceAndToldWhatItDoes) {
     ASSERT_TRUE(leaving);
     EXPECT_EQ(dialog.step(), LeavingDialog::Step::Closed);
 
-    store::ParticipantDesk desk(*store_, kActor);
+    store::ParticipantRecords desk(*store_, kActor);
     require(desk.exclude("P001", leaving->reason));
     Participants all = participants();
     EXPECT_EQ(all.find("P001")->standing, Standing::Excluded);
@@ -227,7 +227,7 @@ TEST_F(ParticipantsOf, APlaceIsFreedExceptByWhoCompletedAndOnlyStops) {
             LeavingDialog dialog;
             dialog.open(*participants().find(code));
             dialog.choose(scope, "");
-            store::ParticipantDesk desk(*store_, kActor);
+            store::ParticipantRecords desk(*store_, kActor);
             require(scope == Scope::Stop ? desk.withdraw(code, "") : desk.exclude(code, "", "withdraw"));
             EXPECT_EQ(dialog.leaving().frees_place, !participants().find(code)->place) << code;
         }

@@ -12,7 +12,7 @@
 #include "study/store/schema/sqlite.h"
 #include "tests/ui/cli/small_study.h"
 #include "tests/ui/window/windows.h"
-#include "ui/presenter/study_desk.h"
+#include "ui/presenter/participant_access.h"
 #include "ui/window/participants_words.h"
 #include "ui/window/study_words.h"
 

@@ -14,8 +14,8 @@
 #include "study/store/schema/sqlite.h"
 #include "tests/ui/window/four_trials.h"
 #include "tests/ui/window/windows.h"
+#include "ui/presenter/participant_access.h"
 #include "ui/presenter/pointer_motion.h"
-#include "ui/presenter/study_desk.h"
 
 // A whole session through the real windows: performed by mouse and keyboard, killed, resumed, with a repeated and an
 // invalidated trial and an emergency stop; and what it leaves beside what a run without windows leaves.

@@ -8,7 +8,7 @@
 #include "tests/ui/window/asking_study.h"
 #include "tests/ui/window/four_trials.h"
 #include "tests/ui/window/windows.h"
-#include "ui/presenter/study_desk.h"
+#include "ui/presenter/participant_access.h"
 
 namespace passung::test {
 

@@ -7,7 +7,7 @@
 #include "study/run/run_study.h"
 #include "tests/ui/cli/small_study.h"
 #include "tests/ui/window/windows.h"
-#include "ui/presenter/study_desk.h"
+#include "ui/presenter/participant_access.h"
 #include "ui/window/registry_words.h"
 
 // What the console says of a study: in the language of the window, whole on a small screen, and no more than is true.

@@ -7,7 +7,7 @@
 
 #include "core/base/digest.h"
 #include "core/base/json.h"
-#include "study/store/people/participant_desk.h"
+#include "study/store/people/participant_records.h"
 #include "study/store/read/verify.h"
 #include "study/store/rows/audit.h"
 #include "study/store/schema/backup.h"
@@ -41,7 +41,7 @@ std::string tombstoneIn(const std::string& path) {
 void makeStudy(const std::string& path, int people) {
     const auto store = fake::openStore(path);
     require(store->importProtocol(fake::makePlan()));
-    ParticipantDesk desk(*store, kActor);
+    ParticipantRecords desk(*store, kActor);
     for (int i = 1; i <= people; ++i)
         require(desk.enrol(protocol::participantCode(ParticipantKind::Real, i), ParticipantKind::Real, kEnrolled));
     const auto writer = fake::beginSession(*store, "S001", 1);
@@ -50,7 +50,7 @@ void makeStudy(const std::string& path, int people) {
 }
 
 void erase(const std::string& path, const std::string& code) {
-    require(ParticipantDesk(*fake::openStore(path), kActor).erase(code));
+    require(ParticipantRecords(*fake::openStore(path), kActor).erase(code));
 }
 
 std::string bytesOf(const std::string& path) {
@@ -190,7 +190,7 @@ TEST(PersonIdentity, ErasingTakesTheBackupAlongAndNothingElseOfIt) {
     ASSERT_NE(bytesOf(backup).find("P002"), std::string::npos) << "not asked to";
     {
         const auto store = fake::openStore(path);
-        ParticipantDesk desk(*store, kActor);
+        ParticipantRecords desk(*store, kActor);
         EXPECT_FALSE(desk.eraseFromBackup("P002")) << "unknown here";
         EXPECT_TRUE(require(desk.eraseFromBackup("P001")));
         EXPECT_FALSE(require(desk.eraseFromBackup("P001"))) << "held no more";
@@ -215,7 +215,7 @@ TEST(PersonIdentity, ABackupIsSoundAfterErasingWhoHadAPlace) {
     require(fake::writeAttempt(*writer, 0, 100));
     require(writer->finishSession(true, 1'000'000'000));
     require(store->backup());
-    ASSERT_TRUE(require(ParticipantDesk(*store, kActor).eraseFromBackup("S001")));
+    ASSERT_TRUE(require(ParticipantRecords(*store, kActor).eraseFromBackup("S001")));
     EXPECT_EQ(require(verifyDatabase(backupPath(path))).damages, std::vector<std::string>{});
 }
 

@@ -7,7 +7,7 @@
 #include <functional>
 #include <map>
 
-#include "study/store/people/participant_desk.h"
+#include "study/store/people/participant_records.h"
 #include "study/store/schema/backup.h"
 #include "study/store/schema/sqlite.h"
 #include "study/store/transfer/restore.h"

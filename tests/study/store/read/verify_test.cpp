@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "study/store/people/participant_desk.h"
+#include "study/store/people/participant_records.h"
 #include "study/store/read/store_reader.h"
 #include "study/store/schema/sqlite.h"
 #include "study/store/transfer/merge.h"
@@ -77,9 +77,9 @@ TEST_F(Verify, WhatPeopleChangeLaterIsNoDamageButHasAHashOfItsOwn) {
         const auto store = fake::openStore(path_);
         require(store->invalidateAttempt(2, "was told"));
         require(store->addNote(3, "spoke"));
-        require(ParticipantDesk(*store, {"e", "2001-02-03"}).exclude("S002", "asleep"));
-        require(ParticipantDesk(*store, {"e", "2001-02-04"}).readmit("S002", "awake"));
-        require(ParticipantDesk(*store, {"e", "2001-02-05"}).exclude("S002", "asleep again"));
+        require(ParticipantRecords(*store, {"e", "2001-02-03"}).exclude("S002", "asleep"));
+        require(ParticipantRecords(*store, {"e", "2001-02-04"}).readmit("S002", "awake"));
+        require(ParticipantRecords(*store, {"e", "2001-02-05"}).exclude("S002", "asleep again"));
     }
     EXPECT_EQ(damages(), std::vector<std::string>{});
     const std::string whole = folder_ / "whole.db";
@@ -153,7 +153,7 @@ TEST_F(Verify, LaterColumnsWithTheirDefaultDoNotChangeAHash) {
 TEST_F(Verify, DamageStaysDamageWhateverIsWrittenAfterIt) {
     // Truth: invariant: a row that changes after a flip in it; a session that goes on after one.
     change("UPDATE participant SET created_utc='2000-01-01T00:00:00.001Z' WHERE participant_id='S002'");
-    require(ParticipantDesk(*fake::openStore(path_), {"e", "2001-02-03"}).exclude("S002", "asleep"));
+    require(ParticipantRecords(*fake::openStore(path_), {"e", "2001-02-03"}).exclude("S002", "asleep"));
     expectDamage("participant S002");
     const std::string whole = folder_ / "whole.db";
     {

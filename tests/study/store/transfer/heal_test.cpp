@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "study/store/people/participant_desk.h"
+#include "study/store/people/participant_records.h"
 #include "study/store/read/verify.h"
 #include "study/store/transfer/merge.h"
 #include "study/store/transfer/restore.h"
@@ -22,7 +22,7 @@ protected:
         fake::performAsking(path_, "S001");
         Database(path_, OpenMode::ReadWrite).copyTo(older_);
         require(fake::openStore(path_)->addNote(1, "later"));
-        require(ParticipantDesk(*fake::openStore(path_), {"e", "2001-02-02"}).exclude("S001", "asleep"));
+        require(ParticipantRecords(*fake::openStore(path_), {"e", "2001-02-02"}).exclude("S001", "asleep"));
         Database(path_, OpenMode::ReadWrite).copyTo(backup_);
     }
     static void change(const std::string& path, const std::string& sql) {
@@ -139,7 +139,7 @@ TEST_F(Heal, GivesBackRowsOfTheAudit) {
 
 TEST_F(Heal, BringsBackNoDetailAboutWhoWasErased) {
     // Truth: closed form (a search for the code's bytes): the source still holds the detail whose place is damaged.
-    require(ParticipantDesk(*fake::openStore(path_), {"e", "2001-02-04"}).erase("S001"));
+    require(ParticipantRecords(*fake::openStore(path_), {"e", "2001-02-04"}).erase("S001"));
     change(path_, "UPDATE audit SET detail_json=replace(detail_json, 'erased', 'erasee') WHERE action='exclude'");
     EXPECT_EQ(restoreFrom(backup_).remaining, std::vector<std::string>{});
     for (const std::string& line : fake::dump(path_)) EXPECT_EQ(line.find("S001"), std::string::npos) << line;

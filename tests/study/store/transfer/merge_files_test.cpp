@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "study/store/people/participant_desk.h"
+#include "study/store/people/participant_records.h"
 #include "study/store/read/verify.h"
 #include "study/store/transfer/merge.h"
 #include "tests/study/store/damaged_study.h"
@@ -92,10 +92,10 @@ TEST_F(MergeFiles, TakeNothingFromADamagedRowOfAPerson) {
     Database(a_, OpenMode::ReadWrite).execute("UPDATE participant SET status='complete', status_reason=NULL");
     {
         const auto store = fake::openStore(a_);
-        require(ParticipantDesk(*store, {"e", "2001-02-01"}).exclude("S001", "asleep"));
+        require(ParticipantRecords(*store, {"e", "2001-02-01"}).exclude("S001", "asleep"));
     }
     require(merge());
-    require(ParticipantDesk(*fake::openStore(a_), {"e", "2001-02-02"}).readmit("S001", "awake"));
+    require(ParticipantRecords(*fake::openStore(a_), {"e", "2001-02-02"}).readmit("S001", "awake"));
     Database(a_, OpenMode::ReadWrite).execute("UPDATE participant SET status='active'");
     require(merge());
     EXPECT_EQ(Database(all_, OpenMode::ReadOnly).text("SELECT status FROM participant"), "excluded");

@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "study/store/people/participant_desk.h"
+#include "study/store/people/participant_records.h"
 #include "study/store/schema/session_tables.h"
 #include "study/store/schema/sqlite.h"
 #include "tests/study/store/damaged_study.h"
@@ -319,7 +319,7 @@ TEST(Merge, AnExclusionReachesTheResultAndFreesThePlace) {
     Place one(a, kA);
     one.perform("2001-01-01");
     merge({a}, all);
-    require(ParticipantDesk(one.store(), {"e", ""}).exclude("PA001", "asleep"));
+    require(ParticipantRecords(one.store(), {"e", ""}).exclude("PA001", "asleep"));
     EXPECT_EQ(merge({a}, all).known, 1);
     const auto people = require(require(StoreReader::open(all)).participants());
     EXPECT_EQ(people.at(0).status, "excluded");
@@ -341,11 +341,11 @@ TEST(Merge, TheAuditsComeAlongAsUnbrokenChains) {
     Place one(a, kA), two(b, kB);
     one.perform("2001-01-01");
     two.perform("2001-01-02");
-    require(ParticipantDesk(one.store(), {"e", "2001-02-01"}).exclude("PA001", "asleep"));
-    require(ParticipantDesk(two.store(), {"e", "2001-02-01"}).enrol("PB002", ParticipantKind::Real, "2001-02-01"));
+    require(ParticipantRecords(one.store(), {"e", "2001-02-01"}).exclude("PA001", "asleep"));
+    require(ParticipantRecords(two.store(), {"e", "2001-02-01"}).enrol("PB002", ParticipantKind::Real, "2001-02-01"));
     merge({a, b}, all);
-    require(ParticipantDesk(*fake::openStore(all), {"e", "2001-02-02"}).exclude("PB002", "ill"));
-    require(ParticipantDesk(one.store(), {"e", "2001-02-03"}).readmit("PA001", "was awake"));
+    require(ParticipantRecords(*fake::openStore(all), {"e", "2001-02-02"}).exclude("PB002", "ill"));
+    require(ParticipantRecords(one.store(), {"e", "2001-02-03"}).readmit("PA001", "was awake"));
     for (int i = 0; i < 2; ++i) {
         merge({b, a}, all);
         const AuditReport report = auditOf(all);
@@ -366,7 +366,7 @@ TEST(Merge, TheNewestActDecidesWhoTakesPart) {
     const std::string a = folder / "A.db", all = folder / "ALL.db";
     Place one(a, kA);
     one.perform("2001-01-01");
-    const auto desk = [](Store& store, const char* now) { return ParticipantDesk(store, {"e", now}); };
+    const auto desk = [](Store& store, const char* now) { return ParticipantRecords(store, {"e", now}); };
     require(desk(one.store(), "2001-02-01").exclude("PA001", "asleep"));
     merge({a}, all);
     EXPECT_EQ(personOf(all, "PA001").status, "excluded");
@@ -390,12 +390,12 @@ TEST(Merge, WhoWasErasedDoesNotComeBack) {
     const std::string a = folder / "A.db", all = folder / "ALL.db";
     Place one(a, kA);
     for (const char* date : {"2001-01-01", "2001-01-02"}) one.perform(date);
-    ParticipantDesk station(one.store(), {"e", "2001-02-01"});
+    ParticipantRecords station(one.store(), {"e", "2001-02-01"});
     require(station.enrol("PA003", ParticipantKind::Real, "2001-02-01"));
     require(station.exclude("PA003", "is PA003"));
     merge({a}, all);
     const auto erase = [&](const char* code) {
-        require(ParticipantDesk(*fake::openStore(all), {"e", "2001-02-02"}).erase(code));
+        require(ParticipantRecords(*fake::openStore(all), {"e", "2001-02-02"}).erase(code));
     };
     erase("PA003");
     erase("PA001");

@@ -5,7 +5,7 @@
 #include <pqxx/pqxx>
 #include <thread>
 
-#include "study/store/people/participant_desk.h"
+#include "study/store/people/participant_records.h"
 #include "study/store/schema/person_identity.h"
 #include "study/store/schema/sqlite.h"
 #include "study/store/transfer/restore.h"
@@ -143,7 +143,7 @@ TEST_F(Push, AnOlderCopyNeverTakesBackWhoWasExcluded) {
     perform(path, "S001");
     require(pushDatabase(path, server_->uri()));
     std::filesystem::copy_file(path, copy);
-    require(ParticipantDesk(*fake::openStore(path), {"e", "2001-02-01"}).exclude("S001", "asleep"));
+    require(ParticipantRecords(*fake::openStore(path), {"e", "2001-02-01"}).exclude("S001", "asleep"));
     EXPECT_TRUE(require(pushDatabase(path, server_->uri())).newer_there.empty());
     EXPECT_EQ(require(pushDatabase(copy, server_->uri())).newer_there, std::vector<std::string>{"S001"});
     EXPECT_STREQ(ask("SELECT status FROM participant")[0][0].c_str(), "excluded");
@@ -177,7 +177,7 @@ TEST_F(Push, APlaceThatWasGivenBackHasItsNewOwnerOnly) {
     const std::string path = folder_ / "s.db";
     perform(path, "S001");
     require(pushDatabase(path, server_->uri()));
-    require(ParticipantDesk(*fake::openStore(path), {"e", "2001-02-03"}).exclude("S001", "asleep"));
+    require(ParticipantRecords(*fake::openStore(path), {"e", "2001-02-03"}).exclude("S001", "asleep"));
     perform(path, "S004");
     EXPECT_EQ(require(pushDatabase(path, server_->uri())).shared_places, std::vector<std::string>{});
     const auto slots = ask("SELECT participant_id, sequence_index, replicate FROM design_slot");
@@ -197,12 +197,12 @@ TEST_F(Push, WhoWasErasedHereIsGoneThereAndDoesNotComeBackFromACopy) {
     perform(path, "S002");
     {
         const auto store = fake::openStore(path);
-        require(ParticipantDesk(*store, {"e", "2001-02-03"}).exclude("S001", "S001 slept"));
+        require(ParticipantRecords(*store, {"e", "2001-02-03"}).exclude("S001", "S001 slept"));
     }
     Database(path, OpenMode::ReadWrite).copyTo(copy);
     require(pushDatabase(path, server_->uri()));
     EXPECT_EQ(count("audit"), 1);
-    require(ParticipantDesk(*fake::openStore(path), {"e", "2001-02-04"}).erase("S001"));
+    require(ParticipantRecords(*fake::openStore(path), {"e", "2001-02-04"}).erase("S001"));
     const auto expectGone = [&] {
         for (const char* table : {"participant", "session", "design_slot", "audit"})
             EXPECT_EQ(
@@ -306,7 +306,7 @@ TEST_F(Push, WhoWasPushedBeforeThereWereIdentitiesIsErasedThereToo) {
     perform(path, "S001");
     {
         const auto store = fake::openStore(path);
-        ParticipantDesk desk(*store, {"e", "2001-02-03"});
+        ParticipantRecords desk(*store, {"e", "2001-02-03"});
         require(desk.enrol("P001", protocol::ParticipantKind::Real, "2001-02-03"));
     }
     const std::string nonce =
@@ -316,7 +316,7 @@ TEST_F(Push, WhoWasPushedBeforeThereWereIdentitiesIsErasedThereToo) {
     giveIdentities(Database(path, OpenMode::ReadWrite), "main");  // as an upgrade does
     require(pushDatabase(path, server_->uri()));
     ask("UPDATE participant SET identity=NULL");
-    require(ParticipantDesk(*fake::openStore(path), {"e", "2001-02-04"}).erase("P001"));
+    require(ParticipantRecords(*fake::openStore(path), {"e", "2001-02-04"}).erase("P001"));
     EXPECT_EQ(require(pushDatabase(path, server_->uri())).erased_there, std::vector<std::string>{"P001"});
     for (const char* table : {"participant", "audit"})
         EXPECT_EQ(ask(std::string("SELECT count(*) FROM ") + table +
@@ -379,7 +379,7 @@ TEST_F(Push, WhoIsDamagedHereAndErasedThereIsLeftOutOnce) {
     perform(path, "S002");
     Database(path, OpenMode::ReadWrite).copyTo(copy);
     require(pushDatabase(path, server_->uri()));
-    require(ParticipantDesk(*fake::openStore(path), {"e", "2001-02-04"}).erase("S001"));
+    require(ParticipantRecords(*fake::openStore(path), {"e", "2001-02-04"}).erase("S001"));
     require(pushDatabase(path, server_->uri()));
     perform(copy, "S003");
     Database(copy, OpenMode::ReadWrite).execute("UPDATE participant SET status_reason='?' WHERE participant_id='S001'");
@@ -391,7 +391,7 @@ TEST_F(Push, ADamagedAuditDoesNotTravel) {
     // Truth: independent program (PostgreSQL's own answers)
     const std::string path = folder_ / "s.db";
     perform(path, "S001");
-    require(ParticipantDesk(*fake::openStore(path), {"e", "2001-02-04"}).exclude("S001", "asleep"));
+    require(ParticipantRecords(*fake::openStore(path), {"e", "2001-02-04"}).exclude("S001", "asleep"));
     Database(path, OpenMode::ReadWrite)
         .execute("UPDATE audit SET detail_json=replace(detail_json, 'asleep', 'asleeq')");
     const auto refused = pushDatabase(path, server_->uri());

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "study/store/people/participant_desk.h"
+#include "study/store/people/participant_records.h"
 #include "study/store/read/verify.h"
 #include "study/store/transfer/restore.h"
 #include "tests/study/store/damaged_study.h"
@@ -193,7 +193,7 @@ TEST_F(RestoreAnew, AFileThatCannotSayItsStudyIsReplacedByNone) {
 
 TEST_F(RestoreAnew, BringsNobodyBackWhoWasErasedAndSaysSoInTheAudit) {
     // Truth: invariant
-    require(ParticipantDesk(*fake::openStore(path_), {"e", "2001-02-02"}).erase("S002"));
+    require(ParticipantRecords(*fake::openStore(path_), {"e", "2001-02-02"}).erase("S002"));
     breakPage();
     const RestoreReport report = restore();
     EXPECT_TRUE(report.anew);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "study/store/people/participant_desk.h"
+#include "study/store/people/participant_records.h"
 #include "study/store/read/verify.h"
 #include "study/store/transfer/merge.h"
 #include "tests/study/store/damaged_study.h"
@@ -141,7 +141,7 @@ TEST_F(Restore, SharesTheFileWithTheGroupIfItWas) {
 
 TEST_F(Restore, BringsNobodyBackWhoWasErased) {
     // Truth: invariant: the backup still holds them; not one row of theirs is in the healed file.
-    require(ParticipantDesk(*fake::openStore(path_), {"e", "2001-02-02"}).erase("S002"));
+    require(ParticipantRecords(*fake::openStore(path_), {"e", "2001-02-02"}).erase("S002"));
     const auto erased = fake::dump(path_);
     change(path_, "UPDATE sample_chunk SET data=zeroblob(length(data)) WHERE stream_id=1 AND chunk_no=0");
     EXPECT_EQ(restore().healed.size(), 1u);

@@ -16,9 +16,9 @@ const char* consentName(Consent decision);  // "yes", "no", "withdrawn": as stor
 
 /// What experimenters do about participants outside of sessions. Every action is one durable transaction with its row
 /// in the audit; texts are codes and reasons, never names of participants.
-class ParticipantDesk {
+class ParticipantRecords {
 public:
-    ParticipantDesk(Store& store, Actor actor) : store_(store), actor_(std::move(actor)) {}
+    ParticipantRecords(Store& store, Actor actor) : store_(store), actor_(std::move(actor)) {}
 
     /// Adds somebody new. A code that is there already is an error, and so is one that an erased participant may have
     /// had.

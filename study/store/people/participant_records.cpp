@@ -1,4 +1,4 @@
-#include "study/store/people/participant_desk.h"
+#include "study/store/people/participant_records.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -81,8 +81,8 @@ const char* consentName(Consent decision) {
     return "withdrawn";
 }
 
-Result<Done> ParticipantDesk::enrol(const std::string& code, protocol::ParticipantKind kind,
-                                    const std::string& created_utc) {
+Result<Done> ParticipantRecords::enrol(const std::string& code, protocol::ParticipantKind kind,
+                                       const std::string& created_utc) {
     return store_.thread_->call([&](const Database& database) {
         Transaction transaction(database);
         if (!insertParticipant(database, code, kind, created_utc, store_.options_.station))
@@ -94,9 +94,9 @@ Result<Done> ParticipantDesk::enrol(const std::string& code, protocol::Participa
     });
 }
 
-Result<std::vector<std::string>> ParticipantDesk::decide(const std::string& code,
-                                                         const std::vector<std::string>& clauses,
-                                                         const std::string& language, Consent decision) {
+Result<std::vector<std::string>> ParticipantRecords::decide(const std::string& code,
+                                                            const std::vector<std::string>& clauses,
+                                                            const std::string& language, Consent decision) {
     return store_.thread_->call([&](const Database& database) {
         Transaction transaction(database);
         requireEnrolled(database, code);
@@ -126,31 +126,32 @@ Result<std::vector<std::string>> ParticipantDesk::decide(const std::string& code
     });
 }
 
-Result<Done> ParticipantDesk::withdraw(const std::string& code, const std::string& reason) {
+Result<Done> ParticipantRecords::withdraw(const std::string& code, const std::string& reason) {
     return store_.thread_->call([&](const Database& database) {
         leave(database, actor_, code, "withdrawn", reason, kWithdraw);
         return Done{};
     });
 }
 
-Result<Done> ParticipantDesk::exclude(const std::string& code, const std::string& reason, const std::string& action) {
+Result<Done> ParticipantRecords::exclude(const std::string& code, const std::string& reason,
+                                         const std::string& action) {
     return store_.thread_->call([&](const Database& database) {
         leave(database, actor_, code, "excluded", reason, action);
         return Done{};
     });
 }
 
-Result<bool> ParticipantDesk::readmit(const std::string& code, const std::string& reason) {
+Result<bool> ParticipantRecords::readmit(const std::string& code, const std::string& reason) {
     return store_.thread_->call(
         [&](const Database& database) { return store::readmit(database, actor_, code, reason); });
 }
 
-Result<std::string> ParticipantDesk::erase(const std::string& code) {
+Result<std::string> ParticipantRecords::erase(const std::string& code) {
     return store_.thread_->call(
         [&](const Database& database) { return eraseParticipant(database, store_.thread_->path(), code, actor_); });
 }
 
-Result<bool> ParticipantDesk::eraseFromBackup(const std::string& code) {
+Result<bool> ParticipantRecords::eraseFromBackup(const std::string& code) {
     return store_.thread_->call([&](const Database& database) {
         Statement find = database.prepare("SELECT identity FROM participant WHERE participant_id=?");
         if (!find.bind(code).step()) throw std::runtime_error("participant " + code + " is not enrolled");

@@ -1,4 +1,4 @@
-#include "study/session/questionnaire_desk.h"
+#include "study/session/questionnaire_course.h"
 
 #include <fmt/format.h>
 
@@ -31,19 +31,19 @@ Error faultOf(const ShownQuestionnaire& form, std::string message) {
 
 }  // namespace
 
-QuestionnaireDesk::QuestionnaireDesk(const protocol::StudyPlan& plan, DeskKey key, QuestionnaireSource* source,
-                                     TrialSink& sink)
+QuestionnaireCourse::QuestionnaireCourse(const protocol::StudyPlan& plan, QuestionnaireKey key,
+                                         QuestionnaireSource* source, TrialSink& sink)
     : plan_(plan), key_(std::move(key)), source_(source), sink_(sink) {}
 
-void QuestionnaireDesk::remember(FinishedTrial trial) { finished_.push_back(std::move(trial)); }
+void QuestionnaireCourse::remember(FinishedTrial trial) { finished_.push_back(std::move(trial)); }
 
-void QuestionnaireDesk::forget(const design::PlannedTrial& trial) {
+void QuestionnaireCourse::forget(const design::PlannedTrial& trial) {
     std::erase_if(finished_, [&](const FinishedTrial& f) { return f.trial.trial_index == trial.trial_index; });
     for (const std::string& id : formsAbout(trial)) answered_.erase(id);
 }
 
-void QuestionnaireDesk::resume(std::vector<FinishedTrial> finished, std::span<const design::PlannedTrial> to_do,
-                               const std::vector<StoredForm>& forms) {
+void QuestionnaireCourse::resume(std::vector<FinishedTrial> finished, std::span<const design::PlannedTrial> to_do,
+                                 const std::vector<StoredForm>& forms) {
     finished_ = std::move(finished);
     std::map<std::string, std::int64_t> begun_ns;  // the newest trial of those that a form is about
     for (const FinishedTrial& trial : finished_)
@@ -56,14 +56,14 @@ void QuestionnaireDesk::resume(std::vector<FinishedTrial> finished, std::span<co
     }
 }
 
-std::set<std::string> QuestionnaireDesk::formsAbout(const design::PlannedTrial& trial) const {
+std::set<std::string> QuestionnaireCourse::formsAbout(const design::PlannedTrial& trial) const {
     std::set<std::string> ids;
     for (const Occasion& occasion : occasionsAbout(plan_, trial))
         ids.insert(formId(occasion, textOf(occasion, plan_.questionnaires[occasion.questionnaire], key_.ordinal)));
     return ids;
 }
 
-std::optional<ShownQuestionnaire> QuestionnaireDesk::nextDue(std::span<const design::PlannedTrial> to_do) const {
+std::optional<ShownQuestionnaire> QuestionnaireCourse::nextDue(std::span<const design::PlannedTrial> to_do) const {
     for (const Occasion& due : occasionsBetween(plan_, finished_.empty() ? nullptr : &finished_.back().trial, to_do)) {
         ShownQuestionnaire form = formOf(due);
         if (answered_.count(form.id()) == 0) return form;
@@ -71,7 +71,7 @@ std::optional<ShownQuestionnaire> QuestionnaireDesk::nextDue(std::span<const des
     return std::nullopt;
 }
 
-Result<bool> QuestionnaireDesk::ask(std::span<const design::PlannedTrial> to_do, std::int64_t session_ns) {
+Result<bool> QuestionnaireCourse::ask(std::span<const design::PlannedTrial> to_do, std::int64_t session_ns) {
     const auto form = nextDue(to_do);
     if (!shown_.empty() && (!form || form->id() != shown_)) {  // the experimenter went elsewhere
         shown_.clear();
@@ -92,7 +92,7 @@ Result<bool> QuestionnaireDesk::ask(std::span<const design::PlannedTrial> to_do,
 }
 
 /// The first time that it is.
-void QuestionnaireDesk::noteShown(const ShownQuestionnaire& form, std::int64_t session_ns) {
+void QuestionnaireCourse::noteShown(const ShownQuestionnaire& form, std::int64_t session_ns) {
     if (std::exchange(shown_, form.id()) == form.id()) return;
     sink_.appendEvent(
         {.attempt = {},
@@ -103,7 +103,7 @@ void QuestionnaireDesk::noteShown(const ShownQuestionnaire& form, std::int64_t s
              JsonObject().text("questionnaire", form.planned.definition.key).text("form", form.id()).str()});
 }
 
-ShownQuestionnaire QuestionnaireDesk::formOf(const Occasion& occasion) const {
+ShownQuestionnaire QuestionnaireCourse::formOf(const Occasion& occasion) const {
     const protocol::PlannedQuestionnaire& planned = plan_.questionnaires[occasion.questionnaire];
     ShownQuestionnaire form{planned, occasion, textOf(occasion, planned, key_.ordinal), {}, {}};
     const std::uint64_t seed =
@@ -114,8 +114,8 @@ ShownQuestionnaire QuestionnaireDesk::formOf(const Occasion& occasion) const {
     return form;
 }
 
-Result<Done> QuestionnaireDesk::store(const ShownQuestionnaire& form, const FilledForm& filled,
-                                      std::int64_t session_ns) {
+Result<Done> QuestionnaireCourse::store(const ShownQuestionnaire& form, const FilledForm& filled,
+                                        std::int64_t session_ns) {
     const questionnaire::Definition& definition = form.planned.definition;
     if (filled.answers.size() != definition.items.size()) return faultOf(form, "not every item has an answer");
     std::vector<questionnaire::Answer> answers;

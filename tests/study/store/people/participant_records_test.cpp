@@ -1,4 +1,4 @@
-#include "study/store/people/participant_desk.h"
+#include "study/store/people/participant_records.h"
 
 #include <gtest/gtest.h>
 
@@ -47,11 +47,11 @@ std::string messageOf(const Result<T>& result) {
     return result ? "" : result.errors().front().message;
 }
 
-TEST(ParticipantDesk, EnrolsACodeOnceAndOfOneKindOnly) {
+TEST(ParticipantRecords, EnrolsACodeOnceAndOfOneKindOnly) {
     // Truth: invariant
     const fake::TempFolder folder;
     const auto store = fake::openStore(folder / "s.db");
-    ParticipantDesk desk(*store, kActor);
+    ParticipantRecords desk(*store, kActor);
     require(desk.enrol("P001", ParticipantKind::Real, ""));
     EXPECT_EQ(messageOf(desk.enrol("P001", ParticipantKind::Real, "")), "participant P001 is already enrolled");
     EXPECT_NE(messageOf(desk.enrol("P002", ParticipantKind::Pilot, "")), "");
@@ -59,12 +59,12 @@ TEST(ParticipantDesk, EnrolsACodeOnceAndOfOneKindOnly) {
     EXPECT_EQ(require(store->nextCode(ParticipantKind::Real)), "P002");
 }
 
-TEST(ParticipantDesk, NobodyTakesPartWithoutTheRequiredConsentToTheProtocolsOwnWords) {
+TEST(ParticipantRecords, NobodyTakesPartWithoutTheRequiredConsentToTheProtocolsOwnWords) {
     // Truth: invariant. A yes in either language counts, the last decision wins, a changed text is asked anew.
     const fake::TempFolder folder;
     const auto store = fake::openStore(folder / "s.db");
     const std::string sha256 = require(store->importProtocol(planWithConsent()));
-    ParticipantDesk desk(*store, kActor);
+    ParticipantRecords desk(*store, kActor);
     for (const auto& [code, kind] :
          {std::pair("P001", ParticipantKind::Real), std::pair("T001", ParticipantKind::Pilot)}) {
         require(desk.enrol(code, kind, ""));
@@ -97,13 +97,13 @@ TEST(ParticipantDesk, NobodyTakesPartWithoutTheRequiredConsentToTheProtocolsOwnW
     EXPECT_FALSE(desk.decide("P009", {}, "en", Consent::Yes));
 }
 
-TEST(ParticipantDesk, ExclusionFreesThePlaceAndCountsNowhereButKeepsEveryRow) {
+TEST(ParticipantRecords, ExclusionFreesThePlaceAndCountsNowhereButKeepsEveryRow) {
     // Truth: invariant (the next participant gets the same row of the square)
     const fake::TempFolder folder;
     const std::string path = folder / "s.db";
     const auto store = fake::openStore(path);
     const std::string sha256 = require(store->importProtocol(fake::makePlan()));
-    ParticipantDesk desk(*store, kActor);
+    ParticipantRecords desk(*store, kActor);
     for (const char* code : {"P001", "P002"}) {
         require(desk.enrol(code, ParticipantKind::Real, ""));
         completeSession(*store, sha256, code);
@@ -122,13 +122,13 @@ TEST(ParticipantDesk, ExclusionFreesThePlaceAndCountsNowhereButKeepsEveryRow) {
     EXPECT_EQ(require(reader.participants())[0].status_reason, "did not hold the handle");
 }
 
-TEST(ParticipantDesk, AnExclusionIsTakenBackWithDataStatusAndPlaceAsLongAsNobodyHasIt) {
+TEST(ParticipantRecords, AnExclusionIsTakenBackWithDataStatusAndPlaceAsLongAsNobodyHasIt) {
     // Truth: invariant (the table before the exclusion), but for a place that has another owner by now.
     const fake::TempFolder folder;
     const std::string path = folder / "s.db";
     const auto store = fake::openStore(path);
     const std::string sha256 = require(store->importProtocol(fake::makePlan()));
-    ParticipantDesk desk(*store, kActor);
+    ParticipantRecords desk(*store, kActor);
     require(desk.enrol("P001", ParticipantKind::Real, ""));
     completeSession(*store, sha256, "P001");
     require(desk.exclude("P001", "mixed up with another one"));
@@ -156,13 +156,13 @@ TEST(ParticipantDesk, AnExclusionIsTakenBackWithDataStatusAndPlaceAsLongAsNobody
     EXPECT_TRUE(require(require(StoreReader::open(path)).audit()).faults.empty());
 }
 
-TEST(ParticipantDesk, WithdrawalThatOnlyStopsKeepsDataAndPlaceAndEndsEveryConsent) {
+TEST(ParticipantRecords, WithdrawalThatOnlyStopsKeepsDataAndPlaceAndEndsEveryConsent) {
     // Truth: invariant
     const fake::TempFolder folder;
     const std::string path = folder / "s.db";
     const auto store = fake::openStore(path);
     const std::string sha256 = require(store->importProtocol(planWithConsent()));
-    ParticipantDesk desk(*store, kActor);
+    ParticipantRecords desk(*store, kActor);
     require(desk.enrol("P001", ParticipantKind::Real, ""));
     require(desk.decide("P001", {}, "en", Consent::Yes));
     completeSession(*store, sha256, "P001");
@@ -219,7 +219,7 @@ std::vector<std::string> filesWith(const std::filesystem::path& folder, const st
     return found;
 }
 
-TEST(ParticipantDesk, ErasureLeavesNoByteOfTheParticipantInAnyFile) {
+TEST(ParticipantRecords, ErasureLeavesNoByteOfTheParticipantInAnyFile) {
     // Truth: closed form (a search for the bytes that were planted, while the database is open and after)
     const fake::TempFolder folder;
     const std::string path = folder / "s.db";
@@ -228,7 +228,7 @@ TEST(ParticipantDesk, ErasureLeavesNoByteOfTheParticipantInAnyFile) {
     {
         const auto store = fake::openStore(path);
         const std::string sha256 = require(store->importProtocol(planWithConsent()));
-        ParticipantDesk desk(*store, kActor);
+        ParticipantRecords desk(*store, kActor);
         for (const std::string& who : {code, std::string("P002")}) {
             require(desk.enrol(who, ParticipantKind::Real, ""));
             require(desk.decide(who, {}, "en", Consent::Yes));
@@ -262,11 +262,11 @@ TEST(ParticipantDesk, ErasureLeavesNoByteOfTheParticipantInAnyFile) {
         EXPECT_EQ(database.integer(std::string("SELECT count(*) FROM ") + table), 0) << table;
 }
 
-TEST(ParticipantDesk, ACodeThatAnErasedParticipantMayHaveHadIsNotGivenAgain) {
+TEST(ParticipantRecords, ACodeThatAnErasedParticipantMayHaveHadIsNotGivenAgain) {
     // Truth: invariant
     const fake::TempFolder folder;
     const auto store = fake::openStore(folder / "s.db");
-    ParticipantDesk desk(*store, kActor);
+    ParticipantRecords desk(*store, kActor);
     for (const char* code : {"P001", "P002", "P003"}) require(desk.enrol(code, ParticipantKind::Real, ""));
     require(desk.erase("P002"));
     EXPECT_EQ(require(store->nextCode(ParticipantKind::Real)), "P004");
@@ -278,14 +278,14 @@ TEST(ParticipantDesk, ACodeThatAnErasedParticipantMayHaveHadIsNotGivenAgain) {
     EXPECT_EQ(require(store->nextCode(ParticipantKind::Pilot)), "T001");
 }
 
-TEST(ParticipantDesk, CodesOfSeveralStationsCarryTheirLetter) {
+TEST(ParticipantRecords, CodesOfSeveralStationsCarryTheirLetter) {
     // Truth: invariant. Else the stations' files could not be merged; who is there already stays who they are.
     const fake::TempFolder folder;
     require(fake::openStore(folder / "s.db")->enrol("P001", ParticipantKind::Real, ""));
     OpenOptions options = fake::options();
     options.station = {"B", 1, 2};
     const auto store = fake::openStore(folder / "s.db", options);
-    ParticipantDesk desk(*store, kActor);
+    ParticipantRecords desk(*store, kActor);
     for (const char* code : {"P002", "PA002", "TB001"}) {
         EXPECT_FALSE(desk.enrol(code, ParticipantKind::Real, "")) << code;
         EXPECT_FALSE(store->enrol(code, ParticipantKind::Real, "")) << code;
@@ -298,7 +298,7 @@ TEST(ParticipantDesk, CodesOfSeveralStationsCarryTheirLetter) {
     EXPECT_EQ(require(store->nextCode(ParticipantKind::Real)), "PB001");
 }
 
-TEST(ParticipantDesk, TheAuditTellsWhereItWasTamperedWith) {
+TEST(ParticipantRecords, TheAuditTellsWhereItWasTamperedWith) {
     // Truth: invariant (SHA-256 chain): a changed word, detail, missing row and a detail taken away without an erasure
     for (const char* tampering :
          {"UPDATE audit SET actor='nobody' WHERE audit_id=2",
@@ -309,7 +309,7 @@ TEST(ParticipantDesk, TheAuditTellsWhereItWasTamperedWith) {
         const std::string path = folder / "s.db";
         {
             const auto store = fake::openStore(path);
-            ParticipantDesk desk(*store, kActor);
+            ParticipantRecords desk(*store, kActor);
             for (const char* code : {"P001", "P002", "P003"}) require(desk.enrol(code, ParticipantKind::Real, ""));
         }
         const auto faults = [&] { return require(require(StoreReader::open(path)).audit()).faults; };

@@ -1,4 +1,4 @@
-#include "ui/presenter/study_desk.h"
+#include "ui/presenter/participant_access.h"
 
 #include <filesystem>
 
@@ -9,19 +9,19 @@ namespace passung::app {
 
 namespace fs = std::filesystem;
 
-Result<Done> atTheDesk(const DeskAccess& access,
-                       const std::function<Result<Done>(store::Store&, store::ParticipantDesk&)>& work) {
+Result<Done> withParticipants(const ParticipantAccess& access,
+                              const std::function<Result<Done>(store::Store&, store::ParticipantRecords&)>& work) {
     auto open = openOptionsNow();
     open.station = access.station;
     open.create = access.create;
     open.group = access.group;
     const auto opened = store::Store::open(access.database, open);
     if (!opened.store) return opened.errors;
-    store::ParticipantDesk desk(*opened.store, {access.by, open.now_utc});
+    store::ParticipantRecords desk(*opened.store, {access.by, open.now_utc});
     return work(*opened.store, desk);
 }
 
-Result<std::string> enrolAt(store::Store& store, store::ParticipantDesk& desk, protocol::ParticipantKind kind,
+Result<std::string> enrolAt(store::Store& store, store::ParticipantRecords& desk, protocol::ParticipantKind kind,
                             std::string code) {
     if (code.empty()) {
         const auto next = store.nextCode(kind);
@@ -34,10 +34,10 @@ Result<std::string> enrolAt(store::Store& store, store::ParticipantDesk& desk, p
     return code;
 }
 
-Result<Left> leave(const DeskAccess& access, const presenter::Leaving& leaving) {
+Result<Left> leave(const ParticipantAccess& access, const presenter::Leaving& leaving) {
     using presenter::Scope;
     Left left;
-    const auto done = atTheDesk(access, [&](store::Store&, store::ParticipantDesk& desk) -> Result<Done> {
+    const auto done = withParticipants(access, [&](store::Store&, store::ParticipantRecords& desk) -> Result<Done> {
         if (leaving.scope == Scope::Stop) return desk.withdraw(leaving.code, leaving.reason);
         if (leaving.scope == Scope::Exclude) return desk.exclude(leaving.code, leaving.reason, "withdraw");
         if (leaving.scope == Scope::Dismiss) return desk.exclude(leaving.code, leaving.reason);

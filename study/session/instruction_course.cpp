@@ -1,4 +1,4 @@
-#include "study/session/instruction_desk.h"
+#include "study/session/instruction_course.h"
 
 #include <fmt/format.h>
 
@@ -14,11 +14,11 @@ constexpr std::int64_t kEnd = -1;
 
 }  // namespace
 
-InstructionDesk::InstructionDesk(const protocol::StudyPlan& plan, std::string language, bool timing_measured,
-                                 InstructionReader* reader, TrialSink& sink)
+InstructionCourse::InstructionCourse(const protocol::StudyPlan& plan, std::string language, bool timing_measured,
+                                     InstructionReader* reader, TrialSink& sink)
     : plan_(plan), language_(std::move(language)), timing_measured_(timing_measured), reader_(reader), sink_(sink) {}
 
-bool InstructionDesk::show(const design::PlannedTrial* next, std::int64_t session_ns) {
+bool InstructionCourse::show(const design::PlannedTrial* next, std::int64_t session_ns) {
     const std::int64_t block = next != nullptr ? next->block_index : kEnd;
     if (open_for_ != block) {
         open_for_ = block;
@@ -40,7 +40,7 @@ bool InstructionDesk::show(const design::PlannedTrial* next, std::int64_t sessio
     return false;
 }
 
-std::vector<const protocol::Instruction*> InstructionDesk::due(const design::PlannedTrial* next) const {
+std::vector<const protocol::Instruction*> InstructionCourse::due(const design::PlannedTrial* next) const {
     using protocol::ShowAt;
     std::vector<const protocol::Instruction*> pages;
     const auto add = [&](ShowAt moment) {
@@ -56,7 +56,7 @@ std::vector<const protocol::Instruction*> InstructionDesk::due(const design::Pla
     return pages;
 }
 
-Page InstructionDesk::pageOf(const protocol::Instruction& instruction) const {
+Page InstructionCourse::pageOf(const protocol::Instruction& instruction) const {
     Page page{instruction, {}, {}, fmt::format("{}|{}|{}", *open_for_, read_, pages_)};
     for (const protocol::StudyText& text : plan_.texts) {
         if (text.name != instruction.text || text.languages.empty()) continue;
@@ -69,8 +69,8 @@ Page InstructionDesk::pageOf(const protocol::Instruction& instruction) const {
     return page;
 }
 
-void InstructionDesk::log(const protocol::Instruction& instruction, const std::optional<PageRead>& read,
-                          std::int64_t session_ns) const {
+void InstructionCourse::log(const protocol::Instruction& instruction, const std::optional<PageRead>& read,
+                            std::int64_t session_ns) const {
     JsonObject payload;
     payload.text("moment", protocol::showAtName(instruction.moment))
         .text("text", instruction.text)

@@ -1,4 +1,4 @@
-#include "study/session/instruction_desk.h"
+#include "study/session/instruction_course.h"
 
 #include "tests/study/session/scripted_session.h"
 

@@ -14,12 +14,12 @@ namespace passung::session {
 
 /// Shows a session's instructions before its trials and after the last one, and logs who read each: event
 /// "instruction", its source the reader; "instruction_not_shown" by "session" where nobody is there to show it.
-class InstructionDesk {
+class InstructionCourse {
 public:
     /// `language`: of the texts; one that they do not have: their first. `reader` may be null. Everything outlives the
     /// desk.
-    InstructionDesk(const protocol::StudyPlan& plan, std::string language, bool timing_measured,
-                    InstructionReader* reader, TrialSink& sink);
+    InstructionCourse(const protocol::StudyPlan& plan, std::string language, bool timing_measured,
+                      InstructionReader* reader, TrialSink& sink);
 
     /// One look at the pages before the trial `next`, or (nullptr) after the last one: true while one is open.
     bool show(const design::PlannedTrial* next, std::int64_t session_ns);

@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "study/store/people/participant_desk.h"
+#include "study/store/people/participant_records.h"
 #include "study/store/write/store.h"
 #include "ui/presenter/leaving.h"
 
 namespace passung::app {
 
 /// Who acts at which study's database.
-struct DeskAccess {
+struct ParticipantAccess {
     std::string database;
     std::string by = "experimenter";
     store::Station station = {};
@@ -20,11 +20,11 @@ struct DeskAccess {
 };
 
 /// Opens the database, lets `work` do its part and closes it.
-Result<Done> atTheDesk(const DeskAccess& access,
-                       const std::function<Result<Done>(store::Store&, store::ParticipantDesk&)>& work);
+Result<Done> withParticipants(const ParticipantAccess& access,
+                              const std::function<Result<Done>(store::Store&, store::ParticipantRecords&)>& work);
 
 /// Enrols somebody; no code: the first that is free. Returns the code.
-Result<std::string> enrolAt(store::Store& store, store::ParticipantDesk& desk, protocol::ParticipantKind kind,
+Result<std::string> enrolAt(store::Store& store, store::ParticipantRecords& desk, protocol::ParticipantKind kind,
                             std::string code);
 
 /// What came of somebody's leaving.
@@ -34,7 +34,7 @@ struct Left {
     std::string backup_problem;       // why that could not be done; empty: it was, or there was nothing to do
     std::vector<std::string> copies;  // known ones that still hold them
 };
-Result<Left> leave(const DeskAccess& access, const presenter::Leaving& leaving);
+Result<Left> leave(const ParticipantAccess& access, const presenter::Leaving& leaving);
 
 /// The database of a study's real sessions, beside the folder of those of try-outs, which never hold any.
 std::string studyDatabase(const std::string& tryouts, const std::string& study);

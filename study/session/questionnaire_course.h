@@ -14,7 +14,7 @@
 namespace passung::session {
 
 /// Whose questionnaires.
-struct DeskKey {
+struct QuestionnaireKey {
     std::string participant;  // whose draws: protocol::rehearsedCode()
     std::uint64_t seed = 0;   // of the study
     int ordinal = 1;
@@ -23,10 +23,11 @@ struct DeskKey {
 
 /// Asks a session's questionnaires between its trials: shows a form to the source until it is filled, scores and stores
 /// it.
-class QuestionnaireDesk {
+class QuestionnaireCourse {
 public:
     /// `source`: who answers; may be null if the plan has no questionnaire. Everything outlives the desk.
-    QuestionnaireDesk(const protocol::StudyPlan& plan, DeskKey key, QuestionnaireSource* source, TrialSink& sink);
+    QuestionnaireCourse(const protocol::StudyPlan& plan, QuestionnaireKey key, QuestionnaireSource* source,
+                        TrialSink& sink);
 
     /// One look at what is due between the trial that was remembered last and the first one `to_do`: true while
     /// something is, so that the trial has to wait. Errors: an answer that its item does not offer, or what the sink
@@ -55,7 +56,7 @@ private:
     Result<Done> store(const ShownQuestionnaire& form, const FilledForm& filled, std::int64_t session_ns);
 
     const protocol::StudyPlan& plan_;
-    DeskKey key_;
+    QuestionnaireKey key_;
     QuestionnaireSource* source_;
     TrialSink& sink_;
     std::vector<FinishedTrial> finished_;

@@ -1,4 +1,4 @@
-#include "study/session/questionnaire_desk.h"
+#include "study/session/questionnaire_course.h"
 
 #include <gtest/gtest.h>
 
@@ -84,7 +84,7 @@ protected:
         for (std::int64_t i = 0; i < 2; ++i)
             trials_.push_back({i, 0, "main", i, "main", static_cast<std::size_t>(i), 1});
     }
-    QuestionnaireDesk desk(QuestionnaireSource* source) { return {plan_, {"P001", 7, 1}, source, sink_}; }
+    QuestionnaireCourse desk(QuestionnaireSource* source) { return {plan_, {"P001", 7, 1}, source, sink_}; }
 
     std::span<const design::PlannedTrial> from(std::size_t next) const { return std::span(trials_).subspan(next); }
 
@@ -242,7 +242,7 @@ TEST_F(QuestionnaireDeskTest, NoResponseTimeIsKeptInVirtualTime) {
     real.remember({trials_[0], {}});
     static_cast<void>(real.ask(from(1), 0));
     EXPECT_EQ(sink_.response_ms, 800);
-    QuestionnaireDesk virtual_time(plan_, {"S001", 7, 1, false}, &person_, sink_);
+    QuestionnaireCourse virtual_time(plan_, {"S001", 7, 1, false}, &person_, sink_);
     virtual_time.remember({trials_[0], {}});
     static_cast<void>(virtual_time.ask(from(1), 0));
     EXPECT_FALSE(sink_.response_ms);
