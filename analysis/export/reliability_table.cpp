@@ -183,7 +183,7 @@ ColumnsOf<ReliabilityRow> reliabilityColumns() {
          "Real people, pilots or simulated participants",
          "text",
          &ReliabilityRow::kind,
-         {.levels = protocol::participantKindNames()}},
+         {.levels = plan::participantKindNames()}},
         {"questionnaire", "Key of the questionnaire", "text", &ReliabilityRow::questionnaire},
         {"version", "Version of its items and texts", "text", &ReliabilityRow::version},
         {"moment", "When it was asked", "text", &ReliabilityRow::moment},

@@ -18,7 +18,7 @@ ColumnsOf<Row> participantColumns() {
              "Real person, pilot or simulated participant",
              "text",
              &Row::kind,
-             {.levels = protocol::participantKindNames()}}};
+             {.levels = plan::participantKindNames()}}};
 }
 
 /// session.

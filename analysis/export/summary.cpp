@@ -99,7 +99,7 @@ Result<std::string> summaryTable(const store::StoreReader& reader) {
     if (!study) return study.errors();
     const std::vector<Cell> cells = cellsOf(*study);
     std::string text;
-    for (const std::string& kind : protocol::participantKindNames())
+    for (const std::string& kind : plan::participantKindNames())
         for (const store::ProtocolRow& protocol : study->protocols)
             if (const std::string table = tableOf(*study, cells, kind, protocol); !table.empty())
                 text += (text.empty() ? "" : "\n") + table;

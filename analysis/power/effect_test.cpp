@@ -15,7 +15,7 @@
 namespace passung::power {
 namespace {
 
-using protocol::FactorKind;
+using plan::FactorKind;
 
 struct Known {
     const char* name;
@@ -26,15 +26,15 @@ constexpr std::array kTests{Known{"paired_t", true, false},  Known{"wilcoxon", t
                             Known{"welch_t", false, true},   Known{"mann_whitney", false, true},
                             Known{"mixed_anova", true, true}};
 
-const protocol::Factor& factorOf(const PlantedEffect& effect, const protocol::StudyPlan& plan) {
+const plan::Factor& factorOf(const PlantedEffect& effect, const plan::StudyPlan& plan) {
     return *std::find_if(plan.factors.begin(), plan.factors.end(),
-                         [&](const protocol::Factor& factor) { return factor.name == effect.factor; });
+                         [&](const plan::Factor& factor) { return factor.name == effect.factor; });
 }
 
 /// Labels of the levels that are compared.
-std::vector<std::string> comparedLevels(const protocol::Factor& factor) {
+std::vector<std::string> comparedLevels(const plan::Factor& factor) {
     std::vector<std::string> labels;
-    for (const protocol::Level& level : factor.levels)
+    for (const plan::Level& level : factor.levels)
         if (!level.catch_trial) labels.push_back(level.label);
     return labels;
 }
@@ -59,22 +59,21 @@ struct Person {
 };
 
 /// The plan's first analysis of the measure by the factor.
-const protocol::Analysis* plannedAnalysis(const PlantedEffect& effect, const protocol::StudyPlan& plan) {
-    const auto found =
-        std::find_if(plan.analyses.begin(), plan.analyses.end(), [&](const protocol::Analysis& analysis) {
-            return analysis.outcome == effect.measure &&
-                   std::find(analysis.factors.begin(), analysis.factors.end(), effect.factor) != analysis.factors.end();
-        });
+const plan::Analysis* plannedAnalysis(const PlantedEffect& effect, const plan::StudyPlan& plan) {
+    const auto found = std::find_if(plan.analyses.begin(), plan.analyses.end(), [&](const plan::Analysis& analysis) {
+        return analysis.outcome == effect.measure &&
+               std::find(analysis.factors.begin(), analysis.factors.end(), effect.factor) != analysis.factors.end();
+    });
     return found == plan.analyses.end() ? nullptr : &*found;
 }
 
 /// The block whose trials that analysis takes; empty: all.
-std::string plannedBlock(const PlantedEffect& effect, const protocol::StudyPlan& plan) {
-    const protocol::Analysis* analysis = plannedAnalysis(effect, plan);
+std::string plannedBlock(const PlantedEffect& effect, const plan::StudyPlan& plan) {
+    const plan::Analysis* analysis = plannedAnalysis(effect, plan);
     return analysis != nullptr ? analysis->block : "";
 }
 
-std::vector<Person> peopleOf(const PlantedEffect& effect, const protocol::StudyPlan& plan,
+std::vector<Person> peopleOf(const PlantedEffect& effect, const plan::StudyPlan& plan,
                              const exporter::StudyData& study) {
     std::map<std::string, Person> people;
     const std::string block = plannedBlock(effect, plan);
@@ -83,7 +82,7 @@ std::vector<Person> peopleOf(const PlantedEffect& effect, const protocol::StudyP
         const auto& levels = cell.condition->levels;
         Person& person = people[cell.participant_id];
         person.group.clear();
-        for (const protocol::Factor& factor : plan.factors)
+        for (const plan::Factor& factor : plan.factors)
             if (factor.kind == FactorKind::Between) person.group += exporter::levelOf(levels, factor.name) + '\n';
         const double value = exporter::valueOf(cell, effect.measure);
         // Of several blocks those count that have the measure.
@@ -161,11 +160,11 @@ std::vector<std::string> testNames() {
     return names;
 }
 
-Result<std::string> chooseTest(const std::string& asked, const PlantedEffect& effect, const protocol::StudyPlan& plan) {
-    const protocol::Factor& factor = factorOf(effect, plan);
+Result<std::string> chooseTest(const std::string& asked, const PlantedEffect& effect, const plan::StudyPlan& plan) {
+    const plan::Factor& factor = factorOf(effect, plan);
     const bool between = factor.kind == FactorKind::Between;
     std::string test = asked;
-    if (const protocol::Analysis* analysis = plannedAnalysis(effect, plan); test.empty() && analysis != nullptr)
+    if (const plan::Analysis* analysis = plannedAnalysis(effect, plan); test.empty() && analysis != nullptr)
         test = analysis->test;
     if (test.empty()) test = between ? "welch_t" : "paired_t";
     const auto wrong = [&](const std::string& requirement) {
@@ -180,15 +179,15 @@ Result<std::string> chooseTest(const std::string& asked, const PlantedEffect& ef
         return wrong(fmt::format("is for a {} factor, and {} is a {} one", between ? "within" : "between", factor.name,
                                  between ? "between" : "within"));
     const auto others = std::count_if(plan.factors.begin(), plan.factors.end(),
-                                      [](const protocol::Factor& f) { return f.kind == FactorKind::Between; });
+                                      [](const plan::Factor& f) { return f.kind == FactorKind::Between; });
     if (between && test == "mixed_anova" && others > 1)
         return wrong("the main effect of one of several between factors is not tested here");
     return test;
 }
 
-EffectTest testEffect(const PlantedEffect& effect, const std::string& test, const protocol::StudyPlan& plan,
+EffectTest testEffect(const PlantedEffect& effect, const std::string& test, const plan::StudyPlan& plan,
                       const exporter::StudyData& study) {
-    const protocol::Factor& factor = factorOf(effect, plan);
+    const plan::Factor& factor = factorOf(effect, plan);
     const auto people = peopleOf(effect, plan, study);
     return factor.kind == FactorKind::Between ? testBetween(effect, test, comparedLevels(factor), people)
                                               : testWithin(effect, test, comparedLevels(factor), people);

@@ -17,7 +17,7 @@ std::vector<std::string> testNames();
 
 /// The test for an effect of this factor: `asked`, or (empty) that of the plan's first analysis of the measure by the
 /// factor, or paired_t or welch_t. An error says why the test does not suit the factor.
-Result<std::string> chooseTest(const std::string& asked, const PlantedEffect& effect, const protocol::StudyPlan& plan);
+Result<std::string> chooseTest(const std::string& asked, const PlantedEffect& effect, const plan::StudyPlan& plan);
 
 /// What a virtual study says.
 struct EffectTest {
@@ -35,7 +35,7 @@ struct EffectTest {
 /// mann_whitney compare the effect's two levels; rm_anova, friedman and mixed_anova test the factor's main effect over
 /// all its levels, mixed_anova in the groups that all between factors make. Whoever has no value at one of these levels
 /// is left out.
-EffectTest testEffect(const PlantedEffect& effect, const std::string& test, const protocol::StudyPlan& plan,
+EffectTest testEffect(const PlantedEffect& effect, const std::string& test, const plan::StudyPlan& plan,
                       const exporter::StudyData& study);
 
 }  // namespace passung::power

@@ -9,7 +9,7 @@
 #include "study/run/run_study.h"
 #include "study/store/read/store_reader.h"
 
-namespace passung::app {
+namespace passung::power {
 
 namespace {
 
@@ -52,8 +52,8 @@ private:
 
 }  // namespace
 
-Result<exporter::StudyData> hapticStudy(const protocol::StudyPlan& plan, int participants) {
-    if (asksForAccuracy(plan))
+Result<exporter::StudyData> hapticStudy(const plan::StudyPlan& plan, int participants) {
+    if (run::asksForAccuracy(plan))
         return Error{.message = "differs from machine to machine; name the settings that it picked instead",
                      .file = plan.source_path,
                      .key = "contact.accuracy",
@@ -61,14 +61,14 @@ Result<exporter::StudyData> hapticStudy(const protocol::StudyPlan& plan, int par
     const TemporaryFolder folder;
     if (folder.path().empty())
         return Error{.message = "a temporary folder cannot be made", .file = fs::temp_directory_path().string()};
-    RunOptions options;
+    run::RunOptions options;
     options.database = (folder.path() / "study.db").string();
     options.simulated = participants;
     options.backup = false;
-    if (const auto end = runStudy(plan, options, {}); !end) return end.errors();
+    if (const auto end = run::runStudy(plan, options, {}); !end) return end.errors();
     const auto reader = store::StoreReader::open(options.database);
     if (!reader) return reader.errors();
     return exporter::readStudy(*reader);
 }
 
-}  // namespace passung::app
+}  // namespace passung::power

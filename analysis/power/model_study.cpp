@@ -11,7 +11,7 @@
 namespace passung::power {
 namespace {
 
-store::Levels levelsOf(const protocol::StudyPlan& plan, const protocol::Condition& condition) {
+store::Levels levelsOf(const plan::StudyPlan& plan, const plan::Condition& condition) {
     store::Levels levels;
     for (std::size_t f = 0; f < plan.factors.size(); ++f)
         levels.emplace_back(plan.factors[f].name, plan.factors[f].levels[condition.levels[f]].label);
@@ -19,8 +19,8 @@ store::Levels levelsOf(const protocol::StudyPlan& plan, const protocol::Conditio
 }
 
 /// One session of a participant.
-Result<Done> perform(const protocol::StudyPlan& plan, const std::string& code, const session::DesignPlace& place,
-                     int part, exporter::StudyData& study) {
+Result<Done> perform(const plan::StudyPlan& plan, const std::string& code, const session::DesignPlace& place, int part,
+                     exporter::StudyData& study) {
     const auto trials = session::planTrials(plan, place, code, part);
     if (!trials) return trials.errors();
     const person::SimulatedPerson person = person::personOf(plan.name, code, plan.seed);
@@ -35,7 +35,7 @@ Result<Done> perform(const protocol::StudyPlan& plan, const std::string& code, c
         store::AttemptRow attempt;
         attempt.session_id = session.session_id;
         attempt.participant_id = code;
-        attempt.kind = protocol::participantKindName(protocol::ParticipantKind::Simulated);
+        attempt.kind = plan::participantKindName(plan::ParticipantKind::Simulated);
         attempt.session_ordinal = part;
         attempt.block_index = trial.block_index;
         attempt.block = trial.block;
@@ -55,13 +55,13 @@ Result<Done> perform(const protocol::StudyPlan& plan, const std::string& code, c
 
 }  // namespace
 
-Result<exporter::StudyData> modelStudy(const protocol::StudyPlan& plan, int participants) {
-    const auto kind = protocol::ParticipantKind::Simulated;
+Result<exporter::StudyData> modelStudy(const plan::StudyPlan& plan, int participants) {
+    const auto kind = plan::ParticipantKind::Simulated;
     exporter::StudyData study;
     study.protocols.emplace_back();  // all rows are of this one, without a hash
-    for (const protocol::Factor& factor : plan.factors)
-        study.factors.push_back({factor.name, factor.name, protocol::factorKindName(factor.kind), factor.unit, {}});
-    for (const protocol::Condition& condition : std::span(plan.conditions).first(protocol::plannedConditions(plan)))
+    for (const plan::Factor& factor : plan.factors)
+        study.factors.push_back({factor.name, factor.name, plan::factorKindName(factor.kind), factor.unit, {}});
+    for (const plan::Condition& condition : std::span(plan.conditions).first(plan::plannedConditions(plan)))
         study.conditions.push_back({{},
                                     condition.name,
                                     levelsOf(plan, condition),
@@ -70,8 +70,8 @@ Result<exporter::StudyData> modelStudy(const protocol::StudyPlan& plan, int part
     const auto count = static_cast<std::size_t>(participants);
     const auto places = session::firstPlaces(plan, count);
     for (std::size_t i = 0; i < count; ++i) {
-        const std::string code = protocol::participantCode(kind, static_cast<std::int64_t>(i) + 1);
-        for (int part = 1; part <= protocol::sessionsOf(plan); ++part)
+        const std::string code = plan::participantCode(kind, static_cast<std::int64_t>(i) + 1);
+        for (int part = 1; part <= plan::sessionsOf(plan); ++part)
             if (const auto done = perform(plan, code, places[i], part, study); !done) return done.errors();
     }
     return study;

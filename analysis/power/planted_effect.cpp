@@ -27,9 +27,9 @@ std::string listed(const Items& items, Name name) {
     return text;
 }
 
-bool hasLevel(const protocol::Factor& factor, const std::string& label) {
+bool hasLevel(const plan::Factor& factor, const std::string& label) {
     return std::any_of(factor.levels.begin(), factor.levels.end(),
-                       [&](const protocol::Level& level) { return level.label == label; });
+                       [&](const plan::Level& level) { return level.label == label; });
 }
 
 /// Sets scale or shift.
@@ -47,7 +47,7 @@ bool readDelta(std::string_view text, PlantedEffect& effect) {
 }  // namespace
 
 Result<PlantedEffect> readEffect(const std::string& text, const std::string& against, const std::string& measure,
-                                 const protocol::StudyPlan& plan) {
+                                 const plan::StudyPlan& plan) {
     const std::size_t colon = text.find(':'), equals = text.rfind('=');
     if (colon == std::string::npos || equals == std::string::npos || equals < colon)
         return wrong("--effect", text, "must be FACTOR:LEVEL=DELTA");
@@ -58,11 +58,11 @@ Result<PlantedEffect> readEffect(const std::string& text, const std::string& aga
     if (!readDelta(std::string_view(text).substr(equals + 1), effect))
         return wrong("--effect", text, "DELTA must be +NUMBER or -NUMBER, added, or xNUMBER > 0, multiplied");
     const auto factor = std::find_if(plan.factors.begin(), plan.factors.end(),
-                                     [&](const protocol::Factor& f) { return f.name == effect.factor; });
+                                     [&](const plan::Factor& f) { return f.name == effect.factor; });
     if (factor == plan.factors.end())
         return wrong("--effect", effect.factor,
                      "must be a factor: " + listed(plan.factors, [](const auto& f) { return f.name; }));
-    if (factor->kind == protocol::FactorKind::Nuisance)
+    if (factor->kind == plan::FactorKind::Nuisance)
         return wrong("--effect", effect.factor, "is a nuisance factor: its levels are assigned, not compared");
     const std::string levels = "must be a level of " + factor->name + ": " +
                                listed(factor->levels, [](const auto& level) { return level.label; });

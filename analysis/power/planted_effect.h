@@ -23,7 +23,7 @@ struct PlantedEffect {
 /// From "FACTOR:LEVEL=DELTA": DELTA is "+0.3" or "-0.3", added, or "x1.2", multiplied. Without `against` the level is
 /// compared with the factor's first other one. An error names what the plan does not have.
 Result<PlantedEffect> readEffect(const std::string& text, const std::string& against, const std::string& measure,
-                                 const protocol::StudyPlan& plan);
+                                 const plan::StudyPlan& plan);
 
 /// Of an effect that is only added, what it adds; from the text that readEffect takes.
 std::optional<double> addedBy(const std::string& text);

@@ -11,9 +11,9 @@
 
 namespace passung::power {
 
-PowerJob describeJob(const protocol::StudyPlan& plan, const PlantedEffect& effect, const std::string& test) {
+PowerJob describeJob(const plan::StudyPlan& plan, const PlantedEffect& effect, const std::string& test) {
     std::string all = plan.source_text + plan.expanded_json;
-    for (const protocol::Condition& condition : plan.conditions) all += condition.params_json;
+    for (const plan::Condition& condition : plan.conditions) all += condition.params_json;
     PowerJob job;
     job.study = plan.name + ' ' + plan.version;
     job.plan_sha256 = sha256Hex(all);
@@ -24,13 +24,13 @@ PowerJob describeJob(const protocol::StudyPlan& plan, const PlantedEffect& effec
     return job;
 }
 
-std::uint64_t runSeed(const protocol::StudyPlan& plan, std::int64_t run) {
+std::uint64_t runSeed(const plan::StudyPlan& plan, std::int64_t run) {
     std::uint64_t state = streamSeed(plan.name, "", "power", std::to_string(run), plan.seed);
     return splitmix64(state);
 }
 
 Result<PowerResult> runShard(const PowerJob& job, const Shard& shard, const PlantedEffect& effect,
-                             const protocol::StudyPlan& plan, const Perform& perform,
+                             const plan::StudyPlan& plan, const Perform& perform,
                              const std::function<void(double)>& progress) {
     PowerResult result{job, shard, {}};
     for (std::int64_t run = 0; run < job.repeats; ++run)
@@ -40,7 +40,7 @@ Result<PowerResult> runShard(const PowerJob& job, const Shard& shard, const Plan
     std::size_t done = 0;
     Errors errors;
     const auto work = [&] {
-        protocol::StudyPlan own = plan;
+        plan::StudyPlan own = plan;
         for (std::size_t i; (i = next++) < result.tests.size();) {
             own.seed = runSeed(plan, result.tests[i].run);
             auto study = perform(own, job.participants);

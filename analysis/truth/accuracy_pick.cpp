@@ -22,13 +22,13 @@ constexpr std::uint64_t kSeed = 1;  // the same poses for the same parts
 constexpr int kRepetitions = 2;
 constexpr std::array kTolerances{100e-6, 50e-6, 20e-6, 10e-6};  // [m]
 // The coarser modes cost as much or more where a query reads point by point.
-constexpr std::array kModes{model::FieldMode::Linear, model::FieldMode::Trilinear, model::FieldMode::Cubic};
+constexpr std::array kModes{field::FieldMode::Linear, field::FieldMode::Trilinear, field::FieldMode::Cubic};
 constexpr std::array kNodes{300, 100};
 constexpr double kPathShare = 0.4;  // of the work, as the progress shows it
 
 /// One obstacle and the held part, with poses and their truth.
 struct Pair {
-    model::PartSpec obstacle, held;
+    scene::PartSpec obstacle, held;
     double length = 0.0, lever = 0.0;  // of the held part, see PairTruth
     std::vector<JudgedPose> poses, two_way_poses;
     std::vector<Pose> timed;
@@ -52,19 +52,19 @@ std::vector<Pose> along(const std::vector<JudgedPose>& poses) {
 }
 
 /// The same poses as contact is both ways.
-Result<std::vector<JudgedPose>> judgedBothWays(const Pair& pair, model::BuildStore* store) {
+Result<std::vector<JudgedPose>> judgedBothWays(const Pair& pair, scene::BuildStore* store) {
     const auto back = PairTruth::build(pair.held, pair.obstacle, store);
     if (!back) return back.errors();
     std::vector<JudgedPose> poses = pair.poses;
-    model::parallelFor(poses.size(), [&](std::size_t i) {
+    geometry::parallelFor(poses.size(), [&](std::size_t i) {
         JudgedPose& pose = poses[i];
         pose.truth = bothWays(pose.truth, back->quicklyAt(pose.X_FS.inverse()), pose.X_FS);
     });
     return poses;
 }
 
-Result<Pair> makePair(const model::PartSpec& obstacle, const model::PartSpec& held, bool two_way,
-                      const ProgressReport& report, model::BuildStore* store) {
+Result<Pair> makePair(const scene::PartSpec& obstacle, const scene::PartSpec& held, bool two_way,
+                      const ProgressReport& report, scene::BuildStore* store) {
     const auto truth = PairTruth::build(obstacle, held, store);
     if (!truth) return truth.errors();
     Pair pair{.obstacle = obstacle,
@@ -108,15 +108,15 @@ void merge(SettingCost& row, const SettingCost& other, const Join& joined) {
 /// All scenes, asked one setting after the other.
 class Candidates {
 public:
-    explicit Candidates(model::BuildStore* store) : store_(store), parts_(store) {}
+    explicit Candidates(scene::BuildStore* store) : store_(store), parts_(store) {}
 
     Result<Done> addScene(const AskedScene& asked, const ProgressReport& report) {
         const auto& parts = asked.scene->parts;
         const auto held = std::find_if(parts.begin(), parts.end(), [](const auto& part) { return part.held; });
         const bool two_way = std::any_of(asked.contacts.begin(), asked.contacts.end(),
-                                         [](const model::ContactSpec& contact) { return contact.two_way; });
+                                         [](const scene::ContactSpec& contact) { return contact.two_way; });
         Scene scene{{}, asked.contacts, asked.both_ways};
-        for (const model::PartSpec& part : parts) {
+        for (const scene::PartSpec& part : parts) {
             if (part.held) continue;
             auto pair = makePair(part, *held, two_way, report, store_);
             if (!pair) return pair.errors();
@@ -138,7 +138,7 @@ public:
     Result<SettingCost> measure(const AccuracySetting& setting) {
         std::optional<SettingCost> all;
         for (Scene& scene : scenes_) {
-            for (model::ContactSpec contact : scene.contacts) {
+            for (scene::ContactSpec contact : scene.contacts) {
                 if (!contact.two_way && scene.both_ways) contact.two_way = scene.both_ways(setting.spacing);
                 const auto sum = measureScene(setting, contact, scene.pairs);
                 if (!sum) return sum.errors();
@@ -154,11 +154,11 @@ public:
 private:
     struct Scene {
         std::vector<Pair> pairs;
-        std::vector<model::ContactSpec> contacts;
+        std::vector<scene::ContactSpec> contacts;
         std::function<bool(double)> both_ways;
     };
 
-    Result<SettingCost> measureScene(const AccuracySetting& setting, const model::ContactSpec& contact,
+    Result<SettingCost> measureScene(const AccuracySetting& setting, const scene::ContactSpec& contact,
                                      std::vector<Pair>& pairs) {
         std::optional<SettingCost> sum;
         for (Pair& pair : pairs) {
@@ -167,7 +167,7 @@ private:
                 if (!both) return both.errors();
                 pair.two_way_poses = std::move(*both);
             }
-            const auto get = [&](const model::PartSpec& part) {
+            const auto get = [&](const scene::PartSpec& part) {
                 return parts_.get(part, {.field = !part.held || contact.two_way,
                                          .shell = part.held || contact.two_way,
                                          .tolerance = setting.tolerance,
@@ -187,8 +187,8 @@ private:
         return *sum;
     }
 
-    model::BuildStore* store_;
-    model::PartCache parts_;
+    scene::BuildStore* store_;
+    scene::PartCache parts_;
     std::vector<Scene> scenes_;
 };
 
@@ -196,7 +196,7 @@ private:
 
 Result<std::vector<SettingCost>> measureCandidates(const std::vector<AskedScene>& scenes,
                                                    std::span<const double> budgets, const StepReport& report,
-                                                   model::BuildStore* store) {
+                                                   scene::BuildStore* store) {
     Candidates candidates(store);
     for (std::size_t i = 0; i < scenes.size(); ++i) {
         const auto added = candidates.addScene(scenes[i], [&](double share) {
@@ -210,7 +210,7 @@ Result<std::vector<SettingCost>> measureCandidates(const std::vector<AskedScene>
     const auto [least, most] = std::minmax_element(budgets.begin(), budgets.end());
     const bool budgeted = std::all_of(scenes.begin(), scenes.end(), [](const AskedScene& scene) {
         return std::all_of(scene.contacts.begin(), scene.contacts.end(),
-                           [](const model::ContactSpec& contact) { return contact.rendersAtHand(); });
+                           [](const scene::ContactSpec& contact) { return contact.rendersAtHand(); });
     });
     for (std::size_t i = 0; i < spacings.size(); ++i) {
         bool fits = false;
@@ -218,7 +218,7 @@ Result<std::vector<SettingCost>> measureCandidates(const std::vector<AskedScene>
             const double steps = static_cast<double>(i * kTolerances.size() + k);
             report(fmt::format("field to {:g} µm, points {:g} mm apart", 1e6 * kTolerances[k], 1e3 * spacings[i]),
                    kPathShare + (1.0 - kPathShare) * steps / static_cast<double>(spacings.size() * kTolerances.size()));
-            for (const model::FieldMode mode : kModes) {
+            for (const field::FieldMode mode : kModes) {
                 auto row = candidates.measure({mode, kTolerances[k], spacings[i], 0});
                 if (!row) return row.errors();
                 rows.push_back(*row);
@@ -238,7 +238,7 @@ Result<std::vector<SettingCost>> measureCandidates(const std::vector<AskedScene>
 }
 
 Result<double> timeOfSetting(const std::vector<AskedScene>& scenes, const AccuracySetting& setting,
-                             model::BuildStore* store) {
+                             scene::BuildStore* store) {
     Candidates candidates(store);
     for (const AskedScene& scene : scenes)
         if (const auto added = candidates.addScene(scene, [](double) {}); !added) return added.errors();

@@ -11,8 +11,8 @@ namespace passung::truth {
 
 /// A scene, and the ways in which contact is asked for there: of each count method, variant and two_way.
 struct AskedScene {
-    const model::SceneSpec* scene;
-    std::vector<model::ContactSpec> contacts;
+    const scene::SceneSpec* scene;
+    std::vector<scene::ContactSpec> contacts;
     std::function<bool(double spacing)> both_ways = {};  // is a contact that does not ask for both ways looked for both
                                                          // ways, with points so far apart [m]? Empty: never
 };
@@ -28,11 +28,11 @@ struct AskedScene {
 /// @pre at least one budget, one scene, one contact of each, and an obstacle in each.
 Result<std::vector<SettingCost>> measureCandidates(const std::vector<AskedScene>& scenes,
                                                    std::span<const double> budgets, const StepReport& report,
-                                                   model::BuildStore* store);
+                                                   scene::BuildStore* store);
 
 /// The time (p99) [s] of one of these settings on this machine, in the same scenes at the same poses. Errors: as above.
 Result<double> timeOfSetting(const std::vector<AskedScene>& scenes, const AccuracySetting& setting,
-                             model::BuildStore* store);
+                             scene::BuildStore* store);
 
 /// The row with the smallest error (p99 of the depth) among those whose time (p99) fits `budget` [s]; the
 /// faster of two that err alike.

@@ -58,11 +58,11 @@ public:
             colour, width);
     }
     /// Trilinear: a disc; the others: polygons.
-    void mark(double x, double y, double r, model::FieldMode mode, const std::string& fill, double opacity,
+    void mark(double x, double y, double r, field::FieldMode mode, const std::string& fill, double opacity,
               const char* stroke) {
         const std::string style =
             fmt::format(R"(fill="{}" fill-opacity="{}" stroke="{}" stroke-width="1.2")", fill, opacity, stroke);
-        if (mode == model::FieldMode::Trilinear)
+        if (mode == field::FieldMode::Trilinear)
             add(R"(<circle cx="{:.1f}" cy="{:.1f}" r="{:.1f}" {}/>)", x, y, r, style);
         else
             add(R"(<polygon points="{}" {}/>)", outline(x, y, r, mode), style);
@@ -70,11 +70,11 @@ public:
     std::string take() { return std::move(text_); }
 
 private:
-    static std::string outline(double x, double y, double r, model::FieldMode mode) {
+    static std::string outline(double x, double y, double r, field::FieldMode mode) {
         using Corners = std::vector<std::array<double, 2>>;
-        const Corners corners = mode == model::FieldMode::Layered        ? Corners{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}
-                                : mode == model::FieldMode::SurfacePoint ? Corners{{0, -1.3}, {1.2, 0.9}, {-1.2, 0.9}}
-                                : mode == model::FieldMode::Linear
+        const Corners corners = mode == field::FieldMode::Layered        ? Corners{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}
+                                : mode == field::FieldMode::SurfacePoint ? Corners{{0, -1.3}, {1.2, 0.9}, {-1.2, 0.9}}
+                                : mode == field::FieldMode::Linear
                                     ? Corners{{0, -1.25}, {1.25, 0}, {0, 1.25}, {-1.25, 0}}
                                     : Corners{{-1.2, -0.9}, {1.2, -0.9}, {0, 1.3}};
         std::string points;
@@ -226,30 +226,30 @@ void drawLegend(Svg& svg, const std::vector<SettingCost>& rows, const std::vecto
     word("points of the shell, apart:", 180);
     for (const double spacing : spacings) {
         const std::string colour = colourOf(spacings, spacing);
-        svg.mark(x, y, 6, model::FieldMode::Trilinear, colour, 1.0, colour.c_str());
+        svg.mark(x, y, 6, field::FieldMode::Trilinear, colour, 1.0, colour.c_str());
         x += 12;
         const std::string text = fmt::format("{:g} mm", 1e3 * spacing);
         word(text, 24 + 7.5 * static_cast<double>(text.size()));
     }
     x += 22;
     word("interpolation of the field:", 182);
-    for (const model::FieldMode mode : model::kFieldModes) {
+    for (const field::FieldMode mode : field::kFieldModes) {
         const bool used =
             std::any_of(rows.begin(), rows.end(), [&](const SettingCost& row) { return row.setting.mode == mode; });
         if (!used) continue;
         svg.mark(x, y, 6, mode, "#FFFFFF", 1.0, kInk);
         x += 13;
-        const std::string name = model::modeName(mode);
+        const std::string name = field::modeName(mode);
         word(name, 24 + 6.5 * static_cast<double>(name.size()));
     }
     x += 22;
-    svg.mark(x, y, 4, model::FieldMode::Trilinear, kInk, 0.12, kInk);
+    svg.mark(x, y, 4, field::FieldMode::Trilinear, kInk, 0.12, kInk);
     x += 12;
     word("pale: with a node budget", 0);
     x = kLeft;
     y += 30;
     svg.line(x, y, x + 30, y, kFront, 1.8);
-    svg.mark(x + 15, y, 6, model::FieldMode::Trilinear, "#FFFFFF", 1.0, kFront);
+    svg.mark(x + 15, y, 6, field::FieldMode::Trilinear, "#FFFFFF", 1.0, kFront);
     x += 42;
     word(
         "Pareto front: no other setting is both faster and nearer the truth. Beside it: tolerance of the field, "

@@ -34,11 +34,11 @@ struct Built {
     double seconds = 0.0;  // that building the field or the points took
 };
 
-Result<Built> build(const model::PartSpec& spec, const model::PartNeeds& needs, model::BuildStore* store) {
-    model::TimedStore timed(store);
-    auto part = model::buildPart(spec, needs, &timed);
+Result<Built> build(const scene::PartSpec& spec, const scene::PartNeeds& needs, scene::BuildStore* store) {
+    scene::TimedStore timed(store);
+    auto part = scene::buildPart(spec, needs, &timed);
     if (!part) return part.errors();
-    return Built{std::make_shared<const model::Part>(std::move(*part)), timed.seconds()};
+    return Built{std::make_shared<const scene::Part>(std::move(*part)), timed.seconds()};
 }
 
 /// What the tick's query says at one pose.
@@ -48,8 +48,8 @@ struct PoseReading {
 };
 
 /// A scene of FIELD at the origin and SHELL in the hand.
-model::Scene sceneOf(const model::ContactSpec& contact, const SharedPart& field, const SharedPart& shell) {
-    model::Scene scene;
+scene::Scene sceneOf(const scene::ContactSpec& contact, const SharedPart& field, const SharedPart& shell) {
+    scene::Scene scene;
     scene.spec.contact = contact;
     scene.spec.parts.resize(2);
     scene.spec.parts[1].held = true;
@@ -61,9 +61,9 @@ model::Scene sceneOf(const model::ContactSpec& contact, const SharedPart& field,
 /// The query of a tick, by the tick's own stages; memory sized once.
 class TickQuery {
 public:
-    TickQuery(const model::ContactSpec& contact, const SharedPart& field, const SharedPart& shell)
+    TickQuery(const scene::ContactSpec& contact, const SharedPart& field, const SharedPart& shell)
         : scene_(sceneOf(contact, field, shell)), model_(tick::makeModel(scene_)), state_(tick::makeState(model_)) {
-        weighted_.variant = model::PenaltyVariant::AreaWeighted;
+        weighted_.variant = scene::PenaltyVariant::AreaWeighted;
         weighted_.area_stiffness = kAreaStiffness;
         weighted_.two_way = contact.two_way;
     }
@@ -76,24 +76,24 @@ public:
             return {std::max(0.0, -state_.clearance), tick::penaltyWrench(weighted_, state_.manifold, X_FS.p)};
         }
         tick::runStage<tick::kContactsAtHand>(model_, state_, frame);
-        const bool summed = model_.contact.variant == model::PenaltyVariant::AreaWeighted;
+        const bool summed = model_.contact.variant == scene::PenaltyVariant::AreaWeighted;
         return {frame.hand_depth, summed ? tick::weightedWrench(weighted_, frame.load)
                                          : tick::penaltyWrench(weighted_, state_.manifold, X_FS.p)};
     }
 
     /// How far the nearest point is, wherever it is.
     double distanceAt(const Pose& X_FS) {
-        tick::QueryRequest request = tick::penaltyRequest(model_.contact.variant);
+        contact::QueryRequest request = tick::penaltyRequest(model_.contact.variant);
         request.search_below = kUnlimited;
         state_.scratch.clear();
         return tick::queryObstacles(model_, X_FS, request, state_.workspace, state_.scratch).phi;
     }
 
 private:
-    model::Scene scene_;
+    scene::Scene scene_;
     tick::TickModel model_;
     tick::TickState state_;
-    model::ContactSpec weighted_;
+    scene::ContactSpec weighted_;
 };
 
 /// Errors of all poses so far.
@@ -213,12 +213,12 @@ void markFronts(std::vector<SettingCost>& rows) {
         rows, [](const SettingCost& row) { return row.force.p99; }, &SettingCost::on_force_front);
 }
 
-SettingCost measureSetting(const AccuracySetting& setting, model::ContactSpec contact, const SharedPart& field,
+SettingCost measureSetting(const AccuracySetting& setting, scene::ContactSpec contact, const SharedPart& field,
                            const SharedPart& shell, const std::vector<JudgedPose>& poses,
                            const std::vector<Pose>& timed, int repetitions, double lever) {
     contact.mode = setting.mode;
     contact.budget_nodes = setting.budget_nodes;
-    const model::SphereTree& points = *shell->shell;
+    const shell::SphereTree& points = *shell->shell;
     SettingCost row{.setting = setting};
     row.points = points.points().size();
     row.field_bytes = static_cast<double>(field->field->memoryBytes());
@@ -242,14 +242,14 @@ SettingCost measureSetting(const AccuracySetting& setting, model::ContactSpec co
     return row;
 }
 
-Result<AccuracyResult> sweepAccuracy(const model::PartSpec& field, const model::PartSpec& shell,
+Result<AccuracyResult> sweepAccuracy(const scene::PartSpec& field, const scene::PartSpec& shell,
                                      const AccuracySpace& space, const std::vector<JudgedPose>& poses,
                                      const std::vector<JudgedPose>& shaken, double lever, const StepReport& report,
-                                     model::BuildStore* store) {
+                                     scene::BuildStore* store) {
     AccuracyResult result;
-    model::ContactSpec contact;
-    contact.method = model::ContactMethod::Penalty;
-    contact.variant = model::PenaltyVariant::AreaWeighted;
+    scene::ContactSpec contact;
+    contact.method = scene::ContactMethod::Penalty;
+    contact.variant = scene::PenaltyVariant::AreaWeighted;
     std::vector<Pose> timed;
     for (const JudgedPose& pose : poses) timed.push_back(pose.X_FS);
     const double steps = static_cast<double>(space.tolerances.size() * (1 + space.spacings.size()));
@@ -263,7 +263,7 @@ Result<AccuracyResult> sweepAccuracy(const model::PartSpec& field, const model::
             report(fmt::format("field to {:g} um, points {:g} mm apart", 1e6 * tolerance, 1e3 * spacing), done / steps);
             auto shell_part = build(shell, {.shell = true, .tolerance = tolerance, .spacing = spacing}, store);
             if (!shell_part) return shell_part.errors();
-            for (const model::FieldMode mode : space.modes) {
+            for (const field::FieldMode mode : space.modes) {
                 for (const int budget : space.budgets) {
                     SettingCost row = measureSetting({mode, tolerance, spacing, budget}, contact, field_part->part,
                                                      shell_part->part, poses, timed, space.repetitions, lever);

@@ -15,7 +15,7 @@ namespace passung::truth {
 
 /// One way to ask for a contact: what a scene may choose.
 struct AccuracySetting {
-    model::FieldMode mode = model::FieldMode::Trilinear;
+    field::FieldMode mode = field::FieldMode::Trilinear;
     double tolerance = 20e-6;  // of FIELD's distance field [m]
     double spacing = 1e-3;     // of SHELL's points [m]
     int budget_nodes = 0;      // 0 = none
@@ -23,7 +23,7 @@ struct AccuracySetting {
 
 /// Every combination of the four lists is measured.
 struct AccuracySpace {
-    std::vector<model::FieldMode> modes{model::kFieldModes.begin(), model::kFieldModes.end()};
+    std::vector<field::FieldMode> modes{field::kFieldModes.begin(), field::kFieldModes.end()};
     std::vector<double> tolerances{100e-6, 50e-6, 20e-6, 10e-6};  // [m]
     std::vector<double> spacings;                                 // [m]; empty: see defaultSpacings
     std::vector<int> budgets{0, 1000, 300, 100};
@@ -61,14 +61,14 @@ struct SettingCost {
 };
 
 /// shared_ptr: a scene that is asked holds its parts, and more than one has them.
-using SharedPart = std::shared_ptr<const model::Part>;
+using SharedPart = std::shared_ptr<const scene::Part>;
 
 /// Lets a tick ask at all `poses` and compares the answer with what is known of their truth; times it at `timed`,
 /// `repetitions` times each (the fastest counts) after one round that does not count. Fills times, errors, points and
 /// memory of a row. Of `contact` count method, variant and two_way: the query is that of the tick's own stages.
 /// Wrenches are the area-weighted penalty of the contacts that it finds, whatever the tick makes of them.
 /// @pre `field` holds a field, `shell` a shell, for two-way contact both.
-SettingCost measureSetting(const AccuracySetting& setting, model::ContactSpec contact, const SharedPart& field,
+SettingCost measureSetting(const AccuracySetting& setting, scene::ContactSpec contact, const SharedPart& field,
                            const SharedPart& shell, const std::vector<JudgedPose>& poses,
                            const std::vector<Pose>& timed, int repetitions, double lever);
 
@@ -92,10 +92,10 @@ using StepReport = std::function<void(const std::string& what, double share)>;
 /// `poses`, compares it with their truth, and holds the proven query's intervals against the truth there and at
 /// `shaken`. `store`, if not null, keeps fields and points from run to run, with the time that building them took.
 /// Errors: a part cannot be built.
-Result<AccuracyResult> sweepAccuracy(const model::PartSpec& field, const model::PartSpec& shell,
+Result<AccuracyResult> sweepAccuracy(const scene::PartSpec& field, const scene::PartSpec& shell,
                                      const AccuracySpace& space, const std::vector<JudgedPose>& poses,
                                      const std::vector<JudgedPose>& shaken, double lever, const StepReport& report,
-                                     model::BuildStore* store = nullptr);
+                                     scene::BuildStore* store = nullptr);
 
 /// Marks the rows that no other beats in both time (p99) and error (p99): of the depth, and of the force.
 void markFronts(std::vector<SettingCost>& rows);

@@ -50,7 +50,7 @@ RowColumns rowColumns() {
     using Row = SettingCost;
     RowColumns columns{
         {"mode", "", "interpolation of the field",
-         [](const Row& r) { return std::string(model::modeName(r.setting.mode)); }},
+         [](const Row& r) { return std::string(field::modeName(r.setting.mode)); }},
         {"tolerance_um", "um", "asked accuracy of FIELD's distance field",
          [](const Row& r) { return cell(1e6 * r.setting.tolerance); }},
         {"spacing_mm", "mm", "asked spacing of SHELL's points",
@@ -167,7 +167,7 @@ std::string settingText(const AccuracySetting& setting) {
     const std::string budget =
         setting.budget_nodes > 0 ? fmt::format(", {} nodes", setting.budget_nodes) : std::string();
     return fmt::format("{:g} µm, {:g} mm, {}{}", 1e6 * setting.tolerance, 1e3 * setting.spacing,
-                       model::modeName(setting.mode), budget);
+                       field::modeName(setting.mode), budget);
 }
 
 std::string frontText(const std::vector<SettingCost>& rows) {

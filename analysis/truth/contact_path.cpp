@@ -38,7 +38,7 @@ Quat anyRotation(Random& random) {
     return Quat(w, x, y, z).normalized();
 }
 
-Vec3 anyPointIn(const model::Bounds& box, double share, Random& random) {
+Vec3 anyPointIn(const geometry::Bounds& box, double share, Random& random) {
     const double x = random.uniform(-1, 1), y = random.uniform(-1, 1), z = random.uniform(-1, 1);
     return 0.5 * (box.low + box.high) + 0.5 * share * box.size().cwiseProduct(Vec3(x, y, z));
 }
@@ -46,7 +46,7 @@ Vec3 anyPointIn(const model::Bounds& box, double share, Random& random) {
 /// Poses with aligned frames at which SHELL is free and its middle lies in FIELD's box.
 std::vector<Pose> freeHomes(const PairTruth& truth) {
     std::vector<Pose> homes;
-    const model::Bounds& box = truth.fieldBounds();
+    const geometry::Bounds& box = truth.fieldBounds();
     const double reach = 0.5 * (box.size() + truth.shellBounds().size()).maxCoeff();
     for (int axis = 0; axis < 3; ++axis) {
         for (int i = 0; i < kHomes; ++i) {
@@ -149,7 +149,7 @@ template <class Body>
 void forEach(std::size_t count, const ProgressReport& report, const Body& body) {
     std::mutex one_at_a_time;
     std::size_t done = 0;
-    model::parallelFor(count, [&](std::size_t i) {
+    geometry::parallelFor(count, [&](std::size_t i) {
         body(i);
         const std::lock_guard lock(one_at_a_time);
         report(static_cast<double>(++done) / static_cast<double>(count));
@@ -184,7 +184,7 @@ std::vector<JudgedPose> judgePoses(const PairTruth& truth, const std::vector<Pos
 std::vector<JudgedPose> shakenPoses(const PairTruth& truth, const std::vector<JudgedPose>& near, int count,
                                     std::uint64_t seed, const ProgressReport& report) {
     std::vector<JudgedPose> poses(static_cast<std::size_t>(count));
-    const model::Bounds& box = truth.fieldBounds();
+    const geometry::Bounds& box = truth.fieldBounds();
     const double reach = 0.5 * truth.shellBounds().size().norm();
     forEach(poses.size(), report, [&](std::size_t i) {
         Random random(seed * 2'000'003 + i);
@@ -194,7 +194,7 @@ std::vector<JudgedPose> shakenPoses(const PairTruth& truth, const std::vector<Ju
             X_FS.p += kShaken * truth.length() * random.uniform(-1, 1) * anyDirection(random);
             X_FS.q = (rotationFromVector(kShakenTilt * random.uniform() * anyDirection(random)) * X_FS.q).normalized();
         } else {
-            const model::Bounds around{box.low - Vec3::Constant(reach), box.high + Vec3::Constant(reach)};
+            const geometry::Bounds around{box.low - Vec3::Constant(reach), box.high + Vec3::Constant(reach)};
             X_FS = {anyRotation(random), anyPointIn(around, 1.0, random)};
         }
         poses[i].truth = truth.relationAt(X_FS);

@@ -51,7 +51,7 @@ int binOf(double value, double low, double inverse_size, int count) {
 }
 
 /// Distance of `p` from the box, less what rounding may add: a triangle in it is never nearer.
-double distanceToBox(const Vec3& p, const model::Bounds& box) {
+double distanceToBox(const Vec3& p, const geometry::Bounds& box) {
     constexpr double kLess = 1.0 - 1e-12;
     return kLess * (box.low - p).cwiseMax(p - box.high).cwiseMax(0.0).norm();
 }
@@ -85,9 +85,9 @@ double distanceToTriangle(const Vec3& p, const Corners& t) {
         {distanceToSegment(p, t[0], t[1]), distanceToSegment(p, t[1], t[2]), distanceToSegment(p, t[2], t[0])});
 }
 
-ExactMesh::ExactMesh(const model::TriangleMesh& mesh) {
+ExactMesh::ExactMesh(const geometry::TriangleMesh& mesh) {
     triangles_.reserve(mesh.triangles.size());
-    for (const model::Triangle& t : mesh.triangles) {
+    for (const geometry::Triangle& t : mesh.triangles) {
         triangles_.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
         for (const Vec3& corner : triangles_.back()) bounds_.extend(corner);
     }
@@ -106,7 +106,7 @@ ExactMesh::ExactMesh(const model::TriangleMesh& mesh) {
 
 std::uint32_t ExactMesh::grow(std::uint32_t first, std::uint32_t end) {
     const auto index = static_cast<std::uint32_t>(nodes_.size());
-    model::Bounds box, middles;
+    geometry::Bounds box, middles;
     const auto middleOf = [&](std::uint32_t i) { return Vec3(triangles_[i][0] + triangles_[i][1] + triangles_[i][2]); };
     for (std::uint32_t k = first; k < end; ++k) {
         for (const Vec3& corner : triangles_[order_[k]]) box.extend(corner);
@@ -176,7 +176,7 @@ void ExactMesh::collectAround(const Vec3& p, double radius, std::vector<std::uin
 ExactMesh::RayView ExactMesh::buildView(const Mat3& turn) const {
     RayView view;
     view.turn = turn;
-    model::Bounds box;
+    geometry::Bounds box;
     for (const Corners& t : triangles_) {
         view.corners.push_back({turn * t[0], turn * t[1], turn * t[2]});
         for (const Vec3& corner : view.corners.back()) box.extend(corner);
@@ -188,7 +188,7 @@ ExactMesh::RayView ExactMesh::buildView(const Mat3& turn) const {
     view.inverse_bin_x = bins / size.x();
     view.inverse_bin_y = bins / size.y();
     const auto visit = [&](std::size_t i, const auto& mark) {
-        model::Bounds shadow;
+        geometry::Bounds shadow;
         for (const Vec3& corner : view.corners[i]) shadow.extend(corner);
         // binOf is monotonic: a point in the triangle's shadow is in one of these bins, rounding or not.
         const int x_end = binOf(shadow.high.x(), view.low_x, view.inverse_bin_x, bins);
@@ -281,7 +281,7 @@ DeepestPoint deepestPoint(const ExactMesh& solid, const ExactMesh& surface, cons
     const double unknown = std::numeric_limits<double>::infinity();
     for (const Corners& t : surface.triangles()) {
         const Corners corners{X_FS * t[0], X_FS * t[1], X_FS * t[2]};
-        model::Bounds box;
+        geometry::Bounds box;
         for (const Vec3& corner : corners) box.extend(corner);
         const bool away = (box.low.array() > solid.bounds().high.array()).any() ||
                           (box.high.array() < solid.bounds().low.array()).any();

@@ -17,7 +17,7 @@ using Corners = std::array<Vec3, 3>;
 class ExactMesh {
 public:
     /// @pre at least one triangle, finite vertices.
-    explicit ExactMesh(const model::TriangleMesh& mesh);
+    explicit ExactMesh(const geometry::TriangleMesh& mesh);
 
     struct Nearest {
         double distance = 0.0;       // unsigned [m]
@@ -38,7 +38,7 @@ public:
     void collectAround(const Vec3& p, double radius, std::vector<std::uint32_t>& triangles) const;
 
     const std::vector<Corners>& triangles() const { return triangles_; }
-    const model::Bounds& bounds() const { return bounds_; }
+    const geometry::Bounds& bounds() const { return bounds_; }
 
 private:
     /// The triangles as one ray direction sees them: corners turned so that the ray runs along +z, in bins over x, y.
@@ -53,7 +53,7 @@ private:
 
     /// A box around the triangles `first` to `end` of the tree's order.
     struct Node {
-        model::Bounds box;
+        geometry::Bounds box;
         std::uint32_t first, end;
         std::uint32_t right = 0;  // 0: leaf; the left child follows its parent
     };
@@ -61,7 +61,7 @@ private:
     RayView buildView(const Mat3& turn) const;
 
     std::vector<Corners> triangles_;
-    model::Bounds bounds_;
+    geometry::Bounds bounds_;
     std::vector<Node> nodes_;
     std::vector<std::uint32_t> order_;  // of the triangles in the tree
     std::vector<Corners> sorted_;       // the triangles in that order

@@ -17,13 +17,13 @@ using FclSurface = fcl::BVHModel<fcl::OBBRSSd>;
 // smaller units; a power of two, so that nothing is rounded by it.
 constexpr double kPerMetre = 65536.0;
 
-std::unique_ptr<FclSurface> surfaceOf(const model::TriangleMesh& mesh) {
+std::unique_ptr<FclSurface> surfaceOf(const geometry::TriangleMesh& mesh) {
     std::vector<Vec3> vertices;
     vertices.reserve(mesh.vertices.size());
     for (const Vec3& v : mesh.vertices) vertices.push_back(kPerMetre * v);
     std::vector<fcl::Triangle> triangles;
     triangles.reserve(mesh.triangles.size());
-    for (const model::Triangle& t : mesh.triangles) triangles.emplace_back(t[0], t[1], t[2]);
+    for (const geometry::Triangle& t : mesh.triangles) triangles.emplace_back(t[0], t[1], t[2]);
     auto surface = std::make_unique<FclSurface>();
     surface->beginModel();
     surface->addSubModel(vertices, triangles);
@@ -60,7 +60,7 @@ const char* toString(Relation relation) {
     return "";
 }
 
-MeshOracle::MeshOracle(const model::TriangleMesh& a, const model::TriangleMesh& b)
+MeshOracle::MeshOracle(const geometry::TriangleMesh& a, const geometry::TriangleMesh& b)
     : surfaces_(std::make_unique<Surfaces>()), exact_a_(a), exact_b_(b) {
     surfaces_->a = surfaceOf(a);
     surfaces_->b = surfaceOf(b);

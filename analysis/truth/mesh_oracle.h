@@ -24,7 +24,7 @@ const char* toString(Relation relation);
 class MeshOracle {
 public:
     /// @pre at least one triangle each, finite vertices.
-    MeshOracle(const model::TriangleMesh& a, const model::TriangleMesh& b);
+    MeshOracle(const geometry::TriangleMesh& a, const geometry::TriangleMesh& b);
     ~MeshOracle();
     MeshOracle(MeshOracle&&) noexcept;
     MeshOracle& operator=(MeshOracle&&) noexcept;

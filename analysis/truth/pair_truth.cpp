@@ -15,16 +15,16 @@ constexpr std::size_t kQuickPieces = 20'000;
 constexpr double kDenseShare = 1.0 / 250;  // of SHELL's longest side: pieces of the dense sum
 constexpr double kCoarser = 2.0;           // a second sum, for the uncertainty of the first; a quick sum
 
-Result<model::Part> surfaceOf(const model::PartSpec& spec, double tolerance, model::BuildStore* store) {
-    auto part = model::buildPart(spec, {.tolerance = tolerance}, store);
+Result<scene::Part> surfaceOf(const scene::PartSpec& spec, double tolerance, scene::BuildStore* store) {
+    auto part = scene::buildPart(spec, {.tolerance = tolerance}, store);
     if (part && part->mesh.triangles.empty()) return Error{.message = "has no triangles", .file = spec.name};
     return part;
 }
 
 }  // namespace
 
-Result<PairTruth> PairTruth::build(const model::PartSpec& field, const model::PartSpec& shell,
-                                   model::BuildStore* store) {
+Result<PairTruth> PairTruth::build(const scene::PartSpec& field, const scene::PartSpec& shell,
+                                   scene::BuildStore* store) {
     auto truth = build(field, shell, kTolerance, store);
     if (!truth || !(truth->field_.shape || truth->shell_.shape)) return truth;
     auto rough = build(field, shell, kRoughTolerance, store);
@@ -33,8 +33,8 @@ Result<PairTruth> PairTruth::build(const model::PartSpec& field, const model::Pa
     return truth;
 }
 
-Result<PairTruth> PairTruth::build(const model::PartSpec& field, const model::PartSpec& shell, double tolerance,
-                                   model::BuildStore* store) {
+Result<PairTruth> PairTruth::build(const scene::PartSpec& field, const scene::PartSpec& shell, double tolerance,
+                                   scene::BuildStore* store) {
     auto a = surfaceOf(field, tolerance, store);
     if (!a) return a.errors();
     auto b = surfaceOf(shell, tolerance, store);
@@ -45,7 +45,7 @@ Result<PairTruth> PairTruth::build(const model::PartSpec& field, const model::Pa
     return PairTruth(std::move(*a), std::move(*b));
 }
 
-PairTruth::PairTruth(model::Part field, model::Part shell)
+PairTruth::PairTruth(scene::Part field, scene::Part shell)
     : field_(std::move(field)),
       shell_(std::move(shell)),
       oracle_(std::make_unique<MeshOracle>(field_.mesh, shell_.mesh)),

@@ -31,8 +31,8 @@ struct PoseTruth {
 class PairTruth {
 public:
     /// Errors: a part cannot be built; FIELD is not watertight, for there is no depth without an inside.
-    static Result<PairTruth> build(const model::PartSpec& field, const model::PartSpec& shell,
-                                   model::BuildStore* store = nullptr);
+    static Result<PairTruth> build(const scene::PartSpec& field, const scene::PartSpec& shell,
+                                   scene::BuildStore* store = nullptr);
 
     /// @pre `X_FS` finite.
     PoseTruth at(const Pose& X_FS) const;
@@ -51,21 +51,21 @@ public:
     /// to the truth as ever, but the proof of it is left out and the uncertainty large; the sum is half as dense.
     PoseTruth quicklyAt(const Pose& X_FS) const;
 
-    const model::Bounds& fieldBounds() const { return oracle_->a().bounds(); }
-    const model::Bounds& shellBounds() const { return oracle_->b().bounds(); }
+    const geometry::Bounds& fieldBounds() const { return oracle_->a().bounds(); }
+    const geometry::Bounds& shellBounds() const { return oracle_->b().bounds(); }
     /// Longest side of SHELL [m].
     double length() const { return shellBounds().size().maxCoeff(); }
     /// Distance of SHELL's farthest point from its origin [m]: the lever of its torques.
     double lever() const { return lever_; }
 
 private:
-    static Result<PairTruth> build(const model::PartSpec& field, const model::PartSpec& shell, double tolerance,
-                                   model::BuildStore* store);
-    PairTruth(model::Part field, model::Part shell);
+    static Result<PairTruth> build(const scene::PartSpec& field, const scene::PartSpec& shell, double tolerance,
+                                   scene::BuildStore* store);
+    PairTruth(scene::Part field, scene::Part shell);
     void addWrench(const Pose& X_FS, double edge, PoseTruth& truth) const;
     Solid solid() const { return {oracle_->a(), field_.shape ? &*field_.shape : nullptr, field_.chord_error}; }
 
-    model::Part field_, shell_;
+    scene::Part field_, shell_;
     std::unique_ptr<MeshOracle> oracle_;
     std::unique_ptr<SurfaceTree> surface_;
     std::unique_ptr<PairTruth> rough_;

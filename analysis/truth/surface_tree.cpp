@@ -59,7 +59,7 @@ struct Integral {
 }  // namespace
 
 double Solid::signedDistance(const Vec3& p) const {
-    return shape != nullptr ? model::signedDistance(*shape, p) : mesh.signedDistance(p);
+    return shape != nullptr ? shape::signedDistance(*shape, p) : mesh.signedDistance(p);
 }
 
 SurfaceTree::SurfaceTree(const ExactMesh& surface) : triangles_(surface.triangles()) {
@@ -68,7 +68,7 @@ SurfaceTree::SurfaceTree(const ExactMesh& surface) : triangles_(surface.triangle
 
 std::uint32_t SurfaceTree::grow(std::uint32_t first, std::uint32_t end) {
     const auto index = static_cast<std::uint32_t>(nodes_.size());
-    model::Bounds bounds;
+    geometry::Bounds bounds;
     for (std::uint32_t i = first; i < end; ++i)
         for (const Vec3& corner : triangles_[i]) bounds.extend(corner);
     const Vec3 centre = 0.5 * (bounds.low + bounds.high);

@@ -14,7 +14,7 @@ namespace passung::truth {
 /// `chord_error` [m] of it. The mesh and the shape must outlive it.
 struct Solid {
     const ExactMesh& mesh;
-    const model::Shape* shape = nullptr;  // none: the triangles themselves are meant
+    const shape::Shape* shape = nullptr;  // none: the triangles themselves are meant
     double chord_error = 0.0;             // 0 without a shape
     double signedDistance(const Vec3& p) const;
 };

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace passung::tick {
+namespace passung::contact {
 
 namespace {
 
@@ -141,4 +141,4 @@ std::span<const ContactCluster> ClusterFinder::find(const ContactManifold& manif
     return {clusters_.data(), listed};
 }
 
-}  // namespace passung::tick
+}  // namespace passung::contact

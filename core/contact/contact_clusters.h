@@ -7,7 +7,7 @@
 #include "core/base/types.h"
 #include "core/contact/contact_query.h"
 
-namespace passung::tick {
+namespace passung::contact {
 
 /// A patch of contact: points inside the obstacle that hang together; world frame.
 struct ContactCluster {
@@ -70,4 +70,4 @@ private:
     std::size_t found_ = 0;
 };
 
-}  // namespace passung::tick
+}  // namespace passung::contact

@@ -5,24 +5,24 @@
 #include "core/contact/contact_query.h"
 #include "core/contact/rim_gradient.h"
 
-namespace passung::tick {
+namespace passung::contact {
 
 inline constexpr std::uint32_t kNoPoint = ~0u;
 inline constexpr double kFacing = 0.8;  // cosine between a face's inward normal and φ's gradient
 
 /// A shell in a field, both in the world.
 struct ShellInField {
-    const model::DistanceField& field;
-    const model::SphereTree& shell;
+    const field::DistanceField& field;
+    const shell::SphereTree& shell;
     const Pose& X_WF;
-    const model::DistanceField::Placement S;  // the shell in the field
+    const field::DistanceField::Placement S;  // the shell in the field
     const Mat3 R_WF;
     const Mat3 R_FS;
     const Vec3 p_FS;
     const Mat3 R_WS;
     const Vec3 p_WS;
 
-    ShellInField(const model::DistanceField& f, const Pose& X_WF_, const model::SphereTree& s, const Pose& X_FS,
+    ShellInField(const field::DistanceField& f, const Pose& X_WF_, const shell::SphereTree& s, const Pose& X_FS,
                  const Pose& X_WS)
         : field(f),
           shell(s),
@@ -37,7 +37,7 @@ struct ShellInField {
     Vec3 inField(const Vec3& position) const noexcept { return R_FS * position + p_FS; }
     Vec3 inWorld(const Vec3& position) const noexcept { return R_WS * position + p_WS; }
     /// φ and its gradient where the shell has the normal `normal`.
-    model::FieldSample sample(const Vec3& p_F, model::FieldMode mode, const Vec3& normal) const noexcept {
+    field::FieldSample sample(const Vec3& p_F, field::FieldMode mode, const Vec3& normal) const noexcept {
         return field.sample(p_F, mode, -(R_FS * normal));
     }
 };
@@ -51,16 +51,16 @@ struct QueryPlan {
     const bool facing;
     const double slack;  // sampleMany is off by at most this next to sample() [m]
 
-    QueryPlan(const QueryRequest& r, const model::DistanceField& field)
+    QueryPlan(const QueryRequest& r, const field::DistanceField& field)
         : request(r),
           ordered(r.max_nodes > 0 || r.search_below > r.collect_below),
-          grouped(r.load && r.collect_below == 0.0 && !ordered && !r.prove && r.mode == model::FieldMode::Trilinear),
+          grouped(r.load && r.collect_below == 0.0 && !ordered && !r.prove && r.mode == field::FieldMode::Trilinear),
           gradients(r.gradients && !r.load),
           facing(r.facing && !(field.sheetOffset() > 0.0)),
           // No brick spans more: its cells are those asked for, or at most 1/72 of the longest side.
           slack(0x1p-20 * (field.bounds().size().norm() + 14.0 * field.cell())) {}
 
-    bool pointwise() const noexcept { return request.mode != model::FieldMode::Trilinear; }
+    bool pointwise() const noexcept { return request.mode != field::FieldMode::Trilinear; }
 };
 
 /// A sample of the shell.
@@ -88,7 +88,7 @@ public:
     void prove(double bound) noexcept { answer.lower_bound = std::min(answer.lower_bound, bound); }
 
     /// A sample that was read: the deepest so far, a contact, both or neither.
-    void take(const Vec3& p_F, const ShellSample& sample, const model::FieldSample& s) noexcept {
+    void take(const Vec3& p_F, const ShellSample& sample, const field::FieldSample& s) noexcept {
         if (s.phi < answer.phi) {
             answer.found = true;
             deepest_ = sample.point;
@@ -122,7 +122,7 @@ public:
     }
 
     /// The sphere of a node that is not looked into.
-    void standIn(const model::SphereNode& node, double bound) noexcept {
+    void standIn(const shell::SphereNode& node, double bound) noexcept {
         if (!(bound < plan_.request.collect_below)) return;
         const Vec3 centre_F = place_.inField(node.centre);
         ContactPoint contact;
@@ -145,7 +145,7 @@ private:
     void push(const ContactPoint& contact) noexcept {
         if (!manifold_.tryPush(contact)) answer.manifold_full = true;
     }
-    void setDeepest(const Vec3& p_F, const model::FieldSample& s) noexcept {
+    void setDeepest(const Vec3& p_F, const field::FieldSample& s) noexcept {
         answer.phi = s.phi;
         answer.closest_F = p_F;
         answer.normal_W = s.gradient;
@@ -158,4 +158,4 @@ private:
     Vec3 force_ = Vec3::Zero(), moment_ = Vec3::Zero();  // of the load, in the shell's frame
 };
 
-}  // namespace passung::tick
+}  // namespace passung::contact

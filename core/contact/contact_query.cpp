@@ -7,7 +7,7 @@
 #include "core/contact/contact_finds.h"
 #include "core/contact/surface_descent.h"
 
-namespace passung::tick {
+namespace passung::contact {
 
 namespace {
 
@@ -21,7 +21,7 @@ struct Batch {
     std::array<std::uint32_t, kBatch> index;
     std::size_t count = 0;
 
-    void append(const model::FloatPositions& from, std::uint32_t first, std::size_t n) noexcept {
+    void append(const shell::FloatPositions& from, std::uint32_t first, std::size_t n) noexcept {
         std::copy_n(from.x(first, n).data(), n, x.data() + count);
         std::copy_n(from.y(first, n).data(), n, y.data() + count);
         std::copy_n(from.z(first, n).data(), n, z.data() + count);
@@ -41,7 +41,7 @@ void ContactFinds::refine() noexcept {
     const Descent found = descend(place_.field, place_.S, place_.shell, deepest_, answer.phi);
     answer.points_tested += found.points_tested;
     const Vec3 p_F = place_.inField(found.position);
-    const model::FieldSample s = place_.sample(p_F, plan_.request.mode, place_.shell.points()[deepest_].normal);
+    const field::FieldSample s = place_.sample(p_F, plan_.request.mode, place_.shell.points()[deepest_].normal);
     if (s.phi < answer.phi) setDeepest(p_F, s);
 }
 
@@ -100,8 +100,8 @@ struct Traversal {
     ContactFinds& finds;
     QueryWorkspace& workspace;
     const QueryRequest& request;
-    const model::DistanceField& field;
-    const model::SphereTree& shell;
+    const field::DistanceField& field;
+    const shell::SphereTree& shell;
     NodeQueue queue;
     NearGroups groups;
     Batch batch;
@@ -117,14 +117,14 @@ struct Traversal {
           shell(in.shell),
           queue(w.heap_, p.ordered) {}
 
-    bool exceedsBudget(const model::SphereNode& node) const noexcept {
+    bool exceedsBudget(const shell::SphereNode& node) const noexcept {
         const int children = node.leaf ? 0 : static_cast<int>(node.count);
         return request.max_nodes > 0 && finds.answer.nodes_visited + children > request.max_nodes;
     }
 
     /// Some nodes that follow each other; `above`: the bound of their parent holds for their points too.
     void push(std::uint32_t begin, std::uint32_t count, double above) noexcept {
-        std::array<float, model::SphereTree::kChildren> at_centre;
+        std::array<float, shell::SphereTree::kChildren> at_centre;
         const auto& centres = shell.centres();
         field.lowerBounds(place.S, centres.x(begin, count), centres.y(begin, count), centres.z(begin, count),
                           {at_centre.data(), count});
@@ -147,10 +147,10 @@ struct Traversal {
     }
 
     /// All points of a leaf.
-    void evaluateLeaf(const model::SphereNode& leaf, double above) noexcept {
+    void evaluateLeaf(const shell::SphereNode& leaf, double above) noexcept {
         if (plan.pointwise()) {
             for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
-                const model::SurfacePoint& point = shell.points()[i];
+                const shell::SurfacePoint& point = shell.points()[i];
                 evaluate({point.position, point.normal, point.area, i}, above);
             }
             return;
@@ -158,7 +158,7 @@ struct Traversal {
         batch.append(shell.positions(), leaf.first, leaf.count);
         evaluateBatch();
         if (finds.hasToProve(above)) {
-            std::array<float, model::SphereTree::kLeafPoints> low;
+            std::array<float, shell::SphereTree::kLeafPoints> low;
             const auto& at = shell.positions();
             field.lowerBounds(place.S, at.x(leaf.first, leaf.count), at.y(leaf.first, leaf.count),
                               at.z(leaf.first, leaf.count), {low.data(), leaf.count});
@@ -189,7 +189,7 @@ struct Traversal {
         for (std::size_t k = 0; k < nears; ++k) {
             const double read = static_cast<double>(batch.read[near[k]]);
             const std::uint32_t point = batch.index[near[k]];
-            const model::Facing& weight = shell.facings()[point];
+            const shell::Facing& weight = shell.facings()[point];
             const ShellSample sample{batch.position(near[k]), weight.normal.cast<double>(),
                                      static_cast<double>(weight.area), point};
             const bool exactly = plan.gradients || (!request.load && !(sample.area > 0.0));
@@ -222,8 +222,8 @@ struct Traversal {
         };
         batch.append(shell.centres(), 0, shell.roots().size());
         for (screen(); next < end; screen())
-            while (next < end && batch.count + model::SphereTree::kChildren <= kBatch) {
-                const model::SphereNode& node = shell.nodes()[heap[next++].node];
+            while (next < end && batch.count + shell::SphereTree::kChildren <= kBatch) {
+                const shell::SphereNode& node = shell.nodes()[heap[next++].node];
                 batch.append(shell.centres(), node.first, node.count);
             }
         if (plan.grouped) return sweepGroups(leaves);
@@ -234,7 +234,7 @@ struct Traversal {
                 continue;
             }
             while (leaves < heap.size()) {
-                const model::SphereNode& leaf = shell.nodes()[heap[leaves].node];
+                const shell::SphereNode& leaf = shell.nodes()[heap[leaves].node];
                 if (batch.count + leaf.count > kBatch) break;
                 batch.append(shell.positions(), leaf.first, leaf.count);
                 ++leaves;
@@ -252,9 +252,9 @@ struct Traversal {
         const std::vector<QueryWorkspace::Entry>& heap = workspace.heap_;
         while (leaf < heap.size()) {
             for (; leaf < heap.size(); ++leaf) {
-                const model::SphereNode& node = shell.nodes()[heap[leaf].node];
+                const shell::SphereNode& node = shell.nodes()[heap[leaf].node];
                 const std::uint32_t count =
-                    (node.count + model::SphereTree::kGroupPoints - 1) / model::SphereTree::kGroupPoints;
+                    (node.count + shell::SphereTree::kGroupPoints - 1) / shell::SphereTree::kGroupPoints;
                 if (batch.count + count > kBatch) break;
                 batch.append(shell.groupPositions(), node.first_group, count);
             }
@@ -279,7 +279,7 @@ struct Traversal {
             if (may_be_deepest || (phi > within * radius && phi < without * radius)) {
                 takeApart(group);
             } else if (phi < 0.0f) {
-                const model::Facing& whole = shell.groupFacings()[group];
+                const shell::Facing& whole = shell.groupFacings()[group];
                 finds.collect(
                     {shell.groupPositions().at(group), whole.normal.cast<double>(), static_cast<double>(whole.area)},
                     static_cast<double>(phi), Vec3::Zero());
@@ -315,7 +315,7 @@ struct Traversal {
                 break;
             }
             const QueryWorkspace::Entry entry = queue.pop();
-            const model::SphereNode& node = shell.nodes()[entry.node];
+            const shell::SphereNode& node = shell.nodes()[entry.node];
             if (entry.bound >= finds.pruneAbove()) continue;
             if (node.leaf) {
                 evaluateLeaf(node, entry.bound);
@@ -328,7 +328,7 @@ struct Traversal {
 
     /// One point and the sphere of a node that is not looked into.
     void standIn(const QueryWorkspace::Entry& entry) noexcept {
-        const model::SphereNode& node = shell.nodes()[entry.node];
+        const shell::SphereNode& node = shell.nodes()[entry.node];
         if (entry.bound >= finds.pruneAbove()) return;
         evaluate({node.point, node.normal, node.facing_area}, entry.bound);
         if (request.spheres) finds.standIn(node, entry.bound);
@@ -337,7 +337,7 @@ struct Traversal {
     }
 };
 
-QueryAnswer queryContacts(const model::DistanceField& field, const Pose& X_WF, const model::SphereTree& shell,
+QueryAnswer queryContacts(const field::DistanceField& field, const Pose& X_WF, const shell::SphereTree& shell,
                           const Pose& X_WS, const QueryRequest& request, QueryWorkspace& workspace,
                           ContactManifold& manifold) noexcept {
     const ShellInField place(field, X_WF, shell, X_WF.inverse() * X_WS, X_WS);
@@ -349,4 +349,4 @@ QueryAnswer queryContacts(const model::DistanceField& field, const Pose& X_WF, c
     return finds.told(traversal.unproven_area);
 }
 
-}  // namespace passung::tick
+}  // namespace passung::contact

@@ -8,7 +8,7 @@
 #include "core/field/distance_field.h"
 #include "core/shell/sphere_tree.h"
 
-namespace passung::tick {
+namespace passung::contact {
 
 /// One shell point near or inside an obstacle, or a sphere that stands for points nobody looked at; world frame.
 struct ContactPoint {
@@ -58,7 +58,7 @@ private:
 /// Memory of a traversal, sized once for a tree.
 class QueryWorkspace {
 public:
-    explicit QueryWorkspace(std::size_t nodes = 0) : heap_(nodes), near_(nodes * model::SphereTree::kLeafGroups) {}
+    explicit QueryWorkspace(std::size_t nodes = 0) : heap_(nodes), near_(nodes * shell::SphereTree::kLeafGroups) {}
 
 private:
     struct Entry {
@@ -80,7 +80,7 @@ struct QueryRequest {
     double collect_below = 0.0;  // points with φ < this go into the manifold [m] (the thesis's p_c)
     double search_below = 0.0;   // the deepest or closest point is searched up to this φ [m]
     int max_nodes = 0;           // budget (the thesis's η_c, in nodes so that it is deterministic); 0 = none
-    model::FieldMode mode = model::FieldMode::Trilinear;
+    field::FieldMode mode = field::FieldMode::Trilinear;
     bool prove = false;     // also find QueryAnswer::lower_bound; costs about as much again
     bool spheres = false;   // a node left over by the budget also enters the manifold as a sphere
     bool gradients = true;  // of every contact; without them, φ of contacts is read in single precision, several times
@@ -123,8 +123,8 @@ struct QueryAnswer {
 ///   points out.
 /// Appends to `manifold`. rt-safe; the number of steps is bounded by the number of nodes.
 /// @pre `workspace` has room for all nodes of `shell`; poses are finite.
-QueryAnswer queryContacts(const model::DistanceField& field, const Pose& X_WF, const model::SphereTree& shell,
+QueryAnswer queryContacts(const field::DistanceField& field, const Pose& X_WF, const shell::SphereTree& shell,
                           const Pose& X_WS, const QueryRequest& request, QueryWorkspace& workspace,
                           ContactManifold& manifold) noexcept;
 
-}  // namespace passung::tick
+}  // namespace passung::contact

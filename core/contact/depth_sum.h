@@ -4,7 +4,7 @@
 
 #include "core/contact/contact_query.h"
 
-namespace passung::tick {
+namespace passung::contact {
 
 /// Contacts' depths along the shell's inward normals, as forces and moments about a point.
 struct DepthSum {
@@ -31,4 +31,4 @@ DepthSum sumDepths(const ContactManifold& manifold, bool weighted, const Vec3& p
     return all;
 }
 
-}  // namespace passung::tick
+}  // namespace passung::contact

@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 
-namespace passung::tick {
+namespace passung::contact {
 
 namespace {
 
 constexpr std::size_t kStretches = 64;  // looked at together
-constexpr std::size_t kStations = model::EdgeCurves::kStretchStations + 2;
+constexpr std::size_t kStations = shell::EdgeCurves::kStretchStations + 2;
 constexpr double kInset = 0.05;  // of the way between the ends: no nearer to one of them is looked
 constexpr double kBeside = 2.0;  // per finest cell: trilinear values round off a ridge as far as it cuts cells
 
@@ -25,10 +25,10 @@ struct Spot {
 
 /// State of one search.
 struct EdgeSearch {
-    const model::DistanceField& field;
-    const model::EdgeCurves& edges;
+    const field::DistanceField& field;
+    const shell::EdgeCurves& edges;
     const Pose& X_WF;
-    const model::DistanceField::Placement S;
+    const field::DistanceField::Placement S;
     const Mat3 R_WF, R_FS, R_WS;
     const Vec3 p_FS, p_WS;
     const QueryRequest& request;
@@ -37,7 +37,7 @@ struct EdgeSearch {
     QueryAnswer answer;
     double low = 0.0, high = 0.0;  // between which t's the search is
 
-    EdgeSearch(const model::DistanceField& f, const Pose& X_WF_, const model::EdgeCurves& e, const Pose& X_FS,
+    EdgeSearch(const field::DistanceField& f, const Pose& X_WF_, const shell::EdgeCurves& e, const Pose& X_FS,
                const Pose& X_WS, const QueryRequest& r, ContactManifold& m)
         : field(f),
           edges(e),
@@ -73,7 +73,7 @@ struct EdgeSearch {
     }
 
     /// Looks for stations that are lower than those beside them.
-    void scan(const model::EdgeCurves::Stretch& stretch) noexcept {
+    void scan(const shell::EdgeCurves::Stretch& stretch) noexcept {
         const std::uint32_t before = stretch.begins ? 0 : 1, after = stretch.ends ? 0 : 1;
         const std::uint32_t first = stretch.first - before, count = stretch.count + before + after;
         const auto& at = edges.positions();
@@ -106,7 +106,7 @@ struct EdgeSearch {
         Spot spot;
         spot.t = t;
         spot.p_S = p + (t - static_cast<double>(k)) * way;
-        const model::FieldSample sample = field.sample(R_FS * spot.p_S + p_FS, request.mode);
+        const field::FieldSample sample = field.sample(R_FS * spot.p_S + p_FS, request.mode);
         spot.phi = sample.phi;
         spot.gradient = sample.gradient;
         spot.way = R_FS * way;
@@ -179,11 +179,11 @@ struct EdgeSearch {
 
 }  // namespace
 
-QueryAnswer searchEdges(const model::DistanceField& field, const Pose& X_WF, const model::EdgeCurves& edges,
+QueryAnswer searchEdges(const field::DistanceField& field, const Pose& X_WF, const shell::EdgeCurves& edges,
                         const Pose& X_WS, const QueryRequest& request, ContactManifold& manifold) noexcept {
     const Pose X_FS = X_WF.inverse() * X_WS;
     EdgeSearch search(field, X_WF, edges, X_FS, X_WS, request, manifold);
-    const bool smooth = request.mode == model::FieldMode::Trilinear || request.mode == model::FieldMode::Cubic;
+    const bool smooth = request.mode == field::FieldMode::Trilinear || request.mode == field::FieldMode::Cubic;
     const bool sharp = field.finestCell() < field.cell();
     if (smooth && sharp && request.max_nodes == 0) search.run();
     QueryAnswer& answer = search.answer;
@@ -194,4 +194,4 @@ QueryAnswer searchEdges(const model::DistanceField& field, const Pose& X_WF, con
     return answer;
 }
 
-}  // namespace passung::tick
+}  // namespace passung::contact

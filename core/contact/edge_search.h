@@ -3,7 +3,7 @@
 #include "core/contact/contact_query.h"
 #include "core/shell/edge_curves.h"
 
-namespace passung::tick {
+namespace passung::contact {
 
 /// queryContacts for the edges of a shell in place of its points: between two samples of an edge, where it comes
 /// nearest to the obstacle or dips deepest into it, lies a contact that no sample shows. (Own.)
@@ -20,9 +20,9 @@ namespace passung::tick {
 /// a budget, in modes whose values jump from voxel to voxel, and for fields of cells of one size: refined to no
 /// tolerance, they blunt the obstacle's edges by more than lies between two samples. `lower_bound` is φ*, as far as it
 /// was found. A stretch counts as a node. rt-safe; the number of steps is bounded by the number of stations.
-QueryAnswer searchEdges(const model::DistanceField& field, const Pose& X_WF, const model::EdgeCurves& edges,
+QueryAnswer searchEdges(const field::DistanceField& field, const Pose& X_WF, const shell::EdgeCurves& edges,
                         const Pose& X_WS, const QueryRequest& request, ContactManifold& manifold) noexcept;
 inline constexpr double kAlong = 5e-4;
 inline constexpr int kEdgeSteps = 12;
 
-}  // namespace passung::tick
+}  // namespace passung::contact

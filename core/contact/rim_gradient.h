@@ -2,7 +2,7 @@
 
 #include "core/base/types.h"
 
-namespace passung::tick {
+namespace passung::contact {
 
 /// The gradient of φ at a face's sample that lies a little inside the other part, without the turn that trilinear
 /// values give it beside a rim. (Own.)
@@ -26,4 +26,4 @@ inline Vec3 withoutTurnOfRim(const Vec3& gradient, const Vec3& normal, double ph
     return (gradient - straight).norm() * along <= kAtCorner * -phi / cell ? straight : gradient;
 }
 
-}  // namespace passung::tick
+}  // namespace passung::contact

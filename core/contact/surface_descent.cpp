@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace passung::tick {
+namespace passung::contact {
 
 namespace {
 
@@ -17,14 +17,14 @@ constexpr std::array<float, kDirections> kSine{0.0f, kDiagonal, 1.0f, kDiagonal,
 
 }  // namespace
 
-Descent descend(const model::DistanceField& field, const model::DistanceField::Placement& S,
-                const model::SphereTree& shell, std::uint32_t start, double phi) noexcept {
-    const model::SurfaceWalk& surface = shell.surface();
-    const model::SurfacePoint& from = shell.points()[start];
+Descent descend(const field::DistanceField& field, const field::DistanceField::Placement& S,
+                const shell::SphereTree& shell, std::uint32_t start, double phi) noexcept {
+    const geometry::SurfaceWalk& surface = shell.surface();
+    const shell::SurfacePoint& from = shell.points()[start];
     if (from.triangle >= surface.size()) return {from.position, 0};
-    std::array<model::SurfaceWalk::WalkPlace, kDirections> tried;
+    std::array<geometry::SurfaceWalk::WalkPlace, kDirections> tried;
     std::array<float, kDirections> x, y, z, read;
-    model::SurfaceWalk::WalkPlace best{from.triangle, from.position.cast<float>()};
+    geometry::SurfaceWalk::WalkPlace best{from.triangle, from.position.cast<float>()};
     auto least = static_cast<float>(phi);
     const auto cover = static_cast<float>(shell.coverRadius());
     float length = kFirstStep * cover;
@@ -52,4 +52,4 @@ Descent descend(const model::DistanceField& field, const model::DistanceField::P
     return {best.position.cast<double>(), static_cast<int>(kDirections) * round};
 }
 
-}  // namespace passung::tick
+}  // namespace passung::contact

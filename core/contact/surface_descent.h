@@ -5,7 +5,7 @@
 #include "core/field/distance_field.h"
 #include "core/shell/sphere_tree.h"
 
-namespace passung::tick {
+namespace passung::contact {
 
 /// Where a search along a surface ended; frame of the shell.
 struct Descent {
@@ -18,8 +18,8 @@ struct Descent {
 /// turn from one time to the next; a third as long after a time without success. φ along a surface has ridges where the
 /// obstacle's nearest face changes; there slopes do not lead down, and these steps still do.
 /// rt-safe, at most kDescentRounds times eight points. Where the surface is not known: the start.
-Descent descend(const model::DistanceField& field, const model::DistanceField::Placement& S,
-                const model::SphereTree& shell, std::uint32_t start, double phi) noexcept;
+Descent descend(const field::DistanceField& field, const field::DistanceField::Placement& S,
+                const shell::SphereTree& shell, std::uint32_t start, double phi) noexcept;
 inline constexpr int kDescentRounds = 16;
 
-}  // namespace passung::tick
+}  // namespace passung::contact

@@ -9,7 +9,7 @@
 #include "core/field/interpolation.h"
 #include "core/geometry/parallel.h"
 
-namespace passung::model {
+namespace passung::field {
 
 namespace {
 
@@ -222,4 +222,4 @@ double DistanceField::errorBound(const Vec3& p, FieldMode mode) const noexcept {
     return of_trilinear + std::abs(sample(p, mode).phi - trilinear) + arithmetic_;
 }
 
-}  // namespace passung::model
+}  // namespace passung::field

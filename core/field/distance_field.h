@@ -17,11 +17,11 @@
 #include "core/field/surface_block.h"
 #include "core/geometry/mesh.h"
 
-namespace passung::model {
+namespace passung::field {
 
 /// Exact geometry that a field is sampled from; part frame, metres. Called from several threads.
 struct DistanceSource {
-    Bounds bounds;                                // of the surface
+    geometry::Bounds bounds;                      // of the surface
     double area = 0.0;                            // of it [m²]; 0: unknown
     std::function<double(const Vec3&)> distance;  // unsigned, exact
     std::function<bool(const Vec3&)> inside;      // never called for an open sheet
@@ -143,7 +143,7 @@ public:
     bool refined() const { return refined_; }
     /// How far the zero level lies in front of an open sheet's surface, on both sides [m]; 0 for solids.
     double sheetOffset() const { return sheet_offset_; }
-    const Bounds& bounds() const { return surface_bounds_; }
+    const geometry::Bounds& bounds() const { return surface_bounds_; }
     std::size_t brickCount() const { return bricks_.size(); }
     std::size_t memoryBytes() const;
 
@@ -216,7 +216,7 @@ private:
     std::size_t coarseNode(int x, int y, int z) const noexcept;
     std::size_t coarseCell(int x, int y, int z) const noexcept;
 
-    Bounds surface_bounds_;
+    geometry::Bounds surface_bounds_;
     Vec3 origin_ = Vec3::Zero();         // of the coarse grid
     std::array<int, 3> coarse_cells_{};  // per axis
     double cell_ = 0.0;                  // asked for [m]
@@ -247,4 +247,4 @@ private:
     std::vector<Head> heads_;
 };
 
-}  // namespace passung::model
+}  // namespace passung::field

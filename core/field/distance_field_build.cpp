@@ -7,7 +7,7 @@
 #include "core/field/interpolation.h"
 #include "core/geometry/parallel.h"
 
-namespace passung::model {
+namespace passung::field {
 
 namespace {
 
@@ -76,7 +76,7 @@ void DistanceField::Builder::sampleCoarse() {
     const int nx = cells[0] + 1, ny = cells[1] + 1, nz = cells[2] + 1;
     field.coarse_.resize(static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny) * static_cast<std::size_t>(nz));
     const double edge = field.brick_edge_;
-    parallelFor(static_cast<std::size_t>(nz) * static_cast<std::size_t>(ny), [&](std::size_t row) {
+    geometry::parallelFor(static_cast<std::size_t>(nz) * static_cast<std::size_t>(ny), [&](std::size_t row) {
         const int y = static_cast<int>(row % static_cast<std::size_t>(ny));
         const int z = static_cast<int>(row / static_cast<std::size_t>(ny));
         const Vec3 start = field.origin_ + edge * Vec3(0.0, y, z);
@@ -100,7 +100,7 @@ void DistanceField::Builder::placeBricks() {
         -1);
     const auto lowOf = [&](int x, int y, int z) { return Vec3(field.origin_ + edge * Vec3(x, y, z)); };
     const auto rows = static_cast<std::size_t>(cells[1]) * static_cast<std::size_t>(cells[2]);
-    parallelFor(rows, [&](std::size_t row) {
+    geometry::parallelFor(rows, [&](std::size_t row) {
         const int y = static_cast<int>(row % static_cast<std::size_t>(cells[1]));
         const int z = static_cast<int>(row / static_cast<std::size_t>(cells[1]));
         for (int x = 0; x < cells[0]; ++x) {
@@ -132,7 +132,7 @@ void DistanceField::Builder::sampleLevel() {
     field.slacks_.resize(low.size());
     field.samples_.resize(low.size() * kBrickSamples);
     wrong.resize(low.size() - first);
-    parallelFor(wrong.size(), [&](std::size_t i) { sampleBrick(first + i); });
+    geometry::parallelFor(wrong.size(), [&](std::size_t i) { sampleBrick(first + i); });
 }
 
 /// What the source says of a block, in one piece or point by point; then without the cells' centres, which are NaN.
@@ -252,4 +252,4 @@ bool DistanceField::Builder::refine() {
     return true;
 }
 
-}  // namespace passung::model
+}  // namespace passung::field

@@ -13,7 +13,7 @@
 #include "core/field/surface_block.h"
 
 /// What builds a DistanceField: distance_field_build.cpp samples and refines, distance_field_errors.cpp says where.
-namespace passung::model {
+namespace passung::field {
 
 /// Exact φ without the sheet's offset.
 struct ExactDistance {
@@ -98,4 +98,4 @@ struct DistanceField::Builder {
     bool refine();
 };
 
-}  // namespace passung::model
+}  // namespace passung::field

@@ -5,7 +5,7 @@
 #include "core/base/bytes.h"
 #include "core/field/distance_field.h"
 
-namespace passung::model {
+namespace passung::field {
 
 namespace {
 
@@ -123,4 +123,4 @@ std::optional<DistanceField> DistanceField::fromBytes(std::string_view bytes) {
     return field;
 }
 
-}  // namespace passung::model
+}  // namespace passung::field

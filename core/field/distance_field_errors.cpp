@@ -5,7 +5,7 @@
 #include "core/field/distance_field_builder.h"
 
 /// Where a field must be refined.
-namespace passung::model {
+namespace passung::field {
 
 namespace {
 
@@ -142,4 +142,4 @@ void DistanceField::Builder::measureLandmarks() {
     }
 }
 
-}  // namespace passung::model
+}  // namespace passung::field

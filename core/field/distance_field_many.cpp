@@ -9,7 +9,7 @@
 
 #include "core/field/distance_field.h"
 
-namespace passung::model {
+namespace passung::field {
 
 namespace {
 
@@ -362,4 +362,4 @@ void DistanceField::enterIndex(std::int32_t id, const std::array<int, 3>& place,
         }
 }
 
-}  // namespace passung::model
+}  // namespace passung::field

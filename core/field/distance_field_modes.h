@@ -8,7 +8,7 @@
 #include "core/field/interpolation.h"
 
 /// The modes of reading a field (field_mode.h); rt-safe. Part of distance_field.cpp, which inlines it.
-namespace passung::model {
+namespace passung::field {
 
 namespace field_modes {
 
@@ -153,4 +153,4 @@ struct DistanceField::Lattice {
     }
 };
 
-}  // namespace passung::model
+}  // namespace passung::field

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-namespace passung::model {
+namespace passung::field {
 
 /// How a distance field is read between its nodes. All modes read the same stored values; P: the point, s: the edge of
 /// its cell, C: the node nearest to P (the centre of the thesis's voxel around P), w: the stored distances; φ = -V.
@@ -46,4 +46,4 @@ constexpr std::optional<FieldMode> modeNamed(std::string_view name) {
     return std::nullopt;
 }
 
-}  // namespace passung::model
+}  // namespace passung::field

@@ -1,6 +1,6 @@
 #include "core/field/instructions.h"
 
-namespace passung::model {
+namespace passung::field {
 
 namespace {
 
@@ -24,4 +24,4 @@ Instructions bestInstructions() noexcept {
     return best;
 }
 
-}  // namespace passung::model
+}  // namespace passung::field

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace passung::model {
+namespace passung::field {
 
 /// Instruction sets that inner loops are compiled for (x86-64-v3: AVX2, x86-64-v4: AVX-512); each includes those
 /// before. The results have the same bits.
@@ -9,7 +9,7 @@ enum class Instructions { Baseline, V3, V4 };
 /// The last one that this machine has.
 Instructions bestInstructions() noexcept;
 
-}  // namespace passung::model
+}  // namespace passung::field
 
 /// A function compiled for an instruction set; what it calls must be PASSUNG_INLINE to be compiled for it as well.
 #if defined(__x86_64__) && defined(__clang__)

@@ -7,7 +7,7 @@
 
 /// Interpolation in one cubic cell; rt-safe. CornerValues are numbered by bits (1: x, 2: y, 4: z), `u` are the local
 /// coordinates in [0, 1]³.
-namespace passung::model {
+namespace passung::field {
 
 using CornerValues = std::array<double, 8>;
 
@@ -50,4 +50,4 @@ inline unsigned nearestCorner(const Vec3& u) noexcept {
     return (u.x() > 0.5 ? 1u : 0u) | (u.y() > 0.5 ? 2u : 0u) | (u.z() > 0.5 ? 4u : 0u);
 }
 
-}  // namespace passung::model
+}  // namespace passung::field

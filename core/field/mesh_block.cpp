@@ -15,7 +15,7 @@
 #include "core/field/mesh_block_signs.h"
 #include "core/geometry/parallel.h"
 
-namespace passung::model {
+namespace passung::field {
 
 namespace {
 
@@ -86,7 +86,7 @@ const std::array<PartPoints, kParts>& allParts() {
 
 class Sampling {
 public:
-    Sampling(const TriangleTree& tree, const std::vector<FlatTriangle>& flats, const Vec3& low, double cell,
+    Sampling(const geometry::TriangleTree& tree, const std::vector<FlatTriangle>& flats, const Vec3& low, double cell,
              SurfaceBlock& block)
         : tree_(tree), flats_(flats), low_(low), cell_(cell), block_(block) {}
 
@@ -98,7 +98,7 @@ private:
     double least(const Choice& triangles, std::size_t lane, const Vec3& p) const;
     double slackOf(std::size_t lane) const;
 
-    const TriangleTree& tree_;
+    const geometry::TriangleTree& tree_;
     const std::vector<FlatTriangle>& flats_;
     const Vec3 low_;
     const double cell_;
@@ -200,7 +200,7 @@ double Sampling::slackOf(std::size_t lane) const {
 
 }  // namespace
 
-MeshBlockSampler::MeshBlockSampler(std::shared_ptr<const TriangleTree> tree, bool closed, bool uncrossed)
+MeshBlockSampler::MeshBlockSampler(std::shared_ptr<const geometry::TriangleTree> tree, bool closed, bool uncrossed)
     : tree_(std::move(tree)), closed_(closed), simple_(closed && uncrossed) {
     auto flats = std::make_shared<std::vector<FlatTriangle>>();
     flats->reserve(tree_->corners().size());
@@ -208,7 +208,7 @@ MeshBlockSampler::MeshBlockSampler(std::shared_ptr<const TriangleTree> tree, boo
     flats_ = std::move(flats);
     if (!simple_) return;
     std::atomic<bool> all_walls = true;
-    parallelFor(flats_->size(), [&](std::size_t i) {
+    geometry::parallelFor(flats_->size(), [&](std::size_t i) {
         const FlatTriangle& t = (*flats_)[i];
         const Vec3 middle = (t.corner[0] + t.corner[1] + t.corner[2]) / 3.0;
         const Vec3 front = middle + kInFront * t.edge[0].norm() * t.normal;
@@ -228,4 +228,4 @@ void MeshBlockSampler::sample(const Vec3& low, double cell, SurfaceBlock& block)
     if (!simple_) block.slack.fill(1.0);
 }
 
-}  // namespace passung::model
+}  // namespace passung::field

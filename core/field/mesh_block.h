@@ -9,7 +9,7 @@
 #include "core/field/surface_block.h"
 #include "core/geometry/triangle_tree.h"
 
-namespace passung::model {
+namespace passung::field {
 
 struct FlatTriangle;
 
@@ -20,7 +20,7 @@ public:
     /// `closed`: the triangles bound solids; the sign comes from counting crossings along the grid lines, from one
     /// winding number in each block. `uncrossed`: no triangle passes through another, as MeshReport::crossing_triangles
     /// tells; if all of them part outside (in front) from inside as well, each cell gets a slack, else it is 1.
-    MeshBlockSampler(std::shared_ptr<const TriangleTree> tree, bool closed, bool uncrossed);
+    MeshBlockSampler(std::shared_ptr<const geometry::TriangleTree> tree, bool closed, bool uncrossed);
 
     /// Exact but for rounding. `low`: the block's first corner; `cell`: the edge of a cell [m].
     void sample(const Vec3& low, double cell, SurfaceBlock& block) const;
@@ -30,9 +30,9 @@ public:
 
 private:
     // Shared by the functions of a DistanceSource and their copies.
-    std::shared_ptr<const TriangleTree> tree_;
+    std::shared_ptr<const geometry::TriangleTree> tree_;
     std::shared_ptr<const std::vector<FlatTriangle>> flats_;  // in tree order
     bool closed_, simple_;
 };
 
-}  // namespace passung::model
+}  // namespace passung::field

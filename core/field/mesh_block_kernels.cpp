@@ -6,7 +6,7 @@
 
 #include "core/field/instructions.h"
 
-namespace passung::model {
+namespace passung::field {
 
 namespace {
 
@@ -27,7 +27,7 @@ FrameEdge edgeOf(double x, double y, bool has_inside) {
 
 }  // namespace
 
-FlatTriangle::FlatTriangle(const TriangleTree::Corners& t) : corner{t.a, t.b, t.c} {
+FlatTriangle::FlatTriangle(const geometry::TriangleTree::Corners& t) : corner{t.a, t.b, t.c} {
     double longest = 0.0;
     std::size_t base = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -279,4 +279,4 @@ const BlockKernels& blockKernels() {
     return kernels;
 }
 
-}  // namespace passung::model
+}  // namespace passung::field

@@ -11,7 +11,7 @@
 
 /// The inner loops of MeshBlockSampler. Which triangles may be nearest is found in single precision with room for its
 /// rounding, what they are away then in double precision: the same bits whatever the instructions.
-namespace passung::model {
+namespace passung::field {
 
 inline constexpr std::size_t kLanes = 8;  // points are measured in groups of so many
 inline constexpr double kReach = 7.0;     // cells: no point of a block is farther from its centre
@@ -33,7 +33,7 @@ struct FlatTriangle {
     double length;            // of the longest edge
     FrameEdge second, third;  // from its end and its beginning to the corner beside it
 
-    explicit FlatTriangle(const TriangleTree::Corners& t);
+    explicit FlatTriangle(const geometry::TriangleTree::Corners& t);
 
     /// To the plane above the inside, else to the nearest edge.
     double squaredDistance(const Vec3& p) const;
@@ -94,4 +94,4 @@ struct BlockKernels {
 /// For the instructions that this machine has.
 const BlockKernels& blockKernels();
 
-}  // namespace passung::model
+}  // namespace passung::field

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <utility>
 
-namespace passung::model {
+namespace passung::field {
 
 namespace {
 
@@ -37,7 +37,7 @@ struct Boxed {
 
 class Signs {
 public:
-    Signs(const TriangleTree& tree, const Vec3& low, double cell, SurfaceBlock& block)
+    Signs(const geometry::TriangleTree& tree, const Vec3& low, double cell, SurfaceBlock& block)
         : tree_(tree), low_(low), lines_(low + kShift * cell * kShiftDirection), cell_(cell), block_(block) {}
 
     void giveSigns(const Triangles& all);
@@ -47,7 +47,7 @@ private:
     void countAlong(const std::vector<Boxed>& triangles, int axis, int rows1, int rows2);
     bool consistent() const;
 
-    const TriangleTree& tree_;
+    const geometry::TriangleTree& tree_;
     const Vec3 low_, lines_;
     const double cell_;
     SurfaceBlock& block_;
@@ -128,9 +128,9 @@ bool Signs::consistent() const {
 
 }  // namespace
 
-void giveSigns(const TriangleTree& tree, const Triangles& triangles, const Vec3& low, double cell,
+void giveSigns(const geometry::TriangleTree& tree, const Triangles& triangles, const Vec3& low, double cell,
                SurfaceBlock& block) {
     Signs(tree, low, cell, block).giveSigns(triangles);
 }
 
-}  // namespace passung::model
+}  // namespace passung::field

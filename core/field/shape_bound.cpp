@@ -6,7 +6,7 @@
 
 #include "core/field/interpolation.h"
 
-namespace passung::model {
+namespace passung::field {
 
 namespace {
 
@@ -29,22 +29,23 @@ double length(double x, double y) { return std::sqrt(x * x + y * y); }
 double excess(double x, double y) { return length(std::max(x, 0.0), std::max(y, 0.0)) + std::min(std::max(x, y), 0.0); }
 
 /// Of the hole as an endless prism.
-double holeDistance(const BorePlate& plate, const Vec3& p, double wider) {
+double holeDistance(const shape::BorePlate& plate, const Vec3& p, double wider) {
     return length(p.x(), p.y()) - 0.5 * plate.bore_diameter - wider;
 }
-double holeDistance(const SquareBorePlate& plate, const Vec3& p, double wider) {
+double holeDistance(const shape::SquareBorePlate& plate, const Vec3& p, double wider) {
     return excess(std::abs(p.x()) - 0.5 * plate.pocket_width - wider,
                   std::abs(p.y()) - 0.5 * plate.pocket_depth - wider);
 }
 /// Not convex itself: the circle around it.
-double holeDistance(const KeyedBorePlate& plate, const Vec3& p, double wider) {
+double holeDistance(const shape::KeyedBorePlate& plate, const Vec3& p, double wider) {
     const double bore = 0.5 * plate.bore_diameter;
     return length(p.x(), p.y()) - length(bore + plate.key_height + wider, 0.5 * plate.key_width + wider);
 }
 
 template <class Plate>
 double boxDistance(const Plate& plate, const Vec3& p) {
-    return signedDistance(Box{plate.width, plate.depth, plate.height}, p + Vec3(0.0, 0.0, 0.5 * plate.height));
+    return shape::signedDistance(shape::Box{plate.width, plate.depth, plate.height},
+                                 p + Vec3(0.0, 0.0, 0.5 * plate.height));
 }
 
 /// The plate is its box A without the hole; let P be the hole or more. In the ball around m, of radius r, with d the
@@ -66,24 +67,24 @@ template <class Convex>
 Piece pieceAround(const Convex&, const Vec3&, double) {
     return Piece::Whole;
 }
-Piece pieceAround(const Torus&, const Vec3&, double) { return Piece::None; }
-Piece pieceAround(const KeyedPeg&, const Vec3&, double) { return Piece::None; }
-Piece pieceAround(const BorePlate& s, const Vec3& m, double r) { return pieceOf(s, m, r, true); }
-Piece pieceAround(const SquareBorePlate& s, const Vec3& m, double r) { return pieceOf(s, m, r, true); }
-Piece pieceAround(const KeyedBorePlate& s, const Vec3& m, double r) { return pieceOf(s, m, r, false); }
+Piece pieceAround(const shape::Torus&, const Vec3&, double) { return Piece::None; }
+Piece pieceAround(const shape::KeyedPeg&, const Vec3&, double) { return Piece::None; }
+Piece pieceAround(const shape::BorePlate& s, const Vec3& m, double r) { return pieceOf(s, m, r, true); }
+Piece pieceAround(const shape::SquareBorePlate& s, const Vec3& m, double r) { return pieceOf(s, m, r, true); }
+Piece pieceAround(const shape::KeyedBorePlate& s, const Vec3& m, double r) { return pieceOf(s, m, r, false); }
 
 /// ψ of the piece.
 template <class Convex>
 double pieceDistance(const Convex& shape, Piece, const Vec3& p) {
-    return signedDistance(shape, p);
+    return shape::signedDistance(shape, p);
 }
 template <class Plate>
 double plateDistance(const Plate& plate, Piece piece, const Vec3& p) {
     return piece == Piece::Whole ? boxDistance(plate, p) : holeDistance(plate, p, 0.0);
 }
-double pieceDistance(const BorePlate& s, Piece piece, const Vec3& p) { return plateDistance(s, piece, p); }
-double pieceDistance(const SquareBorePlate& s, Piece piece, const Vec3& p) { return plateDistance(s, piece, p); }
-double pieceDistance(const KeyedBorePlate& s, Piece piece, const Vec3& p) { return plateDistance(s, piece, p); }
+double pieceDistance(const shape::BorePlate& s, Piece piece, const Vec3& p) { return plateDistance(s, piece, p); }
+double pieceDistance(const shape::SquareBorePlate& s, Piece piece, const Vec3& p) { return plateDistance(s, piece, p); }
+double pieceDistance(const shape::KeyedBorePlate& s, Piece piece, const Vec3& p) { return plateDistance(s, piece, p); }
 
 /// A cell with exact values at its corners.
 struct Cube {
@@ -118,11 +119,11 @@ struct Cube {
 };
 
 /// The radius that promises the least for a cell around `m` with the unit gradient `up`, in cells.
-double bestRadius(const Shape& shape, const Vec3& m, const Vec3& up, double side, double cell) {
-    const double at_m = signedDistance(shape, m);
+double bestRadius(const shape::Shape& shape, const Vec3& m, const Vec3& up, double side, double cell) {
+    const double at_m = shape::signedDistance(shape, m);
     double best = kFirstRadius, least = 1.0, radius = kFirstRadius;
     for (int i = 0; i < kRadii; ++i, radius *= 2.0) {
-        const double lost = side * (signedDistance(shape, m - side * radius * cell * up) - at_m) / cell + radius;
+        const double lost = side * (shape::signedDistance(shape, m - side * radius * cell * up) - at_m) / cell + radius;
         if (lost > least) break;
         const double promised = lost + kHalfSquare / radius;
         if (promised >= least) continue;
@@ -135,7 +136,7 @@ double bestRadius(const Shape& shape, const Vec3& m, const Vec3& up, double side
 /// One octant; remembers the radii.
 class OctantBound {
 public:
-    OctantBound(const Shape& shape, double cell) : shape_(shape), cell_(cell) {}
+    OctantBound(const shape::Shape& shape, double cell) : shape_(shape), cell_(cell) {}
 
     double of(const Cube& cube) {
         const Vec3 slope = cube.slope();
@@ -163,21 +164,21 @@ private:
         if (radius_[s] == 0.0) radius_[s] = bestRadius(shape_, cube.middle(), up, side, cell_);
         const auto gap = [&](double radius) {
             const Vec3 o = cube.middle() - side * radius * cell_ * up;
-            return cube.gap(signedDistance(shape_, o), o, side, 1.0);
+            return cube.gap(shape::signedDistance(shape_, o), o, side, 1.0);
         };
         const double found = gap(radius_[s]);
         if (found <= kDisappoints * kHalfSquare / radius_[s] * cell_) return found;
         return std::min(found, gap(bestRadius(shape_, cube.middle(), up, side, cell_)));
     }
 
-    const Shape& shape_;
+    const shape::Shape& shape_;
     double cell_;
     std::array<double, 2> radius_{};  // from above, from below; in cells
 };
 
 }  // namespace
 
-double boundInterpolation(const Shape& shape, const SurfaceBlock& block, const Vec3& low, double cell,
+double boundInterpolation(const shape::Shape& shape, const SurfaceBlock& block, const Vec3& low, double cell,
                           std::size_t octant, double reach) {
     std::array<int, 3> first{};
     for (unsigned axis = 0; axis < 3; ++axis) first[axis] = (octant >> axis & 1u) != 0 ? kHalf : 0;
@@ -198,4 +199,4 @@ double boundInterpolation(const Shape& shape, const SurfaceBlock& block, const V
     return most + kRounding * cell;
 }
 
-}  // namespace passung::model
+}  // namespace passung::field

@@ -6,7 +6,7 @@
 #include "core/field/surface_block.h"
 #include "core/shape/shape.h"
 
-namespace passung::model {
+namespace passung::field {
 
 /// A rigorous bound of what trilinear interpolation of a shape's distance φ errs by in the cells of an octant of a
 /// block (bits 1: x, 2: y, 4: z) [m]; at most about a cell. `block`: its node values are φ; `low`: its first corner;
@@ -20,7 +20,7 @@ namespace passung::model {
 ///   as curvature and walls allow.
 ///   Convex pieces. Where φ or -φ is the distance ψ of a convex solid all over the cell, ψ ≤ Σ w_i ψ_i, and the second
 ///   cone has all of the space outside the solid for its R: flat faces cost next to nothing.
-double boundInterpolation(const Shape& shape, const SurfaceBlock& block, const Vec3& low, double cell,
+double boundInterpolation(const shape::Shape& shape, const SurfaceBlock& block, const Vec3& low, double cell,
                           std::size_t octant, double reach);
 
-}  // namespace passung::model
+}  // namespace passung::field

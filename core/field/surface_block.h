@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace passung::model {
+namespace passung::field {
 
 /// What a cube of 8³ cells sees of a surface, x fastest.
 struct SurfaceBlock {
@@ -29,4 +29,4 @@ struct SurfaceBlock {
     }
 };
 
-}  // namespace passung::model
+}  // namespace passung::field

@@ -5,7 +5,7 @@
 
 #include "core/base/random.h"
 
-namespace passung::model {
+namespace passung::geometry {
 
 namespace {
 
@@ -34,4 +34,4 @@ std::uint64_t contentHash(const TriangleMesh& mesh) {
     return fnv1a64(bytes);
 }
 
-}  // namespace passung::model
+}  // namespace passung::geometry

@@ -6,7 +6,7 @@
 
 #include "core/base/types.h"
 
-namespace passung::model {
+namespace passung::geometry {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
@@ -33,4 +33,4 @@ Bounds boundsOf(const TriangleMesh& mesh);
 /// are the same geometry. The same on every machine. A shape is identified by the hash of its tessellation.
 std::uint64_t contentHash(const TriangleMesh& mesh);
 
-}  // namespace passung::model
+}  // namespace passung::geometry

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <tuple>
 
-namespace passung::model {
+namespace passung::geometry {
 
 namespace {
 
@@ -92,4 +92,4 @@ std::vector<std::vector<std::uint32_t>> patchesOf(const TriangleMesh& mesh, cons
     return patches;
 }
 
-}  // namespace passung::model
+}  // namespace passung::geometry

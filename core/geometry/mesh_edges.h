@@ -6,7 +6,7 @@
 
 #include "core/geometry/mesh.h"
 
-namespace passung::model {
+namespace passung::geometry {
 
 /// One side of one triangle.
 struct HalfEdge {
@@ -56,4 +56,4 @@ private:
 /// mesh.
 std::vector<std::vector<std::uint32_t>> patchesOf(const TriangleMesh& mesh, const std::vector<HalfEdge>& edges);
 
-}  // namespace passung::model
+}  // namespace passung::geometry

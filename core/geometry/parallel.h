@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-namespace passung::model {
+namespace passung::geometry {
 
 /// Calls `body(i)` for every i in 0 … count-1 on all cores; the calls must not depend on each other. For builds only.
 template <class Body>
@@ -26,4 +26,4 @@ void parallelFor(std::size_t count, const Body& body) {
     for (auto& worker : workers) worker.join();
 }
 
-}  // namespace passung::model
+}  // namespace passung::geometry

@@ -4,7 +4,7 @@
 
 #include "core/geometry/mesh_edges.h"
 
-namespace passung::model {
+namespace passung::geometry {
 
 namespace {
 
@@ -68,4 +68,4 @@ SurfaceWalk::WalkPlace SurfaceWalk::moved(WalkPlace place, Eigen::Vector3f step)
     return place;
 }
 
-}  // namespace passung::model
+}  // namespace passung::geometry

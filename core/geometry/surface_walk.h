@@ -7,7 +7,7 @@
 #include "core/base/types.h"
 #include "core/geometry/mesh.h"
 
-namespace passung::model {
+namespace passung::geometry {
 
 /// Straight ways along the triangles of a surface, across their edges; part frame, metres. In single precision: a way
 /// leaves the surface by some roundings.
@@ -48,4 +48,4 @@ private:
     std::vector<Face> faces_;
 };
 
-}  // namespace passung::model
+}  // namespace passung::geometry

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace passung::model {
+namespace passung::geometry {
 
 TriangleBuilder::Index TriangleBuilder::vertex(double x, double y, double z) {
     mesh_.vertices.emplace_back(x, y, z);
@@ -84,4 +84,4 @@ std::array<double, 2> TriangleBuilder::direction(int k, int n) {
     }
 }
 
-}  // namespace passung::model
+}  // namespace passung::geometry

@@ -7,7 +7,7 @@
 
 #include "core/geometry/mesh.h"
 
-namespace passung::model {
+namespace passung::geometry {
 
 /// Appends vertices and triangles; every face is given counter-clockwise as seen from outside.
 class TriangleBuilder {
@@ -45,4 +45,4 @@ private:
     TriangleMesh mesh_;
 };
 
-}  // namespace passung::model
+}  // namespace passung::geometry

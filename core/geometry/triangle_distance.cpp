@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace passung::model {
+namespace passung::geometry {
 
 Vec3 closestOnSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
     const Vec3 e = b - a;
@@ -161,4 +161,4 @@ double leastDistance(const TriangleCorners& t, const std::array<double, 3>& l, d
     return least > 0.0 ? std::sqrt(least) : -std::numeric_limits<double>::infinity();
 }
 
-}  // namespace passung::model
+}  // namespace passung::geometry

@@ -6,7 +6,7 @@
 
 #include "core/base/types.h"
 
-namespace passung::model {
+namespace passung::geometry {
 
 using TriangleCorners = std::array<Vec3, 3>;
 
@@ -46,4 +46,4 @@ TrianglePair closestPair(const TriangleCorners& first, const TriangleCorners& se
 /// its slope is zero, or on an edge. No more than a third of the longest edge's square is taken away.
 double leastDistance(const TriangleCorners& t, const std::array<double, 3>& l, double enough);
 
-}  // namespace passung::model
+}  // namespace passung::geometry

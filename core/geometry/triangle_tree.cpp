@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-namespace passung::model {
+namespace passung::geometry {
 
 namespace {
 
@@ -262,4 +262,4 @@ void TriangleTree::collectWithin(const Bounds& box, std::size_t most, std::vecto
          });
 }
 
-}  // namespace passung::model
+}  // namespace passung::geometry

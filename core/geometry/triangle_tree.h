@@ -9,7 +9,7 @@
 #include "core/geometry/mesh.h"
 #include "core/geometry/triangle_distance.h"
 
-namespace passung::model {
+namespace passung::geometry {
 
 /// Closest point on a set of triangles.
 struct ClosestPoint {
@@ -89,4 +89,4 @@ private:
     std::vector<std::uint32_t> original_;  // index in the mesh, in tree order
 };
 
-}  // namespace passung::model
+}  // namespace passung::geometry

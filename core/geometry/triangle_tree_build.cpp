@@ -8,7 +8,7 @@
 #include "core/geometry/triangle_tree.h"
 
 /// How a TriangleTree is made; its queries are in triangle_tree.cpp.
-namespace passung::model {
+namespace passung::geometry {
 
 namespace {
 
@@ -186,4 +186,4 @@ TriangleTree::Cluster TriangleTree::summarise(std::uint32_t first, std::uint32_t
     return {centre, dipole, kFarRadii * kFarRadii * radius2};
 }
 
-}  // namespace passung::model
+}  // namespace passung::geometry

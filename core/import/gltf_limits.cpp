@@ -5,7 +5,7 @@
 #include "core/import/json_scan.h"
 #include "core/import/scene_file_limits.h"
 
-namespace passung::model {
+namespace passung::importer {
 
 namespace {
 
@@ -189,4 +189,4 @@ std::optional<Error> beyondGltfLimits(std::string_view bytes, bool binary, const
     return std::nullopt;
 }
 
-}  // namespace passung::model
+}  // namespace passung::importer

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace passung::model {
+namespace passung::importer {
 
 namespace {
 
@@ -17,12 +17,12 @@ constexpr std::uint32_t kNowhere = ~0u;
 
 using Loop = std::vector<std::uint32_t>;
 
-Vec3 areaVector(const std::vector<Vec3>& vertices, const Triangle& t) {
+Vec3 areaVector(const std::vector<Vec3>& vertices, const geometry::Triangle& t) {
     const Vec3& a = vertices[t[0]];
     return 0.5 * (vertices[t[1]] - a).cross(vertices[t[2]] - a);
 }
 
-Vec3 centroid(const std::vector<Vec3>& vertices, const Triangle& t) {
+Vec3 centroid(const std::vector<Vec3>& vertices, const geometry::Triangle& t) {
     return (vertices[t[0]] + vertices[t[1]] + vertices[t[2]]) / 3.0;
 }
 
@@ -60,7 +60,7 @@ std::vector<Loop> simpleLoops(std::vector<DirectedEdge> edges, std::size_t verte
 
 /// One triangle, or a fan about a new vertex (the last of `vertices` then): a diagonal might be an edge of the mesh
 /// already.
-std::vector<Triangle> fanOf(const Loop& loop, std::vector<Vec3>& vertices) {
+std::vector<geometry::Triangle> fanOf(const Loop& loop, std::vector<Vec3>& vertices) {
     if (loop.size() == 3) return {{loop[0], loop[1], loop[2]}};
     Vec3 moment = Vec3::Zero();
     double length = 0.0;
@@ -71,7 +71,7 @@ std::vector<Triangle> fanOf(const Loop& loop, std::vector<Vec3>& vertices) {
     }
     const auto middle = static_cast<std::uint32_t>(vertices.size());
     vertices.emplace_back(moment / length);
-    std::vector<Triangle> fan;
+    std::vector<geometry::Triangle> fan;
     for (std::size_t k = 0; k < loop.size(); ++k) fan.push_back({loop[k], loop[(k + 1) % loop.size()], middle});
     return fan;
 }
@@ -82,10 +82,10 @@ enum class Gap {
     Crack,  // no place for a fan
 };
 
-Gap gapOf(const std::vector<Triangle>& fan, const std::vector<Vec3>& vertices, const TriangleTree& tree,
-          double facing) {
+Gap gapOf(const std::vector<geometry::Triangle>& fan, const std::vector<Vec3>& vertices,
+          const geometry::TriangleTree& tree, double facing) {
     double halfway_area = 0.0, total_area = 0.0;
-    for (const Triangle& t : fan) {
+    for (const geometry::Triangle& t : fan) {
         const Vec3 &a = vertices[t[0]], &b = vertices[t[1]], &c = vertices[t[2]];
         const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
         const Vec3 area = areaVector(vertices, t);
@@ -106,12 +106,12 @@ Gap gapOf(const std::vector<Triangle>& fan, const std::vector<Vec3>& vertices, c
 
 }  // namespace
 
-double insideBalance(const TriangleMesh& mesh, const TriangleTree& tree) {
+double insideBalance(const geometry::TriangleMesh& mesh, const geometry::TriangleTree& tree) {
     const double step = kBeside * boundsOf(mesh).size().norm();
     const std::size_t stride = std::max<std::size_t>(1, mesh.triangles.size() / kSampledTriangles);
     double balance = 0.0, total_area = 0.0;
     for (std::size_t i = 0; i < mesh.triangles.size(); i += stride) {
-        const Triangle& t = mesh.triangles[i];
+        const geometry::Triangle& t = mesh.triangles[i];
         const Vec3 area = areaVector(mesh.vertices, t), middle = centroid(mesh.vertices, t);
         const Vec3 beside = step * area.normalized();
         balance += area.norm() * (tree.windingNumber(middle - beside) + tree.windingNumber(middle + beside));
@@ -120,12 +120,12 @@ double insideBalance(const TriangleMesh& mesh, const TriangleTree& tree) {
     return balance / total_area;
 }
 
-HoleClosing closeHoles(TriangleMesh& mesh, const std::vector<DirectedEdge>& open_edges, const TriangleTree& tree,
-                       double facing) {
+HoleClosing closeHoles(geometry::TriangleMesh& mesh, const std::vector<DirectedEdge>& open_edges,
+                       const geometry::TriangleTree& tree, double facing) {
     HoleClosing result;
     for (const Loop& loop : simpleLoops(open_edges, mesh.vertices.size())) {
         const std::size_t vertices_before = mesh.vertices.size();
-        const std::vector<Triangle> fan = fanOf(loop, mesh.vertices);
+        const std::vector<geometry::Triangle> fan = fanOf(loop, mesh.vertices);
         const Gap gap = gapOf(fan, mesh.vertices, tree, facing);
         if (gap == Gap::Crack) {
             mesh.vertices.resize(vertices_before);
@@ -139,4 +139,4 @@ HoleClosing closeHoles(TriangleMesh& mesh, const std::vector<DirectedEdge>& open
     return result;
 }
 
-}  // namespace passung::model
+}  // namespace passung::importer

@@ -8,7 +8,7 @@
 #include "core/geometry/mesh.h"
 #include "core/geometry/triangle_tree.h"
 
-namespace passung::model {
+namespace passung::importer {
 
 /// From one vertex to another.
 using DirectedEdge = std::array<std::uint32_t, 2>;
@@ -17,7 +17,7 @@ using DirectedEdge = std::array<std::uint32_t, 2>;
 /// just in front of it, added. 1: a solid (1 behind, 0 in front); -1: a solid inside out (0 and -1); 0: a sheet (½ and
 /// -½).
 /// @pre `tree` is of `mesh`, which has triangles.
-double insideBalance(const TriangleMesh& mesh, const TriangleTree& tree);
+double insideBalance(const geometry::TriangleMesh& mesh, const geometry::TriangleTree& tree);
 
 struct HoleClosing {
     std::size_t holes = 0;       // closed
@@ -35,7 +35,7 @@ struct HoleClosing {
 ///   everywhere, and it changes at triangles only.
 /// `open_edges` run as a triangle of the filling would. `tree` is of the mesh as it was; `facing` = -1 if all triangles
 /// have been turned since, else 1.
-HoleClosing closeHoles(TriangleMesh& mesh, const std::vector<DirectedEdge>& open_edges, const TriangleTree& tree,
-                       double facing);
+HoleClosing closeHoles(geometry::TriangleMesh& mesh, const std::vector<DirectedEdge>& open_edges,
+                       const geometry::TriangleTree& tree, double facing);
 
-}  // namespace passung::model
+}  // namespace passung::importer

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-namespace passung::model {
+namespace passung::importer {
 
 /// Fills a scan from left to right; what is open stands in a list instead of on the stack.
 class JsonReader {
@@ -189,4 +189,4 @@ std::string JsonScan::plain(std::string_view written) {
     return text;
 }
 
-}  // namespace passung::model
+}  // namespace passung::importer

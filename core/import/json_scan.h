@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace passung::model {
+namespace passung::importer {
 
 /// A JSON text taken apart, without a call for every level of it: as much of JSON as it takes to judge a file before
 /// another library reads it.
@@ -49,4 +49,4 @@ private:
     std::vector<Value> values_;
 };
 
-}  // namespace passung::model
+}  // namespace passung::importer

@@ -8,7 +8,7 @@
 
 #include "core/base/bytes.h"
 
-namespace passung::model {
+namespace passung::importer {
 
 namespace {
 
@@ -85,7 +85,7 @@ void put(Writer& to, const ImportedMesh& imported) {
     to.number(imported.mesh.vertices.size(), 8);
     for (const Vec3& v : imported.mesh.vertices) to.field(v);
     to.number(imported.mesh.triangles.size(), 8);
-    for (const Triangle& t : imported.mesh.triangles)
+    for (const geometry::Triangle& t : imported.mesh.triangles)
         for (const auto corner : t) to.number(corner, 4);
     to.text(imported.report.file);
     to.text(imported.report.format);
@@ -99,7 +99,7 @@ ImportedMesh takeMesh(Reader& from) {
     imported.mesh.vertices.resize(from.count(24));
     for (Vec3& v : imported.mesh.vertices) from.field(v);
     imported.mesh.triangles.resize(from.count(12));
-    for (Triangle& t : imported.mesh.triangles)
+    for (geometry::Triangle& t : imported.mesh.triangles)
         for (auto& corner : t) {
             corner = static_cast<std::uint32_t>(from.number(4));
             from.require(corner < imported.mesh.vertices.size());
@@ -158,4 +158,4 @@ std::optional<Result<ImportedMesh>> importedFrom(std::string_view bytes) {
     return std::nullopt;
 }
 
-}  // namespace passung::model
+}  // namespace passung::importer

@@ -7,7 +7,7 @@
 #include "core/base/result.h"
 #include "core/import/mesh_import.h"
 
-namespace passung::model {
+namespace passung::importer {
 
 /// What importMesh() answered, as bytes for another process.
 std::string toBytes(const Result<ImportedMesh>& imported);
@@ -16,4 +16,4 @@ std::string toBytes(const Result<ImportedMesh>& imported);
 /// bytes, a vertex is not finite, a triangle names none, or something is missing or left over.
 std::optional<Result<ImportedMesh>> importedFrom(std::string_view bytes);
 
-}  // namespace passung::model
+}  // namespace passung::importer

@@ -25,7 +25,7 @@
 #include "core/import/mesh_formats.h"
 #include "core/import/scene_file_limits.h"
 
-namespace passung::model {
+namespace passung::importer {
 
 namespace {
 
@@ -112,7 +112,7 @@ Eigen::Matrix4d toMatrix(const aiMatrix4x4& m) {
 }
 
 /// Appends the triangles of a node and of those below it; false if a vertex is not finite or an index out of range.
-bool appendNode(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& parent, TriangleMesh& mesh) {
+bool appendNode(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& parent, geometry::TriangleMesh& mesh) {
     const Eigen::Matrix4d X = parent * toMatrix(node.mTransformation);
     const bool mirrored = X.topLeftCorner<3, 3>().determinant() < 0.0;
     for (unsigned m = 0; m < node.mNumMeshes; ++m) {
@@ -127,7 +127,7 @@ bool appendNode(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d&
         for (unsigned i = 0; i < part.mNumFaces; ++i) {
             const aiFace& face = part.mFaces[i];
             if (face.mNumIndices != 3) continue;
-            Triangle triangle{};
+            geometry::Triangle triangle{};
             for (unsigned k = 0; k < 3; ++k) {
                 if (face.mIndices[k] >= part.mNumVertices) return false;
                 triangle[k] = base + face.mIndices[k];
@@ -212,7 +212,8 @@ std::string reasonOf(const std::string& why) {
 }
 
 /// By assimp: the formats that are more than triangles. They may name other files, hence the path.
-Result<TriangleMesh> readScene(std::string_view bytes, const std::string& path, const std::string& extension) {
+Result<geometry::TriangleMesh> readScene(std::string_view bytes, const std::string& path,
+                                         const std::string& extension) {
     if (const auto beyond = beyondLimits(bytes, path, extension)) return *beyond;
     Assimp::Importer importer;
     importer.SetIOHandler(new RegularFiles);  // the importer deletes it
@@ -229,7 +230,7 @@ Result<TriangleMesh> readScene(std::string_view bytes, const std::string& path, 
     }
     if (scene == nullptr || scene->mRootNode == nullptr)
         return fileError(path, "must be a mesh that can be read: " + reasonOf(why));
-    TriangleMesh mesh;
+    geometry::TriangleMesh mesh;
     if (!appendNode(*scene, *scene->mRootNode, Eigen::Matrix4d::Identity(), mesh))
         return fileError(path, "every vertex must be finite and every triangle must name vertices that exist");
     return mesh;
@@ -246,7 +247,7 @@ Result<std::string> readBytes(const std::string& path) {
 }
 
 /// Metres from now on; no coordinate may be farther than kFarthest.
-Result<Done> toMetres(TriangleMesh& mesh, double metres_per_unit, const std::string& path) {
+Result<Done> toMetres(geometry::TriangleMesh& mesh, double metres_per_unit, const std::string& path) {
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
         mesh.vertices[i] *= metres_per_unit;
         const double far = mesh.vertices[i].cwiseAbs().maxCoeff();
@@ -278,7 +279,7 @@ std::optional<std::string> tangle(const MeshReport& report) {
 
 }  // namespace
 
-Result<TriangleMesh> readMesh(std::string_view bytes, const std::string& path, const std::string& extension) {
+Result<geometry::TriangleMesh> readMesh(std::string_view bytes, const std::string& path, const std::string& extension) {
     if (extension == "stl") return readStl(bytes, path);
     if (extension == "off") return readOff(bytes, path);
     if (extension == "obj") return readObj(bytes, path);
@@ -295,7 +296,7 @@ Result<ImportedMesh> importMesh(const std::string& path, double metres_per_unit)
     if (!scale) return scale.errors();
     auto read = readMesh(*bytes, path, extension);
     if (!read) return read.errors();
-    TriangleMesh mesh = std::move(*read);
+    geometry::TriangleMesh mesh = std::move(*read);
     if (mesh.triangles.empty()) return fileError(path, "the mesh must have triangles");
     if (auto fits = toMetres(mesh, *scale, path); !fits) return fits.errors();
 
@@ -308,4 +309,4 @@ Result<ImportedMesh> importMesh(const std::string& path, double metres_per_unit)
     return result;
 }
 
-}  // namespace passung::model
+}  // namespace passung::importer

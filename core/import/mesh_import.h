@@ -7,7 +7,7 @@
 #include "core/base/result.h"
 #include "core/geometry/mesh.h"
 
-namespace passung::model {
+namespace passung::importer {
 
 /// What a mesh bounds, decided when it is repaired.
 enum class SurfaceKind {
@@ -56,7 +56,7 @@ struct MeshReport {
 };
 
 struct ImportedMesh {
-    TriangleMesh mesh;
+    geometry::TriangleMesh mesh;
     MeshReport report;
 };
 
@@ -77,6 +77,6 @@ inline constexpr double kScraps = 1.0;  // of three; 3 for triangles that share 
 Result<ImportedMesh> importMesh(const std::string& path, double metres_per_unit);
 
 /// The same checks and repairs for triangles that are already in memory. @pre finite vertices, indices in range.
-ImportedMesh repairMesh(TriangleMesh mesh);
+ImportedMesh repairMesh(geometry::TriangleMesh mesh);
 
-}  // namespace passung::model
+}  // namespace passung::importer

@@ -16,7 +16,7 @@
 #include "core/import/patch_orientation.h"
 #include "core/import/self_intersection.h"
 
-namespace passung::model {
+namespace passung::importer {
 
 namespace {
 
@@ -34,11 +34,11 @@ constexpr std::uint32_t kNoIndex = ~0u;
 
 /// Lets triangles name `first_at[v]` in place of v and drops unused vertices; vertices keep the order in which
 /// triangles name them. Returns how many used vertices were joined to another.
-std::size_t join(TriangleMesh& mesh, const std::vector<std::uint32_t>& first_at) {
+std::size_t join(geometry::TriangleMesh& mesh, const std::vector<std::uint32_t>& first_at) {
     std::vector<std::uint32_t> renamed(mesh.vertices.size(), kNoIndex);
     std::vector<char> used(mesh.vertices.size(), 0);
     std::vector<Vec3> kept;
-    for (Triangle& triangle : mesh.triangles) {
+    for (geometry::Triangle& triangle : mesh.triangles) {
         for (std::uint32_t& v : triangle) {
             used[v] = 1;
             const std::uint32_t representative = first_at[v];
@@ -56,7 +56,7 @@ std::size_t join(TriangleMesh& mesh, const std::vector<std::uint32_t>& first_at)
 }
 
 /// Joins vertices at equal positions.
-std::size_t weld(TriangleMesh& mesh) {
+std::size_t weld(geometry::TriangleMesh& mesh) {
     std::vector<std::uint32_t> order(mesh.vertices.size());
     std::iota(order.begin(), order.end(), 0u);
     const auto key = [&](std::uint32_t i) {
@@ -73,9 +73,9 @@ std::size_t weld(TriangleMesh& mesh) {
 
 /// Joins vertices of open edges that are nearly at one place, as rounding leaves them when every triangle is written on
 /// its own: closer than kNear of the mesh's size, to the first of them along x, so that nothing creeps on.
-std::size_t weldNear(TriangleMesh& mesh) {
+std::size_t weldNear(geometry::TriangleMesh& mesh) {
     std::vector<std::uint32_t> border;
-    forEachEdge(halfEdges(mesh.triangles), [&](const HalfEdge* use, std::size_t count) {
+    geometry::forEachEdge(geometry::halfEdges(mesh.triangles), [&](const geometry::HalfEdge* use, std::size_t count) {
         if (count != 1) return;
         border.push_back(use->low);
         border.push_back(use->high);
@@ -97,19 +97,20 @@ std::size_t weldNear(TriangleMesh& mesh) {
     return join(mesh, first_at);
 }
 
-bool isFlat(const TriangleMesh& mesh, const Triangle& t) {
+bool isFlat(const geometry::TriangleMesh& mesh, const geometry::Triangle& t) {
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return true;
     const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
     const double longest2 = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
     return (b - a).cross(c - a).norm() <= kFlat * longest2;
 }
 
-void dropFlatTriangles(TriangleMesh& mesh, MeshReport& report) {
-    report.degenerate_triangles += std::erase_if(mesh.triangles, [&](const Triangle& t) { return isFlat(mesh, t); });
+void dropFlatTriangles(geometry::TriangleMesh& mesh, MeshReport& report) {
+    report.degenerate_triangles +=
+        std::erase_if(mesh.triangles, [&](const geometry::Triangle& t) { return isFlat(mesh, t); });
 }
 
-void dropDuplicates(TriangleMesh& mesh, MeshReport& report) {
-    std::vector<std::pair<Triangle, std::uint32_t>> corners(mesh.triangles.size());
+void dropDuplicates(geometry::TriangleMesh& mesh, MeshReport& report) {
+    std::vector<std::pair<geometry::Triangle, std::uint32_t>> corners(mesh.triangles.size());
     for (std::size_t i = 0; i < corners.size(); ++i) {
         corners[i] = {mesh.triangles[i], static_cast<std::uint32_t>(i)};
         std::sort(corners[i].first.begin(), corners[i].first.end());
@@ -118,18 +119,18 @@ void dropDuplicates(TriangleMesh& mesh, MeshReport& report) {
     std::vector<char> drop(mesh.triangles.size(), 0);
     for (std::size_t k = 1; k < corners.size(); ++k)
         if (corners[k].first == corners[k - 1].first) drop[corners[k].second] = 1;
-    std::vector<Triangle> kept;
+    std::vector<geometry::Triangle> kept;
     for (std::size_t i = 0; i < drop.size(); ++i)
         if (drop[i] == 0) kept.push_back(mesh.triangles[i]);
     report.duplicate_triangles += mesh.triangles.size() - kept.size();
     mesh.triangles = std::move(kept);
 }
 
-void countEdges(const TriangleMesh& mesh, const std::vector<HalfEdge>& edges, MeshReport& report) {
-    Groups chains(mesh.vertices.size());
-    Groups pieces(mesh.triangles.size());
+void countEdges(const geometry::TriangleMesh& mesh, const std::vector<geometry::HalfEdge>& edges, MeshReport& report) {
+    geometry::Groups chains(mesh.vertices.size());
+    geometry::Groups pieces(mesh.triangles.size());
     std::vector<std::uint32_t> border;  // a vertex of each boundary edge
-    forEachEdge(edges, [&](const HalfEdge* use, std::size_t count) {
+    geometry::forEachEdge(edges, [&](const geometry::HalfEdge* use, std::size_t count) {
         for (std::size_t k = 1; k < count; ++k) pieces.join(use[0].triangle, use[k].triangle);
         if (count == 1) {
             ++report.boundary_edges;
@@ -151,7 +152,8 @@ void countEdges(const TriangleMesh& mesh, const std::vector<HalfEdge>& edges, Me
 /// Makes neighbours agree: every patch that hangs together by edges of two triangles is walked through, each triangle
 /// is marked as agreeing with the first one or not, and the smaller party is turned. (A one-sided surface keeps a
 /// seam.)
-void turnQuarrellingTriangles(TriangleMesh& mesh, const std::vector<HalfEdge>& edges, MeshReport& report) {
+void turnQuarrellingTriangles(geometry::TriangleMesh& mesh, const std::vector<geometry::HalfEdge>& edges,
+                              MeshReport& report) {
     struct Neighbour {
         std::uint32_t triangle = kNoIndex;
         bool quarrels = false;
@@ -164,7 +166,7 @@ void turnQuarrellingTriangles(TriangleMesh& mesh, const std::vector<HalfEdge>& e
             return;
         }
     };
-    forEachEdge(edges, [&](const HalfEdge* use, std::size_t count) {
+    geometry::forEachEdge(edges, [&](const geometry::HalfEdge* use, std::size_t count) {
         if (count != 2) return;
         const bool quarrels = use[0].forward == use[1].forward;
         link(use[0].triangle, {use[1].triangle, quarrels});
@@ -195,9 +197,9 @@ void turnQuarrellingTriangles(TriangleMesh& mesh, const std::vector<HalfEdge>& e
     }
 }
 
-bool isWatertight(const std::vector<HalfEdge>& edges) {
+bool isWatertight(const std::vector<geometry::HalfEdge>& edges) {
     bool tight = !edges.empty();
-    forEachEdge(edges, [&](const HalfEdge* use, std::size_t count) {
+    geometry::forEachEdge(edges, [&](const geometry::HalfEdge* use, std::size_t count) {
         if (count != 2 || use[0].forward == use[1].forward) tight = false;
     });
     return tight;
@@ -205,9 +207,9 @@ bool isWatertight(const std::vector<HalfEdge>& edges) {
 
 /// The edges that are not used as often in one direction as in the other; each runs as a triangle on its free side
 /// would.
-std::vector<DirectedEdge> openEdges(const std::vector<HalfEdge>& edges) {
+std::vector<DirectedEdge> openEdges(const std::vector<geometry::HalfEdge>& edges) {
     std::vector<DirectedEdge> open;
-    forEachEdge(edges, [&](const HalfEdge* use, std::size_t count) {
+    geometry::forEachEdge(edges, [&](const geometry::HalfEdge* use, std::size_t count) {
         int balance = 0;
         for (std::size_t k = 0; k < count; ++k) balance += use[k].forward ? 1 : -1;
         for (; balance > 0; --balance) open.push_back({use->high, use->low});
@@ -216,25 +218,25 @@ std::vector<DirectedEdge> openEdges(const std::vector<HalfEdge>& edges) {
     return open;
 }
 
-void turnAll(TriangleMesh& mesh, std::vector<DirectedEdge>& open, MeshReport& report) {
-    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+void turnAll(geometry::TriangleMesh& mesh, std::vector<DirectedEdge>& open, MeshReport& report) {
+    for (geometry::Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
     for (DirectedEdge& edge : open) std::swap(edge[0], edge[1]);
     report.turned_inside_out = true;
 }
 
 /// By the divergence theorem, about the middle of the mesh for the sake of rounding.
-double enclosedVolume(const TriangleMesh& mesh, const Vec3& middle) {
+double enclosedVolume(const geometry::TriangleMesh& mesh, const Vec3& middle) {
     double six_volumes = 0.0;
-    for (const Triangle& t : mesh.triangles) {
+    for (const geometry::Triangle& t : mesh.triangles) {
         const Vec3 a = mesh.vertices[t[0]] - middle, b = mesh.vertices[t[1]] - middle, c = mesh.vertices[t[2]] - middle;
         six_volumes += a.dot(b.cross(c));
     }
     return six_volumes / 6.0;
 }
 
-double surfaceArea(const TriangleMesh& mesh) {
+double surfaceArea(const geometry::TriangleMesh& mesh) {
     double two_areas = 0.0;
-    for (const Triangle& t : mesh.triangles) {
+    for (const geometry::Triangle& t : mesh.triangles) {
         const Vec3& a = mesh.vertices[t[0]];
         two_areas += (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm();
     }
@@ -308,13 +310,14 @@ void writeNotes(MeshReport& r) {
 }
 
 /// Decides what is inside, turns a surface that is inside out, closes holes.
-void settleInside(TriangleMesh& mesh, std::vector<DirectedEdge> open, const Bounds& bounds, MeshReport& report) {
+void settleInside(geometry::TriangleMesh& mesh, std::vector<DirectedEdge> open, const geometry::Bounds& bounds,
+                  MeshReport& report) {
     if (mesh.triangles.empty()) return;
     if (open.empty()) {
         report.kind = SurfaceKind::Solid;
         if (enclosedVolume(mesh, 0.5 * (bounds.low + bounds.high)) < 0.0) turnAll(mesh, open, report);
     } else {
-        const TriangleTree tree(mesh);
+        const geometry::TriangleTree tree(mesh);
         const double balance = insideBalance(mesh, tree);
         if (!(std::abs(balance) > kInsideBalance)) return;
         if (balance < 0.0) turnAll(mesh, open, report);
@@ -330,7 +333,7 @@ void settleInside(TriangleMesh& mesh, std::vector<DirectedEdge> open, const Boun
 
 }  // namespace
 
-ImportedMesh repairMesh(TriangleMesh mesh) {
+ImportedMesh repairMesh(geometry::TriangleMesh mesh) {
     MeshReport report;
     report.triangles_read = mesh.triangles.size();
     report.welded_vertices = weld(mesh);
@@ -344,26 +347,26 @@ ImportedMesh repairMesh(TriangleMesh mesh) {
         weld(mesh);
     }
 
-    std::vector<HalfEdge> edges = halfEdges(mesh.triangles);
+    std::vector<geometry::HalfEdge> edges = geometry::halfEdges(mesh.triangles);
     countEdges(mesh, edges, report);
     if (report.inconsistent_edges > 0) {
         turnQuarrellingTriangles(mesh, edges, report);
-        edges = halfEdges(mesh.triangles);
+        edges = geometry::halfEdges(mesh.triangles);
     }
-    if (const auto patches = patchesOf(mesh, edges); patches.size() > 1) {
+    if (const auto patches = geometry::patchesOf(mesh, edges); patches.size() > 1) {
         const PatchOrientation orientation = orientPatches(mesh, patches);
         report.turned_patches = orientation.turned_patches;
         report.turned_patch_triangles = orientation.turned_triangles;
         report.cavities = orientation.cavities;
         report.nested_solids = orientation.nested_solids;
         report.turned_inside_out = orientation.turned_all;
-        if (orientation.turned_all || orientation.turned_patches > 0) edges = halfEdges(mesh.triangles);
+        if (orientation.turned_all || orientation.turned_patches > 0) edges = geometry::halfEdges(mesh.triangles);
     }
     const Crossings crossings = crossingsOf(mesh);
     report.crossing_triangles = crossings.triangles;
     report.crossing_pairs = crossings.pairs;
     report.watertight = isWatertight(edges);
-    const Bounds bounds = boundsOf(mesh);
+    const geometry::Bounds bounds = geometry::boundsOf(mesh);
     report.area = surfaceArea(mesh);
     report.size = mesh.vertices.empty() ? Vec3(Vec3::Zero()) : bounds.size();
     report.triangles = mesh.triangles.size();
@@ -373,4 +376,4 @@ ImportedMesh repairMesh(TriangleMesh mesh) {
     return {std::move(mesh), std::move(report)};
 }
 
-}  // namespace passung::model
+}  // namespace passung::importer

@@ -4,12 +4,12 @@
 #include "core/import/mesh_formats.h"
 #include "core/import/text_scanner.h"
 
-namespace passung::model {
+namespace passung::importer {
 
 namespace {
 
 /// `f 1 2/5 3//7 -1`: the first number of each group names a vertex, from 1, or back from the last one.
-Result<Done> readFace(TextScanner& text, TriangleMesh& mesh) {
+Result<Done> readFace(TextScanner& text, geometry::TriangleMesh& mesh) {
     std::vector<std::uint32_t> corners;
     const auto count = static_cast<std::int64_t>(mesh.vertices.size());
     for (std::string_view word = text.word(); !word.empty(); word = text.word()) {
@@ -27,8 +27,8 @@ Result<Done> readFace(TextScanner& text, TriangleMesh& mesh) {
 
 }  // namespace
 
-Result<TriangleMesh> readObj(std::string_view bytes, const std::string& file) {
-    TriangleMesh mesh;
+Result<geometry::TriangleMesh> readObj(std::string_view bytes, const std::string& file) {
+    geometry::TriangleMesh mesh;
     TextScanner text(bytes, file);
     while (text.nextLine('#')) {
         const std::string_view keyword = text.word();
@@ -44,4 +44,4 @@ Result<TriangleMesh> readObj(std::string_view bytes, const std::string& file) {
     return mesh;
 }
 
-}  // namespace passung::model
+}  // namespace passung::importer

@@ -5,14 +5,14 @@
 #include "core/import/mesh_formats.h"
 #include "core/import/text_scanner.h"
 
-namespace passung::model {
+namespace passung::importer {
 
 namespace {
 
 constexpr std::uint64_t kMost = 0xffffffffu;
 
 /// The numbers of one face line after its count.
-Result<Done> readFace(TextScanner& text, std::size_t vertices, TriangleMesh& mesh) {
+Result<Done> readFace(TextScanner& text, std::size_t vertices, geometry::TriangleMesh& mesh) {
     const std::string_view count_word = text.word();
     const auto count = numberIn<std::uint32_t>(count_word);
     if (!count) return text.error("a face must begin with its number of vertices", count_word);
@@ -33,7 +33,7 @@ Result<Done> readFace(TextScanner& text, std::size_t vertices, TriangleMesh& mes
 
 }  // namespace
 
-Result<TriangleMesh> readOff(std::string_view bytes, const std::string& file) {
+Result<geometry::TriangleMesh> readOff(std::string_view bytes, const std::string& file) {
     TextScanner text(bytes, file);
     if (!text.nextLine('#')) return text.error("must be an OFF file; this one is empty");
     const std::string_view keyword = text.word();
@@ -49,7 +49,7 @@ Result<TriangleMesh> readOff(std::string_view bytes, const std::string& file) {
         if (!value || *value >= kMost) return text.error("must be the number of vertices, faces and edges", word);
         count = *value;
     }
-    TriangleMesh mesh;
+    geometry::TriangleMesh mesh;
     for (std::uint64_t i = 0; i < counts[0]; ++i) {
         if (!text.nextLine('#'))
             return text.error("the file ends after " + std::to_string(i) + " of " + std::to_string(counts[0]) +
@@ -67,4 +67,4 @@ Result<TriangleMesh> readOff(std::string_view bytes, const std::string& file) {
     return mesh;
 }
 
-}  // namespace passung::model
+}  // namespace passung::importer

@@ -8,7 +8,7 @@
 
 #include "core/geometry/triangle_tree.h"
 
-namespace passung::model {
+namespace passung::importer {
 
 namespace {
 
@@ -24,15 +24,16 @@ constexpr double kBounds = 0.5;  // |B| above this: the patch bounds a solid of 
 constexpr int kSweeps = 4;
 
 struct Patch {
-    std::unique_ptr<TriangleTree> tree;  // of its triangles alone
+    std::unique_ptr<geometry::TriangleTree> tree;  // of its triangles alone
     std::vector<Vec3> behind, before;
     double own = 0.0;   // B
     double size = 0.0;  // diagonal of its box [m]
     double area = 0.0;
 };
 
-Patch describe(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles, std::size_t most_probes) {
-    TriangleMesh alone;
+Patch describe(const geometry::TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles,
+               std::size_t most_probes) {
+    geometry::TriangleMesh alone;
     std::vector<Vec3> middles, areas;
     Patch patch;
     for (const std::uint32_t i : triangles) {
@@ -44,8 +45,8 @@ Patch describe(const TriangleMesh& mesh, const std::vector<std::uint32_t>& trian
         areas.emplace_back(0.5 * (b - a).cross(c - a));
         patch.area += areas.back().norm();
     }
-    patch.tree = std::make_unique<TriangleTree>(alone);
-    patch.size = boundsOf(alone).size().norm();
+    patch.tree = std::make_unique<geometry::TriangleTree>(alone);
+    patch.size = geometry::boundsOf(alone).size().norm();
     const double length = std::sqrt(patch.area);
     const std::size_t stride = (triangles.size() + most_probes - 1) / most_probes;
     double asked_area = 0.0;
@@ -87,7 +88,7 @@ Evidence ask(const Patch& patch, const Winding& winding) {
 
 class Orientation {
 public:
-    Orientation(TriangleMesh& mesh, const std::vector<std::vector<std::uint32_t>>& patches)
+    Orientation(geometry::TriangleMesh& mesh, const std::vector<std::vector<std::uint32_t>>& patches)
         : mesh_(mesh), patches_(patches), turned_(patches.size(), 0) {
         std::vector<double> area(patches.size(), 0.0);
         for (std::size_t i = 0; i < patches.size(); ++i) {
@@ -125,7 +126,7 @@ private:
     }
 
     void turnAll() {
-        for (Triangle& t : mesh_.triangles) std::swap(t[1], t[2]);
+        for (geometry::Triangle& t : mesh_.triangles) std::swap(t[1], t[2]);
         turned_all_ = true;
     }
 
@@ -171,7 +172,7 @@ private:
     bool judgeSmall() {
         cavities_small_ = nested_small_ = 0;
         if (by_area_.size() <= kLargePatches) return false;
-        const TriangleTree all(mesh_);
+        const geometry::TriangleTree all(mesh_);
         std::vector<std::size_t> wrong;
         for (std::size_t k = kLargePatches; k < by_area_.size(); ++k) {
             const Patch patch = describe(mesh_, patches_[by_area_[k]], kFewProbes);
@@ -185,7 +186,7 @@ private:
         return !wrong.empty();
     }
 
-    TriangleMesh& mesh_;
+    geometry::TriangleMesh& mesh_;
     const std::vector<std::vector<std::uint32_t>>& patches_;
     std::vector<std::size_t> by_area_;  // falling
     std::vector<char> turned_;
@@ -195,8 +196,8 @@ private:
 
 }  // namespace
 
-PatchOrientation orientPatches(TriangleMesh& mesh, const std::vector<std::vector<std::uint32_t>>& patches) {
+PatchOrientation orientPatches(geometry::TriangleMesh& mesh, const std::vector<std::vector<std::uint32_t>>& patches) {
     return Orientation(mesh, patches).settle();
 }
 
-}  // namespace passung::model
+}  // namespace passung::importer

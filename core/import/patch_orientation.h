@@ -6,7 +6,7 @@
 
 #include "core/geometry/mesh.h"
 
-namespace passung::model {
+namespace passung::importer {
 
 /// What was found about patches that share no edges, and done.
 struct PatchOrientation {
@@ -29,6 +29,6 @@ struct PatchOrientation {
 /// clearest D, or if none has any the one with the largest box, since what holds another has the larger box. The small
 /// ones are many, so most face the right way; they are judged together against all others, some times over.
 /// `patches`: the triangles of each; every triangle in one patch, neighbours within a patch agree.
-PatchOrientation orientPatches(TriangleMesh& mesh, const std::vector<std::vector<std::uint32_t>>& patches);
+PatchOrientation orientPatches(geometry::TriangleMesh& mesh, const std::vector<std::vector<std::uint32_t>>& patches);
 
-}  // namespace passung::model
+}  // namespace passung::importer

@@ -10,7 +10,7 @@
 #include "core/import/mesh_formats.h"
 #include "core/import/text_scanner.h"
 
-namespace passung::model {
+namespace passung::importer {
 
 namespace {
 
@@ -165,7 +165,7 @@ private:
 
 bool isWhole(double number, double end) { return number >= 0.0 && number < end && number == std::floor(number); }
 
-Result<Done> readElement(Numbers& numbers, const Element& element, TriangleMesh& mesh) {
+Result<Done> readElement(Numbers& numbers, const Element& element, geometry::TriangleMesh& mesh) {
     const bool is_vertex = element.name == "vertex", is_face = element.name == "face";
     if (element.properties.empty()) return Done{};
     std::vector<std::uint32_t> corners;
@@ -208,11 +208,11 @@ Result<Done> readElement(Numbers& numbers, const Element& element, TriangleMesh&
 
 }  // namespace
 
-Result<TriangleMesh> readPly(std::string_view bytes, const std::string& file) {
+Result<geometry::TriangleMesh> readPly(std::string_view bytes, const std::string& file) {
     TextScanner text(bytes, file);
     const auto head = readHead(text);
     if (!head) return head.errors();
-    TriangleMesh mesh;
+    geometry::TriangleMesh mesh;
     Numbers numbers(text, head->format);
     for (const Element& element : head->elements) {
         if (auto read = readElement(numbers, element, mesh); !read) {
@@ -224,4 +224,4 @@ Result<TriangleMesh> readPly(std::string_view bytes, const std::string& file) {
     return mesh;
 }
 
-}  // namespace passung::model
+}  // namespace passung::importer

@@ -3,12 +3,12 @@
 
 #include "core/import/mesh_formats.h"
 
-namespace passung::model {
+namespace passung::importer {
 
 namespace {
 
 /// Twice the area vector, by Newell's method.
-Vec3 newellNormal(const TriangleMesh& mesh, const std::vector<std::uint32_t>& corners) {
+Vec3 newellNormal(const geometry::TriangleMesh& mesh, const std::vector<std::uint32_t>& corners) {
     Vec3 normal = Vec3::Zero();
     const Vec3& origin = mesh.vertices[corners[0]];
     for (std::size_t k = 0; k < corners.size(); ++k)
@@ -17,7 +17,8 @@ Vec3 newellNormal(const TriangleMesh& mesh, const std::vector<std::uint32_t>& co
 }
 
 /// Is the corner `k` an ear: convex, and no other corner in its triangle?
-bool isEar(const TriangleMesh& mesh, const std::vector<std::uint32_t>& corners, std::size_t k, const Vec3& normal) {
+bool isEar(const geometry::TriangleMesh& mesh, const std::vector<std::uint32_t>& corners, std::size_t k,
+           const Vec3& normal) {
     const std::size_t n = corners.size();
     const std::array<std::uint32_t, 3> ear{corners[(k + n - 1) % n], corners[k], corners[(k + 1) % n]};
     const Vec3 &a = mesh.vertices[ear[0]], &b = mesh.vertices[ear[1]], &c = mesh.vertices[ear[2]];
@@ -34,7 +35,7 @@ bool isEar(const TriangleMesh& mesh, const std::vector<std::uint32_t>& corners, 
 
 }  // namespace
 
-void addPolygon(TriangleMesh& mesh, const std::vector<std::uint32_t>& corners) {
+void addPolygon(geometry::TriangleMesh& mesh, const std::vector<std::uint32_t>& corners) {
     std::vector<std::uint32_t> left = corners;
     if (corners.size() > 3) {
         const Vec3 normal = newellNormal(mesh, corners);
@@ -54,4 +55,4 @@ void addPolygon(TriangleMesh& mesh, const std::vector<std::uint32_t>& corners) {
     for (std::size_t k = 1; k + 1 < left.size(); ++k) mesh.triangles.push_back({left[0], left[k], left[k + 1]});
 }
 
-}  // namespace passung::model
+}  // namespace passung::importer

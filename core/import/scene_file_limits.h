@@ -12,7 +12,7 @@
 
 #include "core/base/result.h"
 
-namespace passung::model {
+namespace passung::importer {
 
 /// glTF and 3MF are read by another library, which trusts what a file says of itself. What could exhaust it is judged
 /// here before: how deep a file is, what it says it holds, how often its objects stand in one another.
@@ -52,4 +52,4 @@ private:
     std::vector<Object> objects_;
 };
 
-}  // namespace passung::model
+}  // namespace passung::importer

@@ -3,7 +3,7 @@
 
 #include "core/import/scene_file_limits.h"
 
-namespace passung::model {
+namespace passung::importer {
 
 namespace {
 
@@ -62,4 +62,4 @@ std::optional<std::string> Nesting::tooMuch(std::size_t object) const {
     return std::nullopt;
 }
 
-}  // namespace passung::model
+}  // namespace passung::importer

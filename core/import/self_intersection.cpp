@@ -7,7 +7,7 @@
 
 #include "core/geometry/triangle_tree.h"
 
-namespace passung::model {
+namespace passung::importer {
 
 namespace {
 
@@ -45,11 +45,11 @@ bool cross(const CyclicCorners& a, const CyclicCorners& b) {
 
 }  // namespace
 
-Crossings crossingsOf(const TriangleMesh& mesh) {
+Crossings crossingsOf(const geometry::TriangleMesh& mesh) {
     if (mesh.triangles.empty()) return {};
-    const TriangleTree tree(mesh);
+    const geometry::TriangleTree tree(mesh);
     const auto cornersOf = [&](std::size_t i) {
-        const Triangle& t = mesh.triangles[i];
+        const geometry::Triangle& t = mesh.triangles[i];
         return CyclicCorners{{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]}};
     };
     Crossings found;
@@ -57,7 +57,7 @@ Crossings crossingsOf(const TriangleMesh& mesh) {
     std::vector<std::uint32_t> near;
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         const CyclicCorners corners = cornersOf(i);
-        Bounds box;
+        geometry::Bounds box;
         for (const Vec3& corner : corners.at) box.extend(corner);
         tree.collectWithin(box, kMostNeighbours, near);
         for (const std::uint32_t k : near) {
@@ -70,4 +70,4 @@ Crossings crossingsOf(const TriangleMesh& mesh) {
     return found;
 }
 
-}  // namespace passung::model
+}  // namespace passung::importer

@@ -4,7 +4,7 @@
 
 #include "core/geometry/mesh.h"
 
-namespace passung::model {
+namespace passung::importer {
 
 /// Where a surface meets itself, or one piece another.
 struct Crossings {
@@ -14,6 +14,6 @@ struct Crossings {
 
 /// Triangles that touch, share an edge or lie upon each other do not count, nor more than 256 around one. The same on
 /// every machine; its time grows as n log n for a surface whose triangles do not pile up.
-Crossings crossingsOf(const TriangleMesh& mesh);
+Crossings crossingsOf(const geometry::TriangleMesh& mesh);
 
-}  // namespace passung::model
+}  // namespace passung::importer

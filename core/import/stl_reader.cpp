@@ -7,7 +7,7 @@
 #include "core/import/mesh_formats.h"
 #include "core/import/text_scanner.h"
 
-namespace passung::model {
+namespace passung::importer {
 
 namespace {
 
@@ -19,8 +19,8 @@ std::uint32_t word32(const char* bytes) {
     return value;
 }
 
-Result<TriangleMesh> readBinary(std::string_view bytes, std::size_t count, const std::string& file) {
-    TriangleMesh mesh;
+Result<geometry::TriangleMesh> readBinary(std::string_view bytes, std::size_t count, const std::string& file) {
+    geometry::TriangleMesh mesh;
     mesh.vertices.reserve(3 * count);
     mesh.triangles.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -42,8 +42,8 @@ Result<TriangleMesh> readBinary(std::string_view bytes, std::size_t count, const
 }
 
 /// Facets are read by their vertices; the other words frame them.
-Result<TriangleMesh> readText(std::string_view bytes, const std::string& file) {
-    TriangleMesh mesh;
+Result<geometry::TriangleMesh> readText(std::string_view bytes, const std::string& file) {
+    geometry::TriangleMesh mesh;
     TextScanner text(bytes, file);
     std::size_t corners = 0;  // of the facet so far
     bool in_loop = false, in_facet = false, in_solid = false;
@@ -78,7 +78,7 @@ Result<TriangleMesh> readText(std::string_view bytes, const std::string& file) {
 
 }  // namespace
 
-Result<TriangleMesh> readStl(std::string_view bytes, const std::string& file) {
+Result<geometry::TriangleMesh> readStl(std::string_view bytes, const std::string& file) {
     if (bytes.size() >= kHead) {
         const std::uint64_t count = word32(bytes.data() + kHead - 4);
         if (bytes.size() == kHead + kRecord * count) return readBinary(bytes, static_cast<std::size_t>(count), file);
@@ -99,4 +99,4 @@ Result<TriangleMesh> readStl(std::string_view bytes, const std::string& file) {
                  .file = file};
 }
 
-}  // namespace passung::model
+}  // namespace passung::importer

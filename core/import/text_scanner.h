@@ -11,7 +11,7 @@
 #include "core/base/result.h"
 #include "core/base/types.h"
 
-namespace passung::model {
+namespace passung::importer {
 
 /// Takes a text apart into lines and the words of a line.
 class TextScanner {
@@ -120,4 +120,4 @@ inline Result<Vec3> takeVertex(TextScanner& text) {
     return v;
 }
 
-}  // namespace passung::model
+}  // namespace passung::importer

@@ -9,7 +9,7 @@
 
 #include "core/import/scene_file_limits.h"
 
-namespace passung::model {
+namespace passung::importer {
 
 namespace {
 
@@ -183,4 +183,4 @@ std::optional<Error> beyond3mfLimits(const std::string& path, std::uintmax_t siz
     return std::nullopt;
 }
 
-}  // namespace passung::model
+}  // namespace passung::importer

@@ -16,7 +16,7 @@ struct SampledWall {
 };
 
 /// Longest delay of a device itself that the model covers [ticks]. What a scene adds has a limit of its own
-/// (model::kMaxDelayTicks).
+/// (scene::kMaxDelayTicks).
 inline constexpr int kMaxDeviceDelayTicks = 24;
 
 /// True if every motion against the wall dies out (exact for the model; the border itself counts as unstable).

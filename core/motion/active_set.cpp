@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace passung::tick {
+namespace passung::motion {
 
 namespace {
 
@@ -129,4 +129,4 @@ ActiveSet::Taken ActiveSet::takeUp(const MotionRow& row, Motion& u, int& iterati
     return Taken::Capped;
 }
 
-}  // namespace passung::tick
+}  // namespace passung::motion

@@ -5,7 +5,7 @@
 
 #include "core/base/types.h"
 
-namespace passung::tick {
+namespace passung::motion {
 
 /// A motion of a rigid body in one vector with the unit metre: (Δx, ρ Δφ).
 using Motion = Eigen::Matrix<double, 6, 1>;
@@ -53,4 +53,4 @@ private:
     int count_ = 0;
 };
 
-}  // namespace passung::tick
+}  // namespace passung::motion

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace passung::tick {
+namespace passung::motion {
 
 std::size_t binOf(const Vec3& gradient, const Vec3& lever) noexcept {
     std::size_t bin = 0;
@@ -21,11 +21,11 @@ MotionSolver::MotionSolver(const Surroundings& around, std::span<const std::uint
 }
 
 /// What a contact asks of g · motion [m], if that can be had.
-double MotionSolver::wantedOf(const ContactPoint& contact) const noexcept {
+double MotionSolver::wantedOf(const contact::ContactPoint& contact) const noexcept {
     return (contact.phi < around_.keep_out ? around_.sunk_out : around_.keep_out) - contact.phi;
 }
 
-double MotionSolver::least(const ContactPoint& contact) const noexcept {
+double MotionSolver::least(const contact::ContactPoint& contact) const noexcept {
     const double b = wantedOf(contact);
     return relaxed_ || contact.radius > 0.0 ? std::min(b, 0.0) : b;
 }
@@ -34,7 +34,7 @@ double MotionSolver::boundOf(const MotionRow& row) const noexcept {
     return relaxed_ || row.sphere ? std::min(row.b, 0.0) : row.b;
 }
 
-void MotionSolver::addRow(const ContactPoint& contact) noexcept {
+void MotionSolver::addRow(const contact::ContactPoint& contact) noexcept {
     const double gradient = contact.gradient.norm();
     if (!(gradient > kLeastGradient)) return;
     MotionRow& row = rows_[static_cast<std::size_t>(count_++)];
@@ -67,9 +67,9 @@ bool MotionSolver::meetsMore(const Motion& u) noexcept {
     const Vec3 dphi = u.tail<3>() / around_.metric_radius;
     const Vec3 at_origin = u.head<3>() - dphi.cross(around_.p_WO);
     std::array<double, kBins> worst;
-    std::array<const ContactPoint*, kBins> which{};
+    std::array<const contact::ContactPoint*, kBins> which{};
     worst.fill(tolerance_);
-    for (const ContactPoint& contact : around_.contacts) {
+    for (const contact::ContactPoint& contact : around_.contacts) {
         const double missing = least(contact) - contact.gradient.dot(at_origin + dphi.cross(contact.position));
         if (!(missing > tolerance_)) continue;
         const std::size_t bin = binOf(contact.gradient, (contact.position - around_.p_WO).cross(contact.gradient));
@@ -82,7 +82,7 @@ bool MotionSolver::meetsMore(const Motion& u) noexcept {
         count_ = held_count_;
     }
     const int before = count_;
-    for (const ContactPoint* contact : which)
+    for (const contact::ContactPoint* contact : which)
         if (contact != nullptr) addRow(*contact);
     return count_ > before;
 }
@@ -129,7 +129,7 @@ ConstrainedMotion MotionSolver::solve(const Motion& wanted) noexcept {
     const double bend = (result.u - wanted).norm();
     if (!(found && result.converged && bend <= wanted.norm())) {
         double deepest = 0.0;  // what standing still would leave to be removed
-        for (const ContactPoint& contact : around_.contacts) deepest = std::max(deepest, least(contact));
+        for (const contact::ContactPoint& contact : around_.contacts) deepest = std::max(deepest, least(contact));
         if (deepest > 0.0 && !(found && result.converged && bend <= wanted.norm() + kFarther * deepest)) {
             relaxed_ = result.relaxed = true;
             found = attempt(wanted, result);
@@ -148,4 +148,4 @@ ConstrainedMotion constrainMotion(const Motion& wanted, const Surroundings& arou
     return MotionSolver(around, likely).solve(wanted);
 }
 
-}  // namespace passung::tick
+}  // namespace passung::motion

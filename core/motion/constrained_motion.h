@@ -8,11 +8,11 @@
 #include "core/contact/contact_query.h"
 #include "core/motion/active_set.h"
 
-namespace passung::tick {
+namespace passung::motion {
 
 /// What a body's motion meets.
 struct Surroundings {
-    const ContactManifold& contacts;
+    const contact::ContactManifold& contacts;
     Vec3 p_WO;                   // the body's origin
     double metric_radius;        // ρ [m]
     double keep_out;             // the φ that a contact must keep, slightly negative [m]
@@ -79,10 +79,10 @@ public:
     static constexpr int kMostRows = 200;
 
 private:
-    double wantedOf(const ContactPoint& contact) const noexcept;
-    double least(const ContactPoint& contact) const noexcept;
+    double wantedOf(const contact::ContactPoint& contact) const noexcept;
+    double least(const contact::ContactPoint& contact) const noexcept;
     double boundOf(const MotionRow& row) const noexcept;
-    void addRow(const ContactPoint& contact) noexcept;
+    void addRow(const contact::ContactPoint& contact) noexcept;
     const MotionRow* mostViolated(const Motion& u) const noexcept;
     bool meetsMore(const Motion& u) noexcept;
     bool attempt(const Motion& wanted, ConstrainedMotion& result) noexcept;
@@ -106,4 +106,4 @@ inline constexpr double kLeastGradient = 0.1;
 std::size_t binOf(const Vec3& gradient, const Vec3& lever) noexcept;
 inline constexpr std::size_t kBins = 64;
 
-}  // namespace passung::tick
+}  // namespace passung::motion

@@ -6,7 +6,7 @@
 
 #include "core/motion/friction_balance.h"
 
-namespace passung::tick {
+namespace passung::motion {
 
 RubbedMotion constrainWithFriction(const Motion& wanted, const Surroundings& around, std::span<const Friction> friction,
                                    const FrictionPatches& before, std::span<const std::uint32_t> likely) noexcept {
@@ -18,4 +18,4 @@ RubbedMotion constrainWithFriction(const Motion& wanted, const Surroundings& aro
     return FrictionBalance(wanted, around, friction, result.motion, before).find();
 }
 
-}  // namespace passung::tick
+}  // namespace passung::motion

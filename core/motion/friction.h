@@ -5,7 +5,7 @@
 
 #include "core/motion/constrained_motion.h"
 
-namespace passung::tick {
+namespace passung::motion {
 
 /// Coulomb's coefficients of dry friction of two surfaces; both 0: none.
 struct Friction {
@@ -66,4 +66,4 @@ inline constexpr int kMostSteps = 1000;  // rows that these take up in all
 RubbedMotion constrainWithFriction(const Motion& wanted, const Surroundings& around, std::span<const Friction> friction,
                                    const FrictionPatches& before, std::span<const std::uint32_t> likely = {}) noexcept;
 
-}  // namespace passung::tick
+}  // namespace passung::motion

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace passung::tick {
+namespace passung::motion {
 
 namespace {
 
@@ -40,7 +40,7 @@ FrictionBalance::FrictionBalance(const Motion& wanted, const Surroundings& aroun
     std::array<int, 6> patch_of;
     for (int i = 0; i < plain.active; ++i) {
         const HeldContact& held = plain.held[static_cast<std::size_t>(i)];
-        const ContactPoint& contact = around.contacts[held.contact];
+        const contact::ContactPoint& contact = around.contacts[held.contact];
         const int at = patch_of[static_cast<std::size_t>(i)] = patchFor(contact);
         Patch& patch = patches_[static_cast<std::size_t>(at)];
         // Without any pressure the first contact is the centre; a weight that no other feels.
@@ -91,7 +91,7 @@ void FrictionBalance::place(Patch& patch) const noexcept {
         Vec3::Zero().transpose(), patch.is.radius / around_.metric_radius * patch.is.normal.transpose();
 }
 
-int FrictionBalance::patchFor(const ContactPoint& contact) noexcept {
+int FrictionBalance::patchFor(const contact::ContactPoint& contact) noexcept {
     const Vec3 normal = contact.gradient.normalized();
     int best = -1;
     double most = -2.0;
@@ -113,14 +113,14 @@ int FrictionBalance::patchFor(const ContactPoint& contact) noexcept {
     return patch_count_++;
 }
 
-double FrictionBalance::least(const ContactPoint& contact) const noexcept {
+double FrictionBalance::least(const contact::ContactPoint& contact) const noexcept {
     const double b = (contact.phi < around_.keep_out ? around_.sunk_out : around_.keep_out) - contact.phi;
     return relaxed_ || contact.radius > 0.0 ? std::min(b, 0.0) : b;
 }
 
 void FrictionBalance::buildRow(int cut) noexcept {
     const Cut& is = cuts_[static_cast<std::size_t>(cut)];
-    const ContactPoint& contact = around_.contacts[is.contact];
+    const contact::ContactPoint& contact = around_.contacts[is.contact];
     const Patch& patch = patches_[static_cast<std::size_t>(is.patch)];
     MotionRow& row = rows_[static_cast<std::size_t>(cut)];
     row.gradient = contact.gradient.norm();
@@ -142,7 +142,7 @@ void FrictionBalance::addCut(std::uint32_t contact, int patch, const Vec3& direc
 }
 
 /// By how much the motion of now violates the cone of a contact [m].
-double FrictionBalance::violationOf(const ContactPoint& contact, const Patch& patch) const noexcept {
+double FrictionBalance::violationOf(const contact::ContactPoint& contact, const Patch& patch) const noexcept {
     return least(contact) - contact.gradient.dot(around_.wayOf(contact.position, u_)) +
            coefficientOf(patch) * contact.gradient.norm() * (patch.slip.norm() - patch.given);
 }
@@ -190,7 +190,7 @@ bool FrictionBalance::cutAmong(bool all, double enough) noexcept {
     worst.fill(least_violation);
     const std::size_t count = all ? around_.contacts.size() : watched_count_;
     for (std::size_t i = 0; i < count; ++i) {
-        const ContactPoint& contact = around_.contacts[all ? i : watched_[i].contact];
+        const contact::ContactPoint& contact = around_.contacts[all ? i : watched_[i].contact];
         const double missing = least(contact) - contact.gradient.dot(at_origin + dphi.cross(contact.position));
         if (!(missing + kLongestGradient * lift > least_violation)) continue;
         if (!(contact.gradient.squaredNorm() > kLeastGradient * kLeastGradient)) continue;
@@ -410,4 +410,4 @@ RubbedMotion FrictionBalance::find() noexcept {
     return result;
 }
 
-}  // namespace passung::tick
+}  // namespace passung::motion

@@ -2,7 +2,7 @@
 
 #include "core/motion/friction_patch.h"
 
-namespace passung::tick {
+namespace passung::motion {
 
 /// The motion that contacts with dry friction leave to a body: the solution of friction.h, whose symbols these are.
 ///
@@ -55,12 +55,12 @@ private:
     static constexpr std::size_t kMostWatched = 192;
 
     double coefficientOf(const Patch& patch) const noexcept;
-    int patchFor(const ContactPoint& contact) noexcept;
-    double least(const ContactPoint& contact) const noexcept;
+    int patchFor(const contact::ContactPoint& contact) noexcept;
+    double least(const contact::ContactPoint& contact) const noexcept;
     void place(Patch& patch) const noexcept;
     void addCut(std::uint32_t contact, int patch, const Vec3& direction) noexcept;
     void buildRow(int cut) noexcept;
-    double violationOf(const ContactPoint& contact, const Patch& patch) const noexcept;
+    double violationOf(const contact::ContactPoint& contact, const Patch& patch) const noexcept;
     int mostViolated() const noexcept;
     bool cutHeld(double enough) noexcept;
     void makeRoom() noexcept;
@@ -92,4 +92,4 @@ private:
     int iterations_ = 0, rounds_ = 0;
 };
 
-}  // namespace passung::tick
+}  // namespace passung::motion

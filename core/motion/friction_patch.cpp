@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace passung::tick {
+namespace passung::motion {
 
 std::pair<Vec3, Vec3> tangentsOf(const Vec3& n) noexcept {
     const Vec3 t1 = n.cross(std::abs(n.x()) < 0.6 ? Vec3::UnitX() : Vec3::UnitY()).normalized();
@@ -25,7 +25,7 @@ Vec3 rubAlong(const FrictionPatch& patch) noexcept {
 double effectiveRadius(const Surroundings& around, const FrictionPatch& patch, const Motion& u) noexcept {
     const auto [t1, t2] = tangentsOf(patch.normal);
     const auto forTouching = [&, t1 = t1, t2 = t2](auto use) {
-        for (const ContactPoint& c : around.contacts) {
+        for (const contact::ContactPoint& c : around.contacts) {
             const double facing = c.gradient.dot(patch.normal);
             if (c.obstacle != patch.obstacle || !(facing > 0.0) ||
                 !(facing * facing > kSameWay * kSameWay * c.gradient.squaredNorm()))
@@ -59,4 +59,4 @@ double effectiveRadius(const Surroundings& around, const FrictionPatch& patch, c
     return weight > 0.0 ? sum / weight : 0.0;
 }
 
-}  // namespace passung::tick
+}  // namespace passung::motion

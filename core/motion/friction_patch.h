@@ -4,7 +4,7 @@
 
 #include "core/motion/friction.h"
 
-namespace passung::tick {
+namespace passung::motion {
 
 // Geometry of a patch of contacts that rub as one. rt-safe.
 
@@ -19,4 +19,4 @@ Vec3 turned(const FrictionPatch& patch, const Vec3& normal) noexcept;
 /// Mean distance from the centre of pressure of the points that `patch` touches after `u`, under their pressure.
 double effectiveRadius(const Surroundings& around, const FrictionPatch& patch, const Motion& u) noexcept;
 
-}  // namespace passung::tick
+}  // namespace passung::motion

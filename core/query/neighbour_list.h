@@ -12,25 +12,25 @@ namespace passung::query {
 class NeighbourList {
 public:
     /// Forgets all; from here on closestTo asks `tree`. `rounding`: of the coordinates [m].
-    void begin(const model::TriangleTree& tree, double rounding);
+    void begin(const geometry::TriangleTree& tree, double rounding);
 
     /// Collects the triangles that may be nearer than `limit` to any within `box`, no point of which lies less far
     /// along `way` (unit) than `least`, unless there are more than kMost.
-    void collect(const model::Bounds& box, const Vec3& way, double least, double limit);
+    void collect(const geometry::Bounds& box, const Vec3& way, double least, double limit);
     static constexpr std::size_t kMost = 1000;  // beyond, a tree finds them faster
 
     /// As TriangleTree::closestTo. @pre after collect: `t` lies within its box, and `limit` is not larger than its.
-    model::TrianglePair closestTo(const model::TriangleCorners& t, double limit) const;
+    geometry::TrianglePair closestTo(const geometry::TriangleCorners& t, double limit) const;
 
 private:
     struct Neighbour {
         double end;  // how far it reaches along way_ [m]
         Vec3 middle;
         double reach;  // of the corners from the middle [m]
-        model::TriangleCorners corners;
+        geometry::TriangleCorners corners;
     };
 
-    const model::TriangleTree* tree_ = nullptr;
+    const geometry::TriangleTree* tree_ = nullptr;
     double rounding_ = 0.0;
     bool collected_ = false;
     std::vector<Neighbour> neighbours_;

@@ -11,14 +11,14 @@ namespace {
 
 constexpr double kArithmetic = 1e-12;  // rounding of a closed form, per metre of its point
 
-std::size_t nodesOf(const model::Part& part) { return part.shell ? part.shell->nodes().size() : 0; }
-std::size_t pointsOf(const model::Part& part) { return part.shell ? part.shell->points().size() : 0; }
+std::size_t nodesOf(const scene::Part& part) { return part.shell ? part.shell->nodes().size() : 0; }
+std::size_t pointsOf(const scene::Part& part) { return part.shell ? part.shell->points().size() : 0; }
 
 /// How far the triangles of a part may lie from the surface that was given [m]: chords of a shape; a mesh file is read
 /// in single precision.
-double surfaceError(const model::Part& part) {
+double surfaceError(const scene::Part& part) {
     if (part.shape) return part.chord_error;
-    const model::Bounds bounds = model::boundsOf(part.mesh);
+    const geometry::Bounds bounds = geometry::boundsOf(part.mesh);
     return 0x1p-24 * bounds.low.cwiseAbs().cwiseMax(bounds.high.cwiseAbs()).norm();
 }
 
@@ -30,14 +30,14 @@ void boundError(PartQueryResult& result) {
 
 /// What the field is wrong by at most at the point found [m]: of a shape the truth there is known, and the field's own
 /// bound, one for many cells, is far above it at rims and in corners.
-double fieldErrorAtClosest(const model::Part& field, const tick::QueryAnswer& answer, model::FieldMode mode) {
+double fieldErrorAtClosest(const scene::Part& field, const contact::QueryAnswer& answer, field::FieldMode mode) {
     if (!field.shape) return field.field->errorBound(answer.closest_F, mode);
-    const double truth = model::signedDistance(*field.shape, answer.closest_F);
+    const double truth = shape::signedDistance(*field.shape, answer.closest_F);
     return std::abs(answer.phi + field.field->sheetOffset() - truth) + kArithmetic * (1.0 + answer.closest_F.norm());
 }
 
 /// Sets the bound of the field at the shell's points: `least` is no more than the smallest true φ there.
-void boundField(const model::Part& field, const tick::QueryAnswer& answer, model::FieldMode mode, double least,
+void boundField(const scene::Part& field, const contact::QueryAnswer& answer, field::FieldMode mode, double least,
                 PartQueryResult& result) {
     result.field_error_bound = answer.phi - least;
     if (answer.found)
@@ -46,8 +46,8 @@ void boundField(const model::Part& field, const tick::QueryAnswer& answer, model
 
 /// The interval that one direction proves, from what the traversal found; see PartQuery. `meshes`: what the meshes may
 /// be off.
-void proveInterval(const model::Part& field, const model::Part& shell, const tick::QueryAnswer& answer,
-                   model::FieldMode mode, double meshes, PartQueryResult& result) {
+void proveInterval(const scene::Part& field, const scene::Part& shell, const contact::QueryAnswer& answer,
+                   field::FieldMode mode, double meshes, PartQueryResult& result) {
     const double chords = meshes + shell.shell->rounding();
     const double offset = field.field->sheetOffset();
     // Branches were pruned where nothing lies below answer.phi, which another mode may have read below the points' own
@@ -63,7 +63,7 @@ void proveInterval(const model::Part& field, const model::Part& shell, const tic
 }
 
 /// Narrows the interval by the exact geometry; see PartQuery.
-void refine(const model::Part& shell, SurfaceSearch& search, const Pose& X_FS, double tolerance, int most_steps,
+void refine(const scene::Part& shell, SurfaceSearch& search, const Pose& X_FS, double tolerance, int most_steps,
             double chords, PartQueryResult& result) {
     // What the chords take of the tolerance is lost, but not all of it can be won back by searching on.
     const double left = std::max(tolerance - chords, 0.1 * tolerance);
@@ -93,7 +93,7 @@ void mergeInterval(const PartQueryResult& back, PartQueryResult& result) {
 
 }  // namespace
 
-PartQuery::PartQuery(const model::Part& field, const model::Part& shell, const PartQueryRequest& request)
+PartQuery::PartQuery(const scene::Part& field, const scene::Part& shell, const PartQueryRequest& request)
     : field_(field),
       shell_(shell),
       request_(request),
@@ -106,18 +106,19 @@ PartQuery::PartQuery(const model::Part& field, const model::Part& shell, const P
     if (request.two_way && shell.field->boundProven()) search_back_.emplace(shell, field);
 }
 
-PartQueryResult PartQuery::oneWay(const model::Part& field, const model::Part& shell,
+PartQueryResult PartQuery::oneWay(const scene::Part& field, const scene::Part& shell,
                                   std::optional<SurfaceSearch>& search, const Pose& X_FS) {
     const double chords = surface_error_ + shell.shell->rounding();
     // What the triangles prove is more than the points could, so that those need not prove anything before.
     const bool decided = search && request_.max_nodes == 0 && std::isinf(request_.proximity);
-    tick::QueryRequest request{.search_below = request_.proximity,
-                               .max_nodes = request_.max_nodes,
-                               .mode = request_.mode,
-                               .prove = !decided,
-                               .gradients = false};
+    contact::QueryRequest request{.search_below = request_.proximity,
+                                  .max_nodes = request_.max_nodes,
+                                  .mode = request_.mode,
+                                  .prove = !decided,
+                                  .gradients = false};
     manifold_.clear();
-    tick::QueryAnswer answer = queryContacts(*field.field, Pose{}, *shell.shell, X_FS, request, workspace_, manifold_);
+    contact::QueryAnswer answer =
+        queryContacts(*field.field, Pose{}, *shell.shell, X_FS, request, workspace_, manifold_);
     PartQueryResult result;
     if (answer.quality < request_.quality) {
         request.max_nodes = 0;
@@ -149,7 +150,7 @@ PartQueryResult PartQuery::oneWay(const model::Part& field, const model::Part& s
         if (result.error_bound > request_.tolerance) {  // the steps ended
             request.prove = true;
             request.collect_below = -std::numeric_limits<double>::infinity();
-            const tick::QueryAnswer proof =
+            const contact::QueryAnswer proof =
                 queryContacts(*field.field, Pose{}, *shell.shell, X_FS, request, workspace_, manifold_);
             least = std::max(least, std::min(proof.lower_bound, proof.phi));
             result.lower_bound =
@@ -160,10 +161,10 @@ PartQueryResult PartQuery::oneWay(const model::Part& field, const model::Part& s
     }
     result.budget_reached = result.budget_reached || (!free && result.nodes_visited >= request_.max_nodes);
 
-    const Wrench load = tick::sumDepths(manifold_, true, X_FS.p, [](const auto&...) {}).sum;
+    const Wrench load = contact::sumDepths(manifold_, true, X_FS.p, [](const auto&...) {}).sum;
     result.wrench = {request_.area_stiffness * load.force, request_.area_stiffness * load.torque};
     result.contacts = static_cast<int>(
-        std::count_if(manifold_.begin(), manifold_.end(), [](const tick::ContactPoint& c) { return c.phi < 0.0; }));
+        std::count_if(manifold_.begin(), manifold_.end(), [](const contact::ContactPoint& c) { return c.phi < 0.0; }));
     return result;
 }
 

@@ -22,7 +22,7 @@ struct PartQueryRequest {
     double tolerance = 20e-6;  // the closest pair is refined until error_bound ≤ this [m]; infinite: not at all
     bool two_way = false;      // each part's points against the other's field
     bool patches = false;      // also list the patches of contact
-    model::FieldMode mode = model::FieldMode::Trilinear;
+    field::FieldMode mode = field::FieldMode::Trilinear;
 };
 
 /// Distance, depth and penalty wrench of two parts at one pose, with what is proven about them. FIELD's file frame.
@@ -46,9 +46,9 @@ struct PartQueryResult {
     int contacts = 0;             // points with φ < 0
     int nodes_visited = 0;
     int points_tested = 0;
-    // If asked for: of SHELL's points inside FIELD (also if two-way), the deepest first; see tick::ClusterFinder.
-    std::vector<tick::ContactCluster> patches;
-    std::size_t patches_found = 0;  // more than are listed if more than tick::ClusterFinder::kMostClusters
+    // If asked for: of SHELL's points inside FIELD (also if two-way), the deepest first; see contact::ClusterFinder.
+    std::vector<contact::ContactCluster> patches;
+    std::size_t patches_found = 0;  // more than are listed if more than contact::ClusterFinder::kMostClusters
 };
 
 /// Queries `shell` against `field` again and again; memory is sized once. For libraries and the command line, not for
@@ -86,22 +86,22 @@ struct PartQueryResult {
 /// `signed_distance` is the smallest φ_k of both ways, in the second case moved into the interval.
 class PartQuery {
 public:
-    PartQuery(const model::Part& field, const model::Part& shell, const PartQueryRequest& request);
+    PartQuery(const scene::Part& field, const scene::Part& shell, const PartQueryRequest& request);
 
     /// `X_FS`: pose of SHELL's file frame in FIELD's; finite.
     PartQueryResult at(const Pose& X_FS);
 
 private:
-    PartQueryResult oneWay(const model::Part& field, const model::Part& shell, std::optional<SurfaceSearch>& search,
+    PartQueryResult oneWay(const scene::Part& field, const scene::Part& shell, std::optional<SurfaceSearch>& search,
                            const Pose& X_FS);
 
-    const model::Part& field_;
-    const model::Part& shell_;
+    const scene::Part& field_;
+    const scene::Part& shell_;
     PartQueryRequest request_;
     double surface_error_;  // of both meshes [m]
-    tick::QueryWorkspace workspace_;
-    tick::ContactManifold manifold_;
-    tick::ClusterFinder clusters_;
+    contact::QueryWorkspace workspace_;
+    contact::ContactManifold manifold_;
+    contact::ClusterFinder clusters_;
     std::optional<SurfaceSearch> search_, search_back_;  // SHELL's surface against FIELD's, and the other way round
 };
 

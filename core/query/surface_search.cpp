@@ -14,9 +14,9 @@ namespace passung::query {
 
 namespace {
 
-using model::centroid;
-using model::farthestCorner;
-using model::TriangleCorners;
+using geometry::centroid;
+using geometry::farthestCorner;
+using geometry::TriangleCorners;
 
 constexpr std::size_t kBlock = 64;           // points that the field is asked for at once
 constexpr std::size_t kFewTriangles = 4;     // for which neighbours need not be collected
@@ -41,7 +41,7 @@ struct SurfaceSearch::Scratch {
     NeighbourList neighbours;
 };
 
-SurfaceSearch::SurfaceSearch(const model::Part& a, const model::Part& b)
+SurfaceSearch::SurfaceSearch(const scene::Part& a, const scene::Part& b)
     : a_(a), triangles_(a.mesh), spheres_(b.mesh), scratch_(std::make_unique<Scratch>()) {}
 
 SurfaceSearch::~SurfaceSearch() = default;
@@ -67,8 +67,8 @@ struct SurfaceSearch::Search {
     };
 
     SurfaceSearch& of;
-    const model::DistanceField& field;
-    const model::DistanceField::Placement B;  // in the field
+    const field::DistanceField& field;
+    const field::DistanceField::Placement B;  // in the field
     const Mat3 R_AB;
     const Vec3 p_AB;
     const double rounding;  // of what is computed here [m]
@@ -137,8 +137,8 @@ struct SurfaceSearch::Search {
 
     bool isInside(const Vec3& p) const {
         if (!canBeInside()) return false;
-        const double phi = field.sample(p, model::FieldMode::Trilinear).phi;
-        const double error = field.errorBound(p, model::FieldMode::Trilinear) + slack;
+        const double phi = field.sample(p, field::FieldMode::Trilinear).phi;
+        const double error = field.errorBound(p, field::FieldMode::Trilinear) + slack;
         return phi + error < 0.0 || (phi - error <= 0.0 && of.triangles_.inside(p));
     }
 
@@ -153,7 +153,7 @@ struct SurfaceSearch::Search {
 
     /// φ_A at `p`, exactly; the triangle of A next to it.
     TriangleCorners look(const Vec3& p) {
-        const model::ClosestPoint near = of.triangles_.closest(p);
+        const geometry::ClosestPoint near = of.triangles_.closest(p);
         ++found.steps;
         // Only what would be deeper, or nearer, than what is known needs a sign.
         if (-near.distance < found.upper) {
@@ -170,7 +170,7 @@ struct SurfaceSearch::Search {
     }
 
     bool saysLittle(const Vec3& p, double bound, double radius) const {
-        return field.sample(p, model::FieldMode::Trilinear).phi + offset - bound > kLooseShare * radius;
+        return field.sample(p, field::FieldMode::Trilinear).phi + offset - bound > kLooseShare * radius;
     }
 
     /// The spheres of some nodes; the children of those that cannot be left out are `next`.
@@ -244,7 +244,8 @@ struct SurfaceSearch::Search {
         std::size_t kept = 0, nearest = 0;
         for (const Waiting& triangle : triangles) {
             const TriangleSpheres::Vertex &a = vertex(triangle, 0), &b = vertex(triangle, 1), &c = vertex(triangle, 2);
-            const double lower = model::leastDistance({a.p, b.p, c.p}, {a.distance, b.distance, c.distance}, enough());
+            const double lower =
+                geometry::leastDistance({a.p, b.p, c.p}, {a.distance, b.distance, c.distance}, enough());
             if (leave(std::max(triangle.lower, lower))) continue;
             triangles[kept] = {std::max(triangle.lower, lower), triangle.index};
             if (triangles[kept].lower < triangles[nearest].lower) nearest = kept;
@@ -275,7 +276,7 @@ struct SurfaceSearch::Search {
     void findNeighbours() {
         if (triangles.size() < kFewTriangles) return;
         const Vec3 way = found.normal;
-        model::Bounds box;
+        geometry::Bounds box;
         double begin = std::numeric_limits<double>::infinity();
         for (const Waiting& triangle : triangles)
             for (const Vec3& corner : cornersInA(triangle)) {
@@ -288,7 +289,7 @@ struct SurfaceSearch::Search {
     /// The distance of a triangle of B that is nearer than `limit`, exactly.
     void lookAtTriangle(const Waiting& triangle, double limit) {
         const TriangleCorners t = cornersInA(triangle);
-        const model::TrianglePair pair = neighbours.closestTo(t, limit);
+        const geometry::TrianglePair pair = neighbours.closestTo(t, limit);
         ++found.steps;
         const bool outside = triangle.lower > 0.0;
         const bool whole = outside || pair.distance > rounding;  // on one side

@@ -34,7 +34,7 @@ public:
     static constexpr int kLeastSteps = 32;  // fewer lead nowhere
 
     /// @pre `a.field` exists, bounds proven; both outlive this.
-    SurfaceSearch(const model::Part& a, const model::Part& b);
+    SurfaceSearch(const scene::Part& a, const scene::Part& b);
     ~SurfaceSearch();
 
     /// `p_AB`: a point of B's surface, up to `rounding` [m], at which to begin (B's frame). Ends where upper - lower ≤
@@ -46,9 +46,9 @@ private:
     struct Waiting;
     struct Scratch;
 
-    const model::Part& a_;
-    model::TriangleTree triangles_;  // of A
-    TriangleSpheres spheres_;        // of B
+    const scene::Part& a_;
+    geometry::TriangleTree triangles_;  // of A
+    TriangleSpheres spheres_;           // of B
     std::uint64_t round_ = 0;
     std::unique_ptr<Scratch> scratch_;
 };

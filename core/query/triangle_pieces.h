@@ -20,7 +20,7 @@ inline constexpr auto kSixteenths = [] {
     return middles;
 }();
 
-inline std::array<model::TriangleCorners, 4> quarters(const model::TriangleCorners& t) {
+inline std::array<geometry::TriangleCorners, 4> quarters(const geometry::TriangleCorners& t) {
     const Vec3 ab = 0.5 * (t[0] + t[1]), bc = 0.5 * (t[1] + t[2]), ca = 0.5 * (t[2] + t[0]);
     return {{{t[0], ab, ca}, {ab, t[1], bc}, {ca, bc, t[2]}, {ab, bc, ca}}};
 }
@@ -31,10 +31,10 @@ struct FarthestCorner {
 };
 
 /// The corner of `piece` that is farthest from the triangle `t`: no point of the piece is farther.
-inline FarthestCorner farthestFrom(const model::TriangleCorners& t, const model::TriangleCorners& piece) {
+inline FarthestCorner farthestFrom(const geometry::TriangleCorners& t, const geometry::TriangleCorners& piece) {
     FarthestCorner farthest{-1.0, 0};
     for (std::size_t i = 0; i < 3; ++i) {
-        const double d = (model::closestOnTriangle(piece[i], t[0], t[1], t[2]) - piece[i]).norm();
+        const double d = (geometry::closestOnTriangle(piece[i], t[0], t[1], t[2]) - piece[i]).norm();
         if (d > farthest.distance) farthest = {d, i};
     }
     return farthest;

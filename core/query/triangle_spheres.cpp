@@ -11,14 +11,14 @@ namespace {
 constexpr std::uint32_t kLeafTriangles = 8;  // of a node that is not halved
 
 /// Of the farthest point from the origin [m].
-double reachOf(const model::TriangleMesh& mesh) {
-    const model::Bounds bounds = model::boundsOf(mesh);
+double reachOf(const geometry::TriangleMesh& mesh) {
+    const geometry::Bounds bounds = geometry::boundsOf(mesh);
     return bounds.low.cwiseAbs().cwiseMax(bounds.high.cwiseAbs()).norm();
 }
 
 }  // namespace
 
-TriangleSpheres::TriangleSpheres(const model::TriangleMesh& mesh)
+TriangleSpheres::TriangleSpheres(const geometry::TriangleMesh& mesh)
     : float_rounding(0x1p-24 * (1.0 + 1e-9) * reachOf(mesh)) {
     std::vector<std::uint32_t> order;  // of the triangles, as the leaves hold them
     buildNodes(mesh, order);
@@ -29,7 +29,7 @@ struct TriangleSpheres::Range {
     std::uint32_t node, begin, end;
 };
 
-void TriangleSpheres::buildNodes(const model::TriangleMesh& mesh, std::vector<std::uint32_t>& order) {
+void TriangleSpheres::buildNodes(const geometry::TriangleMesh& mesh, std::vector<std::uint32_t>& order) {
     std::vector<Vec3> middles;
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
         const auto& t = mesh.triangles[i];
@@ -42,7 +42,7 @@ void TriangleSpheres::buildNodes(const model::TriangleMesh& mesh, std::vector<st
     while (!tasks.empty()) {
         const Range range = tasks.back();
         tasks.pop_back();
-        model::Bounds corners, centres;
+        geometry::Bounds corners, centres;
         for (std::uint32_t i = range.begin; i < range.end; ++i) {
             centres.extend(middles[order[i]]);
             for (const std::uint32_t v : mesh.triangles[order[i]]) corners.extend(mesh.vertices[v]);
@@ -76,12 +76,12 @@ void TriangleSpheres::buildNodes(const model::TriangleMesh& mesh, std::vector<st
 }
 
 /// Keeps what lies side by side close together in memory.
-void TriangleSpheres::copyTriangles(const model::TriangleMesh& mesh, const std::vector<std::uint32_t>& order) {
+void TriangleSpheres::copyTriangles(const geometry::TriangleMesh& mesh, const std::vector<std::uint32_t>& order) {
     constexpr std::uint32_t kNone = ~std::uint32_t{0};
     std::vector<std::uint32_t> place(mesh.vertices.size(), kNone);
     faces.reserve(order.size());
     for (const std::uint32_t triangle : order) {
-        model::Triangle face = mesh.triangles[triangle];
+        geometry::Triangle face = mesh.triangles[triangle];
         for (std::uint32_t& v : face) {
             if (place[v] == kNone) {
                 place[v] = static_cast<std::uint32_t>(vertices.size());

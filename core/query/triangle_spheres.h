@@ -23,18 +23,18 @@ struct TriangleSpheres {
     };
 
     /// @pre at least one triangle.
-    explicit TriangleSpheres(const model::TriangleMesh& mesh);
+    explicit TriangleSpheres(const geometry::TriangleMesh& mesh);
 
     std::vector<Node> nodes;  // the root first
-    std::vector<model::Triangle> faces;
+    std::vector<geometry::Triangle> faces;
     std::vector<Vertex> vertices;
     double leaf_radius = 0.0;     // mean [m]
     double float_rounding = 0.0;  // how far a point of the surface moves when it is rounded to floats [m]
 
 private:
     struct Range;
-    void buildNodes(const model::TriangleMesh& mesh, std::vector<std::uint32_t>& order);
-    void copyTriangles(const model::TriangleMesh& mesh, const std::vector<std::uint32_t>& order);
+    void buildNodes(const geometry::TriangleMesh& mesh, std::vector<std::uint32_t>& order);
+    void copyTriangles(const geometry::TriangleMesh& mesh, const std::vector<std::uint32_t>& order);
 };
 
 }  // namespace passung::query

@@ -60,7 +60,7 @@ std::optional<Difference> compare(const TickRecord& recorded, const TickRecord& 
 
 }  // namespace
 
-ReplayReport replay(const model::Scene& scene, std::span<const TickRecord> records) {
+ReplayReport replay(const scene::Scene& scene, std::span<const TickRecord> records) {
     const tick::TickModel model = tick::makeModel(scene);
     return replay(std::array{tick::SceneTurn{&model}}, records);
 }

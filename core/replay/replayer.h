@@ -30,7 +30,7 @@ struct ReplayReport {
 /// Runs the recorded inputs of one attempt (missed periods included) through the tick again and compares every recorded
 /// output bit for bit; durations are measurements of the recorded run and not compared.
 /// @pre `records` are the attempt's ticks from tick 0 without gaps (gap: reported as a difference in "tick").
-ReplayReport replay(const model::Scene& scene, std::span<const TickRecord> records);
+ReplayReport replay(const scene::Scene& scene, std::span<const TickRecord> records);
 /// The same for scenes that were rendered one after the other.
 ReplayReport replay(std::span<const tick::SceneTurn> turns, std::span<const TickRecord> records);
 

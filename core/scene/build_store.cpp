@@ -6,7 +6,7 @@
 #include "core/base/bytes.h"
 #include "core/base/random.h"
 
-namespace passung::model {
+namespace passung::scene {
 
 namespace {
 
@@ -57,4 +57,4 @@ std::optional<std::string_view> unsealed(std::string_view key, std::string_view 
     return bytes.substr(head + key.size(), bytes.size() - head - key.size() - 8);
 }
 
-}  // namespace passung::model
+}  // namespace passung::scene

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace passung::model {
+namespace passung::scene {
 
 /// Keeps what took long to build from run to run: names and bytes, somewhere. What comes back is not trusted: see
 /// unsealed.
@@ -27,4 +27,4 @@ std::string sealed(std::string_view key, std::string_view content);
 /// another one.
 std::optional<std::string_view> unsealed(std::string_view key, std::string_view bytes);
 
-}  // namespace passung::model
+}  // namespace passung::scene

@@ -7,13 +7,13 @@
 #include "core/field/distance_field.h"
 #include "core/scene/number_text.h"
 
-namespace passung::model {
+namespace passung::scene {
 
 namespace {
 
 constexpr double kMostBytes = 2.0 * 1024.0 * 1024.0 * 1024.0;
-constexpr double kBytesOfBrick =
-    2.0 * DistanceField::kBrickNodes * DistanceField::kBrickNodes * DistanceField::kBrickNodes;  // samples of 16 bits
+constexpr double kBytesOfBrick = 2.0 * field::DistanceField::kBrickNodes * field::DistanceField::kBrickNodes *
+                                 field::DistanceField::kBrickNodes;  // samples of 16 bits
 // Bricks that a plane along the axes meets, with a band of a quarter of a brick on both sides, and the coarser ones
 // that they refine: 1.5 (1 + 1/4 + 1/16 ...).
 constexpr double kBricksPerFace = 1.5 * 4.0 / 3.0;
@@ -21,7 +21,7 @@ constexpr double kBricksPerFace = 1.5 * 4.0 / 3.0;
 }  // namespace
 
 std::optional<std::string> fieldTooLarge(const Vec3& size, double area, double cell) {
-    const double edge = DistanceField::kBrickCells * cell;
+    const double edge = field::DistanceField::kBrickCells * cell;
     const double bytes = kBricksPerFace * kBytesOfBrick * area / (edge * edge);
     if (!(bytes > kMostBytes)) return std::nullopt;
     const double enough = 1.005 * cell * std::sqrt(bytes / kMostBytes);  // rounded to three digits, still enough
@@ -31,4 +31,4 @@ std::optional<std::string> fieldTooLarge(const Vec3& size, double area, double c
            " GiB, more than 2: choose cells of at least " + number("%.3g", 1e3 * enough) + " mm";
 }
 
-}  // namespace passung::model
+}  // namespace passung::scene

@@ -7,17 +7,17 @@
 #include "core/scene/build_store.h"
 #include "core/scene/scene_spec.h"
 
-namespace passung::model {
+namespace passung::scene {
 
 /// Reads meshes for whoever builds parts: a BuildStore that is one, too, is asked for them.
 class MeshSource {
 public:
     virtual ~MeshSource() = default;
-    /// As model::importMesh(), in whatever process.
-    virtual Result<ImportedMesh> importMesh(const std::string& path, double metres_per_unit) = 0;
+    /// As importer::importMesh(), in whatever process.
+    virtual Result<importer::ImportedMesh> importMesh(const std::string& path, double metres_per_unit) = 0;
 };
 
 /// By the store if it is a MeshSource, else in this process.
-Result<ImportedMesh> importMeshFile(const MeshFile& file, BuildStore* store);
+Result<importer::ImportedMesh> importMeshFile(const MeshFile& file, BuildStore* store);
 
-}  // namespace passung::model
+}  // namespace passung::scene

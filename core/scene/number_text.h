@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <string>
 
-namespace passung::model {
+namespace passung::scene {
 
 /// A number in a format of printf.
 inline std::string number(const char* format, double value) {
@@ -13,4 +13,4 @@ inline std::string number(const char* format, double value) {
     return text.data();
 }
 
-}  // namespace passung::model
+}  // namespace passung::scene

@@ -17,7 +17,7 @@
 #include "core/scene/number_text.h"
 #include "core/shell/shell_bytes.h"
 
-namespace passung::model {
+namespace passung::scene {
 
 namespace {
 
@@ -43,7 +43,7 @@ Errors keyedByPart(const PartSpec& spec, Errors errors) {
 }
 
 /// A point within `reach` of the surface.
-Vec3 pointNear(const TriangleMesh& mesh, double reach, Random& random) {
+Vec3 pointNear(const geometry::TriangleMesh& mesh, double reach, Random& random) {
     const auto& t = mesh.triangles[random.below(mesh.triangles.size())];
     double u = random.uniform(), v = random.uniform();
     if (u + v > 1.0) {
@@ -57,7 +57,7 @@ Vec3 pointNear(const TriangleMesh& mesh, double reach, Random& random) {
 
 /// What trilinear interpolation of cells of edge `cell`, placed at random around points near the zero level, errs by at
 /// the quantile kProbeQuantile [m].
-double probedError(const DistanceSource& source, const TriangleMesh& mesh, double cell) {
+double probedError(const field::DistanceSource& source, const geometry::TriangleMesh& mesh, double cell) {
     const auto signedAt = [&](const Vec3& p) {
         const double d = source.distance(p);
         return !source.open_sheet && source.inside(p) ? -d : d;
@@ -73,9 +73,9 @@ double probedError(const DistanceSource& source, const TriangleMesh& mesh, doubl
         const Vec3 u(random.uniform(), random.uniform(), random.uniform());
         const double truth = signedAt(p);
         if (std::abs(truth) < nearest) continue;
-        CornerValues corners{};
-        for (std::size_t c = 0; c < 8; ++c) corners[c] = signedAt(p + cell * (cornerAt(c) - u));
-        errors.push_back(std::abs(trilinearValue(corners, u) - truth));
+        field::CornerValues corners{};
+        for (std::size_t c = 0; c < 8; ++c) corners[c] = signedAt(p + cell * (field::cornerAt(c) - u));
+        errors.push_back(std::abs(field::trilinearValue(corners, u) - truth));
     }
     if (errors.empty()) return std::numeric_limits<double>::infinity();
     const auto quantile =
@@ -86,35 +86,35 @@ double probedError(const DistanceSource& source, const TriangleMesh& mesh, doubl
 
 }  // namespace
 
-DistanceSource exactSource(const Part& part) {
-    DistanceSource source;
-    source.bounds = boundsOf(part.mesh);
+field::DistanceSource exactSource(const Part& part) {
+    field::DistanceSource source;
+    source.bounds = geometry::boundsOf(part.mesh);
     source.area = part.report.area;
     if (part.shape) {
-        const Shape shape = *part.shape;
-        source.open_sheet = std::holds_alternative<Sheet>(shape);
+        const shape::Shape shape = *part.shape;
+        source.open_sheet = std::holds_alternative<shape::Sheet>(shape);
         source.closed = !source.open_sheet;
-        source.error_bound = [shape](const SurfaceBlock& block, const Vec3& low, double cell, std::size_t octant,
+        source.error_bound = [shape](const field::SurfaceBlock& block, const Vec3& low, double cell, std::size_t octant,
                                      double reach) {
-            return boundInterpolation(shape, block, low, cell, octant, reach);
+            return field::boundInterpolation(shape, block, low, cell, octant, reach);
         };
-        source.distance = [shape](const Vec3& p) { return std::abs(signedDistance(shape, p)); };
-        source.inside = [shape](const Vec3& p) { return signedDistance(shape, p) < 0.0; };
+        source.distance = [shape](const Vec3& p) { return std::abs(shape::signedDistance(shape, p)); };
+        source.inside = [shape](const Vec3& p) { return shape::signedDistance(shape, p) < 0.0; };
         return source;
     }
     // Shared by the two functions, which may be copied.
-    const auto tree = std::make_shared<const TriangleTree>(part.mesh);
-    source.open_sheet = part.report.kind == SurfaceKind::OpenSheet;
-    source.closed = part.report.kind == SurfaceKind::Solid;
+    const auto tree = std::make_shared<const geometry::TriangleTree>(part.mesh);
+    source.open_sheet = part.report.kind == importer::SurfaceKind::OpenSheet;
+    source.closed = part.report.kind == importer::SurfaceKind::Solid;
     source.distance = [tree](const Vec3& p) { return tree->closest(p).distance; };
     source.nearest_within = [tree](const Vec3& p, double limit) {
-        const ClosestPoint found = tree->closest(p, limit);
-        return DistanceSource::Nearest{found.distance, found.point};
+        const geometry::ClosestPoint found = tree->closest(p, limit);
+        return field::DistanceSource::Nearest{found.distance, found.point};
     };
     source.inside = [tree](const Vec3& p) { return tree->inside(p); };
     if (source.closed || source.open_sheet) {
-        const MeshBlockSampler sampler(tree, source.closed, part.report.crossing_triangles == 0);
-        source.block = [sampler](const Vec3& low, double cell, SurfaceBlock& block) {
+        const field::MeshBlockSampler sampler(tree, source.closed, part.report.crossing_triangles == 0);
+        source.block = [sampler](const Vec3& low, double cell, field::SurfaceBlock& block) {
             sampler.sample(low, cell, block);
         };
         source.distance_to = [sampler](const Vec3& p, std::span<const std::uint32_t> triangles) {
@@ -124,7 +124,7 @@ DistanceSource exactSource(const Part& part) {
     return source;
 }
 
-double chooseCell(const DistanceSource& source, const TriangleMesh& mesh, double tolerance) {
+double chooseCell(const field::DistanceSource& source, const geometry::TriangleMesh& mesh, double tolerance) {
     const double longest = source.bounds.size().maxCoeff();
     double cell = longest * (source.open_sheet ? kCoarsestSheetShare : kCoarsestShare);
     if (!source.open_sheet) {
@@ -148,17 +148,17 @@ std::optional<std::string> tooManyPoints(const Vec3& size, double area, double s
 namespace {
 
 /// `cell` and its doublings, up to kLargestShare of the part.
-double largestCell(const DistanceSource& source, double cell) {
+double largestCell(const field::DistanceSource& source, double cell) {
     while (2.0 * cell <= kLargestShare * source.bounds.size().maxCoeff()) cell *= 2.0;
     return cell;
 }
 
-Result<DistanceField> buildField(const Part& part, const PartNeeds& needs) {
-    DistanceSource source = exactSource(part);
-    FieldAccuracy accuracy;
+Result<field::DistanceField> buildField(const Part& part, const PartNeeds& needs) {
+    field::DistanceSource source = exactSource(part);
+    field::FieldAccuracy accuracy;
     if (needs.cell > 0.0) {
         accuracy.largest_cell = largestCell(source, needs.cell);
-        return DistanceField::build(source, needs.cell, kUniformBandCells * needs.cell, accuracy);
+        return field::DistanceField::build(source, needs.cell, kUniformBandCells * needs.cell, accuracy);
     }
     source.landmarks = part.mesh.vertices;
     double cell = chooseCell(source, part.mesh, needs.tolerance);
@@ -166,12 +166,12 @@ Result<DistanceField> buildField(const Part& part, const PartNeeds& needs) {
     accuracy.depth = needs.depth > 0.0 ? needs.depth : kDepthTolerances * needs.tolerance;
     accuracy.largest_cell = largestCell(source, cell);
     // Whole bricks along the longest side: see DistanceField::build.
-    const double bricks = source.bounds.size().maxCoeff() / (DistanceField::kBrickCells * accuracy.largest_cell);
+    const double bricks = source.bounds.size().maxCoeff() / (field::DistanceField::kBrickCells * accuracy.largest_cell);
     const double shrink = bricks / std::ceil(bricks);
     cell *= shrink;
     accuracy.largest_cell *= shrink;
     const double band = std::max(kBandCells * accuracy.largest_cell, accuracy.depth);
-    return DistanceField::build(source, cell, band, accuracy);
+    return field::DistanceField::build(source, cell, band, accuracy);
 }
 
 /// What decides the bits of a field or shell: their format, the geometry, what was asked for.
@@ -179,11 +179,11 @@ std::string storeKey(const char* what, const Part& part, std::initializer_list<d
     std::string key = std::string(what) + " " + std::to_string(kKeptFormat) + " ";
     const auto append = [&](double value) { key += number("%a ", value); };
     if (part.shape) {
-        key += std::string(kindName(*part.shape)) + " ";
-        for (const double value : dimensions(*part.shape)) append(value);
+        key += std::string(shape::kindName(*part.shape)) + " ";
+        for (const double value : shape::dimensions(*part.shape)) append(value);
     }
     char hash[24];
-    std::snprintf(hash, sizeof hash, "%016llx ", static_cast<unsigned long long>(contentHash(part.mesh)));
+    std::snprintf(hash, sizeof hash, "%016llx ", static_cast<unsigned long long>(geometry::contentHash(part.mesh)));
     key += hash + std::to_string(part.mesh.vertices.size()) + " " + std::to_string(part.mesh.triangles.size()) + " " +
            std::to_string(static_cast<int>(part.report.kind)) + " ";
     for (const double value : values) append(value);
@@ -202,18 +202,18 @@ auto loaded(BuildStore* store, const std::string& key, Part& part, const Read& f
     return std::nullopt;
 }
 
-Result<DistanceField> fieldOf(Part& part, const PartNeeds& needs, BuildStore* store) {
+Result<field::DistanceField> fieldOf(Part& part, const PartNeeds& needs, BuildStore* store) {
     const std::string key = storeKey("field", part, {needs.tolerance, needs.cell, needs.depth});
-    if (auto field = loaded(store, key, part, &DistanceField::fromBytes)) return std::move(*field);
+    if (auto field = loaded(store, key, part, &field::DistanceField::fromBytes)) return std::move(*field);
     auto field = buildField(part, needs);
     if (field && store != nullptr) store->keep(storeName(key), sealed(key, field->toBytes()));
     return field;
 }
 
-PointShell shellOf(Part& part, const PartNeeds& needs, BuildStore* store) {
+shell::PointShell shellOf(Part& part, const PartNeeds& needs, BuildStore* store) {
     const std::string key = storeKey("shell", part, {needs.spacing});
-    if (auto shell = loaded(store, key, part, &shellFrom)) return std::move(*shell);
-    PointShell shell = samplePoints(part.mesh, needs.spacing);
+    if (auto shell = loaded(store, key, part, &shell::shellFrom)) return std::move(*shell);
+    shell::PointShell shell = shell::samplePoints(part.mesh, needs.spacing);
     if (store != nullptr) store->keep(storeName(key), sealed(key, toBytes(shell)));
     return shell;
 }
@@ -223,15 +223,15 @@ PointShell shellOf(Part& part, const PartNeeds& needs, BuildStore* store) {
 Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs, BuildStore* store) {
     Part part;
     part.name = spec.name;
-    if (const auto* shape = std::get_if<Shape>(&spec.geometry)) {
-        if (auto errors = validate(*shape); !errors.empty()) return errors;
+    if (const auto* shape = std::get_if<shape::Shape>(&spec.geometry)) {
+        if (auto errors = shape::validate(*shape); !errors.empty()) return errors;
         part.shape = *shape;
         const double asked = kChordShare * needs.tolerance;
-        part.chord_error = chordError(*shape, asked);
-        ImportedMesh checked = repairMesh(tessellate(*shape, asked));
+        part.chord_error = shape::chordError(*shape, asked);
+        importer::ImportedMesh checked = importer::repairMesh(shape::tessellate(*shape, asked));
         part.mesh = std::move(checked.mesh);
         part.report = std::move(checked.report);
-        part.report.format = kindName(*shape);
+        part.report.format = shape::kindName(*shape);
     } else {
         const auto& file = std::get<MeshFile>(spec.geometry);
         auto imported = importMeshFile(file, store);
@@ -249,16 +249,16 @@ Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs, BuildStore*
         part.field = std::move(*field);
         if (!part.field->refined())
             part.report.notes.push_back("The field exceeds its tolerance at edges: it would need more than " +
-                                        std::to_string(FieldAccuracy::kFieldBytes >> 20) + " MiB.");
+                                        std::to_string(field::FieldAccuracy::kFieldBytes >> 20) + " MiB.");
         if (part.field->sheetOffset() > 0.0)
             part.report.notes.push_back("The sheet is felt " + inMillimetres(part.field->sheetOffset()) +
                                         " in front of its surface, on both sides.");
     }
     if (needs.shell) {
         part.shell.emplace(shellOf(part, needs, store), part.mesh);
-        part.edges.emplace(part.mesh, kEdgeShare * needs.spacing);
+        part.edges.emplace(part.mesh, shell::kEdgeShare * needs.spacing);
     }
     return part;
 }
 
-}  // namespace passung::model
+}  // namespace passung::scene

@@ -13,7 +13,7 @@
 #include "core/shell/edge_curves.h"
 #include "core/shell/sphere_tree.h"
 
-namespace passung::model {
+namespace passung::scene {
 
 /// How deep the tolerance holds: from there on a tenth of the depth is wrong at most (FieldAccuracy), where the ridge
 /// of the distances of two faces meets fine cells whose number grows with the depth.
@@ -32,13 +32,13 @@ struct PartNeeds {
 /// A part ready for contact: geometry, distance field, point shell. Built once, then const.
 struct Part {
     std::string name;
-    std::optional<Shape> shape;  // if parametric: its closed form is the truth
-    TriangleMesh mesh;           // part frame, metres
-    MeshReport report;
+    std::optional<shape::Shape> shape;  // if parametric: its closed form is the truth
+    geometry::TriangleMesh mesh;        // part frame, metres
+    importer::MeshReport report;
     double chord_error = 0.0;  // of the mesh against the shape, as reached [m]
-    std::optional<DistanceField> field;
-    std::optional<SphereTree> shell;
-    std::optional<EdgeCurves> edges;  // with the shell
+    std::optional<field::DistanceField> field;
+    std::optional<shell::SphereTree> shell;
+    std::optional<shell::EdgeCurves> edges;  // with the shell
 };
 
 /// Most points of a point shell, roughly: more take gigabytes and minutes to sample and do not fit a tick.
@@ -59,12 +59,12 @@ Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs, BuildStore*
 
 /// Exact distances to the geometry of `part`: the closed form of a shape, the triangles of a mesh.
 /// The result holds what it needs; `part` may go.
-DistanceSource exactSource(const Part& part);
+field::DistanceSource exactSource(const Part& part);
 
 /// The largest cell whose trilinear error, measured at fixed random points near the zero level, is ≤ `tolerance` for 90
 /// % of them: about what smooth surface takes; edges are left to refinement. Tried are those halvings of a length that
 /// end at kRidgeCells tolerances, from 1/32 of the part's longest side down to 1/1024. An open sheet begins at 1/256:
 /// its zero level lies one cell in front of the surface, and that is the greater error.
-double chooseCell(const DistanceSource& source, const TriangleMesh& mesh, double tolerance);
+double chooseCell(const field::DistanceSource& source, const geometry::TriangleMesh& mesh, double tolerance);
 
-}  // namespace passung::model
+}  // namespace passung::scene

@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-namespace passung::model {
+namespace passung::scene {
 
 namespace {
 
@@ -14,9 +14,9 @@ void append(std::string& key, double value) {
 
 std::string cacheKey(const PartSpec& spec, const PartNeeds& needs) {
     std::string key;
-    if (const auto* shape = std::get_if<Shape>(&spec.geometry)) {
-        key = std::string(kindName(*shape)) + " ";
-        for (const double value : dimensions(*shape)) append(key, value);
+    if (const auto* shape = std::get_if<shape::Shape>(&spec.geometry)) {
+        key = std::string(shape::kindName(*shape)) + " ";
+        for (const double value : shape::dimensions(*shape)) append(key, value);
     } else {
         const auto& file = std::get<MeshFile>(spec.geometry);
         key = "file " + file.path + " ";
@@ -58,4 +58,4 @@ Result<Scene> buildScene(const SceneSpec& spec, PartCache& cache) {
     return scene;
 }
 
-}  // namespace passung::model
+}  // namespace passung::scene

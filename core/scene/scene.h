@@ -9,7 +9,7 @@
 #include "core/scene/part.h"
 #include "core/scene/scene_spec.h"
 
-namespace passung::model {
+namespace passung::scene {
 
 /// Parts that several scenes of a study have in common are built once.
 class PartCache {
@@ -36,4 +36,4 @@ struct Scene {
 /// SceneSpec::validate and buildPart.
 Result<Scene> buildScene(const SceneSpec& spec, PartCache& cache);
 
-}  // namespace passung::model
+}  // namespace passung::scene

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <set>
 
-namespace passung::model {
+namespace passung::scene {
 
 namespace {
 
@@ -38,8 +38,8 @@ std::vector<Error> SceneSpec::validate() const {
         if (!names.insert(part.name).second) {
             check.errors.push_back({.message = "part names must differ", .key = "part", .value = part.name});
         }
-        if (const auto* shape = std::get_if<Shape>(&part.geometry)) {
-            for (auto error : model::validate(*shape)) {
+        if (const auto* shape = std::get_if<shape::Shape>(&part.geometry)) {
+            for (auto error : shape::validate(*shape)) {
                 error.key = "part " + part.name + ": " + error.key;
                 check.errors.push_back(std::move(error));
             }
@@ -91,4 +91,4 @@ std::vector<Error> SceneSpec::validate() const {
     return check.errors;
 }
 
-}  // namespace passung::model
+}  // namespace passung::scene

@@ -11,7 +11,7 @@
 #include "core/field/field_mode.h"
 #include "core/shape/shape.h"
 
-namespace passung::model {
+namespace passung::scene {
 
 /// Where the geometry of a part comes from: a file or a parametric shape.
 struct MeshFile {
@@ -22,7 +22,7 @@ struct MeshFile {
 /// A part as a scene file describes it; SI units.
 struct PartSpec {
     std::string name;
-    std::variant<Shape, MeshFile> geometry;
+    std::variant<shape::Shape, MeshFile> geometry;
     Pose X_WP;                         // part to world at the start
     bool held = false;                 // the hand's part; exactly one in a scene
     double friction = 0.0;             // of the surface at rest: μ_s of a pair is the geometric mean, ≥ 0
@@ -50,7 +50,7 @@ struct ContactSpec {
     double tolerance = 20e-6;            // asked accuracy of the distance field near surfaces [m], > 0
     double cell = 0.0;                   // edge of a field cell [m]; 0 = chosen from the tolerance
     double spacing = 1.0e-3;             // of the point shell [m], > 0
-    FieldMode mode = FieldMode::Trilinear;
+    field::FieldMode mode = field::FieldMode::Trilinear;
     int budget_nodes = 0;       // per query; 0 = no budget
     bool two_way = false;       // the obstacles' points are held against the held part's field too
     double proxy_filter = 0.0;  // corner of the god object's low-pass while in contact [Hz]; 0 = none
@@ -116,4 +116,4 @@ struct SceneSpec {
     std::vector<Error> validate() const;
 };
 
-}  // namespace passung::model
+}  // namespace passung::scene

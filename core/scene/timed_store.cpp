@@ -2,7 +2,7 @@
 
 #include "core/base/bytes.h"
 
-namespace passung::model {
+namespace passung::scene {
 
 namespace {
 
@@ -35,8 +35,8 @@ void TimedStore::keep(const std::string& name, std::string_view bytes) {
     store_->keep(timeName(name), sealed(name, writer.take()));
 }
 
-Result<ImportedMesh> TimedStore::importMesh(const std::string& path, double metres_per_unit) {
-    return model::importMeshFile(MeshFile{path, metres_per_unit}, store_);
+Result<importer::ImportedMesh> TimedStore::importMesh(const std::string& path, double metres_per_unit) {
+    return scene::importMeshFile(MeshFile{path, metres_per_unit}, store_);
 }
 
 double TimedStore::seconds() const {
@@ -45,4 +45,4 @@ double TimedStore::seconds() const {
     return sum;
 }
 
-}  // namespace passung::model
+}  // namespace passung::scene

@@ -7,7 +7,7 @@
 #include "core/scene/build_store.h"
 #include "core/scene/mesh_source.h"
 
-namespace passung::model {
+namespace passung::scene {
 
 /// Another store, or none, and how long that which is taken from it or kept in it took to build: from asking for it in
 /// vain to keeping it. That time is kept beside it; what comes without one is not taken, so that it is built, and
@@ -17,7 +17,7 @@ public:
     explicit TimedStore(BuildStore* store) : store_(store) {}
     std::optional<std::string> load(const std::string& name) override;
     void keep(const std::string& name, std::string_view bytes) override;
-    Result<ImportedMesh> importMesh(const std::string& path, double metres_per_unit) override;
+    Result<importer::ImportedMesh> importMesh(const std::string& path, double metres_per_unit) override;
     /// Of all that was taken or kept [s], wall time.
     double seconds() const;
 
@@ -27,4 +27,4 @@ private:
     std::map<std::string, double> seconds_;
 };
 
-}  // namespace passung::model
+}  // namespace passung::scene

@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-namespace passung::model {
+namespace passung::shape {
 
 namespace {
 
@@ -230,4 +230,4 @@ Result<double> shaftDiameter(const Fit& fit, double nominal, Clearance clearance
     return nominal + between(*deviations, clearance, false);
 }
 
-}  // namespace passung::model
+}  // namespace passung::shape

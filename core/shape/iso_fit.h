@@ -5,7 +5,7 @@
 
 #include "core/base/result.h"
 
-namespace passung::model {
+namespace passung::shape {
 
 /// How far the limits of a size are from its nominal [m].
 struct LimitDeviations {
@@ -32,4 +32,4 @@ enum class Clearance { Mean, Min, Max };
 Result<double> holeDiameter(const Fit& fit, double nominal, Clearance clearance);
 Result<double> shaftDiameter(const Fit& fit, double nominal, Clearance clearance);
 
-}  // namespace passung::model
+}  // namespace passung::shape

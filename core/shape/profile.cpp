@@ -4,7 +4,7 @@
 #include <limits>
 #include <numbers>
 
-namespace passung::model {
+namespace passung::shape {
 
 namespace {
 
@@ -243,4 +243,4 @@ KeyedProfile profileOf(const KeyedBorePlate& plate) {
     return {0.5 * plate.bore_diameter, 0.5 * plate.key_width, 0.5 * plate.bore_diameter + plate.key_height};
 }
 
-}  // namespace passung::model
+}  // namespace passung::shape

@@ -8,7 +8,7 @@
 #include "core/base/types.h"
 #include "core/shape/shape.h"
 
-namespace passung::model {
+namespace passung::shape {
 
 inline double square(double x) { return x * x; }
 
@@ -74,4 +74,4 @@ KeyedProfile profileOf(const KeyedPeg& peg);
 SquareProfile profileOf(const SquareBorePlate& plate);
 KeyedProfile profileOf(const KeyedBorePlate& plate);
 
-}  // namespace passung::model
+}  // namespace passung::shape

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-namespace passung::model {
+namespace passung::shape {
 
 namespace {
 
@@ -188,4 +188,4 @@ std::vector<Error> validate(const Shape& shape) {
     return check.take();
 }
 
-}  // namespace passung::model
+}  // namespace passung::shape

@@ -8,7 +8,7 @@
 #include "core/base/types.h"
 #include "core/geometry/mesh.h"
 
-namespace passung::model {
+namespace passung::shape {
 
 /// Parametric shapes, lengths in metres. The closed form of each is the truth for what is built from it.
 /// Frames: pegs: origin on the tip face at the centre of its circle or rectangle, body along +z; plates with a bore or
@@ -91,10 +91,10 @@ double signedDistance(const Shape& shape, const Vec3& point);
 /// Triangles of the shape, watertight except for the sheet, outward orientation. Vertices on round faces lie on the
 /// true surface; the faces between them are within `chord_error` [m] of it, unless that would take more than 2048
 /// segments a turn: chordError() says what is reached.
-TriangleMesh tessellate(const Shape& shape, double chord_error);
+geometry::TriangleMesh tessellate(const Shape& shape, double chord_error);
 
 /// The chord error that tessellate(shape, asked) reaches [m]: no point of the triangles is farther from the true
 /// surface and no point of that farther from the triangles.
 double chordError(const Shape& shape, double asked);
 
-}  // namespace passung::model
+}  // namespace passung::shape

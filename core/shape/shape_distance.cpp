@@ -4,7 +4,7 @@
 #include "core/shape/profile.h"
 #include "core/shape/shape.h"
 
-namespace passung::model {
+namespace passung::shape {
 
 namespace {
 
@@ -145,4 +145,4 @@ double signedDistance(const Shape& shape, const Vec3& point) {
     return std::visit([&](const auto& s) { return distanceTo(s, point); }, shape);
 }
 
-}  // namespace passung::model
+}  // namespace passung::shape

@@ -8,13 +8,13 @@
 #include "core/shape/profile.h"
 #include "core/shape/shape.h"
 
-namespace passung::model {
+namespace passung::shape {
 
 namespace {
 
 using std::numbers::pi;
-using Index = TriangleBuilder::Index;
-using PointRing = TriangleBuilder::Ring;
+using Index = geometry::TriangleBuilder::Index;
+using PointRing = geometry::TriangleBuilder::Ring;
 
 constexpr int kFewestSegments = 12;
 constexpr int kMostSegments = 2048;        // then the chord error is 1.2e-6 of the radius
@@ -71,10 +71,10 @@ int rowsFor(double radius, double chord_error) {
 }
 
 /// Rows of octants from the north pole over the equator to the south pole. PointRing i has 4i vertices.
-TriangleMesh tessellateShape(const Sphere& sphere, double chord_error) {
+geometry::TriangleMesh tessellateShape(const Sphere& sphere, double chord_error) {
     const double radius = 0.5 * sphere.diameter;
     const int rows = rowsFor(radius, chord_error);
-    TriangleBuilder builder;
+    geometry::TriangleBuilder builder;
     const auto makeRing = [&](int i, double hemisphere) {
         if (i == 0) return PointRing{builder.vertex(0.0, 0.0, hemisphere * radius)};
         if (i == rows) return builder.ring(radius, 0.0, 4 * i);
@@ -109,8 +109,8 @@ TriangleMesh tessellateShape(const Sphere& sphere, double chord_error) {
     return builder.take();
 }
 
-TriangleMesh tessellateShape(const Box& box, double) {
-    TriangleBuilder builder;
+geometry::TriangleMesh tessellateShape(const Box& box, double) {
+    geometry::TriangleBuilder builder;
     const PointRing low = builder.rectangle(0.5 * box.width, 0.5 * box.depth, -0.5 * box.height);
     const PointRing high = builder.rectangle(0.5 * box.width, 0.5 * box.depth, 0.5 * box.height);
     builder.band(low, high);
@@ -119,17 +119,17 @@ TriangleMesh tessellateShape(const Box& box, double) {
     return builder.take();
 }
 
-TriangleMesh tessellateShape(const Sheet& sheet, double) {
-    TriangleBuilder builder;
+geometry::TriangleMesh tessellateShape(const Sheet& sheet, double) {
+    geometry::TriangleBuilder builder;
     const PointRing corners = builder.rectangle(0.5 * sheet.width, 0.5 * sheet.depth, 0.0);
     builder.quad(corners[0], corners[1], corners[2], corners[3]);
     return builder.take();
 }
 
-TriangleMesh tessellateShape(const Cylinder& cylinder, double chord_error) {
+geometry::TriangleMesh tessellateShape(const Cylinder& cylinder, double chord_error) {
     const double radius = 0.5 * cylinder.diameter, half = 0.5 * cylinder.length;
     const int segments = segmentsFor(radius, chord_error);
-    TriangleBuilder builder;
+    geometry::TriangleBuilder builder;
     const PointRing low = builder.ring(radius, -half, segments);
     const PointRing high = builder.ring(radius, half, segments);
     builder.disc(low, -half, false);
@@ -152,23 +152,23 @@ TorusSteps stepsFor(const Torus& torus, double chord_error) {
     return {segmentsFor(widest, half), segmentsFor(tube, half), sagittaFor(widest, half) + sagittaFor(tube, half)};
 }
 
-TriangleMesh tessellateShape(const Torus& torus, double chord_error) {
+geometry::TriangleMesh tessellateShape(const Torus& torus, double chord_error) {
     const double radius = 0.5 * torus.diameter, tube = 0.5 * torus.tube_diameter;
     const TorusSteps steps = stepsFor(torus, chord_error);
-    TriangleBuilder builder;
+    geometry::TriangleBuilder builder;
     std::vector<PointRing> rings;
     for (int k = 0; k < steps.along_tube; ++k) {
-        const auto [c, s] = TriangleBuilder::direction(k, steps.along_tube);
+        const auto [c, s] = geometry::TriangleBuilder::direction(k, steps.along_tube);
         rings.push_back(builder.ring(radius + tube * c, tube * s, steps.around));
     }
     for (std::size_t k = 0; k < rings.size(); ++k) builder.band(rings[k], rings[(k + 1) % rings.size()]);
     return builder.take();
 }
 
-TriangleMesh tessellateShape(const Peg& peg, double chord_error) {
+geometry::TriangleMesh tessellateShape(const Peg& peg, double chord_error) {
     const double radius = 0.5 * peg.diameter;
     const int segments = segmentsFor(radius, chord_error);
-    TriangleBuilder builder;
+    geometry::TriangleBuilder builder;
     const PointRing edge = builder.ring(radius, peg.chamfer, segments);
     const PointRing end = builder.ring(radius, peg.length, segments);
     if (peg.chamfer > 0.0) {
@@ -183,12 +183,12 @@ TriangleMesh tessellateShape(const Peg& peg, double chord_error) {
     return builder.take();
 }
 
-TriangleMesh tessellateShape(const BorePlate& plate, double chord_error) {
+geometry::TriangleMesh tessellateShape(const BorePlate& plate, double chord_error) {
     const double bore = 0.5 * plate.bore_diameter, mouth = bore + plate.chamfer;
     const bool through = plate.bore_depth >= plate.height;
     const double floor_z = through ? -plate.height : -plate.bore_depth;
     const int segments = segmentsFor(mouth, chord_error);
-    TriangleBuilder builder;
+    geometry::TriangleBuilder builder;
     const PointRing top = builder.rectangle(0.5 * plate.width, 0.5 * plate.depth, 0.0);
     const PointRing bottom = builder.rectangle(0.5 * plate.width, 0.5 * plate.depth, -plate.height);
     const PointRing neck = builder.ring(bore, -plate.chamfer, segments);
@@ -212,10 +212,10 @@ TriangleMesh tessellateShape(const BorePlate& plate, double chord_error) {
 }
 
 template <class AnyPeg>
-TriangleMesh tessellatePeg(const AnyPeg& peg, double chord_error) {
+geometry::TriangleMesh tessellatePeg(const AnyPeg& peg, double chord_error) {
     const auto profile = profileOf(peg);
     const ProfileSteps steps = profile.stepsFor(-peg.chamfer, 0.0, chord_error);
-    TriangleBuilder builder;
+    geometry::TriangleBuilder builder;
     PointRing last;
     for (const double t : steps.levels) {
         const PointRing next = builder.ring(profile.grown(t).outline(steps).points, peg.chamfer + t);
@@ -229,12 +229,12 @@ TriangleMesh tessellatePeg(const AnyPeg& peg, double chord_error) {
 }
 
 template <class Plate>
-TriangleMesh tessellatePocketPlate(const Plate& plate, double chord_error) {
+geometry::TriangleMesh tessellatePocketPlate(const Plate& plate, double chord_error) {
     const auto profile = profileOf(plate);
     const ProfileSteps steps = profile.stepsFor(0.0, plate.chamfer, chord_error);
     const bool through = plate.bore_depth >= plate.height;
     const double floor_z = through ? -plate.height : -plate.bore_depth;
-    TriangleBuilder builder;
+    geometry::TriangleBuilder builder;
     const PointRing top = builder.rectangle(0.5 * plate.width, 0.5 * plate.depth, 0.0);
     const PointRing bottom = builder.rectangle(0.5 * plate.width, 0.5 * plate.depth, -plate.height);
     builder.band(bottom, top);
@@ -255,10 +255,14 @@ TriangleMesh tessellatePocketPlate(const Plate& plate, double chord_error) {
     return builder.take();
 }
 
-TriangleMesh tessellateShape(const SquarePeg& peg, double error) { return tessellatePeg(peg, error); }
-TriangleMesh tessellateShape(const KeyedPeg& peg, double error) { return tessellatePeg(peg, error); }
-TriangleMesh tessellateShape(const SquareBorePlate& plate, double error) { return tessellatePocketPlate(plate, error); }
-TriangleMesh tessellateShape(const KeyedBorePlate& plate, double error) { return tessellatePocketPlate(plate, error); }
+geometry::TriangleMesh tessellateShape(const SquarePeg& peg, double error) { return tessellatePeg(peg, error); }
+geometry::TriangleMesh tessellateShape(const KeyedPeg& peg, double error) { return tessellatePeg(peg, error); }
+geometry::TriangleMesh tessellateShape(const SquareBorePlate& plate, double error) {
+    return tessellatePocketPlate(plate, error);
+}
+geometry::TriangleMesh tessellateShape(const KeyedBorePlate& plate, double error) {
+    return tessellatePocketPlate(plate, error);
+}
 
 double reachedError(const Sphere& sphere, double asked) {
     const double radius = 0.5 * sphere.diameter;
@@ -283,7 +287,7 @@ double reachedError(const BorePlate& plate, double asked) {
 
 }  // namespace
 
-TriangleMesh tessellate(const Shape& shape, double chord_error) {
+geometry::TriangleMesh tessellate(const Shape& shape, double chord_error) {
     return std::visit([&](const auto& s) { return tessellateShape(s, chord_error); }, shape);
 }
 
@@ -291,4 +295,4 @@ double chordError(const Shape& shape, double asked) {
     return std::visit([&](const auto& s) { return reachedError(s, asked); }, shape);
 }
 
-}  // namespace passung::model
+}  // namespace passung::shape

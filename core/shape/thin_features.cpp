@@ -13,7 +13,7 @@
 #include "core/geometry/mesh_edges.h"
 #include "core/geometry/parallel.h"
 
-namespace passung::model {
+namespace passung::shape {
 namespace {
 
 constexpr double kRoom = 0.97;            // of the radius: a ball of this has room, as far as the search is exact
@@ -62,7 +62,8 @@ std::array<Vec3, kDirections> directions() {
 /// One mesh, one radius.
 class Search {
 public:
-    Search(const TriangleTree& tree, double radius) : tree_(tree), radius_(radius), directions_(directions()) {}
+    Search(const geometry::TriangleTree& tree, double radius)
+        : tree_(tree), radius_(radius), directions_(directions()) {}
 
     /// A ball of the radius touches the surface at `p`, whose unit normal is `n`, from within.
     bool hasRoomAt(const Vec3& p, const Vec3& n) const {
@@ -117,7 +118,7 @@ private:
         double largest = 0.0;
         Vec3 before = c;  // two steps ago
         for (int i = 0; i < kClimbs; ++i) {
-            const ClosestPoint found = closest(c, 2.0 * radius_, work);
+            const geometry::ClosestPoint found = closest(c, 2.0 * radius_, work);
             largest = std::max(largest, std::min(found.distance, radius_));
             if (found.distance >= kRoom * radius_ || !(found.distance > 0.0)) break;
             const double step = std::min(1.001 * radius_ - found.distance, 0.5 * found.distance);
@@ -136,7 +137,7 @@ private:
         }
         // Between opposite faces that swings for ever: it comes to rest amid them.
         for (double share = 0.5; share > 0.01 && largest < kRoom * radius_; share *= 0.85) {
-            const ClosestPoint found = closest(c, 2.0 * radius_, work);
+            const geometry::ClosestPoint found = closest(c, 2.0 * radius_, work);
             largest = std::max(largest, std::min(found.distance, radius_));
             if (!(found.distance > 0.0)) break;
             c = within(c + share * (c - found.point));
@@ -144,7 +145,7 @@ private:
         return largest;
     }
 
-    ClosestPoint closest(const Vec3& p, double limit, Work& work) const {
+    geometry::ClosestPoint closest(const Vec3& p, double limit, Work& work) const {
         ++work;
         return tree_.closest(p, limit);
     }
@@ -153,20 +154,20 @@ private:
         return tree_.inside(p);
     }
 
-    const TriangleTree& tree_;
+    const geometry::TriangleTree& tree_;
     double radius_;
     std::array<Vec3, kDirections> directions_;
 };
 
-Vec3 areaVectorOf(const TriangleMesh& mesh, const Triangle& t) {
+Vec3 areaVectorOf(const geometry::TriangleMesh& mesh, const geometry::Triangle& t) {
     const Vec3& a = mesh.vertices[t[0]];
     return (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
 }
 
 /// What angles at each vertex are short of a full turn [rad].
-std::vector<double> deficits(const TriangleMesh& mesh) {
+std::vector<double> deficits(const geometry::TriangleMesh& mesh) {
     std::vector<double> left(mesh.vertices.size(), 2.0 * std::numbers::pi);
-    for (const Triangle& t : mesh.triangles)
+    for (const geometry::Triangle& t : mesh.triangles)
         for (std::size_t k = 0; k < 3; ++k) {
             const Vec3 &p = mesh.vertices[t[k]], a = mesh.vertices[t[(k + 1) % 3]] - p,
                        b = mesh.vertices[t[(k + 2) % 3]] - p;
@@ -176,11 +177,11 @@ std::vector<double> deficits(const TriangleMesh& mesh) {
 }
 
 /// All places worth a look; one for each cube of half a radius.
-std::vector<Seed> seedsOf(const TriangleMesh& mesh, const Search& search, double radius, ThinIn where) {
+std::vector<Seed> seedsOf(const geometry::TriangleMesh& mesh, const Search& search, double radius, ThinIn where) {
     std::vector<Seed> found;
     std::vector<bool> sharp(mesh.vertices.size(), false);
     std::vector<Vec3> outward(mesh.vertices.size(), Vec3::Zero());  // of the sharp edges at a vertex
-    for (const SharpEdge& edge : sharpEdges(mesh)) {
+    for (const geometry::SharpEdge& edge : geometry::sharpEdges(mesh)) {
         const Vec3 &a = mesh.vertices[edge.edge.low], &b = mesh.vertices[edge.edge.high];
         sharp[edge.edge.low] = sharp[edge.edge.high] = true;
         if (edge.inner) continue;
@@ -194,11 +195,11 @@ std::vector<Seed> seedsOf(const TriangleMesh& mesh, const Search& search, double
         if (outward[v].squaredNorm() > 0.0)
             found.push_back({mesh.vertices[v], true, false, -outward[v].stableNormalized()});
     std::vector<Vec3> normals(mesh.vertices.size(), Vec3::Zero());
-    for (const Triangle& t : mesh.triangles)
+    for (const geometry::Triangle& t : mesh.triangles)
         for (const std::uint32_t v : t) normals[v] += areaVectorOf(mesh, t);
     const std::vector<double> bend = deficits(mesh);
     std::vector<char> tight(mesh.vertices.size(), 0);
-    parallelFor(mesh.vertices.size(), [&](std::size_t v) {
+    geometry::parallelFor(mesh.vertices.size(), [&](std::size_t v) {
         if (sharp[v] || !(normals[v].squaredNorm() > 0.0)) return;
         tight[v] = search.hasRoomAt(mesh.vertices[v], normals[v].normalized()) ? 0 : 1;
     });
@@ -211,7 +212,7 @@ std::vector<Seed> seedsOf(const TriangleMesh& mesh, const Search& search, double
         found.push_back({mesh.vertices[v], developed || deficit > kCornerDeficit, false, -normals[v].normalized()});
     }
     if (where == ThinIn::Field)
-        for (const Triangle& t : mesh.triangles) {
+        for (const geometry::Triangle& t : mesh.triangles) {
             const Vec3 area = areaVectorOf(mesh, t);
             const Vec3 p = (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3.0;
             const bool large = area.norm() > radius * radius;
@@ -252,7 +253,7 @@ std::vector<JudgedFeature> judgeAll(const Search& search, const std::vector<Seed
     for (std::size_t round = 0; round < rounds && limit.work <= limit.most_work; ++round) {
         const std::size_t count = (n - round + rounds - 1) / rounds;
         std::vector<Work> work(count, 0);
-        parallelFor(count, [&](std::size_t i) {
+        geometry::parallelFor(count, [&](std::size_t i) {
             const std::size_t k = round + i * rounds;
             judged[k] = search.judge(seeds[k], work[i]);
         });
@@ -266,7 +267,7 @@ std::vector<JudgedFeature> judgeAll(const Search& search, const std::vector<Seed
 /// One feature of the seeds in `members`.
 ThinFeature summarise(const std::vector<Seed>& seeds, const std::vector<JudgedFeature>& judged,
                       const std::vector<std::size_t>& members) {
-    Bounds bounds;
+    geometry::Bounds bounds;
     std::vector<double> far, near;
     std::size_t clear = 0;
     Vec3 mean = Vec3::Zero();
@@ -360,8 +361,8 @@ std::vector<ThinFeature> thinFeatures(const Shape& shape, double radius, ThinIn 
     return features;
 }
 
-std::vector<ThinFeature> thinFeatures(const TriangleMesh& mesh, const TriangleTree& tree, double radius, ThinIn where,
-                                      SearchLimit* limit) {
+std::vector<ThinFeature> thinFeatures(const geometry::TriangleMesh& mesh, const geometry::TriangleTree& tree,
+                                      double radius, ThinIn where, SearchLimit* limit) {
     const Search search(tree, radius);
     const std::vector<Seed> seeds = seedsOf(mesh, search, radius, where);
     SearchLimit usual;
@@ -369,7 +370,7 @@ std::vector<ThinFeature> thinFeatures(const TriangleMesh& mesh, const TriangleTr
     std::vector<std::size_t> thin;
     for (std::size_t i = 0; i < seeds.size(); ++i)
         if (judged[i].thin) thin.push_back(i);
-    Groups groups(thin.size());
+    geometry::Groups groups(thin.size());
     const double reach = kGroupReach * radius;
     for (std::size_t i = 0; i < thin.size(); ++i)
         for (std::size_t k = i + 1; k < thin.size(); ++k)
@@ -396,4 +397,4 @@ std::vector<ThinFeature> thinFeatures(const TriangleMesh& mesh, const TriangleTr
     return features;
 }
 
-}  // namespace passung::model
+}  // namespace passung::shape

@@ -8,7 +8,7 @@
 #include "core/geometry/triangle_tree.h"
 #include "core/shape/shape.h"
 
-namespace passung::model {
+namespace passung::shape {
 
 /// What stands out of a solid, or all of it, and is thin.
 enum class FeatureKind {
@@ -55,9 +55,9 @@ struct SearchLimit {
 /// middles of triangles; c is searched around each. A mesh without a volume is a wall of no thickness. The search ends
 /// after `limit`'s work.
 std::vector<ThinFeature> thinFeatures(const Shape& shape, double radius, ThinIn where);
-std::vector<ThinFeature> thinFeatures(const TriangleMesh& mesh, const TriangleTree& tree, double radius, ThinIn where,
-                                      SearchLimit* limit = nullptr);
+std::vector<ThinFeature> thinFeatures(const geometry::TriangleMesh& mesh, const geometry::TriangleTree& tree,
+                                      double radius, ThinIn where, SearchLimit* limit = nullptr);
 inline constexpr double kFelt = 1.9;
 inline constexpr double kBlunt = 4.2;
 
-}  // namespace passung::model
+}  // namespace passung::shape

@@ -1,11 +1,11 @@
 #include "core/shell/disk_subset.h"
 
-namespace passung::model {
+namespace passung::shell {
 
 namespace {
 
-Bounds boundsOf(std::span<const Vec3> positions) {
-    Bounds bounds;
+geometry::Bounds boundsOf(std::span<const Vec3> positions) {
+    geometry::Bounds bounds;
     for (const Vec3& p : positions) bounds.extend(p);
     return bounds;
 }
@@ -14,7 +14,7 @@ Bounds boundsOf(std::span<const Vec3> positions) {
 
 PointBuckets::PointBuckets(std::span<const Vec3> positions, double edge) : PointBuckets(boundsOf(positions), edge) {}
 
-PointBuckets::PointBuckets(const Bounds& bounds, double edge) {
+PointBuckets::PointBuckets(const geometry::Bounds& bounds, double edge) {
     const bool empty = !(bounds.high.x() >= bounds.low.x());
     low_ = empty ? Vec3(Vec3::Zero()) : bounds.low;
     const Vec3 size = empty ? Vec3(Vec3::Zero()) : bounds.size();
@@ -58,8 +58,8 @@ std::vector<std::uint32_t> diskSubset(std::span<const Vec3> positions, std::span
     return diskSubset(boundsOf(positions), position, normal, radius, order);
 }
 
-NearestAlike::NearestAlike(const Bounds& bounds, std::span<const Vec3> positions, std::span<const Vec3> normals,
-                           double edge)
+NearestAlike::NearestAlike(const geometry::Bounds& bounds, std::span<const Vec3> positions,
+                           std::span<const Vec3> normals, double edge)
     : positions_(positions), normals_(normals), buckets_(bounds, edge) {
     for (std::uint32_t k = 0; k < positions.size(); ++k) buckets_.insert(positions[k], k);
 }
@@ -100,4 +100,4 @@ std::vector<std::uint32_t> assignNearest(std::span<const Vec3> positions, std::s
     return nearest;
 }
 
-}  // namespace passung::model
+}  // namespace passung::shell

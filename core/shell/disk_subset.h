@@ -10,7 +10,7 @@
 #include "core/base/types.h"
 #include "core/geometry/mesh.h"
 
-namespace passung::model {
+namespace passung::shell {
 
 /// Points of a surface in cubic buckets, for neighbours near by. Buckets come in blocks, and only blocks that hold a
 /// point take memory: 4 bytes a bucket, besides 4 bytes for every block of the box.
@@ -19,7 +19,7 @@ public:
     /// Buckets of at least `edge` over the box of `positions`; larger ones where a long thin part would need more than
     /// kMostBlocks blocks.
     PointBuckets(std::span<const Vec3> positions, double edge);
-    PointBuckets(const Bounds& bounds, double edge);
+    PointBuckets(const geometry::Bounds& bounds, double edge);
 
     double edge() const { return edge_; }
 
@@ -99,7 +99,7 @@ inline bool facesAlike(const Vec3& a, const Vec3& b) { return a.dot(b) > 0.5; }
 /// than `radius`. A point without a normal (zero) faces nobody and is always taken.
 /// `position(i)` and `normal(i)` give point i; `bounds` holds all points tried.
 template <class Position, class Normal>
-std::vector<std::uint32_t> diskSubset(const Bounds& bounds, const Position& position, const Normal& normal,
+std::vector<std::uint32_t> diskSubset(const geometry::Bounds& bounds, const Position& position, const Normal& normal,
                                       double radius, std::span<const std::uint32_t> order) {
     std::vector<std::uint32_t> chosen;
     std::vector<Vec3> at, facing;
@@ -128,7 +128,8 @@ inline constexpr std::uint32_t kNoPoint = ~0u;
 /// Chosen points, to be asked for the nearest one.
 class NearestAlike {
 public:
-    NearestAlike(const Bounds& bounds, std::span<const Vec3> positions, std::span<const Vec3> normals, double edge);
+    NearestAlike(const geometry::Bounds& bounds, std::span<const Vec3> positions, std::span<const Vec3> normals,
+                 double edge);
 
     /// The nearest point closer than `radius` that faces within 60° of `normal`, or kNoPoint; of two equally near ones
     /// the first. `hint`: a point that may be near, which saves time.
@@ -144,4 +145,4 @@ private:
 std::vector<std::uint32_t> assignNearest(std::span<const Vec3> positions, std::span<const Vec3> normals, double radius,
                                          std::span<const std::uint32_t> chosen);
 
-}  // namespace passung::model
+}  // namespace passung::shell

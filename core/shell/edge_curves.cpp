@@ -8,15 +8,15 @@
 #include "core/base/single_precision.h"
 #include "core/geometry/mesh_edges.h"
 
-namespace passung::model {
+namespace passung::shell {
 
 namespace {
 
 /// Edges, as pairs of vertices, strung together to curves.
 class Strings {
 public:
-    Strings(const TriangleMesh& mesh, const std::vector<SharpEdge>& edges) : mesh_(mesh) {
-        for (const SharpEdge& edge : edges) {
+    Strings(const geometry::TriangleMesh& mesh, const std::vector<geometry::SharpEdge>& edges) : mesh_(mesh) {
+        for (const geometry::SharpEdge& edge : edges) {
             if (edge.inner) continue;
             const auto number = static_cast<std::uint32_t>(ends_.size());
             ends_.push_back({edge.edge.low, edge.edge.high});
@@ -50,7 +50,7 @@ private:
     bool passesThrough(std::uint32_t vertex) const {
         const auto& edges = at_.at(vertex);
         return edges.size() == 2 &&
-               directionFrom(vertex, edges[0]).dot(directionFrom(vertex, edges[1])) < -kSharpCosine;
+               directionFrom(vertex, edges[0]).dot(directionFrom(vertex, edges[1])) < -geometry::kSharpCosine;
     }
 
     std::vector<Vec3> follow(std::uint32_t vertex, std::uint32_t edge) {
@@ -66,7 +66,7 @@ private:
         return line;
     }
 
-    const TriangleMesh& mesh_;
+    const geometry::TriangleMesh& mesh_;
     std::vector<std::array<std::uint32_t, 2>> ends_;
     std::map<std::uint32_t, std::vector<std::uint32_t>> at_;
     std::vector<bool> taken_;
@@ -86,8 +86,8 @@ std::vector<Vec3> divided(const std::vector<Vec3>& line, double longest) {
 
 }  // namespace
 
-EdgeCurves::EdgeCurves(const TriangleMesh& mesh, double spacing) {
-    Strings(mesh, sharpEdges(mesh)).visit([&](const std::vector<Vec3>& line, bool closed) {
+EdgeCurves::EdgeCurves(const geometry::TriangleMesh& mesh, double spacing) {
+    Strings(mesh, geometry::sharpEdges(mesh)).visit([&](const std::vector<Vec3>& line, bool closed) {
         addCurve(divided(line, spacing), closed, spacing);
     });
 }
@@ -138,7 +138,7 @@ void EdgeCurves::addStretches(std::uint32_t first, std::uint32_t count, bool clo
         stretches_.push_back(stretch);
         const std::uint32_t from = stations_[stretch.begins ? begin : begin - 1];
         const std::uint32_t to = stations_[stretch.ends ? end - 1 : end];
-        Bounds bounds;
+        geometry::Bounds bounds;
         for (std::uint32_t k = from; k <= to; ++k) bounds.extend(vertices_[k]);
         const Vec3 centre = roundedToFloat(Vec3(0.5 * (bounds.low + bounds.high)));
         double radius = 0.0;
@@ -148,4 +148,4 @@ void EdgeCurves::addStretches(std::uint32_t first, std::uint32_t count, bool clo
     }
 }
 
-}  // namespace passung::model
+}  // namespace passung::shell

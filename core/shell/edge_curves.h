@@ -8,7 +8,7 @@
 #include "core/geometry/mesh.h"
 #include "core/shell/sphere_tree.h"
 
-namespace passung::model {
+namespace passung::shell {
 
 /// The sharp edges of a surface that stand out of it, and its borders, as curves; part frame, metres. Samples alone do
 /// not keep two edges apart: crossing at an angle they pass each other between the samples, by as much as those are
@@ -20,7 +20,7 @@ class EdgeCurves {
 public:
     static constexpr std::uint32_t kStretchStations = 16;  // at most, of one stretch; those beside it not counted
 
-    EdgeCurves(const TriangleMesh& mesh, double spacing);
+    EdgeCurves(const geometry::TriangleMesh& mesh, double spacing);
 
     /// Of all curves, one after the other; a curve that runs round repeats its first stations at its end.
     std::span<const Vec3> vertices() const { return vertices_; }
@@ -51,4 +51,4 @@ private:
     std::vector<Stretch> stretches_;
 };
 
-}  // namespace passung::model
+}  // namespace passung::shell

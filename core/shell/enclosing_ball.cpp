@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace passung::model {
+namespace passung::shell {
 
 namespace {
 
@@ -102,4 +102,4 @@ Ball enclosingBall(std::span<const SurfacePoint> points) {
     return best;
 }
 
-}  // namespace passung::model
+}  // namespace passung::shell

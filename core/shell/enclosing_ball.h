@@ -5,7 +5,7 @@
 #include "core/base/types.h"
 #include "core/shell/point_shell.h"
 
-namespace passung::model {
+namespace passung::shell {
 
 struct Ball {
     Vec3 centre = Vec3::Zero();
@@ -21,4 +21,4 @@ struct Ball {
 Ball enclosingBall(std::span<const SurfacePoint> points);
 inline constexpr int kMostPivots = 64;
 
-}  // namespace passung::model
+}  // namespace passung::shell

@@ -15,7 +15,7 @@
 #include "core/geometry/triangle_distance.h"
 #include "core/shell/disk_subset.h"
 
-namespace passung::model {
+namespace passung::shell {
 
 namespace {
 
@@ -64,7 +64,7 @@ void cutTriangle(const Vec3& a, const Vec3& b, const Vec3& c, float share, doubl
     visit(a, b, c, share);
 }
 
-Vec3 areaVector(const TriangleMesh& mesh, const Triangle& t) {
+Vec3 areaVector(const geometry::TriangleMesh& mesh, const geometry::Triangle& t) {
     const Vec3& a = mesh.vertices[t[0]];
     return 0.5 * (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
 }
@@ -72,7 +72,7 @@ Vec3 areaVector(const TriangleMesh& mesh, const Triangle& t) {
 /// The samples of the faces while they are found.
 class FaceSampler {
 public:
-    FaceSampler(const TriangleMesh& mesh, double spacing)
+    FaceSampler(const geometry::TriangleMesh& mesh, double spacing)
         : mesh_(mesh), longest_(kCandidateShare * spacing), radius_(kDiskShare * spacing) {
         for (const auto& t : mesh.triangles) {
             const Vec3 area = areaVector(mesh, t);
@@ -138,7 +138,7 @@ private:
         }
         const NearestAlike nearest(bounds_, positions, normals, radius_);
         patch_.resize(candidates_.size(), kNoPoint);
-        parallelFor((candidates_.size() + kBatch - 1) / kBatch, [&](std::size_t batch) {
+        geometry::parallelFor((candidates_.size() + kBatch - 1) / kBatch, [&](std::size_t batch) {
             const std::size_t end = std::min(candidates_.size(), (batch + 1) * kBatch);
             // Where the last sample was, or that of the candidate before, is a good place to begin.
             std::uint32_t before = kNoPoint;
@@ -211,8 +211,9 @@ private:
             if (middle[k] == kNoPoint || !facing[k]) continue;
             const std::uint32_t t = candidates_[middle[k]].triangle;
             const auto& v = mesh_.triangles[t];
-            samples_[k] = {
-                closestOnTriangle(centroid[k], mesh_.vertices[v[0]], mesh_.vertices[v[1]], mesh_.vertices[v[2]]), t};
+            samples_[k] = {geometry::closestOnTriangle(centroid[k], mesh_.vertices[v[0]], mesh_.vertices[v[1]],
+                                                       mesh_.vertices[v[2]]),
+                           t};
         }
     }
 
@@ -241,12 +242,12 @@ private:
         }
     }
 
-    const TriangleMesh& mesh_;
+    const geometry::TriangleMesh& mesh_;
     const double longest_, radius_;
     std::vector<double> areas_;  // of the triangles
     std::vector<Vec3> normals_;
     std::vector<Candidate> candidates_;
-    Bounds bounds_;
+    geometry::Bounds bounds_;
     std::vector<Sample> samples_;
     std::vector<std::uint32_t> patch_;  // sample of each candidate
 };
@@ -254,14 +255,14 @@ private:
 /// Samples on sharp edges and boundaries, corners first so that they are kept.
 class EdgeSampler {
 public:
-    explicit EdgeSampler(const TriangleMesh& mesh) : mesh_(mesh) {
-        for (const SharpEdge& sharp : sharpEdges(mesh)) addSharp(sharp.edge, sharp.normal);
+    explicit EdgeSampler(const geometry::TriangleMesh& mesh) : mesh_(mesh) {
+        for (const geometry::SharpEdge& sharp : geometry::sharpEdges(mesh)) addSharp(sharp.edge, sharp.normal);
     }
 
     void append(double spacing, PointShell& shell) {
         for (const auto& [v, corner] : corners_) {
             const auto& d = corner.directions;
-            const bool passes_straight = d.size() == 2 && d[0].dot(d[1]) < -kSharpCosine;
+            const bool passes_straight = d.size() == 2 && d[0].dot(d[1]) < -geometry::kSharpCosine;
             if (!passes_straight) add(mesh_.vertices[v], corner.normal, corner.triangle);
         }
         for (const auto& [edge, normal] : sharp_) {
@@ -282,7 +283,7 @@ private:
         std::uint32_t triangle = 0;
     };
 
-    void addSharp(const HalfEdge& edge, const Vec3& normal) {
+    void addSharp(const geometry::HalfEdge& edge, const Vec3& normal) {
         sharp_.push_back({edge, normal});
         const Vec3 direction = (mesh_.vertices[edge.high] - mesh_.vertices[edge.low]).normalized();
         corners_[edge.low].directions.push_back(direction);
@@ -298,8 +299,8 @@ private:
         facing_.push_back(n.norm() > 1e-9 ? n.normalized() : n);
     }
 
-    const TriangleMesh& mesh_;
-    std::vector<std::pair<HalfEdge, Vec3>> sharp_;
+    const geometry::TriangleMesh& mesh_;
+    std::vector<std::pair<geometry::HalfEdge, Vec3>> sharp_;
     std::map<std::uint32_t, Corner> corners_;
     std::vector<Vec3> points_, facing_;
     std::vector<std::uint32_t> triangles_;  // of points_
@@ -307,14 +308,14 @@ private:
 
 }  // namespace
 
-PointShell samplePoints(const TriangleMesh& mesh, double spacing) {
+PointShell samplePoints(const geometry::TriangleMesh& mesh, double spacing) {
     PointShell shell;
     FaceSampler(mesh, spacing).run(shell);
     EdgeSampler(mesh).append(spacing, shell);
     // Half a unit in the last place of a float is at most 2^-24 of the number.
-    const Bounds bounds = boundsOf(mesh);
+    const geometry::Bounds bounds = geometry::boundsOf(mesh);
     shell.rounding = 0x1p-24 * bounds.low.cwiseAbs().cwiseMax(bounds.high.cwiseAbs()).norm();
     return shell;
 }
 
-}  // namespace passung::model
+}  // namespace passung::shell

@@ -6,7 +6,7 @@
 #include "core/base/types.h"
 #include "core/geometry/mesh.h"
 
-namespace passung::model {
+namespace passung::shell {
 
 /// One sample of a surface; part frame, metres.
 struct SurfacePoint {
@@ -38,6 +38,6 @@ inline constexpr double kEdgeShare = 0.5;  // spacing of samples on edges, per s
 /// A patch's area is the sum of its candidates' areas and its normal that of the summed area vectors, so that
 /// Σ area = area of the mesh and Σ area · normal = 0 on a closed mesh up to the patches' curvature.
 /// Time and memory grow with the number of candidates, about eight a sample on large triangles.
-PointShell samplePoints(const TriangleMesh& mesh, double spacing);
+PointShell samplePoints(const geometry::TriangleMesh& mesh, double spacing);
 
-}  // namespace passung::model
+}  // namespace passung::shell

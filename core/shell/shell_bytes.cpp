@@ -4,7 +4,7 @@
 
 #include "core/base/bytes.h"
 
-namespace passung::model {
+namespace passung::shell {
 
 std::string toBytes(const PointShell& shell) {
     ByteWriter writer;
@@ -43,4 +43,4 @@ std::optional<PointShell> shellFrom(std::string_view bytes) {
     return shell;
 }
 
-}  // namespace passung::model
+}  // namespace passung::shell

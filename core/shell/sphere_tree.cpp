@@ -9,7 +9,7 @@
 #include "core/geometry/parallel.h"
 #include "core/shell/enclosing_ball.h"
 
-namespace passung::model {
+namespace passung::shell {
 
 namespace {
 
@@ -157,7 +157,7 @@ void summarise(std::span<const SurfacePoint> below, SphereNode& node) {
 
 }  // namespace
 
-SphereTree::SphereTree(const PointShell& shell, const TriangleMesh& mesh)
+SphereTree::SphereTree(const PointShell& shell, const geometry::TriangleMesh& mesh)
     : surface_(mesh), total_area_(shell.total_area), cover_radius_(shell.cover_radius), rounding_(shell.rounding) {
     std::vector<ClusterPoint> items;
     items.reserve(shell.points.size());
@@ -202,7 +202,7 @@ SphereTree::SphereTree(const PointShell& shell, const TriangleMesh& mesh)
         positions_.add(item.position[0], item.position[1], item.position[2]);
         facings_.push_back(facingOf(points_.back().normal, points_.back().area));
     }
-    parallelFor((nodes_.size() + kBatch - 1) / kBatch, [&](std::size_t batch) {
+    geometry::parallelFor((nodes_.size() + kBatch - 1) / kBatch, [&](std::size_t batch) {
         const std::size_t end = std::min(nodes_.size(), (batch + 1) * kBatch);
         for (std::size_t i = batch * kBatch; i < end; ++i)
             summarise(std::span<const SurfacePoint>(points_).subspan(ranges[i].begin, ranges[i].count()), nodes_[i]);
@@ -256,4 +256,4 @@ std::size_t SphereTree::memoryBytes() const {
     return nodes_.size() * kNode + points_.size() * kPoint + group_radii_.size() * kGroup + surface_.memoryBytes();
 }
 
-}  // namespace passung::model
+}  // namespace passung::shell

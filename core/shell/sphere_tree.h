@@ -8,7 +8,7 @@
 #include "core/geometry/surface_walk.h"
 #include "core/shell/point_shell.h"
 
-namespace passung::model {
+namespace passung::shell {
 
 /// A cluster of shell points: a sphere around all points below, and a real point that stands for them.
 struct SphereNode {
@@ -63,7 +63,7 @@ public:
     /// that none joins the two sides of a wall: the children of the roots part them, and what is below is halved across
     /// its longest side.
     /// `mesh`: what the shell was sampled from, for surface(); none: an empty one.
-    explicit SphereTree(const PointShell& shell, const TriangleMesh& mesh = {});
+    explicit SphereTree(const PointShell& shell, const geometry::TriangleMesh& mesh = {});
 
     std::span<const SphereNode> nodes() const { return nodes_; }
     std::span<const SphereNode> roots() const { return std::span(nodes_).first(root_count_); }
@@ -85,7 +85,7 @@ public:
     /// Of nodes(), rounded up.
     std::span<const float> radii() const { return radii_; }
     /// The surface that the points were sampled from.
-    const SurfaceWalk& surface() const { return surface_; }
+    const geometry::SurfaceWalk& surface() const { return surface_; }
     double totalArea() const { return total_area_; }
     double coverRadius() const { return cover_radius_; }
     /// How far a point may lie from the surface because it is rounded to floats [m].
@@ -108,10 +108,10 @@ private:
     FloatPositions group_positions_;
     std::vector<float> group_radii_;
     std::vector<std::uint32_t> group_points_;
-    SurfaceWalk surface_;
+    geometry::SurfaceWalk surface_;
     std::size_t root_count_ = 0;
     double total_area_ = 0.0, cover_radius_ = 0.0, rounding_ = 0.0, gyration_radius_ = 0.0, reach_ = 0.0;
     int levels_ = 0;
 };
 
-}  // namespace passung::model
+}  // namespace passung::shell

@@ -19,21 +19,21 @@ void clearPushes(Pushes& pushes) noexcept {
     for (ObstaclePush& push : pushes.pushes) push = ObstaclePush{};
 }
 
-void notePushes(const TickModel& model, const Proxy& proxy, const ConstrainedMotion& motion,
-                const FrictionPatches& rubbing, Pushes& pushes) noexcept {
+void notePushes(const TickModel& model, const Proxy& proxy, const motion::ConstrainedMotion& motion,
+                const motion::FrictionPatches& rubbing, Pushes& pushes) noexcept {
     clearPushes(pushes);
     const double K = model.contact.stiffness;
     const double turn = model.contact.rotational_stiffness / (model.metric_radius * model.metric_radius);
     for (int i = 0; i < motion.active; ++i) {
-        const HeldContact& held = motion.held[static_cast<std::size_t>(i)];
-        const ContactPoint& contact = proxy.manifold[held.contact];
+        const motion::HeldContact& held = motion.held[static_cast<std::size_t>(i)];
+        const contact::ContactPoint& contact = proxy.manifold[held.contact];
         const Vec3 push = held.push * contact.gradient.normalized();
         add(pushes.pushes[contact.obstacle], {K * push, turn * (contact.position - proxy.X_WG.p).cross(push)},
             K * held.push);
     }
     for (int p = 0; p < rubbing.count; ++p) {
-        const FrictionPatch& patch = rubbing.patch[static_cast<std::size_t>(p)];
-        const Vec3 rub = rubAlong(patch);
+        const motion::FrictionPatch& patch = rubbing.patch[static_cast<std::size_t>(p)];
+        const Vec3 rub = motion::rubAlong(patch);
         const Vec3 torsion = patch.radius * patch.rub.z() * patch.normal;
         add(pushes.pushes[patch.obstacle], {K * rub, turn * ((patch.centre - proxy.X_WG.p).cross(rub) + torsion)}, 0.0);
     }

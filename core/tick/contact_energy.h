@@ -28,8 +28,8 @@ namespace passung::tick {
 /// Forgets the pushes of the tick before. rt-safe.
 void clearPushes(Pushes& pushes) noexcept;
 /// In place of the pushes so far: those of the contacts and patches that hold `motion` of the proxy. rt-safe.
-void notePushes(const TickModel& model, const Proxy& proxy, const ConstrainedMotion& motion,
-                const FrictionPatches& rubbing, Pushes& pushes) noexcept;
+void notePushes(const TickModel& model, const Proxy& proxy, const motion::ConstrainedMotion& motion,
+                const motion::FrictionPatches& rubbing, Pushes& pushes) noexcept;
 
 /// Stage, of scenes with obstacles: shares out what else is in F_H_W. After the wrench, before its delay.
 void sharePushes(const TickModel& model, const HandSample& hand, const HandWrench& wrench, Pushes& pushes) noexcept;

@@ -34,13 +34,13 @@ void takeBack(const ProxyView& view, const StepStart& start) noexcept {
 
 /// What the step `u` met and went more than `relieve` into, as contacts of the place where it began (cuts:
 /// god_object.h).
-void addCuts(const ProxyView& view, const Pose& X_met, const Motion& u) noexcept {
+void addCuts(const ProxyView& view, const Pose& X_met, const motion::Motion& u) noexcept {
     const auto& [model, proxy, memory, report] = view;
-    const Surroundings here = surroundings(model, proxy);
+    const motion::Surroundings here = surroundings(model, proxy);
     const Pose back = proxy.X_WG * X_met.inverse();
-    for (const ContactPoint& met : memory.scratch) {
+    for (const contact::ContactPoint& met : memory.scratch) {
         if (!(met.phi < -model.margins.relieve)) continue;
-        ContactPoint cut = met;
+        contact::ContactPoint cut = met;
         cut.position = back * met.position;
         cut.phi = met.phi - met.gradient.dot(here.wayOf(cut.position, u));
         if (!proxy.manifold.tryPush(cut)) return;
@@ -48,8 +48,8 @@ void addCuts(const ProxyView& view, const Pose& X_met, const Motion& u) noexcept
 }
 
 struct Step {
-    Motion u = Motion::Zero();  // as made
-    FrictionPatches rubbing;
+    motion::Motion u = motion::Motion::Zero();  // as made
+    motion::FrictionPatches rubbing;
     bool made = false;
     bool whole = false;    // all that was allowed
     bool halved = false;   // less, because even the last cuts did not keep it out
@@ -64,8 +64,8 @@ struct StepBounds {
 };
 
 /// Makes what is `allowed` of `wanted` within `bounds`.
-Step makeStep(const MovingProxy& moving, const Motion& wanted, const Surroundings& around, AllowedMotion allowed,
-              const StepBounds& bounds) noexcept {
+Step makeStep(const MovingProxy& moving, const motion::Motion& wanted, const motion::Surroundings& around,
+              AllowedMotion allowed, const StepBounds& bounds) noexcept {
     const TickModel& model = moving.model;
     Proxy& proxy = moving.proxy;
     const StepStart here = startOf(proxy);
@@ -76,7 +76,7 @@ Step makeStep(const MovingProxy& moving, const Motion& wanted, const Surrounding
             proxy.manifold.keepFirst(here.contacts);
             return {.rubbing = allowed.rubbing, .at_rest = true};
         }
-        const Motion u = share * (length > bounds.known ? bounds.known / length : 1.0) * allowed.u;
+        const motion::Motion u = share * (length > bounds.known ? bounds.known / length : 1.0) * allowed.u;
         look(moving, moved(model, here.X_WG, u), bounds.reach, bounds.search);
         if (overlap(proxy) <= bounds.accepted) {
             return {.u = u,
@@ -114,7 +114,7 @@ void sweepProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pr
     const double between = std::max(margins.relieve, overlap(proxy));
     bool arrived = false, whole = false;  // whole: the last step was all that was allowed
     for (int sweep = 0; sweep <= kSweeps; ++sweep) {
-        const Motion wanted = unconstrainedMotion(model, proxy.X_WG, hand.X_WH);
+        const motion::Motion wanted = unconstrainedMotion(model, proxy.X_WG, hand.X_WH);
         const double path = longestPath(model, wanted);
         const double before = overlap(proxy);
         arrived = path < kStill && before <= margins.relieve;
@@ -128,7 +128,7 @@ void sweepProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pr
             if (arrived) break;
         }
 
-        Surroundings around = surroundings(model, proxy);
+        motion::Surroundings around = surroundings(model, proxy);
         around.sunk_out = -std::max(margins.keep, before - repair);
         const AllowedMotion allowed = allowedMotion(moving, wanted, around);
         const double step = longestPath(model, allowed.u);
@@ -151,7 +151,7 @@ void sweepProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pr
         if (arrived && sweep == 0) motion.rubbing = made.rubbing;
         if (!made.made) break;
         way.add(made.u);
-        if (way.bentBy(Motion::Zero()) > margins.relieve && cutsCorner(moving, X_before, proxy.X_WG, between)) {
+        if (way.bentBy(motion::Motion::Zero()) > margins.relieve && cutsCorner(moving, X_before, proxy.X_WG, between)) {
             look(moving, X_here, reach, reach);
             break;
         }

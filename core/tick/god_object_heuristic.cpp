@@ -13,24 +13,24 @@ constexpr double kLeastLever = 0.1;     // per ρ: contacts that a rotation hard
 constexpr double kLargestTurn = 0.035;  // [rad] of one correction
 
 /// Direction of the correction: translation along the penalty force, rotation about its torque, shared by λ.
-Motion correctionOf(const TickModel& model, const Proxy& proxy, double depth) noexcept {
+motion::Motion correctionOf(const TickModel& model, const Proxy& proxy, double depth) noexcept {
     const double rho = model.metric_radius;
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
-    for (const ContactPoint& c : proxy.manifold) {
+    for (const contact::ContactPoint& c : proxy.manifold) {
         if (!isInside(c)) continue;
         const Vec3 f = -c.phi * c.gradient;
         force += f;
         torque += (c.position - proxy.X_WG.p).cross(f);
     }
     const double F = force.norm(), T = torque.norm() / rho;
-    Motion u = Motion::Zero();
+    motion::Motion u = motion::Motion::Zero();
     if (!(F + T > 0.0)) return u;
     const double lambda = F / (F + T);
     if (F > 0.0) u.head<3>() = lambda * depth / F * force;
     if (!(T > 0.0)) return u;
     const Vec3 axis = torque.normalized();
     double ph = 0.0, hh = 0.0;
-    for (const ContactPoint& c : proxy.manifold) {
+    for (const contact::ContactPoint& c : proxy.manifold) {
         const double lever = c.gradient.dot(axis.cross(c.position - proxy.X_WG.p));
         if (!isInside(c) || !(lever > kLeastLever * rho)) continue;
         ph += -c.phi * lever;
@@ -47,8 +47,8 @@ double leftOf(const TickModel& model, double overlap) noexcept {
 }
 
 /// What is around the proxy, with no more asked of what is deeper than `left`.
-Surroundings around(const TickModel& model, const Proxy& proxy, double left) noexcept {
-    Surroundings result = surroundings(model, proxy);
+motion::Surroundings around(const TickModel& model, const Proxy& proxy, double left) noexcept {
+    motion::Surroundings result = surroundings(model, proxy);
     result.sunk_out = -left;
     return result;
 }
@@ -59,7 +59,8 @@ void relieve(const ProxyView& view, double reach, double left) noexcept {
     const auto& [model, proxy, memory, report] = view;
     const double s = model.finest_cell;
     for (int i = 0; i < kReliefs && overlap(proxy) > std::max(model.margins.relieve, left); ++i) {
-        const ConstrainedMotion out = constrainMotion(Motion::Zero(), around(model, proxy, left));
+        const motion::ConstrainedMotion out =
+            motion::constrainMotion(motion::Motion::Zero(), around(model, proxy, left));
         if (longestPath(model, out.u) > kLongestStep * s) return;
         look(view, moved(model, proxy.X_WG, out.u), reach, reach);
     }
@@ -75,7 +76,7 @@ void correctProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, 
     for (int i = 0; i < kCorrections && overlap(proxy) > std::max(model.margins.accept, left); ++i) {
         const Pose X_before = proxy.X_WG;
         const double depth = overlap(proxy);
-        Motion u = correctionOf(model, proxy, depth - left);
+        motion::Motion u = correctionOf(model, proxy, depth - left);
         bool better = false;
         for (int half = 0; half <= kHalvings && !better; ++half, u *= 0.5) {
             surveyContacts(moving, moved(model, X_before, u));
@@ -100,7 +101,7 @@ void moveProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pro
     const double between = std::max(model.margins.relieve, overlap(proxy));
     bool arrived = false;
     for (int sub_step = 0; sub_step < kSubSteps; ++sub_step) {
-        const Motion wanted = unconstrainedMotion(model, proxy.X_WG, hand.X_WH);
+        const motion::Motion wanted = unconstrainedMotion(model, proxy.X_WG, hand.X_WH);
         const double path = longestPath(model, wanted);
         arrived = path < kStill;
         if (arrived) break;
@@ -117,7 +118,7 @@ void moveProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pro
         // Step as far as the contacts are known, farther only where there is proven room.
         const double known = std::max(proxy.manifold_reach, proxy.room);
         const AllowedMotion allowed = allowedMotion(moving, wanted, around(model, proxy, left));
-        Motion u = allowed.u;
+        motion::Motion u = allowed.u;
         const double step_path = longestPath(model, u);
         arrived = step_path < kStill;
         if (arrived) motion.rubbing = allowed.rubbing;  // at rest
@@ -137,7 +138,7 @@ void moveProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pro
         }
         if (good) {
             way.add(unconstrainedMotion(model, X_here, proxy.X_WG));
-            good = way.bentBy(Motion::Zero()) <= model.margins.relieve ||
+            good = way.bentBy(motion::Motion::Zero()) <= model.margins.relieve ||
                    !cutsCorner(moving, X_before, proxy.X_WG, between);
         }
         arrived = good && whole;  // the whole constrained motion was made

@@ -7,7 +7,7 @@ namespace {
 bool isPose(const Pose& X_BD) noexcept { return isRigid(X_BD) && X_BD.p.cwiseAbs().maxCoeff() <= kFarthestReading; }
 
 /// Can the handle have come from `before` to `after` in `ticks` ticks?
-bool follows(const model::OutputLimits& limits, const Pose& before, const Pose& after, std::int64_t ticks) noexcept {
+bool follows(const scene::OutputLimits& limits, const Pose& before, const Pose& after, std::int64_t ticks) noexcept {
     const double elapsed = kTickSeconds * static_cast<double>(ticks);
     return (after.p - before.p).norm() <= limits.max_speed * elapsed &&
            rotationVector(after.q * before.q.conjugate()).norm() <= limits.max_spin * elapsed;
@@ -57,7 +57,7 @@ std::uint32_t takeReading(const TickModel& model, const DeviceReading& reading, 
 
 }  // namespace
 
-Pose registeredPose(const model::Registration& registration, const Pose& X_BD) noexcept {
+Pose registeredPose(const scene::Registration& registration, const Pose& X_BD) noexcept {
     const Pose scaled{X_BD.q, registration.scale * X_BD.p};
     return registration.X_WB * (scaled * registration.X_DH);
 }

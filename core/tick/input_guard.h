@@ -69,6 +69,6 @@ inline constexpr StageOf kStartGate{
          [](const TickModel&) { return "start_gate is set: contact begins when the hand holds the start pose"; }}};
 
 /// Where the held part is when the handle is at `X_BD`: X_WH = X_WB · scale(X_BD) · X_DH. rt-safe.
-Pose registeredPose(const model::Registration& registration, const Pose& X_BD) noexcept;
+Pose registeredPose(const scene::Registration& registration, const Pose& X_BD) noexcept;
 
 }  // namespace passung::tick

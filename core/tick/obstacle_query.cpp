@@ -8,7 +8,7 @@ namespace passung::tick {
 
 namespace {
 
-void merge(const QueryAnswer& answer, QueryAnswer& all) noexcept {
+void merge(const contact::QueryAnswer& answer, contact::QueryAnswer& all) noexcept {
     if (answer.found && answer.phi < all.phi) {
         all.found = true;
         all.phi = answer.phi;
@@ -28,23 +28,24 @@ void merge(const QueryAnswer& answer, QueryAnswer& all) noexcept {
 }
 
 /// The points of a shell, and its edges if asked for.
-QueryAnswer query(const model::DistanceField& field, const Pose& X_WF, const model::SphereTree& shell,
-                  const model::EdgeCurves& edges, const Pose& X_WS, QueryRequest request, QueryWorkspace& workspace,
-                  ContactManifold& manifold) noexcept {
-    QueryAnswer answer = queryContacts(field, X_WF, shell, X_WS, request, workspace, manifold);
+contact::QueryAnswer query(const field::DistanceField& field, const Pose& X_WF, const shell::SphereTree& shell,
+                           const shell::EdgeCurves& edges, const Pose& X_WS, contact::QueryRequest request,
+                           contact::QueryWorkspace& workspace, contact::ContactManifold& manifold) noexcept {
+    contact::QueryAnswer answer = contact::queryContacts(field, X_WF, shell, X_WS, request, workspace, manifold);
     if (!request.edges) return answer;
     if (!request.refine) request.search_below = answer.phi;
-    merge(searchEdges(field, X_WF, edges, X_WS, request, manifold), answer);
+    merge(contact::searchEdges(field, X_WF, edges, X_WS, request, manifold), answer);
     return answer;
 }
 
 /// The obstacle's points against the held part's field. If the held part moves by u, φ at a fixed point changes by
 /// -g · u, g the gradient of its field: told with normal and gradient reversed such a point is a contact like any
 /// other.
-QueryAnswer queryBack(const TickModel& model, const Obstacle& obstacle, const Pose& X_WS, const QueryRequest& request,
-                      QueryWorkspace& workspace, ContactManifold& manifold) noexcept {
+contact::QueryAnswer queryBack(const TickModel& model, const Obstacle& obstacle, const Pose& X_WS,
+                               const contact::QueryRequest& request, contact::QueryWorkspace& workspace,
+                               contact::ContactManifold& manifold) noexcept {
     const std::size_t first = manifold.size();
-    QueryAnswer answer =
+    contact::QueryAnswer answer =
         query(*model.held_field, X_WS, *obstacle.shell, *obstacle.edges, obstacle.X_WF, request, workspace, manifold);
     manifold.reverseFrom(first);
     answer.load.force = -answer.load.force;
@@ -55,18 +56,19 @@ QueryAnswer queryBack(const TickModel& model, const Obstacle& obstacle, const Po
 
 }  // namespace
 
-QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, QueryRequest request, QueryWorkspace& workspace,
-                           ContactManifold& manifold, std::span<ObstaclePush> pushes) noexcept {
+contact::QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, contact::QueryRequest request,
+                                    contact::QueryWorkspace& workspace, contact::ContactManifold& manifold,
+                                    std::span<ObstaclePush> pushes) noexcept {
     request.mode = model.contact.mode;
     request.max_nodes = model.contact.budget_nodes;
-    QueryAnswer all;
+    contact::QueryAnswer all;
     all.phi = all.lower_bound = request.search_below;
     // What refinement finds between the samples must not hide the samples of another obstacle from it.
     const auto narrow = [&] {
         if (!request.refine) request.search_below = all.phi;
     };
     std::uint32_t place = 0;
-    const auto take = [&](const QueryAnswer& answer) {
+    const auto take = [&](const contact::QueryAnswer& answer) {
         merge(answer, all);
         narrow();
         if (pushes.empty()) return;
@@ -82,7 +84,7 @@ QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, QueryReques
     return all;
 }
 
-void account(const QueryAnswer& answer, Report& report) noexcept {
+void account(const contact::QueryAnswer& answer, Report& report) noexcept {
     report.nodes_visited += static_cast<std::uint32_t>(answer.nodes_visited);
     report.quality = std::min(report.quality, answer.quality);
     if (answer.budget_reached) report.status |= kBudgetReached;

@@ -14,10 +14,11 @@ namespace passung::tick {
 /// mode and budget (per obstacle and way) replace those of `request`. Appends to `manifold`; returns the deepest or
 /// closest answer, with nodes added up and the least quality. Each obstacle's own load is added to its push, if
 /// `pushes` are given. rt-safe.
-QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, QueryRequest request, QueryWorkspace& workspace,
-                           ContactManifold& manifold, std::span<ObstaclePush> pushes = {}) noexcept;
+contact::QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, contact::QueryRequest request,
+                                    contact::QueryWorkspace& workspace, contact::ContactManifold& manifold,
+                                    std::span<ObstaclePush> pushes = {}) noexcept;
 
 /// Books a query's cost and completeness. rt-safe.
-void account(const QueryAnswer& answer, Report& report) noexcept;
+void account(const contact::QueryAnswer& answer, Report& report) noexcept;
 
 }  // namespace passung::tick

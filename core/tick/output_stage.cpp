@@ -80,7 +80,7 @@ void withholdWrench(const TickModel&, Pushes& pushes, HandWrench& wrench, Report
 
 void limitOutput(const TickModel& model, const HandSample& hand, const Pushes& pushes, SentWrench& sent,
                  HandWrench& felt, CommandedWrench& command, Report& report) noexcept {
-    const model::OutputLimits& limits = model.limits;
+    const scene::OutputLimits& limits = model.limits;
     Wrench wrench = wrenchOnDevice(model, hand, felt.F_H_W);
     if (!isFinite(wrench)) sent.latched = true;
     if (sent.latched) report.status |= kNonFiniteLatched;

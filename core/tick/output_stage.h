@@ -12,7 +12,7 @@ namespace passung::tick {
 /// Owner: output delay.
 struct DelayLine {
     std::size_t place = 0;  // of this tick; the next one is the oldest
-    std::array<Wrench, model::kMaxDelayTicks + 1> delay_line{};
+    std::array<Wrench, scene::kMaxDelayTicks + 1> delay_line{};
     std::vector<Wrench> push_line;  // the same of the obstacles' pushes, tick by tick
 };
 

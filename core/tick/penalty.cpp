@@ -11,7 +11,7 @@ namespace passung::tick {
 
 namespace {
 
-bool isWeighted(model::PenaltyVariant variant) noexcept { return variant == model::PenaltyVariant::AreaWeighted; }
+bool isWeighted(scene::PenaltyVariant variant) noexcept { return variant == scene::PenaltyVariant::AreaWeighted; }
 
 /// -b (v · û) û, no larger than what it opposes.
 Vec3 dampingAlong(const Vec3& load, const Vec3& velocity, double damping) noexcept {
@@ -45,7 +45,7 @@ void measureHandVelocity(HandVelocity& velocity, const HandSample& hand) noexcep
 
 }  // namespace
 
-QueryRequest penaltyRequest(model::PenaltyVariant variant) noexcept {
+contact::QueryRequest penaltyRequest(scene::PenaltyVariant variant) noexcept {
     return {.gradients = false, .load = isWeighted(variant), .refine = true};
 }
 
@@ -55,36 +55,36 @@ void findContactsAtHand(const TickModel& model, const HandSample& hand, Proxy& p
     proxy.X_WG = hand.X_WH;
     proxy.manifold.clear();
     clearPushes(pushes);
-    const QueryAnswer answer = queryObstacles(model, hand.X_WH, penaltyRequest(model.contact.variant), memory.workspace,
-                                              proxy.manifold, pushes.pushes);
+    const contact::QueryAnswer answer = queryObstacles(model, hand.X_WH, penaltyRequest(model.contact.variant),
+                                                       memory.workspace, proxy.manifold, pushes.pushes);
     account(answer, report);
     load.load = answer.load;
     record.contacts = static_cast<std::uint32_t>(answer.contacts);
     depth.hand_depth = record.proxy_depth = std::max(0.0, -answer.phi);
 }
 
-Wrench weightedWrench(const model::ContactSpec& contact, const Wrench& load, std::span<ObstaclePush> pushes) noexcept {
+Wrench weightedWrench(const scene::ContactSpec& contact, const Wrench& load, std::span<ObstaclePush> pushes) noexcept {
     const double scale = (contact.two_way ? 0.5 : 1.0) * contact.area_stiffness;
     scalePushes(pushes, scale);
     return {scale * load.force, scale * load.torque};
 }
 
-Wrench penaltyWrench(const model::ContactSpec& contact, const ContactManifold& manifold, const Vec3& p_WO,
+Wrench penaltyWrench(const scene::ContactSpec& contact, const contact::ContactManifold& manifold, const Vec3& p_WO,
                      std::span<ObstaclePush> pushes) noexcept {
     return penaltyLoad(contact, manifold, p_WO, pushes).wrench;
 }
 
-PenaltyLoad penaltyLoad(const model::ContactSpec& contact, const ContactManifold& manifold, const Vec3& p_WO,
+PenaltyLoad penaltyLoad(const scene::ContactSpec& contact, const contact::ContactManifold& manifold, const Vec3& p_WO,
                         std::span<ObstaclePush> pushes) noexcept {
     const bool weighted = isWeighted(contact.variant);
-    const DepthSum all =
-        sumDepths(manifold, weighted, p_WO, [&](const ContactPoint& c, const Vec3& f, const Vec3& moment) {
+    const contact::DepthSum all = contact::sumDepths(
+        manifold, weighted, p_WO, [&](const contact::ContactPoint& c, const Vec3& f, const Vec3& moment) {
             if (pushes.empty()) return;
             pushes[c.obstacle].wrench.force += f;
             pushes[c.obstacle].wrench.torque += moment;
         });
     double scale = (contact.two_way ? 0.5 : 1.0) * (weighted ? contact.area_stiffness : contact.stiffness);
-    if (contact.variant == model::PenaltyVariant::MaxNormalised) {
+    if (contact.variant == scene::PenaltyVariant::MaxNormalised) {
         const double coherent = std::max(all.sum.force.norm(), kLeastCoherence * all.depths);
         if (coherent > 0.0) scale = contact.stiffness * all.deepest / coherent;
     }

@@ -19,7 +19,7 @@ struct HandVelocity {
 
 /// What is asked at the device's pose: the deepest point, on the surface between the samples too, and all points inside
 /// obstacles, or where only their area-weighted sum matters that (QueryRequest::load). rt-safe.
-QueryRequest penaltyRequest(model::PenaltyVariant variant) noexcept;
+contact::QueryRequest penaltyRequest(scene::PenaltyVariant variant) noexcept;
 
 /// Stage: contact at the device's pose. Fills the manifold, or the load, by penaltyRequest. The proxy follows the
 /// device: X_WG = X_WH.
@@ -54,17 +54,17 @@ inline constexpr StageOf kContactsAtHand{
 /// and the scale of max_normalised would grow without bound; it is therefore held at Σ p_i n_i ≥ kLeastCoherence · Σ
 /// p_i (our addition), which lets the force fade to zero there.
 /// `pushes`, if given, cleared, get each obstacle's part of it.
-Wrench penaltyWrench(const model::ContactSpec& contact, const ContactManifold& manifold, const Vec3& p_WO,
+Wrench penaltyWrench(const scene::ContactSpec& contact, const contact::ContactManifold& manifold, const Vec3& p_WO,
                      std::span<ObstaclePush> pushes = {}) noexcept;
 /// The same, and what each point has of it per depth, area-weighted per depth and area [N/m], [N/m³].
 struct PenaltyLoad {
     Wrench wrench;
     double scale = 0.0;
 };
-PenaltyLoad penaltyLoad(const model::ContactSpec& contact, const ContactManifold& manifold, const Vec3& p_WO,
+PenaltyLoad penaltyLoad(const scene::ContactSpec& contact, const contact::ContactManifold& manifold, const Vec3& p_WO,
                         std::span<ObstaclePush> pushes = {}) noexcept;
 /// The same for area_weighted, of QueryAnswer::load; `pushes`: each obstacle's load so far. rt-safe.
-Wrench weightedWrench(const model::ContactSpec& contact, const Wrench& load,
+Wrench weightedWrench(const scene::ContactSpec& contact, const Wrench& load,
                       std::span<ObstaclePush> pushes = {}) noexcept;
 inline constexpr double kLeastCoherence = 0.2;
 

@@ -18,7 +18,7 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 constexpr int kRounds = 12;  // of Newton's method on the linearised contacts
 
 /// A x = b for A symmetric, positive definite (Cholesky, in a fixed order of operations).
-Motion solved(Matrix6 A, Motion b) noexcept {
+motion::Motion solved(Matrix6 A, motion::Motion b) noexcept {
     for (int j = 0; j < 6; ++j) {
         for (int k = 0; k < j; ++k) A(j, j) -= A(j, k) * A(j, k);
         A(j, j) = std::sqrt(A(j, j));
@@ -43,9 +43,9 @@ class ToolBalance {
 public:
     ToolBalance(const TickModel& model, const HandSample& hand, const Proxy& proxy, const ToolMotion& tool) noexcept
         : model_(model), X_WH_(hand.X_WH), X_before_(proxy.X_WG), law_(model.contact) {
-        const model::ContactSpec& c = model.contact;
+        const scene::ContactSpec& c = model.contact;
         law_.stiffness = c.penalty_stiffness;
-        if (c.coupling != model::PenaltyCoupling::Virtual) return;
+        if (c.coupling != scene::PenaltyCoupling::Virtual) return;
         const double K = c.stiffness, turn = K * model.metric_radius * model.metric_radius;
         damper_ = split(c.damping / K, c.rotational_damping / turn) / kTickSeconds;
         inertia_ = split(c.tool_mass / K, c.tool_inertia / turn) / (kTickSeconds * kTickSeconds);
@@ -58,41 +58,41 @@ public:
     void update(const Proxy& proxy) noexcept {
         const PenaltyLoad load = penaltyLoad(law_, proxy.manifold, proxy.X_WG.p);
         scale_ = load.scale / model_.contact.stiffness;
-        Motion push;
+        motion::Motion push;
         push << load.wrench.force, load.wrench.torque / model_.metric_radius;
         stretch = unconstrainedMotion(model_, proxy.X_WG, X_WH_);
-        const Motion U = way(proxy);
+        const motion::Motion U = way(proxy);
         open = stretch + push / model_.contact.stiffness + damper_.cwiseProduct(hand_ - U) +
                inertia_.cwiseProduct(last_ - U);
     }
 
     /// The tool's motion in this tick so far.
-    Motion way(const Proxy& proxy) const noexcept { return unconstrainedMotion(model_, X_before_, proxy.X_WG); }
-    const model::ContactSpec& law() const noexcept { return law_; }
+    motion::Motion way(const Proxy& proxy) const noexcept { return unconstrainedMotion(model_, X_before_, proxy.X_WG); }
+    const scene::ContactSpec& law() const noexcept { return law_; }
     double size() const noexcept { return open.cwiseQuotient(stiff_).norm(); }
     /// How far the tool may end from the hand where contacts push it away.
     double longestStretch() const noexcept {
-        const double drift = (model_.contact.coupling == model::PenaltyCoupling::Virtual) ? last_.norm() : 0.0;
+        const double drift = (model_.contact.coupling == scene::PenaltyCoupling::Virtual) ? last_.norm() : 0.0;
         return stretch.norm() + drift + kRepair * model_.finest_cell;
     }
 
     /// The motion that solves the linearised equation.
-    Motion step(const ContactManifold& contacts, const Vec3& p_WG) const noexcept {
-        Motion u = Motion::Zero();
+    motion::Motion step(const contact::ContactManifold& contacts, const Vec3& p_WG) const noexcept {
+        motion::Motion u = motion::Motion::Zero();
         for (int round = 0; round < kRounds; ++round) {
             Matrix6 A = stiff_.asDiagonal();
-            Motion b = open;
-            for (const ContactPoint& contact : contacts) {
+            motion::Motion b = open;
+            for (const contact::ContactPoint& contact : contacts) {
                 const double depth = -contact.phi;
-                const Motion a = rowOf(contact, p_WG);
+                const motion::Motion a = rowOf(contact, p_WG);
                 const double sigma =
-                    scale_ * (law_.variant == model::PenaltyVariant::AreaWeighted ? contact.area : 1.0);
+                    scale_ * (law_.variant == scene::PenaltyVariant::AreaWeighted ? contact.area : 1.0);
                 if (depth > 0.0) b -= sigma * depth * a;
                 if (!(depth - a.dot(u) > 0.0)) continue;
                 A += (sigma * a) * a.transpose();
                 b += sigma * depth * a;
             }
-            const Motion next = solved(A, b);
+            const motion::Motion next = solved(A, b);
             const bool same = (next - u).norm() < kSettled;
             u = next;
             if (same) break;
@@ -100,16 +100,16 @@ public:
         return u;
     }
 
-    Motion stretch = Motion::Zero(), open = Motion::Zero();  // w and q
+    motion::Motion stretch = motion::Motion::Zero(), open = motion::Motion::Zero();  // w and q
 
 private:
-    static Motion split(double translation, double rotation) noexcept {
-        Motion both;
+    static motion::Motion split(double translation, double rotation) noexcept {
+        motion::Motion both;
         both << Vec3::Constant(translation), Vec3::Constant(rotation);
         return both;
     }
-    Motion rowOf(const ContactPoint& contact, const Vec3& p_WG) const noexcept {
-        Motion a;
+    motion::Motion rowOf(const contact::ContactPoint& contact, const Vec3& p_WG) const noexcept {
+        motion::Motion a;
         a << contact.gradient, (contact.position - p_WG).cross(contact.gradient) / model_.metric_radius;
         return a;
     }
@@ -117,18 +117,19 @@ private:
     const TickModel& model_;
     const Pose& X_WH_;
     const Pose X_before_;
-    model::ContactSpec law_;  // of the contacts
-    Motion stiff_ = Motion::Ones(), damper_ = Motion::Zero(), inertia_ = Motion::Zero();
+    scene::ContactSpec law_;  // of the contacts
+    motion::Motion stiff_ = motion::Motion::Ones(), damper_ = motion::Motion::Zero(), inertia_ = motion::Motion::Zero();
     double scale_ = 0.0;  // of penaltyLoad, per K
-    Motion last_ = Motion::Zero(), hand_ = Motion::Zero();
+    motion::Motion last_ = motion::Motion::Zero(), hand_ = motion::Motion::Zero();
 };
 
 /// Puts the tool at `X_WG` and looks around: points nearer than `reach`, and up to `search` how far the nearest is.
 void lookAt(const ProxyView& view, const Pose& X_WG, double reach, double search) noexcept {
     const auto& [model, proxy, memory, report] = view;
     proxy.manifold.clear();
-    const QueryRequest request{.collect_below = reach, .search_below = std::max(reach, search), .refine = true};
-    const QueryAnswer answer = queryObstacles(model, X_WG, request, memory.workspace, proxy.manifold);
+    const contact::QueryRequest request{
+        .collect_below = reach, .search_below = std::max(reach, search), .refine = true};
+    const contact::QueryAnswer answer = queryObstacles(model, X_WG, request, memory.workspace, proxy.manifold);
     account(answer, report);
     proxy.X_WG = X_WG;
     proxy.manifold_reach = reach;
@@ -141,14 +142,14 @@ void startTool(const ProxyView& view, const HandSample& hand, ToolMotion& tool) 
         proxy.X_WG = hand.X_WH;
         proxy.manifold_reach = -1.0;
         tool.has_last_hand = false;
-        tool.last = Motion::Zero();
+        tool.last = motion::Motion::Zero();
     }
     const double reach = kLongestStep * view.model.finest_cell;
     if (proxy.manifold_reach < 0.0) lookAt(view, proxy.X_WG, reach, reach);
 }
 
 /// The share of `u` after which the stretch, now w, is no longer than `longest`.
-double shareWithin(double longest, const Motion& w, const Motion& u) noexcept {
+double shareWithin(double longest, const motion::Motion& w, const motion::Motion& u) noexcept {
     const double square = u.squaredNorm(), along = w.dot(u);
     const double room = std::max(0.0, longest * longest - w.squaredNorm());
     if (!((w - u).norm() > longest)) return 1.0;
@@ -156,7 +157,8 @@ double shareWithin(double longest, const Motion& w, const Motion& u) noexcept {
 }
 
 /// Moves by `u`, or as much of it as makes the balance's rest smaller; false, and the tool stays, if none does.
-bool makeStep(const ProxyView& view, ToolBalance& balance, const Motion& u, double reach, double search) noexcept {
+bool makeStep(const ProxyView& view, ToolBalance& balance, const motion::Motion& u, double reach,
+              double search) noexcept {
     const auto& [model, proxy, memory, report] = view;
     const Pose X_here = proxy.X_WG;
     const double before = balance.size();
@@ -186,7 +188,7 @@ void settleTool(const TickModel& model, const HandSample& hand, Proxy& proxy, To
     for (int i = 0; i < kToolSteps; ++i) {
         settled = balance.size() < kSettled;
         if (settled) break;
-        Motion u = balance.step(proxy.manifold, proxy.X_WG.p);
+        motion::Motion u = balance.step(proxy.manifold, proxy.X_WG.p);
         const double path = longestPath(model, u), farthest = std::max(0.0, proxy.clearance) + half_cell;
         if (path > farthest) u *= farthest / path;
         const double share = shareWithin(longest, balance.stretch, u);
@@ -195,9 +197,9 @@ void settleTool(const TickModel& model, const HandSample& hand, Proxy& proxy, To
         if (!makeStep(view, balance, share * u, reach, path)) break;
     }
     if (!settled && !(balance.size() < kSettled)) report.status |= kIterationLimit;
-    const Motion way = balance.way(proxy);
+    const motion::Motion way = balance.way(proxy);
     tool.last_way = way.norm();
-    tool.last = held_back ? Motion::Zero() : way;
+    tool.last = held_back ? motion::Motion::Zero() : way;
     tool.X_WH_last = hand.X_WH;
     tool.has_last_hand = true;
     clearPushes(pushes);

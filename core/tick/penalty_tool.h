@@ -9,9 +9,9 @@ namespace passung::tick {
 
 /// Owner: penalty tool. Where the tool is, is the proxy.
 struct ToolMotion {
-    Motion last = Motion::Zero();  // U⁻ below; zero where contacts held the tool back [m]
-    double last_way = 0.0;         // |U⁻|, however it ended [m]
-    Pose X_WH_last;                // at the last tick
+    motion::Motion last = motion::Motion::Zero();  // U⁻ below; zero where contacts held the tool back [m]
+    double last_way = 0.0;                         // |U⁻|, however it ended [m]
+    Pose X_WH_last;                                // at the last tick
     bool has_last_hand = false;
 };
 
@@ -60,10 +60,10 @@ inline constexpr StageOf kPenaltyTool{
      .parameters = "contact.coupling, variant, penalty_stiffness_N_per_m, tool_mass_kg, tool_inertia_kg_m2, stiffness, "
                    "damping, mode, budget_nodes, two_way",
      .cost = "a few queries of each obstacle; bound: kToolSteps",
-     .needs = [](const TickModel& model) { return model.hasProxyOf(model::ContactMethod::Penalty); },
+     .needs = [](const TickModel& model) { return model.hasProxyOf(scene::ContactMethod::Penalty); },
      .reason =
          [](const TickModel& model) {
-             return model.contact.coupling == model::PenaltyCoupling::Virtual
+             return model.contact.coupling == scene::PenaltyCoupling::Virtual
                         ? "contact.coupling is virtual: a tool with mass between the hand's spring and the "
                           "contacts' penalty"
                         : "contact.coupling is quasi_static: a tool where the hand's spring and the contacts' "

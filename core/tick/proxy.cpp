@@ -28,7 +28,7 @@ std::span<const std::uint32_t> likelyContacts(const MovingProxy& moving,
     }
     if (count == 0) return {};
     for (std::size_t k = 0; k < proxy.manifold.size() && found < places.size(); ++k) {
-        const ContactPoint& contact = proxy.manifold[k];
+        const contact::ContactPoint& contact = proxy.manifold[k];
         if (contact.phi > moving.model.margins.relieve) continue;  // a contact that held is hardly farther away
         for (std::size_t i = 0; i < count; ++i) {
             if (std::abs(contact.position.x() - held[i].x()) > kSamePoint ||
@@ -41,7 +41,7 @@ std::span<const std::uint32_t> likelyContacts(const MovingProxy& moving,
     return {places.data(), found};
 }
 
-void noteHeld(const ConstrainedMotion& motion, const Proxy& proxy, HeldPoints& held) noexcept {
+void noteHeld(const motion::ConstrainedMotion& motion, const Proxy& proxy, HeldPoints& held) noexcept {
     held.count = motion.active;
     const Pose X_GW = proxy.X_WG.inverse();
     for (int i = 0; i < motion.active; ++i) {
@@ -55,42 +55,42 @@ void note(int count, std::uint32_t& most) noexcept { most = std::max(most, stati
 
 }  // namespace
 
-Pose moved(const TickModel& model, const Pose& pose, const Motion& u) noexcept {
+Pose moved(const TickModel& model, const Pose& pose, const motion::Motion& u) noexcept {
     Pose result{rotationFromVector(u.tail<3>() / model.metric_radius) * pose.q, pose.p + u.head<3>()};
     result.q.normalize();
     return result;
 }
 
-Motion unconstrainedMotion(const TickModel& model, const Pose& X_WG, const Pose& X_WH) noexcept {
-    Motion u;
+motion::Motion unconstrainedMotion(const TickModel& model, const Pose& X_WG, const Pose& X_WH) noexcept {
+    motion::Motion u;
     u.head<3>() = X_WH.p - X_WG.p;
     u.tail<3>() = model.metric_radius * rotationVector(X_WH.q * X_WG.q.conjugate());
     return u;
 }
 
-double longestPath(const TickModel& model, const Motion& u) noexcept {
+double longestPath(const TickModel& model, const motion::Motion& u) noexcept {
     return u.head<3>().norm() + u.tail<3>().norm() / model.metric_radius * model.shell->reach();
 }
 
 double overlap(const Proxy& proxy) noexcept { return std::max(0.0, -proxy.clearance); }
 
-bool isInside(const ContactPoint& contact) noexcept { return contact.phi < 0.0 && !(contact.radius > 0.0); }
+bool isInside(const contact::ContactPoint& contact) noexcept { return contact.phi < 0.0 && !(contact.radius > 0.0); }
 
 void look(const ProxyView& view, const Pose& X_WG, double reach, double search) noexcept {
     const auto& [model, proxy, memory, report] = view;
     memory.scratch.clear();
-    QueryRequest request{.collect_below = reach,
-                         .search_below = search,
-                         .spheres = true,
-                         .facing = model.contact.two_way,
-                         .edges = true};
-    QueryAnswer answer = queryObstacles(model, X_WG, request, memory.workspace, memory.scratch);
+    contact::QueryRequest request{.collect_below = reach,
+                                  .search_below = search,
+                                  .spheres = true,
+                                  .facing = model.contact.two_way,
+                                  .edges = true};
+    contact::QueryAnswer answer = queryObstacles(model, X_WG, request, memory.workspace, memory.scratch);
     account(answer, report);
     std::swap(proxy.manifold, memory.scratch);
     proxy.X_WG = X_WG;
     proxy.manifold_reach = reach;
     proxy.clearance = proxy.room = answer.phi;
-    for (const ContactPoint& contact : proxy.manifold) proxy.room = std::min(proxy.room, contact.phi);
+    for (const contact::ContactPoint& contact : proxy.manifold) proxy.room = std::min(proxy.room, contact.phi);
     if (!(proxy.room > reach)) return;
     request.prove = true;
     memory.scratch.clear();
@@ -103,9 +103,10 @@ bool overlapsBetween(const ProxyView& view, const Pose& X_from, const Pose& X_to
                      double accepted) noexcept {
     const Pose X{X_from.q.slerp(share, X_to.q), X_from.p + share * (X_to.p - X_from.p)};
     view.memory.scratch.clear();
-    const QueryRequest request{
+    const contact::QueryRequest request{
         .collect_below = -1e300, .search_below = -accepted, .facing = view.model.contact.two_way, .edges = true};
-    const QueryAnswer answer = queryObstacles(view.model, X, request, view.memory.workspace, view.memory.scratch);
+    const contact::QueryAnswer answer =
+        queryObstacles(view.model, X, request, view.memory.workspace, view.memory.scratch);
     account(answer, view.report);
     return answer.found;
 }
@@ -144,26 +145,27 @@ bool arriveFreely(const MovingProxy& moving, double path, double reach, double a
     return false;
 }
 
-Surroundings surroundings(const TickModel& model, const Proxy& proxy) noexcept {
+motion::Surroundings surroundings(const TickModel& model, const Proxy& proxy) noexcept {
     return {proxy.manifold, proxy.X_WG.p, model.metric_radius, -model.margins.keep};
 }
 
-AllowedMotion allowedMotion(const MovingProxy& moving, const Motion& wanted, const Surroundings& around) noexcept {
+AllowedMotion allowedMotion(const MovingProxy& moving, const motion::Motion& wanted,
+                            const motion::Surroundings& around) noexcept {
     const TickModel& model = moving.model;
     Report& report = moving.report;
     std::array<std::uint32_t, 6> places;
     const auto likely = likelyContacts(moving, places);
     AllowedMotion allowed;
     if (model.friction.empty()) {
-        const ConstrainedMotion constrained = constrainMotion(wanted, around, likely);
+        const motion::ConstrainedMotion constrained = motion::constrainMotion(wanted, around, likely);
         if (!constrained.converged) report.status |= kIterationLimit;
         note(constrained.iterations, report.rows_taken);
         allowed.u = constrained.u;
         noteHeld(constrained, moving.proxy, moving.motion.held);
         notePushes(model, moving.proxy, constrained, allowed.rubbing, moving.pushes);
     } else {
-        const RubbedMotion rubbed =
-            constrainWithFriction(wanted, around, model.friction, moving.motion.rubbing, likely);
+        const motion::RubbedMotion rubbed =
+            motion::constrainWithFriction(wanted, around, model.friction, moving.motion.rubbing, likely);
         if (!rubbed.converged || !rubbed.motion.converged) report.status |= kIterationLimit;
         note(rubbed.motion.iterations, report.rows_taken);
         note(rubbed.sweeps, report.friction_turns);
@@ -184,7 +186,7 @@ void filterProxy(const TickModel& model, const HandSample& hand, ProxyFilter& fi
     if (in_contact && filter.has_last_proxy) {
         const ProxyView view{model, proxy, memory, report};
         const Pose X_target = proxy.X_WG;
-        const Motion u = unconstrainedMotion(model, filter.X_WG_last, X_target);
+        const motion::Motion u = unconstrainedMotion(model, filter.X_WG_last, X_target);
         const double reach = proxy.manifold_reach;
         const double accepted = std::max(model.margins.accept, overlap(proxy));
         look(view, moved(model, filter.X_WG_last, alpha * u), reach, reach);
@@ -196,13 +198,13 @@ void filterProxy(const TickModel& model, const HandSample& hand, ProxyFilter& fi
 
 void describeProxy(const TickModel&, const Proxy& proxy, ContactRecord& record) noexcept {
     record.proxy_depth = overlap(proxy);
-    for (const ContactPoint& contact : proxy.manifold) record.contacts += isInside(contact) ? 1u : 0u;
+    for (const contact::ContactPoint& contact : proxy.manifold) record.contacts += isInside(contact) ? 1u : 0u;
 }
 
 void measureHandDepth(const TickModel& model, const HandSample& hand, QueryMemory& memory, HandDepth& depth,
                       Report& report) noexcept {
     memory.scratch.clear();
-    const QueryAnswer answer =
+    const contact::QueryAnswer answer =
         queryObstacles(model, hand.X_WH, {.collect_below = -1e300}, memory.workspace, memory.scratch);
     report.nodes_visited += static_cast<std::uint32_t>(answer.nodes_visited);
     depth.hand_depth = std::max(0.0, -answer.phi);

@@ -17,13 +17,13 @@ inline constexpr double kStill = 1e-8;          // [m]: a motion below this is n
 inline constexpr int kHalvings = 4;
 
 /// `pose` moved by `u`.
-Pose moved(const TickModel& model, const Pose& pose, const Motion& u) noexcept;
+Pose moved(const TickModel& model, const Pose& pose, const motion::Motion& u) noexcept;
 
 /// u = (x_H - x_G, ρ log(R_H R_Gᵀ)): what takes the proxy to the hand.
-Motion unconstrainedMotion(const TickModel& model, const Pose& X_WG, const Pose& X_WH) noexcept;
+motion::Motion unconstrainedMotion(const TickModel& model, const Pose& X_WG, const Pose& X_WH) noexcept;
 
 /// No point of the shell moves farther than this [m].
-double longestPath(const TickModel& model, const Motion& u) noexcept;
+double longestPath(const TickModel& model, const motion::Motion& u) noexcept;
 
 /// What the methods look at the proxy by.
 struct ProxyView {
@@ -44,7 +44,7 @@ struct MovingProxy : ProxyView {
 double overlap(const Proxy& proxy) noexcept;
 
 /// True for a point inside an obstacle, false for one that is only near and for a sphere that stands in.
-bool isInside(const ContactPoint& contact) noexcept;
+bool isInside(const contact::ContactPoint& contact) noexcept;
 
 /// Puts the proxy at `X_WG` and looks around: all contacts within `reach`, and up to `search` [m] how far the nearest
 /// one is if none is. Room beyond the reach is used without another look, so that it has to be proven. Where it
@@ -72,14 +72,15 @@ double nextReach(const TickModel& model, double last_motion) noexcept;
 /// it would overlap there by more than `accepted`.
 bool arriveFreely(const MovingProxy& moving, double path, double reach, double accepted) noexcept;
 
-Surroundings surroundings(const TickModel& model, const Proxy& proxy) noexcept;
+motion::Surroundings surroundings(const TickModel& model, const Proxy& proxy) noexcept;
 
 /// What the contacts, and friction, leave of a motion. Begins with the contacts that held the one before.
 struct AllowedMotion {
-    Motion u;
-    FrictionPatches rubbing;
+    motion::Motion u;
+    motion::FrictionPatches rubbing;
 };
-AllowedMotion allowedMotion(const MovingProxy& moving, const Motion& wanted, const Surroundings& around) noexcept;
+AllowedMotion allowedMotion(const MovingProxy& moving, const motion::Motion& wanted,
+                            const motion::Surroundings& around) noexcept;
 
 /// Stage of a scene without obstacles: the held part is where the hand is.
 void followHand(const TickModel& model, const HandSample& hand, Proxy& proxy) noexcept;
@@ -110,7 +111,7 @@ inline constexpr StageOf kProxyFilter{
      .needs =
          [](const TickModel& model) {
              return model.hasProxy() && model.contact.proxy_filter > 0.0 &&
-                    model.contact.method != model::ContactMethod::Penalty;
+                    model.contact.method != scene::ContactMethod::Penalty;
          },
      .reason = [](const TickModel&) { return "contact.proxy_filter_hz is set: a low-pass of the proxy in contact"; }}};
 

@@ -13,10 +13,10 @@ namespace passung::tick {
 struct Proxy {
     static constexpr bool kHandedOn = true;
     Pose X_WG;
-    ContactManifold manifold;      // at X_WG, points with φ < manifold_reach
-    double manifold_reach = -1.0;  // < 0: nothing known
-    double clearance = 0.0;        // least φ of the points that were looked at, as interpolated [m]
-    double room = 0.0;             // least φ known of any point: beyond the reach proven, spheres included [m]
+    contact::ContactManifold manifold;  // at X_WG, points with φ < manifold_reach
+    double manifold_reach = -1.0;       // < 0: nothing known
+    double clearance = 0.0;             // least φ of the points that were looked at, as interpolated [m]
+    double room = 0.0;                  // least φ known of any point: beyond the reach proven, spheres included [m]
 };
 
 /// Where contacts held the proxy's last motion: each is a point of the held part or of an obstacle.
@@ -32,16 +32,16 @@ struct HeldPoints {
 /// proxy sweep.
 struct ProxyMotion {
     static constexpr bool kHandedOn = true;
-    FrictionPatches rubbing;   // of the last motion in contact
-    HeldPoints held;           // of the last motion: where the solver of the next one begins
-    double last_motion = 0.0;  // of the proxy, in the metric of metric_radius [m]
+    motion::FrictionPatches rubbing;  // of the last motion in contact
+    HeldPoints held;                  // of the last motion: where the solver of the next one begins
+    double last_motion = 0.0;         // of the proxy, in the metric of metric_radius [m]
 };
 
 /// Memory of queries. Handed on, but what is in it is nobody's: each stage finds it in any state.
 struct QueryMemory {
     static constexpr bool kHandedOn = true;
-    QueryWorkspace workspace;
-    ContactManifold scratch;
+    contact::QueryWorkspace workspace;
+    contact::ContactManifold scratch;
 };
 
 }  // namespace passung::tick

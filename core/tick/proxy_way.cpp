@@ -7,23 +7,23 @@ namespace passung::tick {
 
 ProxyWay::ProxyWay(const TickModel& model) noexcept : turn_scale_(model.shell->reach() / model.metric_radius) {}
 
-Motion ProxyWay::scaled(const Motion& u) const noexcept {
-    Motion v = u;
+motion::Motion ProxyWay::scaled(const motion::Motion& u) const noexcept {
+    motion::Motion v = u;
     v.tail<3>() *= turn_scale_;
     return v;
 }
 
-void ProxyWay::add(const Motion& u) noexcept {
+void ProxyWay::add(const motion::Motion& u) noexcept {
     assert(joints_ < kMostJoints);
-    const Motion v = scaled(u);
+    const motion::Motion v = scaled(u);
     length_ += v.norm();
-    joint_[joints_] = joints_ > 0 ? Motion(joint_[joints_ - 1] + v) : v;
+    joint_[joints_] = joints_ > 0 ? motion::Motion(joint_[joints_ - 1] + v) : v;
     ++joints_;
 }
 
-double ProxyWay::bentBy(const Motion& next) const noexcept {
+double ProxyWay::bentBy(const motion::Motion& next) const noexcept {
     if (joints_ == 0) return 0.0;
-    const Motion line = joint_[joints_ - 1] + scaled(next);
+    const motion::Motion line = joint_[joints_ - 1] + scaled(next);
     const double squared = line.squaredNorm();
     double farthest = 0.0;
     for (std::size_t i = 0; i < joints_; ++i) {
@@ -33,7 +33,7 @@ double ProxyWay::bentBy(const Motion& next) const noexcept {
     return farthest;
 }
 
-bool ProxyWay::goesOn(const TickModel& model, const Motion& next, double length) const noexcept {
+bool ProxyWay::goesOn(const TickModel& model, const motion::Motion& next, double length) const noexcept {
     const double bend = bentBy(next), s = model.finest_cell;
     return bend <= model.margins.relieve || (length > kLongestStep * s && bend <= kBent * s);
 }

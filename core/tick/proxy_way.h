@@ -23,19 +23,19 @@ class ProxyWay {
 public:
     explicit ProxyWay(const TickModel& model) noexcept;
 
-    void add(const Motion& u) noexcept;
+    void add(const motion::Motion& u) noexcept;
     double length() const noexcept { return length_; }
     /// How far from the way the straight line would lie if the way ended after `next`.
-    double bentBy(const Motion& next) const noexcept;
+    double bentBy(const motion::Motion& next) const noexcept;
     /// Whether it may go on with `next`, the beginning of a motion of `length`.
-    bool goesOn(const TickModel& model, const Motion& next, double length) const noexcept;
+    bool goesOn(const TickModel& model, const motion::Motion& next, double length) const noexcept;
 
 private:
     static constexpr std::size_t kMostJoints = 16;
-    Motion scaled(const Motion& u) const noexcept;
+    motion::Motion scaled(const motion::Motion& u) const noexcept;
 
     double turn_scale_, length_ = 0.0;
-    std::array<Motion, kMostJoints> joint_;
+    std::array<motion::Motion, kMostJoints> joint_;
     std::size_t joints_ = 0;
 };
 

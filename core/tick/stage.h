@@ -57,7 +57,7 @@ inline constexpr bool kIsPart = [] {
 ///                                             .cost = "constant", .needs = ..., .reason = ...}};
 ///
 /// goes into hum.h and hum.cpp, in the room's CMakeLists.txt. Then
-///   - model::Effects (core/scene/scene_spec.h) gets its parameters, which it finds in TickModel::effects,
+///   - scene::Effects (core/scene/scene_spec.h) gets its parameters, which it finds in TickModel::effects,
 ///   - TickState the part Hum and AllStages, at its place in the order, kHum (tick_state.h),
 ///   - a scene of tests/core/tick/stage_test.cpp the effect: the test says whether the declaration is true.
 /// Memory that depends on the scene is sized in makeState (tick_state.cpp).

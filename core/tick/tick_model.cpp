@@ -16,18 +16,18 @@ ProxyMargins marginsOf(const TickModel& model, const ProxyMargins& share, double
 }
 
 ProxyMargins marginsOf(const TickModel& model) {
-    if (model.hasProxyOf(model::ContactMethod::GodObjectHeuristic))
+    if (model.hasProxyOf(scene::ContactMethod::GodObjectHeuristic))
         return marginsOf(model, {kKeep, kRelieve, kAccept}, model.contact.tolerance);
-    if (model.hasProxyOf(model::ContactMethod::GodObject))
+    if (model.hasProxyOf(scene::ContactMethod::GodObject))
         return marginsOf(model, {kKept, kRelieved, kAccepted}, 0.5 * model.contact.tolerance);
     return {};
 }
 
 /// The coefficients of the held part with each obstacle, if any rubs.
-void addFriction(TickModel& model, const model::Scene& scene) {
+void addFriction(TickModel& model, const scene::Scene& scene) {
     const auto& parts = scene.spec.parts;
-    const model::PartSpec& held = parts[scene.held];
-    std::vector<Friction> friction;
+    const scene::PartSpec& held = parts[scene.held];
+    std::vector<motion::Friction> friction;
     bool any = false;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         if (i == scene.held) continue;
@@ -48,9 +48,9 @@ void addStages(TickModel& model, StageList<stage...>) {
 
 }  // namespace
 
-TickModel makeModel(const model::Scene& scene) {
+TickModel makeModel(const scene::Scene& scene) {
     TickModel model;
-    const model::SceneSpec& spec = scene.spec;
+    const scene::SceneSpec& spec = scene.spec;
     model.contact = spec.contact;
     model.limits = spec.limits;
     model.registration = spec.registration;

@@ -19,10 +19,10 @@ struct Stage {
 
 /// An obstacle: a distance field fixed in the world.
 struct Obstacle {
-    const model::DistanceField* field;
+    const field::DistanceField* field;
     Pose X_WF;
-    const model::SphereTree* shell = nullptr;  // two-way contact only
-    const model::EdgeCurves* edges = nullptr;  // with the shell
+    const shell::SphereTree* shell = nullptr;  // two-way contact only
+    const shell::EdgeCurves* edges = nullptr;  // with the shell
 };
 
 /// Overlap of a proxy [m].
@@ -34,21 +34,21 @@ struct ProxyMargins {
 
 /// Everything that does not change while a trial runs. Borrows the scene's parts.
 struct TickModel {
-    const model::SphereTree* shell = nullptr;
-    const model::EdgeCurves* edges = nullptr;
-    const model::DistanceField* held_field = nullptr;  // two-way contact only
+    const shell::SphereTree* shell = nullptr;
+    const shell::EdgeCurves* edges = nullptr;
+    const field::DistanceField* held_field = nullptr;  // two-way contact only
     std::vector<Obstacle> obstacles;
-    std::vector<Friction> friction;  // of each obstacle with the held part; empty: the scene names none
+    std::vector<motion::Friction> friction;  // of each obstacle with the held part; empty: the scene names none
     Pose X_WG_start;
-    model::ContactSpec contact;
-    model::OutputLimits limits;
-    model::Registration registration;
-    model::StartGate start_gate;
+    scene::ContactSpec contact;
+    scene::OutputLimits limits;
+    scene::Registration registration;
+    scene::StartGate start_gate;
     std::vector<Stage> stages;
     double finest_cell = 0.0;    // of all fields [m]
     double metric_radius = 0.0;  // [m]: makes a rotation comparable with a translation (god_object_heuristic.h)
     ProxyMargins margins;
-    model::Effects effects;
+    scene::Effects effects;
     bool record_hand_depth = true;
     bool display_wrench = true;
 
@@ -56,10 +56,10 @@ struct TickModel {
     bool rendersAtHand() const noexcept { return hasObstacles() && contact.rendersAtHand(); }
     /// Of a god object, or a tool.
     bool hasProxy() const noexcept { return hasObstacles() && !contact.rendersAtHand(); }
-    bool hasProxyOf(model::ContactMethod method) const noexcept { return hasProxy() && contact.method == method; }
+    bool hasProxyOf(scene::ContactMethod method) const noexcept { return hasProxy() && contact.method == method; }
 };
 
 /// What the scene fixes, and those of AllStages that it needs. `scene` must outlive the result.
-TickModel makeModel(const model::Scene& scene);
+TickModel makeModel(const scene::Scene& scene);
 
 }  // namespace passung::tick

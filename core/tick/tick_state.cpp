@@ -14,7 +14,7 @@ TickState makeState(const TickModel& model) {
     state.push_line.resize(state.pairs.size() * (static_cast<std::size_t>(model.limits.delay_ticks) + 1));
     // When a budget ends a node stands in by a point and a sphere, and every obstacle may touch every point and every
     // edge around every station.
-    const auto most = [](const model::SphereTree& shell, const model::EdgeCurves& edges) {
+    const auto most = [](const shell::SphereTree& shell, const shell::EdgeCurves& edges) {
         return shell.points().size() + 2 * shell.nodes().size() + edges.stations().size();
     };
     std::size_t capacity = most(*model.shell, *model.edges) * model.obstacles.size();
@@ -24,9 +24,9 @@ TickState makeState(const TickModel& model) {
         capacity += most(*obstacle.shell, *obstacle.edges);
         nodes = std::max(nodes, obstacle.shell->nodes().size());
     }
-    state.manifold = ContactManifold(capacity);
-    state.scratch = ContactManifold(capacity);
-    state.workspace = QueryWorkspace(nodes);
+    state.manifold = contact::ContactManifold(capacity);
+    state.scratch = contact::ContactManifold(capacity);
+    state.workspace = contact::QueryWorkspace(nodes);
     return state;
 }
 

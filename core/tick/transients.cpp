@@ -33,7 +33,7 @@ void renderTransients(const TickModel& model, const HandSample& hand, const Cont
         ringing = Ringing{};
         return;
     }
-    const model::Transients& t = model.effects.transients;
+    const scene::Transients& t = model.effects.transients;
     const double r = std::exp(-kTickSeconds / t.decay);
     const double phi = 2.0 * std::numbers::pi * t.frequency * kTickSeconds;
     const Wrench contact = wrench.F_H_W;

@@ -41,7 +41,7 @@ void renderCoupling(const TickModel& model, const HandSample& hand, const Proxy&
     const Vec3 e = proxy.X_WG.p - hand.X_WH.p;
     const Vec3 psi = rotationVector(proxy.X_WG.q * hand.X_WH.q.conjugate());
     measureRates(stretch, hand, e, psi);
-    const model::ContactSpec& c = model.contact;
+    const scene::ContactSpec& c = model.contact;
     wrench.F_H_W.force = springAndDamper(e, stretch.last_stretch_rate, c.stiffness, c.damping);
     wrench.F_H_W.torque = springAndDamper(psi, stretch.last_twist_rate, c.rotational_stiffness, c.rotational_damping);
 }

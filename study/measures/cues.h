@@ -5,7 +5,7 @@
 
 namespace passung::measures {
 
-/// What commands a condition's cues have; see protocol::Cues.
+/// What commands a condition's cues have; see plan::Cues.
 struct CueSettings {
     bool visual = false, vibration = false, sound = false;
     double full_depth = 0.002;  // [m], > 0

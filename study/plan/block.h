@@ -7,7 +7,7 @@
 
 #include "study/design/design.h"
 
-namespace passung::protocol {
+namespace passung::plan {
 
 enum class Phase { Practice, Main };
 const char* phaseName(Phase phase);                        // "practice", "main": as stored
@@ -46,4 +46,4 @@ struct Block {
     std::vector<std::size_t> conditions = {};
 };
 
-}  // namespace passung::protocol
+}  // namespace passung::plan

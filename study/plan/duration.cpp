@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace passung::protocol {
+namespace passung::plan {
 
 double longestDuration(const StudyPlan& plan, std::span<const design::PlannedTrial> trials) {
     double seconds = 0.0;
@@ -25,4 +25,4 @@ double longestSession(const StudyPlan& plan) {
     return longest;
 }
 
-}  // namespace passung::protocol
+}  // namespace passung::plan

@@ -5,7 +5,7 @@
 #include "study/design/trial_order.h"
 #include "study/plan/study_plan.h"
 
-namespace passung::protocol {
+namespace passung::plan {
 
 /// How long these trials of one session take if each lasts to its time-out and rests are as short as they may be [s].
 /// Not in it: ways to the start (that to a pair's second interval is reckoned with 2 s), repeated attempts,
@@ -15,4 +15,4 @@ double longestDuration(const StudyPlan& plan, std::span<const design::PlannedTri
 /// The longest of all groups' sessions by that reckoning [s]. @pre the plan's design can be run
 double longestSession(const StudyPlan& plan);
 
-}  // namespace passung::protocol
+}  // namespace passung::plan

@@ -5,10 +5,10 @@
 
 #include "study/plan/study_plan.h"
 
-namespace passung::protocol {
+namespace passung::plan {
 
 /// A plan as one database runs it: with the stable stiffness and the accuracy that it keeps, the seed of its sessions
-/// and the questionnaires in a session's language. A StudyPlan is its draft; app::freeze() makes this of it, and
+/// and the questionnaires in a session's language. A StudyPlan is its draft; run::freeze() makes this of it, and
 /// nothing else but tests.
 class FrozenPlan {
 public:
@@ -21,4 +21,4 @@ private:
     std::shared_ptr<const StudyPlan> plan_;  // shared_ptr: large, const, and kept by whoever runs it
 };
 
-}  // namespace passung::protocol
+}  // namespace passung::plan

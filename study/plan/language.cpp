@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace passung::protocol {
+namespace passung::plan {
 
 std::vector<std::string> languagesOf(const StudyPlan& plan) {
     if (!plan.languages.empty()) return plan.languages;
@@ -40,4 +40,4 @@ std::vector<std::string> languagesAsked(const StudyPlan& plan, const PlannedQues
     return {planned.language};
 }
 
-}  // namespace passung::protocol
+}  // namespace passung::plan

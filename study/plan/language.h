@@ -6,7 +6,7 @@
 #include "core/base/result.h"
 #include "study/plan/study_plan.h"
 
-namespace passung::protocol {
+namespace passung::plan {
 
 /// Languages that a participant of the study may be spoken to in: those of its texts, else of its clauses of consent,
 /// else of its questionnaires; a study without any of these is in English.
@@ -22,4 +22,4 @@ bool speaks(const StudyPlan& plan, const std::string& language);
 /// is one. A slot's texts are in one.
 std::vector<std::string> languagesAsked(const StudyPlan& plan, const PlannedQuestionnaire& planned);
 
-}  // namespace passung::protocol
+}  // namespace passung::plan

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <charconv>
 
-namespace passung::protocol {
+namespace passung::plan {
 
 const char* participantKindName(ParticipantKind kind) {
     switch (kind) {
@@ -78,4 +78,4 @@ bool isParticipantCode(std::string_view code) {
                        [&](char c) { return isCapital(c) || isDigit(c) || c == '_' || c == '-'; });
 }
 
-}  // namespace passung::protocol
+}  // namespace passung::plan

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace passung::protocol {
+namespace passung::plan {
 
 /// Who takes part in a study. Data of different kinds is never mixed.
 enum class ParticipantKind { Real, Pilot, Simulated };
@@ -41,4 +41,4 @@ std::int64_t participantNumber(std::string_view code);
 /// 32 characters.
 bool isParticipantCode(std::string_view code);
 
-}  // namespace passung::protocol
+}  // namespace passung::plan

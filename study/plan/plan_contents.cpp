@@ -5,14 +5,14 @@
 #include <map>
 #include <set>
 
-namespace passung::protocol {
+namespace passung::plan {
 
 std::vector<NamedMesh> meshesOf(const StudyPlan& plan, const std::string& study) {
     const auto folder = std::filesystem::path(study).parent_path();
     std::map<std::string, std::string> names;  // by path
-    const auto list = [&](const model::SceneSpec& scene) {
-        for (const model::PartSpec& part : scene.parts)
-            if (const auto* mesh = std::get_if<model::MeshFile>(&part.geometry)) {
+    const auto list = [&](const scene::SceneSpec& scene) {
+        for (const scene::PartSpec& part : scene.parts)
+            if (const auto* mesh = std::get_if<scene::MeshFile>(&part.geometry)) {
                 const std::filesystem::path path(mesh->path);
                 const bool below = path.is_relative() == folder.is_relative() && !folder.empty();
                 names[mesh->path] = below ? path.lexically_relative(folder).generic_string() : path.generic_string();
@@ -40,4 +40,4 @@ std::vector<StableStiffness> stableStiffnessOf(const StudyPlan& plan, std::span<
     return stable;
 }
 
-}  // namespace passung::protocol
+}  // namespace passung::plan

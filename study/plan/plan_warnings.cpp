@@ -6,7 +6,7 @@
 #include <array>
 #include <string_view>
 
-namespace passung::protocol {
+namespace passung::plan {
 
 namespace {
 
@@ -82,9 +82,9 @@ std::vector<std::string> conditionWarnings(std::span<const Condition> conditions
             if (concerns(condition)) names.push_back(condition.name);
         if (!names.empty()) warnings.push_back(fmt::format("{}; conditions: {}", sentence, fmt::join(names, ", ")));
     };
-    using model::PenaltyVariant;
+    using scene::PenaltyVariant;
     const auto penalty = [](const Condition& condition) {
-        return condition.scene.contact.method == model::ContactMethod::Penalty;
+        return condition.scene.contact.method == scene::ContactMethod::Penalty;
     };
     const auto renders = [&](PenaltyVariant variant) {
         return [=](const Condition& condition) {
@@ -147,4 +147,4 @@ std::vector<std::string> blockWarnings(const StudyPlan& plan, bool chosen_measur
     return warnings;
 }
 
-}  // namespace passung::protocol
+}  // namespace passung::plan

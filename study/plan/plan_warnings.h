@@ -6,7 +6,7 @@
 
 #include "study/plan/study_plan.h"
 
-namespace passung::protocol {
+namespace passung::plan {
 
 /// Sentences about what conditions allow and an experimenter should know, each with their names.
 std::vector<std::string> conditionWarnings(std::span<const Condition> conditions);
@@ -22,4 +22,4 @@ bool isForPeople(const StudyPlan& plan);
 /// `chosen_measures`: the protocol lists its measures itself.
 std::vector<std::string> blockWarnings(const StudyPlan& plan, bool chosen_measures);
 
-}  // namespace passung::protocol
+}  // namespace passung::plan

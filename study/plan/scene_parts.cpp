@@ -1,23 +1,23 @@
 #include "study/plan/scene_parts.h"
 
-namespace passung::protocol {
+namespace passung::plan {
 namespace {
 
 template <class Condition>
-const model::PartSpec* findPart(const model::SceneSpec& scene, Condition condition) {
-    for (const model::PartSpec& part : scene.parts)
+const scene::PartSpec* findPart(const scene::SceneSpec& scene, Condition condition) {
+    for (const scene::PartSpec& part : scene.parts)
         if (condition(part)) return &part;
     return nullptr;
 }
 
 }  // namespace
 
-const model::PartSpec* heldPart(const model::SceneSpec& scene) {
-    return findPart(scene, [](const model::PartSpec& part) { return part.held; });
+const scene::PartSpec* heldPart(const scene::SceneSpec& scene) {
+    return findPart(scene, [](const scene::PartSpec& part) { return part.held; });
 }
 
-const model::PartSpec* partNamed(const model::SceneSpec& scene, std::string_view name) {
-    return findPart(scene, [name](const model::PartSpec& part) { return part.name == name; });
+const scene::PartSpec* partNamed(const scene::SceneSpec& scene, std::string_view name) {
+    return findPart(scene, [name](const scene::PartSpec& part) { return part.name == name; });
 }
 
-}  // namespace passung::protocol
+}  // namespace passung::plan

@@ -4,12 +4,12 @@
 
 #include "core/scene/scene_spec.h"
 
-namespace passung::protocol {
+namespace passung::plan {
 
 /// The part in the hand; nullptr if there is none (a scene that was validated has one).
-const model::PartSpec* heldPart(const model::SceneSpec& scene);
+const scene::PartSpec* heldPart(const scene::SceneSpec& scene);
 
 /// The part of this name; nullptr if there is none.
-const model::PartSpec* partNamed(const model::SceneSpec& scene, std::string_view name);
+const scene::PartSpec* partNamed(const scene::SceneSpec& scene, std::string_view name);
 
-}  // namespace passung::protocol
+}  // namespace passung::plan

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-namespace passung::protocol {
+namespace passung::plan {
 
 enum class Stimulus { None, Visual, Vibrotactile, Audio };
 inline constexpr std::array kStimulusNames = {"none", "visual", "vibrotactile", "audio"};  // as stored
@@ -26,4 +26,4 @@ enum class TimedBy { Program, Experimenter, Clock };
 inline constexpr std::array kTimedByNames = {"program", "experimenter", "clock"};  // as stored
 inline const char* timedByName(TimedBy timed_by) { return kTimedByNames[static_cast<std::size_t>(timed_by)]; }
 
-}  // namespace passung::protocol
+}  // namespace passung::plan

@@ -5,7 +5,7 @@
 #include "core/base/assert.h"
 #include "study/plan/study_plan.h"
 
-namespace passung::protocol {
+namespace passung::plan {
 
 std::size_t Staircase::trials() const {
     std::size_t count = catch_trials;
@@ -29,4 +29,4 @@ std::size_t variantOf(const StudyPlan& plan, const Staircase& staircase, std::si
     return staircase.first_variant[own] + level;
 }
 
-}  // namespace passung::protocol
+}  // namespace passung::plan

@@ -7,7 +7,7 @@
 
 #include "study/design/adaptive.h"
 
-namespace passung::protocol {
+namespace passung::plan {
 
 struct StudyPlan;
 
@@ -47,4 +47,4 @@ const Staircase* staircaseOf(const StudyPlan& plan, std::size_t block);
 /// block's
 std::size_t variantOf(const StudyPlan& plan, const Staircase& staircase, std::size_t condition, std::size_t level);
 
-}  // namespace passung::protocol
+}  // namespace passung::plan

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace passung::protocol {
+namespace passung::plan {
 
 const char* phaseName(Phase phase) { return phase == Phase::Practice ? "practice" : "main"; }
 
@@ -122,4 +122,4 @@ std::size_t plannedConditions(const StudyPlan& plan) {
     return plan.first_variant > 0 ? plan.first_variant : plan.conditions.size();
 }
 
-}  // namespace passung::protocol
+}  // namespace passung::plan

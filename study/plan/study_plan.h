@@ -16,7 +16,7 @@
 #include "study/plan/view.h"
 #include "study/questionnaire/definition.h"
 
-namespace passung::protocol {
+namespace passung::plan {
 
 using design::FactorKind;
 const char* factorKindName(FactorKind kind);  // "within", "between", "nuisance": as stored
@@ -62,14 +62,14 @@ struct Condition {
     std::string name;                 // levels joined by "/", unique
     std::vector<std::size_t> levels;  // index per factor
     std::string levels_json;          // {"factor": "label", ...}
-    model::SceneSpec scene;           // complete: stiffness resolved to numbers
+    scene::SceneSpec scene;           // complete: stiffness resolved to numbers
     bool allow_unstable = false;   // the protocol takes responsibility for a stiffness that is not known to be stable
     double accuracy_budget = 0.0;  // of a query [s]; > 0: accuracy = "auto" picks what the scene's contact has of
                                    // tolerance, cell, spacing, mode and nodes
     int accuracy_line = 0, accuracy_column = 0;  // where the protocol writes that budget, from 1
     bool accuracy_picked = false;                // it has
     Task task;
-    std::optional<model::SceneSpec> comparison;  // of a discrimination_pair: the other interval's scene
+    std::optional<scene::SceneSpec> comparison;  // of a discrimination_pair: the other interval's scene
     std::optional<StaircaseLevel> stimulus;      // none: no staircase chose anything in it
     ShownPose shown = ShownPose::Proxy;
     ShownResult result = ShownResult::None;
@@ -177,4 +177,4 @@ int sessionsOf(const StudyPlan& plan);
 /// How many conditions are planned, those apart that present the levels of staircases.
 std::size_t plannedConditions(const StudyPlan& plan);
 
-}  // namespace passung::protocol
+}  // namespace passung::plan

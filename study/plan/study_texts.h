@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace passung::protocol {
+namespace passung::plan {
 
 /// A text of the study in each of its languages.
 struct StudyText {
@@ -35,4 +35,4 @@ struct PictureSource {
     int line = 0, column = 0;  // where the protocol first names it
 };
 
-}  // namespace passung::protocol
+}  // namespace passung::plan

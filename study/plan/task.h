@@ -6,7 +6,7 @@
 
 #include "core/base/types.h"
 
-namespace passung::protocol {
+namespace passung::plan {
 
 /// A peg goes into the bore of the target, whose frame has its origin at the bore's mouth and the bore along -z.
 struct PegInHoleTask {
@@ -60,4 +60,4 @@ struct Task {
         form;
 };
 
-}  // namespace passung::protocol
+}  // namespace passung::plan

@@ -2,7 +2,7 @@
 
 #include "core/base/json.h"
 
-namespace passung::protocol {
+namespace passung::plan {
 
 const char* themeName(Theme theme) { return theme == Theme::Light ? "light" : "dark"; }
 
@@ -28,4 +28,4 @@ std::string viewJson(const View& view) {
         .str();
 }
 
-}  // namespace passung::protocol
+}  // namespace passung::plan

@@ -5,7 +5,7 @@
 
 #include "core/base/types.h"
 
-namespace passung::protocol {
+namespace passung::plan {
 
 enum class Theme { Dark, Light };
 const char* themeName(Theme theme);  // "dark", "light"
@@ -31,4 +31,4 @@ struct View {
 /// Every number of it, as stored and logged.
 std::string viewJson(const View& view);
 
-}  // namespace passung::protocol
+}  // namespace passung::plan

@@ -35,22 +35,22 @@ std::string countText(std::size_t least, std::size_t most, const char* what) {
 }
 
 /// What is wrong with a test for these factors; empty if nothing. A mixed model (lmm) takes any.
-std::string testFault(const std::string& test, const std::vector<const Factor*>& factors) {
+std::string testFault(const std::string& test, const std::vector<const plan::Factor*>& factors) {
     const auto rule = std::find_if(kTests.begin(), kTests.end(), [&](const TestRule& r) { return r.name == test; });
     if (rule == kTests.end()) return "";
-    const auto ofKind = [&](FactorKind kind) {
+    const auto ofKind = [&](plan::FactorKind kind) {
         return static_cast<std::size_t>(
-            std::count_if(factors.begin(), factors.end(), [&](const Factor* f) { return f->kind == kind; }));
+            std::count_if(factors.begin(), factors.end(), [&](const plan::Factor* f) { return f->kind == kind; }));
     };
-    const std::size_t within = ofKind(FactorKind::Within), between = ofKind(FactorKind::Between);
+    const std::size_t within = ofKind(plan::FactorKind::Within), between = ofKind(plan::FactorKind::Between);
     if (rule->most_within + rule->most_between == 0) return factors.empty() ? "" : "is for no factor";
     if (within < rule->least_within || within > rule->most_within || between < rule->least_between ||
         between > rule->most_between || within + between < factors.size())
         return fmt::format("is for {} and {}", countText(rule->least_within, rule->most_within, "within"),
                            countText(rule->least_between, rule->most_between, "between"));
-    for (const Factor* factor : factors) {
+    for (const plan::Factor* factor : factors) {
         const auto levels = static_cast<std::size_t>(std::count_if(
-            factor->levels.begin(), factor->levels.end(), [](const Level& level) { return !level.catch_trial; }));
+            factor->levels.begin(), factor->levels.end(), [](const plan::Level& level) { return !level.catch_trial; }));
         if (levels < rule->least_levels || levels > rule->most_levels)
             return fmt::format("is for {} {} levels; factor {} has {}",
                                rule->most_levels == kMany ? "at least" : "exactly", rule->least_levels, factor->name,
@@ -62,7 +62,8 @@ std::string testFault(const std::string& test, const std::vector<const Factor*>&
 /// Reads one table.
 class AnalysisReader {
 public:
-    AnalysisReader(const Node& table, const StudyPlan& plan, const std::vector<std::string>& staircases, Errors& errors)
+    AnalysisReader(const Node& table, const plan::StudyPlan& plan, const std::vector<std::string>& staircases,
+                   Errors& errors)
         : table_(table), read_(table, {"analysis"}, "analysis", errors), plan_(plan), errors_(errors) {
         before_ = errors.size();
         readOutcome(staircases);
@@ -76,7 +77,7 @@ public:
             read_.fail("test", fault);
     }
 
-    const Analysis& analysis() const { return analysis_; }
+    const plan::Analysis& analysis() const { return analysis_; }
 
 private:
     /// Nothing, or what is wrong with a name that is none of these.
@@ -114,18 +115,18 @@ private:
         analysis_.block = read_.text("block");
         if (!analysis_.staircase.empty()) return read_.fail("block", "is decided by the staircase");
         std::vector<std::string> names;
-        for (const Block& block : plan_.blocks) names.push_back(block.name);
+        for (const plan::Block& block : plan_.blocks) names.push_back(block.name);
         if (const auto fault = unknown(analysis_.block, names, "the study has no block of this name"); !fault.empty())
             return read_.fail("block", fault);
         const auto block = std::find_if(plan_.blocks.begin(), plan_.blocks.end(),
-                                        [&](const Block& b) { return b.name == analysis_.block; });
-        if (block->phase != Phase::Main) read_.fail("block", "is practice, which enters no analysis");
+                                        [&](const plan::Block& b) { return b.name == analysis_.block; });
+        if (block->phase != plan::Phase::Main) read_.fail("block", "is practice, which enters no analysis");
         checkType(*block);
         if (block->adaptive) read_.fail("block", "has a staircase, whose trials enter no mean: name the staircase");
     }
 
     /// A measure that no trial of the block has.
-    void checkType(const Block& block) const {
+    void checkType(const plan::Block& block) const {
         const std::size_t first = block.first_condition > 0  ? block.first_condition
                                   : block.conditions.empty() ? 0
                                                              : block.conditions.front();
@@ -140,7 +141,7 @@ private:
         if (read_.has("factors") && read_.items("factors").empty()) read_.fail("factors", "names no factor");
         for (const Node& item : read_.items("factors")) {
             const auto factor = std::find_if(plan_.factors.begin(), plan_.factors.end(),
-                                             [&](const Factor& f) { return f.name == item.text; });
+                                             [&](const plan::Factor& f) { return f.name == item.text; });
             const bool twice =
                 std::find(analysis_.factors.begin(), analysis_.factors.end(), item.text) != analysis_.factors.end();
             if (factor == plan_.factors.end() || twice)
@@ -154,18 +155,18 @@ private:
 
     const Node& table_;
     TableReader read_;
-    const StudyPlan& plan_;
+    const plan::StudyPlan& plan_;
     Errors& errors_;
     std::size_t before_ = 0;
-    Analysis analysis_;
-    std::vector<const Factor*> factors_;
+    plan::Analysis analysis_;
+    std::vector<const plan::Factor*> factors_;
 };
 
 }  // namespace
 
-std::vector<Analysis> readAnalyses(const std::vector<Node>& tables, const StudyPlan& plan,
-                                   const std::vector<std::string>& staircases, Errors& errors) {
-    std::vector<Analysis> analyses;
+std::vector<plan::Analysis> readAnalyses(const std::vector<Node>& tables, const plan::StudyPlan& plan,
+                                         const std::vector<std::string>& staircases, Errors& errors) {
+    std::vector<plan::Analysis> analyses;
     for (const Node& table : tables) analyses.push_back(AnalysisReader(table, plan, staircases, errors).analysis());
     return analyses;
 }

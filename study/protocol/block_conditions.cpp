@@ -13,7 +13,8 @@ namespace {
 /// Chooses for one block.
 class Chooser {
 public:
-    Chooser(const std::vector<Factor>& factors, const StudyPlan& plan, const Block& block, Errors& errors)
+    Chooser(const std::vector<plan::Factor>& factors, const plan::StudyPlan& plan, const plan::Block& block,
+            Errors& errors)
         : factors_(factors),
           plan_(plan),
           block_(block),
@@ -94,7 +95,7 @@ private:
                 if (std::find(chosen_.begin(), chosen_.end(), other) != chosen_.end()) continue;
                 bool same = true;
                 for (std::size_t f = 0; f < factors_.size(); ++f)
-                    same = same && (factors_[f].kind == FactorKind::Nuisance ||
+                    same = same && (factors_[f].kind == plan::FactorKind::Nuisance ||
                                     plan_.conditions[c].levels[f] == plan_.conditions[other].levels[f]);
                 if (same)
                     return report(list, fmt::format("has {} but not {}: a nuisance factor's levels are assigned to "
@@ -103,9 +104,9 @@ private:
             }
     }
 
-    const std::vector<Factor>& factors_;
-    const StudyPlan& plan_;
-    const Block& block_;
+    const std::vector<plan::Factor>& factors_;
+    const plan::StudyPlan& plan_;
+    const plan::Block& block_;
     std::string path_;
     Errors& errors_;
     std::vector<std::size_t> chosen_;
@@ -113,13 +114,13 @@ private:
 
 }  // namespace
 
-void chooseConditions(const std::vector<Node>& tables, const std::vector<Factor>& factors, StudyPlan& plan,
+void chooseConditions(const std::vector<Node>& tables, const std::vector<plan::Factor>& factors, plan::StudyPlan& plan,
                       Errors& errors) {
     if (plan.shared_conditions == 0) return;
     for (std::size_t b = 0; b < plan.blocks.size() && b < tables.size(); ++b) {
         const Node* list = tables[b].find("conditions");
         if (list == nullptr || list->kind != Node::Kind::List) continue;
-        Block& block = plan.blocks[b];
+        plan::Block& block = plan.blocks[b];
         block.conditions = Chooser(factors, plan, block, errors).choose(*list);
     }
 }

@@ -12,7 +12,7 @@ namespace passung::protocol {
 /// trials has all conditions of catch trials besides, unless it lists some. Errors: also a condition that is listed
 /// twice, and what tells the levels of a nuisance factor apart.
 /// @pre the plan's shared conditions are read, and its blocks from `tables`
-void chooseConditions(const std::vector<Node>& tables, const std::vector<Factor>& factors, StudyPlan& plan,
+void chooseConditions(const std::vector<Node>& tables, const std::vector<plan::Factor>& factors, plan::StudyPlan& plan,
                       Errors& errors);
 
 }  // namespace passung::protocol

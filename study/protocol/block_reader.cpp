@@ -18,17 +18,17 @@ std::string blockPath(const Node& table) {
     return named ? "block." + name->text : "block";
 }
 
-BlockOrder orderNamed(const std::string& name) {
-    for (const BlockOrder order :
-         {BlockOrder::Permutations, BlockOrder::Random, BlockOrder::Shuffled, BlockOrder::Listed})
-        if (name == blockOrderName(order)) return order;
-    return BlockOrder::Williams;
+plan::BlockOrder orderNamed(const std::string& name) {
+    for (const plan::BlockOrder order : {plan::BlockOrder::Permutations, plan::BlockOrder::Random,
+                                         plan::BlockOrder::Shuffled, plan::BlockOrder::Listed})
+        if (name == plan::blockOrderName(order)) return order;
+    return plan::BlockOrder::Williams;
 }
 
-RestEnds restEndsNamed(const std::string& name) {
-    for (const RestEnds ends : {RestEnds::ByParticipant, RestEnds::ByExperimenter})
-        if (name == restEndsName(ends)) return ends;
-    return RestEnds::ByTime;
+plan::RestEnds restEndsNamed(const std::string& name) {
+    for (const plan::RestEnds ends : {plan::RestEnds::ByParticipant, plan::RestEnds::ByExperimenter})
+        if (name == plan::restEndsName(ends)) return ends;
+    return plan::RestEnds::ByTime;
 }
 
 std::string unknownWord(const char* what, const std::string& word, const std::vector<std::string_view>& known) {
@@ -38,7 +38,8 @@ std::string unknownWord(const char* what, const std::string& word, const std::ve
 }
 
 /// The factor of this name, or what is wrong with the name.
-std::optional<std::size_t> findFactor(const std::vector<Factor>& factors, const std::string& name, std::string& fault) {
+std::optional<std::size_t> findFactor(const std::vector<plan::Factor>& factors, const std::string& name,
+                                      std::string& fault) {
     std::vector<std::string_view> known;
     for (std::size_t f = 0; f < factors.size(); ++f) {
         if (factors[f].name == name) return f;
@@ -48,7 +49,7 @@ std::optional<std::size_t> findFactor(const std::vector<Factor>& factors, const 
     return std::nullopt;
 }
 
-std::optional<std::size_t> findLevel(const Factor& factor, const std::string& label, std::string& fault) {
+std::optional<std::size_t> findLevel(const plan::Factor& factor, const std::string& label, std::string& fault) {
     std::vector<std::string_view> known;
     for (std::size_t i = 0; i < factor.levels.size(); ++i) {
         if (factor.levels[i].label == label) return i;
@@ -61,7 +62,7 @@ std::optional<std::size_t> findLevel(const Factor& factor, const std::string& la
 /// Reads one rule for orders.
 class ConstraintReader {
 public:
-    ConstraintReader(const Node& table, const TableReader& read, const std::vector<Factor>& factors)
+    ConstraintReader(const Node& table, const TableReader& read, const std::vector<plan::Factor>& factors)
         : table_(table), read_(read), factors_(factors) {}
 
     design::Constraint constraint() {
@@ -109,10 +110,10 @@ private:
 
     const Node& table_;
     const TableReader& read_;
-    const std::vector<Factor>& factors_;
+    const std::vector<plan::Factor>& factors_;
 };
 
-void readBlocked(const TableReader& read, const std::vector<Factor>& factors, Block& block) {
+void readBlocked(const TableReader& read, const std::vector<plan::Factor>& factors, plan::Block& block) {
     block.blocked_order = orderNamed(read.text("blocked_order"));
     if (!read.has("blocked")) {
         if (read.has("blocked_order")) read.fail("blocked_order", "is for blocks with blocked");
@@ -121,13 +122,13 @@ void readBlocked(const TableReader& read, const std::vector<Factor>& factors, Bl
     std::string fault;
     block.blocked = findFactor(factors, read.text("blocked"), fault);
     if (!block.blocked) return read.fail("blocked", fault);
-    const Factor& factor = factors[*block.blocked];
-    if (factor.kind != FactorKind::Within) read.fail("blocked", "must be a within factor");
-    if (std::any_of(factor.levels.begin(), factor.levels.end(), [](const Level& l) { return l.catch_trial; }))
+    const plan::Factor& factor = factors[*block.blocked];
+    if (factor.kind != plan::FactorKind::Within) read.fail("blocked", "must be a within factor");
+    if (std::any_of(factor.levels.begin(), factor.levels.end(), [](const plan::Level& l) { return l.catch_trial; }))
         read.fail("blocked", "must not have levels with catch = true");
 }
 
-void readCatches(const TableReader& read, Block& block) {
+void readCatches(const TableReader& read, plan::Block& block) {
     block.catches.trials = static_cast<std::size_t>(read.integer("catch_trials"));
     block.catches.from = static_cast<std::size_t>(read.integer("catch_from"));
     block.catches.to = static_cast<std::size_t>(read.integer("catch_to"));
@@ -137,15 +138,16 @@ void readCatches(const TableReader& read, Block& block) {
 
 }  // namespace
 
-std::vector<Block> readBlocks(const std::vector<Node>& tables, const std::vector<Factor>& factors, Errors& errors) {
-    std::vector<Block> blocks;
+std::vector<plan::Block> readBlocks(const std::vector<Node>& tables, const std::vector<plan::Factor>& factors,
+                                    Errors& errors) {
+    std::vector<plan::Block> blocks;
     std::set<std::string> names;
     for (const Node& table : tables) {
         const std::string path = blockPath(table);
         const TableReader read(table, {"block"}, path, errors);
-        Block block;
+        plan::Block block;
         block.name = read.text("name");
-        block.phase = read.text("phase") == "practice" ? Phase::Practice : Phase::Main;
+        block.phase = read.text("phase") == "practice" ? plan::Phase::Practice : plan::Phase::Main;
         block.repetitions = static_cast<int>(read.integer("repetitions"));
         block.order = orderNamed(read.text("order"));
         block.trials = static_cast<int>(read.integer("trials"));
@@ -169,15 +171,15 @@ std::vector<Block> readBlocks(const std::vector<Node>& tables, const std::vector
         readRepeats(read, block);
         blocks.push_back(std::move(block));
     }
-    const auto is_main = [](const Block& block) { return block.phase == Phase::Main; };
+    const auto is_main = [](const plan::Block& block) { return block.phase == plan::Phase::Main; };
     if (!tables.empty() && std::none_of(blocks.begin(), blocks.end(), is_main))
         errors.push_back(errorAt(tables.front().place, "block", "",
                                  "a study needs a block with phase = \"main\": analyses leave practice out"));
     return blocks;
 }
 
-void checkBlocks(const std::vector<Node>& tables, const StudyPlan& plan, Errors& errors) {
-    for (const design::Problem& problem : design::problemsOf(designOf(plan))) {
+void checkBlocks(const std::vector<Node>& tables, const plan::StudyPlan& plan, Errors& errors) {
+    for (const design::Problem& problem : design::problemsOf(plan::designOf(plan))) {
         const Node& table = tables[problem.block];
         const std::string path = blockPath(table);
         const TableReader read(table, {"block"}, path, errors);
@@ -191,7 +193,7 @@ void checkBlocks(const std::vector<Node>& tables, const StudyPlan& plan, Errors&
     }
 }
 
-LevelPattern readPattern(const Node& table, const std::string& path, const std::vector<Factor>& factors,
+LevelPattern readPattern(const Node& table, const std::string& path, const std::vector<plan::Factor>& factors,
                          Errors& errors) {
     LevelPattern pattern(factors.size());
     if (table.entries.empty()) errors.push_back(errorAt(table.place, path, "", "names no factor"));
@@ -205,7 +207,7 @@ LevelPattern readPattern(const Node& table, const std::string& path, const std::
             report(entry.place, "", fault);
             continue;
         }
-        if (factors[*factor].kind == FactorKind::Nuisance)
+        if (factors[*factor].kind == plan::FactorKind::Nuisance)
             report(entry.place, "", "a nuisance factor's levels are assigned to every condition");
         pattern[*factor] = findLevel(factors[*factor], labelText(entry.value), fault);
         if (!pattern[*factor]) report(entry.value.place, valueText(entry.value), fault);
@@ -219,7 +221,7 @@ bool matches(const LevelPattern& pattern, const std::vector<std::size_t>& levels
     return true;
 }
 
-std::vector<LevelPattern> readExclusions(const std::vector<Node>& tables, const std::vector<Factor>& factors,
+std::vector<LevelPattern> readExclusions(const std::vector<Node>& tables, const std::vector<plan::Factor>& factors,
                                          Errors& errors) {
     std::vector<LevelPattern> exclusions;
     for (const Node& table : tables) exclusions.push_back(readPattern(table, "exclude", factors, errors));

@@ -24,8 +24,8 @@ constexpr double kSumRounding = 1e-9;    // of a sum of lengths
 /// Obstacles as one distance.
 class Obstacles {
 public:
-    Obstacles(const model::SceneSpec& scene, PartGeometries& geometries) : geometries_(geometries) {
-        for (const model::PartSpec& part : scene.parts)
+    Obstacles(const scene::SceneSpec& scene, PartGeometries& geometries) : geometries_(geometries) {
+        for (const scene::PartSpec& part : scene.parts)
             if (!part.held && geometries.of(part) != nullptr) parts_.push_back(&part);
     }
 
@@ -33,15 +33,15 @@ public:
 
     /// Is a distance worth more than a look at some hundred cells? That of a mesh is.
     bool takesLong() const {
-        return std::any_of(parts_.begin(), parts_.end(), [](const model::PartSpec* part) {
-            return std::holds_alternative<model::MeshFile>(part->geometry);
+        return std::any_of(parts_.begin(), parts_.end(), [](const scene::PartSpec* part) {
+            return std::holds_alternative<scene::MeshFile>(part->geometry);
         });
     }
 
     /// From all of them [m]; negative inside.
     double distance(const Vec3& p) const {
         double least = 1e9;
-        for (const model::PartSpec* part : parts_)
+        for (const scene::PartSpec* part : parts_)
             least = std::min(least, geometries_.signedDistance(*part, part->X_WP.inverse() * p));
         return least;
     }
@@ -51,10 +51,10 @@ public:
         return roomIn({centre, reach, needed}, centre, reach, 0);
     }
 
-    model::Bounds bounds() const {
-        model::Bounds all;
-        for (const model::PartSpec* part : parts_) {
-            const model::Bounds own = geometries_.boundsOf(*part);
+    geometry::Bounds bounds() const {
+        geometry::Bounds all;
+        for (const scene::PartSpec* part : parts_) {
+            const geometry::Bounds own = geometries_.boundsOf(*part);
             for (int corner = 0; corner < 8; ++corner)
                 all.extend(part->X_WP * Vec3(corner & 1 ? own.low.x() : own.high.x(),
                                              corner & 2 ? own.low.y() : own.high.y(),
@@ -85,14 +85,14 @@ private:
     }
 
     PartGeometries& geometries_;
-    std::vector<const model::PartSpec*> parts_;
+    std::vector<const scene::PartSpec*> parts_;
 };
 
 /// The cells that a ball's centre may come to from where it starts.
 class Flood {
 public:
     Flood(const Obstacles& obstacles, double needed, const Vec3& start, const std::vector<Vec3>& goals) {
-        model::Bounds box = obstacles.bounds();
+        geometry::Bounds box = obstacles.bounds();
         box.extend(start);
         for (const Vec3& goal : goals) box.extend(goal);
         edge_ = (box.size().maxCoeff() + 2.0 * std::max(needed, 0.0)) / (kMostCells - 4);
@@ -190,7 +190,7 @@ private:
 
 class BodyCheck {
 public:
-    BodyCheck(const StudyTables& tables, const Condition& condition, const DeviceDescription& device,
+    BodyCheck(const StudyTables& tables, const plan::Condition& condition, const DeviceDescription& device,
               PartGeometries& geometries, Errors& errors)
         : tables_(tables),
           scene_(condition.scene),
@@ -198,8 +198,8 @@ public:
           turns_(device.sensed_degrees >= 6),
           geometries_(geometries),
           errors_(errors),
-          held_(*heldPart(condition.scene)),
-          target_(partNamed(condition.scene, condition.task.target)),
+          held_(*plan::heldPart(condition.scene)),
+          target_(plan::partNamed(condition.scene, condition.task.target)),
           obstacles_(condition.scene, geometries) {
         balls_.push_back(geometries.ballAtOrigin(held_));
         balls_.push_back(geometries.largestBall(held_));
@@ -247,10 +247,10 @@ private:
                 })};
     }
 
-    void checkRoom(const PegInHoleTask&) {}
-    void checkRoom(const FreePlacementTask&) {}
-    void checkRoom(const DiscriminationPairTask&) {}
-    void checkRoom(const ContourFollowingTask& contour) {
+    void checkRoom(const plan::PegInHoleTask&) {}
+    void checkRoom(const plan::FreePlacementTask&) {}
+    void checkRoom(const plan::DiscriminationPairTask&) {}
+    void checkRoom(const plan::ContourFollowingTask& contour) {
         if (target_ == nullptr) return;
         const Line line = piecesOf(contour);
         const Without without = withoutRoom(line.places, contour.reach + line.half);
@@ -262,7 +262,7 @@ private:
                                    100.0 * share, first.x(), first.y(), first.z(), 100.0 * contour.coverage));
     }
 
-    void checkRoom(const NarrowPassageTask& passage) {
+    void checkRoom(const plan::NarrowPassageTask& passage) {
         if (target_ == nullptr) return;
         if ((target_->X_WP.inverse() * held_.X_WP.p).z() <= -passage.length)
             return fail("target",
@@ -279,18 +279,18 @@ private:
                          1e3 * passage.length * static_cast<double>(without.first) / kDepths));
     }
 
-    void checkWay(const DiscriminationPairTask&) {}
-    void checkWay(const PegInHoleTask& peg) {
+    void checkWay(const plan::DiscriminationPairTask&) {}
+    void checkWay(const plan::PegInHoleTask& peg) {
         if (target_ != nullptr)
             way("target", {target_->X_WP * Vec3(0, 0, -peg.success_fraction * peg.insertion_depth)}, 0.0, 1.0);
     }
-    void checkWay(const NarrowPassageTask& passage) {
+    void checkWay(const plan::NarrowPassageTask& passage) {
         if (target_ != nullptr) way("target", {target_->X_WP.p}, 0.5 * passage.width, 1.0);
     }
-    void checkWay(const FreePlacementTask& placement) {
+    void checkWay(const plan::FreePlacementTask& placement) {
         way("position", {placement.X_WGoal.p}, placement.position_tolerance, 1.0);
     }
-    void checkWay(const ContourFollowingTask& contour) {
+    void checkWay(const plan::ContourFollowingTask& contour) {
         if (target_ == nullptr) return;
         const Line line = piecesOf(contour);
         way("points", line.places, contour.reach + line.half, contour.coverage - kSumRounding);
@@ -324,7 +324,7 @@ private:
     std::string question(const Ball& ball, const std::vector<Vec3>& centres, double near) const {
         std::string all = fmt::format("{:a} {:a}", needed(ball), near);
         for (const Vec3& centre : centres) all += text(centre);
-        for (const model::PartSpec& part : scene_.parts)
+        for (const scene::PartSpec& part : scene_.parts)
             if (!part.held)
                 all += " " + geometryKey(part) + text(part.X_WP.p) + text(part.X_WP.q.vec()) +
                        fmt::format(" {:a}", part.X_WP.q.w());
@@ -336,7 +336,7 @@ private:
         std::vector<Vec3> places;
         double half;
     };
-    Line piecesOf(const ContourFollowingTask& contour) const {
+    Line piecesOf(const plan::ContourFollowingTask& contour) const {
         const auto& points = contour.points;
         const auto lengthOf = [&](std::size_t i) { return (points[i + 1] - points[i]).norm(); };
         double length = 0.0, before = 0.0;
@@ -363,24 +363,24 @@ private:
     }
 
     const StudyTables& tables_;
-    const model::SceneSpec& scene_;
-    const Task& task_;
+    const scene::SceneSpec& scene_;
+    const plan::Task& task_;
     bool turns_;
     PartGeometries& geometries_;
     Errors& errors_;
-    const model::PartSpec& held_;
-    const model::PartSpec* target_;
+    const scene::PartSpec& held_;
+    const scene::PartSpec* target_;
     Obstacles obstacles_;
     std::vector<Ball> balls_;
 };
 
 }  // namespace
 
-void checkBody(const StudyTables& tables, const Condition& condition, const DeviceDescription& device,
+void checkBody(const StudyTables& tables, const plan::Condition& condition, const DeviceDescription& device,
                PartGeometries& geometries, Errors& errors) {
-    const model::ContactSpec& contact = condition.scene.contact;
-    const bool stops = contact.method != model::ContactMethod::Penalty && condition.scene.display_wrench;
-    if (!stops || condition.timed_by != TimedBy::Program) return;
+    const scene::ContactSpec& contact = condition.scene.contact;
+    const bool stops = contact.method != scene::ContactMethod::Penalty && condition.scene.display_wrench;
+    if (!stops || condition.timed_by != plan::TimedBy::Program) return;
     BodyCheck(tables, condition, device, geometries, errors).run();
 }
 

@@ -14,7 +14,7 @@ namespace passung::protocol {
 /// force is displayed, or real parts are handled. @pre the scene and task were read without errors.
 ///   A ball of radius ρ about c is free of obstacles if φ(c) ≥ ρ. φ changes by no more than a way is long: of cells
 ///   with edge h one that holds any free c has φ(middle) ≥ ρ - √3/2 h.
-void checkBody(const StudyTables& tables, const Condition& condition, const DeviceDescription& device,
+void checkBody(const StudyTables& tables, const plan::Condition& condition, const DeviceDescription& device,
                PartGeometries& geometries, Errors& errors);
 
 }  // namespace passung::protocol

@@ -16,13 +16,13 @@ Enum named(const std::array<const char*, n>& names, const std::string& name) {
     return {};
 }
 
-void readFeedback(const Node& table, Condition& condition, Errors& errors) {
+void readFeedback(const Node& table, plan::Condition& condition, Errors& errors) {
     const TableReader read(table, {"feedback"}, "feedback", errors);
     condition.scene.display_wrench = read.boolean("kinesthetic");
-    condition.shown = read.text("shown_pose") == "device" ? ShownPose::Device : ShownPose::Proxy;
-    for (const ShownResult result : {ShownResult::Outcome, ShownResult::Time})
-        if (read.text("result") == shownResultName(result)) condition.result = result;
-    Cues& cues = condition.cues;
+    condition.shown = read.text("shown_pose") == "device" ? plan::ShownPose::Device : plan::ShownPose::Proxy;
+    for (const plan::ShownResult result : {plan::ShownResult::Outcome, plan::ShownResult::Time})
+        if (read.text("result") == plan::shownResultName(result)) condition.result = result;
+    plan::Cues& cues = condition.cues;
     cues.masking_noise = read.boolean("masking_noise");
     cues.full_depth = read.number("cue_full_depth_mm");
     cues.full_speed = read.number("cue_full_speed_mm_per_s");
@@ -41,11 +41,11 @@ void readFeedback(const Node& table, Condition& condition, Errors& errors) {
     }
 }
 
-void readSecondary(const Node& table, Condition& condition, Errors& errors) {
+void readSecondary(const Node& table, plan::Condition& condition, Errors& errors) {
     const std::size_t before = errors.size();
     const TableReader read(table, {"secondary"}, "secondary", errors);
-    SecondaryTask& task = condition.secondary;
-    task.stimulus = named<Stimulus>(kStimulusNames, read.text("stimulus"));
+    plan::SecondaryTask& task = condition.secondary;
+    task.stimulus = named<plan::Stimulus>(plan::kStimulusNames, read.text("stimulus"));
     task.least_interval = read.number("interval_min_s");
     task.most_interval = read.number("interval_max_s");
     task.duration = read.number("stimulus_ms");
@@ -62,24 +62,24 @@ void readSecondary(const Node& table, Condition& condition, Errors& errors) {
                               1e3 * task.least_interval));
     if (!(task.duration <= task.least_interval))
         read.fail("stimulus_ms", fmt::format("must be at most interval_min_s, {:.6g} ms", 1e3 * task.least_interval));
-    if (task.stimulus == Stimulus::Audio && condition.cues.masking_noise)
+    if (task.stimulus == plan::Stimulus::Audio && condition.cues.masking_noise)
         read.fail("stimulus", "cannot be heard with feedback.masking_noise = true");
-    if (std::holds_alternative<FreePlacementTask>(condition.task.form))
+    if (std::holds_alternative<plan::FreePlacementTask>(condition.task.form))
         read.fail("stimulus", "is not for free_placement: any button confirms the placement");
-    if (std::holds_alternative<DiscriminationPairTask>(condition.task.form) && task.button <= 2)
+    if (std::holds_alternative<plan::DiscriminationPairTask>(condition.task.form) && task.button <= 2)
         read.fail("button", "must be 3 or above: the first two answer the pair");
 }
 
 }  // namespace
 
-void readConditionExtras(const StudyTables& tables, Condition& condition, Errors& errors) {
+void readConditionExtras(const StudyTables& tables, plan::Condition& condition, Errors& errors) {
     readFeedback(tables.feedback, condition, errors);
     readSecondary(tables.secondary, condition, errors);
     // The table's other keys are the task reader's: looked up without a reader of its own.
     const Node* timed_by = tables.task.find("timed_by");
     if (timed_by == nullptr) return;
-    condition.timed_by = named<TimedBy>(kTimedByNames, timed_by->text);
-    if (condition.timed_by != TimedBy::Program && condition.scene.display_wrench)
+    condition.timed_by = named<plan::TimedBy>(plan::kTimedByNames, timed_by->text);
+    if (condition.timed_by != plan::TimedBy::Program && condition.scene.display_wrench)
         errors.push_back(errorAt(timed_by->place, "task.timed_by", valueText(*timed_by),
                                  "needs feedback.kinesthetic = false: nothing may be rendered in such a trial"));
 }

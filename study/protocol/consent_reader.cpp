@@ -25,14 +25,15 @@ std::vector<std::pair<std::string, std::string>> readTexts(const Node& table, co
     return texts;
 }
 
-bool hasLanguage(const ConsentClause& clause, const std::string& language) {
+bool hasLanguage(const plan::ConsentClause& clause, const std::string& language) {
     return std::any_of(clause.texts.begin(), clause.texts.end(),
                        [&](const auto& text) { return text.first == language; });
 }
 
 /// A participant is asked in one language: whatever one clause has, all must have.
-void checkLanguages(const std::vector<ConsentClause>& clauses, const std::vector<const Node*>& tables, Errors& errors) {
-    for (const ConsentClause& other : clauses)
+void checkLanguages(const std::vector<plan::ConsentClause>& clauses, const std::vector<const Node*>& tables,
+                    Errors& errors) {
+    for (const plan::ConsentClause& other : clauses)
         for (const auto& [language, text] : other.texts)
             for (std::size_t i = 0; i < clauses.size(); ++i)
                 if (!hasLanguage(clauses[i], language))
@@ -68,8 +69,8 @@ std::optional<std::string> unfilledDate(std::string_view text) {
     return std::nullopt;
 }
 
-std::vector<ConsentClause> readConsent(const TableReader& root, Errors& errors, Errors& for_people) {
-    std::vector<ConsentClause> clauses;
+std::vector<plan::ConsentClause> readConsent(const TableReader& root, Errors& errors, Errors& for_people) {
+    std::vector<plan::ConsentClause> clauses;
     std::vector<const Node*> tables;
     std::set<std::string> names;
     const std::size_t before = errors.size();
@@ -77,7 +78,7 @@ std::vector<ConsentClause> readConsent(const TableReader& root, Errors& errors, 
         const Node* name = table.find("clause");
         const bool named = name != nullptr && name->kind == Node::Kind::Text && isName(name->text);
         const TableReader read(table, {"consent"}, named ? "consent." + name->text : "consent", errors);
-        ConsentClause clause;
+        plan::ConsentClause clause;
         clause.clause = read.text("clause");
         clause.required = read.boolean("required");
         if (named && !names.insert(clause.clause).second) read.fail("clause", "two clauses have this name");

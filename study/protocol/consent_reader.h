@@ -12,7 +12,7 @@ namespace passung::protocol {
 
 /// Reads every [[consent]] of a study. Adds what is wrong to `errors`, also a text that is missing in one language; to
 /// `for_people` what must not be shown to them yet.
-std::vector<ConsentClause> readConsent(const TableReader& root, Errors& errors, Errors& for_people);
+std::vector<plan::ConsentClause> readConsent(const TableReader& root, Errors& errors, Errors& for_people);
 
 /// A date that nobody has filled in, such as YYYY-MM-DD or TT.MM.JJJJ: three groups of one capital letter each.
 std::optional<std::string> unfilledDate(std::string_view text);

@@ -8,9 +8,9 @@ namespace passung::protocol {
 
 /// Everything of a condition that somebody can feel, see or hear, or that judges the trial, as text. Names of parts are
 /// none of it, nor is feedback that the condition says but that has no effect in it.
-std::string whatReaches(Condition condition);
+std::string whatReaches(plan::Condition condition);
 
 /// Why the feedback of two conditions that reach people alike makes no difference; empty if they say the same.
-std::string deadFeedback(const Condition& a, const Condition& b);
+std::string deadFeedback(const plan::Condition& a, const plan::Condition& b);
 
 }  // namespace passung::protocol

@@ -71,7 +71,7 @@ private:
         const Node* set = level.find("set");
         label = read.text("label");
         catch_trial_ = read.boolean("catch");
-        if (catch_trial_ && content_.factor.kind != FactorKind::Within)
+        if (catch_trial_ && content_.factor.kind != plan::FactorKind::Within)
             read.fail("catch", "only levels of a within factor can be catch trials");
         if ((value == nullptr) == (set == nullptr)) {
             report(level.place, "", "a level needs either a value or a set");
@@ -161,9 +161,9 @@ std::vector<FactorContent> readFactors(const std::vector<Node>& tables, std::spa
         content.factor.name = read.text("name");
         content.factor.unit = read.text("unit");
         const auto kind = read.text("kind");
-        content.factor.kind = kind == "between"    ? FactorKind::Between
-                              : kind == "nuisance" ? FactorKind::Nuisance
-                                                   : FactorKind::Within;
+        content.factor.kind = kind == "between"    ? plan::FactorKind::Between
+                              : kind == "nuisance" ? plan::FactorKind::Nuisance
+                                                   : plan::FactorKind::Within;
         if (named && !names.insert(name->text).second) read.fail("name", "two factors have this name");
         const auto among = [&](const auto& taken) {
             return named && std::find(taken.begin(), taken.end(), name->text) != taken.end();

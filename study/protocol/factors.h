@@ -18,7 +18,7 @@ struct Override {
 
 /// A factor and what each of its levels changes.
 struct FactorContent {
-    Factor factor;
+    plan::Factor factor;
     std::vector<std::vector<Override>> overrides;  // per level
     std::vector<bool> sound;                       // is a level?
 };

@@ -11,9 +11,9 @@
 namespace passung::protocol {
 namespace {
 
-using model::FeatureKind;
-using model::ThinFeature;
-using model::ThinIn;
+using shape::FeatureKind;
+using shape::ThinFeature;
+using shape::ThinIn;
 
 constexpr double kSpacingShare = 1.0 / 50;        // of the held part's longest side
 constexpr double kToleranceShare = 1.0 / 2500;    // likewise
@@ -40,15 +40,15 @@ std::string described(const ThinFeature& feature) {
                                   ? ""
                                   : fmt::format(" at {:.3g}, {:.3g}, {:.3g} mm of its frame", at.x(), at.y(), at.z());
     const char* article = feature.kind == FeatureKind::Edge ? "an" : "a";
-    return fmt::format("{} {} {} thick{}", article, model::featureName(feature.kind), roundMillimetres(feature.size),
+    return fmt::format("{} {} {} thick{}", article, shape::featureName(feature.kind), roundMillimetres(feature.size),
                        place);
 }
 
-double fieldRadius(const model::ContactSpec& contact) {
+double fieldRadius(const scene::ContactSpec& contact) {
     return contact.cell > 0.0 ? 0.5 * std::sqrt(3.0) * contact.cell : contact.tolerance;
 }
 
-bool isSheet(const model::PartSpec& part, PartGeometries& geometries) {
+bool isSheet(const scene::PartSpec& part, PartGeometries& geometries) {
     const PartSurface* geometry = geometries.of(part);
     return geometry != nullptr && geometry->sheet;
 }
@@ -59,9 +59,9 @@ std::vector<ThinFeature> withoutRelief(std::vector<ThinFeature> features) {
 }
 
 /// The smallest feature of an obstacle that slips between points of this spacing [m]; infinite if there is none.
-double smallestFeature(const model::SceneSpec& scene, double spacing, PartGeometries& geometries) {
+double smallestFeature(const scene::SceneSpec& scene, double spacing, PartGeometries& geometries) {
     double smallest = std::numeric_limits<double>::infinity();
-    for (const model::PartSpec& part : scene.parts) {
+    for (const scene::PartSpec& part : scene.parts) {
         if (part.held || isSheet(part, geometries)) continue;
         for (const ThinFeature& feature : geometries.thin(part, kCoverShare * spacing, ThinIn::Points))
             if (feature.kind != FeatureKind::Relief) smallest = std::min(smallest, feature.size);
@@ -79,12 +79,12 @@ struct Unfelt {
 /// One scene's obstacles, one after the other.
 class FeltCheck {
 public:
-    FeltCheck(const model::SceneSpec& scene, PartGeometries& geometries) : scene_(scene), geometries_(geometries) {}
+    FeltCheck(const scene::SceneSpec& scene, PartGeometries& geometries) : scene_(scene), geometries_(geometries) {}
 
     std::vector<Unfelt> run() {
-        const model::PartSpec* held = heldPart(scene_);
+        const scene::PartSpec* held = plan::heldPart(scene_);
         for (part_ = 0; held != nullptr && part_ < scene_.parts.size(); ++part_) {
-            const model::PartSpec& part = scene_.parts[part_];
+            const scene::PartSpec& part = scene_.parts[part_];
             if (part.held) continue;
             checkPoints(*held, part);
             if (!isSheet(part, geometries_)) checkField(part);
@@ -98,8 +98,8 @@ public:
     }
 
 private:
-    void checkPoints(const model::PartSpec& held, const model::PartSpec& part) {
-        const model::ContactSpec& contact = scene_.contact;
+    void checkPoints(const scene::PartSpec& held, const scene::PartSpec& part) {
+        const scene::ContactSpec& contact = scene_.contact;
         const auto& features = geometries_.thin(part, kCoverShare * contact.spacing, ThinIn::Points);
         if (features.empty()) return;
         const std::string apart = fmt::format("the held part's points, {} apart", roundMillimetres(contact.spacing));
@@ -126,8 +126,8 @@ private:
                });
     }
 
-    void checkField(const model::PartSpec& part) {
-        const model::ContactSpec& contact = scene_.contact;
+    void checkField(const scene::PartSpec& part) {
+        const scene::ContactSpec& contact = scene_.contact;
         // What grows thicker farther in is blunted, not lost.
         std::vector<ThinFeature> features = geometries_.thin(part, fieldRadius(contact), ThinIn::Field);
         std::erase_if(features, [](const ThinFeature& feature) {
@@ -164,7 +164,7 @@ private:
         }
     }
 
-    const model::SceneSpec& scene_;
+    const scene::SceneSpec& scene_;
     PartGeometries& geometries_;
     std::size_t part_ = 0;
     std::vector<Unfelt> unfelt_;
@@ -172,9 +172,9 @@ private:
 
 }  // namespace
 
-ContactDefaults defaultsFor(const model::SceneSpec& scene, PartGeometries& geometries) {
+ContactDefaults defaultsFor(const scene::SceneSpec& scene, PartGeometries& geometries) {
     ContactDefaults defaults;
-    const model::PartSpec* held = heldPart(scene);
+    const scene::PartSpec* held = plan::heldPart(scene);
     const PartSurface* geometry = held != nullptr ? geometries.of(*held) : nullptr;
     if (geometry == nullptr || !(geometry->longest() > 0.0)) return defaults;
     const double spacing = rounded(kSpacingShare * geometry->longest());
@@ -182,7 +182,7 @@ ContactDefaults defaultsFor(const model::SceneSpec& scene, PartGeometries& geome
     const double fewest = std::sqrt(geometry->area / kDefaultPoints);
     defaults.spacing = std::max(spacing > feature ? rounded(feature) : spacing, fewest);
     double largest = 0.0;
-    for (const model::PartSpec& part : scene.parts)
+    for (const scene::PartSpec& part : scene.parts)
         if (const PartSurface* other = geometries.of(part); other != nullptr)
             largest = std::max(largest, other->longest());
     const double fine = std::min(kToleranceShare * geometry->longest(), kFeatureTolerance * std::max(feature, 1e-9));
@@ -190,13 +190,13 @@ ContactDefaults defaultsFor(const model::SceneSpec& scene, PartGeometries& geome
     return defaults;
 }
 
-bool oneWayFeelsAll(const model::SceneSpec& scene, PartGeometries& geometries) {
-    return std::all_of(scene.parts.begin(), scene.parts.end(), [&](const model::PartSpec& part) {
+bool oneWayFeelsAll(const scene::SceneSpec& scene, PartGeometries& geometries) {
+    return std::all_of(scene.parts.begin(), scene.parts.end(), [&](const scene::PartSpec& part) {
         return part.held || geometries.thin(part, kCoverShare * scene.contact.spacing, ThinIn::Points).empty();
     });
 }
 
-void checkFelt(const Node& table, const std::string& path, const model::SceneSpec& scene, PartGeometries& geometries,
+void checkFelt(const Node& table, const std::string& path, const scene::SceneSpec& scene, PartGeometries& geometries,
                Errors& errors, std::vector<std::string>& warnings) {
     const Node* parts = table.find("part");
     if (parts == nullptr || parts->items.size() != scene.parts.size()) return;
@@ -209,7 +209,7 @@ void checkFelt(const Node& table, const std::string& path, const model::SceneSpe
     }
 }
 
-bool feelsEverything(const model::SceneSpec& scene, PartGeometries& geometries) {
+bool feelsEverything(const scene::SceneSpec& scene, PartGeometries& geometries) {
     const auto unfelt = FeltCheck(scene, geometries).run();
     return std::all_of(unfelt.begin(), unfelt.end(), [](const Unfelt& one) { return one.relief; });
 }

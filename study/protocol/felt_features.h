@@ -24,12 +24,12 @@ struct ContactDefaults {
 /// of any obstacle, rounded to 1, 2 or 5 times a power of ten; of a part of 50 mm 1 mm and 20 µm. They do not fall
 /// below what makes more than about kDefaultPoints points of the held part, or a field of more than a few million
 /// cells.
-ContactDefaults defaultsFor(const model::SceneSpec& scene, PartGeometries& geometries);
+ContactDefaults defaultsFor(const scene::SceneSpec& scene, PartGeometries& geometries);
 inline constexpr double kDefaultPoints = 4e4;
 
 /// Are the obstacles free of ends that slip between the held part's points, with the scene's spacing? Else contact has
 /// to be looked for both ways.
-bool oneWayFeelsAll(const model::SceneSpec& scene, PartGeometries& geometries);
+bool oneWayFeelsAll(const scene::SceneSpec& scene, PartGeometries& geometries);
 
 /// Adds an error at the obstacle's table for every pin, fin, wall or edge that contact as `scene` asks for it will not
 /// feel; of relief a sentence to `warnings`. `table`: of the scene, of path `path`.
@@ -38,10 +38,10 @@ bool oneWayFeelsAll(const model::SceneSpec& scene, PartGeometries& geometries);
 ///   Field: what is thinner than interpolation smooths away. With cells of one edge h the trilinear value at c is at
 ///   most φ(c) + √3/2 h, the farthest that a corner of the cell is from c; refined to a tolerance, φ(c) + tolerance. So
 ///   a feature is felt if a ball of that radius has room. A sheet is felt in front of its surface.
-void checkFelt(const Node& table, const std::string& path, const model::SceneSpec& scene, PartGeometries& geometries,
+void checkFelt(const Node& table, const std::string& path, const scene::SceneSpec& scene, PartGeometries& geometries,
                Errors& errors, std::vector<std::string>& warnings);
 
 /// No such error.
-bool feelsEverything(const model::SceneSpec& scene, PartGeometries& geometries);
+bool feelsEverything(const scene::SceneSpec& scene, PartGeometries& geometries);
 
 }  // namespace passung::protocol

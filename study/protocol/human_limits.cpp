@@ -26,7 +26,7 @@ constexpr double kLongRest = 3600.0;         // [s]
 
 class HumanCheck {
 public:
-    HumanCheck(const StudyTables& tables, const Condition& condition, const DeviceDescription& device,
+    HumanCheck(const StudyTables& tables, const plan::Condition& condition, const DeviceDescription& device,
                const std::string& stepped, Errors& errors, std::vector<std::string>& warnings)
         : tables_(tables),
           condition_(condition),
@@ -36,7 +36,7 @@ public:
           warnings_(warnings) {}
 
     void run() {
-        const bool pair = std::holds_alternative<DiscriminationPairTask>(condition_.task.form);
+        const bool pair = std::holds_alternative<plan::DiscriminationPairTask>(condition_.task.form);
         if (!pair && condition_.task.timeout < kReaction)
             fail("timeout_s",
                  fmt::format("nobody can do anything in that time: a reaction alone takes {} s", kReaction));
@@ -50,10 +50,10 @@ public:
     }
 
 private:
-    void check(const NarrowPassageTask&) {}
-    void check(const ContourFollowingTask&) {}
-    void check(const PegInHoleTask& peg) {
-        if (condition_.timed_by != TimedBy::Program || !(peg.hold > 0.0)) return;
+    void check(const plan::NarrowPassageTask&) {}
+    void check(const plan::ContourFollowingTask&) {}
+    void check(const plan::PegInHoleTask& peg) {
+        if (condition_.timed_by != plan::TimedBy::Program || !(peg.hold > 0.0)) return;
         if (peg.max_speed < kStillest)
             fail("max_speed_mm_per_s", fmt::format("no hand is so calm for hold_s: at least {} mm/s", 1e3 * kStillest));
         else if (peg.max_speed < kCalm)
@@ -65,11 +65,11 @@ private:
             fail("hold_s", fmt::format("leaves no time to get there before timeout_s: at most {:.4g} s",
                                        condition_.task.timeout - kReaction));
     }
-    void check(const FreePlacementTask& placement) {
+    void check(const plan::FreePlacementTask& placement) {
         checkTurn(&tables_.task, "task", placement.angle_tolerance);
         checkPlace(&tables_.task, "task", placement.position_tolerance);
     }
-    void check(const DiscriminationPairTask& pair) {
+    void check(const plan::DiscriminationPairTask& pair) {
         if (pair.interval < kFelt)
             fail("interval_s", fmt::format("nobody can tell what is felt in that time: at least {} s", kFelt));
         else if (pair.interval < kComfortable)
@@ -111,7 +111,7 @@ private:
     }
 
     const StudyTables& tables_;
-    const Condition& condition_;
+    const plan::Condition& condition_;
     const DeviceDescription& device_;
     const std::string& stepped_;
     Errors& errors_;
@@ -119,8 +119,8 @@ private:
 };
 
 /// Are both intervals one scene?
-bool comparesTheSame(const Condition& condition) {
-    Condition reference = condition, comparison = condition;
+bool comparesTheSame(const plan::Condition& condition) {
+    plan::Condition reference = condition, comparison = condition;
     comparison.scene = *condition.comparison;
     reference.comparison.reset();
     comparison.comparison.reset();
@@ -128,22 +128,22 @@ bool comparesTheSame(const Condition& condition) {
 }
 
 /// Does a proxy under the same hand go the same way? What only a force follows from does not move it.
-bool movesTheSame(const model::ContactSpec& a, const model::ContactSpec& b) {
+bool movesTheSame(const scene::ContactSpec& a, const scene::ContactSpec& b) {
     if (a.method != b.method || a.rendersAtHand() != b.rendersAtHand()) return false;
     if (a.rendersAtHand()) return true;
-    const auto fields = [](const model::ContactSpec& c) {
+    const auto fields = [](const scene::ContactSpec& c) {
         return std::tie(c.tolerance, c.cell, c.spacing, c.mode, c.budget_nodes, c.two_way, c.proxy_filter);
     };
-    const auto tool = [](const model::ContactSpec& c) {
+    const auto tool = [](const scene::ContactSpec& c) {
         return std::tie(c.coupling, c.variant, c.stiffness, c.rotational_stiffness, c.damping, c.rotational_damping,
                         c.area_stiffness, c.penalty_stiffness, c.tool_mass, c.tool_inertia);
     };
-    return fields(a) == fields(b) && (a.method != model::ContactMethod::Penalty || tool(a) == tool(b));
+    return fields(a) == fields(b) && (a.method != scene::ContactMethod::Penalty || tool(a) == tool(b));
 }
 
-bool looksTheSame(const model::SceneSpec& a, const model::SceneSpec& b, ShownPose shown) {
-    const bool proxy = shown == ShownPose::Proxy && !(a.contact.rendersAtHand() && b.contact.rendersAtHand());
-    const auto alike = [&](const model::PartSpec& x, const model::PartSpec& y) {
+bool looksTheSame(const scene::SceneSpec& a, const scene::SceneSpec& b, plan::ShownPose shown) {
+    const bool proxy = shown == plan::ShownPose::Proxy && !(a.contact.rendersAtHand() && b.contact.rendersAtHand());
+    const auto alike = [&](const scene::PartSpec& x, const scene::PartSpec& y) {
         return geometryKey(x) == geometryKey(y) && x.X_WP.p == y.X_WP.p && x.X_WP.q.coeffs() == y.X_WP.q.coeffs() &&
                x.shown_offset == y.shown_offset &&
                (!proxy || (x.friction == y.friction && x.sliding_friction == y.sliding_friction));
@@ -152,18 +152,18 @@ bool looksTheSame(const model::SceneSpec& a, const model::SceneSpec& b, ShownPos
            (!proxy || movesTheSame(a.contact, b.contact));
 }
 
-bool isShownOrHeard(const Cues& cues) { return cues.visual || cues.vibrotactile || cues.audio; }
+bool isShownOrHeard(const plan::Cues& cues) { return cues.visual || cues.vibrotactile || cues.audio; }
 
 }  // namespace
 
-void checkHuman(const StudyTables& tables, const Condition& condition, const DeviceDescription& device,
+void checkHuman(const StudyTables& tables, const plan::Condition& condition, const DeviceDescription& device,
                 const std::string& stepped, Errors& errors, std::vector<std::string>& warnings) {
     HumanCheck(tables, condition, device, stepped, errors, warnings).run();
 }
 
-void checkComparisons(const StudyPlan& plan, const Node& task, Errors& errors) {
-    std::vector<const Condition*> pairs;
-    for (const Condition& condition : plan.conditions)
+void checkComparisons(const plan::StudyPlan& plan, const Node& task, Errors& errors) {
+    std::vector<const plan::Condition*> pairs;
+    for (const plan::Condition& condition : plan.conditions)
         if (condition.comparison) pairs.push_back(&condition);
     if (pairs.empty()) return;
     const Node* comparison = task.find("comparison");
@@ -171,9 +171,9 @@ void checkComparisons(const StudyPlan& plan, const Node& task, Errors& errors) {
         errors.push_back(
             errorAt(comparison != nullptr ? comparison->place : task.place, "task.comparison", "", std::move(message)));
     };
-    if (std::all_of(pairs.begin(), pairs.end(), [](const Condition* pair) { return comparesTheSame(*pair); }))
+    if (std::all_of(pairs.begin(), pairs.end(), [](const plan::Condition* pair) { return comparesTheSame(*pair); }))
         return fail("is the same as its reference in every pair: there is nothing to tell apart");
-    for (const Condition* pair : pairs)
+    for (const plan::Condition* pair : pairs)
         if (!pair->scene.display_wrench && !isShownOrHeard(pair->cues) &&
             looksTheSame(pair->scene, *pair->comparison, pair->shown))
             return fail(
@@ -182,9 +182,9 @@ void checkComparisons(const StudyPlan& plan, const Node& task, Errors& errors) {
                             pair->name));
 }
 
-std::vector<std::string> restWarnings(const StudyPlan& plan) {
+std::vector<std::string> restWarnings(const plan::StudyPlan& plan) {
     std::vector<std::string> warnings;
-    for (const Block& block : plan.blocks)
+    for (const plan::Block& block : plan.blocks)
         if (block.rest > kLongRest)
             warnings.push_back(
                 fmt::format("block.rest_s = {:.6g} keeps a person waiting for more than an hour; for "

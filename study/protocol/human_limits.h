@@ -15,14 +15,14 @@ namespace passung::protocol {
 ///   A hand at rest trembles at 8 to 12 Hz by a tenth of a millimetre or so (Elble & Koller 1990): by some mm/s.
 ///   Tilts of a hand are told apart from about half a degree on, whoever judges them by sight (proposed).
 /// `stepped`: path of the key that a staircase presents, may be empty; its levels may go beyond what anybody can.
-void checkHuman(const StudyTables& tables, const Condition& condition, const DeviceDescription& device,
+void checkHuman(const StudyTables& tables, const plan::Condition& condition, const DeviceDescription& device,
                 const std::string& stepped, Errors& errors, std::vector<std::string>& warnings);
 
 /// Adds an error at `task` if a study compares intervals that are the same in all its pairs, or that differ in nothing
 /// that is felt, seen or heard.
-void checkComparisons(const StudyPlan& plan, const Node& task, Errors& errors);
+void checkComparisons(const plan::StudyPlan& plan, const Node& task, Errors& errors);
 
 /// Sentences about rests that are longer than a session.
-std::vector<std::string> restWarnings(const StudyPlan& plan);
+std::vector<std::string> restWarnings(const plan::StudyPlan& plan);
 
 }  // namespace passung::protocol

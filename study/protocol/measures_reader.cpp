@@ -10,9 +10,9 @@ namespace passung::protocol {
 namespace {
 
 /// The types of a plan's trials, each once.
-std::vector<const TrialType*> typesOf(const StudyPlan& plan) {
+std::vector<const TrialType*> typesOf(const plan::StudyPlan& plan) {
     std::vector<const TrialType*> types;
-    for (const Condition& condition : plan.conditions) {
+    for (const plan::Condition& condition : plan.conditions) {
         const TrialType* type = &typeOf(condition.task);
         if (std::find(types.begin(), types.end(), type) == types.end()) types.push_back(type);
     }
@@ -25,7 +25,7 @@ bool contains(std::span<const std::string> names, const std::string& name) {
 
 }  // namespace
 
-std::vector<std::string> readMeasures(const TableReader& root, const StudyPlan* plan,
+std::vector<std::string> readMeasures(const TableReader& root, const plan::StudyPlan* plan,
                                       std::span<const std::string> known_measures, Errors& errors) {
     const auto possible = plan != nullptr ? measuresOf(typesOf(*plan), known_measures)
                                           : std::vector<std::string>(known_measures.begin(), known_measures.end());

@@ -11,7 +11,7 @@ namespace passung::protocol {
 
 /// The study's `measures`; without it all that trials of its types can have. `plan` has its conditions, or (nullptr)
 /// nobody knows the types of its trials.
-std::vector<std::string> readMeasures(const TableReader& root, const StudyPlan* plan,
+std::vector<std::string> readMeasures(const TableReader& root, const plan::StudyPlan* plan,
                                       std::span<const std::string> known_measures, Errors& errors);
 
 }  // namespace passung::protocol

@@ -15,7 +15,7 @@ namespace {
 constexpr double kMaxLength = 10.0;  // [m], of positions and edges: more is a slip in the unit
 constexpr double kMinLength = 1e-6;  // [m], of edges: less is none that a hand could feel
 
-const model::Shape kHarmless = model::Sphere{1.0};  // stands in after an error
+const shape::Shape kHarmless = shape::Sphere{1.0};  // stands in after an error
 
 /// What a kind's fit decides: the key of its diameter, and whether that is a hole's. Kinds without one take no fit.
 struct FittedKind {
@@ -38,18 +38,18 @@ const FittedKind* fittedKind(std::string_view kind) {
 /// The diameter [m] that the fit gives; reports what keeps it from that.
 double readFit(const TableReader& read, const FittedKind& fitted, double units, Errors& errors) {
     const std::size_t before = errors.size();
-    const auto fit = model::parseFit(read.text("fit"));
+    const auto fit = shape::parseFit(read.text("fit"));
     if (!fit) read.fail("fit", fit.errors()[0].message);
     if (read.has(fitted.key)) read.fail("fit", fmt::format("gives the {}, which stands here too", fitted.key));
     if (!read.has("nominal_diameter")) read.fail("nominal_diameter", "required by the fit");
     if (errors.size() > before) return 0.0;
     const double nominal = read.number("nominal_diameter") / units;
     const auto word = read.text("deviation");
-    const auto clearance = word == "min"   ? model::Clearance::Min
-                           : word == "max" ? model::Clearance::Max
-                                           : model::Clearance::Mean;
+    const auto clearance = word == "min"   ? shape::Clearance::Min
+                           : word == "max" ? shape::Clearance::Max
+                                           : shape::Clearance::Mean;
     const auto diameter =
-        fitted.hole ? model::holeDiameter(*fit, nominal, clearance) : model::shaftDiameter(*fit, nominal, clearance);
+        fitted.hole ? shape::holeDiameter(*fit, nominal, clearance) : shape::shaftDiameter(*fit, nominal, clearance);
     if (!diameter) read.fail(diameter.errors()[0].key, diameter.errors()[0].message);
     return diameter ? *diameter : 0.0;
 }
@@ -66,29 +66,29 @@ double readDiameter(const TableReader& read, const std::string& kind, double uni
 }
 
 /// `fitted`: see readDiameter.
-model::Shape buildShape(const TableReader& read, const std::string& kind, double units, double fitted) {
+shape::Shape buildShape(const TableReader& read, const std::string& kind, double units, double fitted) {
     const auto length = [&](const char* name) { return read.number(name) / units; };
-    if (kind == "sphere") return model::Sphere{length("diameter")};
-    if (kind == "box") return model::Box{length("width"), length("depth"), length("height")};
-    if (kind == "cylinder") return model::Cylinder{length("diameter"), length("length")};
-    if (kind == "torus") return model::Torus{length("diameter"), length("tube_diameter")};
-    if (kind == "sheet") return model::Sheet{length("width"), length("depth")};
+    if (kind == "sphere") return shape::Sphere{length("diameter")};
+    if (kind == "box") return shape::Box{length("width"), length("depth"), length("height")};
+    if (kind == "cylinder") return shape::Cylinder{length("diameter"), length("length")};
+    if (kind == "torus") return shape::Torus{length("diameter"), length("tube_diameter")};
+    if (kind == "sheet") return shape::Sheet{length("width"), length("depth")};
     const double chamfer = length("chamfer");
-    if (kind == "peg") return model::Peg{fitted, length("length"), chamfer};
-    if (kind == "square_peg") return model::SquarePeg{length("width"), length("depth"), length("length"), chamfer};
+    if (kind == "peg") return shape::Peg{fitted, length("length"), chamfer};
+    if (kind == "square_peg") return shape::SquarePeg{length("width"), length("depth"), length("length"), chamfer};
     if (kind == "keyed_peg")
-        return model::KeyedPeg{fitted, length("length"), length("key_width"), length("key_height"), chamfer};
+        return shape::KeyedPeg{fitted, length("length"), length("key_width"), length("key_height"), chamfer};
     const double width = length("width"), depth = length("depth"), height = length("height");
     const double bore_depth = read.text("bore_depth") == "through" ? height : length("bore_depth");
     if (kind == "square_bore_plate")
-        return model::SquareBorePlate{width,      depth,  height, length("pocket_width"), length("pocket_depth"),
+        return shape::SquareBorePlate{width,      depth,  height, length("pocket_width"), length("pocket_depth"),
                                       bore_depth, chamfer};
-    if (kind == "bore_plate") return model::BorePlate{width, depth, height, fitted, bore_depth, chamfer};
-    return model::KeyedBorePlate{width,      depth,  height, fitted, length("key_width"), length("key_height"),
+    if (kind == "bore_plate") return shape::BorePlate{width, depth, height, fitted, bore_depth, chamfer};
+    return shape::KeyedBorePlate{width,      depth,  height, fitted, length("key_width"), length("key_height"),
                                  bore_depth, chamfer};
 }
 
-model::Shape readShape(const Node& table, const std::string& path, double units, Errors& errors) {
+shape::Shape readShape(const Node& table, const std::string& path, double units, Errors& errors) {
     const std::size_t before = errors.size();
     // The kind first: without it no other key can be judged.
     Node kind_only = emptyTable(table.place);
@@ -112,11 +112,11 @@ model::Shape readShape(const Node& table, const std::string& path, double units,
     const double fitted = readDiameter(read, kind, units, errors);
     if (errors.size() > before) return kHarmless;
     const auto shape = buildShape(read, kind, units, fitted);
-    for (const Error& error : model::validate(shape)) read.fail(error.key, error.message);
+    for (const Error& error : shape::validate(shape)) read.fail(error.key, error.message);
     return errors.size() > before ? kHarmless : shape;
 }
 
-model::MeshFile readMesh(const TableReader& read, const Node& value, double units) {
+scene::MeshFile readMesh(const TableReader& read, const Node& value, double units) {
     const auto folder = std::filesystem::path(value.place.file).parent_path();
     const auto path = folder / value.text;
     std::error_code ignored;
@@ -150,7 +150,7 @@ Pose readPose(const TableReader& read, std::string_view position_key, std::strin
     return pose;
 }
 
-model::PartSpec readPartNode(const Node& table, const std::string& parent_path, double units_per_metre,
+scene::PartSpec readPartNode(const Node& table, const std::string& parent_path, double units_per_metre,
                              Errors& errors) {
     const Node* name = table.find("name");
     std::string path = parent_path;
@@ -158,7 +158,7 @@ model::PartSpec readPartNode(const Node& table, const std::string& parent_path, 
     if (name != nullptr && name->kind == Node::Kind::Text && isName(name->text)) path += '.' + name->text;
 
     const TableReader read(table, {"part"}, path, errors);
-    model::PartSpec part;
+    scene::PartSpec part;
     part.name = read.text("name");
     part.held = read.boolean("held");
     const double units = unitsPerMetre(read, units_per_metre);

@@ -23,57 +23,57 @@ PartSurface roundExtent(double diameter, double length) {
 PartSurface blockExtent(double x, double y, double z) { return solid({x, y, z}, 2.0 * (x * y + y * z + z * x)); }
 
 struct GeometryOf {
-    PartSurface operator()(const model::Sphere& s) const {
+    PartSurface operator()(const shape::Sphere& s) const {
         return solid(Vec3::Constant(s.diameter), std::numbers::pi * s.diameter * s.diameter);
     }
-    PartSurface operator()(const model::Box& s) const { return blockExtent(s.width, s.depth, s.height); }
-    PartSurface operator()(const model::Cylinder& s) const { return roundExtent(s.diameter, s.length); }
-    PartSurface operator()(const model::Torus& s) const {
+    PartSurface operator()(const shape::Box& s) const { return blockExtent(s.width, s.depth, s.height); }
+    PartSurface operator()(const shape::Cylinder& s) const { return roundExtent(s.diameter, s.length); }
+    PartSurface operator()(const shape::Torus& s) const {
         const double outer = s.diameter + s.tube_diameter;
         return solid({outer, outer, s.tube_diameter},
                      std::numbers::pi * std::numbers::pi * s.diameter * s.tube_diameter);
     }
-    PartSurface operator()(const model::Sheet& s) const {
+    PartSurface operator()(const shape::Sheet& s) const {
         PartSurface sheet = solid({s.width, s.depth, 0.0}, s.width * s.depth);
         sheet.sheet = true;
         return sheet;
     }
-    PartSurface operator()(const model::Peg& s) const { return roundExtent(s.diameter, s.length); }
-    PartSurface operator()(const model::SquarePeg& s) const { return blockExtent(s.width, s.depth, s.length); }
-    PartSurface operator()(const model::KeyedPeg& s) const { return roundExtent(s.diameter, s.length); }
+    PartSurface operator()(const shape::Peg& s) const { return roundExtent(s.diameter, s.length); }
+    PartSurface operator()(const shape::SquarePeg& s) const { return blockExtent(s.width, s.depth, s.length); }
+    PartSurface operator()(const shape::KeyedPeg& s) const { return roundExtent(s.diameter, s.length); }
     template <class Plate>
     PartSurface operator()(const Plate& plate) const {
         return blockExtent(plate.width, plate.depth, plate.height);
     }
 };
 
-std::unique_ptr<PartSurface> asGeometry(model::ImportedMesh mesh) {
+std::unique_ptr<PartSurface> asGeometry(importer::ImportedMesh mesh) {
     auto geometry = std::make_unique<PartSurface>();
     geometry->size = mesh.report.size;
     geometry->area = mesh.report.area;
-    geometry->sheet = mesh.report.kind == model::SurfaceKind::OpenSheet;
-    geometry->mesh = std::make_shared<const model::TriangleMesh>(std::move(mesh.mesh));
-    geometry->tree = std::make_shared<const model::TriangleTree>(*geometry->mesh);
+    geometry->sheet = mesh.report.kind == importer::SurfaceKind::OpenSheet;
+    geometry->mesh = std::make_shared<const geometry::TriangleMesh>(std::move(mesh.mesh));
+    geometry->tree = std::make_shared<const geometry::TriangleTree>(*geometry->mesh);
     return geometry;
 }
 
 }  // namespace
 
-std::string geometryKey(const model::PartSpec& part) {
-    if (const auto* file = std::get_if<model::MeshFile>(&part.geometry))
+std::string geometryKey(const scene::PartSpec& part) {
+    if (const auto* file = std::get_if<scene::MeshFile>(&part.geometry))
         return fmt::format("{} {:a}", file->path, file->metres_per_unit);
-    const auto& shape = std::get<model::Shape>(part.geometry);
-    std::string key = model::kindName(shape);
-    for (const double value : model::dimensions(shape)) key += fmt::format(" {:a}", value);
+    const auto& shape = std::get<shape::Shape>(part.geometry);
+    std::string key = shape::kindName(shape);
+    for (const double value : shape::dimensions(shape)) key += fmt::format(" {:a}", value);
     return key;
 }
 
-const PartSurface* PartGeometries::of(const model::PartSpec& part) {
+const PartSurface* PartGeometries::of(const scene::PartSpec& part) {
     const auto [place, fresh] = geometries_.try_emplace(geometryKey(part));
     if (fresh) {
-        if (const auto* shape = std::get_if<model::Shape>(&part.geometry))
+        if (const auto* shape = std::get_if<shape::Shape>(&part.geometry))
             place->second = std::make_unique<PartSurface>(std::visit(GeometryOf{}, *shape));
-        else if (auto mesh = model::importMeshFile(std::get<model::MeshFile>(part.geometry), builds_))
+        else if (auto mesh = scene::importMeshFile(std::get<scene::MeshFile>(part.geometry), builds_))
             place->second = asGeometry(*std::move(mesh));
         else
             problems_[place->first] = mesh.errors();
@@ -81,26 +81,26 @@ const PartSurface* PartGeometries::of(const model::PartSpec& part) {
     return place->second.get();
 }
 
-Errors PartGeometries::problems(const model::PartSpec& part) {
+Errors PartGeometries::problems(const scene::PartSpec& part) {
     of(part);
     const auto known = problems_.find(geometryKey(part));
     return known != problems_.end() ? known->second : Errors{};
 }
 
-const std::vector<model::ThinFeature>& PartGeometries::thin(const model::PartSpec& part, double radius,
-                                                            model::ThinIn where) {
+const std::vector<shape::ThinFeature>& PartGeometries::thin(const scene::PartSpec& part, double radius,
+                                                            shape::ThinIn where) {
     const auto [place, fresh] =
         thin_.try_emplace(fmt::format("{} {:a} {}", geometryKey(part), radius, static_cast<int>(where)));
     if (!fresh) return place->second;
-    if (const auto* shape = std::get_if<model::Shape>(&part.geometry))
-        return place->second = model::thinFeatures(*shape, radius, where);
+    if (const auto* shape = std::get_if<shape::Shape>(&part.geometry))
+        return place->second = shape::thinFeatures(*shape, radius, where);
     const PartSurface* geometry = of(part);
     if (geometry == nullptr) return place->second;
-    if (geometry->sheet) return place->second = {{model::FeatureKind::Wall, 0.0, Vec3::Zero()}};
+    if (geometry->sheet) return place->second = {{shape::FeatureKind::Wall, 0.0, Vec3::Zero()}};
     // Of all radii together, which conditions and their levels may make as many of as they like.
-    std::size_t& left = work_left_.try_emplace(geometryKey(part), model::SearchLimit{}.most_work).first->second;
-    model::SearchLimit limit{.most_work = left};
-    place->second = model::thinFeatures(*geometry->mesh, *geometry->tree, radius, where, &limit);
+    std::size_t& left = work_left_.try_emplace(geometryKey(part), shape::SearchLimit{}.most_work).first->second;
+    shape::SearchLimit limit{.most_work = left};
+    place->second = shape::thinFeatures(*geometry->mesh, *geometry->tree, radius, where, &limit);
     left -= std::min(left, limit.work);
     if (limit.left_out > 0) half_searched_.insert(geometryKey(part));
     return place->second;
@@ -111,14 +111,14 @@ double PartGeometries::remembered(const std::string& question, const std::functi
     return known != remembered_.end() ? known->second : remembered_.emplace(question, reckon()).first->second;
 }
 
-model::Bounds PartGeometries::boundsOf(const model::PartSpec& part) {
+geometry::Bounds PartGeometries::boundsOf(const scene::PartSpec& part) {
     const PartSurface& geometry = *of(part);
-    if (const auto* shape = std::get_if<model::Shape>(&part.geometry))
-        return model::boundsOf(model::tessellate(*shape, kChordPerSize * geometry.longest()));
-    return model::boundsOf(*geometry.mesh);
+    if (const auto* shape = std::get_if<shape::Shape>(&part.geometry))
+        return geometry::boundsOf(shape::tessellate(*shape, kChordPerSize * geometry.longest()));
+    return geometry::boundsOf(*geometry.mesh);
 }
 
-PartGeometries::Ball PartGeometries::ballAtOrigin(const model::PartSpec& part) {
+PartGeometries::Ball PartGeometries::ballAtOrigin(const scene::PartSpec& part) {
     const PartSurface* geometry = of(part);
     if (geometry == nullptr || geometry->sheet) return {};
     const double outside = signedDistance(part, Vec3::Zero());
@@ -126,7 +126,7 @@ PartGeometries::Ball PartGeometries::ballAtOrigin(const model::PartSpec& part) {
     return {Vec3::Zero(), std::max(0.0, -outside)};
 }
 
-PartGeometries::Ball PartGeometries::largestBall(const model::PartSpec& part) {
+PartGeometries::Ball PartGeometries::largestBall(const scene::PartSpec& part) {
     const auto [place, fresh] = balls_.try_emplace(geometryKey(part));
     const PartSurface* geometry = of(part);
     if (!fresh || geometry == nullptr || geometry->sheet) return place->second;
@@ -137,7 +137,7 @@ PartGeometries::Ball PartGeometries::largestBall(const model::PartSpec& part) {
         if (better) best = {p, radius};
         return better;
     };
-    const model::Bounds bounds = boundsOf(part);
+    const geometry::Bounds bounds = boundsOf(part);
     const Vec3 step = bounds.size() / kBallSteps;
     for (int i = 0; i < kBallSteps; ++i)
         for (int j = 0; j < kBallSteps; ++j)
@@ -151,8 +151,8 @@ PartGeometries::Ball PartGeometries::largestBall(const model::PartSpec& part) {
     return best;
 }
 
-double PartGeometries::signedDistance(const model::PartSpec& part, const Vec3& p) {
-    if (const auto* shape = std::get_if<model::Shape>(&part.geometry)) return model::signedDistance(*shape, p);
+double PartGeometries::signedDistance(const scene::PartSpec& part, const Vec3& p) {
+    if (const auto* shape = std::get_if<shape::Shape>(&part.geometry)) return shape::signedDistance(*shape, p);
     const PartSurface& geometry = *of(part);
     const double distance = geometry.tree->closest(p).distance;
     return !geometry.sheet && geometry.tree->inside(p) ? -distance : distance;

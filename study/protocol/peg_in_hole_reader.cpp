@@ -10,8 +10,8 @@ namespace passung::protocol {
 namespace {
 
 template <class T>
-const T* shapeOf(const model::PartSpec& part) {
-    const auto* shape = std::get_if<model::Shape>(&part.geometry);
+const T* shapeOf(const scene::PartSpec& part) {
+    const auto* shape = std::get_if<shape::Shape>(&part.geometry);
     return shape != nullptr ? std::get_if<T>(shape) : nullptr;
 }
 
@@ -25,10 +25,10 @@ std::string otherTypes() {
 
 /// The held peg; nullptr after reporting, where the held part's form is written, that it is none: success is judged by
 /// the clearance, which only a peg has.
-const model::Peg* findPeg(const StudyTables& tables, const model::SceneSpec& scene, Errors& errors) {
-    const model::PartSpec* held = heldPart(scene);
+const shape::Peg* findPeg(const StudyTables& tables, const scene::SceneSpec& scene, Errors& errors) {
+    const scene::PartSpec* held = plan::heldPart(scene);
     if (held == nullptr) return nullptr;
-    if (const auto* peg = shapeOf<model::Peg>(*held)) return peg;
+    if (const auto* peg = shapeOf<shape::Peg>(*held)) return peg;
     for (const Node& node : tables.scene.find("part")->items) {
         if (node.find("name")->text != held->name) continue;
         const Node* shape = node.find("shape");
@@ -41,16 +41,16 @@ const model::Peg* findPeg(const StudyTables& tables, const model::SceneSpec& sce
 }
 
 /// The target's bore; nullptr after reporting why there is none.
-const model::BorePlate* findBore(const TableReader& read, const model::PartSpec* target) {
+const shape::BorePlate* findBore(const TableReader& read, const scene::PartSpec* target) {
     if (target == nullptr) return nullptr;
-    const auto* plate = shapeOf<model::BorePlate>(*target);
+    const auto* plate = shapeOf<shape::BorePlate>(*target);
     if (plate == nullptr) read.fail("target", "must be a part with the shape bore_plate; " + otherTypes());
     return plate;
 }
 
 /// Reports a bore that is too narrow for the peg where the bore's diameter, or its fit, is written.
-void checkFit(const StudyTables& tables, const std::string& target, const model::Peg& peg,
-              const model::BorePlate& plate, Errors& errors) {
+void checkFit(const StudyTables& tables, const std::string& target, const shape::Peg& peg,
+              const shape::BorePlate& plate, Errors& errors) {
     if (peg.diameter < plate.bore_diameter) return;
     for (const Node& part : tables.scene.find("part")->items) {
         const Node* shape = part.find("shape");
@@ -66,9 +66,10 @@ void checkFit(const StudyTables& tables, const std::string& target, const model:
 }
 
 /// A part that is fully inserted before it leaves the sphere about its start would never start the clock.
-void checkWay(const TableReader& read, const model::SceneSpec& scene, const Task& task, const PegInHoleTask& peg) {
-    const Vec3 end = partNamed(scene, task.target)->X_WP * Vec3(0, 0, -peg.insertion_depth);
-    const double way = (end - heldPart(scene)->X_WP.p).norm();
+void checkWay(const TableReader& read, const scene::SceneSpec& scene, const plan::Task& task,
+              const plan::PegInHoleTask& peg) {
+    const Vec3 end = plan::partNamed(scene, task.target)->X_WP * Vec3(0, 0, -peg.insertion_depth);
+    const double way = (end - plan::heldPart(scene)->X_WP.p).norm();
     if (!(task.leave_radius < way))
         read.fail("leave_radius_mm",
                   fmt::format("must be less than the way from the start to full depth, {:.6g} mm", 1e3 * way));
@@ -76,9 +77,9 @@ void checkWay(const TableReader& read, const model::SceneSpec& scene, const Task
 
 }  // namespace
 
-PegInHoleTask readPegInHole(const TableReader& read, const StudyTables& tables, const model::SceneSpec& scene,
-                            const model::PartSpec* target, const Task& task, Errors& errors) {
-    PegInHoleTask peg;
+plan::PegInHoleTask readPegInHole(const TableReader& read, const StudyTables& tables, const scene::SceneSpec& scene,
+                                  const scene::PartSpec* target, const plan::Task& task, Errors& errors) {
+    plan::PegInHoleTask peg;
     peg.insertion_depth = read.number("insertion_depth_mm");
     peg.success_fraction = read.number("success_fraction");
     peg.max_speed = read.number("max_speed_mm_per_s");

@@ -16,17 +16,17 @@ std::string poseJson(const Pose& pose) {
         .str();
 }
 
-std::string partJson(const model::PartSpec& part) {
+std::string partJson(const scene::PartSpec& part) {
     JsonObject json;
     json.text("name", part.name).boolean("held", part.held);
-    if (const auto* shape = std::get_if<model::Shape>(&part.geometry)) {
+    if (const auto* shape = std::get_if<shape::Shape>(&part.geometry)) {
         JsonObject shape_json;
-        shape_json.text("kind", model::kindName(*shape));
-        for (const auto& [key, value] : model::namedDimensions(*shape))
+        shape_json.text("kind", shape::kindName(*shape));
+        for (const auto& [key, value] : shape::namedDimensions(*shape))
             shape_json.number(std::string(key) + "_m", value);
         json.json("shape", shape_json.str());
     } else {
-        const auto& mesh = std::get<model::MeshFile>(part.geometry);
+        const auto& mesh = std::get<scene::MeshFile>(part.geometry);
         // Without its folder: where a lab keeps its files must not change what is exported.
         json.text("mesh", std::filesystem::path(mesh.path).filename().string())
             .number("metres_per_unit", mesh.metres_per_unit);
@@ -35,44 +35,44 @@ std::string partJson(const model::PartSpec& part) {
     return json.json("pose", poseJson(part.X_WP)).json("shown_offset_m", jsonVector(part.shown_offset)).str();
 }
 
-const char* methodName(model::ContactMethod method) {
+const char* methodName(scene::ContactMethod method) {
     switch (method) {
-        case model::ContactMethod::Penalty:
+        case scene::ContactMethod::Penalty:
             return "penalty";
-        case model::ContactMethod::GodObjectHeuristic:
+        case scene::ContactMethod::GodObjectHeuristic:
             return "god_object_heuristic";
-        case model::ContactMethod::GodObject:
+        case scene::ContactMethod::GodObject:
             return "god_object";
     }
     return "";
 }
 
-const char* variantName(model::PenaltyVariant variant) {
+const char* variantName(scene::PenaltyVariant variant) {
     switch (variant) {
-        case model::PenaltyVariant::MaxNormalised:
+        case scene::PenaltyVariant::MaxNormalised:
             return "max_normalised";
-        case model::PenaltyVariant::AreaWeighted:
+        case scene::PenaltyVariant::AreaWeighted:
             return "area_weighted";
-        case model::PenaltyVariant::Raw:
+        case scene::PenaltyVariant::Raw:
             return "raw";
     }
     return "";
 }
 
-const char* couplingName(model::PenaltyCoupling coupling) {
+const char* couplingName(scene::PenaltyCoupling coupling) {
     switch (coupling) {
-        case model::PenaltyCoupling::Direct:
+        case scene::PenaltyCoupling::Direct:
             return "direct";
-        case model::PenaltyCoupling::QuasiStatic:
+        case scene::PenaltyCoupling::QuasiStatic:
             return "quasi_static";
-        case model::PenaltyCoupling::Virtual:
+        case scene::PenaltyCoupling::Virtual:
             return "virtual";
     }
     return "";
 }
 
-std::string contactJson(const Condition& condition) {
-    const model::ContactSpec& contact = condition.scene.contact;
+std::string contactJson(const plan::Condition& condition) {
+    const scene::ContactSpec& contact = condition.scene.contact;
     const bool automatic = condition.accuracy_budget > 0.0;
     JsonObject json;
     json.text("method", methodName(contact.method))
@@ -83,22 +83,22 @@ std::string contactJson(const Condition& condition) {
         .number("damping_Ns_per_m", contact.damping)
         .number("rotational_damping_Nms_per_rad", contact.rotational_damping)
         .number("area_stiffness_N_per_m3", contact.area_stiffness);
-    if (contact.coupling != model::PenaltyCoupling::Direct)
+    if (contact.coupling != scene::PenaltyCoupling::Direct)
         json.text("coupling", couplingName(contact.coupling))
             .number("penalty_stiffness_N_per_m", contact.penalty_stiffness);
-    if (contact.coupling == model::PenaltyCoupling::Virtual)
+    if (contact.coupling == scene::PenaltyCoupling::Virtual)
         json.number("tool_mass_kg", contact.tool_mass).number("tool_inertia_kg_m2", contact.tool_inertia);
     if (automatic) json.text("accuracy", "auto").number("accuracy_budget_s", condition.accuracy_budget);
     if (!automatic || condition.accuracy_picked)
         json.number("tolerance_m", contact.tolerance)
             .number("cell_m", contact.cell)
             .number("spacing_m", contact.spacing)
-            .text("mode", model::modeName(contact.mode))
+            .text("mode", field::modeName(contact.mode))
             .integer("budget_nodes", contact.budget_nodes);
     return json.boolean("two_way", contact.two_way).number("proxy_filter_hz", contact.proxy_filter).str();
 }
 
-std::string limitsJson(const model::OutputLimits& limits) {
+std::string limitsJson(const scene::OutputLimits& limits) {
     return JsonObject()
         .number("max_force_N", limits.max_force)
         .number("max_torque_Nm", limits.max_torque)
@@ -110,7 +110,7 @@ std::string limitsJson(const model::OutputLimits& limits) {
         .str();
 }
 
-std::string effectsJson(const model::Effects& effects) {
+std::string effectsJson(const scene::Effects& effects) {
     JsonObject json;
     json.number("passivity_damping_Ns_per_m", effects.passivity_damping);
     if (effects.transients.amplitude > 0.0)
@@ -122,7 +122,7 @@ std::string effectsJson(const model::Effects& effects) {
     return json.str();
 }
 
-std::string cuesJson(const Cues& cues) {
+std::string cuesJson(const plan::Cues& cues) {
     return JsonObject()
         .boolean("visual", cues.visual)
         .boolean("vibrotactile", cues.vibrotactile)
@@ -134,9 +134,9 @@ std::string cuesJson(const Cues& cues) {
         .str();
 }
 
-std::string secondaryJson(const SecondaryTask& task) {
+std::string secondaryJson(const plan::SecondaryTask& task) {
     return JsonObject()
-        .text("stimulus", stimulusName(task.stimulus))
+        .text("stimulus", plan::stimulusName(task.stimulus))
         .number("interval_min_s", task.least_interval)
         .number("interval_max_s", task.most_interval)
         .number("stimulus_s", task.duration)
@@ -146,14 +146,14 @@ std::string secondaryJson(const SecondaryTask& task) {
         .str();
 }
 
-std::string textJson(const StudyText& text) {
+std::string textJson(const plan::StudyText& text) {
     JsonObject json;
     json.text("name", text.name);
     for (const auto& [language, words] : text.languages) json.text(language, words);
     return json.str();
 }
 
-std::string clauseJson(const ConsentClause& clause) {
+std::string clauseJson(const plan::ConsentClause& clause) {
     JsonObject texts;
     for (const auto& [language, words] : clause.texts) texts.text(language, words);
     return JsonObject()
@@ -163,16 +163,16 @@ std::string clauseJson(const ConsentClause& clause) {
         .str();
 }
 
-std::string instructionJson(const Instruction& page) {
+std::string instructionJson(const plan::Instruction& page) {
     return JsonObject()
-        .text("moment", showAtName(page.moment))
+        .text("moment", plan::showAtName(page.moment))
         .text("block", page.block)
         .text("text", page.text)
         .text("picture", page.picture)
         .str();
 }
 
-std::string factorJson(const Factor& factor) {
+std::string factorJson(const plan::Factor& factor) {
     std::vector<std::string> levels;
     std::vector<std::string> catches;
     for (const auto& level : factor.levels) {
@@ -181,14 +181,14 @@ std::string factorJson(const Factor& factor) {
     }
     return JsonObject()
         .text("name", factor.name)
-        .text("kind", factorKindName(factor.kind))
+        .text("kind", plan::factorKindName(factor.kind))
         .text("unit", factor.unit)
         .json("levels", jsonList(levels))
         .json("catch_levels", jsonList(catches))
         .str();
 }
 
-std::string conditionJson(const Condition& condition) {
+std::string conditionJson(const plan::Condition& condition) {
     return JsonObject()
         .text("condition", condition.name)
         .json("levels", condition.levels_json)
@@ -196,7 +196,7 @@ std::string conditionJson(const Condition& condition) {
         .str();
 }
 
-std::string stableJson(const StableStiffness& stable) {
+std::string stableJson(const plan::StableStiffness& stable) {
     return JsonObject()
         .text("device", stable.device)
         .number("stable_stiffness_N_per_m", stable.linear)
@@ -205,19 +205,19 @@ std::string stableJson(const StableStiffness& stable) {
         .str();
 }
 
-const char* repeatName(Repeat repeat) {
+const char* repeatName(plan::Repeat repeat) {
     switch (repeat) {
-        case Repeat::Never:
+        case plan::Repeat::Never:
             return "never";
-        case Repeat::Now:
+        case plan::Repeat::Now:
             return "repeat_now";
-        case Repeat::AtBlockEnd:
+        case plan::Repeat::AtBlockEnd:
             return "repeat_at_block_end";
     }
     return "";
 }
 
-std::string constraintJson(const StudyPlan& plan, const design::Constraint& constraint) {
+std::string constraintJson(const plan::StudyPlan& plan, const design::Constraint& constraint) {
     using design::Rule;
     JsonObject json;
     const bool of_level = constraint.rule == Rule::FirstNot || constraint.rule == Rule::PositionWindow;
@@ -226,7 +226,7 @@ std::string constraintJson(const StudyPlan& plan, const design::Constraint& cons
                       : constraint.rule == Rule::FirstNot    ? "first_not"
                                                              : "position_window");
     if (constraint.factor) {
-        const Factor& factor = plan.factors[*constraint.factor];
+        const plan::Factor& factor = plan.factors[*constraint.factor];
         json.text("factor", factor.name);
         if (of_level) json.text("level", factor.levels[constraint.chosen].label);
     }
@@ -238,9 +238,9 @@ std::string constraintJson(const StudyPlan& plan, const design::Constraint& cons
 }
 
 /// Names of the conditions that the block has, its own ones where it has such.
-std::string conditionsJson(const StudyPlan& plan, const Block& block) {
+std::string conditionsJson(const plan::StudyPlan& plan, const plan::Block& block) {
     std::vector<std::string> names;
-    const design::Design design = designOf(plan);
+    const design::Design design = plan::designOf(plan);
     const design::BlockPlan& planned = design.blocks[static_cast<std::size_t>(&block - plan.blocks.data())];
     for (std::size_t c = 0; c < design.conditions.size(); ++c)
         if (design::hasCondition(planned, c) && (!design.conditions[c].catch_trial || block.catches.trials > 0))
@@ -248,18 +248,18 @@ std::string conditionsJson(const StudyPlan& plan, const Block& block) {
     return jsonList(names);
 }
 
-std::string blockJson(const StudyPlan& plan, const Block& block) {
+std::string blockJson(const plan::StudyPlan& plan, const plan::Block& block) {
     std::vector<std::string> constraints;
     for (const design::Constraint& constraint : block.constraints)
         constraints.push_back(constraintJson(plan, constraint));
     return JsonObject()
         .text("name", block.name)
-        .text("phase", phaseName(block.phase))
+        .text("phase", plan::phaseName(block.phase))
         .integer("repetitions", block.repetitions)
-        .text("order", blockOrderName(block.order))
+        .text("order", plan::blockOrderName(block.order))
         .json("conditions", conditionsJson(plan, block))
         .text("blocked", block.blocked ? plan.factors[*block.blocked].name : "")
-        .text("blocked_order", block.blocked ? blockOrderName(block.blocked_order) : "")
+        .text("blocked_order", block.blocked ? plan::blockOrderName(block.blocked_order) : "")
         .json("constraints", jsonList(constraints))
         .integer("catch_trials", static_cast<std::int64_t>(block.catches.trials))
         .integer("catch_from", static_cast<std::int64_t>(block.catches.from))
@@ -267,7 +267,7 @@ std::string blockJson(const StudyPlan& plan, const Block& block) {
         .integer("trials", block.trials)
         .integer("session", block.session)
         .number("rest_s", block.rest)
-        .text("rest_ends", restEndsName(block.rest_ends))
+        .text("rest_ends", plan::restEndsName(block.rest_ends))
         .text("on_failure", repeatName(block.on_failure))
         .text("on_timeout", repeatName(block.on_timeout))
         .text("on_invalid", repeatName(block.on_invalid))
@@ -275,7 +275,7 @@ std::string blockJson(const StudyPlan& plan, const Block& block) {
         .str();
 }
 
-std::string trackJson(const StaircaseTrack& track) {
+std::string trackJson(const plan::StaircaseTrack& track) {
     const design::AdaptiveParams& params = track.params;
     JsonObject json;
     json.text("track", track.name);
@@ -299,9 +299,9 @@ std::string trackJson(const StaircaseTrack& track) {
     return json.integer("max_trials", params.max_trials).str();
 }
 
-std::string staircaseJson(const StudyPlan& plan, const Staircase& staircase) {
+std::string staircaseJson(const plan::StudyPlan& plan, const plan::Staircase& staircase) {
     std::vector<std::string> tracks;
-    for (const StaircaseTrack& track : staircase.tracks) tracks.push_back(trackJson(track));
+    for (const plan::StaircaseTrack& track : staircase.tracks) tracks.push_back(trackJson(track));
     return JsonObject()
         .text("staircase", staircase.name)
         .text("block", plan.blocks[staircase.block].name)
@@ -318,7 +318,7 @@ std::string staircaseJson(const StudyPlan& plan, const Staircase& staircase) {
         .str();
 }
 
-std::string resumeJson(const ResumePolicy& resume) {
+std::string resumeJson(const plan::ResumePolicy& resume) {
     return JsonObject()
         .number("max_age_s", resume.max_age)
         .text("practice", resume.redo_practice ? "redo" : "keep")
@@ -326,20 +326,20 @@ std::string resumeJson(const ResumePolicy& resume) {
         .str();
 }
 
-std::string questionnaireJson(const PlannedQuestionnaire& planned) {
+std::string questionnaireJson(const plan::PlannedQuestionnaire& planned) {
     return JsonObject()
         .text("questionnaire", planned.definition.key)
         .text("version", planned.definition.version)
         .text("file", planned.file)
         .text("texts", planned.texts)
         .text("language", planned.language)
-        .text("moment", momentName(planned.moment))
+        .text("moment", plan::momentName(planned.moment))
         .text("block", planned.block)
         .json("source", planned.source_json.empty() ? "null" : planned.source_json)
         .str();
 }
 
-std::string analysisJson(const Analysis& analysis) {
+std::string analysisJson(const plan::Analysis& analysis) {
     std::vector<std::string> factors;
     for (const auto& factor : analysis.factors) factors.push_back(jsonText(factor));
     return JsonObject()
@@ -360,18 +360,18 @@ std::string listOf(const std::vector<T>& items, Function json) {
 
 }  // namespace
 
-std::string levelsJson(const std::vector<Factor>& factors, const std::vector<std::size_t>& levels) {
+std::string levelsJson(const std::vector<plan::Factor>& factors, const std::vector<std::size_t>& levels) {
     JsonObject json;
     for (std::size_t i = 0; i < factors.size(); ++i) json.text(factors[i].name, factors[i].levels[levels[i]].label);
     return json.str();
 }
 
-std::string paramsJson(const Condition& condition) {
+std::string paramsJson(const plan::Condition& condition) {
     const auto& scene = condition.scene;
     JsonObject json;
     json.text("device", condition.device)
-        .text("shown_pose", condition.shown == ShownPose::Proxy ? "proxy" : "device")
-        .text("result", shownResultName(condition.result))
+        .text("shown_pose", condition.shown == plan::ShownPose::Proxy ? "proxy" : "device")
+        .text("result", plan::shownResultName(condition.result))
         .json("parts", listOf(scene.parts, partJson))
         .json("contact", contactJson(condition))
         .json("limits", limitsJson(scene.limits))
@@ -389,7 +389,7 @@ std::string paramsJson(const Condition& condition) {
         .json("task", taskJson(condition.task));
     if (condition.cues.any()) json.json("cues", cuesJson(condition.cues));
     if (condition.comparison) {
-        Condition other = condition;
+        plan::Condition other = condition;
         other.scene = *condition.comparison;
         json.json("comparison", JsonObject()
                                     .json("parts", listOf(other.scene.parts, partJson))
@@ -398,14 +398,14 @@ std::string paramsJson(const Condition& condition) {
                                     .str());
     }
     if (!scene.display_wrench) json.boolean("kinesthetic", false);
-    if (condition.timed_by != TimedBy::Program) json.text("timed_by", timedByName(condition.timed_by));
+    if (condition.timed_by != plan::TimedBy::Program) json.text("timed_by", plan::timedByName(condition.timed_by));
     if (condition.secondary.any()) json.json("secondary", secondaryJson(condition.secondary));
     return json.str();
 }
 
-std::string expandedJson(const StudyPlan& plan) {
+std::string expandedJson(const plan::StudyPlan& plan) {
     std::vector<std::string> staircases;
-    for (const Staircase& staircase : plan.staircases) staircases.push_back(staircaseJson(plan, staircase));
+    for (const plan::Staircase& staircase : plan.staircases) staircases.push_back(staircaseJson(plan, staircase));
     return JsonObject()
         .text("name", plan.name)
         .text("version", plan.version)
@@ -414,23 +414,24 @@ std::string expandedJson(const StudyPlan& plan) {
         .integer("participants", plan.participants)
         .json("factors", listOf(plan.factors, factorJson))
         .json("conditions", listOf(plan.conditions, conditionJson))
-        .integer("planned_conditions", static_cast<std::int64_t>(plannedConditions(plan)))
+        .integer("planned_conditions", static_cast<std::int64_t>(plan::plannedConditions(plan)))
         .number("max_session_s", plan.max_session)
-        .json("blocks", listOf(plan.blocks, [&](const Block& block) { return blockJson(plan, block); }))
+        .json("blocks", listOf(plan.blocks, [&](const plan::Block& block) { return blockJson(plan, block); }))
         .json("staircases", jsonList(staircases))
         .json("questionnaires", listOf(plan.questionnaires, questionnaireJson))
         .json("resume", resumeJson(plan.resume))
-        .json("groups", listOf(groupNames(plan), [](const std::string& name) { return jsonText(name); }))
+        .json("groups", listOf(plan::groupNames(plan), [](const std::string& name) { return jsonText(name); }))
         .integer("allocation_blocks", plan.allocation_blocks)
-        .json("rows", listOf(design::rowsOf(designOf(plan)), [](std::size_t rows) { return std::to_string(rows); }))
-        .integer("sessions", sessionsOf(plan))
+        .json("rows",
+              listOf(design::rowsOf(plan::designOf(plan)), [](std::size_t rows) { return std::to_string(rows); }))
+        .integer("sessions", plan::sessionsOf(plan))
         .json("analyses", listOf(plan.analyses, analysisJson))
         .json("languages", listOf(plan.languages, [](const std::string& language) { return jsonText(language); }))
         .json("consent", listOf(plan.consent, clauseJson))
         .json("texts", listOf(plan.texts, textJson))
         .json("instructions", listOf(plan.instructions, instructionJson))
         .json("loop", JsonObject().number("max_missed_share", plan.max_missed_share).str())
-        .json("view", viewJson(plan.view))
+        .json("view", plan::viewJson(plan.view))
         .json("stable_stiffness", listOf(plan.stable_stiffness, stableJson))
         .json("measures", listOf(plan.measures, [](const std::string& name) { return jsonText(name); }))
         .str();

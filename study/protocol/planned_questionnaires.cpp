@@ -16,25 +16,29 @@
 namespace passung::protocol {
 namespace {
 
-constexpr Moment kMoments[]{Moment::SessionStart, Moment::BeforeBlock,    Moment::AfterBlock,
-                            Moment::AfterTrial,   Moment::AfterCondition, Moment::SessionEnd};
+constexpr plan::Moment kMoments[]{plan::Moment::SessionStart, plan::Moment::BeforeBlock,    plan::Moment::AfterBlock,
+                                  plan::Moment::AfterTrial,   plan::Moment::AfterCondition, plan::Moment::SessionEnd};
 
-bool isOfSession(Moment moment) { return moment == Moment::SessionStart || moment == Moment::SessionEnd; }
+bool isOfSession(plan::Moment moment) {
+    return moment == plan::Moment::SessionStart || moment == plan::Moment::SessionEnd;
+}
 
-void checkBlock(const TableReader& read, const PlannedQuestionnaire& planned, const std::vector<Block>& blocks) {
+void checkBlock(const TableReader& read, const plan::PlannedQuestionnaire& planned,
+                const std::vector<plan::Block>& blocks) {
     if (!read.has("block")) return;
     if (isOfSession(planned.moment)) return read.fail("block", "has no meaning at the start or end of a session");
-    const auto named = [&](const Block& block) { return block.name == planned.block; };
+    const auto named = [&](const plan::Block& block) { return block.name == planned.block; };
     if (std::none_of(blocks.begin(), blocks.end(), named)) read.fail("block", "no block has this name");
 }
 
 /// Loads one questionnaire; errors name the study's table where they are about it.
 class Loader {
 public:
-    Loader(const StudyPlan& plan, const std::function<Result<std::string>(const std::string&)>& read, Errors& errors)
+    Loader(const plan::StudyPlan& plan, const std::function<Result<std::string>(const std::string&)>& read,
+           Errors& errors)
         : plan_(plan), read_(read), errors_(errors) {}
 
-    void load(PlannedQuestionnaire& planned) {
+    void load(plan::PlannedQuestionnaire& planned) {
         const auto text = open(planned, "file", planned.file);
         if (!text) return;
         const std::string path = pathOf(planned.file);
@@ -60,7 +64,7 @@ public:
         if (definition->language != planned.language)
             return fail(planned, "language", planned.language,
                         fmt::format("there are no texts of {} in this language", definition->key));
-        for (const std::string& language : languagesAsked(plan_, planned))
+        for (const std::string& language : plan::languagesAsked(plan_, planned))
             if (!slot && readQuestionnaire(*text, path, language)->language != language)
                 fail(planned, "language", language,
                      fmt::format("there are no texts of {} in this language of the study", definition->key));
@@ -73,7 +77,7 @@ private:
         return (std::filesystem::path(plan_.source_path).parent_path() / file).string();
     }
 
-    Result<std::string> open(const PlannedQuestionnaire& planned, std::string_view key, const std::string& file) {
+    Result<std::string> open(const plan::PlannedQuestionnaire& planned, std::string_view key, const std::string& file) {
         auto text = read_(pathOf(file));
         if (!text) fail(planned, key, file, text.errors().front().message);
         return text;
@@ -81,34 +85,35 @@ private:
 
     void add(const Errors& errors) { errors_.insert(errors_.end(), errors.begin(), errors.end()); }
 
-    void fail(const PlannedQuestionnaire& planned, std::string_view key, const std::string& value,
+    void fail(const plan::PlannedQuestionnaire& planned, std::string_view key, const std::string& value,
               std::string message) {
         errors_.push_back(errorAt({plan_.source_path, planned.line, planned.column},
                                   fmt::format("questionnaire.{}", key),
                                   value.empty() ? "" : fmt::format("\"{}\"", value), std::move(message)));
     }
 
-    const StudyPlan& plan_;
+    const plan::StudyPlan& plan_;
     const std::function<Result<std::string>(const std::string&)>& read_;
     Errors& errors_;
 };
 
 /// Those of a session in this language.
-void speakLanguage(const StudyPlan& plan, const std::string& language, std::vector<PlannedQuestionnaire>& all) {
-    if (!speaks(plan, language)) return;
-    std::erase_if(all, [&](const PlannedQuestionnaire& planned) {
-        return !planned.texts.empty() && speaks(plan, planned.language) && planned.language != language;
+void speakLanguage(const plan::StudyPlan& plan, const std::string& language,
+                   std::vector<plan::PlannedQuestionnaire>& all) {
+    if (!plan::speaks(plan, language)) return;
+    std::erase_if(all, [&](const plan::PlannedQuestionnaire& planned) {
+        return !planned.texts.empty() && plan::speaks(plan, planned.language) && planned.language != language;
     });
-    for (PlannedQuestionnaire& planned : all)
-        if (speaks(plan, planned.language)) planned.language = language;
+    for (plan::PlannedQuestionnaire& planned : all)
+        if (plan::speaks(plan, planned.language)) planned.language = language;
 }
 
 /// The lab's texts of a slot are in one language each: a session has those in its own.
-void checkSlots(const StudyPlan& plan, const std::vector<PlannedQuestionnaire>& all, Errors& errors) {
-    for (const PlannedQuestionnaire& slot : all) {
-        if (slot.texts.empty() || !speaks(plan, slot.language)) continue;
+void checkSlots(const plan::StudyPlan& plan, const std::vector<plan::PlannedQuestionnaire>& all, Errors& errors) {
+    for (const plan::PlannedQuestionnaire& slot : all) {
+        if (slot.texts.empty() || !plan::speaks(plan, slot.language)) continue;
         for (const std::string& language : plan.languages) {
-            const bool there = std::any_of(all.begin(), all.end(), [&](const PlannedQuestionnaire& other) {
+            const bool there = std::any_of(all.begin(), all.end(), [&](const plan::PlannedQuestionnaire& other) {
                 return other.file == slot.file && other.moment == slot.moment && other.block == slot.block &&
                        other.language == language;
             });
@@ -123,13 +128,13 @@ void checkSlots(const StudyPlan& plan, const std::vector<PlannedQuestionnaire>& 
 }
 
 /// The answers to one moment must be told apart by the questionnaire's name.
-void checkDistinct(const StudyPlan& plan, const std::vector<PlannedQuestionnaire>& all, Errors& errors) {
+void checkDistinct(const plan::StudyPlan& plan, const std::vector<plan::PlannedQuestionnaire>& all, Errors& errors) {
     for (std::size_t i = 0; i < all.size(); ++i) {
-        const auto twin = [&](const PlannedQuestionnaire& other) {
+        const auto twin = [&](const plan::PlannedQuestionnaire& other) {
             return other.definition.key == all[i].definition.key && other.moment == all[i].moment &&
                    other.block == all[i].block &&
-                   (other.language == all[i].language || other.texts.empty() || !speaks(plan, other.language) ||
-                    !speaks(plan, all[i].language));
+                   (other.language == all[i].language || other.texts.empty() || !plan::speaks(plan, other.language) ||
+                    !plan::speaks(plan, all[i].language));
         };
         const auto end = all.begin() + static_cast<std::ptrdiff_t>(i);
         if (all[i].definition.key.empty() || std::none_of(all.begin(), end, twin)) continue;
@@ -139,14 +144,14 @@ void checkDistinct(const StudyPlan& plan, const std::vector<PlannedQuestionnaire
     }
 }
 
-Result<std::vector<PlannedQuestionnaire>> load(const StudyPlan& plan,
-                                               const std::function<Result<std::string>(const std::string&)>& read,
-                                               const std::string& language) {
+Result<std::vector<plan::PlannedQuestionnaire>> load(const plan::StudyPlan& plan,
+                                                     const std::function<Result<std::string>(const std::string&)>& read,
+                                                     const std::string& language) {
     Errors errors;
-    std::vector<PlannedQuestionnaire> all = plan.questionnaires;
+    std::vector<plan::PlannedQuestionnaire> all = plan.questionnaires;
     speakLanguage(plan, language, all);
     Loader loader(plan, read, errors);
-    for (PlannedQuestionnaire& planned : all)
+    for (plan::PlannedQuestionnaire& planned : all)
         if (!planned.file.empty()) loader.load(planned);
     checkDistinct(plan, all, errors);
     if (language.empty()) checkSlots(plan, all, errors);
@@ -157,12 +162,12 @@ Result<std::vector<PlannedQuestionnaire>> load(const StudyPlan& plan,
 
 }  // namespace
 
-std::vector<PlannedQuestionnaire> readQuestionnaires(const std::vector<Node>& tables, const std::vector<Block>& blocks,
-                                                     Errors& errors) {
-    std::vector<PlannedQuestionnaire> all;
+std::vector<plan::PlannedQuestionnaire> readQuestionnaires(const std::vector<Node>& tables,
+                                                           const std::vector<plan::Block>& blocks, Errors& errors) {
+    std::vector<plan::PlannedQuestionnaire> all;
     for (const Node& table : tables) {
         const TableReader read(table, {"questionnaire"}, "questionnaire", errors);
-        PlannedQuestionnaire planned;
+        plan::PlannedQuestionnaire planned;
         planned.file = read.text("file");
         planned.texts = read.text("texts");
         planned.language = read.text("language");
@@ -170,7 +175,7 @@ std::vector<PlannedQuestionnaire> readQuestionnaires(const std::vector<Node>& ta
         planned.line = table.place.line;
         planned.column = table.place.column;
         const auto moment = read.text("moment");
-        const auto named = [&](Moment each) { return moment == momentName(each); };
+        const auto named = [&](plan::Moment each) { return moment == plan::momentName(each); };
         const auto found = std::find_if(std::begin(kMoments), std::end(kMoments), named);
         if (found != std::end(kMoments)) planned.moment = *found;
         checkBlock(read, planned, blocks);
@@ -179,12 +184,14 @@ std::vector<PlannedQuestionnaire> readQuestionnaires(const std::vector<Node>& ta
     return all;
 }
 
-Errors checkQuestionnaires(const StudyPlan& plan, const std::function<Result<std::string>(const std::string&)>& read) {
+Errors checkQuestionnaires(const plan::StudyPlan& plan,
+                           const std::function<Result<std::string>(const std::string&)>& read) {
     const auto loaded = load(plan, read, "");
     return loaded ? Errors{} : loaded.errors();
 }
 
-Result<Done> loadQuestionnaires(StudyPlan& plan, const std::function<Result<std::string>(const std::string&)>& read,
+Result<Done> loadQuestionnaires(plan::StudyPlan& plan,
+                                const std::function<Result<std::string>(const std::string&)>& read,
                                 const std::string& language) {
     auto loaded = load(plan, read, language);
     if (!loaded) return loaded.errors();

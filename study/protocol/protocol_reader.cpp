@@ -45,7 +45,7 @@ constexpr std::size_t kMaxConditions = 1000;
 
 /// What reading gives: see Examined. What keeps a study from being begun is apart, because one that once began goes on.
 struct Read {
-    StudyPlan plan;
+    plan::StudyPlan plan;
     Errors errors;
     Errors undoable;  // what a person could not do, feel or tell apart, and names
     Errors for_people;
@@ -64,7 +64,7 @@ Examined examined(Read read) {
 class ProtocolReader {
 public:
     ProtocolReader(const Node& document, std::span<const DeviceDescription> devices,
-                   std::span<const std::string> known_measures, model::BuildStore* builds)
+                   std::span<const std::string> known_measures, scene::BuildStore* builds)
         : document_(document),
           devices_(devices),
           known_measures_(known_measures),
@@ -101,13 +101,13 @@ public:
             checkComparisons(plan_, *root_.node("task"), undoable_);
         if (design && tasks_sound_) checkDuration();
         if (!root_.has("measures")) dropUnused();
-        plan_.meshes = meshesOf(plan_, document_.place.file);
-        plan_.stable_stiffness = stableStiffnessOf(plan_, devices_);
+        plan_.meshes = plan::meshesOf(plan_, document_.place.file);
+        plan_.stable_stiffness = plan::stableStiffnessOf(plan_, devices_);
         tidy(errors_);
         tidy(undoable_);
         if (errors_.empty()) {
-            plan_.warnings = conditionWarnings(std::span(plan_.conditions).first(plannedConditions(plan_)));
-            for (std::string& warning : blockWarnings(plan_, root_.has("measures")))
+            plan_.warnings = plan::conditionWarnings(std::span(plan_.conditions).first(plan::plannedConditions(plan_)));
+            for (std::string& warning : plan::blockWarnings(plan_, root_.has("measures")))
                 plan_.warnings.push_back(std::move(warning));
             for (std::string& warning : restWarnings(plan_)) plan_.warnings.push_back(std::move(warning));
             for (std::string& warning : warnings_)
@@ -204,7 +204,7 @@ private:
     }
 
     /// Of the shared conditions those that the block has.
-    std::vector<std::size_t> conditionsOf(const Block& block) const {
+    std::vector<std::size_t> conditionsOf(const plan::Block& block) const {
         if (!block.conditions.empty()) return block.conditions;
         std::vector<std::size_t> all(plan_.shared_conditions);
         std::iota(all.begin(), all.end(), std::size_t{0});
@@ -247,8 +247,8 @@ private:
         const std::size_t planned = plan_.conditions.size();
         if (scene == nullptr || staircases_.empty()) return;
         for (StaircaseContent& content : staircases_) {
-            Staircase& staircase = content.staircase;
-            const Block& block = plan_.blocks[staircase.block];
+            plan::Staircase& staircase = content.staircase;
+            const plan::Block& block = plan_.blocks[staircase.block];
             const Node* own = block.first_condition > 0 ? &root_.items("block")[staircase.block] : nullptr;
             const std::size_t before = errors_.size();
             for (const std::size_t c : conditionsOf(block)) {
@@ -292,7 +292,7 @@ private:
 
     /// A measure that no trial of the type has would never answer.
     void checkMeasure(const StaircaseContent& content) {
-        const Block& block = plan_.blocks[content.staircase.block];
+        const plan::Block& block = plan_.blocks[content.staircase.block];
         const TrialType* type = &typeOf(plan_.conditions[block.first_condition].task);
         const auto measures = measuresOf(std::span(&type, 1), known_measures_);
         if (std::find(measures.begin(), measures.end(), content.staircase.measure) == measures.end())
@@ -317,7 +317,7 @@ private:
             return table != nullptr ? *table : emptyTable(document_.place);
         };
         StudyTables tables{scene, copyOf("task"), copyOf("feedback"), copyOf("secondary")};
-        Condition condition;
+        plan::Condition condition;
         if (block != nullptr)
             for (const Entry& entry : block->find("set")->entries)
                 applyOverride({entry.key, entry.place, &entry.value}, tables, errors_);
@@ -352,7 +352,7 @@ private:
         if (!content.parts_sound && root_.has("task")) readTask(tables, nullptr, errors_);
         tasks_sound_ = tasks_sound_ && task && root_.has("task");
         readConditionExtras(tables, condition, errors_);
-        const bool pair = std::holds_alternative<DiscriminationPairTask>(condition.task.form);
+        const bool pair = std::holds_alternative<plan::DiscriminationPairTask>(condition.task.form);
         if (task && pair) condition.comparison = readComparison(tables, condition, devices_, geometries_, errors_);
         // Of accuracy = "auto" nothing is picked with which something would not be felt.
         if (content.sound && !(content.accuracy_budget > 0.0))
@@ -371,7 +371,7 @@ private:
     }
 
     /// What a person's hand, on this device, and judgement could not do.
-    void checkDoable(const StudyTables& tables, const Condition& condition, const Override* step) {
+    void checkDoable(const StudyTables& tables, const plan::Condition& condition, const Override* step) {
         const auto device = std::find_if(devices_.begin(), devices_.end(),
                                          [&](const auto& known) { return known.name == condition.device; });
         if (device != devices_.end() && root_.has("task")) {
@@ -384,9 +384,9 @@ private:
     }
 
     /// "Correct" is the more frequent the farther the comparison is from its reference: so levels have to begin there.
-    void checkSide(const Node& scene, const Condition& condition, const Override& step) {
+    void checkSide(const Node& scene, const plan::Condition& condition, const Override& step) {
         constexpr std::string_view kComparison = "task.comparison.";
-        const Staircase& staircase = presented_->staircase;
+        const plan::Staircase& staircase = presented_->staircase;
         if (staircase.measure != "correct" || !step.path.starts_with(kComparison)) return;
         const std::string key = step.path.substr(kComparison.size());
         const Node* written = numberAt(scene, key);
@@ -425,12 +425,12 @@ private:
 
     /// Two conditions that nobody can tell apart are one: a level that changes nothing.
     void checkDistinct() {
-        std::map<std::string, const Condition*> seen;
+        std::map<std::string, const plan::Condition*> seen;
         std::vector<bool> reported(plan_.factors.size());
-        for (const Condition& condition : plan_.conditions) {
+        for (const plan::Condition& condition : plan_.conditions) {
             const auto [twin, fresh] = seen.try_emplace(whatReaches(condition), &condition);
             if (fresh) continue;
-            const Condition& first = *twin->second;
+            const plan::Condition& first = *twin->second;
             const auto differ = std::mismatch(first.levels.begin(), first.levels.end(), condition.levels.begin()).first;
             const auto factor = static_cast<std::size_t>(differ - first.levels.begin());
             if (reported[factor]) continue;
@@ -456,7 +456,7 @@ private:
     }
 
     void checkDuration() {
-        const double seconds = longestSession(plan_);
+        const double seconds = plan::longestSession(plan_);
         if (!(plan_.max_session > 0.0 && seconds > plan_.max_session)) return;
         const TableReader read(*root_.node("study"), {"study"}, "study", errors_);
         read.fail("max_session_minutes",
@@ -478,7 +478,7 @@ private:
         std::erase_if(plan_.measures, [&](const std::string& name) {
             return name.starts_with("secondary_") &&
                    std::none_of(plan_.analyses.begin(), plan_.analyses.end(),
-                                [&](const Analysis& analysis) { return analysis.outcome == name; });
+                                [&](const plan::Analysis& analysis) { return analysis.outcome == name; });
         });
     }
 
@@ -487,7 +487,7 @@ private:
     std::span<const std::string> known_measures_;
     Errors errors_;
     TableReader root_;
-    StudyPlan plan_;
+    plan::StudyPlan plan_;
     bool levels_sound_ = true, tasks_sound_ = true, staircases_sound_ = true;  // so far
     PartGeometries geometries_;
     std::vector<std::string> warnings_;            // about parts and ways
@@ -500,7 +500,7 @@ private:
 
 /// Without the files that the study names.
 Read readText(const std::string& text, const std::string& path, std::span<const DeviceDescription> devices,
-              std::span<const std::string> known_measures, model::BuildStore* builds) {
+              std::span<const std::string> known_measures, scene::BuildStore* builds) {
     const auto included = includeFiles(text, path);
     if (!included) return {{}, included.errors(), {}, {}};
     auto document = parseDocument(included->text, path);
@@ -522,10 +522,10 @@ Read readText(const std::string& text, const std::string& path, std::span<const 
 }
 
 /// See checkNames(); a file that cannot be read is told of elsewhere.
-Errors namesOfQuestionnaires(const StudyPlan& plan) {
+Errors namesOfQuestionnaires(const plan::StudyPlan& plan) {
     Errors errors;
     const auto folder = std::filesystem::path(plan.source_path).parent_path();
-    for (const PlannedQuestionnaire& planned : plan.questionnaires)
+    for (const plan::PlannedQuestionnaire& planned : plan.questionnaires)
         for (const std::string& file : {planned.file, planned.texts}) {
             const auto text = file.empty() ? Result<std::string>(std::string()) : readFile((folder / file).string());
             const auto document = text ? parseDocument(*text, (folder / file).string()) : Result<Node>(text.errors());
@@ -538,7 +538,7 @@ Errors namesOfQuestionnaires(const StudyPlan& plan) {
 }  // namespace
 
 Examined examineProtocol(const std::string& path, std::span<const DeviceDescription> devices,
-                         std::span<const std::string> known_measures, model::BuildStore* builds) {
+                         std::span<const std::string> known_measures, scene::BuildStore* builds) {
     const auto text = readFile(path);
     if (!text) return {{}, text.errors(), {}};
     Examined all = examined(readText(*text, path, devices, known_measures, builds));
@@ -554,24 +554,24 @@ Examined examineProtocol(const std::string& path, std::span<const DeviceDescript
     return all;
 }
 
-Result<StudyPlan> readProtocol(const std::string& path, std::span<const DeviceDescription> devices,
-                               std::span<const std::string> known_measures, model::BuildStore* builds) {
+Result<plan::StudyPlan> readProtocol(const std::string& path, std::span<const DeviceDescription> devices,
+                                     std::span<const std::string> known_measures, scene::BuildStore* builds) {
     Examined all = examineProtocol(path, devices, known_measures, builds);
     if (!all.errors.empty()) return std::move(all.errors);
     return std::move(all.plan);
 }
 
-Result<StudyPlan> readProtocolText(const std::string& text, const std::string& path,
-                                   std::span<const DeviceDescription> devices,
-                                   std::span<const std::string> known_measures, model::BuildStore* builds) {
+Result<plan::StudyPlan> readProtocolText(const std::string& text, const std::string& path,
+                                         std::span<const DeviceDescription> devices,
+                                         std::span<const std::string> known_measures, scene::BuildStore* builds) {
     Examined all = examined(readText(text, path, devices, known_measures, builds));
     if (!all.errors.empty()) return std::move(all.errors);
     return std::move(all.plan);
 }
 
-Result<StudyPlan> readBegunProtocol(const std::string& text, const std::string& path,
-                                    std::span<const DeviceDescription> devices,
-                                    std::span<const std::string> known_measures, model::BuildStore* builds) {
+Result<plan::StudyPlan> readBegunProtocol(const std::string& text, const std::string& path,
+                                          std::span<const DeviceDescription> devices,
+                                          std::span<const std::string> known_measures, scene::BuildStore* builds) {
     Read read = readText(text, path, devices, known_measures, builds);
     if (!read.errors.empty()) return std::move(read.errors);
     return std::move(read.plan);

@@ -32,7 +32,7 @@ std::string millimetres(double metres) { return fmt::format("{:.4g} mm", 1e3 * m
 /// One trial's geometry against one device.
 class ReachCheck {
 public:
-    ReachCheck(const StudyTables& tables, const Condition& condition, const DeviceDescription& device,
+    ReachCheck(const StudyTables& tables, const plan::Condition& condition, const DeviceDescription& device,
                PartGeometries& geometries, Errors& errors, std::vector<std::string>& warnings)
         : tables_(tables),
           scene_(condition.scene),
@@ -41,8 +41,8 @@ public:
           geometries_(geometries),
           errors_(errors),
           warnings_(warnings),
-          held_(*heldPart(condition.scene)),
-          target_(partNamed(condition.scene, condition.task.target)) {}
+          held_(*plan::heldPart(condition.scene)),
+          target_(plan::partNamed(condition.scene, condition.task.target)) {}
 
     void run() {
         checkUnits();
@@ -53,7 +53,7 @@ public:
     }
 
 private:
-    void check(const PegInHoleTask& peg) {
+    void check(const plan::PegInHoleTask& peg) {
         if (target_ == nullptr) return;
         const Node& at = valueOf("target");
         // Its axis along the bore's, by the shortest turn: a round peg may keep its yaw.
@@ -62,12 +62,12 @@ private:
         const Pose end{upright, target_->X_WP * Vec3(0, 0, -peg.success_fraction * peg.insertion_depth)};
         reach(end, 0.0, at, "task.target", "the end of the insertion");
         handleTurns(tiltBetween(held_.X_WP.q, end.q), kTilt, at, "task.target");
-        for (const model::PartSpec& other : scene_.parts)
+        for (const scene::PartSpec& other : scene_.parts)
             if (other.name != task_.target) overlapAt(end, other, scene_.contact.tolerance, at, "task.target");
         way((end.p - held_.X_WP.p).norm());
     }
 
-    void check(const NarrowPassageTask& passage) {
+    void check(const plan::NarrowPassageTask& passage) {
         if (target_ == nullptr) return;
         const Node& at = valueOf("target");
         for (const double depth : {0.0, passage.length}) {
@@ -79,7 +79,7 @@ private:
         way((target_->X_WP * Vec3(0, 0, -passage.length) - held_.X_WP.p).norm());
     }
 
-    void check(const ContourFollowingTask& contour) {
+    void check(const plan::ContourFollowingTask& contour) {
         if (target_ == nullptr) return;
         const auto& items = valueOf("points").items;
         double length = 0.0;
@@ -87,7 +87,7 @@ private:
             const Vec3 p = target_->X_WP * contour.points[i];
             reach({held_.X_WP.q, p}, contour.reach, items[i], "task.points", "this corner of the line");
             length += (p - (i > 0 ? target_->X_WP * contour.points[i - 1] : held_.X_WP.p)).norm();
-            for (const model::PartSpec& other : scene_.parts) {
+            for (const scene::PartSpec& other : scene_.parts) {
                 if (other.held || geometries_.of(other) == nullptr) continue;
                 const double depth = -geometries_.signedDistance(other, other.X_WP.inverse() * p);
                 if (depth > contour.reach)
@@ -102,7 +102,7 @@ private:
         way(length * contour.coverage);
     }
 
-    void check(const FreePlacementTask& placement) {
+    void check(const plan::FreePlacementTask& placement) {
         const Node& at = valueOf("position");
         reach(placement.X_WGoal, placement.position_tolerance, at, "task.position", "the goal");
         const double turn = placement.round ? tiltBetween(held_.X_WP.q, placement.X_WGoal.q)
@@ -110,7 +110,7 @@ private:
         const Node* rotation = tables_.task.find("rotation_deg");
         handleTurns(turn, placement.angle_tolerance, rotation != nullptr ? *rotation : at, "task.rotation_deg");
         const double slack = std::max(scene_.contact.tolerance, placement.position_tolerance);
-        for (const model::PartSpec& other : scene_.parts)
+        for (const scene::PartSpec& other : scene_.parts)
             overlapAt(placement.X_WGoal, other, slack, at, "task.position");
         const double quantum = scene_.limits.quantum * scene_.registration.scale;
         if (placement.position_tolerance < quantum)
@@ -120,10 +120,10 @@ private:
     }
 
     /// Some place of the target comes within reach of the held part.
-    void check(const DiscriminationPairTask&) {
+    void check(const plan::DiscriminationPairTask&) {
         const PartSurface* held = geometries_.of(held_);
         if (target_ == nullptr || held == nullptr || geometries_.of(*target_) == nullptr) return;
-        const model::Registration& r = scene_.registration;
+        const scene::Registration& r = scene_.registration;
         const Quat handle = r.X_WB.q.conjugate() * held_.X_WP.q * r.X_DH.q.conjugate();
         const Vec3 middle = (r.X_WB * Pose{handle, Vec3::Zero()} * r.X_DH).p;  // of all places of the held part
         const double away = geometries_.signedDistance(*target_, target_->X_WP.inverse() * middle);
@@ -137,7 +137,7 @@ private:
 
     /// Where the handle is when the held part is at `X_WH` [m], device space.
     Vec3 handleAt(const Pose& X_WH) const {
-        const model::Registration& r = scene_.registration;
+        const scene::Registration& r = scene_.registration;
         return (r.X_WB.inverse() * X_WH * r.X_DH.inverse()).p / r.scale;
     }
 
@@ -155,7 +155,7 @@ private:
                          scale != 1.0 ? " of the handle's way" : "", unitHint(scale * far)));
     }
 
-    void overlapAt(const Pose& X_WH, const model::PartSpec& other, double slack, const Node& at, const char* key) {
+    void overlapAt(const Pose& X_WH, const scene::PartSpec& other, double slack, const Node& at, const char* key) {
         if (other.held) return;
         const double depth = depthAt(held_, X_WH, other, geometries_);
         if (depth > slack)
@@ -166,7 +166,7 @@ private:
 
     /// As it starts, or with any of its axes along the passage, turned about that by steps of 2.5 degrees; a handle
     /// that does not turn leaves the first alone.
-    void fitsThrough(const NarrowPassageTask& passage, const Node& at) {
+    void fitsThrough(const plan::NarrowPassageTask& passage, const Node& at) {
         const Vec3 along = target_->X_WP.q * Vec3::UnitZ(), middle = target_->X_WP * Vec3(0, 0, -0.5 * passage.length);
         const double allowed = scene_.contact.tolerance + 0.5 * passage.width;
         double least = depthAt(held_, {held_.X_WP.q, middle}, *target_, geometries_);
@@ -192,14 +192,14 @@ private:
     }
 
     void checkStart() {
-        const model::StartGate& gate = scene_.start_gate;
+        const scene::StartGate& gate = scene_.start_gate;
         const double quantum = scene_.limits.quantum * scene_.registration.scale;
         if (gate.position_tolerance > 0.0 && gate.position_tolerance < quantum)
             fail(inTable(tables_.scene, "start_gate", "position_tolerance_mm"),
                  "scene.start_gate.position_tolerance_mm",
                  fmt::format("is finer than an encoder step of {}: {}", device_.name, millimetres(quantum)));
         const double farthest = (handleAt(held_.X_WP).norm() + device_.workspace_radius_m) * scene_.registration.scale;
-        if (task_.leave_radius >= farthest && !std::holds_alternative<DiscriminationPairTask>(task_.form))
+        if (task_.leave_radius >= farthest && !std::holds_alternative<plan::DiscriminationPairTask>(task_.form))
             fail(valueOf("leave_radius_mm"), "task.leave_radius_mm",
                  fmt::format("no way on {} leaves this sphere: at most {}", device_.name, millimetres(farthest)));
     }
@@ -211,7 +211,7 @@ private:
                  fmt::format("is too short for a way of {}: a hand takes more than {:.3g} s", millimetres(length),
                              length / kFastest));
         const double across = 2.0 * device_.workspace_radius_m * scene_.registration.scale;
-        const bool direct = !std::holds_alternative<ContourFollowingTask>(task_.form);
+        const bool direct = !std::holds_alternative<plan::ContourFollowingTask>(task_.form);
         if (direct && length > across)
             warn(fmt::format("the way from the start to the target, {}, is longer than the workspace of {}, {}{}",
                              millimetres(length), device_.name, millimetres(across), unitHint(length)));
@@ -275,19 +275,19 @@ private:
     }
 
     const StudyTables& tables_;
-    const model::SceneSpec& scene_;
-    const Task& task_;
+    const scene::SceneSpec& scene_;
+    const plan::Task& task_;
     const DeviceDescription& device_;
     PartGeometries& geometries_;
     Errors& errors_;
     std::vector<std::string>& warnings_;
-    const model::PartSpec& held_;
-    const model::PartSpec* target_;
+    const scene::PartSpec& held_;
+    const scene::PartSpec* target_;
 };
 
 }  // namespace
 
-void checkReach(const StudyTables& tables, const Condition& condition, const DeviceDescription& device,
+void checkReach(const StudyTables& tables, const plan::Condition& condition, const DeviceDescription& device,
                 PartGeometries& geometries, Errors& errors, std::vector<std::string>& warnings) {
     ReachCheck(tables, condition, device, geometries, errors, warnings).run();
 }

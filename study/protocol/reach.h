@@ -20,7 +20,7 @@ namespace passung::protocol {
 ///   time-out that leaves less than a metre a second;
 /// and to `warnings` a sentence if the held part's size, or the way, looks like a slip in the unit. Parts whose mesh
 /// cannot be read are left out. @pre scene and task are sound.
-void checkReach(const StudyTables& tables, const Condition& condition, const DeviceDescription& device,
+void checkReach(const StudyTables& tables, const plan::Condition& condition, const DeviceDescription& device,
                 PartGeometries& geometries, Errors& errors, std::vector<std::string>& warnings);
 
 /// The value of a key of the scene as the protocol writes it, if that is a number.

@@ -121,7 +121,7 @@ inline constexpr std::array kSceneKeys{
     Key{"device", "max_force_N", Number, above(0), "", "(the device's)", "Tightens the device's limit."},
     Key{"device", "max_torque_Nm", Number, atLeast(0), "", "(the device's)", "Tightens the device's limit."},
     Key{"device", "max_force_rate_N_per_s", Number, above(0), "", "(the device's)", "Tightens the device's limit of rising force."},
-    Key{"device", "delay_ticks", Integer, from(0, model::kMaxDelayTicks), "", "0", "Milliseconds added between command and effect, beside the device's own delay; with a device preset only 0."},
+    Key{"device", "delay_ticks", Integer, from(0, scene::kMaxDelayTicks), "", "0", "Milliseconds added between command and effect, beside the device's own delay; with a device preset only 0."},
 
     Key{"registration", "position", LengthVector, kAny, "", "(zero)", "Origin of the device's base in the world."},
     Key{"registration", "rotation_deg", Vector, kAny, "", "(zero)", "Rotation of the device's base, as in a pose."},

@@ -15,7 +15,7 @@ namespace passung::protocol {
 
 /// A scene as read from a tree of values; only for readers in this room.
 struct SceneContent {
-    model::SceneSpec scene;
+    scene::SceneSpec scene;
     std::string device;            // preset, empty if none is named
     double accuracy_budget = 0.0;  // [s] > 0: contact.accuracy is "auto"
     TextPosition accuracy_place;   // of that budget
@@ -35,7 +35,7 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
                            std::span<const DeviceDescription> devices, PartGeometries& geometries, Errors& errors);
 
 /// Reads one part. Lengths are in its own `unit`, else `units_per_metre` make a metre.
-model::PartSpec readPartNode(const Node& table, const std::string& parent_path, double units_per_metre, Errors& errors);
+scene::PartSpec readPartNode(const Node& table, const std::string& parent_path, double units_per_metre, Errors& errors);
 
 /// Reads a vector of lengths [m]. Errors: farther than 10 m along an axis.
 Vec3 readPosition(const TableReader& read, std::string_view key, double units_per_metre);

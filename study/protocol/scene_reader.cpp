@@ -21,9 +21,9 @@ constexpr double kDefaultRotationalStiffness = 1.0;  // [N·m/rad], without a de
 constexpr double kHardness = 10.0;                   // of a coupled penalty's contacts, per stiffness of the coupling
 constexpr double kToolShare = 0.1;                   // of a virtual tool's inertia, per the device's
 
-std::vector<model::PartSpec> readParts(const TableReader& read, const Node& scene, const std::string& path,
+std::vector<scene::PartSpec> readParts(const TableReader& read, const Node& scene, const std::string& path,
                                        double units, Errors& errors) {
-    std::vector<model::PartSpec> parts;
+    std::vector<scene::PartSpec> parts;
     std::set<std::string> names;
     bool held = false;
     for (const Node& table : read.items("part")) {
@@ -56,8 +56,8 @@ const DeviceDescription* findDevice(const TableReader& read, std::span<const Dev
     return nullptr;
 }
 
-model::OutputLimits readLimits(const TableReader& read, const DeviceDescription* device) {
-    model::OutputLimits limits;
+scene::OutputLimits readLimits(const TableReader& read, const DeviceDescription* device) {
+    scene::OutputLimits limits;
     if (device != nullptr) {
         limits.max_force = device->max_force_N;
         limits.max_torque = device->max_torque_Nm;
@@ -114,7 +114,7 @@ ResolvedStiffness resolveStiffness(const TableReader& read, const char* key, dou
 /// `scale`: of the registration. A handle that moves by d moves the held part by s d, and feels K s d + B s v: so a
 /// stiffness K is as stable as K s without a scale, at a damping B that is what the device recommends per s.
 void readCoupling(const TableReader& read, const DeviceDescription* device, bool device_named, double scale,
-                  model::ContactSpec& contact) {
+                  scene::ContactSpec& contact) {
     const double maximum = device != nullptr ? device->stable_stiffness_N_per_m / scale : 0.0;
     const double rotational_maximum = device != nullptr ? device->stable_rotational_stiffness_Nm_per_rad : 0.0;
     const auto resolve = [&](const char* key, double limit, double otherwise) {
@@ -140,12 +140,12 @@ void readCoupling(const TableReader& read, const DeviceDescription* device, bool
 }
 
 /// How the penalty reaches the hand, and the tool between them.
-void readPenaltyCoupling(const TableReader& read, const DeviceDescription* device, model::ContactSpec& contact) {
+void readPenaltyCoupling(const TableReader& read, const DeviceDescription* device, scene::ContactSpec& contact) {
     const auto coupling = read.text("coupling");
-    contact.coupling = coupling == "quasi_static" ? model::PenaltyCoupling::QuasiStatic
-                       : coupling == "virtual"    ? model::PenaltyCoupling::Virtual
-                                                  : model::PenaltyCoupling::Direct;
-    if (contact.coupling != model::PenaltyCoupling::Direct && contact.method != model::ContactMethod::Penalty)
+    contact.coupling = coupling == "quasi_static" ? scene::PenaltyCoupling::QuasiStatic
+                       : coupling == "virtual"    ? scene::PenaltyCoupling::Virtual
+                                                  : scene::PenaltyCoupling::Direct;
+    if (contact.coupling != scene::PenaltyCoupling::Direct && contact.method != scene::ContactMethod::Penalty)
         read.fail("coupling", "needs method = \"penalty\": a god object is coupled by a spring of its own");
     contact.penalty_stiffness = read.numberOr("penalty_stiffness_N_per_m", kHardness * contact.stiffness);
     const auto mechanism = device != nullptr ? device->mechanism.value_or(DeviceMechanism{}) : DeviceMechanism{};
@@ -158,7 +158,7 @@ void readPenaltyCoupling(const TableReader& read, const DeviceDescription* devic
 
 /// The device's stable maximum was found under these circumstances only: under others nothing is known to be stable.
 void checkStability(const TableReader& device_table, const TableReader& contact_table, const DeviceDescription* device,
-                    const model::SceneSpec& scene) {
+                    const scene::SceneSpec& scene) {
     if (device == nullptr || contact_table.boolean("allow_unstable")) return;
     const bool linear = device->stable_stiffness_N_per_m > 0.0;
     const bool rotational = device->stable_rotational_stiffness_Nm_per_rad > 0.0;
@@ -182,39 +182,39 @@ void checkStability(const TableReader& device_table, const TableReader& contact_
 
 /// Refuses a spacing that gives a part too many points, and cells that give it a field too large to build. A mesh is
 /// judged when it is loaded.
-void checkSizes(const TableReader& contact_table, const model::SceneSpec& scene, PartGeometries& geometries) {
-    const model::ContactSpec& contact = scene.contact;
-    const auto refuse = [&](const char* key, const model::PartSpec& part, const std::optional<std::string>& excess) {
+void checkSizes(const TableReader& contact_table, const scene::SceneSpec& scene, PartGeometries& geometries) {
+    const scene::ContactSpec& contact = scene.contact;
+    const auto refuse = [&](const char* key, const scene::PartSpec& part, const std::optional<std::string>& excess) {
         if (excess) contact_table.fail(key, fmt::format("part {}: {}", part.name, *excess));
     };
     for (const auto& part : scene.parts) {
         const PartSurface* geometry = geometries.of(part);
         if (geometry == nullptr) continue;
         if (part.held || contact.two_way)
-            refuse("spacing_mm", part, model::tooManyPoints(geometry->size, geometry->area, contact.spacing));
+            refuse("spacing_mm", part, scene::tooManyPoints(geometry->size, geometry->area, contact.spacing));
         if (contact.cell > 0.0 && (!part.held || contact.two_way))
-            refuse("cell_mm", part, model::fieldTooLarge(geometry->size, geometry->area, contact.cell));
+            refuse("cell_mm", part, scene::fieldTooLarge(geometry->size, geometry->area, contact.cell));
     }
 }
 
-model::ContactSpec readContact(const TableReader& read, const DeviceDescription* device, bool device_named,
+scene::ContactSpec readContact(const TableReader& read, const DeviceDescription* device, bool device_named,
                                double scale) {
-    model::ContactSpec contact;
+    scene::ContactSpec contact;
     const auto method = read.text("method");
-    contact.method = method == "penalty"      ? model::ContactMethod::Penalty
-                     : method == "god_object" ? model::ContactMethod::GodObject
-                                              : model::ContactMethod::GodObjectHeuristic;
+    contact.method = method == "penalty"      ? scene::ContactMethod::Penalty
+                     : method == "god_object" ? scene::ContactMethod::GodObject
+                                              : scene::ContactMethod::GodObjectHeuristic;
     const auto variant = read.text("variant");
-    contact.variant = variant == "raw"             ? model::PenaltyVariant::Raw
-                      : variant == "area_weighted" ? model::PenaltyVariant::AreaWeighted
-                                                   : model::PenaltyVariant::MaxNormalised;
+    contact.variant = variant == "raw"             ? scene::PenaltyVariant::Raw
+                      : variant == "area_weighted" ? scene::PenaltyVariant::AreaWeighted
+                                                   : scene::PenaltyVariant::MaxNormalised;
     readCoupling(read, device, device_named, scale, contact);
     readPenaltyCoupling(read, device, contact);
     contact.area_stiffness = read.number("area_stiffness_N_per_m3");
     contact.tolerance = read.numberOr("tolerance_um", contact.tolerance);
     contact.cell = read.numberOr("cell_mm", 0.0);
     contact.spacing = read.numberOr("spacing_mm", contact.spacing);
-    contact.mode = model::modeNamed(read.text("mode")).value_or(contact.mode);
+    contact.mode = field::modeNamed(read.text("mode")).value_or(contact.mode);
     contact.budget_nodes = static_cast<int>(read.integer("budget_nodes"));
     if (read.has("two_way")) contact.two_way = read.boolean("two_way");
     contact.proxy_filter = read.number("proxy_filter_hz");
@@ -222,7 +222,7 @@ model::ContactSpec readContact(const TableReader& read, const DeviceDescription*
 }
 
 /// What the file leaves to the program: it follows from the parts.
-void completeContact(const TableReader& read, model::SceneSpec& scene, PartGeometries& geometries) {
+void completeContact(const TableReader& read, scene::SceneSpec& scene, PartGeometries& geometries) {
     const bool spacing = read.has("spacing_mm"), tolerance = read.has("tolerance_um"), two_way = read.has("two_way");
     if (spacing && tolerance && two_way) return;
     const ContactDefaults defaults = defaultsFor(scene, geometries);
@@ -233,7 +233,7 @@ void completeContact(const TableReader& read, model::SceneSpec& scene, PartGeome
 }
 
 /// The budget of accuracy = "auto" [s], else 0.
-double readAccuracyBudget(const TableReader& read, const model::SceneSpec& scene) {
+double readAccuracyBudget(const TableReader& read, const scene::SceneSpec& scene) {
     const bool automatic = read.text("accuracy") == "auto";
     if (!automatic) {
         if (read.has("accuracy_budget_us")) read.fail("accuracy_budget_us", "needs accuracy = \"auto\"");
@@ -249,24 +249,24 @@ double readAccuracyBudget(const TableReader& read, const model::SceneSpec& scene
     return read.numberOr("accuracy_budget_us", 0.0);
 }
 
-model::Registration readRegistration(const TableReader& read, double units) {
-    model::Registration registration;
+scene::Registration readRegistration(const TableReader& read, double units) {
+    scene::Registration registration;
     registration.X_WB = readPose(read, "position", "rotation_deg", units);
     registration.scale = read.number("scale");
     registration.X_DH = readPose(read, "handle_position", "handle_rotation_deg", units);
     return registration;
 }
 
-model::StartGate readStartGate(const TableReader& read) {
-    model::StartGate gate;
+scene::StartGate readStartGate(const TableReader& read) {
+    scene::StartGate gate;
     gate.position_tolerance = read.number("position_tolerance_mm");
     gate.angle_tolerance = read.number("angle_tolerance_deg");
     gate.hold_ticks = static_cast<int>(std::lround(read.number("hold_ms") * 1000.0));
     return gate;
 }
 
-model::Effects readEffects(const TableReader& read, Errors& errors) {
-    model::Effects effects;
+scene::Effects readEffects(const TableReader& read, Errors& errors) {
+    scene::Effects effects;
     if (const Node* node = read.node("passivity_controller")) {
         const TableReader controller(*node, {"effects.passivity_controller"}, read.pathOf("passivity_controller"),
                                      errors);
@@ -300,7 +300,7 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     const bool unit_sound = read.has("unit") || table.find("unit") == nullptr;
     content.parts_sound = unit_sound && read.has("part") && errors.size() == before_parts;
     if (content.parts_sound)
-        for (const model::PartSpec& part : content.scene.parts)
+        for (const scene::PartSpec& part : content.scene.parts)
             for (Error& problem : geometries.problems(part)) errors.push_back(std::move(problem));
     content.parts_sound = content.parts_sound && errors.size() == before_parts;
     const std::size_t before_device = errors.size();
@@ -343,22 +343,22 @@ void warnOfTolerance(const Node& scene, const std::string& path, std::vector<std
         warnings.push_back(std::move(sentence));
 }
 
-Result<model::SceneSpec> readScene(const std::string& path, std::span<const DeviceDescription> devices,
-                                   model::BuildStore* builds) {
+Result<scene::SceneSpec> readScene(const std::string& path, std::span<const DeviceDescription> devices,
+                                   scene::BuildStore* builds) {
     const auto text = readFile(path);
     if (!text) return text.errors();
     return readSceneText(*text, path, devices, builds);
 }
 
-Result<model::SceneSpec> readSceneText(const std::string& text, const std::string& path,
-                                       std::span<const DeviceDescription> devices, model::BuildStore* builds) {
+Result<scene::SceneSpec> readSceneText(const std::string& text, const std::string& path,
+                                       std::span<const DeviceDescription> devices, scene::BuildStore* builds) {
     auto scene = readSceneOnDevice(text, path, devices, builds);
     if (!scene) return scene.errors();
     return std::move(scene->scene);
 }
 
 Result<SceneOnDevice> readSceneOnDevice(const std::string& text, const std::string& path,
-                                        std::span<const DeviceDescription> devices, model::BuildStore* builds) {
+                                        std::span<const DeviceDescription> devices, scene::BuildStore* builds) {
     const auto document = parseDocument(text, path);
     if (!document) return document.errors();
     if (const auto other = otherKind(*document, FileKind::Scene)) return errorAt(document->place, "", "", *other);
@@ -378,7 +378,7 @@ Result<SceneOnDevice> readSceneOnDevice(const std::string& text, const std::stri
     return SceneOnDevice{std::move(content.scene), std::move(content.device), std::move(warnings)};
 }
 
-Result<model::PartSpec> readPart(const std::string& path, double metres_per_unit) {
+Result<scene::PartSpec> readPart(const std::string& path, double metres_per_unit) {
     const auto text = readFile(path);
     if (!text) return text.errors();
     const auto document = parseDocument(*text, path);
@@ -389,7 +389,7 @@ Result<model::PartSpec> readPart(const std::string& path, double metres_per_unit
     const auto& parts = read.items("part");
     if (read.has("part") && parts.size() != 1)
         errors.push_back(errorAt(parts.empty() ? document->place : parts[1].place, "part", "", "must be exactly one"));
-    model::PartSpec part;
+    scene::PartSpec part;
     if (!parts.empty()) part = readPartNode(parts[0], "", unitsPerMetre(read, 1.0 / metres_per_unit), errors);
     tidy(errors);
     if (!errors.empty()) return errors;

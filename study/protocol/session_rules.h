@@ -6,9 +6,9 @@
 namespace passung::protocol {
 
 /// What a [[block]] says of trials that are repeated, into `block`.
-void readRepeats(const TableReader& read, Block& block);
+void readRepeats(const TableReader& read, plan::Block& block);
 
 /// [resume] of the study `root`.
-ResumePolicy readResume(const TableReader& root, Errors& errors);
+plan::ResumePolicy readResume(const TableReader& root, Errors& errors);
 
 }  // namespace passung::protocol

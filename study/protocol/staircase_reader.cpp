@@ -32,7 +32,7 @@ public:
     const TableReader& table() const { return read_; }
 
     StaircaseContent content() {
-        Staircase& staircase = content_.staircase;
+        plan::Staircase& staircase = content_.staircase;
         staircase.name = read_.text("name");
         staircase.unit = read_.text("unit");
         staircase.key = read_.text("key");
@@ -44,7 +44,7 @@ public:
         readRule();
         readTracks();
         if (errors_.size() > before_) return content_;
-        for (const StaircaseTrack& track : staircase.tracks) {
+        for (const plan::StaircaseTrack& track : staircase.tracks) {
             const auto faults = track.params.validate();
             if (!faults.empty()) return read_.fail(keyOf(faults.front()), faults.front()), content_;
         }
@@ -187,7 +187,7 @@ private:
     }
 
     void readCatches() {
-        Staircase& staircase = content_.staircase;
+        plan::Staircase& staircase = content_.staircase;
         const double share = read_.number("catch_share");
         if (share > 0.0 && !isWritten("catch_level")) return read_.fail("catch_level", "required with catch_share");
         if (!read_.has("catch_level") || (isWritten("catch_share") && !(share > 0.0))) return;
@@ -211,7 +211,7 @@ private:
     design::AdaptiveParams params_;
 };
 
-void readResponse(const TableReader& read, std::span<const std::string> known_measures, Staircase& staircase) {
+void readResponse(const TableReader& read, std::span<const std::string> known_measures, plan::Staircase& staircase) {
     const std::vector<std::string_view> known(known_measures.begin(), known_measures.end());
     staircase.measure = read.text("measure");
     if (read.has("measure") && std::find(known.begin(), known.end(), staircase.measure) == known.end()) {
@@ -226,18 +226,18 @@ void readResponse(const TableReader& read, std::span<const std::string> known_me
 }
 
 /// The block that it governs, told so; what else the block says of its trials would contradict it.
-void takeBlock(const TableReader& read, const std::vector<Node>& block_tables, std::vector<Block>& blocks,
-               Staircase& staircase, Errors& errors) {
+void takeBlock(const TableReader& read, const std::vector<Node>& block_tables, std::vector<plan::Block>& blocks,
+               plan::Staircase& staircase, Errors& errors) {
     const std::string name = read.text("block");
     const auto found =
-        std::find_if(blocks.begin(), blocks.end(), [&](const Block& block) { return block.name == name; });
+        std::find_if(blocks.begin(), blocks.end(), [&](const plan::Block& block) { return block.name == name; });
     if (!read.has("block")) return;
     if (found == blocks.end()) {
         std::vector<std::string_view> names;
-        for (const Block& block : blocks) names.push_back(block.name);
+        for (const plan::Block& block : blocks) names.push_back(block.name);
         return read.fail("block", fmt::format("no block has this name; blocks: {}", fmt::join(names, ", ")));
     }
-    if (found->phase != Phase::Main) return read.fail("block", "must be a main block");
+    if (found->phase != plan::Phase::Main) return read.fail("block", "must be a main block");
     if (found->adaptive) return read.fail("block", "has a staircase already");
     staircase.block = static_cast<std::size_t>(found - blocks.begin());
     found->adaptive = true;
@@ -271,8 +271,8 @@ void checkOverlaps(const StaircaseContent& content, const std::vector<Node>& blo
 
 std::vector<StaircaseContent> readStaircases(const std::vector<Node>& tables, const std::vector<Node>& block_tables,
                                              const std::vector<FactorContent>& factors,
-                                             std::span<const std::string> known_measures, std::vector<Block>& blocks,
-                                             Errors& errors) {
+                                             std::span<const std::string> known_measures,
+                                             std::vector<plan::Block>& blocks, Errors& errors) {
     std::vector<StaircaseContent> contents;
     std::set<std::string> names;
     for (const Node& table : tables) {

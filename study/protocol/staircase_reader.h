@@ -13,7 +13,7 @@ namespace passung::protocol {
 
 /// A staircase as written, with what its levels put into the scene.
 struct StaircaseContent {
-    Staircase staircase;
+    plan::Staircase staircase;
     TextPosition key_place, measure_place;
     std::vector<Node> values;  // a number for each level, placed where it is written
 
@@ -25,7 +25,7 @@ struct StaircaseContent {
 /// blocks' own. Errors: also a key that a factor or the block changes too.
 std::vector<StaircaseContent> readStaircases(const std::vector<Node>& tables, const std::vector<Node>& block_tables,
                                              const std::vector<FactorContent>& factors,
-                                             std::span<const std::string> known_measures, std::vector<Block>& blocks,
-                                             Errors& errors);
+                                             std::span<const std::string> known_measures,
+                                             std::vector<plan::Block>& blocks, Errors& errors);
 
 }  // namespace passung::protocol

@@ -17,42 +17,42 @@ constexpr std::size_t kManyTriangles = 4000;  // of a mesh: then its corners sta
 constexpr std::size_t kMostCorners = 6000;
 
 struct Placed {
-    const model::PartSpec& part;
+    const scene::PartSpec& part;
     Pose X_WP;
-    const model::TriangleMesh& mesh;
-    model::Bounds bounds;
+    const geometry::TriangleMesh& mesh;
+    geometry::Bounds bounds;
 };
 
-const model::Shape* shapeOf(const model::PartSpec& part) { return std::get_if<model::Shape>(&part.geometry); }
+const shape::Shape* shapeOf(const scene::PartSpec& part) { return std::get_if<shape::Shape>(&part.geometry); }
 
 /// The part's surface as triangles; empty if its mesh cannot be read.
-model::TriangleMesh surfaceOf(const model::PartSpec& part, PartGeometries& geometries) {
+geometry::TriangleMesh surfaceOf(const scene::PartSpec& part, PartGeometries& geometries) {
     if (const auto* shape = shapeOf(part)) {
-        const model::TriangleMesh fine = model::tessellate(*shape, 1e-3);  // for its size only
-        return model::tessellate(*shape, kChordOfPoints * model::boundsOf(fine).size().maxCoeff());
+        const geometry::TriangleMesh fine = shape::tessellate(*shape, 1e-3);  // for its size only
+        return shape::tessellate(*shape, kChordOfPoints * geometry::boundsOf(fine).size().maxCoeff());
     }
     const PartSurface* geometry = geometries.of(part);
-    return geometry != nullptr ? *geometry->mesh : model::TriangleMesh{};
+    return geometry != nullptr ? *geometry->mesh : geometry::TriangleMesh{};
 }
 
 /// Calls `visit` for points of the surface; not with those of a chord in front of a round hole, where nothing is.
 template <class Visit>
 void visitPoints(const Placed& part, const Visit& visit) {
-    const model::Shape* shape = shapeOf(part.part);
+    const shape::Shape* shape = shapeOf(part.part);
     if (shape == nullptr && part.mesh.triangles.size() > kManyTriangles) {
         const std::size_t every = 1 + part.mesh.vertices.size() / kMostCorners;
         for (std::size_t i = 0; i < part.mesh.vertices.size(); i += every) visit(part.mesh.vertices[i]);
         return;
     }
     const double step = part.bounds.size().maxCoeff() / kStepsPerSize;
-    for (const model::Triangle& t : part.mesh.triangles) {
+    for (const geometry::Triangle& t : part.mesh.triangles) {
         const Vec3& a = part.mesh.vertices[t[0]];
         const Vec3 ab = part.mesh.vertices[t[1]] - a, ac = part.mesh.vertices[t[2]] - a;
         const int n = std::max(1, static_cast<int>(std::ceil(std::max(ab.norm(), ac.norm()) / step)));
         for (int i = 0; i <= n; ++i) {
             for (int k = 0; k <= n - i; ++k) {
                 const Vec3 p = a + (ab * i + ac * k) / n;
-                if (shape == nullptr || model::signedDistance(*shape, p) <= kSurfaceRounding) visit(p);
+                if (shape == nullptr || shape::signedDistance(*shape, p) <= kSurfaceRounding) visit(p);
             }
         }
     }
@@ -80,7 +80,7 @@ double depthOf(const Placed& part, const Placed& obstacle, PartGeometries& geome
 
 }  // namespace
 
-double depthAt(const model::PartSpec& part, const Pose& X_WP, const model::PartSpec& obstacle,
+double depthAt(const scene::PartSpec& part, const Pose& X_WP, const scene::PartSpec& obstacle,
                PartGeometries& geometries) {
     const auto text = [](const Pose& X) {
         return fmt::format("{:a} {:a} {:a} {:a} {:a} {:a} {:a}", X.p.x(), X.p.y(), X.p.z(), X.q.w(), X.q.x(), X.q.y(),
@@ -89,29 +89,29 @@ double depthAt(const model::PartSpec& part, const Pose& X_WP, const model::PartS
     const std::string question =
         fmt::format("{} at {} in {} at {}", geometryKey(part), text(X_WP), geometryKey(obstacle), text(obstacle.X_WP));
     return geometries.remembered(question, [&] {
-        const model::TriangleMesh one = surfaceOf(part, geometries), other = surfaceOf(obstacle, geometries);
+        const geometry::TriangleMesh one = surfaceOf(part, geometries), other = surfaceOf(obstacle, geometries);
         if (one.triangles.empty() || other.triangles.empty()) return 0.0;
-        const Placed held{part, X_WP, one, model::boundsOf(one)};
-        const Placed still{obstacle, obstacle.X_WP, other, model::boundsOf(other)};
+        const Placed held{part, X_WP, one, geometry::boundsOf(one)};
+        const Placed still{obstacle, obstacle.X_WP, other, geometry::boundsOf(other)};
         return std::max(depthOf(held, still, geometries), depthOf(still, held, geometries));
     });
 }
 
-double startDepth(const model::PartSpec& held, const model::PartSpec& obstacle) {
+double startDepth(const scene::PartSpec& held, const scene::PartSpec& obstacle) {
     PartGeometries geometries;
     return depthAt(held, held.X_WP, obstacle, geometries);
 }
 
-void checkStartPose(const Node& scene, const std::string& path, const model::SceneSpec& spec,
+void checkStartPose(const Node& scene, const std::string& path, const scene::SceneSpec& spec,
                     PartGeometries& geometries, Errors& errors) {
-    const model::PartSpec* held = heldPart(spec);
+    const scene::PartSpec* held = plan::heldPart(spec);
     const Node* parts = scene.find("part");
     if (held == nullptr || parts == nullptr) return;
     const Node& table = parts->items[static_cast<std::size_t>(held - spec.parts.data())];
     const Node* pose = table.find("pose");
     const Node* position = pose != nullptr ? pose->find("position") : nullptr;
     const Node& where = position != nullptr ? *position : pose != nullptr ? *pose : table;
-    for (const model::PartSpec& obstacle : spec.parts) {
+    for (const scene::PartSpec& obstacle : spec.parts) {
         if (obstacle.held) continue;
         const double depth = depthAt(*held, held->X_WP, obstacle, geometries);
         if (!(depth > spec.contact.tolerance)) continue;

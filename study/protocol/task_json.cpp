@@ -10,17 +10,17 @@ namespace {
 struct FormJson {
     JsonObject& json;
 
-    void operator()(const PegInHoleTask& task) const {
+    void operator()(const plan::PegInHoleTask& task) const {
         json.number("clearance_m", task.clearance)
             .number("insertion_depth_m", task.insertion_depth)
             .number("success_fraction", task.success_fraction)
             .number("max_speed_m_per_s", task.max_speed)
             .number("hold_s", task.hold);
     }
-    void operator()(const NarrowPassageTask& task) const {
+    void operator()(const plan::NarrowPassageTask& task) const {
         json.number("passage_length_m", task.length).number("passage_width_m", task.width);
     }
-    void operator()(const ContourFollowingTask& task) const {
+    void operator()(const plan::ContourFollowingTask& task) const {
         std::vector<std::string> points;
         for (const Vec3& point : task.points) points.push_back(jsonVector(point));
         json.json("points_m", jsonList(points))
@@ -28,7 +28,7 @@ struct FormJson {
             .number("coverage", task.coverage)
             .number("force_N", task.force);
     }
-    void operator()(const FreePlacementTask& task) const {
+    void operator()(const plan::FreePlacementTask& task) const {
         const Quat& q = task.X_WGoal.q;
         json.json("position_m", jsonVector(task.X_WGoal.p))
             .json("quaternion_wxyz", jsonNumbers({q.w(), q.x(), q.y(), q.z()}))
@@ -36,23 +36,23 @@ struct FormJson {
             .number("position_tolerance_m", task.position_tolerance)
             .number("angle_tolerance_rad", task.angle_tolerance);
     }
-    void operator()(const DiscriminationPairTask& task) const {
+    void operator()(const plan::DiscriminationPairTask& task) const {
         json.number("interval_s", task.interval)
             .number("answer_s", task.answer)
             .text("question", task.question)
-            .text("judged", task.judged == Judged::Stiffness ? "stiffness" : "roughness");
+            .text("judged", task.judged == plan::Judged::Stiffness ? "stiffness" : "roughness");
     }
 };
 
 }  // namespace
 
-std::string taskJson(const Task& task) {
+std::string taskJson(const plan::Task& task) {
     JsonObject json;
     json.text("type", typeOf(task).name);
     if (!task.target.empty()) json.text("target", task.target);
     std::visit(FormJson{json}, task.form);
     json.number("timeout_s", task.timeout).number("leave_radius_m", task.leave_radius);
-    if (const auto* peg = std::get_if<PegInHoleTask>(&task.form))
+    if (const auto* peg = std::get_if<plan::PegInHoleTask>(&task.form))
         json.number("engagement_depth_m", peg->engagement_depth);
     return json.str();
 }

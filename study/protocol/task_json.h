@@ -7,6 +7,6 @@
 namespace passung::protocol {
 
 /// Every number of a task, for the attempt's row.
-std::string taskJson(const Task& task);
+std::string taskJson(const plan::Task& task);
 
 }  // namespace passung::protocol

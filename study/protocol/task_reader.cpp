@@ -16,8 +16,8 @@ namespace {
 constexpr double kWayBack = 2.0;  // [s] that returning to the start of a pair's second interval is reckoned with
 
 /// The part that the task is about; nullptr after reporting why there is none.
-const model::PartSpec* findTarget(const TableReader& read, const model::SceneSpec& scene) {
-    const model::PartSpec* part = partNamed(scene, read.text("target"));
+const scene::PartSpec* findTarget(const TableReader& read, const scene::SceneSpec& scene) {
+    const scene::PartSpec* part = plan::partNamed(scene, read.text("target"));
     if (part != nullptr && !part->held) return part;
     if (part != nullptr) {
         read.fail("target", "must not be the held part");
@@ -35,8 +35,8 @@ double unitsOf(const StudyTables& tables) {
     return unitsPerMetre(TableReader(tables.scene, {"scene"}, "scene", reported), 1e3);
 }
 
-ContourFollowingTask readContour(const TableReader& read, double units, Errors& errors) {
-    ContourFollowingTask contour;
+plan::ContourFollowingTask readContour(const TableReader& read, double units, Errors& errors) {
+    plan::ContourFollowingTask contour;
     contour.reach = read.number("reach_mm");
     contour.coverage = read.number("coverage");
     contour.force = read.number("force_N");
@@ -60,8 +60,8 @@ ContourFollowingTask readContour(const TableReader& read, double units, Errors& 
     return contour;
 }
 
-FreePlacementTask readPlacement(const TableReader& read, double units) {
-    FreePlacementTask placement;
+plan::FreePlacementTask readPlacement(const TableReader& read, double units) {
+    plan::FreePlacementTask placement;
     placement.X_WGoal = readPose(read, "position", "rotation_deg", units);
     placement.round = read.boolean("symmetric_about_z");
     placement.position_tolerance = read.number("position_tolerance_mm");
@@ -69,16 +69,16 @@ FreePlacementTask readPlacement(const TableReader& read, double units) {
     return placement;
 }
 
-DiscriminationPairTask readPair(const TableReader& read, const StudyTables& tables, const model::SceneSpec& scene,
-                                Errors& errors) {
-    DiscriminationPairTask pair;
+plan::DiscriminationPairTask readPair(const TableReader& read, const StudyTables& tables, const scene::SceneSpec& scene,
+                                      Errors& errors) {
+    plan::DiscriminationPairTask pair;
     pair.interval = read.number("interval_s");
     pair.answer = read.number("answer_s");
     pair.question = read.text("question");
-    pair.judged = read.text("judged") == "roughness" ? Judged::Roughness : Judged::Stiffness;
+    pair.judged = read.text("judged") == "roughness" ? plan::Judged::Roughness : plan::Judged::Stiffness;
     if (read.has("comparison") && read.node("comparison")->entries.empty())
         read.fail("comparison", "names no key: both intervals would be the same");
-    const model::StartGate& gate = scene.start_gate;
+    const scene::StartGate& gate = scene.start_gate;
     if (!(gate.hold_ticks > 0 && gate.position_tolerance > 0.0))
         errors.push_back(errorAt(tables.task.find("type")->place, "task.type", "discrimination_pair",
                                  "needs a start_gate with position_tolerance_mm and hold_ms > 0: between the intervals "
@@ -116,9 +116,9 @@ bool isTaskKey(const std::string& type, const std::string& key) {
     return findKey(tables, key) != nullptr;
 }
 
-Task readTask(const StudyTables& tables, const model::SceneSpec* scene, Errors& errors) {
+plan::Task readTask(const StudyTables& tables, const scene::SceneSpec* scene, Errors& errors) {
     const std::size_t before = errors.size();
-    Task task;
+    plan::Task task;
     const Node* type = tables.task.find("type");
     const auto known = trialTypes();
     const auto found = std::find_if(known.begin(), known.end(), [&](const TrialType& candidate) {
@@ -134,7 +134,7 @@ Task readTask(const StudyTables& tables, const model::SceneSpec* scene, Errors& 
     const TableReader read(tables.task, {"task", found->keys}, "task", errors);
     const bool own_sound = errors.size() == before;
     const bool placement = found->name == "free_placement", pair = found->name == "discrimination_pair";
-    const model::PartSpec* target =
+    const scene::PartSpec* target =
         placement || scene == nullptr || !read.has("target") ? nullptr : findTarget(read, *scene);
     if (!own_sound || scene == nullptr) return task;
     if (!placement) task.target = read.text("target");
@@ -149,14 +149,14 @@ Task readTask(const StudyTables& tables, const model::SceneSpec* scene, Errors& 
     } else if (found->name == "contour_following") {
         task.form = readContour(read, unitsOf(tables), errors);
     } else if (found->name == "narrow_passage") {
-        task.form = NarrowPassageTask{read.number("passage_length_mm"), read.number("passage_width_mm")};
+        task.form = plan::NarrowPassageTask{read.number("passage_length_mm"), read.number("passage_width_mm")};
     } else {
         task.form = readPegInHole(read, tables, *scene, target, task, errors);
     }
     return task;
 }
 
-model::SceneSpec readComparison(const StudyTables& tables, const Condition& condition,
+scene::SceneSpec readComparison(const StudyTables& tables, const plan::Condition& condition,
                                 std::span<const DeviceDescription> devices, PartGeometries& geometries,
                                 Errors& errors) {
     const std::size_t before = errors.size();
@@ -164,7 +164,7 @@ model::SceneSpec readComparison(const StudyTables& tables, const Condition& cond
     flatten(*tables.task.find("comparison"), "", overrides);
     StudyTables changed = tables;
     for (const Override& change : overrides) {
-        const auto why = sharedByIntervals(change.path, heldPart(condition.scene)->name);
+        const auto why = sharedByIntervals(change.path, plan::heldPart(condition.scene)->name);
         if (!why.empty()) {
             errors.push_back(errorAt(change.path_place, "task.comparison", change.path, std::string(why)));
             continue;

@@ -11,13 +11,13 @@ namespace passung::protocol {
 
 /// Reads [task] as its type declares it (trial_types.h). Sentences of errors name keys as the user wrote them. Without
 /// a `scene` (nullptr: its parts are not known) it looks at what the table says by itself.
-Task readTask(const StudyTables& tables, const model::SceneSpec* scene, Errors& errors);
+plan::Task readTask(const StudyTables& tables, const scene::SceneSpec* scene, Errors& errors);
 
 /// Does [task] have this key where its type is this one?
 bool isTaskKey(const std::string& type, const std::string& key);
 
 /// The scene of the other interval of a discrimination_pair: the condition's with the keys of task.comparison.
-model::SceneSpec readComparison(const StudyTables& tables, const Condition& condition,
+scene::SceneSpec readComparison(const StudyTables& tables, const plan::Condition& condition,
                                 std::span<const DeviceDescription> devices, PartGeometries& geometries, Errors& errors);
 
 }  // namespace passung::protocol

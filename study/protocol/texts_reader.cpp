@@ -10,7 +10,7 @@
 namespace passung::protocol {
 namespace {
 
-StudyText& textNamed(StudyPlan& plan, const std::string& name) {
+plan::StudyText& textNamed(plan::StudyPlan& plan, const std::string& name) {
     auto found =
         std::find_if(plan.texts.begin(), plan.texts.end(), [&](const auto& text) { return text.name == name; });
     if (found == plan.texts.end()) found = plan.texts.insert(plan.texts.end(), {name, {}});
@@ -21,7 +21,7 @@ bool has(const std::vector<std::pair<std::string, std::string>>& texts, const st
     return std::any_of(texts.begin(), texts.end(), [&](const auto& text) { return text.first == language; });
 }
 
-void readLanguage(const Entry& language, StudyPlan& plan, Errors& errors) {
+void readLanguage(const Entry& language, plan::StudyPlan& plan, Errors& errors) {
     const auto report = [&](const Entry& entry, std::string key, const char* message) {
         errors.push_back(errorAt(entry.place, std::move(key), valueText(entry.value), message));
     };
@@ -41,14 +41,14 @@ void readLanguage(const Entry& language, StudyPlan& plan, Errors& errors) {
 }
 
 /// A participant reads one language: whatever one has, all must have, and the clauses of consent as well.
-void checkTranslations(const Node& table, const StudyPlan& plan, Errors& errors) {
+void checkTranslations(const Node& table, const plan::StudyPlan& plan, Errors& errors) {
     for (const Entry& language : table.entries) {
-        for (const StudyText& text : plan.texts)
+        for (const plan::StudyText& text : plan.texts)
             if (!has(text.languages, language.key))
                 errors.push_back(
                     errorAt(language.value.place, fmt::format("text.{}.{}", language.key, text.name), "",
                             fmt::format("the text is missing, which [text.{}] has", text.languages.front().first)));
-        for (const ConsentClause& clause : plan.consent)
+        for (const plan::ConsentClause& clause : plan.consent)
             if (!has(clause.texts, language.key))
                 errors.push_back(errorAt(
                     language.value.place, "text." + language.key, "",
@@ -56,29 +56,30 @@ void checkTranslations(const Node& table, const StudyPlan& plan, Errors& errors)
     }
 }
 
-void readInstruction(const Node& table, StudyPlan& plan, Errors& errors) {
+void readInstruction(const Node& table, plan::StudyPlan& plan, Errors& errors) {
     const TableReader read(table, {"instruction"}, "instruction", errors);
-    Instruction page;
+    plan::Instruction page;
     const std::string moment = read.text("moment");
-    for (std::size_t i = 0; i < kShowAtNames.size(); ++i)
-        if (moment == kShowAtNames[i]) page.moment = static_cast<ShowAt>(i);
+    for (std::size_t i = 0; i < plan::kShowAtNames.size(); ++i)
+        if (moment == plan::kShowAtNames[i]) page.moment = static_cast<plan::ShowAt>(i);
     page.block = read.text("block");
     page.text = read.text("text");
     page.picture = read.text("picture");
-    if (read.has("block") && page.moment != ShowAt::BeforeBlock) read.fail("block", "is for moment = \"before_block\"");
-    if (!read.has("block") && page.moment == ShowAt::BeforeBlock)
+    if (read.has("block") && page.moment != plan::ShowAt::BeforeBlock)
+        read.fail("block", "is for moment = \"before_block\"");
+    if (!read.has("block") && page.moment == plan::ShowAt::BeforeBlock)
         read.fail("block", "required with moment = \"before_block\"");
     if (read.has("block") && std::none_of(plan.blocks.begin(), plan.blocks.end(),
-                                          [&](const Block& block) { return block.name == page.block; }))
+                                          [&](const plan::Block& block) { return block.name == page.block; }))
         read.fail("block", "the study has no block of this name");
     const bool known = std::any_of(plan.texts.begin(), plan.texts.end(),
-                                   [&](const StudyText& text) { return text.name == page.text; });
+                                   [&](const plan::StudyText& text) { return text.name == page.text; });
     if (read.has("text") && !known) read.fail("text", "no [text.LANGUAGE] has a text of this name");
     if (const Node* picture = read.node("picture")) {
         const std::filesystem::path file(page.picture);
         if (file.is_absolute()) read.fail("picture", "must be relative to the study's file");
         if (std::none_of(plan.pictures.begin(), plan.pictures.end(),
-                         [&](const PictureSource& other) { return other.name == page.picture; }))
+                         [&](const plan::PictureSource& other) { return other.name == page.picture; }))
             plan.pictures.push_back({page.picture,
                                      (std::filesystem::path(picture->place.file).parent_path() / file).string(),
                                      picture->place.line, picture->place.column});
@@ -93,7 +94,7 @@ bool isPicture(std::string_view bytes) {
 
 }  // namespace
 
-void readTexts(const TableReader& root, StudyPlan& plan, Errors& errors) {
+void readTexts(const TableReader& root, plan::StudyPlan& plan, Errors& errors) {
     if (const Node* table = root.node("text")) {
         const std::size_t before = errors.size();
         for (const Entry& language : table->entries) readLanguage(language, plan, errors);
@@ -102,9 +103,10 @@ void readTexts(const TableReader& root, StudyPlan& plan, Errors& errors) {
     for (const Node& table : root.items("instruction")) readInstruction(table, plan, errors);
 }
 
-Errors checkPictures(const StudyPlan& plan, const std::function<Result<std::string>(const std::string& path)>& read) {
+Errors checkPictures(const plan::StudyPlan& plan,
+                     const std::function<Result<std::string>(const std::string& path)>& read) {
     Errors errors;
-    for (const PictureSource& picture : plan.pictures) {
+    for (const plan::PictureSource& picture : plan.pictures) {
         const auto bytes = read(picture.path);
         if (bytes && isPicture(*bytes)) continue;
         errors.push_back(errorAt({plan.source_path, picture.line, picture.column}, "instruction.picture",

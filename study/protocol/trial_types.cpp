@@ -22,13 +22,13 @@ constexpr std::array kTypes{
     TrialType{"free_placement", "task.free_placement", kFreePlacement},
     TrialType{"discrimination_pair", "task.discrimination_pair", kDiscriminationPair},
 };
-static_assert(kTypes.size() == std::variant_size_v<decltype(Task::form)>);
+static_assert(kTypes.size() == std::variant_size_v<decltype(plan::Task::form)>);
 
 }  // namespace
 
 std::span<const TrialType> trialTypes() { return kTypes; }
 
-const TrialType& typeOf(const Task& task) { return kTypes[task.form.index()]; }
+const TrialType& typeOf(const plan::Task& task) { return kTypes[task.form.index()]; }
 
 std::vector<const TrialType*> typesWith(std::string_view measure) {
     std::vector<const TrialType*> types;

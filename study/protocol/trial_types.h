@@ -20,7 +20,7 @@ struct TrialType {
 /// All types, in the order of Task::form.
 std::span<const TrialType> trialTypes();
 
-const TrialType& typeOf(const Task& task);
+const TrialType& typeOf(const plan::Task& task);
 
 /// Of the known measures those that a trial of one of these types can have.
 std::vector<std::string> measuresOf(std::span<const TrialType* const> types, std::span<const std::string> known);

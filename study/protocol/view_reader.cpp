@@ -17,12 +17,12 @@ std::optional<Vec3> readDirection(const TableReader& read, const char* name) {
 
 }  // namespace
 
-View readView(const TableReader& root, Errors& errors) {
+plan::View readView(const TableReader& root, Errors& errors) {
     const Node* table = root.node("view");
-    View view;
+    plan::View view;
     if (table == nullptr) return view;
     const TableReader read(*table, {"view"}, "view", errors);
-    view.theme = read.text("theme") == "light" ? Theme::Light : Theme::Dark;
+    view.theme = read.text("theme") == "light" ? plan::Theme::Light : plan::Theme::Dark;
     view.text_scale = read.number("text_percent");
     if (const auto from = readDirection(read, "camera_from")) view.camera_from = *from;
     if (read.has("camera_target_mm")) view.camera_target = read.vector("camera_target_mm") / unitsPerSi("_mm");

@@ -6,6 +6,6 @@
 namespace passung::protocol {
 
 /// [view] of the study `root`.
-View readView(const TableReader& root, Errors& errors);
+plan::View readView(const TableReader& root, Errors& errors);
 
 }  // namespace passung::protocol

@@ -15,7 +15,7 @@
 #include <cstring>
 #include <filesystem>
 
-namespace passung::app {
+namespace passung::run {
 
 namespace {
 
@@ -195,4 +195,4 @@ Result<std::optional<Reply>> tellSession(const std::string& database, const Comm
     return std::optional(Reply{reply->front() == '0', reply->substr(1)});
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -13,7 +13,7 @@
 #include "core/base/result.h"
 #include "study/session/command.h"
 
-namespace passung::app {
+namespace passung::run {
 
 /// Takes an experimenter's commands for a running session from other programs of the same user: a local socket beside
 /// the database, "<database>.socket". Its thread only receives; whoever runs the session takes the commands between two
@@ -55,4 +55,4 @@ private:
 /// Tells the session that runs on this database; nothing if none does. Errors: it does not answer.
 Result<std::optional<session::Reply>> tellSession(const std::string& database, const session::Command& command);
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace passung::app {
+namespace passung::run {
 namespace {
 
 bool pushes(const TickRecord& record) noexcept {
@@ -31,4 +31,4 @@ void CueDelivery::take(const TickRecord& record) noexcept {
     if (person_ != nullptr) person_->notice(given_);
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -7,7 +7,7 @@
 #include "study/measures/cues.h"
 #include "study/session/apparatus.h"
 
-namespace passung::app {
+namespace passung::run {
 
 /// Hands a simulated person the cues of the running attempt, tick by tick, and counts them. Colour comes with the
 /// pictures (loop::hasPicture), so that it stands between them; noise over the headphones covers every sound. rt-safe.
@@ -31,4 +31,4 @@ private:
     session::Delivered asked_;
 };
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -6,15 +6,15 @@
 #include "study/run/machine/auto_accuracy.h"
 #include "study/run/machine/calibration.h"
 
-namespace passung::app {
+namespace passung::run {
 
 namespace {
 
 /// Reads the draft anew where the kept maxima are others.
-Result<Done> keepStiffness(std::span<const protocol::StableStiffness> kept, protocol::StudyPlan& plan,
+Result<Done> keepStiffness(std::span<const plan::StableStiffness> kept, plan::StudyPlan& plan,
                            const ImportLimits& limits) {
     const auto devices = devicesAsKept(kept);
-    if (sameStiffness(protocol::stableStiffnessOf(plan, devices), plan.stable_stiffness)) return Done{};
+    if (sameStiffness(plan::stableStiffnessOf(plan, devices), plan.stable_stiffness)) return Done{};
     auto again = readBegunProtocol(plan.source_text, plan.source_path, devices, limits);
     if (!again) return again.errors();
     again->seed = plan.seed;
@@ -25,7 +25,7 @@ Result<Done> keepStiffness(std::span<const protocol::StableStiffness> kept, prot
 
 }  // namespace
 
-Result<protocol::FrozenPlan> freeze(protocol::StudyPlan draft, const KeptPlan& kept, const ImportLimits& limits) {
+Result<plan::FrozenPlan> freeze(plan::StudyPlan draft, const KeptPlan& kept, const ImportLimits& limits) {
     if (kept.seed) draft.seed = *kept.seed;
     if (const auto done = keepStiffness(kept.stable_stiffness, draft, limits); !done) return done.errors();
     if (const auto done = applyAccuracy(kept.protocol_sha256, kept.accuracy, draft, limits); !done)
@@ -33,7 +33,7 @@ Result<protocol::FrozenPlan> freeze(protocol::StudyPlan draft, const KeptPlan& k
     if (kept.questionnaires)
         if (const auto done = protocol::loadQuestionnaires(draft, kept.questionnaires, kept.language); !done)
             return done.errors();
-    return protocol::FrozenPlan(std::move(draft));
+    return plan::FrozenPlan(std::move(draft));
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -11,14 +11,14 @@
 #include "study/run/files/mesh_importer.h"
 #include "study/store/rows/rows.h"
 
-namespace passung::app {
+namespace passung::run {
 
 /// What a database keeps of a protocol, and of the session that is to run.
 struct KeptPlan {
     std::string protocol_sha256;
-    std::vector<protocol::StableStiffness> stable_stiffness;  // none: the devices' rated ones
-    std::vector<store::AccuracyRow> accuracy;                 // rows of other protocols do not count
-    std::optional<std::uint64_t> seed = {};                   // none: the draft's
+    std::vector<plan::StableStiffness> stable_stiffness;  // none: the devices' rated ones
+    std::vector<store::AccuracyRow> accuracy;             // rows of other protocols do not count
+    std::optional<std::uint64_t> seed = {};               // none: the draft's
     /// The bytes of a questionnaire's file by its path; empty: questionnaires stay as the draft has them.
     std::function<Result<std::string>(const std::string& path)> questionnaires = {};
     std::string language = {};  // of these questionnaires; empty: the protocol's
@@ -27,6 +27,6 @@ struct KeptPlan {
 /// The plan as the database runs it; the draft as it was read stays what it is. What other stable maxima than the
 /// draft's change is read anew from its text. Errors: a stiffness above a kept maximum; a budget of accuracy = "auto"
 /// that nothing was picked for; a questionnaire that cannot be read.
-Result<protocol::FrozenPlan> freeze(protocol::StudyPlan draft, const KeptPlan& kept, const ImportLimits& limits = {});
+Result<plan::FrozenPlan> freeze(plan::StudyPlan draft, const KeptPlan& kept, const ImportLimits& limits = {});
 
-}  // namespace passung::app
+}  // namespace passung::run

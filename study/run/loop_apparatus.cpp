@@ -13,17 +13,17 @@
 #include "study/session/cue_settings.h"
 #include "study/session/secondary.h"
 
-namespace passung::app {
+namespace passung::run {
 
 namespace {
 
 constexpr std::size_t kRingRecords = 8192;  // eight seconds: a writer that stalls for longer shows in the data
 
 /// Of each scene in turn: its obstacles, then what none pushed.
-std::vector<session::ContactEnergy> contactEnergy(std::span<const model::Scene> scenes,
+std::vector<session::ContactEnergy> contactEnergy(std::span<const scene::Scene> scenes,
                                                   std::span<const tick::PairAccount> pairs) {
     std::vector<session::ContactEnergy> energy;
-    for (const model::Scene& scene : scenes) {
+    for (const scene::Scene& scene : scenes) {
         for (std::size_t i = 0; i < scene.spec.parts.size(); ++i)
             if (i != scene.held) energy.push_back({.obstacle = scene.spec.parts[i].name});
         energy.emplace_back();
@@ -43,13 +43,13 @@ std::vector<session::StageNote> stageNotes(const tick::TickModel& model) {
     return notes;
 }
 
-LoopApparatus::Run::Run(BuiltScenes built, HeldDevice device, const protocol::Condition& condition,
+LoopApparatus::Run::Run(BuiltScenes built, HeldDevice device, const plan::Condition& condition,
                         std::span<loop::ScreenRing* const> screens)
     : scenes(std::move(built)),
       held(std::move(device)),
       cues(session::cueSettings(condition.cues), held.person, held.drives_hand),
       ring(kRingRecords),
-      cycle(scenes.turns, *held.device, ring, condition.shown == protocol::ShownPose::Proxy, screens, &cues) {}
+      cycle(scenes.turns, *held.device, ring, condition.shown == plan::ShownPose::Proxy, screens, &cues) {}
 
 LoopApparatus::LoopApparatus(const simulated::DeviceParams& device, const person::SimulatedPerson& person, Clock clock,
                              Performer* performer, const ImportLimits& import_limits)
@@ -61,7 +61,7 @@ LoopApparatus::LoopApparatus(const simulated::DeviceParams& device, const person
 
 LoopApparatus::~LoopApparatus() = default;
 
-Result<std::vector<session::StageNote>> LoopApparatus::prepare(const protocol::Condition& condition, std::uint64_t seed,
+Result<std::vector<session::StageNote>> LoopApparatus::prepare(const plan::Condition& condition, std::uint64_t seed,
                                                                std::int64_t trials_before) {
     const simulated::DeviceParams* preset = simulated::findPreset(condition.device);
     if (preset == nullptr)
@@ -102,16 +102,16 @@ Result<BuiltScenes> LoopApparatus::build(const std::vector<session::RenderedScen
 }
 
 LoopApparatus::HeldDevice LoopApparatus::makeDevice(const simulated::DeviceParams& preset,
-                                                    const protocol::Condition& condition, std::uint64_t seed,
+                                                    const plan::Condition& condition, std::uint64_t seed,
                                                     std::int64_t trials_before) const {
-    const model::Registration& r = condition.scene.registration;
+    const scene::Registration& r = condition.scene.registration;
     const simulated::HandRegistration registration{r.X_WB, r.scale, r.X_DH};
     const simulated::VisibleTask task = visibleTask(condition);
     HeldDevice held;
     if (performer_ != nullptr) held.device = performer_->device(preset, condition);
     held.drives_hand = held.device == nullptr;  // what a performer brings is a mouse
     if (held.device != nullptr) return held;
-    if (condition.timed_by == protocol::TimedBy::Program) {
+    if (condition.timed_by == plan::TimedBy::Program) {
         auto device = std::make_unique<simulated::SimulatedDevice>(preset, simulatedHand(person_, trials_before), task,
                                                                    registration, seed);
         held.person = device.get();
@@ -121,7 +121,7 @@ LoopApparatus::HeldDevice LoopApparatus::makeDevice(const simulated::DeviceParam
             std::make_unique<simulated::RestingDevice>(preset, registration.handleFromPart(task.X_WHeldStart));
     }
     if (!condition.secondary.any()) return held;
-    const bool handles = condition.timed_by != protocol::TimedBy::Clock;
+    const bool handles = condition.timed_by != plan::TimedBy::Clock;
     held.device = std::make_unique<RespondingDevice>(
         std::move(held.device), session::detectionSettings(condition.secondary), person_, handles, seed);
     return held;
@@ -130,7 +130,7 @@ LoopApparatus::HeldDevice LoopApparatus::makeDevice(const simulated::DeviceParam
 /// What windows drew and played, or what a simulated person's senses took. No device has an actuator for vibration yet.
 session::Delivered LoopApparatus::delivered(const std::optional<session::Presentation>& presentation) const {
     const session::Delivered& asked = run_->cues.asked();
-    if (performer_ == nullptr || performer_->kind() == protocol::ParticipantKind::Simulated) {
+    if (performer_ == nullptr || performer_->kind() == plan::ParticipantKind::Simulated) {
         session::Delivered delivered = asked;
         if (asked.masking > 0) delivered.sound = 0;  // noise covers it
         return delivered;
@@ -217,4 +217,4 @@ session::Presentation LoopApparatus::presentation() const {
                                  zero_ns + periods_ * kTickNanoseconds);
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

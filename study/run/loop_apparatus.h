@@ -15,7 +15,7 @@
 #include "study/run/person/performer.h"
 #include "study/session/apparatus.h"
 
-namespace passung::app {
+namespace passung::run {
 
 enum class Clock { Virtual, RealTime };
 
@@ -28,7 +28,7 @@ public:
     ~LoopApparatus() override;
 
     const DeviceDescription& device() const override { return description_; }
-    Result<std::vector<session::StageNote>> prepare(const protocol::Condition& condition, std::uint64_t seed,
+    Result<std::vector<session::StageNote>> prepare(const plan::Condition& condition, std::uint64_t seed,
                                                     std::int64_t trials_before) override;
     void wait(std::int64_t ticks) override;
     void start() override;
@@ -54,14 +54,14 @@ private:
         loop::HapticCycle cycle;
         std::unique_ptr<loop::RealTimeThread> thread;
 
-        Run(BuiltScenes built, HeldDevice device, const protocol::Condition& condition,
+        Run(BuiltScenes built, HeldDevice device, const plan::Condition& condition,
             std::span<loop::ScreenRing* const> screens);
     };
 
     session::Presentation presentation() const;
     Result<BuiltScenes> build(const std::vector<session::RenderedScene>& scenes);
-    HeldDevice makeDevice(const simulated::DeviceParams& preset, const protocol::Condition& condition,
-                          std::uint64_t seed, std::int64_t trials_before) const;
+    HeldDevice makeDevice(const simulated::DeviceParams& preset, const plan::Condition& condition, std::uint64_t seed,
+                          std::int64_t trials_before) const;
     session::Delivered delivered(const std::optional<session::Presentation>& presentation) const;
 
     DeviceDescription description_;
@@ -70,7 +70,7 @@ private:
     Performer* performer_;
     std::unique_ptr<Builds> store_;
     WatchedStore watched_{store_.get()};
-    model::PartCache parts_{&watched_};
+    scene::PartCache parts_{&watched_};
     std::mutex halt_mutex_;  // run_ and its thread come and go, halted_ changes
     bool halted_ = false;
     std::int64_t started_ns_ = 0;             // on the steady clock, of the newest attempt's loop; 0: it did not start
@@ -82,4 +82,4 @@ private:
 /// What runs in every tick of `model` and why.
 std::vector<session::StageNote> stageNotes(const tick::TickModel& model);
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -27,7 +27,7 @@
 #include "study/session/participant_order.h"
 #include "study/store/schema/identity.h"
 
-namespace passung::app {
+namespace passung::run {
 
 namespace {
 
@@ -61,7 +61,7 @@ public:
 /// One participant: enrolled, given a slot, and through all trials.
 class StudyRun {
 public:
-    StudyRun(protocol::FrozenPlan plan, const RunOptions& options, const session::SessionListener& listener,
+    StudyRun(plan::FrozenPlan plan, const RunOptions& options, const session::SessionListener& listener,
              store::Store& store, std::string protocol_sha256)
         : plan_(std::move(plan)),
           options_(options),
@@ -94,7 +94,7 @@ public:
         if (!slot) return slot.errors();
         auto part = store_.nextPart(sha256_, code);
         if (!part) return part.errors();
-        const int last = options_.participant.empty() ? protocol::sessionsOf(*plan_) : *part;
+        const int last = options_.participant.empty() ? plan::sessionsOf(*plan_) : *part;
         listener_(session::ParticipantBegins{code, number, options_.simulated});
         for (int p = *part; p <= last; ++p)
             if (auto end = session(code, {static_cast<std::size_t>(slot->number), slot->group}, p);
@@ -142,8 +142,8 @@ public:
 private:
     bool measured() const { return options_.clock == Clock::RealTime; }
 
-    protocol::ParticipantKind kind() const {
-        return options_.performer == nullptr ? protocol::ParticipantKind::Simulated : options_.performer->kind();
+    plan::ParticipantKind kind() const {
+        return options_.performer == nullptr ? plan::ParticipantKind::Simulated : options_.performer->kind();
     }
 
     store::UtcClock clockNow(std::int64_t used_ns = 0, const std::string& latest_utc = {}) const {
@@ -195,10 +195,10 @@ private:
         setup.answers = options_.answers != nullptr ? options_.answers : &simulated;
         // In virtual time nobody can say when a trial begins and ends.
         const bool simulates =
-            kind() == protocol::ParticipantKind::Simulated && (options_.answers == nullptr || !measured());
+            kind() == plan::ParticipantKind::Simulated && (options_.answers == nullptr || !measured());
         SimulatedReader reader;
         setup.reader = options_.reader != nullptr ? options_.reader : &reader;
-        if (kind() != protocol::ParticipantKind::Simulated) {
+        if (kind() != plan::ParticipantKind::Simulated) {
             setup.answers = options_.performer->answers();
             setup.reader = options_.performer->reader();
         }
@@ -256,7 +256,7 @@ private:
         }
     }
 
-    protocol::FrozenPlan plan_;
+    plan::FrozenPlan plan_;
     const RunOptions& options_;
     const session::SessionListener& listener_;
     store::Store& store_;
@@ -287,7 +287,7 @@ store::Store::Opened openForRun(const RunOptions& options, const session::Sessio
 /// What is kept for the session, its questionnaires as the protocol was imported with them, whatever became of their
 /// files.
 Result<KeptPlan> keptFor(const store::Unfinished& session, const StoredPlans& plans, const store::StoreReader& reader,
-                         const protocol::StudyPlan& draft) {
+                         const plan::StudyPlan& draft) {
     auto kept = plans.kept(session.protocol_sha256);
     if (!kept) return kept;
     auto texts = reader.questionnaireTexts(session.protocol_sha256);
@@ -316,20 +316,20 @@ void backUp(store::Store& store, const RunOptions& options, const session::Sessi
 }
 
 bool isPerson(const std::string& code) {
-    const auto kind = protocol::kindOfCode(code);
-    return kind && *kind != protocol::ParticipantKind::Simulated;
+    const auto kind = plan::kindOfCode(code);
+    return kind && *kind != plan::ParticipantKind::Simulated;
 }
 
 /// Nobody is there to take part under this code: a person needs a device that a person can move.
 bool lacksDevice(const std::string& code, const Performer* performer) {
     if (!isPerson(code)) return false;
-    return performer == nullptr || performer->kind() != protocol::kindOfCode(code);
+    return performer == nullptr || performer->kind() != plan::kindOfCode(code);
 }
 
 /// Why nobody but a simulated participant can run the plan here under this code; empty: somebody can, or is simulated.
-Errors whyNotPeople(const protocol::StudyPlan& plan, const std::string& code, const Performer* performer) {
+Errors whyNotPeople(const plan::StudyPlan& plan, const std::string& code, const Performer* performer) {
     const bool person =
-        isPerson(code) || (performer != nullptr && performer->kind() != protocol::ParticipantKind::Simulated);
+        isPerson(code) || (performer != nullptr && performer->kind() != plan::ParticipantKind::Simulated);
     Errors why;
     if (person) why = missingOutputs(plan, code.empty() ? "a person" : code);
     if (lacksDevice(code, performer))
@@ -347,11 +347,10 @@ Error otherStation(const store::Unfinished& session, const RunOptions& options) 
                  .file = options.database};
 }
 
-Result<RunEnd> runSessions(const protocol::StudyPlan& draft, RunOptions options,
-                           const session::SessionListener& listener) {
+Result<RunEnd> runSessions(const plan::StudyPlan& draft, RunOptions options, const session::SessionListener& listener) {
     if (Errors why = whyNotPeople(draft, options.participant, options.performer); !why.empty()) return why;
     if (Errors unstable = beyondBorder(draft, knownDevices()); !unstable.empty()) return unstable;
-    const auto language = protocol::chooseLanguage(draft, options.language);
+    const auto language = plan::chooseLanguage(draft, options.language);
     if (!language) return language.errors();
     options.language = *language;
     // A calibration that fails must leave nothing behind: neither a new database nor the protocol in an old one.
@@ -443,8 +442,7 @@ void logStart(const RunOptions& options, const std::string& what) {
 
 }  // namespace
 
-Result<RunEnd> runStudy(const protocol::StudyPlan& draft, RunOptions options,
-                        const session::SessionListener& listener) {
+Result<RunEnd> runStudy(const plan::StudyPlan& draft, RunOptions options, const session::SessionListener& listener) {
     logStart(options, "run of protocol " + sha256Hex(draft.source_text));
     return logged(options.log, listener,
                   [&](const session::SessionListener& with) { return runSessions(draft, options, with); });
@@ -456,4 +454,4 @@ Result<RunEnd> resumeStudy(const ResumeOptions& resume, RunOptions options, cons
                   [&](const session::SessionListener& with) { return resumeSession(resume, options, with); });
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -13,7 +13,7 @@
 #include "study/session/session.h"
 #include "study/store/write/store.h"
 
-namespace passung::app {
+namespace passung::run {
 
 struct RunOptions {
     std::string database;
@@ -48,8 +48,8 @@ enum class RunEnd { Complete, Interrupted };
 /// stays in it. An interruption stores the running trial as aborted and closes the session as aborted, both with the
 /// reason "interrupted". What contact.accuracy = "auto" asks for is picked when the protocol first runs in this
 /// database, and kept there; before later runs in real time a machine that is too slow for it is warned of. Errors
-/// before anything is stored: a language that is none of protocol::languagesOf(draft).
-Result<RunEnd> runStudy(const protocol::StudyPlan& draft, RunOptions options, const session::SessionListener& listener);
+/// before anything is stored: a language that is none of plan::languagesOf(draft).
+Result<RunEnd> runStudy(const plan::StudyPlan& draft, RunOptions options, const session::SessionListener& listener);
 
 struct ResumeOptions {
     std::string session;  // id; empty: the newest one that did not complete
@@ -61,4 +61,4 @@ struct ResumeOptions {
 /// session's would have been.
 Result<RunEnd> resumeStudy(const ResumeOptions& resume, RunOptions options, const session::SessionListener& listener);
 
-}  // namespace passung::app
+}  // namespace passung::run

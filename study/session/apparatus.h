@@ -76,7 +76,7 @@ public:
     /// Builds the scene of `condition` and everything that a trial needs; may take seconds. Motors stay off.
     /// `seed` drives everything random in a simulated device and hand for this attempt; a simulated person learns from
     /// the trials that the session's plan has before this one.
-    virtual Result<std::vector<StageNote>> prepare(const protocol::Condition& condition, std::uint64_t seed,
+    virtual Result<std::vector<StageNote>> prepare(const plan::Condition& condition, std::uint64_t seed,
                                                    std::int64_t trials_before) = 0;
 
     /// Lets so many periods pass while no loop runs: at once in virtual time.

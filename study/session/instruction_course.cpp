@@ -14,7 +14,7 @@ constexpr std::int64_t kEnd = -1;
 
 }  // namespace
 
-InstructionCourse::InstructionCourse(const protocol::StudyPlan& plan, std::string language, bool timing_measured,
+InstructionCourse::InstructionCourse(const plan::StudyPlan& plan, std::string language, bool timing_measured,
                                      InstructionReader* reader, TrialSink& sink)
     : plan_(plan), language_(std::move(language)), timing_measured_(timing_measured), reader_(reader), sink_(sink) {}
 
@@ -40,11 +40,11 @@ bool InstructionCourse::show(const design::PlannedTrial* next, std::int64_t sess
     return false;
 }
 
-std::vector<const protocol::Instruction*> InstructionCourse::due(const design::PlannedTrial* next) const {
-    using protocol::ShowAt;
-    std::vector<const protocol::Instruction*> pages;
+std::vector<const plan::Instruction*> InstructionCourse::due(const design::PlannedTrial* next) const {
+    using plan::ShowAt;
+    std::vector<const plan::Instruction*> pages;
     const auto add = [&](ShowAt moment) {
-        for (const protocol::Instruction& page : plan_.instructions)
+        for (const plan::Instruction& page : plan_.instructions)
             if (page.moment == moment && (page.block.empty() || page.block == next->block)) pages.push_back(&page);
     };
     if (next == nullptr) {
@@ -56,23 +56,23 @@ std::vector<const protocol::Instruction*> InstructionCourse::due(const design::P
     return pages;
 }
 
-Page InstructionCourse::pageOf(const protocol::Instruction& instruction) const {
+Page InstructionCourse::pageOf(const plan::Instruction& instruction) const {
     Page page{instruction, {}, {}, fmt::format("{}|{}|{}", *open_for_, read_, pages_)};
-    for (const protocol::StudyText& text : plan_.texts) {
+    for (const plan::StudyText& text : plan_.texts) {
         if (text.name != instruction.text || text.languages.empty()) continue;
         const auto chosen = std::find_if(text.languages.begin(), text.languages.end(),
                                          [&](const auto& each) { return each.first == language_; });
         page.text = chosen != text.languages.end() ? chosen->second : text.languages.front().second;
     }
-    for (const protocol::PictureSource& picture : plan_.pictures)
+    for (const plan::PictureSource& picture : plan_.pictures)
         if (picture.name == instruction.picture) page.picture = picture.path;
     return page;
 }
 
-void InstructionCourse::log(const protocol::Instruction& instruction, const std::optional<PageRead>& read,
+void InstructionCourse::log(const plan::Instruction& instruction, const std::optional<PageRead>& read,
                             std::int64_t session_ns) const {
     JsonObject payload;
-    payload.text("moment", protocol::showAtName(instruction.moment))
+    payload.text("moment", plan::showAtName(instruction.moment))
         .text("text", instruction.text)
         .text("picture", instruction.picture);
     if (read) payload.text("language", language_);

@@ -18,19 +18,18 @@ class InstructionCourse {
 public:
     /// `language`: of the texts; one that they do not have: their first. `reader` may be null. Everything outlives the
     /// desk.
-    InstructionCourse(const protocol::StudyPlan& plan, std::string language, bool timing_measured,
+    InstructionCourse(const plan::StudyPlan& plan, std::string language, bool timing_measured,
                       InstructionReader* reader, TrialSink& sink);
 
     /// One look at the pages before the trial `next`, or (nullptr) after the last one: true while one is open.
     bool show(const design::PlannedTrial* next, std::int64_t session_ns);
 
 private:
-    std::vector<const protocol::Instruction*> due(const design::PlannedTrial* next) const;
-    Page pageOf(const protocol::Instruction& instruction) const;
-    void log(const protocol::Instruction& instruction, const std::optional<PageRead>& read,
-             std::int64_t session_ns) const;
+    std::vector<const plan::Instruction*> due(const design::PlannedTrial* next) const;
+    Page pageOf(const plan::Instruction& instruction) const;
+    void log(const plan::Instruction& instruction, const std::optional<PageRead>& read, std::int64_t session_ns) const;
 
-    const protocol::StudyPlan& plan_;
+    const plan::StudyPlan& plan_;
     std::string language_;
     bool timing_measured_;
     InstructionReader* reader_;

@@ -10,7 +10,7 @@ namespace passung::session {
 
 /// A page of the study's instructions as it is to be shown.
 struct Page {
-    const protocol::Instruction& instruction;
+    const plan::Instruction& instruction;
     std::string text;     // in the session's language
     std::string picture;  // file that can be opened from here; empty: none
     std::string id;       // differs from that of every other page of this run of the session

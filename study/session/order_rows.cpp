@@ -2,13 +2,13 @@
 
 namespace passung::session {
 
-std::vector<OrderedBlock> orderOf(const protocol::StudyPlan& plan, const std::vector<design::PlannedTrial>& trials) {
+std::vector<OrderedBlock> orderOf(const plan::StudyPlan& plan, const std::vector<design::PlannedTrial>& trials) {
     std::vector<OrderedBlock> blocks;
     for (std::size_t next = 0; next < trials.size();) {
         const auto index = trials[next].block_index;
         OrderedBlock block{static_cast<std::size_t>(index), {}};
         // A shuffled block is one pass: its repetitions are mixed.
-        const bool one_pass = plan.blocks[block.block].order == protocol::BlockOrder::Shuffled;
+        const bool one_pass = plan.blocks[block.block].order == plan::BlockOrder::Shuffled;
         while (next < trials.size() && trials[next].block_index == index) {
             const int repetition = trials[next].repetition;
             OrderedPass pass;

@@ -25,6 +25,6 @@ struct OrderedBlock {
 };
 
 /// The trials of one participant's session as an experimenter reads them.
-std::vector<OrderedBlock> orderOf(const protocol::StudyPlan& plan, const std::vector<design::PlannedTrial>& trials);
+std::vector<OrderedBlock> orderOf(const plan::StudyPlan& plan, const std::vector<design::PlannedTrial>& trials);
 
 }  // namespace passung::session

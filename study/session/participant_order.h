@@ -15,16 +15,16 @@ namespace passung::session {
 /// Where a participant stands in the design.
 struct DesignPlace {
     std::size_t slot = 0;   // running number in the group, from 0: decides the rows of the squares
-    std::size_t group = 0;  // index into protocol::groupNames()
+    std::size_t group = 0;  // index into plan::groupNames()
 };
 
 /// The trials of one participant's session, from 1, in order: design::planSession for a protocol.
-Result<std::vector<design::PlannedTrial>> planTrials(const protocol::StudyPlan& plan, const DesignPlace& place,
+Result<std::vector<design::PlannedTrial>> planTrials(const plan::StudyPlan& plan, const DesignPlace& place,
                                                      std::string_view participant, int session = 1);
 
 /// The places of the first `count` participants of any kind, as the store allots them; with several `stations` each
 /// takes the next one in turn.
-std::vector<DesignPlace> firstPlaces(const protocol::StudyPlan& plan, std::size_t count, std::size_t stations = 1);
+std::vector<DesignPlace> firstPlaces(const plan::StudyPlan& plan, std::size_t count, std::size_t stations = 1);
 
 /// A session as it is planned for one of the participants to come.
 struct PlannedSession {
@@ -35,6 +35,6 @@ struct PlannedSession {
 };
 
 /// All sessions of the people who take part first.
-Result<std::vector<PlannedSession>> plannedSessions(const protocol::StudyPlan& plan, int participants, int stations);
+Result<std::vector<PlannedSession>> plannedSessions(const plan::StudyPlan& plan, int participants, int stations);
 
 }  // namespace passung::session

@@ -17,31 +17,31 @@
 namespace passung::session {
 namespace {
 
-std::string factorsText(const protocol::StudyPlan& plan) {
+std::string factorsText(const plan::StudyPlan& plan) {
     if (plan.factors.empty()) return "";
     std::size_t width = 0;
     for (const auto& factor : plan.factors) width = std::max(width, factor.name.size());
     const bool within = std::all_of(plan.factors.begin(), plan.factors.end(),
-                                    [](const auto& f) { return f.kind == protocol::FactorKind::Within; });
+                                    [](const auto& f) { return f.kind == plan::FactorKind::Within; });
     std::string text = within ? "Factors (within participants)\n" : "Factors\n";
     for (const auto& factor : plan.factors) {
         std::vector<std::string> labels;
         for (const auto& level : factor.levels) labels.push_back(level.label + (level.catch_trial ? " (catch)" : ""));
         text += fmt::format("  {:<{}}  {}{}{}{}\n", factor.name, width,
-                            within ? "" : fmt::format("{}: ", protocol::factorKindName(factor.kind)),
+                            within ? "" : fmt::format("{}: ", plan::factorKindName(factor.kind)),
                             fmt::join(labels, ", "), factor.unit.empty() ? "" : " ", factor.unit);
     }
     return text + "\n";
 }
 
-std::string conditionsText(const protocol::StudyPlan& plan) {
+std::string conditionsText(const plan::StudyPlan& plan) {
     std::string text = "Conditions\n";
-    for (std::size_t i = 0; i < protocol::plannedConditions(plan); ++i) {
-        const protocol::Condition& condition = plan.conditions[i];
-        const model::ContactSpec& contact = condition.scene.contact;
+    for (std::size_t i = 0; i < plan::plannedConditions(plan); ++i) {
+        const plan::Condition& condition = plan.conditions[i];
+        const scene::ContactSpec& contact = condition.scene.contact;
         text += fmt::format("  {:>3}  {}  (device {}", i + 1, condition.name, condition.device);
-        if (condition.timed_by != protocol::TimedBy::Program)
-            text += fmt::format(" rests, timed by the {})\n", protocol::timedByName(condition.timed_by));
+        if (condition.timed_by != plan::TimedBy::Program)
+            text += fmt::format(" rests, timed by the {})\n", plan::timedByName(condition.timed_by));
         else if (!condition.scene.display_wrench)
             text += ", no force is displayed)\n";
         else
@@ -51,27 +51,27 @@ std::string conditionsText(const protocol::StudyPlan& plan) {
 }
 
 /// Trials of each pass of a block, as everybody has them.
-std::size_t trialsPerPass(const design::Design& design, std::size_t b, const protocol::Block& block) {
+std::size_t trialsPerPass(const design::Design& design, std::size_t b, const plan::Block& block) {
     const auto cells = design::cellsOf(design.blocks[b], design::cellsOf(design, 0, 0, "", 0)).ordinary;
     const auto parts = design::partedBy(design, block.blocked, cells);
     return block.trials > 0 ? static_cast<std::size_t>(block.trials) : parts.empty() ? 0 : parts[0].size();
 }
 
-std::string blockText(const protocol::StudyPlan& plan, const design::Design& design, std::size_t b) {
-    const protocol::Block& block = plan.blocks[b];
+std::string blockText(const plan::StudyPlan& plan, const design::Design& design, std::size_t b) {
+    const plan::Block& block = plan.blocks[b];
     std::string text =
-        fmt::format("{}, order {}, {} x {}", protocol::phaseName(block.phase), protocol::blockOrderName(block.order),
+        fmt::format("{}, order {}, {} x {}", plan::phaseName(block.phase), plan::blockOrderName(block.order),
                     design::counted(trialsPerPass(design, b, block), "trial"),
                     design::counted(static_cast<std::size_t>(block.repetitions), "repetition"));
     if (block.blocked)
         text += fmt::format(", blocked by {} (order {})", plan.factors[*block.blocked].name,
-                            protocol::blockOrderName(block.blocked_order));
+                            plan::blockOrderName(block.blocked_order));
     if (block.catches.trials > 0)
         text += fmt::format(", {} a pass", design::counted(block.catches.trials, "catch trial"));
-    if (protocol::sessionsOf(plan) > 1) text += fmt::format(", session {}", block.session);
+    if (plan::sessionsOf(plan) > 1) text += fmt::format(", session {}", block.session);
     if (block.rest > 0.0) text += fmt::format(", after at least {:.6g} s of rest", block.rest);
-    if (block.rest_ends != protocol::RestEnds::ByTime)
-        text += fmt::format(" that the {} ends", protocol::restEndsName(block.rest_ends));
+    if (block.rest_ends != plan::RestEnds::ByTime)
+        text += fmt::format(" that the {} ends", plan::restEndsName(block.rest_ends));
     if (!block.constraints.empty())
         text += fmt::format(", {}: {:.3g} % of plain shuffles keep to them",
                             design::counted(block.constraints.size(), "constraint"),
@@ -79,28 +79,28 @@ std::string blockText(const protocol::StudyPlan& plan, const design::Design& des
     return text;
 }
 
-std::string blocksText(const protocol::StudyPlan& plan) {
+std::string blocksText(const plan::StudyPlan& plan) {
     std::size_t width = 0;
     for (const auto& block : plan.blocks) width = std::max(width, block.name.size());
-    const auto design = protocol::designOf(plan);
+    const auto design = plan::designOf(plan);
     std::string text = "Blocks\n";
     for (std::size_t b = 0; b < plan.blocks.size(); ++b)
         text += fmt::format("  {:<{}}  {}\n", plan.blocks[b].name, width, blockText(plan, design, b));
     return text + "\n";
 }
 
-std::string questionnairesText(const protocol::StudyPlan& plan) {
+std::string questionnairesText(const plan::StudyPlan& plan) {
     if (plan.questionnaires.empty()) return "";
     std::string text = "Questionnaires\n";
     for (const auto& planned : plan.questionnaires) {
         const bool of_session =
-            planned.moment == protocol::Moment::SessionStart || planned.moment == protocol::Moment::SessionEnd;
+            planned.moment == plan::Moment::SessionStart || planned.moment == plan::Moment::SessionEnd;
         text += fmt::format("  {} {}  {}{}, {}, {}\n", planned.definition.key, planned.definition.version,
-                            protocol::momentName(planned.moment),
+                            plan::momentName(planned.moment),
                             of_session              ? ""
                             : planned.block.empty() ? " of every main block"
                                                     : " of block " + planned.block,
-                            fmt::join(protocol::languagesAsked(plan, planned), "/"),
+                            fmt::join(plan::languagesAsked(plan, planned), "/"),
                             design::counted(planned.definition.items.size(), "item"));
     }
     return text + "\n";
@@ -134,10 +134,10 @@ bool isPlainSquare(const design::Design& design) {
 
 }  // namespace
 
-std::string describeBalance(const protocol::StudyPlan& plan, const std::vector<DesignPlace>& places) {
-    const auto design = protocol::designOf(plan);
+std::string describeBalance(const plan::StudyPlan& plan, const std::vector<DesignPlace>& places) {
+    const auto design = plan::designOf(plan);
     if (places.empty() || design::evenNumber(design) < 2) return "";
-    const auto groups = protocol::groupNames(plan);
+    const auto groups = plan::groupNames(plan);
     std::string text = fmt::format("{}; all rows and groups meet equally often with multiples of {}.\n",
                                    design::counted(places.size(), "participant"), design::evenNumber(design));
     for (std::size_t group = 0; group < groups.size(); ++group) {
@@ -151,10 +151,10 @@ std::string describeBalance(const protocol::StudyPlan& plan, const std::vector<D
     return text;
 }
 
-std::vector<std::string> planWarnings(const protocol::StudyPlan& plan) {
+std::vector<std::string> planWarnings(const plan::StudyPlan& plan) {
     std::vector<std::string> warnings = plan.warnings;
     if (plan.conditions.empty()) return warnings;
-    const auto design = protocol::designOf(plan);
+    const auto design = plan::designOf(plan);
     const std::size_t whole = design::evenNumber(design);
     if (static_cast<std::size_t>(plan.participants) % whole != 0)
         warnings.push_back(fmt::format(
@@ -164,7 +164,7 @@ std::vector<std::string> planWarnings(const protocol::StudyPlan& plan) {
     return warnings;
 }
 
-Result<std::string> describePlan(const protocol::StudyPlan& plan, int participants, int stations) {
+Result<std::string> describePlan(const plan::StudyPlan& plan, int participants, int stations) {
     std::string text =
         fmt::format("{}\nstudy {}, version {}, seed {}, {} planned\n\n", plan.title, plan.name, plan.version, plan.seed,
                     design::counted(static_cast<std::size_t>(plan.participants), "participant"));
@@ -172,11 +172,11 @@ Result<std::string> describePlan(const protocol::StudyPlan& plan, int participan
         factorsText(plan) + conditionsText(plan) + blocksText(plan) + staircasesText(plan) + questionnairesText(plan);
 
     text += "Orders (numbers of conditions; blocks parted by |)\n";
-    const auto groups = protocol::groupNames(plan);
+    const auto groups = plan::groupNames(plan);
     const auto planned = plannedSessions(plan, participants, stations);
     if (!planned) return planned.errors();
     std::vector<DesignPlace> places;
-    std::vector<double> longest(static_cast<std::size_t>(protocol::sessionsOf(plan)));
+    std::vector<double> longest(static_cast<std::size_t>(plan::sessionsOf(plan)));
     std::size_t count = 0;  // of the last participant's trials
     for (const PlannedSession& one : *planned) {
         if (one.session == 1) {
@@ -187,10 +187,10 @@ Result<std::string> describePlan(const protocol::StudyPlan& plan, int participan
                             longest.size() > 1 ? fmt::format(", session {}", one.session) : "",
                             orderText(orderOf(plan, one.trials)));
         auto& most = longest[static_cast<std::size_t>(one.session - 1)];
-        most = std::max(most, protocol::longestDuration(plan, one.trials));
+        most = std::max(most, plan::longestDuration(plan, one.trials));
         count += one.trials.size();
     }
-    const auto design = protocol::designOf(plan);
+    const auto design = plan::designOf(plan);
     text += stations == 1 && !places.empty() && isPlainSquare(design)
                 ? design::balanceSentence(places.size(), design::counterbalancingFactorsOf(design)[0].items) + ".\n"
                 : describeBalance(plan, places);

@@ -16,9 +16,9 @@ namespace passung::session {
 namespace {
 
 /// Of the session's number, moment, block, trial and condition; what there is not is empty.
-std::string textOf(const Occasion& occasion, const protocol::PlannedQuestionnaire& planned, int ordinal) {
+std::string textOf(const Occasion& occasion, const plan::PlannedQuestionnaire& planned, int ordinal) {
     const auto text = [](const auto& number) { return number ? fmt::format("{}", *number) : std::string(); };
-    return fmt::format("{}|{}|{}|{}|{}", ordinal, protocol::momentName(planned.moment), text(occasion.block_index),
+    return fmt::format("{}|{}|{}|{}|{}", ordinal, plan::momentName(planned.moment), text(occasion.block_index),
                        text(occasion.trial_index), text(occasion.condition));
 }
 
@@ -31,8 +31,8 @@ Error faultOf(const ShownQuestionnaire& form, std::string message) {
 
 }  // namespace
 
-QuestionnaireCourse::QuestionnaireCourse(const protocol::StudyPlan& plan, QuestionnaireKey key,
-                                         QuestionnaireSource* source, TrialSink& sink)
+QuestionnaireCourse::QuestionnaireCourse(const plan::StudyPlan& plan, QuestionnaireKey key, QuestionnaireSource* source,
+                                         TrialSink& sink)
     : plan_(plan), key_(std::move(key)), source_(source), sink_(sink) {}
 
 void QuestionnaireCourse::remember(FinishedTrial trial) { finished_.push_back(std::move(trial)); }
@@ -104,7 +104,7 @@ void QuestionnaireCourse::noteShown(const ShownQuestionnaire& form, std::int64_t
 }
 
 ShownQuestionnaire QuestionnaireCourse::formOf(const Occasion& occasion) const {
-    const protocol::PlannedQuestionnaire& planned = plan_.questionnaires[occasion.questionnaire];
+    const plan::PlannedQuestionnaire& planned = plan_.questionnaires[occasion.questionnaire];
     ShownQuestionnaire form{planned, occasion, textOf(occasion, planned, key_.ordinal), {}, {}};
     const std::uint64_t seed =
         streamSeed(plan_.name, key_.participant, planned.definition.key, "item_order|" + form.occasion_text, key_.seed);

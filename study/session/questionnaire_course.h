@@ -15,7 +15,7 @@ namespace passung::session {
 
 /// Whose questionnaires.
 struct QuestionnaireKey {
-    std::string participant;  // whose draws: protocol::rehearsedCode()
+    std::string participant;  // whose draws: plan::rehearsedCode()
     std::uint64_t seed = 0;   // of the study
     int ordinal = 1;
     bool timing_measured = true;  // false in virtual time: response times are not kept
@@ -26,7 +26,7 @@ struct QuestionnaireKey {
 class QuestionnaireCourse {
 public:
     /// `source`: who answers; may be null if the plan has no questionnaire. Everything outlives the desk.
-    QuestionnaireCourse(const protocol::StudyPlan& plan, QuestionnaireKey key, QuestionnaireSource* source,
+    QuestionnaireCourse(const plan::StudyPlan& plan, QuestionnaireKey key, QuestionnaireSource* source,
                         TrialSink& sink);
 
     /// One look at what is due between the trial that was remembered last and the first one `to_do`: true while
@@ -55,7 +55,7 @@ private:
     ShownQuestionnaire formOf(const Occasion& occasion) const;
     Result<Done> store(const ShownQuestionnaire& form, const FilledForm& filled, std::int64_t session_ns);
 
-    const protocol::StudyPlan& plan_;
+    const plan::StudyPlan& plan_;
     QuestionnaireKey key_;
     QuestionnaireSource* source_;
     TrialSink& sink_;

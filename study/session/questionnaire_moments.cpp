@@ -5,7 +5,7 @@
 namespace passung::session {
 namespace {
 
-using protocol::Moment;
+using plan::Moment;
 using Trials = std::span<const design::PlannedTrial>;
 
 bool endsBlock(const design::PlannedTrial& trial, Trials to_do) {
@@ -23,14 +23,13 @@ bool beginsBlock(const design::PlannedTrial& trial, const design::PlannedTrial* 
     return before != nullptr ? before->block_index != trial.block_index : trial.trial_in_block == 0;
 }
 
-bool isOfBlock(const protocol::PlannedQuestionnaire& planned, const design::PlannedTrial& trial) {
-    if (planned.block.empty()) return trial.phase != protocol::phaseName(protocol::Phase::Practice);
+bool isOfBlock(const plan::PlannedQuestionnaire& planned, const design::PlannedTrial& trial) {
+    if (planned.block.empty()) return trial.phase != plan::phaseName(plan::Phase::Practice);
     return planned.block == trial.block;
 }
 
 /// After `trial` and what ends with it. Nothing of a moment before, or of another block.
-std::optional<Occasion> occasionAfter(const protocol::PlannedQuestionnaire& planned,
-                                      const design::PlannedTrial& trial) {
+std::optional<Occasion> occasionAfter(const plan::PlannedQuestionnaire& planned, const design::PlannedTrial& trial) {
     if (planned.moment == Moment::SessionEnd) return Occasion{};
     if (!isOfBlock(planned, trial)) return std::nullopt;
     switch (planned.moment) {
@@ -49,7 +48,7 @@ std::optional<Occasion> occasionAfter(const protocol::PlannedQuestionnaire& plan
 }
 
 /// Nothing if the moment is not now.
-std::optional<Occasion> occasionOf(const protocol::PlannedQuestionnaire& planned, const design::PlannedTrial* before,
+std::optional<Occasion> occasionOf(const plan::PlannedQuestionnaire& planned, const design::PlannedTrial* before,
                                    Trials to_do) {
     const design::PlannedTrial* after = to_do.empty() ? nullptr : &to_do.front();
     switch (planned.moment) {
@@ -78,8 +77,7 @@ std::optional<Occasion> occasionOf(const protocol::PlannedQuestionnaire& planned
 
 }  // namespace
 
-std::vector<Occasion> occasionsBetween(const protocol::StudyPlan& plan, const design::PlannedTrial* before,
-                                       Trials to_do) {
+std::vector<Occasion> occasionsBetween(const plan::StudyPlan& plan, const design::PlannedTrial* before, Trials to_do) {
     std::vector<Occasion> due;
     for (const Moment moment : {Moment::AfterTrial, Moment::AfterCondition, Moment::AfterBlock, Moment::SessionEnd,
                                 Moment::SessionStart, Moment::BeforeBlock})
@@ -93,7 +91,7 @@ std::vector<Occasion> occasionsBetween(const protocol::StudyPlan& plan, const de
     return due;
 }
 
-std::vector<Occasion> occasionsAbout(const protocol::StudyPlan& plan, const design::PlannedTrial& trial) {
+std::vector<Occasion> occasionsAbout(const plan::StudyPlan& plan, const design::PlannedTrial& trial) {
     std::vector<Occasion> about;
     for (std::size_t i = 0; i < plan.questionnaires.size(); ++i) {
         auto occasion = occasionAfter(plan.questionnaires[i], trial);
@@ -104,7 +102,7 @@ std::vector<Occasion> occasionsAbout(const protocol::StudyPlan& plan, const desi
     return about;
 }
 
-bool isAbout(const protocol::StudyPlan& plan, const Occasion& occasion, const design::PlannedTrial& trial) {
+bool isAbout(const plan::StudyPlan& plan, const Occasion& occasion, const design::PlannedTrial& trial) {
     if (plan.questionnaires[occasion.questionnaire].moment == Moment::BeforeBlock) return false;
     return (!occasion.block_index || *occasion.block_index == trial.block_index) &&
            (!occasion.trial_index || *occasion.trial_index == trial.trial_index) &&

@@ -37,7 +37,7 @@ inline std::string formId(const Occasion& occasion, const std::string& occasion_
 
 /// A questionnaire as it is to be shown.
 struct ShownQuestionnaire {
-    const protocol::PlannedQuestionnaire& planned;
+    const plan::PlannedQuestionnaire& planned;
     Occasion occasion;
     std::string occasion_text;                 // unique in the study for a participant; part of random streams
     std::vector<std::size_t> order;            // items as presented

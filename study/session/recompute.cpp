@@ -20,7 +20,7 @@ void sayAgain(TrialCourse& course, const StoredEnd& stored, std::int64_t time) {
 
 }  // namespace
 
-Result<Judgement> judgeAgain(const protocol::Condition& condition, std::span<const TickRecord> records,
+Result<Judgement> judgeAgain(const plan::Condition& condition, std::span<const TickRecord> records,
                              const StoredEnd& stored) {
     const auto X_WT = targetPose(condition);
     if (!X_WT) return X_WT.errors();

@@ -28,7 +28,7 @@ struct StoredEnd {
 };
 
 /// Judges recorded ticks once more, as the session did while they came.
-Result<Judgement> judgeAgain(const protocol::Condition& condition, std::span<const TickRecord> records,
+Result<Judgement> judgeAgain(const plan::Condition& condition, std::span<const TickRecord> records,
                              const StoredEnd& stored);
 
 }  // namespace passung::session

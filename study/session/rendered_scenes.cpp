@@ -16,9 +16,9 @@ int comparisonInterval(std::uint64_t attempt_seed) {
     return 1 + static_cast<int>(random.below(2));
 }
 
-std::vector<RenderedScene> renderedScenes(const protocol::Condition& condition, std::uint64_t attempt_seed) {
+std::vector<RenderedScene> renderedScenes(const plan::Condition& condition, std::uint64_t attempt_seed) {
     constexpr std::int64_t kToTheEnd = std::numeric_limits<std::int64_t>::max();
-    const auto* pair = std::get_if<protocol::DiscriminationPairTask>(&condition.task.form);
+    const auto* pair = std::get_if<plan::DiscriminationPairTask>(&condition.task.form);
     if (pair == nullptr || !condition.comparison) return {{condition.scene, kToTheEnd}};
     const std::int64_t periods = std::llround(pair->interval / kTickSeconds);
     std::vector<RenderedScene> scenes{{condition.scene, periods}, {*condition.comparison, periods}};
@@ -28,10 +28,9 @@ std::vector<RenderedScene> renderedScenes(const protocol::Condition& condition, 
     return scenes;
 }
 
-Result<Pose> targetPose(const protocol::Condition& condition) {
-    if (const auto* placement = std::get_if<protocol::FreePlacementTask>(&condition.task.form))
-        return placement->X_WGoal;
-    if (const auto* part = protocol::partNamed(condition.scene, condition.task.target)) return part->X_WP;
+Result<Pose> targetPose(const plan::Condition& condition) {
+    if (const auto* placement = std::get_if<plan::FreePlacementTask>(&condition.task.form)) return placement->X_WGoal;
+    if (const auto* part = plan::partNamed(condition.scene, condition.task.target)) return part->X_WP;
     Error error;
     error.message = fmt::format("condition {} has no part of this name", condition.name);
     error.key = "target";

@@ -10,21 +10,21 @@ namespace {
 using measures::Outcome;
 
 /// Trials that are over and to be done again, in the plan's order.
-std::vector<std::size_t> toRedo(const protocol::ResumePolicy& policy, const Agenda& agenda) {
+std::vector<std::size_t> toRedo(const plan::ResumePolicy& policy, const Agenda& agenda) {
     std::vector<std::size_t> places;
     if (agenda.empty()) return places;
     const std::int64_t block = agenda.trial(agenda.next()).block_index;
     for (std::size_t place = 0; place < agenda.planned(); ++place) {
         const design::PlannedTrial& trial = agenda.trial(place);
-        const bool practice = policy.redo_practice && trial.block_index < block &&
-                              trial.phase == protocol::phaseName(protocol::Phase::Practice);
+        const bool practice =
+            policy.redo_practice && trial.block_index < block && trial.phase == plan::phaseName(plan::Phase::Practice);
         const bool restarted = policy.restart_block && trial.block_index == block;
         if ((practice || restarted) && agenda.isOver(place)) places.push_back(place);
     }
     return places;
 }
 
-ToldStep toldStep(const protocol::StudyPlan& plan, const StoredAttempt& attempt, const design::PlannedTrial& trial) {
+ToldStep toldStep(const plan::StudyPlan& plan, const StoredAttempt& attempt, const design::PlannedTrial& trial) {
     const auto staircase = std::find_if(plan.staircases.begin(), plan.staircases.end(),
                                         [&](const auto& known) { return known.name == attempt.step->staircase; });
     return {attempt.id,          static_cast<std::size_t>(staircase - plan.staircases.begin()),
@@ -35,7 +35,7 @@ ToldStep toldStep(const protocol::StudyPlan& plan, const StoredAttempt& attempt,
 /// Has the session's past happen to its order once more.
 class Replay {
 public:
-    Replay(const protocol::StudyPlan& plan, Resumption& result)
+    Replay(const plan::StudyPlan& plan, Resumption& result)
         : plan_(plan), result_(result), latest_(result.past.size()) {}
 
     void follow(const OrderStep& step) {
@@ -91,11 +91,11 @@ private:
         while (result_.agenda.trial(place).trial_index != trial_index) ++place;
         return place;
     }
-    const protocol::Block& blockOf(std::size_t place) const {
+    const plan::Block& blockOf(std::size_t place) const {
         return plan_.blocks.at(static_cast<std::size_t>(result_.agenda.trial(place).block_index));
     }
 
-    const protocol::StudyPlan& plan_;
+    const plan::StudyPlan& plan_;
     Resumption& result_;
     std::vector<OrderStep> latest_;  // by place
 };
@@ -145,8 +145,8 @@ std::vector<EarlierTrial> earlierTrials(const Resumption& result, const std::vec
 
 }  // namespace
 
-Then thenAfter(const protocol::Block& block, Outcome outcome, bool valid, int judged) {
-    using protocol::Repeat;
+Then thenAfter(const plan::Block& block, Outcome outcome, bool valid, int judged) {
+    using plan::Repeat;
     if (judged >= block.max_attempts) return Then::Done;
     Repeat repeat = outcome == Outcome::Timeout   ? block.on_timeout
                     : outcome == Outcome::Failure ? block.on_failure
@@ -163,17 +163,16 @@ Then thenAfter(const protocol::Block& block, Outcome outcome, bool valid, int ju
     return Then::Done;
 }
 
-Then thenAfterInvalid(const protocol::Block& block, int judged) {
+Then thenAfterInvalid(const plan::Block& block, int judged) {
     return thenAfter(block, Outcome::Aborted, false, judged);
 }
 
 bool lacks(const Staircases& staircases, const design::PlannedTrial& trial, const Past& past) {
     if (past.counting) return false;
-    return staircases.governs(trial) ? staircases.needs(trial)
-                                     : trial.phase == protocol::phaseName(protocol::Phase::Main);
+    return staircases.governs(trial) ? staircases.needs(trial) : trial.phase == plan::phaseName(plan::Phase::Main);
 }
 
-Resumption resumption(const protocol::StudyPlan& plan, std::vector<design::PlannedTrial> trials,
+Resumption resumption(const plan::StudyPlan& plan, std::vector<design::PlannedTrial> trials,
                       const std::vector<StoredAttempt>& attempts, bool crashed, std::vector<StoredForm> forms,
                       const std::vector<OrderStep>& steps) {
     const std::size_t planned = trials.size();
@@ -209,7 +208,7 @@ Resumption resumption(const protocol::StudyPlan& plan, std::vector<design::Plann
     return result;
 }
 
-std::optional<std::string> tooOld(const protocol::ResumePolicy& policy, double age_s) {
+std::optional<std::string> tooOld(const plan::ResumePolicy& policy, double age_s) {
     if (!(age_s > policy.max_age)) return std::nullopt;
     return fmt::format("was interrupted {:.1f} h ago, and the protocol lets it go on for {:g} h", age_s / 3600.0,
                        policy.max_age / 3600.0);

@@ -69,9 +69,9 @@ struct Resumption {
 };
 
 /// What the protocol says of a trial whose newest attempt ended so; it is number `judged` of those that did.
-Then thenAfter(const protocol::Block& block, measures::Outcome outcome, bool valid, int judged);
+Then thenAfter(const plan::Block& block, measures::Outcome outcome, bool valid, int judged);
 /// The same of a trial whose finished attempt was made invalid.
-Then thenAfterInvalid(const protocol::Block& block, int judged);
+Then thenAfterInvalid(const plan::Block& block, int judged);
 
 /// Does a whole session need another attempt at this trial?
 bool lacks(const Staircases& staircases, const design::PlannedTrial& trial, const Past& past);
@@ -81,11 +81,11 @@ bool lacks(const Staircases& staircases, const design::PlannedTrial& trial, cons
 /// Where nothing is left but the session is not whole, what it lacks is offered again. Attempts of which no step tells
 /// are of older programs, or crashed; of those the protocol decides. `crashed`: the program was killed; else the
 /// session was ended by somebody, in the middle of the newest attempt if that is aborted.
-Resumption resumption(const protocol::StudyPlan& plan, std::vector<design::PlannedTrial> trials,
+Resumption resumption(const plan::StudyPlan& plan, std::vector<design::PlannedTrial> trials,
                       const std::vector<StoredAttempt>& attempts, bool crashed, std::vector<StoredForm> forms = {},
                       const std::vector<OrderStep>& steps = {});
 
 /// Why a session that was interrupted so long ago must not go on; nothing if it may.
-std::optional<std::string> tooOld(const protocol::ResumePolicy& policy, double age_s);
+std::optional<std::string> tooOld(const plan::ResumePolicy& policy, double age_s);
 
 }  // namespace passung::session

@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kTakeAtOnce = 256;  // records
 
 /// Why a trial of this length [s] that the participant saw so does not count; empty: nothing against it.
-std::string pictureFault(const Presentation& given, const protocol::View& view, double seconds) {
+std::string pictureFault(const Presentation& given, const plan::View& view, double seconds) {
     const double age_s = 1e-6 * given.frame_age_max_us;
     if (age_s > view.max_picture_age)
         return fmt::format("picture: up to {:.0f} ms old, at most {:.0f} ms count", 1e3 * age_s,
@@ -36,7 +36,7 @@ std::string pictureFault(const Presentation& given, const protocol::View& view, 
 
 std::uint64_t attemptSeed(const SessionSetup& setup, const design::PlannedTrial& trial, int attempt_no) {
     const std::string purpose = fmt::format("simulated|{}|{}|{}", setup.ordinal, trial.trial_index, attempt_no);
-    return streamSeed(setup.plan->name, protocol::rehearsedCode(setup.participant), trial.phase, purpose, setup.seed);
+    return streamSeed(setup.plan->name, plan::rehearsedCode(setup.participant), trial.phase, purpose, setup.seed);
 }
 
 Session::Session(SessionSetup setup, Apparatus& apparatus, TrialSink& sink, SessionListener listener)
@@ -44,14 +44,13 @@ Session::Session(SessionSetup setup, Apparatus& apparatus, TrialSink& sink, Sess
       apparatus_(apparatus),
       sink_(sink),
       listener_(std::move(listener)),
-      questionnaires_(
-          *setup_.plan,
-          {protocol::rehearsedCode(setup_.participant), setup_.seed, setup_.ordinal, setup_.timing_measured},
-          setup_.answers, sink),
+      questionnaires_(*setup_.plan,
+                      {plan::rehearsedCode(setup_.participant), setup_.seed, setup_.ordinal, setup_.timing_measured},
+                      setup_.answers, sink),
       instructions_(*setup_.plan, setup_.language, setup_.timing_measured, setup_.reader, sink),
       state_(setup_.waits ? State(Ready{}) : State(BetweenTrials{})),
       agenda_(setup_.resumed ? setup_.resumed->agenda : Agenda(setup_.trials)),
-      staircases_(*setup_.plan, protocol::rehearsedCode(setup_.participant), setup_.seed, setup_.ordinal),
+      staircases_(*setup_.plan, plan::rehearsedCode(setup_.participant), setup_.seed, setup_.ordinal),
       past_(setup_.resumed ? setup_.resumed->past : std::vector<Past>(setup_.trials.size())),
       last_(setup_.resumed ? setup_.resumed->last : std::nullopt),
       session_ns_(setup_.resumed ? setup_.resumed->start_ns : 0) {
@@ -117,7 +116,7 @@ std::optional<StaircaseStep> Session::nextStep() const {
 }
 
 /// What the next trial presents.
-const protocol::Condition& Session::conditionOf(const std::optional<StaircaseStep>& step) const {
+const plan::Condition& Session::conditionOf(const std::optional<StaircaseStep>& step) const {
     const std::size_t shown = step ? step->condition : trial().condition;
     PASSUNG_ASSERT(shown < setup_.plan->conditions.size());
     return setup_.plan->conditions[shown];
@@ -132,7 +131,7 @@ void Session::leaveOutNeedless() {
 void Session::beginTrial() {
     AttemptStart start;
     start.staircase = nextStep();
-    const protocol::Condition& condition = conditionOf(start.staircase);
+    const plan::Condition& condition = conditionOf(start.staircase);
     const auto X_WT = targetPose(condition);
     if (!X_WT) return fail("prepare", X_WT.errors());
 
@@ -141,7 +140,7 @@ void Session::beginTrial() {
     start.start_ns = session_ns_;
     start.params_json = condition.params_json;
     start.seed = attemptSeed(setup_, trial(), start.attempt_no);
-    if (setup_.shown && !std::exchange(view_noted_, true)) note("view_shown", protocol::viewJson(setup_.plan->view));
+    if (setup_.shown && !std::exchange(view_noted_, true)) note("view_shown", plan::viewJson(setup_.plan->view));
     state_ = Preparing{};
     if (listener_) listener_(view());
     auto stages = apparatus_.prepare(condition, start.seed, start.trial_index);
@@ -153,7 +152,7 @@ void Session::beginTrial() {
     ++past_[agenda_.next()].attempts;
     InTrial attempt{*id, &condition, TrialCourse(condition.task, *X_WT, start.seed, condition.timed_by), {}, {}};
     if (condition.secondary.any()) attempt.secondary.emplace(detectionSettings(condition.secondary), start.seed);
-    if (setup_.timer != nullptr && condition.timed_by == protocol::TimedBy::Experimenter)
+    if (setup_.timer != nullptr && condition.timed_by == plan::TimedBy::Experimenter)
         setup_.timer->begin(condition, start.seed, start.trial_index);
     attempt.step = start.staircase;
     apparatus_.start();
@@ -161,7 +160,7 @@ void Session::beginTrial() {
 }
 
 void Session::watchTrial() {
-    if (setup_.timer != nullptr && attempt().condition->timed_by == protocol::TimedBy::Experimenter)
+    if (setup_.timer != nullptr && attempt().condition->timed_by == plan::TimedBy::Experimenter)
         if (const auto said = setup_.timer->commandAt(attempt().clock.periods())) static_cast<void>(command(*said));
     apparatus_.advance(kTicksPerPoll);
     attempt().silent_polls = takeRecords() > 0 ? 0 : attempt().silent_polls + 1;
@@ -230,7 +229,7 @@ void Session::finishTrial(std::optional<Verdict> verdict) {
 }
 
 Session::Verdict Session::judgeByProtocol(const AttemptEnd& end) {
-    const protocol::Block& block = blockOf(agenda_.next());
+    const plan::Block& block = blockOf(agenda_.next());
     const int judged = ++past_[agenda_.next()].judged;
     const Then then = thenAfter(block, end.outcome, end.valid, judged);
     // A track that lacks an answer never finishes.
@@ -263,7 +262,7 @@ void Session::takeEnd(AttemptId attempt, const AttemptEnd& end) {
     listener_(ended);
 }
 
-const protocol::Block& Session::blockOf(std::size_t place) const {
+const plan::Block& Session::blockOf(std::size_t place) const {
     return setup_.plan->blocks.at(static_cast<std::size_t>(agenda_.trial(place).block_index));
 }
 
@@ -299,8 +298,8 @@ AttemptEnd Session::describeEnd(LoopHealth health) const {
     // Nobody looks at the pictures of a simulated participant, and where the program does not time a trial nothing
     // moves.
     const bool seen = health.presentation && course.started() &&
-                      protocol::kindOfCode(setup_.participant) != protocol::ParticipantKind::Simulated &&
-                      attempt().condition->timed_by == protocol::TimedBy::Program;
+                      plan::kindOfCode(setup_.participant) != plan::ParticipantKind::Simulated &&
+                      attempt().condition->timed_by == plan::TimedBy::Program;
     if (end.invalid_reason.empty() && seen)
         end.invalid_reason =
             pictureFault(*health.presentation, setup_.plan->view, static_cast<double>(course.length()) * kTickSeconds);

@@ -99,7 +99,7 @@ private:
     struct Preparing {};
     struct InTrial {
         AttemptId id;
-        const protocol::Condition* condition;
+        const plan::Condition* condition;
         TrialCourse course;
         std::vector<TickRecord> records;  // of the running trial, for its measures
         measures::PeriodClock clock;
@@ -139,11 +139,11 @@ private:
     BetweenTrials& between() { return std::get<BetweenTrials>(state_); }
 
     bool rest();
-    bool isResting(Rest& rest, const protocol::Block& block);
+    bool isResting(Rest& rest, const plan::Block& block);
     bool swapsDevice();
     JsonObject stableStiffnessOf(const char* key, const std::string& device) const;
     std::optional<StaircaseStep> nextStep() const;
-    const protocol::Condition& conditionOf(const std::optional<StaircaseStep>& step) const;
+    const plan::Condition& conditionOf(const std::optional<StaircaseStep>& step) const;
     void leaveOutNeedless();
     void beginTrial();
     void watchTrial();
@@ -154,7 +154,7 @@ private:
     Verdict judgeByProtocol(const AttemptEnd& end);
     void takeEnd(AttemptId attempt, const AttemptEnd& end);
     AttemptEnd describeEnd(LoopHealth health) const;
-    const protocol::Block& blockOf(std::size_t place) const;
+    const plan::Block& blockOf(std::size_t place) const;
     void appendEvents(const std::vector<TrialEvent>& events);
     void finish(State over);
     void note(const char* name, const char* key, const std::string& text);  // an event with one text

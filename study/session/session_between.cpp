@@ -41,14 +41,14 @@ bool Session::rest() {
 }
 
 /// Has the rest before the block not lasted long enough, or has who ends it not done so?
-bool Session::isResting(Rest& rest, const protocol::Block& block) {
+bool Session::isResting(Rest& rest, const plan::Block& block) {
     if (rest.left > 0) return true;
     switch (block.rest_ends) {
-        case protocol::RestEnds::ByTime:
+        case plan::RestEnds::ByTime:
             break;
-        case protocol::RestEnds::ByParticipant:
+        case plan::RestEnds::ByParticipant:
             return setup_.reader != nullptr && !setup_.reader->goesOn();
-        case protocol::RestEnds::ByExperimenter:
+        case plan::RestEnds::ByExperimenter:
             if (!setup_.waits || std::exchange(rest.told, true)) break;
             pauseHere();
             return true;
@@ -60,7 +60,7 @@ bool Session::isResting(Rest& rest, const protocol::Block& block) {
 JsonObject Session::stableStiffnessOf(const char* key, const std::string& device) const {
     JsonObject payload;
     payload.text(key, device);
-    for (const protocol::StableStiffness& stable : setup_.plan->stable_stiffness)
+    for (const plan::StableStiffness& stable : setup_.plan->stable_stiffness)
         if (stable.device == device)
             payload.number("stable_stiffness_N_per_m", stable.linear)
                 .number("stable_rotational_stiffness_Nm_per_rad", stable.rotational)

@@ -17,7 +17,7 @@
 namespace passung::session {
 
 struct SessionSetup {
-    protocol::FrozenPlan plan;
+    plan::FrozenPlan plan;
     std::vector<design::PlannedTrial> trials;  // what is to be done, in this order
     std::string participant;                   // code
     std::uint64_t seed = 0;                    // of the study

@@ -29,7 +29,7 @@ struct Permission {
 /// A rest that runs.
 struct RestView {
     std::int64_t seconds = 0;  // that it has to last yet, rounded up
-    protocol::RestEnds ends = protocol::RestEnds::ByTime;
+    plan::RestEnds ends = plan::RestEnds::ByTime;
     friend bool operator==(const RestView&, const RestView&) = default;
 };
 

@@ -31,7 +31,7 @@ std::string stopText(const AdaptiveParams& params) {
     return text;
 }
 
-std::string staircaseText(const protocol::StudyPlan& plan, const protocol::Staircase& staircase) {
+std::string staircaseText(const plan::StudyPlan& plan, const plan::Staircase& staircase) {
     const AdaptiveParams& params = staircase.tracks.front().params;
     const std::string unit = params.logarithmic ? " decades" : staircase.unit.empty() ? "" : " " + staircase.unit;
     std::string text =
@@ -42,7 +42,7 @@ std::string staircaseText(const protocol::StudyPlan& plan, const protocol::Stair
     text += fmt::format("    positive: {} {} {:.6g}\n", staircase.measure, staircase.above ? "above" : "below",
                         staircase.threshold);
     std::vector<std::string> tracks;
-    for (const protocol::StaircaseTrack& track : staircase.tracks)
+    for (const plan::StaircaseTrack& track : staircase.tracks)
         tracks.push_back(track.params.method == AdaptiveMethod::Psi
                              ? track.name
                              : fmt::format("{} from {:.6g}", track.name, track.params.start));
@@ -55,16 +55,16 @@ std::string staircaseText(const protocol::StudyPlan& plan, const protocol::Stair
 
 }  // namespace
 
-std::string staircasesText(const protocol::StudyPlan& plan) {
+std::string staircasesText(const plan::StudyPlan& plan) {
     if (plan.staircases.empty()) return "";
     std::string text = "Staircases\n";
-    for (const protocol::Staircase& staircase : plan.staircases) text += staircaseText(plan, staircase);
+    for (const plan::Staircase& staircase : plan.staircases) text += staircaseText(plan, staircase);
     return text + "\n";
 }
 
-bool mayEndEarly(const protocol::StudyPlan& plan) {
-    for (const protocol::Staircase& staircase : plan.staircases)
-        for (const protocol::StaircaseTrack& track : staircase.tracks)
+bool mayEndEarly(const plan::StudyPlan& plan) {
+    for (const plan::Staircase& staircase : plan.staircases)
+        for (const plan::StaircaseTrack& track : staircase.tracks)
             if (track.params.max_reversals > 0) return true;
     return false;
 }

@@ -8,9 +8,9 @@ namespace passung::session {
 
 /// The plan's staircases for an experimenter to read: what varies, by which rule, where it settles, how many trials;
 /// empty if there is none.
-std::string staircasesText(const protocol::StudyPlan& plan);
+std::string staircasesText(const plan::StudyPlan& plan);
 
 /// May a session need fewer trials than are planned?
-bool mayEndEarly(const protocol::StudyPlan& plan);
+bool mayEndEarly(const plan::StudyPlan& plan);
 
 }  // namespace passung::session

@@ -17,7 +17,7 @@ std::optional<double> valueOf(const std::vector<measures::Value>& measures, cons
     return std::nullopt;
 }
 
-std::size_t indexOf(const std::vector<protocol::StaircaseTrack>& tracks, const std::string& name) {
+std::size_t indexOf(const std::vector<plan::StaircaseTrack>& tracks, const std::string& name) {
     const auto found =
         std::find_if(tracks.begin(), tracks.end(), [&](const auto& track) { return track.name == name; });
     PASSUNG_ASSERT(found != tracks.end());
@@ -26,20 +26,20 @@ std::size_t indexOf(const std::vector<protocol::StaircaseTrack>& tracks, const s
 
 }  // namespace
 
-Staircases::Staircases(const protocol::StudyPlan& plan, std::string participant, std::uint64_t seed, int ordinal)
+Staircases::Staircases(const plan::StudyPlan& plan, std::string participant, std::uint64_t seed, int ordinal)
     : plan_(plan), participant_(std::move(participant)), seed_(seed), ordinal_(ordinal) {}
 
-const protocol::Staircase* Staircases::find(const design::PlannedTrial& trial) const {
-    return protocol::staircaseOf(plan_, static_cast<std::size_t>(trial.block_index));
+const plan::Staircase* Staircases::find(const design::PlannedTrial& trial) const {
+    return plan::staircaseOf(plan_, static_cast<std::size_t>(trial.block_index));
 }
 
 /// The condition's tracks as the answers so far have left them.
-Staircases::Tracks& Staircases::tracks(const protocol::Staircase& staircase, std::size_t condition) const {
+Staircases::Tracks& Staircases::tracks(const plan::Staircase& staircase, std::size_t condition) const {
     const auto index = static_cast<std::size_t>(&staircase - plan_.staircases.data());
     const auto [known, fresh] = tracks_.try_emplace({index, condition});
     Tracks& tracks = known->second;
     if (!fresh) return tracks;
-    for (const protocol::StaircaseTrack& track : staircase.tracks) tracks.emplace_back(track.params);
+    for (const plan::StaircaseTrack& track : staircase.tracks) tracks.emplace_back(track.params);
     for (const ToldStep& told : told_)
         if (told.staircase == index && told.condition == condition)
             if (auto& track = tracks[indexOf(staircase.tracks, told.track)]; !track.finished())
@@ -48,7 +48,7 @@ Staircases::Tracks& Staircases::tracks(const protocol::Staircase& staircase, std
 }
 
 /// By the number that the trial has among those of its condition.
-bool Staircases::isCatch(const protocol::Staircase& staircase, const design::PlannedTrial& trial) const {
+bool Staircases::isCatch(const plan::Staircase& staircase, const design::PlannedTrial& trial) const {
     if (staircase.catch_trials == 0) return false;
     const std::string purpose = fmt::format("staircase|{}|catch|{}", ordinal_, plan_.conditions[trial.condition].name);
     Random random(streamSeed(plan_.name, participant_, trial.block, purpose, seed_));
@@ -57,7 +57,7 @@ bool Staircases::isCatch(const protocol::Staircase& staircase, const design::Pla
 }
 
 std::optional<StaircaseStep> Staircases::next(const design::PlannedTrial& trial) const {
-    const protocol::Staircase* staircase = find(trial);
+    const plan::Staircase* staircase = find(trial);
     PASSUNG_ASSERT(staircase != nullptr);
     const Tracks& all = tracks(*staircase, trial.condition);
     Random random(streamSeed(plan_.name, participant_, trial.block,
@@ -72,13 +72,13 @@ std::optional<StaircaseStep> Staircases::next(const design::PlannedTrial& trial)
     }
     const auto level = std::find(staircase->levels.begin(), staircase->levels.end(), step.level);
     PASSUNG_ASSERT(level != staircase->levels.end());
-    step.condition = protocol::variantOf(plan_, *staircase, trial.condition,
-                                         static_cast<std::size_t>(level - staircase->levels.begin()));
+    step.condition = plan::variantOf(plan_, *staircase, trial.condition,
+                                     static_cast<std::size_t>(level - staircase->levels.begin()));
     return step;
 }
 
 bool Staircases::needs(const design::PlannedTrial& trial) const {
-    const protocol::Staircase* staircase = find(trial);
+    const plan::Staircase* staircase = find(trial);
     if (staircase == nullptr) return true;
     const Tracks& all = tracks(*staircase, trial.condition);
     return std::any_of(all.begin(), all.end(), [](const design::AdaptiveTrack& track) { return !track.finished(); });
@@ -86,7 +86,7 @@ bool Staircases::needs(const design::PlannedTrial& trial) const {
 
 std::optional<bool> Staircases::answerTo(const design::PlannedTrial& trial,
                                          const std::vector<measures::Value>& measures) const {
-    const protocol::Staircase* staircase = find(trial);
+    const plan::Staircase* staircase = find(trial);
     PASSUNG_ASSERT(staircase != nullptr);
     const auto value = valueOf(measures, staircase->measure);
     if (!value) return std::nullopt;
@@ -95,7 +95,7 @@ std::optional<bool> Staircases::answerTo(const design::PlannedTrial& trial,
 
 StaircaseAnswer Staircases::take(AttemptId attempt, const design::PlannedTrial& trial, const StaircaseStep& step,
                                  const std::vector<measures::Value>& measures, bool counts) {
-    const protocol::Staircase* staircase = find(trial);
+    const plan::Staircase* staircase = find(trial);
     PASSUNG_ASSERT(staircase != nullptr);
     StaircaseAnswer answer;
     if (counts) answer.positive = answerTo(trial, measures);

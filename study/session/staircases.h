@@ -32,7 +32,7 @@ struct ToldStep {
 class Staircases {
 public:
     /// The plan outlives this.
-    Staircases(const protocol::StudyPlan& plan, std::string participant, std::uint64_t seed, int ordinal);
+    Staircases(const plan::StudyPlan& plan, std::string participant, std::uint64_t seed, int ordinal);
 
     bool governs(const design::PlannedTrial& trial) const { return find(trial) != nullptr; }
 
@@ -56,12 +56,12 @@ public:
     void forget(AttemptId attempt);
 
 private:
-    const protocol::Staircase* find(const design::PlannedTrial& trial) const;
+    const plan::Staircase* find(const design::PlannedTrial& trial) const;
     using Tracks = std::vector<design::AdaptiveTrack>;
-    Tracks& tracks(const protocol::Staircase& staircase, std::size_t condition) const;
-    bool isCatch(const protocol::Staircase& staircase, const design::PlannedTrial& trial) const;
+    Tracks& tracks(const plan::Staircase& staircase, std::size_t condition) const;
+    bool isCatch(const plan::Staircase& staircase, const design::PlannedTrial& trial) const;
 
-    const protocol::StudyPlan& plan_;
+    const plan::StudyPlan& plan_;
     std::string participant_;
     std::uint64_t seed_;
     int ordinal_;

@@ -6,7 +6,7 @@
 
 namespace passung::session {
 
-SuccessRule::SuccessRule(const protocol::PegInHoleTask& task, const Pose& X_WT)
+SuccessRule::SuccessRule(const plan::PegInHoleTask& task, const Pose& X_WT)
     : X_TW_(X_WT.inverse()),
       clearance_(task.clearance),
       min_depth_(task.success_fraction * task.insertion_depth),

@@ -24,7 +24,7 @@ public:
     static constexpr std::int64_t kSpeedTicks = 50;
 
     /// `X_WT`: the target in the world, its bore along -z from the origin.
-    SuccessRule(const protocol::PegInHoleTask& task, const Pose& X_WT);
+    SuccessRule(const plan::PegInHoleTask& task, const Pose& X_WT);
 
     /// Takes the next record of the trial; true if the rule is fulfilled at its tick.
     bool fulfilledAt(const TickRecord& record);

@@ -25,9 +25,9 @@ const char* eventName(TrialState state) {
 
 }  // namespace
 
-using protocol::TimedBy;
+using plan::TimedBy;
 
-TrialCourse::TrialCourse(const protocol::Task& task, const Pose& X_WT, std::uint64_t attempt_seed, TimedBy timed_by)
+TrialCourse::TrialCourse(const plan::Task& task, const Pose& X_WT, std::uint64_t attempt_seed, TimedBy timed_by)
     : X_WT_(X_WT),
       leave_radius_(task.leave_radius),
       rule_(task, X_WT, attempt_seed),

@@ -23,8 +23,8 @@ class TrialCourse {
 public:
     static constexpr std::int64_t kStartLimit = 60'000;  // [periods]
 
-    TrialCourse(const protocol::Task& task, const Pose& X_WT, std::uint64_t attempt_seed,
-                protocol::TimedBy timed_by = protocol::TimedBy::Program);
+    TrialCourse(const plan::Task& task, const Pose& X_WT, std::uint64_t attempt_seed,
+                plan::TimedBy timed_by = plan::TimedBy::Program);
 
     /// The experimenter starts the clock. @pre awaitsExperimenter()
     void begin() { begin_asked_ = true; }
@@ -71,7 +71,7 @@ private:
     double leave_radius_;
     TrialRule rule_;
     std::int64_t timeout_;  // [periods]
-    protocol::TimedBy timed_by_;
+    plan::TimedBy timed_by_;
     bool begin_asked_ = false;
     std::optional<TrialState> conclusion_;
     measures::PeriodClock clock_;

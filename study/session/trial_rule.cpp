@@ -14,22 +14,21 @@ constexpr std::int64_t kWayBackLimit = 60'000;  // [periods]
 
 }  // namespace
 
-TrialRule::TrialRule(const protocol::Task& task, const Pose& X_WT, std::uint64_t attempt_seed)
+TrialRule::TrialRule(const plan::Task& task, const Pose& X_WT, std::uint64_t attempt_seed)
     : X_WT_(X_WT), form_(makeRule(task, X_WT, attempt_seed)) {}
 
-TrialRule::AnyRule TrialRule::makeRule(const protocol::Task& task, const Pose& X_WT, std::uint64_t attempt_seed) {
-    if (const auto* peg = std::get_if<protocol::PegInHoleTask>(&task.form))
-        return Insertion{*peg, SuccessRule(*peg, X_WT)};
-    if (const auto* passage = std::get_if<protocol::NarrowPassageTask>(&task.form)) {
+TrialRule::AnyRule TrialRule::makeRule(const plan::Task& task, const Pose& X_WT, std::uint64_t attempt_seed) {
+    if (const auto* peg = std::get_if<plan::PegInHoleTask>(&task.form)) return Insertion{*peg, SuccessRule(*peg, X_WT)};
+    if (const auto* passage = std::get_if<plan::NarrowPassageTask>(&task.form)) {
         const measures::PassageFacts facts{passage->length, passage->width};
         return Passage{facts, {facts, X_WT}};
     }
-    if (const auto* contour = std::get_if<protocol::ContourFollowingTask>(&task.form)) {
+    if (const auto* contour = std::get_if<plan::ContourFollowingTask>(&task.form)) {
         const measures::ContourFacts facts{contour->points, contour->reach, contour->force};
         return Contour{facts, contour->coverage, {facts, X_WT}};
     }
-    if (const auto* placement = std::get_if<protocol::FreePlacementTask>(&task.form)) return Placement{*placement, {}};
-    const auto& pair = std::get<protocol::DiscriminationPairTask>(task.form);
+    if (const auto* placement = std::get_if<plan::FreePlacementTask>(&task.form)) return Placement{*placement, {}};
+    const auto& pair = std::get<plan::DiscriminationPairTask>(task.form);
     return Pair{std::llround(pair.answer / kTickSeconds), comparisonInterval(attempt_seed), {}};
 }
 

@@ -36,7 +36,7 @@ struct TrialEvent {
 class TrialRule {
 public:
     /// `X_WT`: targetPose() of the condition; `attempt_seed`: AttemptStart::seed.
-    TrialRule(const protocol::Task& task, const Pose& X_WT, std::uint64_t attempt_seed);
+    TrialRule(const plan::Task& task, const Pose& X_WT, std::uint64_t attempt_seed);
 
     /// How it ends at this record, if it does; appends what happened. `time`: of the record [periods].
     std::optional<TrialState> follow(const TickRecord& record, std::int64_t time, std::vector<TrialEvent>& events);
@@ -49,7 +49,7 @@ public:
 
 private:
     struct Insertion {
-        protocol::PegInHoleTask task;
+        plan::PegInHoleTask task;
         SuccessRule rule;
         bool engaged = false;
     };
@@ -63,7 +63,7 @@ private:
         measures::ContourWatch watch;
     };
     struct Placement {
-        protocol::FreePlacementTask task;
+        plan::FreePlacementTask task;
         measures::ButtonWatch buttons;
     };
     struct Pair {
@@ -74,7 +74,7 @@ private:
     using AnyRule = std::variant<Insertion, Passage, Contour, Placement, Pair>;
     using Verdict = std::optional<TrialState>;
 
-    static AnyRule makeRule(const protocol::Task& task, const Pose& X_WT, std::uint64_t attempt_seed);
+    static AnyRule makeRule(const plan::Task& task, const Pose& X_WT, std::uint64_t attempt_seed);
     Verdict judge(Insertion& form, const TickRecord& record, std::int64_t time, std::vector<TrialEvent>& events) const;
     Verdict judge(Passage& form, const TickRecord& record, std::int64_t time, std::vector<TrialEvent>& events) const;
     Verdict judge(Contour& form, const TickRecord& record, std::int64_t time, std::vector<TrialEvent>& events) const;

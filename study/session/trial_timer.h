@@ -8,13 +8,13 @@
 
 namespace passung::session {
 
-/// Who times the trials that the experimenter would (protocol::TimedBy::Experimenter), where nobody is there to send
+/// Who times the trials that the experimenter would (plan::TimedBy::Experimenter), where nobody is there to send
 /// commands: in virtual time.
 class TrialTimer {
 public:
     virtual ~TrialTimer() = default;
     /// An attempt at a trial of this condition begins; `seed` and `trials_before` as for Apparatus::prepare().
-    virtual void begin(const protocol::Condition& condition, std::uint64_t seed, std::int64_t trials_before) = 0;
+    virtual void begin(const plan::Condition& condition, std::uint64_t seed, std::int64_t trials_before) = 0;
     /// What to command so many periods after the attempt's tick 0: Start, then Done or Failed; nothing: not yet.
     virtual std::optional<Command> commandAt(std::int64_t periods) = 0;
 };

@@ -22,7 +22,7 @@ btVector3 scaled(const Vec3& p) {
 }
 
 struct GimpactBody {
-    explicit GimpactBody(const model::TriangleMesh& mesh) {
+    explicit GimpactBody(const geometry::TriangleMesh& mesh) {
         for (const auto& t : mesh.triangles)
             triangles.addTriangle(scaled(mesh.vertices[t[0]]), scaled(mesh.vertices[t[1]]),
                                   scaled(mesh.vertices[t[2]]));
@@ -38,7 +38,7 @@ struct GimpactBody {
 
 class GimpactContacts : public Method {
 public:
-    GimpactContacts(const model::TriangleMesh& field, const model::TriangleMesh& shell)
+    GimpactContacts(const geometry::TriangleMesh& field, const geometry::TriangleMesh& shell)
         : dispatcher_(&configuration_),
           world_(&dispatcher_, &broadphase_, &configuration_),
           field_(field),
@@ -83,7 +83,7 @@ private:
 
 }  // namespace
 
-Candidate bulletGimpact(const model::TriangleMesh& field, const model::TriangleMesh& shell) {
+Candidate bulletGimpact(const geometry::TriangleMesh& field, const geometry::TriangleMesh& shell) {
     Candidate result{.name = "Bullet GImpact", .settings = "float, unit 1 cm, margin 0.1 mm"};
     const double before = heapBytes();
     const Stopwatch watch;

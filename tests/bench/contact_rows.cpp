@@ -54,7 +54,7 @@ struct Errors3 {
 
 Times summariseIfAny(std::vector<double> values) { return values.empty() ? Times{} : summarise(std::move(values)); }
 
-double leverOf(const model::TriangleMesh& tool) {
+double leverOf(const geometry::TriangleMesh& tool) {
     double lever = 0.0;
     for (const Vec3& v : tool.vertices) lever = std::max(lever, v.norm());
     return lever;

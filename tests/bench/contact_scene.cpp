@@ -116,20 +116,20 @@ double inSinglePrecision(double value) {
 
 }  // namespace
 
-Result<model::TriangleMesh> loadBunny(const std::string& file) {
-    auto imported = model::importMesh(file, 1.0);
+Result<geometry::TriangleMesh> loadBunny(const std::string& file) {
+    auto imported = importer::importMesh(file, 1.0);
     if (!imported) return imported.errors();
     for (Vec3& v : imported->mesh.vertices)
         for (double& coordinate : v) coordinate = inSinglePrecision(coordinate);
-    model::TriangleMesh mesh = subdivideLoop(subdivideLoop(imported->mesh));
-    const model::Bounds bounds = model::boundsOf(mesh);
+    geometry::TriangleMesh mesh = subdivideLoop(subdivideLoop(imported->mesh));
+    const geometry::Bounds bounds = geometry::boundsOf(mesh);
     const double scale = kBunnySize / bounds.size().maxCoeff();
     for (Vec3& v : mesh.vertices) v = scale * (v - 0.5 * (bounds.low + bounds.high));
     return mesh;
 }
 
-model::TriangleMesh torusTool() {
-    model::TriangleMesh mesh;
+geometry::TriangleMesh torusTool() {
+    geometry::TriangleMesh mesh;
     const auto index = [](std::uint32_t i, std::uint32_t j) {
         return (i % kRingSegments) * kTubeSegments + j % kTubeSegments;
     };
@@ -146,12 +146,12 @@ model::TriangleMesh torusTool() {
     return mesh;
 }
 
-ContactScene makeContactScene(model::TriangleMesh bunny, std::size_t count, std::uint64_t seed) {
+ContactScene makeContactScene(geometry::TriangleMesh bunny, std::size_t count, std::uint64_t seed) {
     ContactScene scene{.bunny = std::move(bunny), .tool = torusTool(), .pressed = {}, .apart = {}};
     const Truth truth(scene);
     scene.pressed.resize(count);
     scene.apart.resize(count);
-    model::parallelFor(count, [&](std::size_t i) {
+    geometry::parallelFor(count, [&](std::size_t i) {
         Random random(seed * 1'000'003 + i);
         for (;;) {  // a line that misses the bunny's body, or passes it, is not used
             const Line line = randomLine(random);

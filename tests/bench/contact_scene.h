@@ -24,20 +24,20 @@ struct TruePose {
 
 /// Bunny and torus tool, with poses at which the tool is pressed in by 1 mm and poses 1 mm apart.
 struct ContactScene {
-    model::TriangleMesh bunny;  // Loop-subdivided twice, longest side 0.15 m, centred
-    model::TriangleMesh tool;   // torus, R 20 mm, r 6 mm, 12 000 triangles, axis z
+    geometry::TriangleMesh bunny;  // Loop-subdivided twice, longest side 0.15 m, centred
+    geometry::TriangleMesh tool;   // torus, R 20 mm, r 6 mm, 12 000 triangles, axis z
     std::vector<TruePose> pressed, apart;
 };
 
 /// The bunny of `file` (OFF) as above.
-Result<model::TriangleMesh> loadBunny(const std::string& file);
+Result<geometry::TriangleMesh> loadBunny(const std::string& file);
 
-model::TriangleMesh torusTool();
+geometry::TriangleMesh torusTool();
 
 /// `count` poses of each kind: the tool, turned at random, comes along a random line towards the middle of the bunny;
 /// bisection finds where it is 1 mm apart (FCL's distance), and where its surface first reaches 1 mm deep (branch and
 /// bound over all of it). The same seed gives the same poses. Takes seconds a pose: see true_poses.h.
-ContactScene makeContactScene(model::TriangleMesh bunny, std::size_t count, std::uint64_t seed);
+ContactScene makeContactScene(geometry::TriangleMesh bunny, std::size_t count, std::uint64_t seed);
 
 /// What is true at one pose of the scene: how the poses of makeContactScene were judged.
 TruePose truthAt(const ContactScene& scene, const Pose& X_FS);

@@ -24,24 +24,24 @@ constexpr std::array kSpacings{2e-3, 1e-3, 0.5e-3};
 
 Vec3 anyDirection(Random& random) { return Vec3(random.normal(), random.normal(), random.normal()).normalized(); }
 
-Result<model::Part> build(const model::Shape& shape, const model::PartNeeds& needs) {
-    model::PartSpec spec;
+Result<scene::Part> build(const shape::Shape& shape, const scene::PartNeeds& needs) {
+    scene::PartSpec spec;
     spec.name = "convergence";
     spec.geometry = shape;
-    return model::buildPart(spec, needs);
+    return scene::buildPart(spec, needs);
 }
 
 /// Errors of the field with cells of edge `cell` at points that `pick(cell, random)` chooses [µm].
 template <class Pick>
-Result<Times> fieldErrors(const model::Shape& shape, double cell, const Pick& pick) {
+Result<Times> fieldErrors(const shape::Shape& shape, double cell, const Pick& pick) {
     const auto part = build(shape, {.field = true, .cell = cell});
     if (!part) return part.errors();
     Random random(kSeed);
     std::vector<double> errors;
     for (int i = 0; i < kSamples; ++i) {
         const Vec3 p = pick(cell, random);
-        const double phi = part->field->sample(p, model::FieldMode::Trilinear).phi;
-        errors.push_back(kUm * std::abs(phi - model::signedDistance(shape, p)));
+        const double phi = part->field->sample(p, field::FieldMode::Trilinear).phi;
+        errors.push_back(kUm * std::abs(phi - shape::signedDistance(shape, p)));
     }
     return summarise(errors);
 }
@@ -61,16 +61,16 @@ Vec3 nearEdge(double cell, Random& random) {
 /// How much less deep than the ball itself its points, turned at random about its centre at `centre`, are in the cube
 /// [µm]; `depth`: the ball's.
 Result<Times> depthErrors(const Vec3& centre, double depth, double spacing) {
-    const model::Shape cube = model::Box{kBoxEdge, kBoxEdge, kBoxEdge};
-    const auto ball = build(model::Sphere{2.0 * kRadius}, {.shell = true, .tolerance = 5e-6, .spacing = spacing});
+    const shape::Shape cube = shape::Box{kBoxEdge, kBoxEdge, kBoxEdge};
+    const auto ball = build(shape::Sphere{2.0 * kRadius}, {.shell = true, .tolerance = 5e-6, .spacing = spacing});
     if (!ball) return ball.errors();
     Random random(kSeed);
     std::vector<double> errors;
     for (int i = 0; i < kPoses; ++i) {
         const Quat turn = Quat(random.normal(), random.normal(), random.normal(), random.normal()).normalized();
         double least = std::numeric_limits<double>::infinity();
-        for (const model::SurfacePoint& point : ball->shell->points())
-            least = std::min(least, model::signedDistance(cube, turn * point.position + centre));
+        for (const shell::SurfacePoint& point : ball->shell->points())
+            least = std::min(least, shape::signedDistance(cube, turn * point.position + centre));
         errors.push_back(kUm * (depth + least));
     }
     return summarise(errors);
@@ -110,9 +110,9 @@ Result<std::vector<Row>> convergenceRows(const Extent& extent) {
     };
     const double half = 0.5 * kBoxEdge, depth = 0.5e-3;
     add(kCells, kCellOnSmooth, "cell",
-        [](double cell) { return fieldErrors(model::Sphere{2.0 * kRadius}, cell, nearBall); });
+        [](double cell) { return fieldErrors(shape::Sphere{2.0 * kRadius}, cell, nearBall); });
     add(kCells, kCellAtEdges, "cell", [](double cell) {
-        return fieldErrors(model::Box{kBoxEdge, kBoxEdge, kBoxEdge}, cell, nearEdge);
+        return fieldErrors(shape::Box{kBoxEdge, kBoxEdge, kBoxEdge}, cell, nearEdge);
     });
     add(kSpacings, kSpacingOnSmooth, "spacing", [&](double spacing) {
         return depthErrors({0.0, 0.0, half + kRadius - depth}, depth, spacing);

@@ -14,17 +14,17 @@
 #include "tests/bench/loop_subdivision.h"
 #include "tests/support/broken_mesh.h"
 
-namespace passung::model {
+namespace passung::bench {
 namespace {
 
 constexpr double kSize = 0.15;
 
-TriangleMesh bunny(int subdivisions) {
-    auto imported = importMesh(PASSUNG_SOURCE_DIR "/tests/data/bunny.off", 1.0);
+geometry::TriangleMesh bunny(int subdivisions) {
+    auto imported = importer::importMesh(PASSUNG_SOURCE_DIR "/tests/data/bunny.off", 1.0);
     EXPECT_TRUE(imported);
-    TriangleMesh mesh = std::move(imported->mesh);
-    for (int i = 0; i < subdivisions; ++i) mesh = bench::subdivideLoop(mesh);
-    const Bounds bounds = boundsOf(mesh);
+    geometry::TriangleMesh mesh = std::move(imported->mesh);
+    for (int i = 0; i < subdivisions; ++i) mesh = subdivideLoop(mesh);
+    const geometry::Bounds bounds = boundsOf(mesh);
     const double scale = kSize / bounds.size().maxCoeff();
     for (Vec3& v : mesh.vertices) v = scale * (v - 0.5 * (bounds.low + bounds.high));
     return mesh;
@@ -36,9 +36,9 @@ struct Probe {
 };
 
 /// Points 1 to 20 mm from the surface, most of them above some triangle.
-std::vector<Probe> probesOf(const TriangleMesh& mesh, std::size_t count) {
+std::vector<Probe> probesOf(const geometry::TriangleMesh& mesh, std::size_t count) {
     const truth::ExactMesh exact(mesh);
-    const TriangleTree tree(mesh);
+    const geometry::TriangleTree tree(mesh);
     Random random(7);
     std::vector<Probe> probes;
     while (probes.size() < count) {
@@ -54,21 +54,31 @@ std::vector<Probe> probesOf(const TriangleMesh& mesh, std::size_t count) {
 TEST(DamagedBunny, KeepsItsSigns) {
     // Truth: independent program (ray parity in the intact mesh by analysis/truth). Required: at most 0.1 % wrong signs
     // at 1 to 20 mm from the intact surface, of 3 674 and of 58 784 triangles, each defect alone and all at once.
-    using Damage = std::function<TriangleMesh(const TriangleMesh&)>;
+    using Damage = std::function<geometry::TriangleMesh(const geometry::TriangleMesh&)>;
     const Vec3 back(-0.01, 0.03, -0.03);
-    const auto nearest = [](const TriangleMesh& mesh, const Vec3& p) { return TriangleTree(mesh).closest(p).point; };
+    const auto nearest = [](const geometry::TriangleMesh& mesh, const Vec3& p) {
+        return geometry::TriangleTree(mesh).closest(p).point;
+    };
     const auto hole = [&](double radius) -> Damage {
-        return [=](const TriangleMesh& m) { return test::withHole(m, test::patchAround(m, nearest(m, back), radius)); };
+        return [=](const geometry::TriangleMesh& m) {
+            return test::withHole(m, test::patchAround(m, nearest(m, back), radius));
+        };
     };
     const auto missing = [](double share) -> Damage {
-        return [=](const TriangleMesh& m) { return test::withHole(m, test::someOf(m, share, 11)); };
+        return [=](const geometry::TriangleMesh& m) { return test::withHole(m, test::someOf(m, share, 11)); };
     };
-    const auto flippedPatch = [&](const TriangleMesh& m) {
+    const auto flippedPatch = [&](const geometry::TriangleMesh& m) {
         return test::withFlipped(m, test::patchAround(m, nearest(m, -back), 0.010));
     };
-    const auto flipped = [](const TriangleMesh& m) { return test::withFlipped(m, test::someOf(m, 0.05, 12)); };
-    const auto twice = [](const TriangleMesh& m) { return test::withDuplicates(m, test::someOf(m, 0.05, 13)); };
-    const auto all = [=](const TriangleMesh& m) { return twice(flipped(flippedPatch(missing(0.02)(hole(0.005)(m))))); };
+    const auto flipped = [](const geometry::TriangleMesh& m) {
+        return test::withFlipped(m, test::someOf(m, 0.05, 12));
+    };
+    const auto twice = [](const geometry::TriangleMesh& m) {
+        return test::withDuplicates(m, test::someOf(m, 0.05, 13));
+    };
+    const auto all = [=](const geometry::TriangleMesh& m) {
+        return twice(flipped(flippedPatch(missing(0.02)(hole(0.005)(m)))));
+    };
     const std::vector<std::pair<std::string, Damage>> damages{
         {"hole, radius 2 mm", hole(0.002)},
         {"hole, radius 5 mm", hole(0.005)},
@@ -79,21 +89,21 @@ TEST(DamagedBunny, KeepsItsSigns) {
         {"5 % flipped", flipped},
         {"5 % duplicated", twice},
         {"all of these", all},
-        {"all, unshared", [=](const TriangleMesh& m) { return test::unshared(all(m)); }},
-        {"all, inside out", [=](const TriangleMesh& m) { return test::insideOut(all(m)); }},
+        {"all, unshared", [=](const geometry::TriangleMesh& m) { return test::unshared(all(m)); }},
+        {"all, inside out", [=](const geometry::TriangleMesh& m) { return test::insideOut(all(m)); }},
     };
     for (const int subdivisions : {0, 2}) {
-        const TriangleMesh sound = bunny(subdivisions);
+        const geometry::TriangleMesh sound = bunny(subdivisions);
         ASSERT_EQ(sound.triangles.size(), subdivisions == 0 ? 3674u : 58784u);
         const std::vector<Probe> probes = probesOf(sound, 10000);
         for (const auto& [name, damage] : damages) {
-            Part part;
-            ImportedMesh repaired = repairMesh(damage(sound));
+            scene::Part part;
+            importer::ImportedMesh repaired = importer::repairMesh(damage(sound));
             part.mesh = std::move(repaired.mesh);
             part.report = std::move(repaired.report);
-            EXPECT_NE(part.report.kind, SurfaceKind::OpenSheet);
+            EXPECT_NE(part.report.kind, importer::SurfaceKind::OpenSheet);
             EXPECT_FALSE(part.report.notes.empty());
-            const DistanceSource source = exactSource(part);
+            const field::DistanceSource source = exactSource(part);
             std::size_t wrong = 0;
             for (const Probe& probe : probes) wrong += source.inside(probe.p) != probe.inside ? 1 : 0;
             const double share = static_cast<double>(wrong) / static_cast<double>(probes.size());
@@ -105,4 +115,4 @@ TEST(DamagedBunny, KeepsItsSigns) {
 }
 
 }  // namespace
-}  // namespace passung::model
+}  // namespace passung::bench

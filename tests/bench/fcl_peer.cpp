@@ -13,7 +13,7 @@ namespace {
 
 using Surface = fcl::BVHModel<fcl::OBBRSSd>;
 
-void fill(Surface& surface, const model::TriangleMesh& mesh) {
+void fill(Surface& surface, const geometry::TriangleMesh& mesh) {
     std::vector<fcl::Triangle> triangles;
     for (const auto& t : mesh.triangles) triangles.emplace_back(t[0], t[1], t[2]);
     surface.beginModel();
@@ -73,7 +73,7 @@ private:
 };
 
 template <class M>
-Candidate candidate(const char* name, const model::TriangleMesh& field, const model::TriangleMesh& shell) {
+Candidate candidate(const char* name, const geometry::TriangleMesh& field, const geometry::TriangleMesh& shell) {
     Candidate result{.name = name, .settings = "BVH of OBBRSS, double"};
     const double before = heapBytes();
     auto pair = std::make_unique<Pair>();
@@ -88,11 +88,11 @@ Candidate candidate(const char* name, const model::TriangleMesh& field, const mo
 
 }  // namespace
 
-Candidate fclAllContacts(const model::TriangleMesh& field, const model::TriangleMesh& shell) {
+Candidate fclAllContacts(const geometry::TriangleMesh& field, const geometry::TriangleMesh& shell) {
     return candidate<AllContacts>("FCL all contacts", field, shell);
 }
 
-Candidate fclDistance(const model::TriangleMesh& field, const model::TriangleMesh& shell) {
+Candidate fclDistance(const geometry::TriangleMesh& field, const geometry::TriangleMesh& shell) {
     return candidate<Distance>("FCL distance", field, shell);
 }
 

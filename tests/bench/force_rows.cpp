@@ -32,16 +32,19 @@ QueryClock query_clock;
 
 // The linker sends the tick's calls of tick::queryObstacles to `timed` (CMakeLists.txt): the tick has no clock.
 namespace passung::tick {
-QueryAnswer real(const TickModel& model, const Pose& X_WS, QueryRequest request, QueryWorkspace& workspace,
-                 ContactManifold& manifold, std::span<Push> pushes) noexcept asm("__real_" PASSUNG_QUERY_SYMBOL);
-QueryAnswer timed(const TickModel& model, const Pose& X_WS, QueryRequest request, QueryWorkspace& workspace,
-                  ContactManifold& manifold, std::span<Push> pushes) noexcept asm("__wrap_" PASSUNG_QUERY_SYMBOL);
+contact::QueryAnswer real(const TickModel& model, const Pose& X_WS, contact::QueryRequest request,
+                          contact::QueryWorkspace& workspace, contact::ContactManifold& manifold,
+                          std::span<ObstaclePush> pushes) noexcept asm("__real_" PASSUNG_QUERY_SYMBOL);
+contact::QueryAnswer timed(const TickModel& model, const Pose& X_WS, contact::QueryRequest request,
+                           contact::QueryWorkspace& workspace, contact::ContactManifold& manifold,
+                           std::span<ObstaclePush> pushes) noexcept asm("__wrap_" PASSUNG_QUERY_SYMBOL);
 
-QueryAnswer timed(const TickModel& model, const Pose& X_WS, QueryRequest request, QueryWorkspace& workspace,
-                  ContactManifold& manifold, std::span<Push> pushes) noexcept {
+contact::QueryAnswer timed(const TickModel& model, const Pose& X_WS, contact::QueryRequest request,
+                           contact::QueryWorkspace& workspace, contact::ContactManifold& manifold,
+                           std::span<ObstaclePush> pushes) noexcept {
     if (!query_clock.running) return real(model, X_WS, request, workspace, manifold, pushes);
     const bench::Stopwatch watch;
-    const QueryAnswer answer = real(model, X_WS, request, workspace, manifold, pushes);
+    const contact::QueryAnswer answer = real(model, X_WS, request, workspace, manifold, pushes);
     query_clock.seconds += watch.seconds();
     ++query_clock.queries;
     return answer;
@@ -62,11 +65,11 @@ constexpr std::uint64_t kSeed = 20260302;
 constexpr std::int64_t kTrialsBefore = 26;  // practised
 
 /// The device's readings while the simulated participant does a trial.
-Result<std::vector<TickRecord>> perform(const protocol::StudyPlan& plan, const protocol::Condition& condition,
+Result<std::vector<TickRecord>> perform(const plan::StudyPlan& plan, const plan::Condition& condition,
                                         std::int64_t ticks) {
     const simulated::DeviceParams* device = simulated::findPreset(condition.device);
     if (device == nullptr) return Error{.message = "no such device preset", .value = condition.device};
-    app::LoopApparatus apparatus(*device, person::personOf(plan.name, kParticipant, plan.seed), app::Clock::Virtual);
+    run::LoopApparatus apparatus(*device, person::personOf(plan.name, kParticipant, plan.seed), run::Clock::Virtual);
     const auto prepared = apparatus.prepare(condition, kSeed, kTrialsBefore);
     if (!prepared) return prepared.errors();
     std::vector<TickRecord> records(static_cast<std::size_t>(ticks));
@@ -91,7 +94,7 @@ double clockCost() {
 /// One replay after another of the same readings.
 class Replay {
 public:
-    Replay(const model::Scene& scene, const std::vector<TickRecord>& records)
+    Replay(const scene::Scene& scene, const std::vector<TickRecord>& records)
         : model_(tick::makeModel(scene)), records_(records) {}
 
     /// Time of every tick [us], its queries left out or not; ticks that are not in contact are NaN.
@@ -123,25 +126,25 @@ public:
         std::vector<double> times;
         double sum = 0.0;
         tick::TickState state = tick::makeState(model_), wide = tick::makeState(model_);
-        tick::ContactManifold nearest(kMostContacts);
-        tick::Motion wanted_before = tick::Motion::Zero();
+        contact::ContactManifold nearest(kMostContacts);
+        motion::Motion wanted_before = motion::Motion::Zero();
         const double clock = clockCost();
         for (const TickRecord& record : records_) {
             const auto out = tick::step(model_, state, tick::readingOf(record));
-            const tick::Motion wanted = tick::unconstrainedMotion(model_, state.X_WG, out.frame.X_WH);
-            const tick::Motion before = std::exchange(wanted_before, wanted);
+            const motion::Motion wanted = tick::unconstrainedMotion(model_, state.X_WG, out.frame.X_WH);
+            const motion::Motion before = std::exchange(wanted_before, wanted);
             if (out.frame.contacts == 0) continue;
             tick::TickFrame frame;
             tick::surveyContacts({model_, wide, wide, frame}, state.X_WG);
             takeNearest(wide.manifold, nearest);
-            const tick::Surroundings around{nearest, state.X_WG.p, model_.metric_radius, -model_.margins.keep};
-            const tick::ConstrainedMotion last = tick::constrainMotion(before, around);
+            const motion::Surroundings around{nearest, state.X_WG.p, model_.metric_radius, -model_.margins.keep};
+            const motion::ConstrainedMotion last = motion::constrainMotion(before, around);
             std::vector<std::uint32_t> held;
             for (int i = 0; i < last.active; ++i) held.push_back(last.held[static_cast<std::size_t>(i)].contact);
             double best = kNotGiven;
             for (int repetition = 0; repetition < repetitions; ++repetition) {
                 const Stopwatch watch;
-                const tick::ConstrainedMotion motion = tick::constrainMotion(wanted, around, held);
+                const motion::ConstrainedMotion motion = motion::constrainMotion(wanted, around, held);
                 const double time = watch.seconds() - clock;
                 if (motion.active > 0) best = std::fmin(best, kUs * time);
             }
@@ -154,8 +157,8 @@ public:
     }
 
 private:
-    static void takeNearest(const tick::ContactManifold& all, tick::ContactManifold& nearest) {
-        std::vector<tick::ContactPoint> points(all.begin(), all.end());
+    static void takeNearest(const contact::ContactManifold& all, contact::ContactManifold& nearest) {
+        std::vector<contact::ContactPoint> points(all.begin(), all.end());
         const std::size_t count = std::min(points.size(), kMostContacts);
         std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count), points.end(),
                          [](const auto& a, const auto& b) { return a.phi < b.phi; });
@@ -178,17 +181,17 @@ Row rowOf(const char* method, const std::string& settings, bool ours, std::size_
 }
 
 /// Both methods on the device path of `records`, as the hard cases run and judge a path.
-Result<Row> overlapRow(const std::string& settings, model::SceneSpec scene, const std::vector<TickRecord>& records) {
+Result<Row> overlapRow(const std::string& settings, scene::SceneSpec scene, const std::vector<TickRecord>& records) {
     const hard::Drive drive = [&](std::int64_t tick, const tick::TickOutput*) {
         return tick::readingOf(records[static_cast<std::size_t>(tick)]);
     };
-    const auto deepest = [&](model::ContactMethod method) -> Result<double> {
+    const auto deepest = [&](scene::ContactMethod method) -> Result<double> {
         scene.contact.method = method;
         const auto run = hard::runScene(scene, drive, static_cast<std::int64_t>(records.size()));
         if (!run) return run.errors();
         return kUm * hard::deepestOverlap(*run);
     };
-    const auto ours = deepest(model::ContactMethod::GodObject), penalty = deepest(model::ContactMethod::Penalty);
+    const auto ours = deepest(scene::ContactMethod::GodObject), penalty = deepest(scene::ContactMethod::Penalty);
     if (!ours) return ours.errors();
     if (!penalty) return penalty.errors();
     Row row = rowOf(kOverlapMethod, fmt::format("{}; {:.3g} um : {:.4g} um", settings, *ours, *penalty), true,
@@ -207,19 +210,19 @@ Result<std::vector<Row>> forceRows(const std::string& protocol, const Extent& ex
     for (const char* method : {kQpMethod, kForceMethod, kTickMethod, kOverlapMethod})
         wanted = wanted || extent.wanted(kForceGroup, method);
     if (!wanted) return rows;
-    const auto plan = protocol::readProtocol(protocol, app::knownDevices(), app::knownMeasures());
+    const auto plan = protocol::readProtocol(protocol, run::knownDevices(), run::knownMeasures());
     if (!plan) return plan.errors();
-    const auto store = app::openDiskStore();
-    model::PartCache parts(store.get());
+    const auto store = run::openDiskStore();
+    scene::PartCache parts(store.get());
     const std::int64_t ticks = extent.few_settings ? kFewTicks : kTicks;
-    for (protocol::Condition condition : plan->conditions) {
-        if (condition.scene.contact.method != model::ContactMethod::Penalty) continue;
+    for (plan::Condition condition : plan->conditions) {
+        if (condition.scene.contact.method != scene::ContactMethod::Penalty) continue;
         std::string settings = condition.name;
         if (const auto at = settings.find("penalty/"); at != std::string::npos) settings.erase(at, 8);
-        condition.scene.contact.method = model::ContactMethod::GodObject;
+        condition.scene.contact.method = scene::ContactMethod::GodObject;
         const auto records = perform(*plan, condition, ticks);
         if (!records) return records.errors();
-        const auto scene = model::buildScene(condition.scene, parts);
+        const auto scene = scene::buildScene(condition.scene, parts);
         if (!scene) return scene.errors();
         Replay replay(*scene, *records);
         const auto timed = [&](const char* method, std::vector<double> times) {
@@ -233,7 +236,7 @@ Result<std::vector<Row>> forceRows(const std::string& protocol, const Extent& ex
         timed(kForceMethod, given(replay.times(true, extent.repetitions)));
         if (replay.queries() == 0) return Error{.message = "no query of the tick was seen: it has another name now"};
         timed(kTickMethod, given(replay.times(false, extent.repetitions)));
-        model::SceneSpec fine = condition.scene;
+        scene::SceneSpec fine = condition.scene;
         fine.contact.cell = 0.0;
         fine.contact.tolerance = kFineTolerance;
         fine.contact.two_way = true;

@@ -47,7 +47,7 @@ Result<std::vector<Row>> hardRows(const Extent& extent) {
 Result<bool> writeHardPaths(const std::string& folder) {
     for (const hard::Case& c : hard::cases()) {
         if (c.compute != nullptr) continue;
-        const auto run = hard::runCase(c, model::ContactMethod::GodObjectHeuristic, 0, false);
+        const auto run = hard::runCase(c, scene::ContactMethod::GodObjectHeuristic, 0, false);
         if (!run) return run.errors();
         const std::string path = folder + "/" + c.name + ".csv";
         std::ofstream out(path, std::ios::binary);

@@ -23,7 +23,7 @@ double neighbourWeight(double valence) {
 
 }  // namespace
 
-model::TriangleMesh subdivideLoop(const model::TriangleMesh& mesh) {
+geometry::TriangleMesh subdivideLoop(const geometry::TriangleMesh& mesh) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, Edge> edges;
     const auto edgeOf = [&](std::uint32_t a, std::uint32_t b) -> Edge& {
         return edges[{std::min(a, b), std::max(a, b)}];
@@ -31,7 +31,7 @@ model::TriangleMesh subdivideLoop(const model::TriangleMesh& mesh) {
     for (const auto& t : mesh.triangles)
         for (std::size_t k = 0; k < 3; ++k) edgeOf(t[k], t[(k + 1) % 3]).opposite += mesh.vertices[t[(k + 2) % 3]];
 
-    model::TriangleMesh fine;
+    geometry::TriangleMesh fine;
     std::vector<Vec3> neighbours(mesh.vertices.size(), Vec3::Zero());
     std::vector<double> valence(mesh.vertices.size(), 0.0);
     std::vector<Vec3> middles;

@@ -8,6 +8,6 @@ namespace passung::bench {
 ///   vertex of valence n:  v' = (1 - n β) v + β Σ neighbours,  β = (5/8 - (3/8 + cos(2π/n)/4)²) / n
 ///   edge (a, b) between c and d:  3/8 (a + b) + 1/8 (c + d)
 /// Limit case: on a regular mesh in one plane nothing moves. @pre every edge has exactly two triangles.
-model::TriangleMesh subdivideLoop(const model::TriangleMesh& mesh);
+geometry::TriangleMesh subdivideLoop(const geometry::TriangleMesh& mesh);
 
 }  // namespace passung::bench

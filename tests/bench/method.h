@@ -42,12 +42,12 @@ struct Candidate {
 };
 
 /// The peers. Each in its own translation unit, for their headers.
-Candidate fclAllContacts(const model::TriangleMesh& field, const model::TriangleMesh& shell);
-Candidate fclDistance(const model::TriangleMesh& field, const model::TriangleMesh& shell);
-Candidate odeTrimesh(const model::TriangleMesh& field, const model::TriangleMesh& shell);
-Candidate bulletGimpact(const model::TriangleMesh& field, const model::TriangleMesh& shell);
+Candidate fclAllContacts(const geometry::TriangleMesh& field, const geometry::TriangleMesh& shell);
+Candidate fclDistance(const geometry::TriangleMesh& field, const geometry::TriangleMesh& shell);
+Candidate odeTrimesh(const geometry::TriangleMesh& field, const geometry::TriangleMesh& shell);
+Candidate bulletGimpact(const geometry::TriangleMesh& field, const geometry::TriangleMesh& shell);
 /// A level set of the field sampled at every point of a shell: brute force, no tree.
-Candidate openvdbPoints(const model::TriangleMesh& field, double cell, std::span<const model::SurfacePoint> points);
+Candidate openvdbPoints(const geometry::TriangleMesh& field, double cell, std::span<const shell::SurfacePoint> points);
 
 /// OpenVDB's level set alone, for sampling and building.
 class LevelSet {
@@ -58,6 +58,6 @@ public:
     virtual double memoryBytes() const = 0;
 };
 /// With a band of `band_cells` on each side.
-std::unique_ptr<LevelSet> buildLevelSet(const model::TriangleMesh& mesh, double cell, double band_cells);
+std::unique_ptr<LevelSet> buildLevelSet(const geometry::TriangleMesh& mesh, double cell, double band_cells);
 
 }  // namespace passung::bench

@@ -17,7 +17,7 @@ void ignoreMessage(int, const char*, va_list) {}
 
 /// A mesh as ODE wants it; the arrays must outlive the geometry.
 struct Trimesh {
-    explicit Trimesh(const model::TriangleMesh& mesh) {
+    explicit Trimesh(const geometry::TriangleMesh& mesh) {
         for (const Vec3& v : mesh.vertices)
             vertices.push_back({static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())});
         for (const auto& t : mesh.triangles)
@@ -44,7 +44,7 @@ struct Trimesh {
 
 class OdeContacts : public Method {
 public:
-    OdeContacts(const model::TriangleMesh& field, const model::TriangleMesh& shell)
+    OdeContacts(const geometry::TriangleMesh& field, const geometry::TriangleMesh& shell)
         : field_(field), shell_(shell), contacts_(kMostContacts) {}
 
     Answer at(const Pose& X_FS) override {
@@ -69,7 +69,7 @@ private:
 
 }  // namespace
 
-Candidate odeTrimesh(const model::TriangleMesh& field, const model::TriangleMesh& shell) {
+Candidate odeTrimesh(const geometry::TriangleMesh& field, const geometry::TriangleMesh& shell) {
     dInitODE2(0);
     dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll));
     dSetMessageHandler(ignoreMessage);

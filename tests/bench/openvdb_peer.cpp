@@ -35,7 +35,7 @@ private:
 
 class AllPoints : public Method {
 public:
-    AllPoints(std::unique_ptr<LevelSet> field, std::span<const model::SurfacePoint> points)
+    AllPoints(std::unique_ptr<LevelSet> field, std::span<const shell::SurfacePoint> points)
         : field_(std::move(field)), points_(points.begin(), points.end()), phi_(points.size()) {
         for (const auto& point : points_) positions_.push_back(point.position);
     }
@@ -59,14 +59,14 @@ public:
 
 private:
     std::unique_ptr<LevelSet> field_;
-    std::vector<model::SurfacePoint> points_;
+    std::vector<shell::SurfacePoint> points_;
     std::vector<Vec3> positions_;
     std::vector<double> phi_;
 };
 
 }  // namespace
 
-std::unique_ptr<LevelSet> buildLevelSet(const model::TriangleMesh& mesh, double cell, double band_cells) {
+std::unique_ptr<LevelSet> buildLevelSet(const geometry::TriangleMesh& mesh, double cell, double band_cells) {
     openvdb::initialize();
     std::vector<openvdb::Vec3s> vertices;
     std::vector<openvdb::Vec3I> triangles;
@@ -78,7 +78,7 @@ std::unique_ptr<LevelSet> buildLevelSet(const model::TriangleMesh& mesh, double 
         static_cast<float>(band_cells)));
 }
 
-Candidate openvdbPoints(const model::TriangleMesh& field, double cell, std::span<const model::SurfacePoint> points) {
+Candidate openvdbPoints(const geometry::TriangleMesh& field, double cell, std::span<const shell::SurfacePoint> points) {
     Candidate result{.name = "OpenVDB all points"};
     const WallClock watch;
     auto level_set = buildLevelSet(field, cell, 4.0);

@@ -21,7 +21,7 @@ constexpr double kDepth = 1.2e-3;  // [m]: the poses are 1 mm deep
 
 class WholeQuery : public Method {
 public:
-    WholeQuery(const model::Part& field, const model::Part& shell, const query::PartQueryRequest& request)
+    WholeQuery(const scene::Part& field, const scene::Part& shell, const query::PartQueryRequest& request)
         : query_(field, shell, request) {}
 
     Answer at(const Pose& X_FS) override {
@@ -38,14 +38,14 @@ private:
 
 class PenaltyTick : public Method {
 public:
-    PenaltyTick(const model::Part& field, const model::Part& shell)
+    PenaltyTick(const scene::Part& field, const scene::Part& shell)
         : field_(*field.field), shell_(*shell.shell), workspace_(shell_.nodes().size()) {
-        contact_.variant = model::PenaltyVariant::AreaWeighted;
+        contact_.variant = scene::PenaltyVariant::AreaWeighted;
         contact_.area_stiffness = kAreaStiffness;
     }
 
     Answer at(const Pose& X_FS) override {
-        const tick::QueryAnswer found = tick::queryContacts(
+        const contact::QueryAnswer found = contact::queryContacts(
             field_, Pose{}, shell_, X_FS, tick::penaltyRequest(contact_.variant), workspace_, manifold_);
         return {.signed_distance = found.found ? found.phi : kNotGiven,
                 .wrench = tick::weightedWrench(contact_, found.load),
@@ -53,14 +53,14 @@ public:
     }
 
 private:
-    const model::DistanceField& field_;
-    const model::SphereTree& shell_;
-    tick::QueryWorkspace workspace_;
-    tick::ContactManifold manifold_;  // stays empty
-    model::ContactSpec contact_;
+    const field::DistanceField& field_;
+    const shell::SphereTree& shell_;
+    contact::QueryWorkspace workspace_;
+    contact::ContactManifold manifold_;  // stays empty
+    scene::ContactSpec contact_;
 };
 
-void writeOff(const model::TriangleMesh& mesh, const std::string& file) {
+void writeOff(const geometry::TriangleMesh& mesh, const std::string& file) {
     std::ofstream out(file);
     out << "OFF\n" << mesh.vertices.size() << ' ' << mesh.triangles.size() << " 0\n";
     for (const Vec3& v : mesh.vertices) out << fmt::format("{} {} {}\n", v.x(), v.y(), v.z());
@@ -88,7 +88,7 @@ double BuiltPart::bytes() const {
     return sum;
 }
 
-PartStore::PartStore(model::TriangleMesh mesh) : kept_(app::openDiskStore()) {
+PartStore::PartStore(geometry::TriangleMesh mesh) : kept_(run::openDiskStore()) {
     static int count = 0;
     const auto name = fmt::format("passung_bench_{}_{}.off", getpid(), count++);
     file_ = (std::filesystem::temp_directory_path() / name).string();
@@ -100,27 +100,27 @@ PartStore::~PartStore() {
     std::filesystem::remove(file_, ignored);
 }
 
-Result<model::Part> PartStore::build(const model::PartNeeds& needs, model::BuildStore* store) const {
-    model::PartSpec spec;
+Result<scene::Part> PartStore::build(const scene::PartNeeds& needs, scene::BuildStore* store) const {
+    scene::PartSpec spec;
     spec.name = "bench";
-    spec.geometry = model::MeshFile{file_, 1.0};
-    return model::buildPart(spec, needs, store);
+    spec.geometry = scene::MeshFile{file_, 1.0};
+    return scene::buildPart(spec, needs, store);
 }
 
 Result<const BuiltPart*> PartStore::get(double tolerance, double spacing) {
     const auto found = parts_.find({tolerance, spacing});
     if (found != parts_.end()) return &found->second;
     BuiltPart built;
-    model::PartNeeds needs{.field = tolerance > 0.0, .shell = false};
+    scene::PartNeeds needs{.field = tolerance > 0.0, .shell = false};
     if (needs.field) needs.tolerance = tolerance;
     needs.depth = kDepth;
-    model::TimedStore field_time(kept_.get());
+    scene::TimedStore field_time(kept_.get());
     auto part = build(needs, &field_time);
     if (!part) return part.errors();
     built.field_s = field_time.seconds();
     built.part = std::move(*part);
     if (spacing > 0.0) {
-        model::TimedStore shell_time(kept_.get());
+        scene::TimedStore shell_time(kept_.get());
         auto shell = build({.field = false, .shell = true, .spacing = spacing}, &shell_time);
         if (!shell) return shell.errors();
         built.shell_s = shell_time.seconds();

@@ -13,7 +13,7 @@ namespace passung::bench {
 
 /// A part built as a scene builds it, with what that took; when it was built, if an earlier run kept it.
 struct BuiltPart {
-    model::Part part;
+    scene::Part part;
     double field_s = 0.0, shell_s = 0.0;  // wall time, all cores; import not included
     double bytes() const;
 };
@@ -21,7 +21,7 @@ struct BuiltPart {
 /// Builds parts from triangles once per setting and keeps them from run to run; 0: no field, no shell.
 class PartStore {
 public:
-    explicit PartStore(model::TriangleMesh mesh);
+    explicit PartStore(geometry::TriangleMesh mesh);
     ~PartStore();
     PartStore(const PartStore&) = delete;
     PartStore& operator=(const PartStore&) = delete;
@@ -33,10 +33,10 @@ public:
     Result<BuiltPart> withCell(double cell) const;
 
 private:
-    Result<model::Part> build(const model::PartNeeds& needs, model::BuildStore* store) const;
+    Result<scene::Part> build(const scene::PartNeeds& needs, scene::BuildStore* store) const;
 
     std::string file_;  // parts come from files
-    std::unique_ptr<model::BuildStore> kept_;
+    std::unique_ptr<scene::BuildStore> kept_;
     std::map<std::pair<double, double>, BuiltPart> parts_;
 };
 

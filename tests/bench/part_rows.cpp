@@ -32,7 +32,7 @@ Vec3 jitter(Random& random, double size) {
 }
 
 /// Points within kReach of the plate's surface: by turns anywhere on its triangles, on the bore's wall, at its rims.
-std::vector<Vec3> pointsNearBore(const model::Shape& shape, const model::TriangleMesh& mesh, Random& random) {
+std::vector<Vec3> pointsNearBore(const shape::Shape& shape, const geometry::TriangleMesh& mesh, Random& random) {
     std::vector<Vec3> points;
     while (points.size() < kBorePoints) {
         const auto& t = mesh.triangles[random.below(mesh.triangles.size())];
@@ -48,30 +48,30 @@ std::vector<Vec3> pointsNearBore(const model::Shape& shape, const model::Triangl
 }
 
 /// How many points on the mantle of a peg in the bore's middle, evenly along a spiral, the field takes for inside.
-double falseContacts(const model::DistanceField& field) {
+double falseContacts(const field::DistanceField& field) {
     double count = 0.0;
     for (std::uint32_t i = 0; i < kPegPoints; ++i) {
         const double angle = std::numbers::pi * (3.0 - std::sqrt(5.0)) * i;  // the golden angle
         const Vec3 p(0.5 * kPeg * std::cos(angle), 0.5 * kPeg * std::sin(angle), -kHeight * (i + 0.5) / kPegPoints);
-        if (field.sample(p, model::FieldMode::Trilinear).phi < 0.0) count += 1.0;
+        if (field.sample(p, field::FieldMode::Trilinear).phi < 0.0) count += 1.0;
     }
     return count;
 }
 
 Result<Row> boreRow(double tolerance) {
-    model::PartSpec spec;
+    scene::PartSpec spec;
     spec.name = "bore";
-    spec.geometry = model::Shape{model::BorePlate{kPlate, kPlate, kHeight, kBore, kHeight, 0.0}};
-    const auto kept = app::openDiskStore();
-    model::TimedStore timed(kept.get());
-    const auto part = model::buildPart(spec, {.field = true, .tolerance = tolerance}, &timed);
+    spec.geometry = shape::Shape{shape::BorePlate{kPlate, kPlate, kHeight, kBore, kHeight, 0.0}};
+    const auto kept = run::openDiskStore();
+    scene::TimedStore timed(kept.get());
+    const auto part = scene::buildPart(spec, {.field = true, .tolerance = tolerance}, &timed);
     if (!part) return part.errors();
     Random random(kSeed);
     const std::vector<Vec3> points = pointsNearBore(*part->shape, part->mesh, random);
     std::vector<double> errors;
     for (const Vec3& p : points)
         errors.push_back(
-            kUm * std::abs(part->field->sample(p, model::FieldMode::Trilinear).phi - signedDistance(*part->shape, p)));
+            kUm * std::abs(part->field->sample(p, field::FieldMode::Trilinear).phi - signedDistance(*part->shape, p)));
     Row row{.group = kBoreGroup,
             .method = "passung field",
             .settings = fmt::format("tolerance {:g} um (cell {:.3g} mm)", kUm * tolerance, 1e3 * part->field->cell()),
@@ -86,10 +86,10 @@ Result<Row> boreRow(double tolerance) {
 
 struct Defect {
     std::string name;
-    model::TriangleMesh mesh;
+    geometry::TriangleMesh mesh;
 };
 
-std::vector<Defect> defects(const model::TriangleMesh& bunny, bool few) {
+std::vector<Defect> defects(const geometry::TriangleMesh& bunny, bool few) {
     std::vector<Defect> all;
     const Vec3 back = bunny.vertices[0];
     const auto patch = [&](double radius) { return test::patchAround(bunny, back, radius); };
@@ -106,7 +106,7 @@ std::vector<Defect> defects(const model::TriangleMesh& bunny, bool few) {
 
 }  // namespace
 
-Result<std::vector<Row>> partRows(const model::TriangleMesh& bunny, const Extent& extent) {
+Result<std::vector<Row>> partRows(const geometry::TriangleMesh& bunny, const Extent& extent) {
     std::vector<Row> rows;
     if (extent.wanted(kBoreGroup, "passung field")) {
         for (const double tolerance : {20e-6, 10e-6, 5e-6}) {
@@ -133,11 +133,11 @@ Result<std::vector<Row>> partRows(const model::TriangleMesh& bunny, const Extent
         PartStore store(std::move(defect.mesh));
         const auto built = store.get(kDefectTolerance, 0.0);
         if (!built) return built.errors();
-        const model::DistanceField& field = *(*built)->part.field;
+        const field::DistanceField& field = *(*built)->part.field;
         double wrong = 0.0;
         std::vector<double> errors;
         for (std::size_t i = 0; i < points.size(); ++i) {
-            const double phi = field.sample(points[i], model::FieldMode::Trilinear).phi;
+            const double phi = field.sample(points[i], field::FieldMode::Trilinear).phi;
             errors.push_back(kUm * std::abs(phi - truth[i]));
             wrong += (phi < 0.0) != (truth[i] < 0.0) ? 1.0 : 0.0;
         }

@@ -12,6 +12,6 @@ inline constexpr const char* kDefectGroup = "bunny with defects";
 ///   `contacts_mean` counts, of 6 000 points of a peg in the bore's middle, those that the field takes for inside.
 ///   Defects: `wrong_signs_percent` of points 1-20 mm from the intact surface, against its ray parity.
 /// Errors: a part cannot be built.
-Result<std::vector<Row>> partRows(const model::TriangleMesh& bunny, const Extent& extent);
+Result<std::vector<Row>> partRows(const geometry::TriangleMesh& bunny, const Extent& extent);
 
 }  // namespace passung::bench

@@ -67,10 +67,10 @@ struct Asked {
 };
 
 /// All points of the tool at all poses: as a query meets them, a shell after the other.
-std::vector<Asked> pointsMet(const ContactScene& scene, const model::SphereTree& shell) {
+std::vector<Asked> pointsMet(const ContactScene& scene, const shell::SphereTree& shell) {
     std::vector<Asked> points;
     for (const TruePose& pose : scene.pressed)
-        for (const model::SurfacePoint& point : shell.points())
+        for (const shell::SurfacePoint& point : shell.points())
             points.push_back({pose.X_FS * point.position, -(pose.X_FS.q * point.normal)});
     return points;
 }
@@ -80,16 +80,16 @@ struct Judged {
     std::vector<Asked> points;
     std::vector<double> truth;
 
-    Judged(const ContactScene& scene, const model::DistanceField& field, const std::vector<Asked>& all) {
+    Judged(const ContactScene& scene, const field::DistanceField& field, const std::vector<Asked>& all) {
         const truth::ExactMesh exact(scene.bunny);
         for (const Asked& met : all) {
-            if (std::abs(field.sample(met.p, model::FieldMode::Trilinear).phi) > kNear) continue;
+            if (std::abs(field.sample(met.p, field::FieldMode::Trilinear).phi) > kNear) continue;
             points.push_back(met);
             truth.push_back(exact.signedDistance(met.p));
             if (points.size() == kMostJudged) break;
         }
     }
-    Times errors(const model::DistanceField& field, model::FieldMode mode) const {
+    Times errors(const field::DistanceField& field, field::FieldMode mode) const {
         std::vector<double> errors;
         for (std::size_t i = 0; i < points.size(); ++i)
             errors.push_back(kUm * std::abs(field.sample(points[i].p, mode, points[i].inward).phi - truth[i]));
@@ -107,14 +107,14 @@ Result<std::vector<Row>> piecesRows(const ContactScene& scene, const Extent& ext
     if (!field_part) return field_part.errors();
     const auto shell_part = tool.get(0.0, kSpacing);
     if (!shell_part) return shell_part.errors();
-    const model::DistanceField& field = *(*field_part)->part.field;
-    const model::SphereTree& shell = *(*shell_part)->part.shell;
+    const field::DistanceField& field = *(*field_part)->part.field;
+    const shell::SphereTree& shell = *(*shell_part)->part.shell;
     const std::vector<Asked> points = pointsMet(scene, shell);
     const Judged judged(scene, field, points);
-    tick::QueryWorkspace workspace(shell.nodes().size());
-    tick::ContactManifold manifold(shell.nodes().size() + shell.points().size());
+    contact::QueryWorkspace workspace(shell.nodes().size());
+    contact::ContactManifold manifold(shell.nodes().size() + shell.points().size());
 
-    const auto sampling = [&](model::FieldMode mode) {
+    const auto sampling = [&](field::FieldMode mode) {
         return [&field, &points, mode] {
             for (const Asked& met : points) benchmark::DoNotOptimize(field.sample(met.p, mode, met.inward).phi);
             return points.size();
@@ -125,10 +125,11 @@ Result<std::vector<Row>> piecesRows(const ContactScene& scene, const Extent& ext
             std::size_t nodes = 0;
             for (const TruePose& pose : scene.pressed) {
                 manifold.clear();
-                const tick::QueryRequest request{.search_below = std::numeric_limits<double>::infinity(),
-                                                 .prove = prove};
+                const contact::QueryRequest request{.search_below = std::numeric_limits<double>::infinity(),
+                                                    .prove = prove};
                 nodes += static_cast<std::size_t>(
-                    tick::queryContacts(field, Pose{}, shell, pose.X_FS, request, workspace, manifold).nodes_visited);
+                    contact::queryContacts(field, Pose{}, shell, pose.X_FS, request, workspace, manifold)
+                        .nodes_visited);
             }
             return nodes;
         };
@@ -136,9 +137,9 @@ Result<std::vector<Row>> piecesRows(const ContactScene& scene, const Extent& ext
     const std::string at = fmt::format("bunny's field, tolerance {:g} um, tool's {} points, {} pressed poses",
                                        1e6 * kTolerance, shell.points().size(), scene.pressed.size());
     const std::string tool_at = fmt::format("torus tool, spacing {:g} mm", 1e3 * kSpacing);
-    model::PointShell sampled = model::samplePoints(scene.tool, kSpacing);
+    shell::PointShell sampled = shell::samplePoints(scene.tool, kSpacing);
     std::vector<Piece> pieces;
-    for (const model::FieldMode mode : model::kFieldModes)
+    for (const field::FieldMode mode : field::kFieldModes)
         pieces.push_back({.name = fmt::format("value and gradient, {}", modeName(mode)),
                           .settings = at + "; a point",
                           .run = sampling(mode),
@@ -151,9 +152,9 @@ Result<std::vector<Row>> piecesRows(const ContactScene& scene, const Extent& ext
          }},
         {"tree visit", at + "; a node with its points", visits(false)},
         {"tree visit with proof", at + "; a node with its points", visits(true)},
-        {"build: points", tool_at, [&] { return model::samplePoints(scene.tool, kSpacing).points.size(); }, true},
+        {"build: points", tool_at, [&] { return shell::samplePoints(scene.tool, kSpacing).points.size(); }, true},
         {"build: sphere tree", fmt::format("{} points", sampled.points.size()),
-         [&] { return model::SphereTree(sampled).nodes().size(); }, true}};
+         [&] { return shell::SphereTree(sampled).nodes().size(); }, true}};
     pieces.insert(pieces.end(), others.begin(), others.end());
     benchmark::ClearRegisteredBenchmarks();
     for (const Piece& piece : pieces)

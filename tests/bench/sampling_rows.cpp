@@ -38,14 +38,14 @@ std::uint64_t spread(std::uint32_t v) {
     return bits;
 }
 
-std::uint64_t mortonCode(const Vec3& p, const model::Bounds& bounds) {
+std::uint64_t mortonCode(const Vec3& p, const geometry::Bounds& bounds) {
     const Vec3 u = (p - bounds.low) / bounds.size().maxCoeff() * 1'000'000.0;
     return spread(static_cast<std::uint32_t>(u.x())) | spread(static_cast<std::uint32_t>(u.y())) << 1 |
            spread(static_cast<std::uint32_t>(u.z())) << 2;
 }
 
 /// Points of the surface, evenly by area, along a Morton curve.
-std::vector<Vec3> surfacePoints(const model::TriangleMesh& mesh, std::size_t count, Random& random) {
+std::vector<Vec3> surfacePoints(const geometry::TriangleMesh& mesh, std::size_t count, Random& random) {
     std::vector<double> sum;
     double area = 0.0;
     for (const auto& t : mesh.triangles) {
@@ -65,7 +65,7 @@ std::vector<Vec3> surfacePoints(const model::TriangleMesh& mesh, std::size_t cou
         const Vec3& a = mesh.vertices[t[0]];
         points.push_back(a + u * (mesh.vertices[t[1]] - a) + v * (mesh.vertices[t[2]] - a));
     }
-    const model::Bounds bounds = model::boundsOf(mesh);
+    const geometry::Bounds bounds = geometry::boundsOf(mesh);
     std::sort(points.begin(), points.end(),
               [&](const Vec3& p, const Vec3& q) { return mortonCode(p, bounds) < mortonCode(q, bounds); });
     return points;
@@ -114,7 +114,7 @@ std::size_t countOtherBits(const std::vector<float>& values, const std::vector<f
 
 /// `field` at the nodes of one array around the part; a float holds metres, a short 1/32767 of the margin.
 template <class Value>
-FlatArray<Value> flatArray(const model::DistanceField& field, double cell) {
+FlatArray<Value> flatArray(const field::DistanceField& field, double cell) {
     FlatArray<Value> flat;
     flat.cell = cell;
     flat.origin = field.bounds().low - Vec3::Constant(kMarginCells * cell);
@@ -128,7 +128,7 @@ FlatArray<Value> flatArray(const model::DistanceField& field, double cell) {
         for (int y = 0; y < flat.nodes[1]; ++y)
             for (int x = 0; x < flat.nodes[0]; ++x) {
                 const Vec3 node = flat.origin + cell * Vec3(x, y, z);
-                const double phi = field.sample(node, model::FieldMode::Trilinear).phi / flat.scale;
+                const double phi = field.sample(node, field::FieldMode::Trilinear).phi / flat.scale;
                 flat.values.push_back(static_cast<Value>(rounded ? std::clamp(std::round(phi), -steps, steps) : phi));
             }
     return flat;
@@ -144,15 +144,15 @@ Times bandErrors(const truth::ExactMesh& exact, const std::vector<Vec3>& points,
 
 }  // namespace
 
-Result<std::vector<Row>> samplingRows(const model::TriangleMesh& bunny, const Extent& extent) {
+Result<std::vector<Row>> samplingRows(const geometry::TriangleMesh& bunny, const Extent& extent) {
     std::vector<Row> rows;
     const auto wanted = [&](const char* group) { return extent.wanted(group, ""); };
     if (!wanted(kSamplingGroup) && !wanted(kBuildGroup)) return rows;
-    const double cell = model::boundsOf(bunny).size().maxCoeff() / kCellsAlongLongest;
+    const double cell = geometry::boundsOf(bunny).size().maxCoeff() / kCellsAlongLongest;
     PartStore store(bunny);
     auto built = store.withCell(cell);
     if (!built) return built.errors();
-    const model::DistanceField& field = *built->part.field;
+    const field::DistanceField& field = *built->part.field;
     const auto level_set = buildLevelSet(bunny, cell, kBandCells);
 
     Random random(20260301);
@@ -167,7 +167,7 @@ Result<std::vector<Row>> samplingRows(const model::TriangleMesh& bunny, const Ex
         const Vec3 shift = sampling.X.p;
         rows.push_back(sampling.measure("passung sample", "value and gradient, double, point by point", true, [&] {
             for (std::size_t i = 0; i < kPoints; ++i)
-                sampling.phi[i] = field.sample(turn * sampling.points[i] + shift, model::FieldMode::Trilinear).phi;
+                sampling.phi[i] = field.sample(turn * sampling.points[i] + shift, field::FieldMode::Trilinear).phi;
         }));
         rows.back().memory_MB = 1e-6 * static_cast<double>(field.memoryBytes());
         std::vector<float> x, y, z, phi(kPoints);
@@ -178,9 +178,9 @@ Result<std::vector<Row>> samplingRows(const model::TriangleMesh& bunny, const Ex
         }
         std::vector<float> first_bits;
         for (const auto& [instructions, name] :
-             {std::pair(model::Instructions::Baseline, "baseline"), std::pair(model::Instructions::V3, "AVX2"),
-              std::pair(model::Instructions::V4, "AVX-512")}) {
-            if (instructions > model::bestInstructions()) continue;
+             {std::pair(field::Instructions::Baseline, "baseline"), std::pair(field::Instructions::V3, "AVX2"),
+              std::pair(field::Instructions::V4, "AVX-512")}) {
+            if (instructions > field::bestInstructions()) continue;
             rows.push_back(sampling.measure(
                 "passung sampleMany", fmt::format("value, {} instructions", name), true,
                 [&, variant = instructions] { field.sampleMany(field.place(sampling.X), x, y, z, phi, variant); }));
@@ -221,16 +221,16 @@ Result<std::vector<Row>> samplingRows(const model::TriangleMesh& bunny, const Ex
         };
         // Time and error count for the marks in one row only, which has both.
         const auto addField = [&](const std::string& what, bool counts, double seconds,
-                                  const model::DistanceField& of) {
+                                  const field::DistanceField& of) {
             add("passung field", what, counts, seconds, static_cast<double>(of.memoryBytes()),
                 bandErrors(exact, points,
-                           [&](const Vec3& p) { return of.sample(p, model::FieldMode::Trilinear).phi; }));
+                           [&](const Vec3& p) { return of.sample(p, field::FieldMode::Trilinear).phi; }));
         };
         // By turns, so that a busy machine hits all; the fastest of each counts.
         std::vector<double> seconds(4, std::numeric_limits<double>::infinity());
-        std::optional<model::DistanceField> even, finer, wide;
-        const model::FieldAccuracy near{.reach = cell};
-        const model::FieldAccuracy near_finer{
+        std::optional<field::DistanceField> even, finer, wide;
+        const field::FieldAccuracy near{.reach = cell};
+        const field::FieldAccuracy near_finer{
             .tolerance = kFinerTolerance, .depth = kTestedCells * cell, .reach = cell};
         for (int i = 0; i < (extent.few_settings ? 1 : kBuilds); ++i) {
             const auto timed = [&](std::size_t k, const auto& run) {
@@ -238,9 +238,9 @@ Result<std::vector<Row>> samplingRows(const model::TriangleMesh& bunny, const Ex
                 run();
                 seconds[k] = std::min(seconds[k], watch.seconds());
             };
-            const auto build = [&](const model::FieldAccuracy& accuracy) {
+            const auto build = [&](const field::FieldAccuracy& accuracy) {
                 auto of =
-                    model::DistanceField::build(model::exactSource(built->part), cell, kTestedCells * cell, accuracy);
+                    field::DistanceField::build(scene::exactSource(built->part), cell, kTestedCells * cell, accuracy);
                 return of ? std::optional(std::move(*of)) : std::nullopt;
             };
             timed(0, [&] { buildLevelSet(bunny, cell, kBandCells); });

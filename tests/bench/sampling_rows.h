@@ -12,6 +12,6 @@ inline constexpr const char* kVdbBuild = "OpenVDB level set";
 /// Sampling at points of the bunny's surface in Morton order through a rigid transform (the truth there is 0), and
 /// building the field: ours beside OpenVDB at the same cell, which is 1/256 of the longest side.
 /// Errors: a field cannot be built.
-Result<std::vector<Row>> samplingRows(const model::TriangleMesh& bunny, const Extent& extent);
+Result<std::vector<Row>> samplingRows(const geometry::TriangleMesh& bunny, const Extent& extent);
 
 }  // namespace passung::bench

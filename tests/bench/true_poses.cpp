@@ -64,7 +64,7 @@ Result<Done> writeTruePoses(const ContactScene& scene, const std::string& file) 
     return Done{};
 }
 
-Result<ContactScene> readTruePoses(model::TriangleMesh bunny, const std::string& file, std::size_t count) {
+Result<ContactScene> readTruePoses(geometry::TriangleMesh bunny, const std::string& file, std::size_t count) {
     ContactScene scene{.bunny = std::move(bunny), .tool = torusTool(), .pressed = {}, .apart = {}};
     std::ifstream in(file);
     std::string text;

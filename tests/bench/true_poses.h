@@ -11,6 +11,6 @@ Result<Done> writeTruePoses(const ContactScene& scene, const std::string& file);
 
 /// The first `count` poses of each kind (fewer if there are no more). Errors: unreadable, not a file of this kind, made
 /// for other meshes.
-Result<ContactScene> readTruePoses(model::TriangleMesh bunny, const std::string& file, std::size_t count);
+Result<ContactScene> readTruePoses(geometry::TriangleMesh bunny, const std::string& file, std::size_t count);
 
 }  // namespace passung::bench

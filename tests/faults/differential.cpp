@@ -160,7 +160,7 @@ void runStages(Random& random) {
         state.pairs.resize(pairs);
         state.pushes.resize(pairs);
         state.last_shares.resize(pairs);
-        state.push_line.resize(pairs * (model::kMaxDelayTicks + 1));
+        state.push_line.resize(pairs * (scene::kMaxDelayTicks + 1));
         const Pose X{anyRotation(random, 1.0), anyVector(random, 0.3)};
         model.X_WG_start = tick::registeredPose(model.registration, X);
         model.X_WG_start.p += anyVector(random, 0.01);
@@ -205,8 +205,8 @@ void runStages(Random& random) {
     }
 }
 
-tick::ContactPoint anyContact(Random& random, double askew) {
-    tick::ContactPoint contact;
+contact::ContactPoint anyContact(Random& random, double askew) {
+    contact::ContactPoint contact;
     contact.position = anyVector(random, 0.01);
     contact.gradient = (Vec3::UnitZ() + askew * anyVector(random, 1.0)).normalized() * random.uniform(0.8, 1.2);
     if (random.below(40) == 0) contact.gradient *= random.uniform(0.05, 0.2);
@@ -219,12 +219,12 @@ tick::ContactPoint anyContact(Random& random, double askew) {
 }
 
 /// The wall of a bore, a groove, a flat face, a wedge, or contacts anywhere.
-tick::ContactManifold anyManifold(Random& random) {
+contact::ContactManifold anyManifold(Random& random) {
     const std::uint64_t kind = random.below(6);
     const std::size_t count = kind == 5 ? 200 + random.below(600) : 1 + random.below(kind == 0 ? 12 : 60);
-    tick::ContactManifold manifold(count);
+    contact::ContactManifold manifold(count);
     for (std::size_t i = 0; i < count; ++i) {
-        tick::ContactPoint contact = anyContact(random, kind == 0 ? 2.0 : kind == 5 ? 0.3 : 0.02);
+        contact::ContactPoint contact = anyContact(random, kind == 0 ? 2.0 : kind == 5 ? 0.3 : 0.02);
         const double angle = random.uniform(0.0, 2.0 * std::numbers::pi);
         if (kind == 1 || kind == 5) {  // bore
             const Vec3 out(std::cos(angle), std::sin(angle), 0.0);
@@ -248,11 +248,11 @@ tick::ContactManifold anyManifold(Random& random) {
     return manifold;
 }
 
-void add(Bits& bits, const tick::ConstrainedMotion& motion) {
+void add(Bits& bits, const motion::ConstrainedMotion& motion) {
     bits.addAll(motion.u);
     bits.add(std::uint64_t{(motion.relaxed ? 1u : 0u) | (motion.converged ? 2u : 0u)});
     for (int i = 0; i < motion.active; ++i) {
-        const tick::HeldContact& held = motion.held[static_cast<std::size_t>(i)];
+        const motion::HeldContact& held = motion.held[static_cast<std::size_t>(i)];
         bits.add(std::uint64_t{held.contact});
         bits.add(held.push);
     }
@@ -261,26 +261,26 @@ void add(Bits& bits, const tick::ConstrainedMotion& motion) {
 void runSolver(Random& random) {
     Bits smooth_bits("smooth motion"), rubbed_bits("friction");
     for (int run = 0; run < 1500; ++run) {
-        const tick::ContactManifold manifold = anyManifold(random);
+        const contact::ContactManifold manifold = anyManifold(random);
         const double keep_out = random.below(2) == 0 ? -1e-6 : -5e-6;
-        const tick::Surroundings around{manifold, anyVector(random, 0.01), random.uniform(0.005, 0.05), keep_out,
-                                        keep_out - (random.below(2) == 0 ? 0.0 : random.uniform(0.0, 5e-6))};
-        tick::Motion wanted;
+        const motion::Surroundings around{manifold, anyVector(random, 0.01), random.uniform(0.005, 0.05), keep_out,
+                                          keep_out - (random.below(2) == 0 ? 0.0 : random.uniform(0.0, 5e-6))};
+        motion::Motion wanted;
         const double size = std::pow(10.0, random.uniform(-6.0, -2.0));
         for (int i = 0; i < 6; ++i) wanted[i] = size * random.normal();
         std::vector<std::uint32_t> likely;
         const double at_rest = random.uniform(0.05, 1.0), other = random.uniform(0.05, 1.0);
-        const tick::Friction friction[] = {{at_rest, at_rest * random.uniform(0.5, 1.0)}, {other, 0.8 * other}};
-        tick::FrictionPatches before;
-        tick::MotionSolver solver(around);
+        const motion::Friction friction[] = {{at_rest, at_rest * random.uniform(0.5, 1.0)}, {other, 0.8 * other}};
+        motion::FrictionPatches before;
+        motion::MotionSolver solver(around);
         for (int tick = 0; tick < 3; ++tick) {
-            add(smooth_bits, tick::constrainMotion(wanted, around, likely));
+            add(smooth_bits, motion::constrainMotion(wanted, around, likely));
             add(smooth_bits, solver.solve(wanted));
-            const tick::RubbedMotion rubbed = tick::constrainWithFriction(wanted, around, friction, before, likely);
+            const motion::RubbedMotion rubbed = motion::constrainWithFriction(wanted, around, friction, before, likely);
             add(rubbed_bits, rubbed.motion);
             rubbed_bits.add(std::uint64_t{rubbed.converged ? 1u : 0u});
             for (int p = 0; p < rubbed.patches.count; ++p) {
-                const tick::FrictionPatch& patch = rubbed.patches.patch[static_cast<std::size_t>(p)];
+                const motion::FrictionPatch& patch = rubbed.patches.patch[static_cast<std::size_t>(p)];
                 rubbed_bits.addAll(patch.centre);
                 rubbed_bits.addAll(patch.rub);
                 rubbed_bits.add(patch.radius);
@@ -293,7 +293,7 @@ void runSolver(Random& random) {
                 likely.push_back(rubbed.motion.held[static_cast<std::size_t>(i)].contact);
             if (random.below(4) == 0)
                 for (std::uint32_t& place : likely) place = static_cast<std::uint32_t>(random.below(manifold.size()));
-            wanted += 0.1 * size * tick::Motion::Constant(random.normal());
+            wanted += 0.1 * size * motion::Motion::Constant(random.normal());
         }
     }
 }
@@ -301,28 +301,28 @@ void runSolver(Random& random) {
 /// A block over a plate and a post, pressed, drawn and turned by a hand whose device now and then goes wrong.
 void runScenes(Random& random) {
     Bits bits("scenes");
-    model::PartCache cache;
+    scene::PartCache cache;
     for (int run = 0; run < 12; ++run) {
-        model::SceneSpec spec;
+        scene::SceneSpec spec;
         const Vec3 place = anyVector(random, 0.2);
         spec.parts.push_back({.name = "held",
-                              .geometry = model::Box{0.02, 0.02, 0.01},
+                              .geometry = shape::Box{0.02, 0.02, 0.01},
                               .X_WP = {Quat::Identity(), place + Vec3(0, 0, 0.0155)},
                               .held = true,
                               .friction = run % 2 == 0 ? 0.5 : 0.0,
                               .sliding_friction = run % 2 == 0 ? 0.4 : 0.0});
         spec.parts.push_back({.name = "plate",
-                              .geometry = model::Box{0.06, 0.06, 0.02},
+                              .geometry = shape::Box{0.06, 0.06, 0.02},
                               .X_WP = {Quat::Identity(), place},
                               .friction = 0.5,
                               .sliding_friction = 0.4});
         spec.parts.push_back({.name = "post",
-                              .geometry = model::Cylinder{0.01, 0.03},
+                              .geometry = shape::Cylinder{0.01, 0.03},
                               .X_WP = {Quat::Identity(), place + Vec3(0.016, 0, 0.02)},
                               .friction = 0.5,
                               .sliding_friction = 0.4});
-        const model::ContactMethod methods[] = {model::ContactMethod::Penalty, model::ContactMethod::GodObjectHeuristic,
-                                                model::ContactMethod::GodObject};
+        const scene::ContactMethod methods[] = {scene::ContactMethod::Penalty, scene::ContactMethod::GodObjectHeuristic,
+                                                scene::ContactMethod::GodObject};
         spec.contact.method = methods[run % 3];
         spec.contact.cell = 1e-3;
         spec.contact.spacing = 2e-3;
@@ -330,7 +330,7 @@ void runScenes(Random& random) {
         spec.effects.passivity_damping = run % 3 == 0 ? 0.0 : 20.0;
         if (run == 11) spec.start_gate = {0.002, 0.1, 20};
         if (run == 10) spec.display_wrench = false;
-        const auto scene = model::buildScene(spec, cache);
+        const auto scene = scene::buildScene(spec, cache);
         if (!scene) std::abort();
         const tick::TickModel model = tick::makeModel(*scene);
         tick::TickState state = tick::makeState(model);

@@ -24,7 +24,7 @@ using namespace passung;
 /// A session that accepts everything; it ends with the program.
 class Session {
 public:
-    Session() : database_(folder_ / "study.db"), socket_(*app::CommandSocket::listen(database_, [] {})) {
+    Session() : database_(folder_ / "study.db"), socket_(*run::CommandSocket::listen(database_, [] {})) {
         thread_ = std::thread([this] {
             while (!ended_)
                 socket_->serve([](const session::Command&) { return session::Reply{.accepted = true}; }, true);
@@ -39,7 +39,7 @@ public:
 private:
     test::TempFolder folder_;
     std::string database_;
-    std::unique_ptr<app::CommandSocket> socket_;
+    std::unique_ptr<run::CommandSocket> socket_;
     std::atomic<bool> ended_ = false;
     std::thread thread_;
 };
@@ -67,7 +67,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::replace(request.begin(), request.end(), '|', '\0');
     if (sent(kSession.database() + ".socket", request) < 1) std::abort();
     const auto answer =
-        app::tellSession(kSession.database(), {.kind = session::CommandKind::Note, .text = "still here"});
+        run::tellSession(kSession.database(), {.kind = session::CommandKind::Note, .text = "still here"});
     if (!answer || !*answer || !(*answer)->accepted) std::abort();
     return 0;
 }

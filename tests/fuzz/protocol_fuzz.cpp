@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     using namespace passung;
     const std::string text(reinterpret_cast<const char*>(data), size);
     const auto plan = protocol::readProtocolText(text, PASSUNG_SOURCE_DIR "/protocols/peg_in_hole/fuzzed.toml",
-                                                 app::knownDevices(), app::knownMeasures());
+                                                 run::knownDevices(), run::knownMeasures());
     if (plan) {
         if (plan->conditions.empty()) std::abort();
         return 0;

@@ -27,12 +27,12 @@ struct Caps {
 /// Each look perhaps with a second one for its proof.
 Caps capsOf(const Run& run) {
     const bool rubs = std::any_of(run.spec.parts.begin(), run.spec.parts.end(),
-                                  [](const model::PartSpec& part) { return part.friction > 0.0; });
+                                  [](const scene::PartSpec& part) { return part.friction > 0.0; });
     // Without friction every motion is found before the cap. With it a tight fit may come to the cap, and then every
     // solution of a turn, of which there are two at most, and the last one notices that by one more.
-    const int rows = rubs ? tick::kMostSteps + 2 * tick::kRubSweeps + 1 : tick::kMaxIterations - 1;
-    const int turns = rubs ? tick::kRubSweeps : 0;
-    if (run.spec.contact.method == model::ContactMethod::GodObject)
+    const int rows = rubs ? motion::kMostSteps + 2 * motion::kRubSweeps + 1 : motion::kMaxIterations - 1;
+    const int turns = rubs ? motion::kRubSweeps : 0;
+    if (run.spec.contact.method == scene::ContactMethod::GodObject)
         return {tick::kSweeps, 2 * tick::kSweeps * (tick::kCuts + tick::kHalvings + 3), rows, turns};
     // Corrections with their halvings, then per sub-step an arrival, its return and the halvings with their reliefs.
     const int sub_step = 3 + (tick::kHalvings + 1) * (1 + tick::kReliefs);
@@ -43,7 +43,7 @@ Caps capsOf(const Run& run) {
 /// What holds in every case.
 std::string commonFaults(const Run& run) {
     const Caps caps = capsOf(run);
-    const model::OutputLimits& limits = run.spec.limits;
+    const scene::OutputLimits& limits = run.spec.limits;
     const double most_torque = limits.actuates_torque ? limits.max_torque : 0.0;
     for (std::size_t i = 0; i < run.ticks.size(); ++i) {
         const Tick& t = run.ticks[i];
@@ -63,7 +63,7 @@ std::string commonFaults(const Run& run) {
 }
 
 /// With the parts laid otherwise in their frames; the ticks are of the frames of `spec`.
-Result<Run> runRelaid(const model::SceneSpec& spec, std::uint64_t seed, double chord_error, const Drive& drive,
+Result<Run> runRelaid(const scene::SceneSpec& spec, std::uint64_t seed, double chord_error, const Drive& drive,
                       std::int64_t ticks) {
     const auto other = relaid(spec, seed, chord_error);
     if (!other) return other.errors();
@@ -82,10 +82,10 @@ Result<Run> runRelaid(const model::SceneSpec& spec, std::uint64_t seed, double c
 
 }  // namespace
 
-std::span<const std::pair<model::ContactMethod, const char*>> methods() {
-    static constexpr std::array kMethods{std::pair{model::ContactMethod::Penalty, "penalty"},
-                                         std::pair{model::ContactMethod::GodObjectHeuristic, "god_object_heuristic"},
-                                         std::pair{model::ContactMethod::GodObject, "god_object"}};
+std::span<const std::pair<scene::ContactMethod, const char*>> methods() {
+    static constexpr std::array kMethods{std::pair{scene::ContactMethod::Penalty, "penalty"},
+                                         std::pair{scene::ContactMethod::GodObjectHeuristic, "god_object_heuristic"},
+                                         std::pair{scene::ContactMethod::GodObject, "god_object"}};
     return kMethods;
 }
 
@@ -107,7 +107,7 @@ const Case* findCase(const std::string& name) {
     return nullptr;
 }
 
-Result<Run> runCase(const Case& c, model::ContactMethod method, std::uint64_t seed, bool full) {
+Result<Run> runCase(const Case& c, scene::ContactMethod method, std::uint64_t seed, bool full) {
     auto spec = readHardScene(c.scene);
     if (!spec) return spec.errors();
     spec->contact.method = method;
@@ -128,7 +128,7 @@ Judgement judgeRun(const Case& c, const Run& run) {
     return found;
 }
 
-Result<Measured> measure(const Case& c, model::ContactMethod method, bool full) {
+Result<Measured> measure(const Case& c, scene::ContactMethod method, bool full) {
     if (c.compute != nullptr) return c.compute();
     Measured result;
     result.judgement.value = c.adds ? 0.0 : -1e300;

@@ -37,12 +37,12 @@ struct Case {
     double mark;  // met if value ≤ mark
     int seeds, full_seeds;
     double seconds, full_seconds;  // of a run
-    Drive (*drive)(const model::SceneSpec&, std::uint64_t seed);
+    Drive (*drive)(const scene::SceneSpec&, std::uint64_t seed);
     Judgement (*judge)(const Run&);
-    void (*vary)(model::SceneSpec&, std::uint64_t seed) = nullptr;  // seed 0 leaves the scene as its file says
+    void (*vary)(scene::SceneSpec&, std::uint64_t seed) = nullptr;  // seed 0 leaves the scene as its file says
     unsigned methods = 0b110;                                       // by ContactMethod: who has to hold the mark
     bool adds = false;                                       // the seeds' numbers are summed up; else the worst counts
-    model::SceneSpec (*solids)(model::SceneSpec) = nullptr;  // Run::solids, of a scene with meshes
+    scene::SceneSpec (*solids)(scene::SceneSpec) = nullptr;  // Run::solids, of a scene with meshes
     // Of a case that is no run of a scene: gives its number; what has to do with scenes is then left out.
     Result<Measured> (*compute)() = nullptr;
     // Of seeds above 0: the parts as meshes that lie otherwise in their frames (relaid.h), shapes with this chord error
@@ -55,21 +55,21 @@ std::span<const Case> cases();
 const Case* findCase(const std::string& name);
 
 /// Runs a case with `method`, by default in a reduced size, and judges it. Errors: the scene cannot be read or built.
-Result<Measured> measure(const Case& c, model::ContactMethod method, bool full);
+Result<Measured> measure(const Case& c, scene::ContactMethod method, bool full);
 
 /// The case's own number; besides, every tick must be finite, within the device's limits of force and torque and below
 /// the hard caps of nodes, points and iterations, and the proxy has to follow the device (follow.h).
 Judgement judgeRun(const Case& c, const Run& run);
 
 /// One seed. @pre the case runs a scene.
-Result<Run> runCase(const Case& c, model::ContactMethod method, std::uint64_t seed, bool full);
+Result<Run> runCase(const Case& c, scene::ContactMethod method, std::uint64_t seed, bool full);
 
 /// True if PASSUNG_HARD_FULL is in the environment.
 bool fullSize();
 
 /// The methods of the table and their names in scene files.
-std::span<const std::pair<model::ContactMethod, const char*>> methods();
-inline bool applies(const Case& c, model::ContactMethod method) { return (c.methods >> static_cast<int>(method)) & 1u; }
+std::span<const std::pair<scene::ContactMethod, const char*>> methods();
+inline bool applies(const Case& c, scene::ContactMethod method) { return (c.methods >> static_cast<int>(method)) & 1u; }
 
 /// One line: met or MISSED, name, method, value beside mark, cost.
 std::string describe(const Case& c, const char* method, const Measured& measured);

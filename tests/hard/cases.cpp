@@ -17,7 +17,7 @@ namespace passung::hard {
 
 namespace {
 
-using model::SceneSpec;
+using scene::SceneSpec;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -30,7 +30,7 @@ void anywhere(SceneSpec& spec, std::uint64_t seed) {
     const auto three = [&] { return Vec3(random.normal(), random.normal(), random.normal()); };
     const Pose X{Quat(random.normal(), random.normal(), random.normal(), random.normal()).normalized(),
                  0.013 * three()};
-    for (model::PartSpec& part : spec.parts) part.X_WP = X * part.X_WP;
+    for (scene::PartSpec& part : spec.parts) part.X_WP = X * part.X_WP;
 }
 
 // ---- paths ----------------------------------------------------------------------------------------------------------
@@ -82,9 +82,9 @@ Drive edgeStrokes(const SceneSpec& spec, std::uint64_t seed) {
 /// A peg over its bore, every two seconds: down while it is pushed and tilted, held, and out again. Lengths per 20 mm
 /// of depth.
 Drive pegPush(const SceneSpec& spec, std::uint64_t seed, double yaw) {
-    const auto dims = model::namedDimensions(std::get<model::Shape>(fixedPart(spec).geometry));
+    const auto dims = shape::namedDimensions(std::get<shape::Shape>(fixedPart(spec).geometry));
     double depth = 0.0;
-    for (const model::Dimension& d : dims)
+    for (const shape::Dimension& d : dims)
         if (std::string(d.key) == "bore_depth") depth = d.value;
     const double unit = depth / 20.0;  // 1 mm of a bore of 20 mm
     const RandomPush push(streamSeed("hard", "", "", "peg", seed), unit * Vec3(1.5, 1.5, 0.3),
@@ -103,30 +103,30 @@ Drive pegPush(const SceneSpec& spec, std::uint64_t seed, double yaw) {
 
 /// The shapes that the meshes of peg and plate approximate, in their place.
 SceneSpec roundSolids(SceneSpec spec) {
-    for (model::PartSpec& part : spec.parts) {
+    for (scene::PartSpec& part : spec.parts) {
         if (part.held)
-            part.geometry = model::Shape(model::Peg{20e-3, 24e-3, 0.5e-3});
+            part.geometry = shape::Shape(shape::Peg{20e-3, 24e-3, 0.5e-3});
         else
-            part.geometry = model::Shape(model::BorePlate{26e-3, 26e-3, 23e-3, 20.2e-3, 20e-3, 0.5e-3});
+            part.geometry = shape::Shape(shape::BorePlate{26e-3, 26e-3, 23e-3, 20.2e-3, 20e-3, 0.5e-3});
     }
     return spec;
 }
 
 /// The cube that the mesh was before it was damaged.
 SceneSpec cubeSolid(SceneSpec spec) {
-    for (model::PartSpec& part : spec.parts)
-        if (!part.held) part.geometry = model::Shape(model::Box{0.02, 0.02, 0.02});
+    for (scene::PartSpec& part : spec.parts)
+        if (!part.held) part.geometry = shape::Shape(shape::Box{0.02, 0.02, 0.02});
     return spec;
 }
 
 /// The pins of the mesh, each a part.
 SceneSpec pinSolids(SceneSpec spec) {
-    const model::PartSpec mesh = fixedPart(spec);
-    std::erase_if(spec.parts, [](const model::PartSpec& part) { return !part.held; });
+    const scene::PartSpec mesh = fixedPart(spec);
+    std::erase_if(spec.parts, [](const scene::PartSpec& part) { return !part.held; });
     for (int i = 0; i < 10; ++i)
         for (int k = 0; k < 10; ++k) {
             spec.parts.push_back(mesh);
-            spec.parts.back().geometry = model::Shape(model::Box{1.5e-3, 1.5e-3, 0.01});
+            spec.parts.back().geometry = shape::Shape(shape::Box{1.5e-3, 1.5e-3, 0.01});
             spec.parts.back().X_WP = mesh.X_WP * at(-22.5 + 5 * i, -22.5 + 5 * k, -5);
         }
     return spec;
@@ -264,18 +264,18 @@ Judgement overlapOfMany(const Run& run) {
 /// Pins whose tops the proxy's block touches, at the tick with the most of them: by the blocks' closed forms.
 std::size_t mostTouched(const Run& run) {
     constexpr double kTouch = 2e-6;  // [m]
-    const model::Shape& block = std::get<model::Shape>(heldPart(run.solids).geometry);
+    const shape::Shape& block = std::get<shape::Shape>(heldPart(run.solids).geometry);
     std::size_t most = 0;
     for (const Tick& t : run.ticks) {
         const Pose X_GW = t.proxy.inverse();
-        const auto touches = [&](const model::PartSpec& pin) {
+        const auto touches = [&](const scene::PartSpec& pin) {
             if (pin.held) return false;
-            const auto& box = std::get<model::Box>(std::get<model::Shape>(pin.geometry));
+            const auto& box = std::get<shape::Box>(std::get<shape::Shape>(pin.geometry));
             double least = kTouch;
             for (const double x : {-0.5, 0.5})
                 for (const double y : {-0.5, 0.5}) {
                     const Vec3 corner(x * box.width, y * box.depth, 0.5 * box.height);
-                    least = std::min(least, model::signedDistance(block, X_GW * (pin.X_WP * corner)));
+                    least = std::min(least, shape::signedDistance(block, X_GW * (pin.X_WP * corner)));
                 }
             return least < kTouch;
         };

@@ -22,7 +22,7 @@ void sampleSegment(const Vec3& a, const Vec3& b, double spacing, std::vector<Vec
     for (int i = 0; i <= n; ++i) points.push_back(a + (b - a) * (static_cast<double>(i) / n));
 }
 
-Vec3 normalOf(const model::TriangleMesh& mesh, const model::Triangle& t) {
+Vec3 normalOf(const geometry::TriangleMesh& mesh, const geometry::Triangle& t) {
     return (mesh.vertices[t[1]] - mesh.vertices[t[0]]).cross(mesh.vertices[t[2]] - mesh.vertices[t[0]]).normalized();
 }
 
@@ -33,7 +33,7 @@ struct Edge {
 };
 
 /// Vertices with the same place count as one.
-std::map<std::pair<std::uint32_t, std::uint32_t>, Edge> edgesOf(const model::TriangleMesh& mesh) {
+std::map<std::pair<std::uint32_t, std::uint32_t>, Edge> edgesOf(const geometry::TriangleMesh& mesh) {
     std::map<std::array<double, 3>, std::uint32_t> first;
     std::vector<std::uint32_t> same(mesh.vertices.size());
     for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
@@ -41,7 +41,7 @@ std::map<std::pair<std::uint32_t, std::uint32_t>, Edge> edgesOf(const model::Tri
         same[i] = first.emplace(std::array{v.x(), v.y(), v.z()}, i).first->second;
     }
     std::map<std::pair<std::uint32_t, std::uint32_t>, Edge> edges;
-    for (const model::Triangle& t : mesh.triangles) {
+    for (const geometry::Triangle& t : mesh.triangles) {
         const Vec3 n = normalOf(mesh, t);
         for (std::size_t k = 0; k < 3; ++k) {
             const auto [a, b] = std::minmax(same[t[k]], same[t[(k + 1) % 3]]);
@@ -57,10 +57,10 @@ std::map<std::pair<std::uint32_t, std::uint32_t>, Edge> edgesOf(const model::Tri
     return edges;
 }
 
-void sampleFaces(const model::TriangleMesh& mesh, double spacing, std::vector<Vec3>& points) {
+void sampleFaces(const geometry::TriangleMesh& mesh, double spacing, std::vector<Vec3>& points) {
     for (const auto& [ends, edge] : edgesOf(mesh))
         sampleSegment(mesh.vertices[ends.first], mesh.vertices[ends.second], spacing, points);
-    for (const model::Triangle& t : mesh.triangles) {
+    for (const geometry::Triangle& t : mesh.triangles) {
         const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
         const double longest = std::max({(b - a).norm(), (c - a).norm(), (c - b).norm()});
         const double height = (b - a).cross(c - a).norm() / longest;
@@ -73,14 +73,14 @@ void sampleFaces(const model::TriangleMesh& mesh, double spacing, std::vector<Ve
 
 }  // namespace
 
-DenseBody denseBody(const model::Shape& shape, double spacing) {
-    const double size = boundsOf(model::tessellate(shape, 1e-3)).size().maxCoeff();
+DenseBody denseBody(const shape::Shape& shape, double spacing) {
+    const double size = boundsOf(shape::tessellate(shape, 1e-3)).size().maxCoeff();
     DenseBody body;
-    const model::TriangleMesh fine = model::tessellate(
-        shape, size * (std::holds_alternative<model::Sphere>(shape) || std::holds_alternative<model::Torus>(shape)
+    const geometry::TriangleMesh fine = shape::tessellate(
+        shape, size * (std::holds_alternative<shape::Sphere>(shape) || std::holds_alternative<shape::Torus>(shape)
                            ? kBallChord
                            : kFineChord));
-    const bool edgeless = std::holds_alternative<model::Sphere>(shape) || std::holds_alternative<model::Torus>(shape);
+    const bool edgeless = std::holds_alternative<shape::Sphere>(shape) || std::holds_alternative<shape::Torus>(shape);
     if (edgeless) {
         body.points = fine.vertices;
     } else {
@@ -88,9 +88,9 @@ DenseBody denseBody(const model::Shape& shape, double spacing) {
             if (edge.sharp)
                 sampleSegment(fine.vertices[ends.first], fine.vertices[ends.second],
                               std::min(kEdgeSpacing * size, spacing), body.points);
-        sampleFaces(model::tessellate(shape, size * kCoarseChord), spacing, body.points);
+        sampleFaces(shape::tessellate(shape, size * kCoarseChord), spacing, body.points);
     }
-    body.distance = [shape](const Vec3& p) { return model::signedDistance(shape, p); };
+    body.distance = [shape](const Vec3& p) { return shape::signedDistance(shape, p); };
     // What lies on a chord of a round face is off the surface, of a bore even in the air.
     std::erase_if(body.points, [&](const Vec3& p) { return std::abs(body.distance(p)) > kOnSurface * size; });
     return body;

@@ -16,7 +16,7 @@ struct DenseBody {
     std::function<double(const Vec3&)> distance;  // of a sheet ≥ 0: it has no inside
 };
 
-DenseBody denseBody(const model::Shape& shape, double spacing);
+DenseBody denseBody(const shape::Shape& shape, double spacing);
 
 /// The least signed distance between a moving body and fixed ones, both ways: its points from them and theirs from it.
 ///

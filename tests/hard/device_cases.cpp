@@ -15,9 +15,9 @@ namespace passung::hard {
 
 namespace {
 
-using model::SceneSpec;
+using scene::SceneSpec;
 
-model::OutputLimits limitsOf(const simulated::DeviceParams& p, model::OutputLimits limits) {
+scene::OutputLimits limitsOf(const simulated::DeviceParams& p, scene::OutputLimits limits) {
     limits.max_force = p.max_force.value;
     limits.max_torque = p.max_torque.value;
     limits.max_force_rate = p.max_force_rate.value;

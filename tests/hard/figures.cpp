@@ -11,19 +11,19 @@
 
 namespace passung::hard {
 
-const model::PartSpec& heldPart(const model::SceneSpec& spec) {
+const scene::PartSpec& heldPart(const scene::SceneSpec& spec) {
     return *std::find_if(spec.parts.begin(), spec.parts.end(), [](const auto& part) { return part.held; });
 }
 
-const model::PartSpec& fixedPart(const model::SceneSpec& spec) {
+const scene::PartSpec& fixedPart(const scene::SceneSpec& spec) {
     return *std::find_if(spec.parts.begin(), spec.parts.end(), [](const auto& part) { return !part.held; });
 }
 
 DenseDistance denseDistance(const Run& run, double spacing) {
     std::vector<std::pair<DenseBody, Pose>> obstacles;
     DenseBody held;
-    for (const model::PartSpec& part : run.solids.parts) {
-        DenseBody body = denseBody(std::get<model::Shape>(part.geometry), spacing);
+    for (const scene::PartSpec& part : run.solids.parts) {
+        DenseBody body = denseBody(std::get<shape::Shape>(part.geometry), spacing);
         if (part.held)
             held = std::move(body);
         else
@@ -54,24 +54,24 @@ double deepestOverlap(const Run& run, double spacing) {
 namespace {
 
 /// Every length shorter by 2 × `by`, so that the surface lies `by` deeper on every side of a box, cylinder or ball.
-model::Shape shrunk(const model::Shape& shape, double by) {
-    if (const auto* box = std::get_if<model::Box>(&shape))
-        return model::Box{box->width - 2 * by, box->depth - 2 * by, box->height - 2 * by};
-    if (const auto* ball = std::get_if<model::Sphere>(&shape)) return model::Sphere{ball->diameter - 2 * by};
-    const auto& cylinder = std::get<model::Cylinder>(shape);
-    return model::Cylinder{cylinder.diameter - 2 * by, cylinder.length - 2 * by};
+shape::Shape shrunk(const shape::Shape& shape, double by) {
+    if (const auto* box = std::get_if<shape::Box>(&shape))
+        return shape::Box{box->width - 2 * by, box->depth - 2 * by, box->height - 2 * by};
+    if (const auto* ball = std::get_if<shape::Sphere>(&shape)) return shape::Sphere{ball->diameter - 2 * by};
+    const auto& cylinder = std::get<shape::Cylinder>(shape);
+    return shape::Cylinder{cylinder.diameter - 2 * by, cylinder.length - 2 * by};
 }
 
 }  // namespace
 
 double crossings(const Run& run) {
-    const model::PartSpec &held = heldPart(run.spec), &thin = fixedPart(run.spec);
-    const model::Shape tool = shrunk(std::get<model::Shape>(held.geometry), run.spec.contact.tolerance);
-    const double chord = std::holds_alternative<model::Box>(tool) ? 1e-3 : 5e-6;
-    const truth::MeshOracle oracle(model::tessellate(std::get<model::Shape>(thin.geometry), chord),
-                                   model::tessellate(tool, chord));
+    const scene::PartSpec &held = heldPart(run.spec), &thin = fixedPart(run.spec);
+    const shape::Shape tool = shrunk(std::get<shape::Shape>(held.geometry), run.spec.contact.tolerance);
+    const double chord = std::holds_alternative<shape::Box>(tool) ? 1e-3 : 5e-6;
+    const truth::MeshOracle oracle(shape::tessellate(std::get<shape::Shape>(thin.geometry), chord),
+                                   shape::tessellate(tool, chord));
     double reach = 0.0;
-    for (const Vec3& v : model::tessellate(tool, chord).vertices) reach = std::max(reach, v.norm());
+    for (const Vec3& v : shape::tessellate(tool, chord).vertices) reach = std::max(reach, v.norm());
     constexpr double kStep = 0.5e-3;  // no point of the tool moves farther between two looks
     double found = 0.0;
     const Pose X_TW = thin.X_WP.inverse();
@@ -127,9 +127,9 @@ Judgement overlapUm(const Run& run) { return {kUm * deepestOverlap(run)}; }
 Judgement crossingCount(const Run& run) { return {crossings(run)}; }
 
 Judgement insertedUm(const Run& run) {
-    const model::Shape& plate = std::get<model::Shape>(fixedPart(run.solids).geometry);
+    const shape::Shape& plate = std::get<shape::Shape>(fixedPart(run.solids).geometry);
     double depth = 0.0;
-    for (const model::Dimension& d : model::namedDimensions(plate))
+    for (const shape::Dimension& d : shape::namedDimensions(plate))
         if (std::string(d.key) == "bore_depth") depth = d.value;
     Judgement result{kUm * deepestOverlap(run, 0.1 * depth)};
     const double reached = insertedDepth(run);
@@ -138,8 +138,8 @@ Judgement insertedUm(const Run& run) {
 }
 
 Judgement overlapPerPenalty(const Run& run) {
-    model::SceneSpec spec = run.spec;
-    spec.contact.method = model::ContactMethod::Penalty;
+    scene::SceneSpec spec = run.spec;
+    spec.contact.method = scene::ContactMethod::Penalty;
     const auto again = [&](std::int64_t tick, const tick::TickOutput*) {
         return run.readings[static_cast<std::size_t>(tick)];
     };

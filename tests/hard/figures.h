@@ -9,9 +9,9 @@ namespace passung::hard {
 inline constexpr double kUm = 1e6;
 
 /// The held part of a scene of shapes.
-const model::PartSpec& heldPart(const model::SceneSpec& spec);
+const scene::PartSpec& heldPart(const scene::SceneSpec& spec);
 /// The first other one: its frame is that of the paths.
-const model::PartSpec& fixedPart(const model::SceneSpec& spec);
+const scene::PartSpec& fixedPart(const scene::SceneSpec& spec);
 
 /// Between the held part and the others, as shapes (Run::solids); spacing of the samples on faces [m].
 DenseDistance denseDistance(const Run& run, double spacing = 1e-3);

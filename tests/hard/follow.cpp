@@ -24,11 +24,11 @@ struct Scale {
 
 Scale scaleOf(const Run& run) {
     double reach = 0.0;
-    for (const Vec3& v : model::tessellate(std::get<model::Shape>(heldPart(run.solids).geometry), kChord).vertices)
+    for (const Vec3& v : shape::tessellate(std::get<shape::Shape>(heldPart(run.solids).geometry), kChord).vertices)
         reach = std::max(reach, v.norm());
     double clear = reach / 200.0;
-    for (const model::PartSpec& part : run.solids.parts)
-        if (std::holds_alternative<model::Sheet>(std::get<model::Shape>(part.geometry)))
+    for (const scene::PartSpec& part : run.solids.parts)
+        if (std::holds_alternative<shape::Sheet>(std::get<shape::Shape>(part.geometry)))
             clear = reach / 200.0 + run.spec.contact.cell;
     return {reach, clear, reach / 1000.0};
 }
@@ -52,7 +52,7 @@ std::string followFault(const Run& run) {
     DenseDistance way = denseDistance(run, spacing);
     int without_force = 0, in_the_air = 0, not_back = 0;
     bool touched = false;
-    const bool has_mass = run.spec.contact.coupling == model::PenaltyCoupling::Virtual;
+    const bool has_mass = run.spec.contact.coupling == scene::PenaltyCoupling::Virtual;
     for (std::size_t i = 0; i < run.ticks.size(); i += kStride) {
         const Tick& t = run.ticks[i];
         if (t.status & kInputRejected) continue;

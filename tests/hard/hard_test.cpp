@@ -22,7 +22,7 @@ namespace {
 /// A case and one of the methods that have to hold its mark.
 struct Hold {
     const Case* what;
-    model::ContactMethod method;
+    scene::ContactMethod method;
     const char* method_name;
 
     std::string name() const { return std::string(what->name) + "_" + method_name; }
@@ -72,14 +72,14 @@ TEST(HardCases, PenaltyFallsThroughSheetAndThinPlate) {
         ASSERT_NE(c, nullptr);
         Case some = *c;
         some.seconds = 1.0;
-        const auto measured = measure(some, model::ContactMethod::Penalty, false);
+        const auto measured = measure(some, scene::ContactMethod::Penalty, false);
         ASSERT_TRUE(measured);
         std::printf("%s", describe(some, "penalty", *measured).c_str());
         EXPECT_GT(measured->judgement.value, 50.0);
     }
 }
 
-using Spec = model::SceneSpec;
+using Spec = scene::SceneSpec;
 
 Vec3 within(const Vec3& v, double limit) { return v.norm() > limit ? Vec3(limit * v.normalized()) : v; }
 
@@ -118,13 +118,13 @@ TEST(HardCases, NoMarkIsHeldByAProxyThatDoesNotFollowOrByWhatIsNotFelt) {
                                  Fault{"is the device", isTheDevice}, Fault{"turns too hard", turnsTooHard}};
     std::size_t place = 0;
     for (const Case& c : cases()) {
-        if (c.compute != nullptr || !applies(c, model::ContactMethod::GodObject)) continue;
+        if (c.compute != nullptr || !applies(c, scene::ContactMethod::GodObject)) continue;
         if (place++ % 4 != 0 && !everything()) continue;
         std::array<Judgement, kFaults.size()> found;
         std::array<bool, kFaults.size()> seen{};
         for (int seed = 0; seed < c.seeds; ++seed) {
             if (std::all_of(seen.begin(), seen.end(), [](bool one) { return one; })) break;
-            const auto run = runCase(c, model::ContactMethod::GodObject, static_cast<std::uint64_t>(seed), false);
+            const auto run = runCase(c, scene::ContactMethod::GodObject, static_cast<std::uint64_t>(seed), false);
             ASSERT_TRUE(run);
             for (std::size_t i = 0; i < kFaults.size(); ++i) {
                 if (seen[i]) continue;
@@ -152,7 +152,7 @@ void pushesAskew(const Spec&, std::vector<Tick>& ticks) {
 
 void turnsBesides(const Spec& spec, std::vector<Tick>& ticks) {
     double reach = 0.0;
-    for (const Vec3& v : model::tessellate(std::get<model::Shape>(heldPart(spec).geometry), 1e-5).vertices)
+    for (const Vec3& v : shape::tessellate(std::get<shape::Shape>(heldPart(spec).geometry), 1e-5).vertices)
         reach = std::max(reach, v.norm());
     for (Tick& t : ticks) t.sent.torque += 0.02 * reach * t.sent.force;
 }
@@ -170,7 +170,7 @@ TEST(HardCases, NoClosedFormOfThePenaltyIsHeldByAWrenchThatIsALittleWrong) {
     const auto plant = [](const char* name, std::span<const Fault> faults) {
         const Case* c = findCase(name);
         ASSERT_NE(c, nullptr);
-        const auto run = runCase(*c, model::ContactMethod::Penalty, 0, false);
+        const auto run = runCase(*c, scene::ContactMethod::Penalty, 0, false);
         ASSERT_TRUE(run);
         const Judgement sound = judgeRun(*c, *run);
         EXPECT_TRUE(sound.broken.empty() && sound.value <= c->mark) << name << ": " << sound.value << sound.broken;
@@ -191,7 +191,7 @@ TEST(HardCases, NoTickBeyondACapPasses) {
     // Truth: invariant. A sound run with one tick at or beyond each cap; and pins of which one is 10 um too low.
     const Case* c = findCase("hundred_patches");
     ASSERT_NE(c, nullptr);
-    const auto run = runCase(*c, model::ContactMethod::GodObject, 0, false);
+    const auto run = runCase(*c, scene::ContactMethod::GodObject, 0, false);
     ASSERT_TRUE(run);
     EXPECT_EQ(judgeRun(*c, *run).broken, "");
     const auto broken = [&](const auto& plant) {
@@ -202,7 +202,7 @@ TEST(HardCases, NoTickBeyondACapPasses) {
     EXPECT_NE(broken([](Tick& t) { t.nodes = 2'000'000'000; }).find("nodes"), std::string::npos);
     EXPECT_NE(broken([](Tick& t) { t.contacts = 2'000'000'000; }).find("points"), std::string::npos);
     EXPECT_NE(broken([](Tick& t) { t.iterations = tick::kSweeps + 1; }).find("sub-steps"), std::string::npos);
-    EXPECT_NE(broken([](Tick& t) { t.rows = tick::kMaxIterations; }).find("took up"), std::string::npos);
+    EXPECT_NE(broken([](Tick& t) { t.rows = motion::kMaxIterations; }).find("took up"), std::string::npos);
     EXPECT_NE(broken([](Tick& t) { t.turns = 1; }).find("turns"), std::string::npos);
     auto spoilt = *run;
     spoilt.solids.parts.back().X_WP.p.z() -= 10e-6;

@@ -11,23 +11,23 @@ namespace passung::hard {
 
 namespace {
 
-Result<model::TriangleMesh> meshOf(const model::PartSpec& part, double chord_error) {
-    if (const auto* shape = std::get_if<model::Shape>(&part.geometry)) return model::tessellate(*shape, chord_error);
-    const auto& file = std::get<model::MeshFile>(part.geometry);
-    auto imported = model::importMesh(file.path, file.metres_per_unit);
+Result<geometry::TriangleMesh> meshOf(const scene::PartSpec& part, double chord_error) {
+    if (const auto* shape = std::get_if<shape::Shape>(&part.geometry)) return shape::tessellate(*shape, chord_error);
+    const auto& file = std::get<scene::MeshFile>(part.geometry);
+    auto imported = importer::importMesh(file.path, file.metres_per_unit);
     if (!imported) return imported.errors();
     return std::move(imported->mesh);
 }
 
 }  // namespace
 
-Result<Relaid> relaid(const model::SceneSpec& spec, std::uint64_t seed, double chord_error) {
+Result<Relaid> relaid(const scene::SceneSpec& spec, std::uint64_t seed, double chord_error) {
     static const test::TempFolder folder;  // parts are built from it as long as the program runs
     static int files = 0;
     Random random(streamSeed("hard", "", "", "relaid", seed));
     const auto three = [&] { return Vec3(random.normal(), random.normal(), random.normal()); };
     Relaid result{spec, Pose{}};
-    for (model::PartSpec& part : result.spec.parts) {
+    for (scene::PartSpec& part : result.spec.parts) {
         auto mesh = meshOf(part, chord_error);
         if (!mesh) return mesh.errors();
         const Pose X_PN{Quat(random.normal(), random.normal(), random.normal(), random.normal()).normalized(),
@@ -35,7 +35,7 @@ Result<Relaid> relaid(const model::SceneSpec& spec, std::uint64_t seed, double c
         for (Vec3& v : mesh->vertices) v = X_PN.inverse() * v;
         const std::string path = folder / fmt::format("{}.off", files++);
         test::writeOff(path, *mesh);
-        part.geometry = model::MeshFile{path, 1.0};
+        part.geometry = scene::MeshFile{path, 1.0};
         part.X_WP = part.X_WP * X_PN;
         if (part.held) result.X_HN = X_PN;
     }

@@ -13,19 +13,19 @@ namespace passung::hard {
 
 std::string hardScenePath(const std::string& name) { return PASSUNG_HARD_SCENES "/" + name + ".toml"; }
 
-Result<model::SceneSpec> readHardScene(const std::string& name) {
+Result<scene::SceneSpec> readHardScene(const std::string& name) {
     std::vector<DeviceDescription> devices;
     for (const simulated::DeviceParams& preset : simulated::presets()) devices.push_back(describe(preset));
     auto spec = protocol::readScene(hardScenePath(name), devices);
     if (!spec) return spec;
-    spec->registration = model::Registration{};
-    spec->start_gate = model::StartGate{};
+    spec->registration = scene::Registration{};
+    spec->start_gate = scene::StartGate{};
     return spec;
 }
 
-Result<Run> runScene(const model::SceneSpec& spec, const Drive& drive, std::int64_t ticks) {
-    static model::PartCache cache;  // methods and seeds of a case share their parts
-    const auto scene = model::buildScene(spec, cache);
+Result<Run> runScene(const scene::SceneSpec& spec, const Drive& drive, std::int64_t ticks) {
+    static scene::PartCache cache;  // methods and seeds of a case share their parts
+    const auto scene = scene::buildScene(spec, cache);
     if (!scene) return scene.errors();
     const tick::TickModel model = tick::makeModel(*scene);
     tick::TickState state = tick::makeState(model);

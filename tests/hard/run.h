@@ -24,8 +24,8 @@ struct Tick {
 
 /// What a case's scene did on its device path.
 struct Run {
-    model::SceneSpec spec;
-    model::SceneSpec solids;  // the same, with the closed shapes that its meshes stand for
+    scene::SceneSpec spec;
+    scene::SceneSpec solids;  // the same, with the closed shapes that its meshes stand for
     std::vector<DeviceReading> readings;
     std::vector<Tick> ticks;
     std::size_t most_points = 0;  // that a manifold holds
@@ -36,11 +36,11 @@ struct Run {
 using Drive = std::function<DeviceReading(std::int64_t tick, const tick::TickOutput* last)>;
 
 /// A scene file of tests/hard/scenes, without its ending; registration and start gate as `passung simulate` has them.
-Result<model::SceneSpec> readHardScene(const std::string& name);
+Result<scene::SceneSpec> readHardScene(const std::string& name);
 std::string hardScenePath(const std::string& name);
 
-/// Errors: as model::buildScene.
-Result<Run> runScene(const model::SceneSpec& spec, const Drive& drive, std::int64_t ticks);
+/// Errors: as scene::buildScene.
+Result<Run> runScene(const scene::SceneSpec& spec, const Drive& drive, std::int64_t ticks);
 
 /// The run's device path as `passung simulate --trajectory` reads it.
 std::string trajectoryCsv(const Run& run);

@@ -17,19 +17,19 @@ namespace passung::hard {
 
 namespace {
 
-using model::SceneSpec;
+using scene::SceneSpec;
 
 constexpr double kPi = std::numbers::pi, kDegree = kPi / 180.0;
 constexpr double kMostTurn = 0.5 * kDegree;  // of a force against its truth
 constexpr double kFloor = 0.05;              // of the largest force: below, errors count against that
 
 template <class T>
-const T& shapeOf(const model::PartSpec& part) {
-    return std::get<T>(std::get<model::Shape>(part.geometry));
+const T& shapeOf(const scene::PartSpec& part) {
+    return std::get<T>(std::get<shape::Shape>(part.geometry));
 }
 
 void cubicThenAnywhere(SceneSpec& spec, std::uint64_t seed) {
-    if (seed % 2 == 1) spec.contact.mode = model::FieldMode::Cubic;
+    if (seed % 2 == 1) spec.contact.mode = field::FieldMode::Cubic;
 }
 
 /// The whole scene turned.
@@ -37,7 +37,7 @@ void turned(SceneSpec& spec, std::uint64_t seed) {
     Random random(streamSeed("hard", "", "", "turned", seed));
     const Pose X{Quat(random.normal(), random.normal(), random.normal(), random.normal()).normalized(),
                  0.01 * Vec3(random.normal(), random.normal(), random.normal())};
-    for (model::PartSpec& part : spec.parts) part.X_WP = X * part.X_WP;
+    for (scene::PartSpec& part : spec.parts) part.X_WP = X * part.X_WP;
 }
 
 /// From the start to each pose by way of `clear` above it, there for three ticks.
@@ -81,7 +81,7 @@ Judgement againstTruth(const Run& run, double lever, const Truth& truth) {
 // -----------------------------------------------------------------------------
 
 Drive a1Drive(const SceneSpec& spec, std::uint64_t) {
-    const model::TriangleMesh mesh = model::tessellate(std::get<model::Shape>(heldPart(spec).geometry), 1e-5);
+    const geometry::TriangleMesh mesh = shape::tessellate(std::get<shape::Shape>(heldPart(spec).geometry), 1e-5);
     Random random(17);
     std::vector<Pose> poses;
     for (int i = 0; i < 8; ++i) {
@@ -94,7 +94,7 @@ Drive a1Drive(const SceneSpec& spec, std::uint64_t) {
 }
 
 Judgement a1(const Run& run) {
-    const model::TriangleMesh mesh = model::tessellate(std::get<model::Shape>(heldPart(run.spec).geometry), 2e-6);
+    const geometry::TriangleMesh mesh = shape::tessellate(std::get<shape::Shape>(heldPart(run.spec).geometry), 2e-6);
     double reach = 0.0;
     for (const Vec3& v : mesh.vertices) reach = std::max(reach, v.norm());
     return againstTruth(run, reach, [&](const Pose& X) {
@@ -108,7 +108,7 @@ Judgement a1(const Run& run) {
 }
 
 Drive a2Drive(const SceneSpec& spec, std::uint64_t) {
-    const double R = 0.5 * shapeOf<model::Sphere>(heldPart(spec)).diameter;
+    const double R = 0.5 * shapeOf<shape::Sphere>(heldPart(spec)).diameter;
     std::vector<Pose> poses;
     for (const double h : {0.5e-3, 1e-3, 2e-3})
         for (const double turn : {0.0, 1.0, 2.3})
@@ -117,7 +117,7 @@ Drive a2Drive(const SceneSpec& spec, std::uint64_t) {
 }
 
 Judgement a2(const Run& run) {
-    const double R = 0.5 * shapeOf<model::Sphere>(heldPart(run.spec)).diameter;
+    const double R = 0.5 * shapeOf<shape::Sphere>(heldPart(run.spec)).diameter;
     return againstTruth(run, R, [&](const Pose& X) {
         const double h = std::max(0.0, R - X.p.z());
         return Wrench{{0, 0, run.spec.contact.area_stiffness * kPi * h * h * (3 * R - h) / 3}, Vec3::Zero()};
@@ -125,14 +125,14 @@ Judgement a2(const Run& run) {
 }
 
 Drive a3Drive(const SceneSpec& spec, std::uint64_t) {
-    const double half = 0.5 * shapeOf<model::Box>(heldPart(spec)).height;
+    const double half = 0.5 * shapeOf<shape::Box>(heldPart(spec)).height;
     std::vector<Pose> poses;
     for (const double h : {0.2e-3, 1e-3, 1.7e-3}) poses.push_back({Quat::Identity(), Vec3(0.0013, -0.0007, half - h)});
     return visit(spec, poses);
 }
 
 Judgement a3(const Run& run) {
-    const auto& box = shapeOf<model::Box>(heldPart(run.spec));
+    const auto& box = shapeOf<shape::Box>(heldPart(run.spec));
     return againstTruth(run, 0.5 * box.width, [&](const Pose& X) {
         const double h = std::max(0.0, 0.5 * box.height - X.p.z());
         return Wrench{{0, 0, run.spec.contact.area_stiffness * box.width * box.depth * h}, Vec3::Zero()};
@@ -152,8 +152,8 @@ Drive a4Drive(const SceneSpec& spec, std::uint64_t) {
 }
 
 Judgement a4(const Run& run) {
-    const double RA = 0.5 * shapeOf<model::Sphere>(heldPart(run.spec)).diameter;
-    const double RB = 0.5 * shapeOf<model::Sphere>(fixedPart(run.spec)).diameter;
+    const double RA = 0.5 * shapeOf<shape::Sphere>(heldPart(run.spec)).diameter;
+    const double RB = 0.5 * shapeOf<shape::Sphere>(fixedPart(run.spec)).diameter;
     return againstTruth(run, RA, [&](const Pose& X) {
         const double D = X.p.norm(), a = D * D + RA * RA;
         if (D >= RA + RB) return Wrench{};
@@ -166,8 +166,8 @@ Judgement a4(const Run& run) {
 }
 
 Drive a5Drive(const SceneSpec& spec, std::uint64_t) {
-    const double clearance = 0.5 * (shapeOf<model::BorePlate>(fixedPart(spec)).bore_diameter -
-                                    shapeOf<model::Cylinder>(heldPart(spec)).diameter);
+    const double clearance = 0.5 * (shapeOf<shape::BorePlate>(fixedPart(spec)).bore_diameter -
+                                    shapeOf<shape::Cylinder>(heldPart(spec)).diameter);
     Walk walk(heldPart(spec).X_WP);
     const Pose start = walk.last();
     for (const double angle : {0.3, 1.1, 2.9, 4.4})
@@ -180,8 +180,8 @@ Drive a5Drive(const SceneSpec& spec, std::uint64_t) {
 }
 
 Judgement a5(const Run& run) {
-    const auto& peg = shapeOf<model::Cylinder>(heldPart(run.spec));
-    const double r = 0.5 * peg.diameter, R = 0.5 * shapeOf<model::BorePlate>(fixedPart(run.spec)).bore_diameter;
+    const auto& peg = shapeOf<shape::Cylinder>(heldPart(run.spec));
+    const double r = 0.5 * peg.diameter, R = 0.5 * shapeOf<shape::BorePlate>(fixedPart(run.spec)).bore_diameter;
     return againstTruth(run, r, [&](const Pose& X) {
         const double e = X.p.head<2>().norm();
         if (e <= R - r) return Wrench{};
@@ -210,7 +210,7 @@ double tiltOf(double d, double D, double along) {
 }
 
 void shallowOrDeep(SceneSpec& spec, std::uint64_t seed) {
-    for (model::PartSpec& part : spec.parts)
+    for (scene::PartSpec& part : spec.parts)
         if (part.held) part.X_WP.p.z() = seed % 2 == 1 ? -5e-3 : -15e-3;
 }
 
@@ -223,8 +223,8 @@ Drive a6Drive(const SceneSpec& spec, std::uint64_t) {
 }
 
 Judgement a6(const Run& run) {
-    const double d = shapeOf<model::Peg>(heldPart(run.spec)).diameter;
-    const double D = shapeOf<model::BorePlate>(fixedPart(run.spec)).bore_diameter;
+    const double d = shapeOf<shape::Peg>(heldPart(run.spec)).diameter;
+    const double D = shapeOf<shape::BorePlate>(fixedPart(run.spec)).bore_diameter;
     const Pose& X = run.ticks.back().proxy;
     const Vec3 axis = X.q * Vec3::UnitZ();
     const double tilt = std::acos(std::min(1.0, axis.z()));
@@ -245,11 +245,11 @@ Wedge wedgeOf(std::uint64_t seed) {
 
 void wedged(SceneSpec& spec, std::uint64_t seed) {
     const Wedge wedge = wedgeOf(seed);
-    const double D = shapeOf<model::BorePlate>(fixedPart(spec)).bore_diameter;
-    for (model::PartSpec& part : spec.parts) {
+    const double D = shapeOf<shape::BorePlate>(fixedPart(spec)).bore_diameter;
+    for (scene::PartSpec& part : spec.parts) {
         part.friction = part.sliding_friction = wedge.friction;
         if (!part.held) continue;
-        const double d = shapeOf<model::Peg>(part).diameter, along = wedge.depth_per_diameter * d;
+        const double d = shapeOf<shape::Peg>(part).diameter, along = wedge.depth_per_diameter * d;
         const double tilt = tiltOf(d, D, along);
         part.X_WP.q = rotationFromVector(Vec3(0, 0.98 * tilt, 0));
         // the tip between its contact with the wall and the mouth's with the side
@@ -261,7 +261,7 @@ constexpr double kWedgeForce = 1.0;  // [N]
 
 /// A hand that pushes with a force along the bore and a moment about the tip that put it on the rim of the peg.
 Drive a7Drive(const SceneSpec& spec, std::uint64_t) {
-    const double r = 0.5 * shapeOf<model::Peg>(heldPart(spec)).diameter;
+    const double r = 0.5 * shapeOf<shape::Peg>(heldPart(spec)).diameter;
     return [=, X = heldPart(spec).X_WP, K = spec.contact.stiffness, turn = spec.contact.rotational_stiffness](
                std::int64_t tick, const tick::TickOutput* last) {
         if (last == nullptr) return DeviceReading{X};
@@ -274,7 +274,7 @@ Drive a7Drive(const SceneSpec& spec, std::uint64_t) {
 
 /// 1 if the peg moves on where it has to jam, or the other way round.
 Judgement a7(const Run& run) {
-    const double friction = heldPart(run.spec).friction, d = shapeOf<model::Peg>(heldPart(run.spec)).diameter;
+    const double friction = heldPart(run.spec).friction, d = shapeOf<shape::Peg>(heldPart(run.spec)).diameter;
     const Pose& start = heldPart(run.spec).X_WP;
     const double tilt = rotationVector(start.q).norm();
     const double along = (-start.p.z() + 0.5 * d * std::sin(tilt)) / std::cos(tilt);
@@ -294,7 +294,7 @@ Drive a8Drive(const SceneSpec& spec, std::uint64_t) {
 Judgement a8(const Run& run) {
     const Pose X_WO = fixedPart(run.spec).X_WP * at(10, 0, -15);
     const Vec3 bisector = (X_WO.q * Vec3(1, 0, 1)).normalized();
-    const double R = 0.5 * shapeOf<model::Sphere>(heldPart(run.spec)).diameter;
+    const double R = 0.5 * shapeOf<shape::Sphere>(heldPart(run.spec)).diameter;
     Judgement result;
     double off = 0.0;
     int poses = 0;
@@ -368,8 +368,8 @@ Drive pressAndSlideInSteps(const SceneSpec& spec, std::uint64_t seed) {
 
 /// Noise above 50 Hz over that of a perfect wall that is given the same steps.
 Judgement noiseOverFloor(const Run& run) {
-    const model::ContactSpec& c = run.spec.contact;
-    const double rest = 0.5 * shapeOf<model::Box>(heldPart(run.spec)).height;  // its origin's height on the table
+    const scene::ContactSpec& c = run.spec.contact;
+    const double rest = 0.5 * shapeOf<shape::Box>(heldPart(run.spec)).height;  // its origin's height on the table
     std::vector<double> found, floor;
     for (std::size_t i = 500; i < run.ticks.size(); ++i) {
         const double z = run.ticks[i].device.p.z(), before = run.ticks[i - 1].device.p.z();
@@ -418,7 +418,7 @@ Drive a10TurnDrive(const SceneSpec& spec, std::uint64_t) {
 Judgement a10Turn(const Run& run) {
     const Vec3 n = heldPart(run.spec).X_WP.q * Vec3::UnitZ();
     const Wrench& w = run.ticks.back().sent;
-    const double R = 0.5 * shapeOf<model::Cylinder>(heldPart(run.spec)).diameter;
+    const double R = 0.5 * shapeOf<shape::Cylinder>(heldPart(run.spec)).diameter;
     const double expected = 2.0 / 3.0 * heldPart(run.spec).sliding_friction * w.force.dot(n) * R;
     return {100.0 * std::abs(-w.torque.dot(n) / expected - 1.0)};
 }
@@ -454,7 +454,7 @@ Drive a13SlowDrive(const SceneSpec& spec, std::uint64_t) {
 Drive a13Drive(const SceneSpec& spec, std::uint64_t) { return cycle(spec, 0.0); }
 Drive a13SlideDrive(const SceneSpec& spec, std::uint64_t) { return cycle(spec, 5.0); }
 
-void quasiStatic(SceneSpec& spec, std::uint64_t) { spec.contact.coupling = model::PenaltyCoupling::QuasiStatic; }
+void quasiStatic(SceneSpec& spec, std::uint64_t) { spec.contact.coupling = scene::PenaltyCoupling::QuasiStatic; }
 
 Judgement a13(const Run& run) {
     double work = 0.0, stored = 0.0, most = 0.0;

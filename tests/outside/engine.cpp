@@ -15,14 +15,14 @@ int main(int count, char** arguments) {
         for (const Error& error : errors) std::puts(error.message.c_str());
         return 1;
     };
-    const auto plan = app::readProtocol(arguments[1]);
+    const auto plan = run::readProtocol(arguments[1]);
     if (!plan) return told(plan.errors());
-    const auto end = app::runStudy(*plan, {.database = arguments[2], .simulated = 1, .backup = false}, {});
+    const auto end = run::runStudy(*plan, {.database = arguments[2], .simulated = 1, .backup = false}, {});
     if (!end) return told(end.errors());
     const auto reader = store::StoreReader::open(arguments[2]);
     if (!reader) return told(reader.errors());
     const auto attempts = reader->attempts();
     if (!attempts) return told(attempts.errors());
     std::printf("%zu attempts\n", attempts->size());
-    return *end == app::RunEnd::Complete && attempts->size() >= 2 ? 0 : 1;
+    return *end == run::RunEnd::Complete && attempts->size() >= 2 ? 0 : 1;
 }

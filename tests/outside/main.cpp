@@ -11,21 +11,21 @@ using namespace passung;
 
 int main() {
     const double depth = 1e-3, spacing = 0.2e-3;
-    model::PartSpec block{.name = "block", .geometry = model::Shape{model::Box{0.06, 0.06, 0.02}}};
-    model::PartSpec ball{.name = "ball", .geometry = model::Shape{model::Sphere{0.02}}, .held = true};
-    const auto field_part = model::buildPart(block, {.field = true, .cell = 0.5e-3});
-    const auto shell_part = model::buildPart(ball, {.shell = true, .spacing = spacing});
+    scene::PartSpec block{.name = "block", .geometry = shape::Shape{shape::Box{0.06, 0.06, 0.02}}};
+    scene::PartSpec ball{.name = "ball", .geometry = shape::Shape{shape::Sphere{0.02}}, .held = true};
+    const auto field_part = scene::buildPart(block, {.field = true, .cell = 0.5e-3});
+    const auto shell_part = scene::buildPart(ball, {.shell = true, .spacing = spacing});
     if (!field_part || !shell_part) {
         std::puts("a part could not be built");
         return 1;
     }
 
     const Pose X_WF, X_WS{.p = Vec3(0.003, -0.002, 0.01 + 0.01 - depth)};
-    tick::QueryWorkspace workspace(shell_part->shell->nodes().size());
-    tick::ContactManifold manifold(shell_part->shell->points().size());
-    const tick::QueryAnswer answer =
-        tick::queryContacts(*field_part->field, X_WF, *shell_part->shell, X_WS,
-                            {.collect_below = 0.0, .search_below = 1.0}, workspace, manifold);
+    contact::QueryWorkspace workspace(shell_part->shell->nodes().size());
+    contact::ContactManifold manifold(shell_part->shell->points().size());
+    const contact::QueryAnswer answer =
+        contact::queryContacts(*field_part->field, X_WF, *shell_part->shell, X_WS,
+                               {.collect_below = 0.0, .search_below = 1.0}, workspace, manifold);
 
     // A shell point lies within one spacing of the lowest point of the ball: it is less than s²/2r higher.
     const double sampling = spacing * spacing / 0.02, tolerance = sampling + 10e-6;

@@ -46,13 +46,13 @@ inline double distanceToTriangle(const Vec3& p, const Vec3& a, const Vec3& b, co
         distanceToTriangleIn<Long>(p.cast<Long>(), a.cast<Long>(), b.cast<Long>(), c.cast<Long>(), Long(1e-10)));
 }
 
-inline double distanceToTriangle(const model::TriangleMesh& mesh, std::size_t i, const Vec3& p) {
+inline double distanceToTriangle(const geometry::TriangleMesh& mesh, std::size_t i, const Vec3& p) {
     const auto& t = mesh.triangles[i];
     return distanceToTriangle(p, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
 }
 
 /// Triangles whose box is farther away than the best so far are left out.
-inline double distanceToMesh(const model::TriangleMesh& mesh, const Vec3& p) {
+inline double distanceToMesh(const geometry::TriangleMesh& mesh, const Vec3& p) {
     double best = 1e150;
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         const auto& t = mesh.triangles[i];
@@ -75,21 +75,21 @@ inline double solidAngle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
     return side < 0.0 ? -excess : excess;
 }
 
-inline double windingNumber(const model::TriangleMesh& mesh, const Vec3& p) {
+inline double windingNumber(const geometry::TriangleMesh& mesh, const Vec3& p) {
     double sum = 0.0;
     for (const auto& t : mesh.triangles)
         sum += solidAngle(p, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
     return sum / (4.0 * std::numbers::pi);
 }
 
-inline double volume(const model::TriangleMesh& mesh) {
+inline double volume(const geometry::TriangleMesh& mesh) {
     double sum = 0.0;
     for (const auto& t : mesh.triangles)
         sum += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]])) / 6.0;
     return sum;
 }
 
-inline double area(const model::TriangleMesh& mesh) {
+inline double area(const geometry::TriangleMesh& mesh) {
     double sum = 0.0;
     for (const auto& t : mesh.triangles) {
         const Vec3& a = mesh.vertices[t[0]];
@@ -103,7 +103,7 @@ struct EdgeCount {
     std::size_t crowded = 0;  // directed edges used more than once
 };
 
-inline EdgeCount countEdges(const model::TriangleMesh& mesh) {
+inline EdgeCount countEdges(const geometry::TriangleMesh& mesh) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
     for (const auto& t : mesh.triangles)
         for (std::size_t k = 0; k < 3; ++k) ++uses[{t[k], t[(k + 1) % 3]}];

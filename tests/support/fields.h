@@ -80,7 +80,7 @@ void eachNumber(T& value, F&& f) {
                              value.begin();
                          }) {
         for (auto& element : value) eachNumber(element, f);
-    } else if constexpr (!std::is_same_v<Plain, tick::QueryWorkspace>) {
+    } else if constexpr (!std::is_same_v<Plain, contact::QueryWorkspace>) {
         eachField(value, [&f](auto& field) { eachNumber(field, f); });
     }
 }
@@ -101,10 +101,10 @@ std::vector<std::uint64_t> bitsOf(const T& value) {
 /// Fills every number of `value` with random bits. A list keeps its length; contacts get any number of them.
 template <class T>
 void scramble(T& value, Random& random) {
-    if constexpr (std::is_same_v<T, tick::ContactManifold>) {
+    if constexpr (std::is_same_v<T, contact::ContactManifold>) {
         value.clear();
         for (auto left = random.below(20); left > 0; --left) {
-            tick::ContactPoint point;
+            contact::ContactPoint point;
             scramble(point, random);
             if (!value.tryPush(point)) return;
         }
@@ -119,7 +119,7 @@ void scramble(T& value, Random& random) {
                              value.begin();
                          }) {
         eachNumber(value, [&random](auto& number) { scramble(number, random); });
-    } else if constexpr (!std::is_same_v<T, tick::QueryWorkspace>) {
+    } else if constexpr (!std::is_same_v<T, contact::QueryWorkspace>) {
         eachField(value, [&random](auto& field) { scramble(field, random); });
     }
 }

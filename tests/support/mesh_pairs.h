@@ -15,8 +15,8 @@
 namespace passung::test {
 
 /// A sphere with seeded bumps of up to a tenth of its diameter: a closed mesh without symmetry.
-inline model::TriangleMesh bumpyBall(double diameter) {
-    model::TriangleMesh mesh = model::tessellate(model::Sphere{diameter}, 3e-3 * diameter);
+inline geometry::TriangleMesh bumpyBall(double diameter) {
+    geometry::TriangleMesh mesh = shape::tessellate(shape::Sphere{diameter}, 3e-3 * diameter);
     for (Vec3& v : mesh.vertices) {
         const Vec3 d = v.normalized();
         v += 0.05 * diameter * (std::sin(7 * d.x() + 1) + std::cos(5 * d.y() - 2 * d.z())) * d;
@@ -25,14 +25,14 @@ inline model::TriangleMesh bumpyBall(double diameter) {
 }
 
 /// A part from a mesh file, so that import, tree and winding number are part of what is tested.
-inline model::Part meshPart(const model::TriangleMesh& mesh, const std::string& name, double cell, double spacing) {
+inline scene::Part meshPart(const geometry::TriangleMesh& mesh, const std::string& name, double cell, double spacing) {
     const auto path =
         std::filesystem::temp_directory_path() / ("passung_" + name + "_" + std::to_string(getpid()) + ".off");
     writeOff(path.string(), mesh);
-    model::PartSpec spec;
+    scene::PartSpec spec;
     spec.name = name;
-    spec.geometry = model::MeshFile{path.string(), 1.0};
-    auto part = model::buildPart(spec, {.field = true, .shell = true, .cell = cell, .spacing = spacing});
+    spec.geometry = scene::MeshFile{path.string(), 1.0};
+    auto part = scene::buildPart(spec, {.field = true, .shell = true, .cell = cell, .spacing = spacing});
     std::filesystem::remove(path);
     if (!part) ADD_FAILURE() << toString(part.errors().front());
     return std::move(*part);
@@ -40,11 +40,11 @@ inline model::Part meshPart(const model::TriangleMesh& mesh, const std::string& 
 
 /// Two parts and what is true about them, by means that share nothing with the query (but the triangles).
 struct MeshPair {
-    MeshPair(std::string name_, model::Part field_, model::Part shell_)
+    MeshPair(std::string name_, scene::Part field_, scene::Part shell_)
         : name(std::move(name_)), field(std::move(field_)), shell(std::move(shell_)), oracle(field.mesh, shell.mesh) {}
 
     std::string name;
-    model::Part field, shell;
+    scene::Part field, shell;
     truth::MeshOracle oracle;  // A: field, B: shell
 
     /// The distance from which no pose lets the parts touch.

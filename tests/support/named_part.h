@@ -8,8 +8,8 @@
 namespace passung::test {
 
 /// A part of this name and shape; the rest as a scene file leaves it.
-inline model::PartSpec namedPart(std::string name, const model::Shape& shape) {
-    model::PartSpec part;
+inline scene::PartSpec namedPart(std::string name, const shape::Shape& shape) {
+    scene::PartSpec part;
     part.name = std::move(name);
     part.geometry = shape;
     return part;

@@ -8,7 +8,7 @@
 namespace passung::test {
 
 /// Writes the triangles as an OFF file in metres, without loss.
-inline void writeOff(const std::string& path, const model::TriangleMesh& mesh) {
+inline void writeOff(const std::string& path, const geometry::TriangleMesh& mesh) {
     std::ofstream out(path);
     out.precision(17);
     out << "OFF\n" << mesh.vertices.size() << " " << mesh.triangles.size() << " 0\n";

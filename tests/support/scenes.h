@@ -10,32 +10,32 @@ namespace passung::test {
 /// A scene held together with its model and state, driven by poses of the held part.
 class Bench {
 public:
-    explicit Bench(const model::SceneSpec& spec)
+    explicit Bench(const scene::SceneSpec& spec)
         : scene_(build(spec)), model_(tick::makeModel(scene_)), state_(tick::makeState(model_)) {}
 
     tick::TickOutput step(const Pose& X_WH) { return step(DeviceReading{X_WH}); }
     tick::TickOutput step(const DeviceReading& reading) { return tick::step(model_, state_, reading); }
 
-    const model::Scene& scene() const { return scene_; }
+    const scene::Scene& scene() const { return scene_; }
     const tick::TickModel& model() const { return model_; }
     tick::TickState& state() { return state_; }
 
 private:
-    static model::Scene build(const model::SceneSpec& spec) {
-        static model::PartCache cache;  // parts that tests of one program share are built once
-        auto scene = model::buildScene(spec, cache);
+    static scene::Scene build(const scene::SceneSpec& spec) {
+        static scene::PartCache cache;  // parts that tests of one program share are built once
+        auto scene = scene::buildScene(spec, cache);
         if (!scene) ADD_FAILURE() << toString(scene.errors().front());
         return std::move(*scene);
     }
-    model::Scene scene_;
+    scene::Scene scene_;
     tick::TickModel model_;
     tick::TickState state_;
 };
 
 /// A held part over one fixed part, no limits that act and no start gate.
-inline model::SceneSpec scene(const model::Shape& held, const Pose& X_WHeld, const model::Shape& fixed,
-                              const Pose& X_WFixed, model::ContactMethod method) {
-    model::SceneSpec spec;
+inline scene::SceneSpec scene(const shape::Shape& held, const Pose& X_WHeld, const shape::Shape& fixed,
+                              const Pose& X_WFixed, scene::ContactMethod method) {
+    scene::SceneSpec spec;
     spec.parts.push_back({.name = "held", .geometry = held, .X_WP = X_WHeld, .held = true});
     spec.parts.push_back({.name = "fixed", .geometry = fixed, .X_WP = X_WFixed});
     spec.contact.method = method;

@@ -14,7 +14,7 @@ struct Submerged {
     Vec3 moment = Vec3::Zero();  // ∫ x dV
 };
 
-inline Submerged submerged(const model::TriangleMesh& mesh, const Pose& X_WM) {
+inline Submerged submerged(const geometry::TriangleMesh& mesh, const Pose& X_WM) {
     Submerged sum;
     for (const auto& t : mesh.triangles) {
         std::vector<Vec3> polygon;

@@ -75,9 +75,9 @@ private:
 truth::AccuracySpace spaceOf(const AccuracyArguments& options, double length) {
     truth::AccuracySpace space;
     space.modes.clear();
-    for (const model::FieldMode mode : model::kFieldModes)
+    for (const field::FieldMode mode : field::kFieldModes)
         if (options.modes.empty() ||
-            std::find(options.modes.begin(), options.modes.end(), model::modeName(mode)) != options.modes.end())
+            std::find(options.modes.begin(), options.modes.end(), field::modeName(mode)) != options.modes.end())
             space.modes.push_back(mode);
     space.tolerances.clear();
     for (const double tolerance : options.tolerances_um) space.tolerances.push_back(1e-6 * tolerance);
@@ -145,7 +145,7 @@ int accuracy(const AccuracyArguments& options) {
 
     ProgressLine progress;
     progress.show("reading the parts");
-    const auto builds = app::openBuilds(options.import_limits);
+    const auto builds = run::openBuilds(options.import_limits);
     const auto truth = truth::PairTruth::build(*field, *shell, builds.get());
     if (!truth) return fail(truth.errors());
     const auto poses_report = [&](double share) {

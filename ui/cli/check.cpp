@@ -33,19 +33,19 @@ std::optional<int> checkQuestionnaire(const std::string& path) {
 
 int check(const CheckArguments& options) {
     if (const auto code = checkQuestionnaire(options.protocol)) return *code;
-    auto [plan, errors, for_people] = app::examineProtocol(options.protocol, options.import_limits);
-    for (const Errors& more : {app::beyondBorder(plan, app::knownDevices()), for_people})
+    auto [plan, errors, for_people] = run::examineProtocol(options.protocol, options.import_limits);
+    for (const Errors& more : {run::beyondBorder(plan, run::knownDevices()), for_people})
         errors.insert(errors.end(), more.begin(), more.end());
     if (!errors.empty()) return fail(errors);
     warn(options.protocol, session::planWarnings(plan));
     std::size_t trials = 0;
-    for (int session = 1; session <= protocol::sessionsOf(plan); ++session) {
+    for (int session = 1; session <= plan::sessionsOf(plan); ++session) {
         const auto planned = session::planTrials(plan, {}, "S001", session);
         if (!planned) return fail(planned.errors());
         trials += planned->size();
     }
     fmt::print("{}: ok: {} {}, {} conditions, {}{} trials for each of {} participants\n", options.protocol, plan.name,
-               plan.version, protocol::plannedConditions(plan), session::mayEndEarly(plan) ? "at most " : "", trials,
+               plan.version, plan::plannedConditions(plan), session::mayEndEarly(plan) ? "at most " : "", trials,
                plan.participants);
     fmt::print("{}", session::staircasesText(plan));
     return 0;

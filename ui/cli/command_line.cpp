@@ -27,7 +27,7 @@ constexpr int kWrongUsage = 2;
 
 CLI::IsMember aMode() {
     std::vector<std::string> names;
-    for (const auto mode : passung::model::kFieldModes) names.emplace_back(passung::model::modeName(mode));
+    for (const auto mode : passung::field::kFieldModes) names.emplace_back(passung::field::modeName(mode));
     return CLI::IsMember(names);
 }
 
@@ -129,7 +129,7 @@ private:
     }
 
     /// What reading a mesh file may take.
-    static void addImport(CLI::App* sub, passung::app::ImportLimits& limits) {
+    static void addImport(CLI::App* sub, passung::run::ImportLimits& limits) {
         sub->add_option("--import-seconds", limits.processor_s, "most processor time to read a mesh file; default 20")
             ->check(between(1.0, 86400.0, "a number from 1 to 86400"));
         sub->add_option_function<double>(
@@ -164,7 +164,7 @@ private:
         auto* sub = action("enrol", "add somebody; prints the code", enrolParticipant);
         sub->add_option("CODE", participant_.code, "such as P001; default: the first unused one");
         sub->add_option("--kind", participant_.kind, "default real")
-            ->check(CLI::IsMember(passung::protocol::participantKindNames()));
+            ->check(CLI::IsMember(passung::plan::participantKindNames()));
         sub->add_option("--protocol", participant_.protocol,
                         "study file: stored first if the database does not have it, which is made if it is not there");
         sub->add_option("--by", participant_.by, "who does it, for the audit; default experimenter");

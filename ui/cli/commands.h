@@ -17,7 +17,7 @@ void openWindows();
 
 struct CheckArguments {
     std::string protocol;
-    app::ImportLimits import_limits;
+    run::ImportLimits import_limits;
 };
 int check(const CheckArguments& options);
 
@@ -27,7 +27,7 @@ struct ExplainArguments {
     int stations = 1;      // where they take part in turn
     std::string database;  // of the study: what accuracy = "auto" picked there; empty: measured anew
     std::string orders;    // "csv": a row for each planned trial and nothing else; empty: as text among the rest
-    app::ImportLimits import_limits;
+    run::ImportLimits import_limits;
 };
 int explain(const ExplainArguments& options);
 
@@ -51,7 +51,7 @@ struct RunArguments {
     int acknowledge_fd = -1;            // open file descriptor that gets a line per durable attempt
     std::string answers = "simulated";  // or "participant", "experimenter": asked in this terminal
     std::string language;               // empty: the first that the protocol has
-    app::ImportLimits import_limits;
+    run::ImportLimits import_limits;
 };
 int run(const RunArguments& options);
 
@@ -63,7 +63,7 @@ struct ResumeArguments {
     bool no_backup = false;
     int acknowledge_fd = -1;  // as of RunArguments
     std::string answers = "simulated";
-    app::ImportLimits import_limits;
+    run::ImportLimits import_limits;
 };
 int resume(const ResumeArguments& options);
 
@@ -134,7 +134,7 @@ struct ReplayArguments {
     std::string database;
     std::int64_t attempt = 0;  // 0: all of them
     std::string meshes;  // folder that the protocol's mesh paths start from; empty: here, else beside the database
-    app::ImportLimits import_limits;
+    run::ImportLimits import_limits;
 };
 int replay(const ReplayArguments& options);
 
@@ -158,7 +158,7 @@ int power(const PowerArguments& options);
 struct MeshArguments {
     std::string file;
     std::string unit = "mm";
-    app::ImportLimits import_limits;
+    run::ImportLimits import_limits;
 };
 int mesh(const MeshArguments& options);
 
@@ -172,13 +172,13 @@ struct QueryArguments {
     double quality = 0.0;
     bool two_way = false;
     std::string patches;  // file; empty: none
-    app::ImportLimits import_limits;
+    run::ImportLimits import_limits;
 };
 int query(const QueryArguments& options);
 
 struct SimulateArguments {
     std::string scene, trajectory, out;
-    app::ImportLimits import_limits;
+    run::ImportLimits import_limits;
 };
 int simulate(const SimulateArguments& options);
 
@@ -194,7 +194,7 @@ struct AccuracyArguments {
     int repetitions = 5;
     int fcl_poses = 1000;
     std::string unit = "mm", field_unit, shell_unit;  // empty: unit
-    app::ImportLimits import_limits;
+    run::ImportLimits import_limits;
 };
 int accuracy(const AccuracyArguments& options);
 
@@ -210,7 +210,7 @@ struct DoctorArguments {
     std::string device;                  // preset; empty: all, with a check of the loop
     bool find_stiffness = false;         // of the device, and keep it
     std::string report;                  // file that gets all this and the logs; empty: none
-    std::vector<std::string> databases;  // whose logs; empty: those that app::loggedDatabases() finds
+    std::vector<std::string> databases;  // whose logs; empty: those that run::loggedDatabases() finds
 };
 int doctor(const DoctorArguments& options);
 

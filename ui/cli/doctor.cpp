@@ -24,7 +24,7 @@ void print(const std::string& text) {
     std::fflush(stdout);
 }
 
-std::string boundsText(const char* unit, double stable, const app::WallBounds& bounds) {
+std::string boundsText(const char* unit, double stable, const run::WallBounds& bounds) {
     const auto cell = [](double bound) { return bound > 0.0 ? fmt::format("{:.4g}", bound) : std::string("none"); };
     return fmt::format("              {:<7}{:>10}{:>10}{:>10}{:>10}{:>12}\n", unit, cell(stable), cell(bounds.border),
                        cell(bounds.linear), cell(bounds.passive), cell(bounds.passive_undamped));
@@ -34,11 +34,11 @@ std::string deviceText(const DeviceDescription& d) {
     std::string text = fmt::format("  {:<12}{}\n", d.name, d.label);
     if (d.mechanism) {
         text += boundsText("N/m", d.stable_stiffness_N_per_m,
-                           app::translationBounds(*d.mechanism, d.recommended_damping_Ns_per_m, d.delay_ticks));
+                           run::translationBounds(*d.mechanism, d.recommended_damping_Ns_per_m, d.delay_ticks));
         if (d.actuated_degrees >= 6)
             text += boundsText(
                 "Nm/rad", d.stable_rotational_stiffness_Nm_per_rad,
-                app::rotationBounds(*d.mechanism, d.recommended_rotational_damping_Nms_per_rad, d.delay_ticks));
+                run::rotationBounds(*d.mechanism, d.recommended_rotational_damping_Nms_per_rad, d.delay_ticks));
     }
     return text + fmt::format("              {}\n", d.stability_source);
 }
@@ -50,7 +50,7 @@ std::string devicesText(const std::string& device) {
         "damping: exact border, linear rule, passive bound with encoder steps and dry friction, the same undamped\n";
     text += fmt::format("  {:<19}{:>10}{:>10}{:>10}{:>10}{:>12}\n", "simulated", "max", "border", "linear", "passive",
                         "(undamped)");
-    for (const DeviceDescription& d : app::knownDevices())
+    for (const DeviceDescription& d : run::knownDevices())
         if (device.empty() || d.name == device) text += deviceText(d);
     return text +
            "  none: no stiffness has it at that damping; a \"max\" above the border was found on the device, where dry "
@@ -59,12 +59,12 @@ std::string devicesText(const std::string& device) {
 }
 
 int findStiffness(const simulated::DeviceParams& device) {
-    const auto found = app::findStiffness(device);
+    const auto found = run::findStiffness(device);
     if (!found) return fail(found.errors());
-    if (const auto kept = app::keepCalibration(*found); !kept) return fail(kept.errors());
+    if (const auto kept = run::keepCalibration(*found); !kept) return fail(kept.errors());
     fmt::print("{}: calm up to {:.6g} N/m", device.name, found->calm_stiffness);
     if (found->calm_rotational_stiffness > 0.0) fmt::print(" and {:.6g} Nm/rad", found->calm_rotational_stiffness);
-    fmt::print(", kept for this user in {}\n", app::calibrationPath(found->device));
+    fmt::print(", kept for this user in {}\n", run::calibrationPath(found->device));
     print(devicesText(found->device));
     return 0;
 }
@@ -89,7 +89,7 @@ std::string versionsText() {
         line(library.substr(0, space), library.substr(space + 1));
     }
     line("compiler", __VERSION__);
-    line("machine", app::machineText());
+    line("machine", run::machineText());
     return text;
 }
 
@@ -98,7 +98,7 @@ std::string displayText() {
     return fmt::format("display\n  {}\n", display != nullptr ? display : "none (DISPLAY is not set)");
 }
 
-std::string loopText(const app::LoopCheck& check) {
+std::string loopText(const run::LoopCheck& check) {
     std::string text = fmt::format("loop\n  real-time scheduling  {} (limit of ordinary users: rtprio {})\n",
                                    check.scheduling.fifo ? "granted" : "refused", limitText(RLIMIT_RTPRIO));
     text += fmt::format("  locked memory         {} (memlock {})\n",
@@ -114,12 +114,12 @@ std::string loopText(const app::LoopCheck& check) {
 
 /// Everything that a bug report needs: what doctor has said and the logs, in one file of text.
 int writeReport(const DoctorArguments& options, const std::string& said) {
-    const auto databases = options.databases.empty() ? app::loggedDatabases() : options.databases;
+    const auto databases = options.databases.empty() ? run::loggedDatabases() : options.databases;
     OutputFile report(options.report);
     report.write(said);
     for (const std::string& database : databases) {
-        const std::string log = app::logText(database);
-        report.write(fmt::format("\nlog of {}\n{}", app::discreet(database), log.empty() ? "none\n" : log));
+        const std::string log = run::logText(database);
+        report.write(fmt::format("\nlog of {}\n{}", run::discreet(database), log.empty() ? "none\n" : log));
     }
     if (const auto done = report.commit(); !done) return fail(done.errors());
     fmt::print("report: {}: this and {} log{}\n", options.report, databases.size(), databases.size() == 1 ? "" : "s");
@@ -144,7 +144,7 @@ int doctor(const DoctorArguments& options) {
     std::string said = versionsText() + devicesText("") + displayText();
     said += fmt::format("loop check: {:.0f} s\n", options.seconds);
     print(said);
-    const std::string loop = loopText(app::checkLoop(options.seconds));
+    const std::string loop = loopText(run::checkLoop(options.seconds));
     print(loop);
     return options.report.empty() ? 0 : writeReport(options, said + loop);
 }

@@ -33,35 +33,35 @@ Result<bool> isStudy(const std::string& path) {
 }
 
 /// The sizes that shapes have in the end, whatever gave them: a fit, a factor.
-void printShapes(const model::SceneSpec& spec) {
+void printShapes(const scene::SceneSpec& spec) {
     for (const auto& part : spec.parts) {
-        const auto* shape = std::get_if<model::Shape>(&part.geometry);
+        const auto* shape = std::get_if<shape::Shape>(&part.geometry);
         if (shape == nullptr) continue;
         std::string text;
-        for (const auto& [key, value] : model::namedDimensions(*shape))
+        for (const auto& [key, value] : shape::namedDimensions(*shape))
             text += fmt::format(", {} {:.7g}", key, 1e3 * value);
-        fmt::print("  {:<22}{}{} mm\n", part.name, model::kindName(*shape), text);
+        fmt::print("  {:<22}{}{} mm\n", part.name, shape::kindName(*shape), text);
     }
 }
 
-Result<Done> printStages(const model::SceneSpec& spec, model::PartCache& cache) {
-    const auto scene = model::buildScene(spec, cache);
+Result<Done> printStages(const scene::SceneSpec& spec, scene::PartCache& cache) {
+    const auto scene = scene::buildScene(spec, cache);
     if (!scene) return scene.errors();
     printShapes(spec);
     fmt::print("  {:<22}{:>10}{:>10}  {}\n", "stage of the tick", "median µs", "p99 µs", "why it runs");
-    const app::TickCost tick = app::measureTick(*scene);
-    for (const app::StageCost& cost : tick.stages)
+    const run::TickCost tick = run::measureTick(*scene);
+    for (const run::StageCost& cost : tick.stages)
         fmt::print("  {:<22}{:>10.1f}{:>10.1f}  {}\n", cost.name, cost.median_us, cost.p99_us, cost.reason);
     fmt::print("  {:<22}{:>10.1f}{:>10.1f}  {}: most {:.1f} µs; processor time of {} ticks {}, the least of {} runs\n",
                "whole tick", tick.median_us, tick.p99_us, tick.fits() ? "fits 1 kHz here" : "does not fit 1 kHz here",
-               tick.most_us, tick.ticks, tick.in_contact ? "in contact" : "without contact", app::TickCost::kRuns);
+               tick.most_us, tick.ticks, tick.in_contact ? "in contact" : "without contact", run::TickCost::kRuns);
     return Done{};
 }
 
 /// A line of the stiffness of a scene: how far it is from what its device bears, by the model of its mechanism.
 void printWall(const std::string& what, std::size_t width, const char* unit, double maximum,
-               const app::SceneWall& wall) {
-    const app::WallBounds& b = wall.bounds;
+               const run::SceneWall& wall) {
+    const run::WallBounds& b = wall.bounds;
     const auto cell = [](double bound) { return bound > 0.0 ? fmt::format("{:.4g}", bound) : std::string("none"); };
     const auto share = [&](double bound) {
         return bound > 0.0 ? fmt::format("{:.2f}", wall.stiffness / bound) : std::string("-");
@@ -80,18 +80,18 @@ void printStabilityHead(std::size_t width) {
 }
 
 void printStability(const std::string& what, std::size_t width, const DeviceDescription& device,
-                    const model::SceneSpec& scene) {
+                    const scene::SceneSpec& scene) {
     if (!device.mechanism) {
         fmt::print("  {:<{}}  {}: no model of its mechanism\n", what, width, device.name);
         return;
     }
-    printWall(what, width, "N/m", device.stable_stiffness_N_per_m, app::translationWall(device, scene));
+    printWall(what, width, "N/m", device.stable_stiffness_N_per_m, run::translationWall(device, scene));
     if (device.actuated_degrees >= 6 && scene.contact.rotational_stiffness > 0.0)
-        printWall("", width, "Nm/rad", device.stable_rotational_stiffness_Nm_per_rad, app::rotationWall(device, scene));
-    if (scene.contact.method != model::ContactMethod::Penalty ||
-        scene.contact.coupling == model::PenaltyCoupling::Direct)
+        printWall("", width, "Nm/rad", device.stable_rotational_stiffness_Nm_per_rad, run::rotationWall(device, scene));
+    if (scene.contact.method != scene::ContactMethod::Penalty ||
+        scene.contact.coupling == scene::PenaltyCoupling::Direct)
         return;
-    if (app::feltThroughTool(scene.contact))
+    if (run::feltThroughTool(scene.contact))
         fmt::print("  {:<{}}  (coupled penalty: N/m border of the coupling through its tool, contacts of {:.4g} N/m)\n",
                    "", width, scene.contact.penalty_stiffness);
     else
@@ -99,21 +99,20 @@ void printStability(const std::string& what, std::size_t width, const DeviceDesc
                    width);
 }
 
-void explainStability(const protocol::StudyPlan& plan, std::span<const DeviceDescription> devices) {
-    const auto conditions = std::span(plan.conditions).first(protocol::plannedConditions(plan));
+void explainStability(const plan::StudyPlan& plan, std::span<const DeviceDescription> devices) {
+    const auto conditions = std::span(plan.conditions).first(plan::plannedConditions(plan));
     std::size_t width = 0;
     for (const auto& condition : conditions) width = std::max(width, condition.name.size());
     printStabilityHead(width);
     for (const auto& condition : conditions)
-        if (const auto* device = app::deviceNamed(condition.device, devices))
+        if (const auto* device = run::deviceNamed(condition.device, devices))
             printStability(condition.name, width, *device, condition.scene);
     for (const auto& stable : plan.stable_stiffness) fmt::print("  {}: {}\n", stable.device, stable.origin);
 }
 
 /// What the study's database keeps, or a run that began it now on this machine would keep.
-Result<app::KeptPlan> keptFor(const std::string& database, const protocol::StudyPlan& draft,
-                              model::BuildStore* builds) {
-    app::KeptPlan kept{sha256Hex(draft.source_text), draft.stable_stiffness, {}};
+Result<run::KeptPlan> keptFor(const std::string& database, const plan::StudyPlan& draft, scene::BuildStore* builds) {
+    run::KeptPlan kept{sha256Hex(draft.source_text), draft.stable_stiffness, {}};
     if (!database.empty()) {
         const auto reader = store::StoreReader::open(database);
         if (!reader) return reader.errors();
@@ -125,9 +124,9 @@ Result<app::KeptPlan> keptFor(const std::string& database, const protocol::Study
         kept.accuracy = *std::move(accuracy);
         std::erase_if(kept.accuracy,
                       [&](const store::AccuracyRow& row) { return row.protocol_sha256 != kept.protocol_sha256; });
-    } else if (app::asksForAccuracy(draft)) {
+    } else if (run::asksForAccuracy(draft)) {
         ProgressLine progress;
-        auto measured = app::measureAccuracy(
+        auto measured = run::measureAccuracy(
             draft, kept.protocol_sha256,
             [&](const std::string& what, double share) { progress.show(progressBar(what, share)); }, builds);
         if (!measured) return measured.errors();
@@ -141,12 +140,12 @@ void explainAccuracy(const std::string& database, std::span<const store::Accurac
                database.empty() ? "measured now on this machine: a study keeps what its first run picks, which --db "
                                   "shows; the keys picked, written into the protocol, hold everywhere"
                                 : "as " + database + " keeps it",
-               app::describeAccuracy(rows));
+               run::describeAccuracy(rows));
 }
 
-Result<Done> explainEffects(const protocol::StudyPlan& plan, model::PartCache& cache) {
+Result<Done> explainEffects(const plan::StudyPlan& plan, scene::PartCache& cache) {
     fmt::print("\nEffects, their cost measured on this machine in sliding contact\n");
-    for (const auto& conditions : app::costGroups(plan)) {
+    for (const auto& conditions : run::costGroups(plan)) {
         fmt::print("\n  conditions");
         for (const auto* condition : conditions)
             fmt::print(" {}{}", condition->name, condition == conditions.back() ? "" : ",");
@@ -159,8 +158,8 @@ Result<Done> explainEffects(const protocol::StudyPlan& plan, model::PartCache& c
 }  // namespace
 
 int explain(const ExplainArguments& options) {
-    const auto store = app::openBuilds(options.import_limits);
-    model::PartCache cache(store.get());
+    const auto store = run::openBuilds(options.import_limits);
+    scene::PartCache cache(store.get());
     const auto is_study = isStudy(options.file);
     if (!is_study) return fail(is_study.errors());
     if (!*is_study) {
@@ -168,18 +167,18 @@ int explain(const ExplainArguments& options) {
             return fail({{"a scene has no orders: --orders is for study files", options.file}});
         const auto text = readFile(options.file);
         if (!text) return fail(text.errors());
-        const auto spec = app::readSceneOnDevice(*text, options.file, options.import_limits);
+        const auto spec = run::readSceneOnDevice(*text, options.file, options.import_limits);
         if (!spec) return fail(spec.errors());
         warn(options.file, spec->warnings);
         const auto done = printStages(spec->scene, cache);
-        if (const auto* device = app::deviceNamed(spec->device, app::knownDevices())) {
+        if (const auto* device = run::deviceNamed(spec->device, run::knownDevices())) {
             printStabilityHead(device->name.size());
             printStability(device->name, device->name.size(), *device, spec->scene);
             fmt::print("  {}: {}\n", device->name, device->stability_source);
         }
         return done ? 0 : fail(done.errors());
     }
-    const auto draft = app::readProtocol(options.file, options.import_limits);
+    const auto draft = run::readProtocol(options.file, options.import_limits);
     if (!draft) return fail(draft.errors());
     const int participants = options.participants > 0 ? options.participants : draft->participants;
     if (options.orders == "csv") {
@@ -190,14 +189,14 @@ int explain(const ExplainArguments& options) {
     }
     const auto kept = keptFor(options.database, *draft, store.get());
     if (!kept) return fail(kept.errors());
-    const auto plan = app::freeze(*draft, *kept, options.import_limits);
+    const auto plan = run::freeze(*draft, *kept, options.import_limits);
     if (!plan) return fail(plan.errors());
     const auto described = session::describePlan(**plan, participants, options.stations);
     if (!described) return fail(described.errors());
     fmt::print("{}", *described);
     explainStability(**plan,
-                     options.database.empty() ? app::knownDevices() : app::devicesAsKept(kept->stable_stiffness));
-    if (app::asksForAccuracy(*draft)) explainAccuracy(options.database, kept->accuracy);
+                     options.database.empty() ? run::knownDevices() : run::devicesAsKept(kept->stable_stiffness));
+    if (run::asksForAccuracy(*draft)) explainAccuracy(options.database, kept->accuracy);
     const auto done = explainEffects(**plan, cache);
     return done ? 0 : fail(done.errors());
 }

@@ -21,8 +21,8 @@ int exportData(const ExportArguments& options) {
     progress.show("");
     if (!report->kept.empty())
         warn(options.out, {"the earlier export may hold what this one lacks: kept as " + report->kept});
-    const bool earlier_known = report->kept.empty() || app::rememberExport(options.database, report->kept);
-    const bool known = app::rememberExport(options.database, options.out);
+    const bool earlier_known = report->kept.empty() || run::rememberExport(options.database, report->kept);
+    const bool known = run::rememberExport(options.database, options.out);
     if (!earlier_known || !known)
         warn(options.out, {"this export could not be noted in the folder of your data: erasing somebody will not name "
                            "it unless it lies beside the database"});

@@ -59,19 +59,19 @@ int main(int argc, char** argv) {
     constexpr int kWords = 5;
     if (argc != kWords) {
         std::fprintf(stderr, "passung-import reads meshes for passung: passung mesh FILE\n");
-        return app::kWrongWords;
+        return run::kWrongWords;
     }
     limitOneself(std::strtoull(argv[3], nullptr, 10), std::strtoull(argv[4], nullptr, 10));
     try {
-        const auto imported = model::importMesh(argv[1], std::strtod(argv[2], nullptr));
-        return writeAll(STDOUT_FILENO, model::toBytes(imported)) ? 0 : app::kNotWritten;
+        const auto imported = importer::importMesh(argv[1], std::strtod(argv[2], nullptr));
+        return writeAll(STDOUT_FILENO, importer::toBytes(imported)) ? 0 : run::kNotWritten;
     } catch (const std::bad_alloc&) {
-        return app::kOutOfMemory;
+        return run::kOutOfMemory;
     } catch (const std::length_error&) {
-        return app::kOutOfMemory;
+        return run::kOutOfMemory;
     } catch (const std::exception& problem) {
-        const Result<model::ImportedMesh> refused(
+        const Result<importer::ImportedMesh> refused(
             Error{.message = std::string("cannot be read: ") + problem.what(), .file = argv[1]});
-        return writeAll(STDOUT_FILENO, model::toBytes(refused)) ? 0 : app::kNotWritten;
+        return writeAll(STDOUT_FILENO, importer::toBytes(refused)) ? 0 : run::kNotWritten;
     }
 }

@@ -11,7 +11,7 @@ namespace passung::cli {
 
 int merge(const MergeArguments& options) {
     if (const auto fine = refuseOverwriting(options.out, options.databases); !fine) return fail(fine.errors());
-    auto open = app::openOptionsNow();
+    auto open = run::openOptionsNow();
     open.group = options.group;
     const auto report = store::mergeDatabases(options.databases, options.out, open);
     if (!report) return fail(report.errors());

@@ -10,22 +10,22 @@ namespace passung::cli {
 
 namespace {
 
-std::string volume(const model::MeshReport& r) {
-    if (r.kind == model::SurfaceKind::OpenSheet) return "none (an open sheet)";
-    if (r.kind == model::SurfaceKind::HoledSolid) return "not defined (gaps are left)";
+std::string volume(const importer::MeshReport& r) {
+    if (r.kind == importer::SurfaceKind::OpenSheet) return "none (an open sheet)";
+    if (r.kind == importer::SurfaceKind::HoledSolid) return "not defined (gaps are left)";
     const bool overlaps = r.crossing_triangles + r.nested_solids > 0;
     return fmt::format("{:.6g} mm³{}{}", r.volume * 1e9, r.watertight ? "" : " (as repaired)",
                        overlaps ? " (overlaps counted twice)" : "");
 }
 
 /// How contact takes the surface.
-std::string inside(const model::MeshReport& r) {
+std::string inside(const importer::MeshReport& r) {
     switch (r.kind) {
-        case model::SurfaceKind::OpenSheet:
+        case importer::SurfaceKind::OpenSheet:
             return "none: an open sheet, felt on both sides";
-        case model::SurfaceKind::HoledSolid:
+        case importer::SurfaceKind::HoledSolid:
             return "by the winding number: a solid with gaps, without error bounds";
-        case model::SurfaceKind::Solid:
+        case importer::SurfaceKind::Solid:
             break;
     }
     return r.watertight ? "a closed solid" : "a closed solid, as repaired";
@@ -44,14 +44,14 @@ std::string originOf(const Vec3& low, const Vec3& high) {
 int mesh(const MeshArguments& options) {
     const auto spec = partArgument(options.file, options.unit);
     if (!spec) return fail(spec.errors());
-    const auto part = model::buildPart(*spec, {}, app::openBuilds(options.import_limits).get());
+    const auto part = scene::buildPart(*spec, {}, run::openBuilds(options.import_limits).get());
     if (!part) return fail(part.errors());
-    const model::MeshReport& r = part->report;
+    const importer::MeshReport& r = part->report;
     fmt::print("{}\n", options.file);
     const auto line = [](std::string_view name, const std::string& value) { fmt::print("  {:<22}{}\n", name, value); };
     line("format", r.format);
     if (part->shape) {
-        for (const auto& [key, value] : model::namedDimensions(*part->shape))
+        for (const auto& [key, value] : shape::namedDimensions(*part->shape))
             line(key, fmt::format("{:.7g} mm", 1e3 * value));
         line("chord error", fmt::format("{:.2g} mm", 1e3 * part->chord_error));
     } else {
@@ -64,7 +64,7 @@ int mesh(const MeshArguments& options) {
     const auto corner = [](const Vec3& v) {
         return fmt::format("{:.6g}, {:.6g}, {:.6g} mm", v.x() * 1e3, v.y() * 1e3, v.z() * 1e3);
     };
-    const auto [low, high] = model::boundsOf(part->mesh);
+    const auto [low, high] = geometry::boundsOf(part->mesh);
     line("least x, y, z", corner(low));
     line("greatest x, y, z", corner(high));
     line("centre of bounds", corner(0.5 * (low + high)));

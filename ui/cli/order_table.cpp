@@ -4,18 +4,18 @@
 
 namespace passung::cli {
 
-std::string orderCsv(const protocol::StudyPlan& plan, const std::vector<session::PlannedSession>& sessions) {
+std::string orderCsv(const plan::StudyPlan& plan, const std::vector<session::PlannedSession>& sessions) {
     exporter::Table table;
     const auto add = [&](const std::string& name) { table.columns.push_back({name, "", "", "", "", 1, {}}); };
     for (const char* name : {"participant_id", "group", "session", "block_index", "block", "phase", "trial_index",
                              "trial_in_block", "repetition", "condition"})
         add(name);
-    for (const protocol::Factor& factor : plan.factors) add(factor.name);
-    const auto groups = protocol::groupNames(plan);
+    for (const plan::Factor& factor : plan.factors) add(factor.name);
+    const auto groups = plan::groupNames(plan);
     const auto number = [](auto value) { return exporter::cell(static_cast<std::int64_t>(value)); };
     for (const session::PlannedSession& planned : sessions)
         for (const design::PlannedTrial& trial : planned.trials) {
-            const protocol::Condition& condition = plan.conditions[trial.condition];
+            const plan::Condition& condition = plan.conditions[trial.condition];
             std::vector<std::string> row = {planned.participant,
                                             groups[planned.place.group],
                                             number(planned.session),

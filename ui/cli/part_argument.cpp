@@ -18,13 +18,13 @@ Result<double> metresPerUnit(const std::string& unit) {
 
 }  // namespace
 
-Result<model::PartSpec> partArgument(const std::string& path, const std::string& unit) {
+Result<scene::PartSpec> partArgument(const std::string& path, const std::string& unit) {
     const auto metres = metresPerUnit(unit);
     if (!metres) return metres.errors();
     if (path.ends_with(".toml")) return protocol::readPart(path, *metres);
-    model::PartSpec spec;
+    scene::PartSpec spec;
     spec.name = path;
-    spec.geometry = model::MeshFile{path, *metres};
+    spec.geometry = scene::MeshFile{path, *metres};
     return spec;
 }
 

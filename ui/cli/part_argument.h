@@ -9,6 +9,6 @@ namespace passung::cli {
 
 /// A part named on the command line: a mesh file, or a .toml file with one [[part]]. `unit`: "m", "cm", "mm", "um" or
 /// "in", for files that say none.
-Result<model::PartSpec> partArgument(const std::string& path, const std::string& unit);
+Result<scene::PartSpec> partArgument(const std::string& path, const std::string& unit);
 
 }  // namespace passung::cli

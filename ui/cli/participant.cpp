@@ -28,7 +28,8 @@ int withParticipants(const ParticipantArguments& options, bool create,
                      const std::function<Result<Done>(store::Store&, store::ParticipantRecords&)>& work) {
     const auto station = stationOf(options.station);
     if (!station) return fail(station.errors());
-    const auto done = app::withParticipants({options.database, options.by, *station, create, options.group}, work);
+    const auto done =
+        presenter::withParticipants({options.database, options.by, *station, create, options.group}, work);
     return done ? 0 : fail(done.errors());
 }
 
@@ -46,9 +47,9 @@ std::string consentText(const std::vector<store::ConsentRow>& consents, const st
 }  // namespace
 
 int enrolParticipant(const ParticipantArguments& options) {
-    std::optional<protocol::StudyPlan> plan;
+    std::optional<plan::StudyPlan> plan;
     if (!options.protocol.empty()) {
-        auto read = app::readProtocol(options.protocol);
+        auto read = run::readProtocol(options.protocol);
         if (!read) return fail(read.errors());
         plan = *std::move(read);
     }
@@ -56,7 +57,7 @@ int enrolParticipant(const ParticipantArguments& options) {
         options, plan.has_value(), [&](store::Store& store, store::ParticipantRecords& desk) -> Result<Done> {
             if (plan)
                 if (const auto imported = store.importProtocol(*plan); !imported) return imported.errors();
-            const auto code = app::enrolAt(store, desk, *protocol::participantKindNamed(options.kind), options.code);
+            const auto code = presenter::enrolAt(store, desk, *plan::participantKindNamed(options.kind), options.code);
             if (!code) return code.errors();
             fmt::print("{}: {} participant, enrolled\n", *code, options.kind);
             return Done{};
@@ -119,7 +120,7 @@ std::optional<bool> takesBackupAlong(const ParticipantArguments& options) {
     return std::nullopt;
 }
 
-void tellErasure(const ParticipantArguments& options, const app::Left& left) {
+void tellErasure(const ParticipantArguments& options, const presenter::Left& left) {
     fmt::print("{}: erased from {}; the audit says {} in its place\n", options.code, options.database, left.surrogate);
     const std::string backup = store::backupPath(options.database);
     if (left.backup) fmt::print("{}: erased from the backup {} too\n", options.code, backup);
@@ -148,7 +149,7 @@ int withdrawParticipant(const ParticipantArguments& options) {
         if (!along) return fail({{.message = "nobody answered: nothing was erased", .file = options.database}});
         leaving.backup_too = *along;
     }
-    const auto left = app::leave({options.database, options.by, *station}, leaving);
+    const auto left = presenter::leave({options.database, options.by, *station}, leaving);
     if (!left) return fail(left.errors());
     if (leaving.scope != presenter::Scope::Erase) {
         fmt::print("{}: withdrawn; {}\n", options.code,

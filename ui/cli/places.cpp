@@ -14,9 +14,9 @@ namespace passung::cli {
 namespace {
 
 /// A person's place as the plan counts it; groups have names in the database.
-session::DesignPlace placeOf(const protocol::StudyPlan& plan, const store::ParticipantRow& person) {
-    const auto groups = protocol::groupNames(plan);
-    const auto sequences = design::sequencesOf(protocol::designOf(plan));
+session::DesignPlace placeOf(const plan::StudyPlan& plan, const store::ParticipantRow& person) {
+    const auto groups = plan::groupNames(plan);
+    const auto sequences = design::sequencesOf(plan::designOf(plan));
     const auto group = std::find(groups.begin(), groups.end(), person.group.value_or("")) - groups.begin();
     return {static_cast<std::size_t>(*person.replicate) * sequences + static_cast<std::size_t>(*person.sequence_index),
             static_cast<std::size_t>(group)};
@@ -28,7 +28,7 @@ void printTakenPlaces(const store::StoreReader& reader) {
     const auto people = reader.participants();
     const auto protocols = reader.protocols();
     if (!people || !protocols) return;  // whoever reads next says why
-    app::StoredPlans plans(reader, "");
+    run::StoredPlans plans(reader, "");
     std::set<std::string> versions;
     for (const auto& protocol : *protocols) {
         std::map<std::string, std::vector<const store::ParticipantRow*>> by_kind;

@@ -65,7 +65,7 @@ Result<std::optional<power::PowerResult>> finishedBefore(const PowerArguments& o
 
 int power(const PowerArguments& options) {
     if (!options.merge.empty()) return mergeFiles(options);
-    auto plan = app::readProtocol(options.protocol);
+    auto plan = run::readProtocol(options.protocol);
     if (!plan) return fail(plan.errors());
     warn(options.protocol, session::planWarnings(*plan));
     if (options.seed) plan->seed = *options.seed;
@@ -94,9 +94,9 @@ int power(const PowerArguments& options) {
         fmt::print("{} is complete; nothing was run\n{}", options.out, power::summaryText(**earlier));
         return 0;
     }
-    const auto perform = [&](const protocol::StudyPlan& own, int participants) -> Result<exporter::StudyData> {
+    const auto perform = [&](const plan::StudyPlan& own, int participants) -> Result<exporter::StudyData> {
         if (model) return power::modelStudy(own, participants);
-        return app::hapticStudy(own, participants);
+        return power::hapticStudy(own, participants);
     };
     ProgressLine progress;
     const auto result = power::runShard(job, shard, *effect, *plan, perform,

@@ -27,12 +27,12 @@ constexpr const char* kResultColumns =
     "normal_y,normal_z,force_x_N,force_y_N,force_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,contacts,nodes_visited,points_"
     "tested,query_us";
 
-Result<model::Part> build(const std::string& path, const std::string& unit, const model::PartNeeds& needs,
-                          const app::ImportLimits& limits) {
+Result<scene::Part> build(const std::string& path, const std::string& unit, const scene::PartNeeds& needs,
+                          const run::ImportLimits& limits) {
     auto spec = partArgument(path, unit);
     if (!spec) return spec.errors();
-    const auto store = app::openBuilds(limits);
-    auto part = model::buildPart(*spec, needs, store.get());
+    const auto store = run::openBuilds(limits);
+    auto part = scene::buildPart(*spec, needs, store.get());
     if (!part) {
         Errors errors = part.errors();
         for (Error& error : errors) {
@@ -89,7 +89,7 @@ void writeRow(fmt::memory_buffer& text, std::string_view input, const query::Par
     fmt::format_to(out, ",{},{},{},{:.3f}\n", r.contacts, r.nodes_visited, r.points_tested, us);
 }
 
-std::string patchJson(const tick::ContactCluster& patch, double area_stiffness) {
+std::string patchJson(const contact::ContactCluster& patch, double area_stiffness) {
     return JsonObject()
         .json("deepest_m", jsonVector(patch.deepest))
         .number("depth_m", -patch.phi)
@@ -105,7 +105,7 @@ std::string patchJson(const tick::ContactCluster& patch, double area_stiffness) 
 /// One pose's patches, in the FIELD's frame; `row` counts the poses from 1.
 std::string patchesJson(std::size_t row, const query::PartQueryResult& result, double area_stiffness) {
     std::vector<std::string> patches;
-    for (const tick::ContactCluster& patch : result.patches) patches.push_back(patchJson(patch, area_stiffness));
+    for (const contact::ContactCluster& patch : result.patches) patches.push_back(patchJson(patch, area_stiffness));
     return JsonObject()
         .integer("row", static_cast<std::int64_t>(row))
         .integer("patches_found", static_cast<std::int64_t>(result.patches_found))
@@ -131,9 +131,9 @@ int query(const QueryArguments& options) {
     const auto poses = readPoses(options.poses, table);
     if (!poses) return fail(poses.errors());
     if (const Errors errors = refuseResultNames(options.poses, table); !errors.empty()) return fail(errors);
-    const model::PartNeeds common{
+    const scene::PartNeeds common{
         .tolerance = options.tolerance_um * 1e-6, .cell = options.cell_mm * 1e-3, .spacing = options.spacing_mm * 1e-3};
-    model::PartNeeds field_needs = common, shell_needs = common;
+    scene::PartNeeds field_needs = common, shell_needs = common;
     field_needs.field = shell_needs.shell = true;
     field_needs.shell = shell_needs.field = options.two_way;
     ProgressLine progress;
@@ -153,7 +153,7 @@ int query(const QueryArguments& options) {
     request.tolerance = options.tolerance_um * 1e-6;
     request.two_way = options.two_way;
     request.patches = !options.patches.empty();
-    request.mode = model::modeNamed(options.mode).value_or(request.mode);
+    request.mode = field::modeNamed(options.mode).value_or(request.mode);
     query::PartQuery part_query(*field, *shell, request);
     OutputFile out(options.out);
     out.write(table.headerLine() + kResultColumns + '\n');

@@ -27,7 +27,7 @@ public:
     Replays(const store::StoreReader& reader, const ReplayArguments& options,
             const std::vector<store::DetectionRow>& detections)
         : reader_(reader),
-          store_(app::openBuilds(options.import_limits)),
+          store_(run::openBuilds(options.import_limits)),
           plans_(reader, options.meshes, options.import_limits) {
         for (const auto& row : detections) detections_[row.attempt_id].push_back(row.detection);
     }
@@ -61,7 +61,7 @@ public:
                          .key = "condition",
                          .value = attempt.presented_condition};
         }
-        const auto scenes = app::buildScenes(session::renderedScenes(*condition, attempt.seed), parts_);
+        const auto scenes = run::buildScenes(session::renderedScenes(*condition, attempt.seed), parts_);
         if (!scenes) return scenes.errors();
         const auto difference = measureDifference(attempt, *condition, *records);
         if (!difference) return difference.errors();
@@ -76,7 +76,7 @@ private:
 
     /// The first measure, or the outcome, that the recorded ticks do not give again; empty if they give all. Bits
     /// count: the formulas are exact functions of what is stored.
-    Result<std::string> measureDifference(const store::AttemptRow& attempt, const protocol::Condition& condition,
+    Result<std::string> measureDifference(const store::AttemptRow& attempt, const plan::Condition& condition,
                                           const std::vector<TickRecord>& records) const {
         const auto outcome = measures::outcomeNamed(attempt.outcome);
         if (!outcome || !attempt.end_ns) return std::string();  // it did not end: nothing was measured
@@ -145,9 +145,9 @@ private:
     }
 
     const store::StoreReader& reader_;
-    std::unique_ptr<app::Builds> store_;
-    model::PartCache parts_{store_.get()};
-    app::StoredPlans plans_;
+    std::unique_ptr<run::Builds> store_;
+    scene::PartCache parts_{store_.get()};
+    run::StoredPlans plans_;
     std::map<std::int64_t, std::vector<measures::Detection>> detections_;  // by attempt
 };
 

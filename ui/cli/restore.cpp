@@ -9,7 +9,7 @@
 namespace passung::cli {
 
 int restore(const RestoreArguments& options) {
-    const auto report = store::restoreDatabase(options.database, options.from, app::openOptionsNow());
+    const auto report = store::restoreDatabase(options.database, options.from, run::openOptionsNow());
     if (!report) return fail(report.errors());
     for (const std::string& healed : report->healed) fmt::print("{}: {}: healed\n", options.database, healed);
     const std::string none = report->anew ? "" : ": there is no intact copy of it in " + options.from;

@@ -52,7 +52,7 @@ void listenForSignals() {
 }
 
 /// What cannot be logged is warned of.
-app::StudyLog logOf(const std::string& database) {
+run::StudyLog logOf(const std::string& database) {
     return {database, "passung", [database](const std::string& problem) { warn(database, {problem}); }};
 }
 
@@ -140,11 +140,11 @@ private:
     ProgressLine progress_;
 };
 
-using PerformSessions = std::function<Result<app::RunEnd>(const app::RunOptions&, const session::SessionListener&)>;
+using PerformSessions = std::function<Result<run::RunEnd>(const run::RunOptions&, const session::SessionListener&)>;
 
 /// Lets `go` perform sessions and tells of them; `study` is the file that warnings are about, `answers` who answers
 /// questionnaires.
-int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, const std::string& answers,
+int tell(const std::string& study, run::RunOptions what, int acknowledge_fd, const std::string& answers,
          const PerformSessions& go) {
     listenForSignals();
     Terminal terminal;
@@ -154,17 +154,17 @@ int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, con
     if (answers != "simulated") {
         what.answers = &at_terminal;
         what.reader = &pages;
-        what.ask_consent = [&](const protocol::ConsentClause& clause, const std::string& text) {
+        what.ask_consent = [&](const plan::ConsentClause& clause, const std::string& text) {
             return askConsent(terminal, what.interrupted, clause, text);
         };
     }
-    app::StudyLog log = logOf(what.database);
+    run::StudyLog log = logOf(what.database);
     what.log = &log;
     what.warns = true;
     RunTeller teller(study, what.database, acknowledge_fd);
     const auto end = go(what, [&teller](const session::SessionEvent& event) { std::visit(teller, event); });
     if (!end) return fail(end.errors());
-    if (*end == app::RunEnd::Interrupted) return fail({{.message = teller.interruption(), .file = what.database}});
+    if (*end == run::RunEnd::Interrupted) return fail({{.message = teller.interruption(), .file = what.database}});
 
     const auto reader = store::StoreReader::open(what.database);
     if (!reader) return fail(reader.errors());
@@ -177,7 +177,7 @@ int tell(const std::string& study, app::RunOptions what, int acknowledge_fd, con
 }  // namespace
 
 int run(const RunArguments& options) {
-    auto plan = app::readProtocol(options.protocol, options.import_limits);
+    auto plan = run::readProtocol(options.protocol, options.import_limits);
     if (!plan) {
         if (!options.database.empty()) logOf(options.database).fail("protocol refused", plan.errors());
         return fail(plan.errors());
@@ -185,7 +185,7 @@ int run(const RunArguments& options) {
     warn(options.protocol, session::planWarnings(*plan));
     if (options.seed) plan->seed = *options.seed;
 
-    app::RunOptions what;
+    run::RunOptions what;
     what.database = options.database.empty() ? plan->name + ".db" : options.database;
     what.participant = options.participant;
     what.simulated = options.participant.empty() ? options.simulated : 1;
@@ -195,16 +195,16 @@ int run(const RunArguments& options) {
     what.backup = !options.no_backup;
     what.group = options.group;
     what.wait = options.wait;
-    what.clock = options.real_time ? app::Clock::RealTime : app::Clock::Virtual;
+    what.clock = options.real_time ? run::Clock::RealTime : run::Clock::Virtual;
 
     what.language = options.language;
     what.import_limits = options.import_limits;
     return tell(options.protocol, what, options.acknowledge_fd, options.answers,
-                [&](const auto& with, const auto& listener) { return app::runStudy(*plan, with, listener); });
+                [&](const auto& with, const auto& listener) { return run::runStudy(*plan, with, listener); });
 }
 
 int resume(const ResumeArguments& options) {
-    app::RunOptions what;
+    run::RunOptions what;
     what.database = options.database;
     const auto station = stationOf(options.station);
     if (!station) return fail(station.errors());
@@ -213,7 +213,7 @@ int resume(const ResumeArguments& options) {
     what.import_limits = options.import_limits;
     return tell(options.database, what, options.acknowledge_fd, options.answers,
                 [&](const auto& with, const auto& listener) {
-                    return app::resumeStudy({options.session, options.meshes}, with, listener);
+                    return run::resumeStudy({options.session, options.meshes}, with, listener);
                 });
 }
 

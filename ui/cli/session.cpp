@@ -19,7 +19,7 @@ int tellDatabase(const std::string& database, const Command& command) {
         const char* what = command.kind == CommandKind::Invalidate ? ": which --attempt is meant?" : "";
         return fail({{.message = fmt::format("no session runs on it{}", what), .file = database}});
     }
-    auto with = app::openOptionsNow();
+    auto with = run::openOptionsNow();
     with.create = false;
     auto opened = store::Store::open(database, with);
     if (!opened.store) return fail(opened.errors);
@@ -42,7 +42,7 @@ int tellSession(const SessionArguments& options) {
     if (session::needsText(command.kind) && command.text.empty())
         return fail({{.message = "needs a text: --text", .file = options.database, .key = options.action}});
 
-    const auto answer = app::tellSession(options.database, command);
+    const auto answer = run::tellSession(options.database, command);
     if (!answer) return fail(answer.errors());
     if (!*answer) return tellDatabase(options.database, command);
     if (!(*answer)->accepted)

@@ -42,21 +42,21 @@ int simulate(const SimulateArguments& options) {
         return fail(free.errors());
     const auto source = readFile(options.scene);
     if (!source) return fail(source.errors());
-    auto read = app::readSceneOnDevice(*source, options.scene, options.import_limits);
+    auto read = run::readSceneOnDevice(*source, options.scene, options.import_limits);
     if (!read) return fail(read.errors());
     warn(options.scene, read->warnings);
-    model::SceneSpec* spec = &read->scene;
+    scene::SceneSpec* spec = &read->scene;
     const auto trajectory = scripted::Trajectory::read(options.trajectory);
     if (!trajectory) return fail(trajectory.errors());
     // The file holds poses of the held part in the world, so that the registration has nothing to do; and the run
     // begins with its first row, wherever that is.
-    spec->registration = model::Registration{};
-    spec->start_gate = model::StartGate{};
-    const auto store = app::openBuilds(options.import_limits);
-    model::PartCache cache(store.get());
+    spec->registration = scene::Registration{};
+    spec->start_gate = scene::StartGate{};
+    const auto store = run::openBuilds(options.import_limits);
+    scene::PartCache cache(store.get());
     ProgressLine progress;
     progress.show("building the scene");
-    auto scene = model::buildScene(*spec, cache);
+    auto scene = scene::buildScene(*spec, cache);
     if (!scene) return fail(scene.errors());
     const tick::TickModel model = tick::makeModel(*scene);
     tick::TickState state = tick::makeState(model);

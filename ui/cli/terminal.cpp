@@ -179,8 +179,8 @@ std::optional<session::PageRead> TerminalReader::read(const session::Page& page)
     return session::PageRead{read_by_, steadyMilliseconds() - since_ms_};
 }
 
-std::optional<bool> askConsent(Terminal& terminal, const std::function<bool()>& stop,
-                               const protocol::ConsentClause& clause, const std::string& text) {
+std::optional<bool> askConsent(Terminal& terminal, const std::function<bool()>& stop, const plan::ConsentClause& clause,
+                               const std::string& text) {
     const std::string prompt = "    yes or no > ";
     say(fmt::format("\n{}{}\n{}", text, clause.required ? "" : "  (may be refused)", prompt));
     while (!terminal.ended() && !stop()) {

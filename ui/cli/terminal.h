@@ -63,7 +63,7 @@ private:
 };
 
 /// Shows a clause of consent and waits for yes or no; nothing if the terminal ends or `stop` says so first.
-std::optional<bool> askConsent(Terminal& terminal, const std::function<bool()>& stop,
-                               const protocol::ConsentClause& clause, const std::string& text);
+std::optional<bool> askConsent(Terminal& terminal, const std::function<bool()>& stop, const plan::ConsentClause& clause,
+                               const std::string& text);
 
 }  // namespace passung::cli

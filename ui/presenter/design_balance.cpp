@@ -2,11 +2,11 @@
 
 namespace passung::presenter {
 
-DesignBalance designBalance(const protocol::StudyPlan& plan, const std::vector<session::DesignPlace>& places) {
-    const auto design = protocol::designOf(plan);
+DesignBalance designBalance(const plan::StudyPlan& plan, const std::vector<session::DesignPlace>& places) {
+    const auto design = plan::designOf(plan);
     DesignBalance balance{{}, {}, design::evenNumber(design), plan.participants};
     for (const auto& factor : plan.factors) balance.factors.push_back(factor.name);
-    const auto groups = protocol::groupNames(plan);
+    const auto groups = plan::groupNames(plan);
     for (std::size_t group = 0; group < groups.size(); ++group) {
         std::vector<std::size_t> slots;
         for (const session::DesignPlace& place : places)

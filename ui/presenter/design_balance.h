@@ -23,6 +23,6 @@ struct DesignBalance {
     std::size_t even_number = 1;  // multiples of it are balanced
     int planned = 0;              // participants
 };
-DesignBalance designBalance(const protocol::StudyPlan& plan, const std::vector<session::DesignPlace>& places);
+DesignBalance designBalance(const plan::StudyPlan& plan, const std::vector<session::DesignPlace>& places);
 
 }  // namespace passung::presenter

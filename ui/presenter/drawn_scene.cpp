@@ -17,7 +17,7 @@ constexpr double kGround = 4e-3;         // below the lowest part [m]
 constexpr double kLine = 0.5e-3;         // radius of a contour [m]
 constexpr double kUpright = 1e-6;        // a direction that is less beside the vertical is upright
 
-void extendBy(model::Bounds& bounds, const ShadedMesh& mesh, const Pose& X_W) {
+void extendBy(geometry::Bounds& bounds, const ShadedMesh& mesh, const Pose& X_W) {
     for (int corner = 0; corner < 8; ++corner) {
         Vec3 p;
         for (int i = 0; i < 3; ++i) {
@@ -29,7 +29,7 @@ void extendBy(model::Bounds& bounds, const ShadedMesh& mesh, const Pose& X_W) {
 }
 
 /// As the study says; what it does not say so that a sphere of this radius about `middle` fills the picture.
-Camera cameraOn(const Vec3& middle, double radius, const protocol::View& look) {
+Camera cameraOn(const Vec3& middle, double radius, const plan::View& look) {
     Camera camera;
     camera.centre = look.camera_target.value_or(middle);
     camera.opening = look.camera_opening;
@@ -47,7 +47,7 @@ Camera cameraOn(const Vec3& middle, double radius, const protocol::View& look) {
 }
 
 /// Where no other is asked for: over the camera's left shoulder.
-Vec3 lightFrom(const Camera& camera, const protocol::View& look) {
+Vec3 lightFrom(const Camera& camera, const plan::View& look) {
     return look.light_from.value_or(camera.X_WC.q * Vec3(-0.55, 0.5, 0.35) + 1.3 * Vec3::UnitZ()).normalized();
 }
 
@@ -57,8 +57,8 @@ double Camera::metresPerPixel(double height_px) const {
     return 2.0 * (X_WC.p - centre).norm() * std::tan(0.5 * opening) / height_px;
 }
 
-Pose poseOf(const DrawnScene& scene, const TickRecord& record, protocol::ShownPose which) {
-    const bool proxy = which == protocol::ShownPose::Proxy;
+Pose poseOf(const DrawnScene& scene, const TickRecord& record, plan::ShownPose which) {
+    const bool proxy = which == plan::ShownPose::Proxy;
     const auto& p = proxy ? record.proxy_position_m : record.hand_position_m;
     const auto& q = proxy ? record.proxy_quaternion : record.hand_quaternion;
     const Eigen::Quaternionf rotation(q[0], q[1], q[2], q[3]);
@@ -67,24 +67,24 @@ Pose poseOf(const DrawnScene& scene, const TickRecord& record, protocol::ShownPo
 
 Pose shownPose(const DrawnScene& scene, const TickRecord& record) { return poseOf(scene, record, scene.shown); }
 
-Result<std::shared_ptr<const ShadedMesh>> SceneArtist::surfaceOf(const model::PartSpec& part) {
+Result<std::shared_ptr<const ShadedMesh>> SceneArtist::surfaceOf(const scene::PartSpec& part) {
     std::string key;
-    const auto* file = std::get_if<model::MeshFile>(&part.geometry);
+    const auto* file = std::get_if<scene::MeshFile>(&part.geometry);
     if (file != nullptr) {
         key = fmt::format("{} {}", file->path, file->metres_per_unit);
     } else {
-        const auto& shape = std::get<model::Shape>(part.geometry);
-        key = model::kindName(shape);
-        for (const double size : model::dimensions(shape)) key += fmt::format(" {}", size);
+        const auto& shape = std::get<shape::Shape>(part.geometry);
+        key = shape::kindName(shape);
+        for (const double size : shape::dimensions(shape)) key += fmt::format(" {}", size);
     }
     if (const auto known = surfaces_.find(key); known != surfaces_.end()) return known->second;
-    model::TriangleMesh mesh;
+    geometry::TriangleMesh mesh;
     if (file != nullptr) {
-        auto read = model::importMeshFile(*file, builds_);
+        auto read = scene::importMeshFile(*file, builds_);
         if (!read) return read.errors();
         mesh = std::move(read->mesh);
     } else {
-        mesh = model::tessellate(std::get<model::Shape>(part.geometry), kChordError);
+        mesh = shape::tessellate(std::get<shape::Shape>(part.geometry), kChordError);
     }
     return surfaces_[key] = std::make_shared<const ShadedMesh>(shade(mesh));
 }
@@ -93,39 +93,38 @@ Result<std::shared_ptr<const ShadedMesh>> SceneArtist::surfaceOf(const model::Pa
 std::shared_ptr<const ShadedMesh> SceneArtist::ringAround(const ShadedMesh& held) {
     const double girth =
         1e-3 * static_cast<double>(std::max(held.high_mm[0] - held.low_mm[0], held.high_mm[1] - held.low_mm[1]));
-    model::PartSpec ring;
-    ring.geometry = model::Shape(model::Torus{1.5 * girth, 0.045 * girth});
+    scene::PartSpec ring;
+    ring.geometry = shape::Shape(shape::Torus{1.5 * girth, 0.045 * girth});
     return *surfaceOf(ring);  // a shape has no file that could be missing
 }
 
-std::vector<Mark> SceneArtist::marksOf(const protocol::Task& task, const Pose& X_WTarget, const DrawnScene& scene) {
+std::vector<Mark> SceneArtist::marksOf(const plan::Task& task, const Pose& X_WTarget, const DrawnScene& scene) {
     const DrawnPart& held = scene.parts[scene.held];
-    if (std::holds_alternative<protocol::PegInHoleTask>(task.form)) return {{ringAround(*held.mesh), X_WTarget, false}};
-    if (const auto* passage = std::get_if<protocol::NarrowPassageTask>(&task.form)) {
+    if (std::holds_alternative<plan::PegInHoleTask>(task.form)) return {{ringAround(*held.mesh), X_WTarget, false}};
+    if (const auto* passage = std::get_if<plan::NarrowPassageTask>(&task.form)) {
         const auto ring = ringAround(*held.mesh);
         return {{ring, X_WTarget, false}, {ring, X_WTarget * Pose{Quat::Identity(), {0, 0, -passage->length}}, false}};
     }
-    if (const auto* contour = std::get_if<protocol::ContourFollowingTask>(&task.form)) {
+    if (const auto* contour = std::get_if<plan::ContourFollowingTask>(&task.form)) {
         std::string key = "line";
         for (const Vec3& p : contour->points) key += fmt::format(" {} {} {}", p.x(), p.y(), p.z());
         auto& line = surfaces_[key];
         if (!line) line = std::make_shared<const ShadedMesh>(shade(lineThrough(contour->points, kLine)));
         return {{line, X_WTarget, false}};
     }
-    if (const auto* placement = std::get_if<protocol::FreePlacementTask>(&task.form))
+    if (const auto* placement = std::get_if<plan::FreePlacementTask>(&task.form))
         return {{held.mesh, {placement->X_WGoal.q, placement->X_WGoal.p + scene.held_offset}, true}};
     return {};  // of a pair nothing is to be reached
 }
 
-Result<std::shared_ptr<const DrawnScene>> SceneArtist::draw(const protocol::Condition& condition,
-                                                            const protocol::View& look) {
+Result<std::shared_ptr<const DrawnScene>> SceneArtist::draw(const plan::Condition& condition, const plan::View& look) {
     auto scene = std::make_shared<DrawnScene>();
     scene->look = look;
     scene->shown = condition.shown;
     scene->cues = condition.cues;
-    model::Bounds bounds;
+    geometry::Bounds bounds;
     Pose X_WTarget;
-    for (const model::PartSpec& part : condition.scene.parts) {
+    for (const scene::PartSpec& part : condition.scene.parts) {
         auto mesh = surfaceOf(part);
         if (!mesh) return mesh.errors();
         DrawnPart drawn{*mesh, {part.X_WP.q, part.X_WP.p + part.shown_offset}, part.held};

@@ -36,9 +36,9 @@ struct DrawnScene {
     std::vector<DrawnPart> parts;
     std::size_t held = 0;
     Vec3 held_offset = Vec3::Zero();  // drawn so far from where it is, world axes [m]
-    protocol::ShownPose shown = protocol::ShownPose::Proxy;
-    protocol::Cues cues;
-    protocol::View look;
+    plan::ShownPose shown = plan::ShownPose::Proxy;
+    plan::Cues cues;
+    plan::View look;
     std::vector<Mark> marks;
     double floor = 0.0;   // height of the ground [m]
     double radius = 0.1;  // of everything about the camera's centre [m]
@@ -47,7 +47,7 @@ struct DrawnScene {
 };
 
 /// Where either pose of the held part is drawn in a tick.
-Pose poseOf(const DrawnScene& scene, const TickRecord& record, protocol::ShownPose which);
+Pose poseOf(const DrawnScene& scene, const TickRecord& record, plan::ShownPose which);
 /// Where the held part is drawn in a tick.
 Pose shownPose(const DrawnScene& scene, const TickRecord& record);
 
@@ -55,16 +55,16 @@ Pose shownPose(const DrawnScene& scene, const TickRecord& record);
 class SceneArtist {
 public:
     /// `builds`, if there is one, reads the meshes; it outlives the artist.
-    explicit SceneArtist(model::BuildStore* builds = nullptr) : builds_(builds) {}
+    explicit SceneArtist(scene::BuildStore* builds = nullptr) : builds_(builds) {}
     /// Errors: a mesh that cannot be read.
-    Result<std::shared_ptr<const DrawnScene>> draw(const protocol::Condition& condition, const protocol::View& look);
+    Result<std::shared_ptr<const DrawnScene>> draw(const plan::Condition& condition, const plan::View& look);
 
 private:
-    Result<std::shared_ptr<const ShadedMesh>> surfaceOf(const model::PartSpec& part);
+    Result<std::shared_ptr<const ShadedMesh>> surfaceOf(const scene::PartSpec& part);
     std::shared_ptr<const ShadedMesh> ringAround(const ShadedMesh& held);
-    std::vector<Mark> marksOf(const protocol::Task& task, const Pose& X_WTarget, const DrawnScene& scene);
+    std::vector<Mark> marksOf(const plan::Task& task, const Pose& X_WTarget, const DrawnScene& scene);
 
-    model::BuildStore* builds_;
+    scene::BuildStore* builds_;
     std::map<std::string, std::shared_ptr<const ShadedMesh>> surfaces_;  // by what they are made from
 };
 

@@ -61,8 +61,8 @@ Vec3 outermost(const ShadedMesh& mesh, const Pose& X_W, const Vec3& way) {
 /// What there is to do in the running trial, and in which interval of a pair.
 void lookIntoTrial(const Run& run, ParticipantView& view) {
     using Phase = measures::PairWatch::Phase;
-    if (view.brief.timed_by != protocol::TimedBy::Program) {
-        const bool by_hand = view.brief.timed_by == protocol::TimedBy::Experimenter;
+    if (view.brief.timed_by != plan::TimedBy::Program) {
+        const bool by_hand = view.brief.timed_by == plan::TimedBy::Experimenter;
         view.screen = by_hand ? ParticipantScreen::ByHand : ParticipantScreen::Idle;
         return;
     }
@@ -102,7 +102,7 @@ ParticipantView participantView(const Run& run, bool feels) {
     if (view.screen == ParticipantScreen::ToStart || view.screen == ParticipantScreen::Task) lookIntoTrial(run, view);
     const auto& scene = run.scene();
     if (!scene || !hasScene(view.screen)) return view;
-    view.scene = view.screen != ParticipantScreen::Wait || view.brief.timed_by == protocol::TimedBy::Program;
+    view.scene = view.screen != ParticipantScreen::Wait || view.brief.timed_by == plan::TimedBy::Program;
     view.X_WStart = scene->parts[scene->held].X_W;
     view.X_WHeld = view.X_WStart;
     view.start_mark = view.screen == ParticipantScreen::ToStart;
@@ -120,8 +120,8 @@ ParticipantView playbackView(const DrawnScene& scene, const TickRecord& record) 
     view.screen = (record.status & kEngaged) != 0 ? ParticipantScreen::Task : ParticipantScreen::ToStart;
     view.scene = true;
     view.X_WHeld = shownPose(scene, record);
-    const bool proxy = scene.shown == protocol::ShownPose::Proxy;
-    view.X_WStart = poseOf(scene, record, proxy ? protocol::ShownPose::Device : protocol::ShownPose::Proxy);
+    const bool proxy = scene.shown == plan::ShownPose::Proxy;
+    view.X_WStart = poseOf(scene, record, proxy ? plan::ShownPose::Device : plan::ShownPose::Proxy);
     view.start_mark =
         (view.X_WStart.p - view.X_WHeld.p).norm() > kApart || view.X_WStart.q.angularDistance(view.X_WHeld.q) > kTurned;
     if (scene.cues.visual) view.cue = std::min(1.0, static_cast<double>(record.hand_depth_m) / scene.cues.full_depth);

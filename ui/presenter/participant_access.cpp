@@ -5,13 +5,13 @@
 #include "study/run/files/known_copies.h"
 #include "study/run/files/wall_clock.h"
 
-namespace passung::app {
+namespace passung::presenter {
 
 namespace fs = std::filesystem;
 
 Result<Done> withParticipants(const ParticipantAccess& access,
                               const std::function<Result<Done>(store::Store&, store::ParticipantRecords&)>& work) {
-    auto open = openOptionsNow();
+    auto open = run::openOptionsNow();
     open.station = access.station;
     open.create = access.create;
     open.group = access.group;
@@ -21,15 +21,15 @@ Result<Done> withParticipants(const ParticipantAccess& access,
     return work(*opened.store, desk);
 }
 
-Result<std::string> enrolAt(store::Store& store, store::ParticipantRecords& desk, protocol::ParticipantKind kind,
+Result<std::string> enrolAt(store::Store& store, store::ParticipantRecords& desk, plan::ParticipantKind kind,
                             std::string code) {
     if (code.empty()) {
         const auto next = store.nextCode(kind);
         if (!next) return next.errors();
         code = *next;
     }
-    const bool simulated = kind == protocol::ParticipantKind::Simulated;
-    const auto clock = simulated ? store::UtcClock::virtualEpoch() : store::UtcClock::wall(unixMilliseconds());
+    const bool simulated = kind == plan::ParticipantKind::Simulated;
+    const auto clock = simulated ? store::UtcClock::virtualEpoch() : store::UtcClock::wall(run::unixMilliseconds());
     if (const auto done = desk.enrol(code, kind, clock.at(0)); !done) return done.errors();
     return code;
 }
@@ -49,7 +49,7 @@ Result<Left> leave(const ParticipantAccess& access, const presenter::Leaving& le
         const auto surrogate = desk.erase(leaving.code);
         if (!surrogate) return surrogate.errors();
         left.surrogate = *surrogate;
-        left.copies = knownCopies(access.database, leaving.code);
+        left.copies = run::knownCopies(access.database, leaving.code);
         return Done{};
     });
     if (!done) return done.errors();
@@ -60,4 +60,4 @@ std::string studyDatabase(const std::string& tryouts, const std::string& study) 
     return (fs::path(tryouts).parent_path() / "studies" / (study + ".db")).string();
 }
 
-}  // namespace passung::app
+}  // namespace passung::presenter

@@ -8,7 +8,7 @@
 #include "study/store/write/store.h"
 #include "ui/presenter/leaving.h"
 
-namespace passung::app {
+namespace passung::presenter {
 
 /// Who acts at which study's database.
 struct ParticipantAccess {
@@ -24,7 +24,7 @@ Result<Done> withParticipants(const ParticipantAccess& access,
                               const std::function<Result<Done>(store::Store&, store::ParticipantRecords&)>& work);
 
 /// Enrols somebody; no code: the first that is free. Returns the code.
-Result<std::string> enrolAt(store::Store& store, store::ParticipantRecords& desk, protocol::ParticipantKind kind,
+Result<std::string> enrolAt(store::Store& store, store::ParticipantRecords& desk, plan::ParticipantKind kind,
                             std::string code);
 
 /// What came of somebody's leaving.
@@ -39,4 +39,4 @@ Result<Left> leave(const ParticipantAccess& access, const presenter::Leaving& le
 /// The database of a study's real sessions, beside the folder of those of try-outs, which never hold any.
 std::string studyDatabase(const std::string& tryouts, const std::string& study);
 
-}  // namespace passung::app
+}  // namespace passung::presenter

@@ -10,7 +10,7 @@ namespace passung::presenter {
 
 namespace {
 
-using protocol::ParticipantKind;
+using plan::ParticipantKind;
 
 constexpr ParticipantKind kKinds[] = {ParticipantKind::Real, ParticipantKind::Pilot, ParticipantKind::Simulated};
 
@@ -30,7 +30,7 @@ Decision decisionNamed(const std::string& decision) {
 }
 
 /// `rows`: of one participant, in the order of deciding.
-Decision decisionOn(const protocol::ConsentClause& clause, const std::vector<const store::ConsentRow*>& rows) {
+Decision decisionOn(const plan::ConsentClause& clause, const std::vector<const store::ConsentRow*>& rows) {
     Decision latest = Decision::NotAsked;
     for (const store::ConsentRow* row : rows) {
         if (row->clause != clause.clause) continue;
@@ -46,7 +46,7 @@ Decision decisionOn(const protocol::ConsentClause& clause, const std::vector<con
 }
 
 /// At least as many as are planned, and on to the last one that is taken.
-void fillPlaces(const protocol::StudyPlan& plan, Participants& participants) {
+void fillPlaces(const plan::StudyPlan& plan, Participants& participants) {
     std::vector<const ParticipantEntry*> owners;
     for (const ParticipantEntry& person : participants.people)
         if (person.kind == ParticipantKind::Real && person.place) owners.push_back(&person);
@@ -80,7 +80,7 @@ ParticipantEntry personOf(const store::ParticipantRow& row, const Participants& 
     ParticipantEntry person;
     person.code = row.participant_id;
     person.enrolled_utc = row.created_utc;
-    person.kind = protocol::participantKindNamed(row.kind).value_or(ParticipantKind::Simulated);
+    person.kind = plan::participantKindNamed(row.kind).value_or(ParticipantKind::Simulated);
     person.standing = standingOf(row);
     person.reason = row.status_reason.value_or("");
     const auto group = std::find(participants.groups.begin(), participants.groups.end(), row.group.value_or(""));
@@ -134,17 +134,17 @@ const ParticipantEntry* Participants::find(const std::string& code) const {
     return found == people.end() ? nullptr : &*found;
 }
 
-Participants noParticipants(const protocol::StudyPlan& plan) {
+Participants noParticipants(const plan::StudyPlan& plan) {
     Participants participants;
     participants.clauses = plan.consent;
-    participants.groups = protocol::groupNames(plan);
-    participants.sessions = protocol::sessionsOf(plan);
-    participants.for_people = protocol::isForPeople(plan);
+    participants.groups = plan::groupNames(plan);
+    participants.sessions = plan::sessionsOf(plan);
+    participants.for_people = plan::isForPeople(plan);
     fillPlaces(plan, participants);
     return participants;
 }
 
-Result<Participants> readParticipants(const protocol::StudyPlan& plan, const store::StoreReader& reader) {
+Result<Participants> readParticipants(const plan::StudyPlan& plan, const store::StoreReader& reader) {
     const auto protocols = reader.protocols();
     if (!protocols) return protocols.errors();
     const auto people = reader.participants();
@@ -167,7 +167,7 @@ Result<Participants> readParticipants(const protocol::StudyPlan& plan, const sto
     }
     std::map<std::string, std::vector<const store::ConsentRow*>> decided;
     for (const auto& row : *consents) decided[row.participant_id].push_back(&row);
-    const std::size_t sequences = design::sequencesOf(protocol::designOf(plan));
+    const std::size_t sequences = design::sequencesOf(plan::designOf(plan));
     for (const auto& row : *people) {
         ParticipantEntry person = personOf(row, participants, sha256, sequences);
         for (const auto& clause : plan.consent) person.consent.push_back(decisionOn(clause, decided[person.code]));
@@ -212,18 +212,18 @@ PersonWhy whyNotReadmit(const ParticipantEntry& person, const std::string& reaso
 }
 
 CodeWhy whyNotEnrol(const Participants& participants, const std::string& code, ParticipantKind kind) {
-    if (!protocol::isParticipantCode(code)) return CodeWhy::NotACode;
-    if (protocol::kindOfCode(code) != kind) return CodeWhy::WrongLetter;
+    if (!plan::isParticipantCode(code)) return CodeWhy::NotACode;
+    if (plan::kindOfCode(code) != kind) return CodeWhy::WrongLetter;
     if (participants.find(code) != nullptr) return CodeWhy::Taken;
-    return protocol::participantNumber(code) <= participants.erased_to[static_cast<std::size_t>(kind)]
+    return plan::participantNumber(code) <= participants.erased_to[static_cast<std::size_t>(kind)]
                ? CodeWhy::MayBeErased
                : CodeWhy::Possible;
 }
 
 std::string proposedCode(const Participants& participants, ParticipantKind kind) {
     std::int64_t number = participants.erased_to[static_cast<std::size_t>(kind)] + 1;
-    while (participants.find(protocol::participantCode(kind, number)) != nullptr) ++number;
-    return protocol::participantCode(kind, number);
+    while (participants.find(plan::participantCode(kind, number)) != nullptr) ++number;
+    return plan::participantCode(kind, number);
 }
 
 }  // namespace passung::presenter

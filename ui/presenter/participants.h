@@ -34,7 +34,7 @@ struct SessionEntry {
 
 struct ParticipantEntry {
     std::string code, enrolled_utc;
-    protocol::ParticipantKind kind = protocol::ParticipantKind::Real;
+    plan::ParticipantKind kind = plan::ParticipantKind::Real;
     Standing standing = Standing::TakesPart;
     std::string reason;                         // of the standing
     std::optional<session::DesignPlace> place;  // in this version's design
@@ -59,7 +59,7 @@ struct PlaceEntry {
 
 /// Who takes part in a study, as an experimenter looks after them.
 struct Participants {
-    std::vector<protocol::ConsentClause> clauses;
+    std::vector<plan::ConsentClause> clauses;
     std::vector<std::string> groups;
     std::vector<ParticipantEntry> people;  // by code
     std::vector<PlaceEntry> places;
@@ -73,8 +73,8 @@ struct Participants {
 };
 
 /// Of a study without a database: nobody is enrolled.
-Participants noParticipants(const protocol::StudyPlan& plan);
-Result<Participants> readParticipants(const protocol::StudyPlan& plan, const store::StoreReader& reader);
+Participants noParticipants(const plan::StudyPlan& plan);
+Result<Participants> readParticipants(const plan::StudyPlan& plan, const store::StoreReader& reader);
 
 /// Why something cannot be done with a participant now.
 enum class PersonWhy {
@@ -97,9 +97,9 @@ PersonWhy whyNotReadmit(const ParticipantEntry& person, const std::string& reaso
 
 /// Why a code cannot be enrolled.
 enum class CodeWhy { Possible, NotACode, WrongLetter, Taken, MayBeErased };
-CodeWhy whyNotEnrol(const Participants& participants, const std::string& code, protocol::ParticipantKind kind);
+CodeWhy whyNotEnrol(const Participants& participants, const std::string& code, plan::ParticipantKind kind);
 
 /// The first code that may be given to the next participant of this kind.
-std::string proposedCode(const Participants& participants, protocol::ParticipantKind kind);
+std::string proposedCode(const Participants& participants, plan::ParticipantKind kind);
 
 }  // namespace passung::presenter

@@ -30,7 +30,7 @@ bool hasEnded(RowState state) { return state >= RowState::Success && state != Ro
 
 }  // namespace
 
-void Run::open(const protocol::StudyPlan& plan) {
+void Run::open(const plan::StudyPlan& plan) {
     *this = Run();
     view_.state = RunState::Opening;
     look_ = plan.view;
@@ -103,7 +103,7 @@ void Run::prepare(const AttemptPrepared& prepared) {
     form_.reset();
     page_.reset();
     brief_ = prepared.brief;
-    view_.by_hand = brief_.timed_by == protocol::TimedBy::Experimenter;
+    view_.by_hand = brief_.timed_by == plan::TimedBy::Experimenter;
     pair_.reset();
     view_.state = RunState::Preparing;
     view_.number = prepared.trial_index + 1;
@@ -166,9 +166,9 @@ void Run::end(const session::AttemptEnded& ended) {
     const auto place = static_cast<std::size_t>(ended.trial_index);
     if (place >= view_.rows.size()) return;
     result_.reset();
-    if (brief_.result != protocol::ShownResult::None && ended.outcome != measures::Outcome::Aborted)
+    if (brief_.result != plan::ShownResult::None && ended.outcome != measures::Outcome::Aborted)
         result_ = {ended.outcome == measures::Outcome::Success,
-                   brief_.result == protocol::ShownResult::Time ? ended.trial_time_s : std::nullopt};
+                   brief_.result == plan::ShownResult::Time ? ended.trial_time_s : std::nullopt};
     TrialRow& row = view_.rows[place];
     row.state = rowStateOf(ended.outcome, ended.valid);
     row.time_s = ended.trial_time_s;

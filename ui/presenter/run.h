@@ -108,7 +108,7 @@ struct RunView {
 class Run {
 public:
     /// A run of this study is being opened.
-    void open(const protocol::StudyPlan& plan);
+    void open(const plan::StudyPlan& plan);
     void take(const News& news);
     void take(std::span<const TickRecord> records);
     /// The display has got a picture that shows this tick [ns], both on one clock.
@@ -130,7 +130,7 @@ public:
     const std::optional<PageDue>& page() const { return page_; }
     const TrialBrief& brief() const { return brief_; }
     /// How the participant's window draws.
-    const protocol::View& look() const { return look_; }
+    const plan::View& look() const { return look_; }
     /// Of a pair: where it is; nothing before its first interval.
     const std::optional<measures::PairWatch>& pair() const { return pair_; }
     /// What the participant may know of the trial that ended last; nothing once the next one begins.
@@ -154,7 +154,7 @@ private:
     std::shared_ptr<const FormRequest> form_;
     std::optional<PageDue> page_;
     TrialBrief brief_;
-    protocol::View look_;
+    plan::View look_;
     std::optional<measures::PairWatch> pair_;
     std::optional<TrialResult> result_;
     std::vector<std::string> conditions_;  // names

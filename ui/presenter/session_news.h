@@ -25,7 +25,7 @@ struct SessionBegun {
     std::string participant;
     std::vector<design::PlannedTrial> trials;
     std::vector<session::EarlierTrial> earlier = {};  // of a session that is resumed
-    protocol::View look = {};
+    plan::View look = {};
     std::optional<QualityFound> quality = {};  // with which a session that is resumed was drawn
 };
 
@@ -42,11 +42,11 @@ struct AskedDone {};
 
 /// What a participant has to know of a trial beside its scene.
 struct TrialBrief {
-    enum class Kind { Insertion, Passage, Contour, Placement, Pair };  // as in protocol::Task::form
+    enum class Kind { Insertion, Passage, Contour, Placement, Pair };  // as in plan::Task::form
     Kind kind = Kind::Insertion;
     std::string question = {};  // of a pair
-    protocol::TimedBy timed_by = protocol::TimedBy::Program;
-    protocol::ShownResult result = protocol::ShownResult::None;
+    plan::TimedBy timed_by = plan::TimedBy::Program;
+    plan::ShownResult result = plan::ShownResult::None;
 };
 
 /// An attempt is about to begin; its scene is built now.

@@ -14,7 +14,7 @@ std::array<float, 3> floats(const Vec3& v) {
 
 /// True if every edge is run through as often in one direction as in the other and the mesh holds a volume > 0: then
 /// whoever is outside meets no triangle from behind first.
-bool isClosed(const model::TriangleMesh& mesh) {
+bool isClosed(const geometry::TriangleMesh& mesh) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> there, back;
     double volume = 0.0;
     for (const auto& [a, b, c] : mesh.triangles) {
@@ -31,7 +31,7 @@ bool isClosed(const model::TriangleMesh& mesh) {
 
 }  // namespace
 
-ShadedMesh shade(const model::TriangleMesh& mesh, double crease) {
+ShadedMesh shade(const geometry::TriangleMesh& mesh, double crease) {
     const double least = std::cos(crease);
     std::vector<Vec3> areas(mesh.triangles.size());
     std::vector<std::vector<std::uint32_t>> around(mesh.vertices.size());
@@ -64,7 +64,7 @@ ShadedMesh shade(const model::TriangleMesh& mesh, double crease) {
         }
     }
     shaded.two_sided = !isClosed(mesh);
-    const model::Bounds bounds = model::boundsOf(mesh);
+    const geometry::Bounds bounds = geometry::boundsOf(mesh);
     shaded.low_mm = floats(1e3 * bounds.low);
     shaded.high_mm = floats(1e3 * bounds.high);
     return shaded;

@@ -22,6 +22,6 @@ struct ShadedMesh {
 
 /// Smooth where neighbouring triangles meet at less than `crease` [rad], an edge elsewhere: the normal of a corner is
 /// the mean, weighted by area, over the triangles around its vertex that face within `crease` of its own.
-ShadedMesh shade(const model::TriangleMesh& mesh, double crease = 0.6);
+ShadedMesh shade(const geometry::TriangleMesh& mesh, double crease = 0.6);
 
 }  // namespace passung::presenter

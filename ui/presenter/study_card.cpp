@@ -22,7 +22,7 @@ std::string labelOf(const std::string& device, const std::vector<DeviceDescripti
 
 }  // namespace
 
-StudyCard cardOf(const std::string& path, const Result<protocol::StudyPlan>& read,
+StudyCard cardOf(const std::string& path, const Result<plan::StudyPlan>& read,
                  const std::vector<DeviceDescription>& devices) {
     StudyCard card;
     card.path = path;
@@ -32,18 +32,18 @@ StudyCard cardOf(const std::string& path, const Result<protocol::StudyPlan>& rea
         card.problems = read.errors();
         return card;
     }
-    const protocol::StudyPlan& plan = *read;
+    const plan::StudyPlan& plan = *read;
     card.name = plan.name;
     card.version = plan.version;
     card.title = plan.title.empty() ? plan.name : plan.title;
     card.warnings = session::planWarnings(plan);
-    for (const protocol::Factor& factor : plan.factors) {
+    for (const plan::Factor& factor : plan.factors) {
         StudyCard::Factor shown{factor.name, factor.unit, {}};
-        for (const protocol::Level& level : factor.levels) shown.levels.push_back(level.label);
+        for (const plan::Level& level : factor.levels) shown.levels.push_back(level.label);
         card.factors.push_back(std::move(shown));
     }
     card.conditions = plan.shared_conditions > 0 ? plan.shared_conditions : plan.conditions.size();
-    card.sessions = protocol::sessionsOf(plan);
+    card.sessions = plan::sessionsOf(plan);
     card.participants = plan.participants;
     card.device = labelOf(plan.conditions.front().device, devices);
     for (const auto& asked : plan.questionnaires) card.questionnaires.push_back(asked.definition.title);
@@ -54,9 +54,9 @@ StudyCard cardOf(const std::string& path, const Result<protocol::StudyPlan>& rea
         return card;
     }
     card.trials = trials->size();
-    card.minutes = protocol::longestDuration(plan, *trials) / 60.0;
+    card.minutes = plan::longestDuration(plan, *trials) / 60.0;
     card.sound = true;
-    card.for_people = protocol::isForPeople(plan);
+    card.for_people = plan::isForPeople(plan);
     return card;
 }
 

@@ -26,14 +26,14 @@ struct StudyCard {
     std::size_t conditions = 0;
     std::size_t trials = 0;  // of a participant's first session
     int sessions = 1;        // of each participant
-    double minutes = 0;      // of that session by protocol::longestDuration(), which is no bound
+    double minutes = 0;      // of that session by plan::longestDuration(), which is no bound
     int participants = 0;
     std::string device;  // label; of several the first
     std::vector<std::string> questionnaires;
 };
 
 /// What is to be known of the study file at `path`, which has been read with this result. `devices`: those known.
-StudyCard cardOf(const std::string& path, const Result<protocol::StudyPlan>& read,
+StudyCard cardOf(const std::string& path, const Result<plan::StudyPlan>& read,
                  const std::vector<DeviceDescription>& devices);
 
 /// The study files in the folders below `root`, "NAME/study.toml", by name.

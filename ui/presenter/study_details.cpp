@@ -9,25 +9,25 @@
 
 namespace passung::presenter {
 
-Result<StudyDetails> detailsOf(const protocol::StudyPlan& plan, int participants) {
+Result<StudyDetails> detailsOf(const plan::StudyPlan& plan, int participants) {
     StudyDetails details;
-    for (std::size_t i = 0; i < protocol::plannedConditions(plan); ++i)
+    for (std::size_t i = 0; i < plan::plannedConditions(plan); ++i)
         details.conditions.push_back(plan.conditions[i].name);
-    for (const protocol::Block& block : plan.blocks)
+    for (const plan::Block& block : plan.blocks)
         details.blocks.push_back(
             {block.name, block.phase, block.order, block.adaptive, block.repetitions, block.session, block.rest});
-    const auto groups = protocol::groupNames(plan);
+    const auto groups = plan::groupNames(plan);
     const auto places = session::firstPlaces(plan, static_cast<std::size_t>(std::max(participants, 0)));
-    details.minutes.resize(static_cast<std::size_t>(protocol::sessionsOf(plan)));
+    details.minutes.resize(static_cast<std::size_t>(plan::sessionsOf(plan)));
     for (std::size_t i = 0; i < places.size(); ++i) {
-        const auto code = protocol::participantCode(protocol::ParticipantKind::Real, static_cast<std::int64_t>(i) + 1);
-        for (int session = 1; session <= protocol::sessionsOf(plan); ++session) {
+        const auto code = plan::participantCode(plan::ParticipantKind::Real, static_cast<std::int64_t>(i) + 1);
+        for (int session = 1; session <= plan::sessionsOf(plan); ++session) {
             const auto trials = session::planTrials(plan, places[i], code, session);
             if (!trials) return trials.errors();
             details.orders.push_back({code, groups.size() > 1 ? groups[places[i].group] : std::string(), session,
                                       trials->size(), session::orderOf(plan, *trials)});
             double& most = details.minutes[static_cast<std::size_t>(session - 1)];
-            most = std::max(most, protocol::longestDuration(plan, *trials) / 60.0);
+            most = std::max(most, plan::longestDuration(plan, *trials) / 60.0);
         }
     }
     details.balance = designBalance(plan, places);

@@ -14,8 +14,8 @@ namespace passung::presenter {
 /// A block as it is planned for everybody.
 struct BlockLine {
     std::string name;
-    protocol::Phase phase = protocol::Phase::Main;
-    protocol::BlockOrder order = protocol::BlockOrder::Williams;
+    plan::Phase phase = plan::Phase::Main;
+    plan::BlockOrder order = plan::BlockOrder::Williams;
     bool adaptive = false;
     int repetitions = 1, session = 1;
     double rest_s = 0.0;
@@ -34,12 +34,12 @@ struct StudyDetails {
     std::vector<std::string> conditions;  // names of those planned
     std::vector<BlockLine> blocks;
     std::vector<OrderLine> orders;
-    std::vector<double> minutes;  // of each session by protocol::longestDuration(), which is no bound
+    std::vector<double> minutes;  // of each session by plan::longestDuration(), which is no bound
     DesignBalance balance;        // of these participants
 };
 
 /// Of the first so many participants. Errors: constraints that no order keeps to.
-Result<StudyDetails> detailsOf(const protocol::StudyPlan& plan, int participants);
+Result<StudyDetails> detailsOf(const plan::StudyPlan& plan, int participants);
 
 /// A setting that was measured for accuracy over time.
 struct AccuracyPoint {

@@ -17,6 +17,6 @@ struct Mark {
 };
 
 /// A round line of this radius through these points, at least two [m].
-model::TriangleMesh lineThrough(const std::vector<Vec3>& points, double radius);
+geometry::TriangleMesh lineThrough(const std::vector<Vec3>& points, double radius);
 
 }  // namespace passung::presenter

@@ -109,8 +109,8 @@ void App::makeParticipant() {
 }
 
 void App::dressParticipant() {
-    const protocol::View& look = desk_.run().look();
-    participant_look_.setDark(look.theme == protocol::Theme::Dark);
+    const plan::View& look = desk_.run().look();
+    participant_look_.setDark(look.theme == plan::Theme::Dark);
     participant_look_.setScale(look.text_scale);
 }
 
@@ -121,12 +121,12 @@ void App::watchGraphics() {
     connect(participant_.get(), &QQuickWindow::sceneGraphError, this, lost, Qt::QueuedConnection);
     connect(participant_.get(), &QQuickWindow::sceneGraphInvalidated, this, lost, Qt::QueuedConnection);
     connect(participant_.get(), &QQuickWindow::sceneGraphInitialized, this, regained, Qt::QueuedConnection);
-    app::FrameClock& frames = desk_.frames();
+    run::FrameClock& frames = desk_.frames();
     connect(
         participant_.get(), &QQuickWindow::afterSynchronizing, this, [&frames] { frames.take(); },
         Qt::DirectConnection);
     connect(
-        participant_.get(), &QQuickWindow::frameSwapped, this, [&frames] { frames.present(app::steadyNanoseconds()); },
+        participant_.get(), &QQuickWindow::frameSwapped, this, [&frames] { frames.present(run::steadyNanoseconds()); },
         Qt::DirectConnection);
 }
 

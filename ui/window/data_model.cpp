@@ -255,8 +255,8 @@ void DataModel::exportTo(const QString& folder, bool samples) {
             std::error_code problem;  // shows when the folder is begun
             std::filesystem::create_directories(std::filesystem::path(out).parent_path(), problem);
             auto report = exporter::exportAll(*reader, out, options);
-            if (report) app::rememberExport(database, out);
-            if (report && !report->kept.empty()) app::rememberExport(database, report->kept);
+            if (report) run::rememberExport(database, out);
+            if (report && !report->kept.empty()) run::rememberExport(database, report->kept);
             return report;
         },
         [this, to](const Result<exporter::ExportReport>& report) {

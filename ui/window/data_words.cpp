@@ -16,7 +16,7 @@ QString said(const char* text) { return QCoreApplication::translate("data", text
 }  // namespace
 
 QString kindText(const std::string& kind) {
-    const auto known = protocol::participantKindNamed(kind);
+    const auto known = plan::participantKindNamed(kind);
     return known ? kindWord(*known) : QString::fromStdString(kind);
 }
 

@@ -20,7 +20,7 @@ Desk::Desk(std::string data) : data_(std::move(data)) {
 
 Desk::~Desk() { end(); }
 
-void Desk::open(const protocol::StudyPlan& plan, const std::string& language) {
+void Desk::open(const plan::StudyPlan& plan, const std::string& language) {
     close();
     language_ = language;
     run_.open(plan);
@@ -29,7 +29,7 @@ void Desk::open(const protocol::StudyPlan& plan, const std::string& language) {
     emit happened();
 }
 
-void Desk::start(const protocol::StudyPlan& plan, app::LiveOptions options) {
+void Desk::start(const plan::StudyPlan& plan, window::LiveOptions options) {
     end();
     hand_ = options.hand;
     language_ = options.language;
@@ -37,7 +37,7 @@ void Desk::start(const protocol::StudyPlan& plan, app::LiveOptions options) {
     drawn_ = nullptr;
     options.frames = &frames_;
     options.sound = &sound_;
-    live_ = std::make_unique<app::LiveSession>(plan, std::move(options));
+    live_ = std::make_unique<window::LiveSession>(plan, std::move(options));
     {
         const std::lock_guard lock(stop_mutex_);
         stoppable_ = live_.get();
@@ -47,7 +47,7 @@ void Desk::start(const protocol::StudyPlan& plan, app::LiveOptions options) {
     emit happened();
 }
 
-void Desk::tryOut(const protocol::StudyPlan& plan, app::LiveHand hand, const std::string& language) {
+void Desk::tryOut(const plan::StudyPlan& plan, window::LiveHand hand, const std::string& language) {
     start(plan, {.database = data_ + "/" + plan.name + ".db", .hand = hand, .try_out = true, .language = language});
 }
 
@@ -107,10 +107,10 @@ void Desk::drawsWith(const presenter::QualityFound& found) {
 
 /// The pictures that the participant's window has shown, and which attempt it waits to show.
 void Desk::checkPictures() {
-    std::array<app::Picture, 64> pictures;
+    std::array<run::Picture, 64> pictures;
     while (const std::size_t count = frames_.takeForScreen(pictures))
         for (std::size_t i = 0; i < count; ++i) run_.see(pictures[i].began_ns, pictures[i].presented_ns);
-    run_.checkPictures(app::steadyNanoseconds());
+    run_.checkPictures(run::steadyNanoseconds());
     const bool awaits =
         run_.view().state == presenter::RunState::Preparing && !run_.view().built && !frames_.hasShown(awaited_);
     if (awaits == run_.view().awaits_picture) return;

@@ -25,13 +25,13 @@ public:
     ~Desk() override;
 
     /// A session of the study: a new one, or one that goes on.
-    void start(const protocol::StudyPlan& plan, app::LiveOptions options);
+    void start(const plan::StudyPlan& plan, window::LiveOptions options);
     /// A run whose news and ticks the caller brings: for whoever shows one that goes on elsewhere.
-    void open(const protocol::StudyPlan& plan, const std::string& language);
+    void open(const plan::StudyPlan& plan, const std::string& language);
     /// What has happened in the run since the last call, and its ticks of that time.
     void bring(const std::vector<presenter::News>& news, std::span<const loop::ScreenTick> ticks);
     /// Only the trials, into a database of its own.
-    void tryOut(const protocol::StudyPlan& plan, app::LiveHand hand, const std::string& language);
+    void tryOut(const plan::StudyPlan& plan, window::LiveHand hand, const std::string& language);
     void command(session::Command command);
     /// Emergency stop, from any thread, whatever the windows do meanwhile; nothing if no session runs.
     void stopNow();
@@ -45,7 +45,7 @@ public:
     const presenter::Run& run() const { return run_; }
     /// Where the mouse wants the held part; null: nobody moves it by mouse.
     mouse::Pointer* pointer();
-    bool byMouse() const { return live_ && hand_ == app::LiveHand::Mouse; }
+    bool byMouse() const { return live_ && hand_ == window::LiveHand::Mouse; }
     /// That the participant is spoken to in.
     const std::string& language() const { return language_; }
 
@@ -57,7 +57,7 @@ public:
     /// How the participant's window draws from now on, for the experimenter and the data.
     void drawsWith(const presenter::QualityFound& found);
     /// The pictures of the participant's window.
-    app::FrameClock& frames() { return frames_; }
+    run::FrameClock& frames() { return frames_; }
     /// Where sound comes from; none: nowhere.
     std::optional<sound::SoundOutput> soundOutput() const { return sound_.output(); }
 
@@ -77,13 +77,13 @@ private:
     void checkPictures();
 
     std::string data_;
-    app::FrameClock frames_;
+    run::FrameClock frames_;
     sound::SoundFeed sound_;
     std::unique_ptr<Speaker> speaker_;  // once something is to be heard
-    std::unique_ptr<app::LiveSession> live_;
+    std::unique_ptr<window::LiveSession> live_;
     std::mutex stop_mutex_;
-    app::LiveSession* stoppable_ = nullptr;  // what stopNow() stops
-    app::LiveHand hand_ = app::LiveHand::Mouse;
+    window::LiveSession* stoppable_ = nullptr;  // what stopNow() stops
+    window::LiveHand hand_ = window::LiveHand::Mouse;
     std::string language_ = "en";
     presenter::Run run_;
     const void* drawn_ = nullptr;  // scene that the windows know

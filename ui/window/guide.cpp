@@ -147,7 +147,7 @@ QUrl Guide::pagePicture() const {
 }
 
 bool Guide::mayGoOn() const {
-    return resting() && view_.rest->seconds == 0 && view_.rest->ends == protocol::RestEnds::ByParticipant;
+    return resting() && view_.rest->seconds == 0 && view_.rest->ends == plan::RestEnds::ByParticipant;
 }
 
 QString Guide::goOnWord() const {

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <utility>
 
-namespace passung::app {
+namespace passung::window {
 
 namespace {
 
@@ -13,7 +13,7 @@ presenter::FormRequest requestOf(const session::ShownQuestionnaire& form) {
     return {form.id(), false, form.planned.definition, form.order};
 }
 
-presenter::FormRequest requestOf(const protocol::ConsentClause& clause, const std::string& text) {
+presenter::FormRequest requestOf(const plan::ConsentClause& clause, const std::string& text) {
     questionnaire::Item item;
     item.id = clause.clause;
     item.text = text;
@@ -49,7 +49,7 @@ std::optional<Held> Interview::take(std::optional<Held>& held) {
     return std::exchange(held, std::nullopt);
 }
 
-std::optional<bool> Interview::consent(const protocol::ConsentClause& clause, const std::string& text,
+std::optional<bool> Interview::consent(const plan::ConsentClause& clause, const std::string& text,
                                        const std::function<bool()>& stop) {
     const auto request = std::make_shared<const presenter::FormRequest>(requestOf(clause, text));
     ask(presenter::FormDue{request});
@@ -110,4 +110,4 @@ void Interview::goOn() {
     changed_.notify_all();
 }
 
-}  // namespace passung::app
+}  // namespace passung::window

@@ -13,7 +13,7 @@
 #include "study/session/questionnaire_source.h"
 #include "ui/presenter/session_news.h"
 
-namespace passung::app {
+namespace passung::window {
 
 /// What a session asks the participant at a window: consent, instructions, questionnaires. The session's thread asks by
 /// news and looks for what came back; the window hands it in. Neither waits for the other longer than a moment.
@@ -26,7 +26,7 @@ public:
     /// An attempt or a session begins: whatever was asked no longer is.
     void forget();
     /// Shows a clause until it is decided; nothing if `stop` says so first.
-    std::optional<bool> consent(const protocol::ConsentClause& clause, const std::string& text,
+    std::optional<bool> consent(const plan::ConsentClause& clause, const std::string& text,
                                 const std::function<bool()>& stop);
     std::optional<session::FilledForm> fill(const session::ShownQuestionnaire& form) override;
     void withdraw() override;
@@ -54,4 +54,4 @@ private:
     bool goes_on_ = false;
 };
 
-}  // namespace passung::app
+}  // namespace passung::window

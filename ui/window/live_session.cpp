@@ -15,29 +15,29 @@
 #include "study/plan/scene_parts.h"
 #include "study/session/secondary.h"
 
-namespace passung::app {
+namespace passung::window {
 
 namespace {
 
 constexpr const char* kWindow = "window";  // that gives a command by itself
 
-sound::SoundPlan soundOf(const protocol::Condition& condition, std::uint64_t seed) {
-    const protocol::Cues& cues = condition.cues;
+sound::SoundPlan soundOf(const plan::Condition& condition, std::uint64_t seed) {
+    const plan::Cues& cues = condition.cues;
     sound::SoundPlan plan;
     plan.cues = {.sound = cues.audio,
                  .full_speed = cues.full_speed,
                  .sound_decay = cues.sound_decay,
                  .masking = cues.masking_noise};
-    if (condition.secondary.stimulus == protocol::Stimulus::Audio)
+    if (condition.secondary.stimulus == plan::Stimulus::Audio)
         plan.stimulus = session::detectionSettings(condition.secondary);
     plan.seed = seed;
     return plan;
 }
 
-presenter::TrialBrief briefOf(const protocol::Condition& condition) {
+presenter::TrialBrief briefOf(const plan::Condition& condition) {
     presenter::TrialBrief brief;
     brief.kind = static_cast<presenter::TrialBrief::Kind>(condition.task.form.index());
-    if (const auto* pair = std::get_if<protocol::DiscriminationPairTask>(&condition.task.form))
+    if (const auto* pair = std::get_if<plan::DiscriminationPairTask>(&condition.task.form))
         brief.question = pair->question;
     brief.timed_by = condition.timed_by;
     brief.result = condition.result;
@@ -46,7 +46,7 @@ presenter::TrialBrief briefOf(const protocol::Condition& condition) {
 
 }  // namespace
 
-LiveSession::LiveSession(protocol::StudyPlan plan, LiveOptions options)
+LiveSession::LiveSession(plan::StudyPlan plan, LiveOptions options)
     : plan_(std::move(plan)), options_(std::move(options)) {
     if (options_.try_out) {
         plan_.questionnaires.clear();
@@ -86,29 +86,29 @@ void LiveSession::main() {
     tell(presenter::RunOver{whole, errors});
 }
 
-Result<RunEnd> LiveSession::perform(const session::SessionListener& listener) {
-    RunOptions run;
+Result<run::RunEnd> LiveSession::perform(const session::SessionListener& listener) {
+    run::RunOptions run;
     run.database = options_.database;
     run.participant = options_.participant;
     run.station = options_.station;
-    run.clock = Clock::RealTime;
+    run.clock = run::Clock::RealTime;
     run.backup = !options_.try_out;
     run.wait = options_.waits;
     run.performer = this;
     if (!options_.try_out) run.language = options_.language;
     run.experimenter = options_.experimenter;
-    StudyLog log(run.database, "passung-window",
-                 [](const std::string& problem) { std::fprintf(stderr, "warning: %s\n", problem.c_str()); });
+    run::StudyLog log(run.database, "passung-window",
+                      [](const std::string& problem) { std::fprintf(stderr, "warning: %s\n", problem.c_str()); });
     run.log = &log;
     run.interrupted = [this] { return ends_.load(); };
-    if (!options_.try_out && kind() != protocol::ParticipantKind::Simulated)
+    if (!options_.try_out && kind() != plan::ParticipantKind::Simulated)
         run.ask_consent = [this](const auto& clause, const std::string& text) { return askConsent(clause, text); };
-    if (options_.resume.empty()) return runStudy(plan_, run, listener);
+    if (options_.resume.empty()) return run::runStudy(plan_, run, listener);
     const auto folder = std::filesystem::path(plan_.source_path).parent_path();
-    return resumeStudy({options_.resume, folder.string()}, run, listener);
+    return run::resumeStudy({options_.resume, folder.string()}, run, listener);
 }
 
-std::optional<bool> LiveSession::askConsent(const protocol::ConsentClause& clause, const std::string& text) {
+std::optional<bool> LiveSession::askConsent(const plan::ConsentClause& clause, const std::string& text) {
     show(session::viewBeforeSession());
     return interview_.consent(clause, text, [this] { return ends_.load() || takesAbort(); });
 }
@@ -146,9 +146,9 @@ void LiveSession::tell(presenter::News news) {
     news_.push_back(std::move(news));
 }
 
-protocol::ParticipantKind LiveSession::kind() const {
-    if (options_.hand == LiveHand::Simulated) return protocol::ParticipantKind::Simulated;
-    return protocol::kindOfCode(options_.participant).value_or(options_.kind);
+plan::ParticipantKind LiveSession::kind() const {
+    if (options_.hand == LiveHand::Simulated) return plan::ParticipantKind::Simulated;
+    return plan::kindOfCode(options_.participant).value_or(options_.kind);
 }
 
 DeviceDescription LiveSession::describe(const simulated::DeviceParams& preset) const {
@@ -156,11 +156,11 @@ DeviceDescription LiveSession::describe(const simulated::DeviceParams& preset) c
 }
 
 std::unique_ptr<loop::HapticDevice> LiveSession::device(const simulated::DeviceParams& preset,
-                                                        const protocol::Condition& condition) {
+                                                        const plan::Condition& condition) {
     if (options_.hand != LiveHand::Mouse) return nullptr;
-    const model::Registration& r = condition.scene.registration;
+    const scene::Registration& r = condition.scene.registration;
     const simulated::HandRegistration registration{r.X_WB, r.scale, r.X_DH};
-    const Pose start = protocol::heldPart(condition.scene)->X_WP;
+    const Pose start = plan::heldPart(condition.scene)->X_WP;
     auto device = std::make_unique<mouse::MouseDevice>(preset, registration, start, pointer_);
     reach_.store(device->reach() * r.scale);
     swing_.store(device->swing());
@@ -180,12 +180,12 @@ void LiveSession::begins(session::Apparatus& apparatus, const session::SessionSe
     apparatus_ = &apparatus;
 }
 
-void LiveSession::prepares(const protocol::Condition& condition, std::int64_t trial_index, std::uint64_t seed) {
+void LiveSession::prepares(const plan::Condition& condition, std::int64_t trial_index, std::uint64_t seed) {
     const sound::SoundPlan heard = soundOf(condition, seed);
     if (options_.sound != nullptr) options_.sound->plan(heard);
     shown_ = {};
     shown_.cue_frames = 0;
-    shown_.drawn_pose = condition.shown == protocol::ShownPose::Proxy ? "proxy" : "device";
+    shown_.drawn_pose = condition.shown == plan::ShownPose::Proxy ? "proxy" : "device";
     if (heard.any()) shown_.sound = "silent";
     interview_.forget();
     takePictures();  // what is left of the attempt before
@@ -216,7 +216,7 @@ void LiveSession::show(session::SessionView view) {
 
 void LiveSession::look(session::Session& session) {
     // Here and not with the pictures: how far a held key goes must not depend on how fast they come.
-    const std::int64_t now = steadyNanoseconds();
+    const std::int64_t now = run::steadyNanoseconds();
     if (looked_ns_ > 0) pointer_.pass(1e-9 * static_cast<double>(now - looked_ns_));
     looked_ns_ = now;
     std::deque<session::Command> commands;
@@ -263,7 +263,7 @@ void LiveSession::awaitPicture() {
 
 void LiveSession::takePictures() {
     if (options_.frames == nullptr) return;
-    std::array<Picture, 64> pictures;
+    std::array<run::Picture, 64> pictures;
     while (const std::size_t count = options_.frames->takePictures(pictures))
         pictures_.insert(pictures_.end(), pictures.begin(), pictures.begin() + static_cast<std::ptrdiff_t>(count));
 }
@@ -271,7 +271,7 @@ void LiveSession::takePictures() {
 session::Presentation LiveSession::presented(std::int64_t zero_ns, std::int64_t from_ns, std::int64_t to_ns) {
     session::Presentation shown = shown_;
     takePictures();
-    const PictureTimes times = timesBetween(pictures_, zero_ns, from_ns, to_ns);
+    const run::PictureTimes times = run::timesBetween(pictures_, zero_ns, from_ns, to_ns);
     const auto& ages = times.ages_ns;
     const auto quantile = [&](double q) {  // the smallest age that so many do not exceed
         const double rank = std::max(1.0, std::ceil(q * static_cast<double>(ages.size())));
@@ -299,4 +299,4 @@ void LiveSession::over() {
     apparatus_ = nullptr;
 }
 
-}  // namespace passung::app
+}  // namespace passung::window

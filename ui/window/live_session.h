@@ -18,7 +18,7 @@
 #include "ui/sound/sound_feed.h"
 #include "ui/window/interview.h"
 
-namespace passung::app {
+namespace passung::window {
 
 /// Who moves the device in a live session.
 enum class LiveHand { Mouse, Simulated };
@@ -28,21 +28,21 @@ struct LiveOptions {
     LiveHand hand = LiveHand::Mouse;
     bool try_out = false;          // only the trials: no consent, instructions or questionnaires
     std::string participant = {};  // code; empty: the next free one of `kind`
-    protocol::ParticipantKind kind = protocol::ParticipantKind::Pilot;  // with the mouse, where there is no code
-    std::string resume = {};      // id of the session that goes on; empty: a new one
-    std::string language = "en";  // of a new session; one of protocol::languagesOf()
+    plan::ParticipantKind kind = plan::ParticipantKind::Pilot;  // with the mouse, where there is no code
+    std::string resume = {};                                    // id of the session that goes on; empty: a new one
+    std::string language = "en";                                // of a new session; one of plan::languagesOf()
     std::string experimenter = {};
     store::Station station = {};
     bool waits = false;                 // begins with the command Start
-    FrameClock* frames = nullptr;       // of the participant's window; null: nobody measures its pictures
+    run::FrameClock* frames = nullptr;  // of the participant's window; null: nobody measures its pictures
     sound::SoundFeed* sound = nullptr;  // what is to be heard; null: nothing
 };
 
 /// A study that runs in a thread of its own, for windows: they bring commands and answers, take news and ticks, and
 /// never wait for it. A person moves the device by mouse and keyboard, or a simulated one is watched, in real time.
-class LiveSession final : private Performer {
+class LiveSession final : private run::Performer {
 public:
-    LiveSession(protocol::StudyPlan plan, LiveOptions options);
+    LiveSession(plan::StudyPlan plan, LiveOptions options);
     ~LiveSession() override;  // as end()
 
     /// For between two of the session's steps, from any thread. Stop turns the motors off at once, whatever all other
@@ -65,9 +65,9 @@ public:
     double swing() const { return swing_.load(); }
 
 private:
-    protocol::ParticipantKind kind() const override;
+    plan::ParticipantKind kind() const override;
     std::unique_ptr<loop::HapticDevice> device(const simulated::DeviceParams& preset,
-                                               const protocol::Condition& condition) override;
+                                               const plan::Condition& condition) override;
     DeviceDescription describe(const simulated::DeviceParams& preset) const override;
     std::span<loop::ScreenRing* const> screens() override { return screens_; }
     void awaitPicture() override;
@@ -75,25 +75,25 @@ private:
     session::QuestionnaireSource* answers() override { return &interview_; }
     session::InstructionReader* reader() override { return &interview_; }
     void begins(session::Apparatus& apparatus, const session::SessionSetup& setup) override;
-    void prepares(const protocol::Condition& condition, std::int64_t trial_index, std::uint64_t seed) override;
+    void prepares(const plan::Condition& condition, std::int64_t trial_index, std::uint64_t seed) override;
     bool builds(double share) override;
     void look(session::Session& session) override;
     void over() override;
 
     void main();
-    Result<RunEnd> perform(const session::SessionListener& listener);
-    std::optional<bool> askConsent(const protocol::ConsentClause& clause, const std::string& text);
+    Result<run::RunEnd> perform(const session::SessionListener& listener);
+    std::optional<bool> askConsent(const plan::ConsentClause& clause, const std::string& text);
     bool takesAbort();
     void show(session::SessionView view);
     void tell(presenter::News news);
     void takePictures();
     bool isWanted();
 
-    protocol::StudyPlan plan_;
+    plan::StudyPlan plan_;
     LiveOptions options_;
-    std::unique_ptr<Builds> builds_ = openBuilds();
+    std::unique_ptr<run::Builds> builds_ = run::openBuilds();
     presenter::SceneArtist artist_{builds_.get()};
-    protocol::View look_;  // of the plan that runs, which is the stored one where a session goes on
+    plan::View look_;  // of the plan that runs, which is the stored one where a session goes on
     std::optional<session::SessionView> told_;
     bool cancelled_ = false;  // a build
     mouse::Pointer pointer_;
@@ -103,9 +103,9 @@ private:
     std::atomic<double> reach_{0.0}, swing_{0.0};
     loop::ScreenRing screen_{4096};
     std::vector<loop::ScreenRing*> screens_{&screen_};
-    session::Presentation shown_;    // of the running attempt: what its condition says
-    std::int64_t attempt_ = 0;       // its number for the pictures
-    std::vector<Picture> pictures_;  // of it
+    session::Presentation shown_;         // of the running attempt: what its condition says
+    std::int64_t attempt_ = 0;            // its number for the pictures
+    std::vector<run::Picture> pictures_;  // of it
     std::atomic<bool> ends_{false};
     std::mutex mutex_;  // of what follows
     session::Apparatus* apparatus_ = nullptr;
@@ -115,4 +115,4 @@ private:
     std::thread thread_;  // last: starts when everything else is there
 };
 
-}  // namespace passung::app
+}  // namespace passung::window

@@ -12,10 +12,10 @@
 
 namespace passung::window {
 
+using plan::ParticipantKind;
 using presenter::ParticipantEntry;
 using presenter::Participants;
 using presenter::PersonWhy;
-using protocol::ParticipantKind;
 
 namespace {
 
@@ -27,7 +27,7 @@ QString minute(const std::string& utc) { return text(utc.substr(0, 16)).replace(
 ParticipantKind kindOf(bool pilot) { return pilot ? ParticipantKind::Pilot : ParticipantKind::Real; }
 
 Result<Participants> readFrom(const std::string& protocol, const std::string& database) {
-    const auto plan = app::readProtocol(protocol);
+    const auto plan = run::readProtocol(protocol);
     if (!plan) return plan.errors();
     if (!std::filesystem::exists(database)) return presenter::noParticipants(*plan);
     const auto reader = store::StoreReader::open(database);
@@ -133,19 +133,18 @@ void ParticipantsModel::tell(const Result<Done>& came, const QString& done) {
 void ParticipantsModel::act(const Work& work, const QString& done) {
     const presenter::StudyCard* card = studies_.card();
     if (card == nullptr || sessionRuns()) return;
-    app::ParticipantAccess access{.database = studies_.database(), .by = by(), .create = true};
+    presenter::ParticipantAccess access{.database = studies_.database(), .by = by(), .create = true};
     worker_.run(
         [work, access, protocol = card->path]() -> Result<Done> {
-            const auto plan = app::readProtocol(protocol);
+            const auto plan = run::readProtocol(protocol);
             if (!plan) return plan.errors();
             std::error_code problem;  // shows when the database is opened
             std::filesystem::create_directories(std::filesystem::path(access.database).parent_path(), problem);
-            return app::withParticipants(access,
-                                         [&](store::Store& store, store::ParticipantRecords& desk) -> Result<Done> {
-                                             if (const auto imported = store.importProtocol(*plan); !imported)
-                                                 return imported.errors();
-                                             return work(store, desk, *plan);
-                                         });
+            return presenter::withParticipants(
+                access, [&](store::Store& store, store::ParticipantRecords& desk) -> Result<Done> {
+                    if (const auto imported = store.importProtocol(*plan); !imported) return imported.errors();
+                    return work(store, desk, *plan);
+                });
         },
         [this, done](const Result<Done>& came) {
             tell(came, done);
@@ -221,8 +220,8 @@ void ParticipantsModel::enrol(const QString& code, bool pilot) {
     selected_ = code.toStdString();
     act(
         [code = selected_, kind = kindOf(pilot)](store::Store& store, store::ParticipantRecords& desk,
-                                                 const protocol::StudyPlan&) -> Result<Done> {
-            const auto enrolled = app::enrolAt(store, desk, kind, code);
+                                                 const plan::StudyPlan&) -> Result<Done> {
+            const auto enrolled = presenter::enrolAt(store, desk, kind, code);
             if (!enrolled) return enrolled.errors();
             return Done{};
         },
@@ -235,18 +234,18 @@ bool ParticipantsModel::start(bool resume, const QString& language) {
     const PersonWhy why = resume ? presenter::whyNotResume(*participants_, *person, sessionRuns())
                                  : presenter::whyNotStart(*participants_, *person, sessionRuns());
     if (why != PersonWhy::Possible) return false;
-    const auto plan = app::readProtocol(studies_.card()->path);
+    const auto plan = run::readProtocol(studies_.card()->path);
     if (!plan) {
         tell(plan.errors(), {});
         emit changed();
         return false;
     }
-    app::LiveOptions options;
+    window::LiveOptions options;
     options.database = studies_.database();
     options.participant = person->code;
     options.kind = person->kind;
     if (resume) options.resume = person->resumable()->id;
-    const auto languages = protocol::languagesOf(*plan);
+    const auto languages = plan::languagesOf(*plan);
     const bool spoken = std::find(languages.begin(), languages.end(), language.toStdString()) != languages.end();
     options.language = spoken ? language.toStdString() : languages.front();
     options.experimenter = by();
@@ -265,7 +264,7 @@ void ParticipantsModel::decide(int clause, const QString& decision) {
                                            : store::Consent::Withdrawn;
     act(
         [code = person->code, name = asked.clause, language = asked.texts.front().first, answer](
-            store::Store&, store::ParticipantRecords& desk, const protocol::StudyPlan&) -> Result<Done> {
+            store::Store&, store::ParticipantRecords& desk, const plan::StudyPlan&) -> Result<Done> {
             const auto decided = desk.decide(code, {name}, language, answer);
             if (!decided) return decided.errors();
             return Done{};
@@ -284,7 +283,7 @@ void ParticipantsModel::readmit(const QString& reason) {
     if (person_() == nullptr || !whyNotReadmit(reason).isEmpty()) return;
     act(
         [code = selected_, why = reason.trimmed().toStdString()](store::Store&, store::ParticipantRecords& desk,
-                                                                 const protocol::StudyPlan&) -> Result<Done> {
+                                                                 const plan::StudyPlan&) -> Result<Done> {
             const auto placed = desk.readmit(code, why);
             if (!placed) return placed.errors();
             return Done{};
@@ -338,10 +337,10 @@ QString ParticipantsModel::whyNotConfirm(const QString& typed) const {
 void ParticipantsModel::confirmLeaving(const QString& typed, bool backupToo) {
     const auto leaving = dialog_.confirm(typed.trimmed().toStdString(), sessionRuns(), backupToo);
     if (!leaving) return;
-    const app::ParticipantAccess access{.database = studies_.database(), .by = by()};
+    const presenter::ParticipantAccess access{.database = studies_.database(), .by = by()};
     worker_.run(
-        [access, what = *leaving] { return app::leave(access, what); },
-        [this, what = *leaving](const Result<app::Left>& left) {
+        [access, what = *leaving] { return presenter::leave(access, what); },
+        [this, what = *leaving](const Result<presenter::Left>& left) {
             tell(left ? Result<Done>(Done{}) : Result<Done>(left.errors()),
                  said(QT_TRANSLATE_NOOP("participants", "%1 has left the study.")).arg(text(what.code)));
             if (left && left->backup)

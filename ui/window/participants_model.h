@@ -82,7 +82,7 @@ private:
     bool sessionRuns() const { return desk_.run().view().isRunning(); }
     const presenter::ParticipantEntry* person_() const;
     std::string by() const;
-    using Work = std::function<Result<Done>(store::Store&, store::ParticipantRecords&, const protocol::StudyPlan&)>;
+    using Work = std::function<Result<Done>(store::Store&, store::ParticipantRecords&, const plan::StudyPlan&)>;
     void act(const Work& work, const QString& done);
     void tell(const Result<Done>& came, const QString& done);
 

@@ -5,13 +5,13 @@
 
 namespace passung::window {
 
+using plan::ParticipantKind;
 using presenter::CodeWhy;
 using presenter::Decision;
 using presenter::PersonWhy;
 using presenter::Scope;
 using presenter::SessionEnd;
 using presenter::Standing;
-using protocol::ParticipantKind;
 
 namespace {
 

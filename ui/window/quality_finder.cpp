@@ -19,7 +19,7 @@ void QualityFinder::attach(QQuickWindow* window, QQuickItem* scene) {
     connect(  // stamped by the thread that draws, looked at in this one
         window, &QQuickWindow::frameSwapped, this,
         [this] {
-            const std::int64_t now_ns = app::steadyNanoseconds();
+            const std::int64_t now_ns = run::steadyNanoseconds();
             QMetaObject::invokeMethod(
                 this, [this, now_ns] { took(now_ns); }, Qt::QueuedConnection);
         },

@@ -24,7 +24,7 @@ Result<Read> readFrom(const std::string& database, const std::string& meshes, st
     auto records = reader->records(id);
     if (!records) return records.errors();
     if (records->empty()) return Error{.message = "no tick of this attempt was recorded", .file = database};
-    app::StoredPlans plans(*reader, meshes);
+    run::StoredPlans plans(*reader, meshes);
     const auto plan = plans.plan(attempt->protocol_sha256);
     if (!plan) return plan.errors();
     const auto& conditions = (*plan)->conditions;
@@ -89,7 +89,7 @@ void ReplayModel::close() {
     emit opened();
 }
 
-bool ReplayModel::drawsProxy() const { return playback_ && playback_->scene()->shown == protocol::ShownPose::Proxy; }
+bool ReplayModel::drawsProxy() const { return playback_ && playback_->scene()->shown == plan::ShownPose::Proxy; }
 
 void ReplayModel::look() { SceneModel::show(presenter::playbackView(*playback_->scene(), playback_->record())); }
 

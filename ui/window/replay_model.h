@@ -65,7 +65,7 @@ private:
     void look();
 
     std::unique_ptr<presenter::Playback> playback_;
-    std::unique_ptr<app::Builds> builds_ = app::openBuilds();  // both of the worker's thread alone
+    std::unique_ptr<run::Builds> builds_ = run::openBuilds();  // both of the worker's thread alone
     presenter::SceneArtist artist_{builds_.get()};
     QString title_, told_;
     bool open_ = false;

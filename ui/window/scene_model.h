@@ -65,7 +65,7 @@ public:
     QQuaternion arrowRotation() const;
     double arrowLength() const;
 
-    bool dark() const { return look_.theme == protocol::Theme::Dark; }
+    bool dark() const { return look_.theme == plan::Theme::Dark; }
     bool ground() const { return look_.ground; }
     double light() const { return look_.light; }
     double fillLight() const { return look_.fill_light; }
@@ -78,7 +78,7 @@ signals:
 
 private:
     presenter::ParticipantView view_;
-    protocol::View look_;
+    plan::View look_;
     bool software_ = false, heavy_ = false;
     QVariantList parts_, ghosts_, marks_;
     QVector3D ground_position_, camera_position_;

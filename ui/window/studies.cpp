@@ -51,7 +51,7 @@ Studies::Studies(Desk& desk, const std::string& folder, std::string tryouts)
 void Studies::reload() {
     cards_.clear();
     for (const std::string& file : presenter::studyFilesBelow(folder_))
-        cards_.push_back(presenter::cardOf(file, app::readProtocol(file), app::knownDevices()));
+        cards_.push_back(presenter::cardOf(file, run::readProtocol(file), run::knownDevices()));
     if (chosen_ >= static_cast<int>(cards_.size())) chosen_ = 0;
     emit changed();
     emit chosenChanged();
@@ -76,7 +76,9 @@ const presenter::StudyCard* Studies::card() const {
     return cards_.empty() ? nullptr : &cards_[static_cast<std::size_t>(chosen_)];
 }
 
-std::string Studies::database() const { return card() ? app::studyDatabase(tryouts_, card()->name) : std::string(); }
+std::string Studies::database() const {
+    return card() ? presenter::studyDatabase(tryouts_, card()->name) : std::string();
+}
 std::string Studies::tryOuts() const { return card() ? tryouts_ + "/" + card()->name + ".db" : std::string(); }
 
 QVariantList Studies::cards() const {
@@ -87,8 +89,9 @@ QVariantList Studies::cards() const {
 
 void Studies::tryOut(int card, bool simulated, const QString& language) {
     const auto& path = cards_.at(static_cast<std::size_t>(card)).path;
-    const auto plan = app::readProtocol(path);
-    if (plan) desk_.tryOut(*plan, simulated ? app::LiveHand::Simulated : app::LiveHand::Mouse, language.toStdString());
+    const auto plan = run::readProtocol(path);
+    if (plan)
+        desk_.tryOut(*plan, simulated ? window::LiveHand::Simulated : window::LiveHand::Mouse, language.toStdString());
 }
 
 }  // namespace passung::window

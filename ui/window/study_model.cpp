@@ -28,12 +28,12 @@ QStringList texts(const std::vector<std::string>& all) {
     return list;
 }
 
-std::vector<ConditionWall> wallsOf(const protocol::StudyPlan& plan) {
+std::vector<ConditionWall> wallsOf(const plan::StudyPlan& plan) {
     std::vector<ConditionWall> walls;
-    for (std::size_t i = 0; i < protocol::plannedConditions(plan); ++i) {
-        const protocol::Condition& condition = plan.conditions[i];
-        const DeviceDescription* device = app::deviceNamed(condition.device, app::knownDevices());
-        if (device == nullptr || !condition.scene.display_wrench || condition.timed_by != protocol::TimedBy::Program)
+    for (std::size_t i = 0; i < plan::plannedConditions(plan); ++i) {
+        const plan::Condition& condition = plan.conditions[i];
+        const DeviceDescription* device = run::deviceNamed(condition.device, run::knownDevices());
+        if (device == nullptr || !condition.scene.display_wrench || condition.timed_by != plan::TimedBy::Program)
             continue;
         ConditionWall wall;
         wall.condition = condition.name;
@@ -41,7 +41,7 @@ std::vector<ConditionWall> wallsOf(const protocol::StudyPlan& plan) {
         wall.displayed = condition.scene.contact.stiffness;
         wall.most = device->stable_stiffness_N_per_m;
         if (device->mechanism) {
-            const app::SceneWall felt = app::translationWall(*device, condition.scene);
+            const run::SceneWall felt = run::translationWall(*device, condition.scene);
             wall.displayed = felt.stiffness;
             wall.bounds = felt.bounds;
             wall.modelled = true;
@@ -52,15 +52,15 @@ std::vector<ConditionWall> wallsOf(const protocol::StudyPlan& plan) {
 }
 
 Result<std::vector<StageTable>> measure(const std::string& protocol) {
-    const auto plan = app::readProtocol(protocol);
+    const auto plan = run::readProtocol(protocol);
     if (!plan) return plan.errors();
-    const auto store = app::openBuilds();
-    model::PartCache cache(store.get());
+    const auto store = run::openBuilds();
+    scene::PartCache cache(store.get());
     std::vector<StageTable> tables;
-    for (const auto& conditions : app::costGroups(*plan)) {
-        const auto scene = model::buildScene(conditions.front()->scene, cache);
+    for (const auto& conditions : run::costGroups(*plan)) {
+        const auto scene = scene::buildScene(conditions.front()->scene, cache);
         if (!scene) return scene.errors();
-        StageTable table{{}, app::measureTick(*scene).stages};
+        StageTable table{{}, run::measureTick(*scene).stages};
         for (const auto* condition : conditions) table.conditions.push_back(condition->name);
         tables.push_back(std::move(table));
     }
@@ -107,14 +107,14 @@ StudyModel::StudyModel(Desk& desk, Studies& studies) : desk_(desk), studies_(stu
 
 Result<std::shared_ptr<StudyModel::Facts>> StudyModel::findOut(const std::string& protocol,
                                                                const std::string& database) {
-    const auto plan = app::readProtocol(protocol);
+    const auto plan = run::readProtocol(protocol);
     if (!plan) return plan.errors();
     auto details = presenter::detailsOf(*plan, plan->participants);
     if (!details) return details.errors();
     auto facts = std::make_shared<Facts>();
     facts->details = *std::move(details);
     facts->walls = wallsOf(*plan);
-    facts->asks_for_accuracy = app::asksForAccuracy(*plan);
+    facts->asks_for_accuracy = run::asksForAccuracy(*plan);
     if (!std::filesystem::exists(database)) return facts;
     const auto reader = store::StoreReader::open(database);
     if (!reader) return reader.errors();
@@ -205,7 +205,7 @@ QVariantMap StudyModel::stages() const {
         if (!mine) break;
         QVariantList rows;
         double sum = 0.0;
-        for (const app::StageCost& stage : table.stages) {
+        for (const run::StageCost& stage : table.stages) {
             rows.append(QVariantMap{{"name", stageWord(stage.name)},
                                     {"reason", stageWord(stage.reason)},
                                     {"median", stage.median_us},
@@ -277,8 +277,8 @@ QVariantMap StudyModel::loop() const {
     QVariantMap map{{"checking", checking_},
                     {"known", loop_.has_value()},
                     {"tone", !loop_                                               ? "rest"
-                             : loop_->fitness == app::LoopFitness::Studies        ? "good"
-                             : loop_->fitness == app::LoopFitness::StudiesIfAlone ? "wait"
+                             : loop_->fitness == run::LoopFitness::Studies        ? "good"
+                             : loop_->fitness == run::LoopFitness::StudiesIfAlone ? "wait"
                                                                                   : "bad"},
                     {"why", runs                      ? whyNotMeasure(WhyNotMeasure::SessionRuns)
                             : checking_ || measuring_ ? whyNotMeasure(WhyNotMeasure::Measures)
@@ -298,8 +298,8 @@ void StudyModel::checkLoop() {
     if (!loop()["why"].toString().isEmpty()) return;
     constexpr double kSeconds = 10.0;
     checking_ = true;
-    measurer_.run([] { return Result<app::LoopCheck>(app::checkLoop(kSeconds)); },
-                  [this](Result<app::LoopCheck> check) {
+    measurer_.run([] { return Result<run::LoopCheck>(run::checkLoop(kSeconds)); },
+                  [this](Result<run::LoopCheck> check) {
                       checking_ = false;
                       if (check) loop_ = *std::move(check);
                       emit loopChanged();

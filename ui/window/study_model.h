@@ -21,14 +21,14 @@ namespace passung::window {
 struct ConditionWall {
     std::string condition, device;
     double displayed = 0.0, most = 0.0;  // stiffness; the device's "max", 0: not known [N/m]
-    app::WallBounds bounds;
+    run::WallBounds bounds;
     bool modelled = false;  // the mechanism is known
 };
 
 /// Stages that some conditions share.
 struct StageTable {
     std::vector<std::string> conditions;
-    std::vector<app::StageCost> stages;
+    std::vector<run::StageCost> stages;
 };
 
 /// Everything that takes a moment to find out about the chosen study, for QML; found out in a thread of its own.
@@ -86,7 +86,7 @@ private:
     std::vector<StageTable> stages_;
     QString stages_of_;  // protocol that they are of
     bool measuring_ = false, checking_ = false;
-    std::optional<app::LoopCheck> loop_;
+    std::optional<run::LoopCheck> loop_;
     QString source_file_, source_problem_;
     QStringList source_lines_;
     int source_line_ = 0;

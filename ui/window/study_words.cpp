@@ -12,17 +12,17 @@ namespace {
 
 QString said(const char* text) { return QCoreApplication::translate("study", text); }
 
-QString orderWord(protocol::BlockOrder order) {
+QString orderWord(plan::BlockOrder order) {
     switch (order) {
-        case protocol::BlockOrder::Williams:
+        case plan::BlockOrder::Williams:
             return said(QT_TRANSLATE_NOOP("study", "Williams square"));
-        case protocol::BlockOrder::Permutations:
+        case plan::BlockOrder::Permutations:
             return said(QT_TRANSLATE_NOOP("study", "all orders"));
-        case protocol::BlockOrder::Random:
+        case plan::BlockOrder::Random:
             return said(QT_TRANSLATE_NOOP("study", "each pass in random order"));
-        case protocol::BlockOrder::Shuffled:
+        case plan::BlockOrder::Shuffled:
             return said(QT_TRANSLATE_NOOP("study", "all trials shuffled"));
-        case protocol::BlockOrder::Listed:
+        case plan::BlockOrder::Listed:
             break;
     }
     return said(QT_TRANSLATE_NOOP("study", "as listed"));
@@ -95,7 +95,7 @@ QString orderWord(protocol::BlockOrder order) {
 }  // namespace
 
 QString blockWords(const presenter::BlockLine& block, std::size_t sessions) {
-    QStringList words{phaseWord(protocol::phaseName(block.phase))};
+    QStringList words{phaseWord(plan::phaseName(block.phase))};
     words << (block.adaptive ? said(QT_TRANSLATE_NOOP("study", "staircase")) : orderWord(block.order));
     if (!block.adaptive) words << said(QT_TRANSLATE_NOOP("study", "passes: %1")).arg(block.repetitions);
     if (sessions > 1) words << said(QT_TRANSLATE_NOOP("study", "session %1")).arg(block.session);
@@ -136,16 +136,16 @@ QString pickLine(const presenter::AccuracyPoint& point, double budget_us) {
         .arg(point.error_um, 0, 'f', 1);
 }
 
-QString loopVerdict(app::LoopFitness fitness) {
+QString loopVerdict(run::LoopFitness fitness) {
     switch (fitness) {
-        case app::LoopFitness::Studies:
+        case run::LoopFitness::Studies:
             return said(QT_TRANSLATE_NOOP("study", "Fit for studies."));
-        case app::LoopFitness::StudiesIfAlone:
+        case run::LoopFitness::StudiesIfAlone:
             return said(
                 QT_TRANSLATE_NOOP("study", "Good now, but without real-time scheduling another program can spoil it."));
-        case app::LoopFitness::TryOuts:
+        case run::LoopFitness::TryOuts:
             return said(QT_TRANSLATE_NOOP("study", "Fit for trying out, not for studies."));
-        case app::LoopFitness::Nothing:
+        case run::LoopFitness::Nothing:
             break;
     }
     return said(QT_TRANSLATE_NOOP(

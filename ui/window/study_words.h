@@ -16,7 +16,7 @@ QString durationLine(const std::vector<double>& minutes);
 QString stageWord(const std::string& text);
 QString accuracyHint(bool asked_for);
 QString pickLine(const presenter::AccuracyPoint& point, double budget_us);
-QString loopVerdict(app::LoopFitness fitness);
+QString loopVerdict(run::LoopFitness fitness);
 
 enum class WhyNotMeasure { NotSound, SessionRuns, Measures };
 QString whyNotMeasure(WhyNotMeasure why);

@@ -1,6 +1,6 @@
 #include "study/run/files/builds.h"
 
-namespace passung::app {
+namespace passung::run {
 
 std::optional<std::string> Builds::load(const std::string& name) { return kept_ ? kept_->load(name) : std::nullopt; }
 
@@ -8,8 +8,8 @@ void Builds::keep(const std::string& name, std::string_view bytes) {
     if (kept_) kept_->keep(name, bytes);
 }
 
-Result<model::ImportedMesh> Builds::importMesh(const std::string& path, double metres_per_unit) {
-    if (!program_) return model::importMesh(path, metres_per_unit);
+Result<importer::ImportedMesh> Builds::importMesh(const std::string& path, double metres_per_unit) {
+    if (!program_) return importer::importMesh(path, metres_per_unit);
     return importElsewhere(*program_, path, metres_per_unit, limits_);
 }
 
@@ -17,4 +17,4 @@ std::unique_ptr<Builds> openBuilds(const ImportLimits& limits) {
     return std::make_unique<Builds>(openDiskStore(), limits);
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -1,13 +1,13 @@
 #include "study/run/files/built_scenes.h"
 
-namespace passung::app {
+namespace passung::run {
 
-Result<BuiltScenes> buildScenes(const std::vector<session::RenderedScene>& rendered, model::PartCache& parts) {
+Result<BuiltScenes> buildScenes(const std::vector<session::RenderedScene>& rendered, scene::PartCache& parts) {
     BuiltScenes built;
     built.scenes.reserve(rendered.size());
     built.models.reserve(rendered.size());
     for (const session::RenderedScene& scene : rendered) {
-        auto made = model::buildScene(scene.spec, parts);
+        auto made = scene::buildScene(scene.spec, parts);
         if (!made) return made.errors();
         built.scenes.push_back(std::move(*made));
         built.models.push_back(tick::makeModel(built.scenes.back()));
@@ -16,4 +16,4 @@ Result<BuiltScenes> buildScenes(const std::vector<session::RenderedScene>& rende
     return built;
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

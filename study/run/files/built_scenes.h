@@ -6,12 +6,12 @@
 #include "core/tick/scene_sequence.h"
 #include "study/session/rendered_scenes.h"
 
-namespace passung::app {
+namespace passung::run {
 
 /// The scenes of an attempt, built, with their tick models. Models borrow from scenes, turns from models: moving it is
 /// fine, copying is not.
 struct BuiltScenes {
-    std::vector<model::Scene> scenes;
+    std::vector<scene::Scene> scenes;
     std::vector<tick::TickModel> models;
     std::vector<tick::SceneTurn> turns;
 
@@ -20,6 +20,6 @@ struct BuiltScenes {
     BuiltScenes& operator=(BuiltScenes&&) = default;
 };
 
-Result<BuiltScenes> buildScenes(const std::vector<session::RenderedScene>& rendered, model::PartCache& parts);
+Result<BuiltScenes> buildScenes(const std::vector<session::RenderedScene>& rendered, scene::PartCache& parts);
 
-}  // namespace passung::app
+}  // namespace passung::run

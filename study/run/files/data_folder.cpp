@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-namespace passung::app {
+namespace passung::run {
 
 std::filesystem::path dataFolder() {
     const auto variable = [](const char* name) {
@@ -14,4 +14,4 @@ std::filesystem::path dataFolder() {
     return {};
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

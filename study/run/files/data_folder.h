@@ -2,10 +2,10 @@
 
 #include <filesystem>
 
-namespace passung::app {
+namespace passung::run {
 
 /// Where this user's data lies: $XDG_DATA_HOME/passung, or ~/.local/share/passung; empty if neither variable names a
 /// folder.
 std::filesystem::path dataFolder();
 
-}  // namespace passung::app
+}  // namespace passung::run

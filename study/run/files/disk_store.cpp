@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 
-namespace passung::app {
+namespace passung::run {
 
 namespace {
 
@@ -71,4 +71,4 @@ std::unique_ptr<DiskStore> openDiskStore() {
     return nullptr;
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -5,11 +5,11 @@
 
 #include "core/scene/build_store.h"
 
-namespace passung::app {
+namespace passung::run {
 
 /// Keeps builds in a folder, a file each. A file is written under a name of its own, synced, then renamed: a killed
 /// program or a full disk leaves no half file under a name that is read. Where nothing can be written, nothing is kept.
-class DiskStore : public model::BuildStore {
+class DiskStore : public scene::BuildStore {
 public:
     explicit DiskStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
     std::optional<std::string> load(const std::string& name) override;
@@ -23,4 +23,4 @@ private:
 /// PASSUNG_NO_CACHE is set and not empty.
 std::unique_ptr<DiskStore> openDiskStore();
 
-}  // namespace passung::app
+}  // namespace passung::run

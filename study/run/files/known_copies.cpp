@@ -11,7 +11,7 @@
 #include "study/store/schema/backup.h"
 #include "study/store/schema/database_file.h"
 
-namespace passung::app {
+namespace passung::run {
 
 namespace {
 
@@ -57,4 +57,4 @@ std::vector<std::string> knownCopies(const std::string& database, const std::str
     return {copies.begin(), copies.end()};
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -9,7 +9,7 @@
 
 #include "study/run/files/data_folder.h"
 
-namespace passung::app {
+namespace passung::run {
 
 namespace {
 
@@ -47,4 +47,4 @@ std::vector<std::string> knownExports(const std::string& database) {
     return {folders.begin(), folders.end()};
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

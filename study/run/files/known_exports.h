@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace passung::app {
+namespace passung::run {
 
 // Exports that this user made, in the file `exports` of dataFolder(): the database stays as it is, wherever it lies.
 // Other users' exports nobody knows.
@@ -15,4 +15,4 @@ bool rememberExport(const std::string& database, const std::string& folder);
 /// Sorted; folders that are gone are left out.
 std::vector<std::string> knownExports(const std::string& database);
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -6,7 +6,7 @@
 #include "study/measures/measures.h"
 #include "study/run/machine/calibration.h"
 
-namespace passung::app {
+namespace passung::run {
 
 const std::vector<DeviceDescription>& presetDevices() {
     static const std::vector<DeviceDescription> devices = [] {
@@ -37,4 +37,4 @@ const std::vector<std::string>& knownMeasures() {
     return names;
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

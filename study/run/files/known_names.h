@@ -5,7 +5,7 @@
 
 #include "core/base/device_description.h"
 
-namespace passung::app {
+namespace passung::run {
 
 /// Every device that a protocol may name, as its maker or its model describes it.
 const std::vector<DeviceDescription>& presetDevices();
@@ -17,4 +17,4 @@ const std::vector<DeviceDescription>& knownDevices();
 /// Names of all measures.
 const std::vector<std::string>& knownMeasures();
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -17,7 +17,7 @@
 #include "core/import/mesh_bytes.h"
 #include "study/run/import_exit.h"
 
-namespace passung::app {
+namespace passung::run {
 
 namespace {
 
@@ -122,8 +122,8 @@ std::optional<fs::path> importProgram() {
     return program;
 }
 
-Result<model::ImportedMesh> importElsewhere(const fs::path& program, const std::string& path, double metres_per_unit,
-                                            const ImportLimits& limits) {
+Result<importer::ImportedMesh> importElsewhere(const fs::path& program, const std::string& path, double metres_per_unit,
+                                               const ImportLimits& limits) {
     std::error_code none;
     const bool regular = fs::is_regular_file(path, none);
     const std::uintmax_t size = regular ? fs::file_size(path, none) : 0;
@@ -135,8 +135,8 @@ Result<model::ImportedMesh> importElsewhere(const fs::path& program, const std::
     if (!ended) return Error{.message = "cannot be read: " + program.string() + " does not start", .file = path};
     const bool answered = !ended->too_long && WIFEXITED(ended->status) && WEXITSTATUS(ended->status) == 0;
     if (!answered) return Error{.message = whatEndedIt(*ended, memory, limits), .file = path};
-    if (auto imported = model::importedFrom(ended->answer)) return std::move(*imported);
+    if (auto imported = importer::importedFrom(ended->answer)) return std::move(*imported);
     return Error{.message = "cannot be read: its reader gave no sound answer", .file = path};
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -8,7 +8,7 @@
 #include "core/base/result.h"
 #include "core/import/mesh_import.h"
 
-namespace passung::app {
+namespace passung::run {
 
 /// What reading one mesh file may take.
 struct ImportLimits {
@@ -19,9 +19,9 @@ struct ImportLimits {
 /// The program passung-import, which stands beside this one; nothing if there is none (a program of somebody else).
 std::optional<std::filesystem::path> importProgram();
 
-/// model::importMesh() in a program of its own, within the limits: whatever the file does to it, this one gets a mesh
-/// or one error. The same mesh and report, bit for bit.
-Result<model::ImportedMesh> importElsewhere(const std::filesystem::path& program, const std::string& path,
-                                            double metres_per_unit, const ImportLimits& limits);
+/// importer::importMesh() in a program of its own, within the limits: whatever the file does to it, this one gets a
+/// mesh or one error. The same mesh and report, bit for bit.
+Result<importer::ImportedMesh> importElsewhere(const std::filesystem::path& program, const std::string& path,
+                                               double metres_per_unit, const ImportLimits& limits);
 
-}  // namespace passung::app
+}  // namespace passung::run

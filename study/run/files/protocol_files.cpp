@@ -3,9 +3,9 @@
 #include "study/run/files/builds.h"
 #include "study/run/files/known_names.h"
 
-namespace passung::app {
+namespace passung::run {
 
-Result<protocol::StudyPlan> readProtocol(const std::string& path, const ImportLimits& limits) {
+Result<plan::StudyPlan> readProtocol(const std::string& path, const ImportLimits& limits) {
     Builds builds(nullptr, limits);
     return protocol::readProtocol(path, knownDevices(), knownMeasures(), &builds);
 }
@@ -15,8 +15,8 @@ protocol::Examined examineProtocol(const std::string& path, const ImportLimits& 
     return protocol::examineProtocol(path, knownDevices(), knownMeasures(), &builds);
 }
 
-Result<protocol::StudyPlan> readBegunProtocol(const std::string& text, const std::string& path,
-                                              std::span<const DeviceDescription> devices, const ImportLimits& limits) {
+Result<plan::StudyPlan> readBegunProtocol(const std::string& text, const std::string& path,
+                                          std::span<const DeviceDescription> devices, const ImportLimits& limits) {
     Builds builds(nullptr, limits);
     return protocol::readBegunProtocol(text, path, devices, knownMeasures(), &builds);
 }
@@ -27,4 +27,4 @@ Result<protocol::SceneOnDevice> readSceneOnDevice(const std::string& text, const
     return protocol::readSceneOnDevice(text, path, knownDevices(), &builds);
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

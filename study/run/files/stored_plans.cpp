@@ -7,7 +7,7 @@
 #include "core/base/regular_file.h"
 #include "study/run/machine/calibration.h"
 
-namespace passung::app {
+namespace passung::run {
 
 StoredPlans::StoredPlans(const store::StoreReader& reader, const std::string& meshes, const ImportLimits& limits)
     : reader_(reader), limits_(limits) {
@@ -19,7 +19,7 @@ StoredPlans::StoredPlans(const store::StoreReader& reader, const std::string& me
     }
 }
 
-Result<protocol::FrozenPlan> StoredPlans::plan(const std::string& sha256) {
+Result<plan::FrozenPlan> StoredPlans::plan(const std::string& sha256) {
     if (const auto known = plans_.find(sha256); known != plans_.end()) return known->second;
     const auto draft = this->draft(sha256);
     if (!draft) return draft.errors();
@@ -30,7 +30,7 @@ Result<protocol::FrozenPlan> StoredPlans::plan(const std::string& sha256) {
     return plan;
 }
 
-Result<protocol::StudyPlan> StoredPlans::draft(const std::string& sha256) const {
+Result<plan::StudyPlan> StoredPlans::draft(const std::string& sha256) const {
     const auto rows = reader_.protocols();
     if (!rows) return rows.errors();
     for (const auto& row : *rows)
@@ -47,7 +47,7 @@ Result<KeptPlan> StoredPlans::kept(const std::string& sha256) const {
 }
 
 /// The stored protocol with the mesh files of the first folder that has them all.
-Result<protocol::StudyPlan> StoredPlans::read(const store::ProtocolRow& row) const {
+Result<plan::StudyPlan> StoredPlans::read(const store::ProtocolRow& row) const {
     const auto stable = reader_.stableStiffness(row.sha256);
     if (!stable) return stable.errors();
     const auto devices = devicesAsKept(*stable);
@@ -68,11 +68,11 @@ Result<protocol::StudyPlan> StoredPlans::read(const store::ProtocolRow& row) con
 }
 
 /// A replay with another geometry would prove nothing.
-Result<Done> StoredPlans::compareMeshes(const std::string& sha256, const protocol::StudyPlan& plan) const {
+Result<Done> StoredPlans::compareMeshes(const std::string& sha256, const plan::StudyPlan& plan) const {
     const auto rows = reader_.meshes();
     if (!rows) return rows.errors();
     Errors errors;
-    for (const protocol::NamedMesh& mesh : plan.meshes) {
+    for (const plan::NamedMesh& mesh : plan.meshes) {
         const auto stored = std::find_if(rows->begin(), rows->end(), [&](const store::MeshRow& row) {
             return row.protocol_sha256 == sha256 && row.mesh == mesh.name;
         });
@@ -92,4 +92,4 @@ Result<Done> StoredPlans::compareMeshes(const std::string& sha256, const protoco
     return Done{};
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -10,7 +10,7 @@
 #include "study/run/freeze.h"
 #include "study/store/read/store_reader.h"
 
-namespace passung::app {
+namespace passung::run {
 
 /// The protocols of a database as it runs them; each is read once.
 class StoredPlans {
@@ -19,22 +19,22 @@ public:
     StoredPlans(const store::StoreReader& reader, const std::string& meshes, const ImportLimits& limits = {});
 
     /// Its questionnaires are not opened. Errors: as of draft() and freeze().
-    Result<protocol::FrozenPlan> plan(const std::string& sha256);
+    Result<plan::FrozenPlan> plan(const std::string& sha256);
 
     /// The stored text, read with the stable stiffness that was kept. Errors: the protocol is not there, or a mesh file
     /// of it is missing or another one than at the time.
-    Result<protocol::StudyPlan> draft(const std::string& sha256) const;
+    Result<plan::StudyPlan> draft(const std::string& sha256) const;
     /// What is kept for it.
     Result<KeptPlan> kept(const std::string& sha256) const;
 
 private:
-    Result<protocol::StudyPlan> read(const store::ProtocolRow& row) const;
-    Result<Done> compareMeshes(const std::string& sha256, const protocol::StudyPlan& plan) const;
+    Result<plan::StudyPlan> read(const store::ProtocolRow& row) const;
+    Result<Done> compareMeshes(const std::string& sha256, const plan::StudyPlan& plan) const;
 
     const store::StoreReader& reader_;
     std::vector<std::filesystem::path> folders_;
     ImportLimits limits_;
-    std::map<std::string, protocol::FrozenPlan> plans_;
+    std::map<std::string, plan::FrozenPlan> plans_;
 };
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-namespace passung::app {
+namespace passung::run {
 
 std::int64_t unixMilliseconds() {
     const auto now = std::chrono::system_clock::now().time_since_epoch();
@@ -16,4 +16,4 @@ store::OpenOptions openOptionsNow(std::int64_t unix_ms) {
     return options;
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

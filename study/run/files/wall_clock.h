@@ -4,7 +4,7 @@
 
 #include "study/store/write/store.h"
 
-namespace passung::app {
+namespace passung::run {
 
 /// UTC by this machine's clock, in milliseconds since 1970.
 std::int64_t unixMilliseconds();
@@ -12,4 +12,4 @@ std::int64_t unixMilliseconds();
 /// How this program opens a study's database for writing at this time.
 store::OpenOptions openOptionsNow(std::int64_t unix_ms = unixMilliseconds());
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace passung::app {
+namespace passung::run {
 
 void WatchedStore::begin(std::size_t pieces, Watch watch) {
     pieces_ = pieces;
@@ -26,8 +26,8 @@ void WatchedStore::keep(const std::string& name, std::string_view bytes) {
     tell();
 }
 
-Result<model::ImportedMesh> WatchedStore::importMesh(const std::string& path, double metres_per_unit) {
-    return model::importMeshFile(model::MeshFile{path, metres_per_unit}, store_);
+Result<importer::ImportedMesh> WatchedStore::importMesh(const std::string& path, double metres_per_unit) {
+    return scene::importMeshFile(scene::MeshFile{path, metres_per_unit}, store_);
 }
 
 void WatchedStore::tell() const {
@@ -35,4 +35,4 @@ void WatchedStore::tell() const {
     if (watch_ && !watch_(std::min(1.0, static_cast<double>(done_) / pieces))) throw BuildCancelled();
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

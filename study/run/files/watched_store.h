@@ -7,7 +7,7 @@
 #include "core/scene/build_store.h"
 #include "core/scene/mesh_source.h"
 
-namespace passung::app {
+namespace passung::run {
 
 /// A build was given up between two of its pieces.
 struct BuildCancelled : std::runtime_error {
@@ -16,12 +16,12 @@ struct BuildCancelled : std::runtime_error {
 
 /// Another store, or none, through which somebody watches a build: its pieces are the fields and shells that are asked
 /// for. Those that are there take no time and are not told of.
-class WatchedStore final : public model::BuildStore, public model::MeshSource {
+class WatchedStore final : public scene::BuildStore, public scene::MeshSource {
 public:
     /// What is known of a build: the share of its pieces that are done. False: it is to be given up.
     using Watch = std::function<bool(double share)>;
 
-    explicit WatchedStore(model::BuildStore* store) : store_(store) {}
+    explicit WatchedStore(scene::BuildStore* store) : store_(store) {}
 
     /// A build of at most so many pieces begins.
     void begin(std::size_t pieces, Watch watch);
@@ -29,14 +29,14 @@ public:
     /// Both throw BuildCancelled; what is to be kept is kept before.
     std::optional<std::string> load(const std::string& name) override;
     void keep(const std::string& name, std::string_view bytes) override;
-    Result<model::ImportedMesh> importMesh(const std::string& path, double metres_per_unit) override;
+    Result<importer::ImportedMesh> importMesh(const std::string& path, double metres_per_unit) override;
 
 private:
     void tell() const;
 
-    model::BuildStore* store_;
+    scene::BuildStore* store_;
     std::size_t pieces_ = 0, done_ = 0;
     Watch watch_;
 };
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <vector>
 
-namespace passung::app {
+namespace passung::run {
 
 namespace {
 
@@ -122,4 +122,4 @@ std::string discreet(std::string_view what, std::span<const std::string> names) 
     return text;
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace passung::app {
+namespace passung::run {
 
 namespace {
 
@@ -58,4 +58,4 @@ Result<RunEnd> logged(StudyLog* log, const session::SessionListener& listener,
     }
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

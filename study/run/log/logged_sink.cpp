@@ -6,7 +6,7 @@
 #include <iterator>
 #include <string_view>
 
-namespace passung::app {
+namespace passung::run {
 
 namespace {
 
@@ -81,4 +81,4 @@ Result<Done> LoggedSink::finishSession(bool complete, std::int64_t end_ns) {
     return checked("the session's end", sink_.finishSession(complete, end_ns));
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -3,7 +3,7 @@
 #include "study/run/log/study_log.h"
 #include "study/session/trial_sink.h"
 
-namespace passung::app {
+namespace passung::run {
 
 /// Passes a session's data on to another sink and tells the log how the loop kept its rate in each attempt, what kinds
 /// of commands came, and what could not be stored; of the data itself nothing.
@@ -29,4 +29,4 @@ private:
     StudyLog* log_;
 };
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -18,7 +18,7 @@
 #include "study/run/machine/host.h"
 #include "study/store/schema/private_files.h"
 
-namespace passung::app {
+namespace passung::run {
 
 namespace {
 
@@ -153,4 +153,4 @@ std::vector<std::string> loggedDatabases() {
     return databases;
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

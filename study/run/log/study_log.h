@@ -7,7 +7,7 @@
 
 #include "core/base/result.h"
 
-namespace passung::app {
+namespace passung::run {
 
 /// The log beside a study's database, DB.log: what ran, on what, how well, and what failed, for a bug report. Never who
 /// took part or what they did: every line passes discreet(). At most kLogBytes a file and store::kLogFiles of them; of
@@ -48,4 +48,4 @@ std::string logText(const std::string& database);
 /// Those with a log in the working directory and where the windows keep theirs.
 std::vector<std::string> loggedDatabases();
 
-}  // namespace passung::app
+}  // namespace passung::run

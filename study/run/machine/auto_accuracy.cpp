@@ -18,16 +18,16 @@
 #include "study/protocol/plan_json.h"
 #include "study/run/files/builds.h"
 
-namespace passung::app {
+namespace passung::run {
 
 namespace {
 
 constexpr double kUm = 1e6, kMm = 1e3, kUs = 1e6, kDegrees = 180.0 / std::numbers::pi;
 
 /// Of a query [s], each once, ascending.
-std::vector<double> budgetsOf(const protocol::StudyPlan& plan) {
+std::vector<double> budgetsOf(const plan::StudyPlan& plan) {
     std::set<double> budgets;
-    for (const protocol::Condition& condition : plan.conditions)
+    for (const plan::Condition& condition : plan.conditions)
         if (condition.accuracy_budget > 0.0) budgets.insert(condition.accuracy_budget);
     return {budgets.begin(), budgets.end()};
 }
@@ -35,39 +35,39 @@ std::vector<double> budgetsOf(const protocol::StudyPlan& plan) {
 /// As it is stored [µs], free of what rounding adds on the way from the protocol.
 double inMicroseconds(double budget) { return std::round(1e12 * budget) / 1e6; }
 
-std::string geometryOf(const model::PartSpec& part) {
+std::string geometryOf(const scene::PartSpec& part) {
     std::string text = part.held ? "held " : "";
-    if (const auto* mesh = std::get_if<model::MeshFile>(&part.geometry))
+    if (const auto* mesh = std::get_if<scene::MeshFile>(&part.geometry))
         return text + fmt::format("{} {}", mesh->path, mesh->metres_per_unit);
-    const auto& shape = std::get<model::Shape>(part.geometry);
-    text += model::kindName(shape);
-    for (const double value : model::dimensions(shape)) text += fmt::format(" {}", value);
+    const auto& shape = std::get<shape::Shape>(part.geometry);
+    text += shape::kindName(shape);
+    for (const double value : shape::dimensions(shape)) text += fmt::format(" {}", value);
     return text;
 }
 
 /// What of a contact makes its query another one.
-auto wayOfAsking(const model::ContactSpec& contact) {
+auto wayOfAsking(const scene::ContactSpec& contact) {
     const bool at_hand = contact.rendersAtHand();
-    return std::tuple(at_hand, at_hand && contact.variant == model::PenaltyVariant::AreaWeighted, contact.two_way);
+    return std::tuple(at_hand, at_hand && contact.variant == scene::PenaltyVariant::AreaWeighted, contact.two_way);
 }
 
 /// One scene for every geometry among those that ask for a pick, with each way of asking once.
-std::vector<truth::AskedScene> distinctScenes(const protocol::StudyPlan& plan, model::BuildStore* builds) {
+std::vector<truth::AskedScene> distinctScenes(const plan::StudyPlan& plan, scene::BuildStore* builds) {
     std::map<std::string, std::size_t> seen;
     std::vector<truth::AskedScene> scenes;
     // Shared by the scenes' questions, which outlive this.
     const auto geometries = std::make_shared<protocol::PartGeometries>(builds);
-    for (const protocol::Condition& condition : plan.conditions) {
+    for (const plan::Condition& condition : plan.conditions) {
         if (!(condition.accuracy_budget > 0.0)) continue;
         std::string key;
-        for (const model::PartSpec& part : condition.scene.parts) key += geometryOf(part) + '\n';
+        for (const scene::PartSpec& part : condition.scene.parts) key += geometryOf(part) + '\n';
         const auto [place, fresh] = seen.try_emplace(key, scenes.size());
         if (fresh)
             scenes.push_back({&condition.scene, {}, [geometries, scene = condition.scene](double spacing) mutable {
                                   scene.contact.spacing = spacing;
                                   return !protocol::oneWayFeelsAll(scene, *geometries);
                               }});
-        const model::ContactSpec& contact = condition.scene.contact;
+        const scene::ContactSpec& contact = condition.scene.contact;
         auto& contacts = scenes[place->second].contacts;
         if (std::none_of(contacts.begin(), contacts.end(),
                          [&](const auto& other) { return wayOfAsking(other) == wayOfAsking(contact); }))
@@ -82,7 +82,7 @@ std::optional<double> asMeasured(double value) { return std::isnan(value) ? std:
 store::AccuracyRow asStored(const std::string& protocol_sha256, std::int64_t number, const truth::SettingCost& row) {
     return {.protocol_sha256 = protocol_sha256,
             .candidate = number,
-            .mode = model::modeName(row.setting.mode),
+            .mode = field::modeName(row.setting.mode),
             .tolerance_um = kUm * row.setting.tolerance,
             .spacing_mm = kMm * row.setting.spacing,
             .budget_nodes = row.setting.budget_nodes,
@@ -112,10 +112,10 @@ std::string errorsOf(const store::AccuracyRow& row) {
 }
 
 /// `budget`: one of the plan's, below `fastest` [s].
-Error unfitting(const protocol::StudyPlan& plan, double budget, double fastest) {
+Error unfitting(const plan::StudyPlan& plan, double budget, double fastest) {
     const auto asking =
         std::find_if(plan.conditions.begin(), plan.conditions.end(),
-                     [&](const protocol::Condition& condition) { return condition.accuracy_budget == budget; });
+                     [&](const plan::Condition& condition) { return condition.accuracy_budget == budget; });
     return {
         .message =
             std::isfinite(fastest)
@@ -131,8 +131,8 @@ Error unfitting(const protocol::StudyPlan& plan, double budget, double fastest) 
 }
 
 /// The contact with what was picked; two ways where one would miss something.
-void setContact(const truth::AccuracySetting& setting, model::SceneSpec& scene, protocol::PartGeometries& geometries) {
-    model::ContactSpec& contact = scene.contact;
+void setContact(const truth::AccuracySetting& setting, scene::SceneSpec& scene, protocol::PartGeometries& geometries) {
+    scene::ContactSpec& contact = scene.contact;
     contact.tolerance = setting.tolerance;
     contact.spacing = setting.spacing;
     contact.cell = 0.0;
@@ -142,18 +142,18 @@ void setContact(const truth::AccuracySetting& setting, model::SceneSpec& scene, 
 }
 
 /// In every scene that asks for a pick.
-bool feelsEverywhere(const protocol::StudyPlan& plan, const truth::AccuracySetting& setting,
+bool feelsEverywhere(const plan::StudyPlan& plan, const truth::AccuracySetting& setting,
                      protocol::PartGeometries& geometries) {
-    return std::all_of(plan.conditions.begin(), plan.conditions.end(), [&](const protocol::Condition& condition) {
+    return std::all_of(plan.conditions.begin(), plan.conditions.end(), [&](const plan::Condition& condition) {
         if (!(condition.accuracy_budget > 0.0)) return true;
-        model::SceneSpec scene = condition.scene;
+        scene::SceneSpec scene = condition.scene;
         setContact(setting, scene, geometries);
         return protocol::feelsEverything(scene, geometries);
     });
 }
 
-Result<model::FieldMode> modeOf(const store::AccuracyRow& row) {
-    if (const auto mode = model::modeNamed(row.mode)) return *mode;
+Result<field::FieldMode> modeOf(const store::AccuracyRow& row) {
+    if (const auto mode = field::modeNamed(row.mode)) return *mode;
     return Error{.message = "this version of the program does not know the mode that was picked",
                  .key = "contact.mode",
                  .value = row.mode};
@@ -161,11 +161,10 @@ Result<model::FieldMode> modeOf(const store::AccuracyRow& row) {
 
 }  // namespace
 
-bool asksForAccuracy(const protocol::StudyPlan& plan) { return !budgetsOf(plan).empty(); }
+bool asksForAccuracy(const plan::StudyPlan& plan) { return !budgetsOf(plan).empty(); }
 
-Result<std::vector<store::AccuracyRow>> measureAccuracy(const protocol::StudyPlan& plan,
-                                                        const std::string& protocol_sha256,
-                                                        const truth::StepReport& report, model::BuildStore* builds) {
+Result<std::vector<store::AccuracyRow>> measureAccuracy(const plan::StudyPlan& plan, const std::string& protocol_sha256,
+                                                        const truth::StepReport& report, scene::BuildStore* builds) {
     const std::vector<double> budgets = budgetsOf(plan);
     const auto measured = truth::measureCandidates(
         distinctScenes(plan, builds), budgets, report ? report : [](const std::string&, double) {}, builds);
@@ -194,10 +193,10 @@ Result<std::vector<store::AccuracyRow>> measureAccuracy(const protocol::StudyPla
 }
 
 Result<Done> applyAccuracy(const std::string& protocol_sha256, std::span<const store::AccuracyRow> rows,
-                           protocol::StudyPlan& plan, const ImportLimits& limits) {
+                           plan::StudyPlan& plan, const ImportLimits& limits) {
     Builds builds(nullptr, limits);
     protocol::PartGeometries geometries(&builds);
-    for (protocol::Condition& condition : plan.conditions) {
+    for (plan::Condition& condition : plan.conditions) {
         if (!(condition.accuracy_budget > 0.0)) continue;
         const double budget = inMicroseconds(condition.accuracy_budget);
         const auto pick = std::find_if(rows.begin(), rows.end(), [&](const store::AccuracyRow& row) {
@@ -219,8 +218,8 @@ Result<Done> applyAccuracy(const std::string& protocol_sha256, std::span<const s
     return Done{};
 }
 
-Result<std::vector<std::string>> tooSlowHere(const protocol::StudyPlan& plan, std::span<const store::AccuracyRow> rows,
-                                             model::BuildStore* builds) {
+Result<std::vector<std::string>> tooSlowHere(const plan::StudyPlan& plan, std::span<const store::AccuracyRow> rows,
+                                             scene::BuildStore* builds) {
     std::vector<std::string> slow;
     for (const store::AccuracyRow& row : rows) {
         if (row.picked_for_us.empty()) continue;
@@ -263,4 +262,4 @@ std::string describeAccuracy(std::span<const store::AccuracyRow> rows) {
     return text;
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -13,7 +13,7 @@
 #include "study/run/files/data_folder.h"
 #include "study/run/files/disk_store.h"
 
-namespace passung::app {
+namespace passung::run {
 
 namespace {
 
@@ -36,7 +36,7 @@ double usable(double calm, const simulated::Sourced& vendor) {
     return vendor.value > 0.0 ? std::min(share, vendor.value) : share;
 }
 
-bool same(const protocol::StableStiffness& a, const protocol::StableStiffness& b) {
+bool same(const plan::StableStiffness& a, const plan::StableStiffness& b) {
     return a.device == b.device && a.linear == b.linear && a.rotational == b.rotational;
 }
 
@@ -98,14 +98,14 @@ std::optional<std::int64_t> calibratedAt(const std::string& device) {
     return std::int64_t{file.st_mtim.tv_sec} * 1000 + file.st_mtim.tv_nsec / 1'000'000;
 }
 
-std::string calibrationAdvice(const std::string& device, std::span<const protocol::StableStiffness> kept,
+std::string calibrationAdvice(const std::string& device, std::span<const plan::StableStiffness> kept,
                               std::int64_t began_ms) {
     const std::string remedy = fmt::format("`passung doctor --device {} --find-stiffness` does it", device);
     const auto calibrated = calibratedAt(device);
     if (!calibrated) return fmt::format("{} has never been calibrated on this machine: {}", device, remedy);
     const auto found = protocol::readCalibration(calibrationPath(device));
     if (!found) return toString(found.errors().front());
-    for (const protocol::StableStiffness& stable : kept) {
+    for (const plan::StableStiffness& stable : kept) {
         if (stable.device != device) continue;
         if (found->stable_stiffness < stable.linear || found->rotational_stiffness < stable.rotational)
             return fmt::format(
@@ -134,10 +134,10 @@ Result<std::vector<DeviceDescription>> withCalibrations(std::vector<DeviceDescri
     return devices;
 }
 
-std::vector<DeviceDescription> devicesAsKept(std::span<const protocol::StableStiffness> kept) {
+std::vector<DeviceDescription> devicesAsKept(std::span<const plan::StableStiffness> kept) {
     std::vector<DeviceDescription> devices = presetDevices();
     for (DeviceDescription& device : devices)
-        for (const protocol::StableStiffness& stable : kept) {
+        for (const plan::StableStiffness& stable : kept) {
             if (stable.device != device.name) continue;
             device.stable_stiffness_N_per_m = stable.linear;
             device.stable_rotational_stiffness_Nm_per_rad = stable.rotational;
@@ -146,12 +146,12 @@ std::vector<DeviceDescription> devicesAsKept(std::span<const protocol::StableSti
     return devices;
 }
 
-bool sameStiffness(std::span<const protocol::StableStiffness> a, std::span<const protocol::StableStiffness> b) {
+bool sameStiffness(std::span<const plan::StableStiffness> a, std::span<const plan::StableStiffness> b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), same);
 }
 
-std::vector<std::string> stiffnessDifferences(std::span<const protocol::StableStiffness> now,
-                                              std::span<const protocol::StableStiffness> kept) {
+std::vector<std::string> stiffnessDifferences(std::span<const plan::StableStiffness> now,
+                                              std::span<const plan::StableStiffness> kept) {
     std::vector<std::string> sentences;
     for (std::size_t i = 0; i < std::min(now.size(), kept.size()); ++i) {
         const auto &a = now[i], &b = kept[i];
@@ -164,4 +164,4 @@ std::vector<std::string> stiffnessDifferences(std::span<const protocol::StableSt
     return sentences;
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

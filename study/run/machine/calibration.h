@@ -12,7 +12,7 @@
 #include "study/plan/study_plan.h"
 #include "study/protocol/calibration.h"
 
-namespace passung::app {
+namespace passung::run {
 
 /// Where the calibration of a device is kept: in $XDG_DATA_HOME/passung, or ~/.local/share/passung; empty if neither
 /// variable names a folder.
@@ -31,20 +31,20 @@ std::optional<std::int64_t> calibratedAt(const std::string& device);
 
 /// What an experimenter is to know who puts the device in place for a session that began at `began_ms` [Unix time]:
 /// that it has not been calibrated on this machine since, or bears less than the study keeps for it. Empty: nothing.
-std::string calibrationAdvice(const std::string& device, std::span<const protocol::StableStiffness> kept,
+std::string calibrationAdvice(const std::string& device, std::span<const plan::StableStiffness> kept,
                               std::int64_t began_ms);
 
 /// The devices with what was found on them. Errors: a file that is there and not sound.
 Result<std::vector<DeviceDescription>> withCalibrations(std::vector<DeviceDescription> devices);
 
 /// The presets with the stable maxima that a study's database keeps. One from before they were kept has none.
-std::vector<DeviceDescription> devicesAsKept(std::span<const protocol::StableStiffness> kept);
+std::vector<DeviceDescription> devicesAsKept(std::span<const plan::StableStiffness> kept);
 
 /// Do both stand for the same maxima, whatever their origin?
-bool sameStiffness(std::span<const protocol::StableStiffness> a, std::span<const protocol::StableStiffness> b);
+bool sameStiffness(std::span<const plan::StableStiffness> a, std::span<const plan::StableStiffness> b);
 
 /// What differs between the maxima in force now and those that the study keeps, a sentence each.
-std::vector<std::string> stiffnessDifferences(std::span<const protocol::StableStiffness> now,
-                                              std::span<const protocol::StableStiffness> kept);
+std::vector<std::string> stiffnessDifferences(std::span<const plan::StableStiffness> now,
+                                              std::span<const plan::StableStiffness> kept);
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-namespace passung::app {
+namespace passung::run {
 
 void FrameClock::prepared(std::int64_t attempt) { items_ = {0, attempt, false}; }
 
@@ -47,4 +47,4 @@ std::int64_t steadyNanoseconds() {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -7,7 +7,7 @@
 
 #include "core/loop/record_ring.h"
 
-namespace passung::app {
+namespace passung::run {
 
 /// A picture that the participant's display got, times on the steady clock.
 struct Picture {
@@ -69,4 +69,4 @@ PictureTimes timesBetween(std::span<const Picture> pictures, std::int64_t zero_n
 /// The steady clock [ns].
 std::int64_t steadyNanoseconds();
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -4,7 +4,7 @@
 
 #include <thread>
 
-namespace passung::app {
+namespace passung::run {
 
 std::string hostText() {
     utsname name{};
@@ -16,4 +16,4 @@ std::string machineText() {
     return hostText() + ", " + std::to_string(std::thread::hardware_concurrency()) + " processors";
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace passung::app {
+namespace passung::run {
 
 /// This machine's system, without its name: "Linux 6.1.0 x86_64".
 std::string hostText();
@@ -10,4 +10,4 @@ std::string hostText();
 /// The same with the number of its processors.
 std::string machineText();
 
-}  // namespace passung::app
+}  // namespace passung::run

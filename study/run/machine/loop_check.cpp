@@ -9,21 +9,21 @@
 #include "devices/simulated/presets.h"
 #include "devices/simulated/simulated_device.h"
 
-namespace passung::app {
+namespace passung::run {
 
 namespace {
 
 constexpr double kFewMissed = 1e-4;  // share of cycles: one in ten thousand
 constexpr double kManyMissed = 1e-2;
 
-model::SceneSpec smallScene() {
-    model::SceneSpec spec;
+scene::SceneSpec smallScene() {
+    scene::SceneSpec spec;
     spec.parts.push_back({.name = "ball",
-                          .geometry = model::Sphere{0.02},
+                          .geometry = shape::Sphere{0.02},
                           .X_WP = {Quat::Identity(), Vec3(0.0, 0.0, 0.03)},
                           .held = true});
     spec.parts.push_back(
-        {.name = "table", .geometry = model::Box{0.06, 0.06, 0.02}, .X_WP = {Quat::Identity(), Vec3(0.0, 0.0, -0.01)}});
+        {.name = "table", .geometry = shape::Box{0.06, 0.06, 0.02}, .X_WP = {Quat::Identity(), Vec3(0.0, 0.0, -0.01)}});
     spec.contact.cell = 1e-3;
     return spec;
 }
@@ -53,8 +53,8 @@ std::string verdictOf(const LoopCheck& check) {
 }  // namespace
 
 LoopCheck checkLoop(double seconds) {
-    model::PartCache cache;
-    auto scene = model::buildScene(smallScene(), cache);
+    scene::PartCache cache;
+    auto scene = scene::buildScene(smallScene(), cache);
     LoopCheck check;
     if (!scene) {
         check.verdict = toString(scene.errors().front());
@@ -83,4 +83,4 @@ LoopCheck checkLoop(double seconds) {
     return check;
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

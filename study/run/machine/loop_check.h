@@ -4,7 +4,7 @@
 
 #include "core/loop/haptic_loop.h"
 
-namespace passung::app {
+namespace passung::run {
 
 /// What a loop is good for: studies; studies as long as nothing else runs, without real-time scheduling; trying out.
 enum class LoopFitness { Studies, StudiesIfAlone, TryOuts, Nothing };
@@ -24,4 +24,4 @@ struct LoopCheck {
 /// Runs the real loop with a small scene on the simulated device for `seconds`.
 LoopCheck checkLoop(double seconds);
 
-}  // namespace passung::app
+}  // namespace passung::run

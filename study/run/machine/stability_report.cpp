@@ -7,7 +7,7 @@
 
 #include "core/base/tick_record.h"
 
-namespace passung::app {
+namespace passung::run {
 
 namespace {
 
@@ -50,19 +50,19 @@ WallBounds rotationBounds(const DeviceMechanism& m, double damping, int delay_ti
                     m.coulomb_torque_Nm, m.rotational_quantum_rad);
 }
 
-bool feltThroughTool(const model::ContactSpec& contact) {
-    return contact.method == model::ContactMethod::Penalty && contact.coupling != model::PenaltyCoupling::Direct;
+bool feltThroughTool(const scene::ContactSpec& contact) {
+    return contact.method == scene::ContactMethod::Penalty && contact.coupling != scene::PenaltyCoupling::Direct;
 }
 
-SceneWall translationWall(const DeviceDescription& device, const model::SceneSpec& scene) {
+SceneWall translationWall(const DeviceDescription& device, const scene::SceneSpec& scene) {
     const double scale = scene.registration.scale;
     SceneWall wall{.stiffness = scale * scene.contact.stiffness, .bounds = {}};
     if (!device.mechanism) return wall;
     const int delay = device.delay_ticks + scene.limits.delay_ticks;
     wall.bounds = translationBounds(*device.mechanism, scale * scene.contact.damping, delay);
     if (feltThroughTool(scene.contact)) {
-        const bool virtual_tool = scene.contact.coupling == model::PenaltyCoupling::Virtual;
-        const bool bounded = scene.contact.variant == model::PenaltyVariant::MaxNormalised;
+        const bool virtual_tool = scene.contact.coupling == scene::PenaltyCoupling::Virtual;
+        const bool bounded = scene.contact.variant == scene::PenaltyVariant::MaxNormalised;
         wall.bounds.border = stableStiffnessBorderUpTo(loop::SampledTool{
             .wall = translationLoop(*device.mechanism, scale * scene.contact.damping, delay),
             .contact_stiffness = bounded ? scale * scene.contact.penalty_stiffness : kRigid * wall.bounds.border,
@@ -71,9 +71,9 @@ SceneWall translationWall(const DeviceDescription& device, const model::SceneSpe
     return wall;
 }
 
-Errors beyondBorder(const protocol::StudyPlan& plan, std::span<const DeviceDescription> devices) {
+Errors beyondBorder(const plan::StudyPlan& plan, std::span<const DeviceDescription> devices) {
     Errors errors;
-    for (const protocol::Condition& condition : plan.conditions) {
+    for (const plan::Condition& condition : plan.conditions) {
         const DeviceDescription* device = deviceNamed(condition.device, devices);
         if (device == nullptr || condition.allow_unstable || !feltThroughTool(condition.scene.contact)) continue;
         const SceneWall wall = translationWall(*device, condition.scene);
@@ -92,7 +92,7 @@ Errors beyondBorder(const protocol::StudyPlan& plan, std::span<const DeviceDescr
     return errors;
 }
 
-SceneWall rotationWall(const DeviceDescription& device, const model::SceneSpec& scene) {
+SceneWall rotationWall(const DeviceDescription& device, const scene::SceneSpec& scene) {
     SceneWall wall{.stiffness = scene.contact.rotational_stiffness, .bounds = {}};
     if (device.mechanism)
         wall.bounds = rotationBounds(*device.mechanism, scene.contact.rotational_damping,
@@ -105,4 +105,4 @@ const DeviceDescription* deviceNamed(const std::string& name, std::span<const De
     return found == devices.end() ? nullptr : &*found;
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -8,7 +8,7 @@
 #include "core/scene/scene_spec.h"
 #include "study/plan/study_plan.h"
 
-namespace passung::app {
+namespace passung::run {
 
 /// How stiff a wall a device bears by the model of its mechanism: translation [N/m] or rotation [N·m/rad]; 0: none.
 struct WallBounds {
@@ -30,15 +30,15 @@ struct SceneWall {
 /// A coupled penalty: translation's border is then the exact one through the tool, over all contacts that the scene can
 /// make: up to `penalty_stiffness`, or, with variants whose stiffness depends on how many points touch, up to a rigid
 /// one.
-bool feltThroughTool(const model::ContactSpec& contact);
-SceneWall translationWall(const DeviceDescription& device, const model::SceneSpec& scene);
-SceneWall rotationWall(const DeviceDescription& device, const model::SceneSpec& scene);
+bool feltThroughTool(const scene::ContactSpec& contact);
+SceneWall translationWall(const DeviceDescription& device, const scene::SceneSpec& scene);
+SceneWall rotationWall(const DeviceDescription& device, const scene::SceneSpec& scene);
 
 /// Conditions whose coupling is stiffer than that, one for each stiffness and border, unless their protocol takes
 /// responsibility for it.
-Errors beyondBorder(const protocol::StudyPlan& plan, std::span<const DeviceDescription> devices);
+Errors beyondBorder(const plan::StudyPlan& plan, std::span<const DeviceDescription> devices);
 
 /// Null: there is none of this name.
 const DeviceDescription* deviceNamed(const std::string& name, std::span<const DeviceDescription> devices);
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -12,7 +12,7 @@
 #include "core/tick/step.h"
 #include "study/protocol/plan_json.h"
 
-namespace passung::app {
+namespace passung::run {
 
 namespace {
 
@@ -24,7 +24,7 @@ constexpr double kPressed = 2e-3, kSlide = 3e-3;  // [m]
 Vec3 wayToContact(const tick::TickModel& model, tick::TickState& state) {
     if (model.obstacles.empty()) return Vec3(0.02, 0.0, 0.0);
     state.scratch.clear();
-    const tick::QueryAnswer answer =
+    const contact::QueryAnswer answer =
         tick::queryObstacles(model, model.X_WG_start, {.search_below = 1.0}, state.workspace, state.scratch);
     return -(answer.phi + kPressed) * answer.normal_W;
 }
@@ -74,12 +74,12 @@ private:
 };
 
 /// The times of one run; `contact`: of ticks in contact only.
-std::vector<std::int64_t> timesOfRun(const model::Scene& scene, bool contact) {
+std::vector<std::int64_t> timesOfRun(const scene::Scene& scene, bool contact) {
     tick::TickModel model = tick::makeModel(scene);
     tick::TickState state = tick::makeState(model);
     const Vec3 way = wayToContact(model, state);
     // Poses are those of the held part: the registration has nothing to do, and the gate is open.
-    model.registration = model::Registration{};
+    model.registration = scene::Registration{};
     state.engaged = true;
     StageTimes times(model.stages.size());
     const Vec3 aside = way.unitOrthogonal();
@@ -98,7 +98,7 @@ std::vector<std::int64_t> timesOfRun(const model::Scene& scene, bool contact) {
 }
 
 /// The least of equal runs, time by time.
-std::vector<std::int64_t> leastTimes(const model::Scene& scene, bool contact) {
+std::vector<std::int64_t> leastTimes(const scene::Scene& scene, bool contact) {
     std::vector<std::int64_t> least = timesOfRun(scene, contact);
     for (int run = 1; run < TickCost::kRuns && !least.empty(); ++run) {
         const std::vector<std::int64_t> again = timesOfRun(scene, contact);
@@ -117,31 +117,31 @@ double quantileOf(std::vector<std::int64_t> times, double q) {
 }
 
 /// Geometry, resolution, method; stiffness, limits, task and display change no cost.
-std::string costKey(protocol::Condition condition) {
+std::string costKey(plan::Condition condition) {
     condition.device.clear();
-    condition.shown = protocol::ShownPose::Proxy;
+    condition.shown = plan::ShownPose::Proxy;
     condition.task = {};
     condition.comparison.reset();
     condition.cues = {};
     condition.secondary = {};
-    condition.timed_by = protocol::TimedBy::Program;
-    model::ContactSpec& contact = condition.scene.contact;
+    condition.timed_by = plan::TimedBy::Program;
+    scene::ContactSpec& contact = condition.scene.contact;
     contact.stiffness = contact.rotational_stiffness = contact.area_stiffness = contact.penalty_stiffness = 1.0;
     contact.tool_mass = contact.tool_inertia = 1.0;
     contact.damping = contact.rotational_damping = 0.0;
-    model::OutputLimits limits;
+    scene::OutputLimits limits;
     limits.delay_ticks = condition.scene.limits.delay_ticks;
     condition.scene.limits = limits;
     std::string meshes;  // in full: files of one name in two folders differ
     for (const auto& part : condition.scene.parts)
-        if (const auto* mesh = std::get_if<model::MeshFile>(&part.geometry)) meshes += mesh->path + '\n';
+        if (const auto* mesh = std::get_if<scene::MeshFile>(&part.geometry)) meshes += mesh->path + '\n';
     return protocol::paramsJson(condition) + meshes;
 }
 
 }  // namespace
 
-std::vector<std::vector<const protocol::Condition*>> costGroups(const protocol::StudyPlan& plan) {
-    std::vector<std::vector<const protocol::Condition*>> groups;
+std::vector<std::vector<const plan::Condition*>> costGroups(const plan::StudyPlan& plan) {
+    std::vector<std::vector<const plan::Condition*>> groups;
     std::map<std::string, std::size_t> places;
     for (const auto& condition : plan.conditions) {
         const auto [place, fresh] = places.try_emplace(costKey(condition), groups.size());
@@ -151,7 +151,7 @@ std::vector<std::vector<const protocol::Condition*>> costGroups(const protocol::
     return groups;
 }
 
-TickCost measureTick(const model::Scene& scene) {
+TickCost measureTick(const scene::Scene& scene) {
     const tick::TickModel model = tick::makeModel(scene);
     const std::size_t stages = model.stages.size();
     TickCost cost;
@@ -179,4 +179,4 @@ TickCost measureTick(const model::Scene& scene) {
     return cost;
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -7,7 +7,7 @@
 #include "core/scene/scene.h"
 #include "study/plan/study_plan.h"
 
-namespace passung::app {
+namespace passung::run {
 
 /// A stage of a scene's tick and what it costs here.
 struct StageCost {
@@ -33,9 +33,9 @@ struct TickCost {
 /// Measures every stage on this machine while the held part is pressed two millimetres into the nearest obstacle and
 /// slides on it, until kWantedTicks of contact are counted, or many more without; free ticks if the scene has no
 /// obstacle.
-TickCost measureTick(const model::Scene& scene);
+TickCost measureTick(const scene::Scene& scene);
 
 /// Conditions that agree in everything that decides which stages run and what they cost; as the plan lists their first.
-std::vector<std::vector<const protocol::Condition*>> costGroups(const protocol::StudyPlan& plan);
+std::vector<std::vector<const plan::Condition*>> costGroups(const plan::StudyPlan& plan);
 
-}  // namespace passung::app
+}  // namespace passung::run

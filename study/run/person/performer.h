@@ -10,7 +10,7 @@
 #include "study/session/apparatus.h"
 #include "study/session/session.h"
 
-namespace passung::app {
+namespace passung::run {
 
 /// Somebody at this computer who takes part or only watches a simulated person, and the screens that show it. Called by
 /// the thread that runs the session.
@@ -19,10 +19,10 @@ public:
     virtual ~Performer() = default;
 
     /// As whom the data is stored.
-    virtual protocol::ParticipantKind kind() const = 0;
+    virtual plan::ParticipantKind kind() const = 0;
     /// The device for an attempt at `condition`; null: a simulated person holds one. And what it says about itself.
     virtual std::unique_ptr<loop::HapticDevice> device(const simulated::DeviceParams& preset,
-                                                       const protocol::Condition& condition) = 0;
+                                                       const plan::Condition& condition) = 0;
     virtual DeviceDescription describe(const simulated::DeviceParams& preset) const = 0;
     /// Get every tick, and are emptied by whoever draws or plays.
     virtual std::span<loop::ScreenRing* const> screens() = 0;
@@ -41,7 +41,7 @@ public:
     /// A session begins: `apparatus` may be halted at any time until over().
     virtual void begins(session::Apparatus& apparatus, const session::SessionSetup& setup) = 0;
     /// An attempt at this trial is about to begin, now its scene is built. `seed`: of the attempt.
-    virtual void prepares(const protocol::Condition& condition, std::int64_t trial_index, std::uint64_t seed) = 0;
+    virtual void prepares(const plan::Condition& condition, std::int64_t trial_index, std::uint64_t seed) = 0;
     /// Fields and shells of that scene are built; this share of them is done. False: nobody waits for it.
     virtual bool builds(double share) = 0;
     /// Between two steps of the session: to look at it and to give commands.
@@ -49,4 +49,4 @@ public:
     virtual void over() = 0;
 };
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -12,12 +12,12 @@
 #include "study/store/people/participant_records.h"
 #include "study/store/read/store_reader.h"
 
-namespace passung::app {
+namespace passung::run {
 
 namespace {
 
 /// Whoever said no to what may be refused is not asked again; a changed text is.
-bool isDecided(const protocol::ConsentClause& clause, const std::vector<store::ConsentRow>& decisions,
+bool isDecided(const plan::ConsentClause& clause, const std::vector<store::ConsentRow>& decisions,
                const std::string& participant) {
     const store::ConsentRow* latest = nullptr;  // the rows come in the order of the decisions
     for (const store::ConsentRow& row : decisions)
@@ -30,13 +30,13 @@ bool isDecided(const protocol::ConsentClause& clause, const std::vector<store::C
 
 }  // namespace
 
-Result<Done> askForConsent(store::Store& store, const std::string& database, const protocol::StudyPlan& plan,
+Result<Done> askForConsent(store::Store& store, const std::string& database, const plan::StudyPlan& plan,
                            const std::string& participant, const std::string& language, const std::string& now_utc,
                            const AskConsent& ask) {
     const auto fault = [&](const std::string& what) {
         return Error{.message = participant + ": " + what, .file = database, .key = "consent"};
     };
-    for (const protocol::ConsentClause& clause : plan.consent)
+    for (const plan::ConsentClause& clause : plan.consent)
         for (const auto& [spoken, text] : clause.texts)
             if (const auto date = protocol::unfilledDate(text); date && spoken == language)
                 return fault(fmt::format("the clause {} still says {}: fill in the date before people are asked",
@@ -46,7 +46,7 @@ Result<Done> askForConsent(store::Store& store, const std::string& database, con
     const auto decisions = reader->consents();
     if (!decisions) return decisions.errors();
     store::ParticipantRecords desk(store, {"participant", now_utc});
-    for (const protocol::ConsentClause& clause : plan.consent) {
+    for (const plan::ConsentClause& clause : plan.consent) {
         if (isDecided(clause, *decisions, participant)) continue;
         const auto text = std::find_if(clause.texts.begin(), clause.texts.end(),
                                        [&](const auto& each) { return each.first == language; });
@@ -61,17 +61,17 @@ Result<Done> askForConsent(store::Store& store, const std::string& database, con
     return Done{};
 }
 
-Errors missingOutputs(const protocol::StudyPlan& plan, const std::string& participant) {
-    const auto planned = std::span(plan.conditions).first(protocol::plannedConditions(plan));
+Errors missingOutputs(const plan::StudyPlan& plan, const std::string& participant) {
+    const auto planned = std::span(plan.conditions).first(plan::plannedConditions(plan));
     Errors missing;
-    for (const std::string& sentence : protocol::cuesWithoutOutput(planned))
+    for (const std::string& sentence : plan::cuesWithoutOutput(planned))
         missing.push_back({.message = participant + " cannot take part: " + sentence, .file = plan.source_path});
     return missing;
 }
 
-Errors missingDevices(const protocol::StudyPlan& plan, const std::string& participant) {
+Errors missingDevices(const plan::StudyPlan& plan, const std::string& participant) {
     std::set<std::string> devices;
-    for (const protocol::Condition& condition : plan.conditions) devices.insert(condition.device);
+    for (const plan::Condition& condition : plan.conditions) devices.insert(condition.device);
     Errors missing;
     for (const std::string& device : devices)
         missing.push_back({.message = fmt::format("has no driver in this program, only a model, which a simulated hand "
@@ -84,4 +84,4 @@ Errors missingDevices(const protocol::StudyPlan& plan, const std::string& partic
     return missing;
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -6,7 +6,7 @@
 
 #include "study/person/detection_response.h"
 
-namespace passung::app {
+namespace passung::run {
 namespace {
 
 constexpr std::int64_t kPressTicks = 120;  // that the button stays down
@@ -53,4 +53,4 @@ void RespondingDevice::command(const Wrench& F_D_B) noexcept {
     device_->command(F_D_B);
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -9,7 +9,7 @@
 #include "study/measures/detection.h"
 #include "study/person/simulated_person.h"
 
-namespace passung::app {
+namespace passung::run {
 
 /// A simulated device whose person has a secondary task too: feels its stimuli and presses the device's button. What
 /// they have at hand meanwhile slows them down: person::respond(). All but the constructor rt-safe.
@@ -37,4 +37,4 @@ private:
     std::array<std::int64_t, 2> presses_ = {-1, -1};  // ticks at which the button goes down; < 0: none
 };
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -5,7 +5,7 @@
 #include "core/base/random.h"
 #include "study/questionnaire/definition.h"
 
-namespace passung::app {
+namespace passung::run {
 namespace {
 
 /// Mean of a measure over the trials for which it is defined; `absent` if there is none.
@@ -30,7 +30,7 @@ person::Experience experienceOf(const session::ShownQuestionnaire& form) {
 
 }  // namespace
 
-SimulatedAnswers::SimulatedAnswers(const protocol::StudyPlan& plan, std::string participant)
+SimulatedAnswers::SimulatedAnswers(const plan::StudyPlan& plan, std::string participant)
     : plan_(plan),
       participant_(std::move(participant)),
       style_(person::drawRatingStyle(streamSeed(plan.name, participant_, "rating", "simulated", plan.seed))) {}
@@ -45,4 +45,4 @@ std::optional<session::FilledForm> SimulatedAnswers::fill(const session::ShownQu
     return filled;
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -1,6 +1,6 @@
 #include "study/run/person/simulated_hand.h"
 
-namespace passung::app {
+namespace passung::run {
 
 simulated::HandParams simulatedHand(const person::SimulatedPerson& person, std::int64_t trials_before) {
     const double pace = person.paceAfter(trials_before);
@@ -32,4 +32,4 @@ simulated::HandParams simulatedHand(const person::SimulatedPerson& person, std::
     return hand;
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

@@ -5,9 +5,9 @@
 #include "core/base/random.h"
 #include "core/base/tick_record.h"
 
-namespace passung::app {
+namespace passung::run {
 
-void SimulatedTimer::begin(const protocol::Condition&, std::uint64_t seed, std::int64_t trials_before) {
+void SimulatedTimer::begin(const plan::Condition&, std::uint64_t seed, std::int64_t trials_before) {
     std::uint64_t state = seed ^ fnv1a64("real parts");
     Random random(splitmix64(state));
     trial_ = person::realTrial(person_, trials_before, random);
@@ -26,4 +26,4 @@ std::optional<session::Command> SimulatedTimer::commandAt(std::int64_t periods) 
     return say(trial_.success ? CommandKind::Done : CommandKind::Failed);
 }
 
-}  // namespace passung::app
+}  // namespace passung::run

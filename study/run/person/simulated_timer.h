@@ -5,7 +5,7 @@
 #include "study/person/real_parts.h"
 #include "study/session/trial_timer.h"
 
-namespace passung::app {
+namespace passung::run {
 
 /// Times a simulated person's trials with real parts by person::realTrial(). Its commands are logged with the source
 /// "simulated".
@@ -13,7 +13,7 @@ class SimulatedTimer final : public session::TrialTimer {
 public:
     explicit SimulatedTimer(const person::SimulatedPerson& person) : person_(person) {}
 
-    void begin(const protocol::Condition& condition, std::uint64_t seed, std::int64_t trials_before) override;
+    void begin(const plan::Condition& condition, std::uint64_t seed, std::int64_t trials_before) override;
     std::optional<session::Command> commandAt(std::int64_t periods) override;
 
 private:
@@ -24,4 +24,4 @@ private:
     bool started_ = false, ended_ = false;
 };
 
-}  // namespace passung::app
+}  // namespace passung::run

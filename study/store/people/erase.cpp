@@ -28,7 +28,7 @@ std::int64_t highestNumber(const Database& database, const std::string& kind) {
     std::int64_t highest = 0;
     Statement codes = database.prepare("SELECT participant_id FROM participant WHERE kind=?");
     codes.bind(kind);
-    while (codes.step()) highest = std::max(highest, protocol::participantNumber(codes.text(0)));
+    while (codes.step()) highest = std::max(highest, plan::participantNumber(codes.text(0)));
     return highest;
 }
 

@@ -81,14 +81,14 @@ const char* consentName(Consent decision) {
     return "withdrawn";
 }
 
-Result<Done> ParticipantRecords::enrol(const std::string& code, protocol::ParticipantKind kind,
+Result<Done> ParticipantRecords::enrol(const std::string& code, plan::ParticipantKind kind,
                                        const std::string& created_utc) {
     return store_.thread_->call([&](const Database& database) {
         Transaction transaction(database);
         if (!insertParticipant(database, code, kind, created_utc, store_.options_.station))
             throw std::runtime_error("participant " + code + " is already enrolled");
         appendAudit(database, actor_, "enrol",
-                    JsonObject().text("participant", code).text("kind", protocol::participantKindName(kind)));
+                    JsonObject().text("participant", code).text("kind", plan::participantKindName(kind)));
         transaction.commit();
         return Done{};
     });

@@ -22,7 +22,7 @@ public:
 
     /// Adds somebody new. A code that is there already is an error, and so is one that an erased participant may have
     /// had.
-    Result<Done> enrol(const std::string& code, protocol::ParticipantKind kind, const std::string& created_utc);
+    Result<Done> enrol(const std::string& code, plan::ParticipantKind kind, const std::string& created_utc);
 
     /// Stores decisions on clauses of the protocol imported last, as its text in `language` has them. No clauses: all.
     /// Returns the clauses decided.

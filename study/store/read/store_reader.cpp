@@ -188,7 +188,7 @@ Result<std::vector<AccuracyRow>> StoreReader::accuracy() const {
     return guarded(path_, [&] { return readAccuracy(*database_); });
 }
 
-Result<std::vector<protocol::StableStiffness>> StoreReader::stableStiffness(const std::string& protocol_sha256) const {
+Result<std::vector<plan::StableStiffness>> StoreReader::stableStiffness(const std::string& protocol_sha256) const {
     return guarded(path_, [&] { return readStableStiffness(*database_, protocol_sha256); });
 }
 
@@ -270,7 +270,7 @@ Result<std::vector<ConsentRow>> StoreReader::consents() const {
     return guarded(path_, [&] { return readConsents(*database_); });
 }
 
-Result<std::int64_t> StoreReader::erasedCodesTo(protocol::ParticipantKind kind) const {
+Result<std::int64_t> StoreReader::erasedCodesTo(plan::ParticipantKind kind) const {
     return guarded(path_, [&] { return store::erasedCodesTo(*database_, kind); });
 }
 

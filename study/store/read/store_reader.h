@@ -36,7 +36,7 @@ public:
     Result<std::vector<ProtocolRow>> protocols() const;  // by name, version, hash
     Result<std::vector<MeshRow>> meshes() const;         // protocols as above, meshes by name
     Result<std::vector<AccuracyRow>> accuracy() const;   // by protocol hash, then candidate
-    Result<std::vector<protocol::StableStiffness>> stableStiffness(const std::string& protocol_sha256) const;
+    Result<std::vector<plan::StableStiffness>> stableStiffness(const std::string& protocol_sha256) const;
     /// Text of each questionnaire file that the protocol names, by that name.
     Result<std::map<std::string, std::string>> questionnaireTexts(const std::string& protocol_sha256) const;
     Result<std::vector<FactorRow>> factors() const;            // protocols as above, factors as the protocol lists them
@@ -50,7 +50,7 @@ public:
     Result<std::vector<ConsentClauseRow>> consentClauses() const;  // protocols as above, clauses as they are asked
     Result<std::vector<ConsentRow>> consents() const;              // by participant
     /// The highest number that a code of this kind had when somebody was last erased: nobody gets one up to it again.
-    Result<std::int64_t> erasedCodesTo(protocol::ParticipantKind kind) const;
+    Result<std::int64_t> erasedCodesTo(plan::ParticipantKind kind) const;
     Result<AuditReport> audit() const;
     Result<std::vector<SessionRow>> sessions() const;
     Result<std::vector<AttemptRow>> attempts() const;

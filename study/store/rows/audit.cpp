@@ -82,11 +82,11 @@ void mergeAudit(const Database& database, const std::vector<AuditRow>& rows) {
                 .run();
 }
 
-std::int64_t erasedCodesTo(const Database& database, protocol::ParticipantKind kind) {
+std::int64_t erasedCodesTo(const Database& database, plan::ParticipantKind kind) {
     Statement last = database.prepare(
         "SELECT coalesce(max(json_extract(detail_json, '$.codes_to')), 0) FROM audit "
         "WHERE action='erase' AND json_extract(detail_json, '$.kind')=?");
-    last.bind(protocol::participantKindName(kind)).step();
+    last.bind(plan::participantKindName(kind)).step();
     return last.integer(0);
 }
 

@@ -28,7 +28,7 @@ std::string erasedDetail(const std::string& surrogate);
 void eraseAuditDetails(const Database& database, const std::string& participant, const std::string& surrogate);
 
 /// The highest number that a code of this kind had when somebody of it was last erased; 0 if nobody was.
-std::int64_t erasedCodesTo(const Database& database, protocol::ParticipantKind kind);
+std::int64_t erasedCodesTo(const Database& database, plan::ParticipantKind kind);
 
 struct AuditRow {
     std::string t_utc, actor, action, detail_json, prev_hash, hash, detail_sha256;

@@ -6,9 +6,9 @@
 namespace passung::store {
 
 void insertConsentClauses(const Database& database, const std::string& protocol_sha256,
-                          const std::vector<protocol::ConsentClause>& clauses) {
+                          const std::vector<plan::ConsentClause>& clauses) {
     std::int64_t position = 0;
-    for (const protocol::ConsentClause& clause : clauses) {
+    for (const plan::ConsentClause& clause : clauses) {
         for (const auto& [language, text] : clause.texts)
             insertRow(database, "consent_clause", Named{"protocol_sha256", protocol_sha256},
                       Named{"clause", clause.clause}, Named{"language", language}, Named{"text", text},

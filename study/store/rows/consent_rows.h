@@ -12,7 +12,7 @@ namespace passung::store {
 // For this room only: they throw.
 
 void insertConsentClauses(const Database& database, const std::string& protocol_sha256,
-                          const std::vector<protocol::ConsentClause>& clauses);
+                          const std::vector<plan::ConsentClause>& clauses);
 
 /// Every clause of every protocol in the order in which they are asked.
 std::vector<ConsentClauseRow> readConsentClauses(const Database& database);

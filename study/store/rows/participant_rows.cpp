@@ -9,7 +9,7 @@ namespace passung::store {
 namespace {
 
 /// Stations whose codes were alike could not be merged.
-void refuseCodeOfNoStation(const std::string& code, protocol::ParticipantKind kind, const Station& station) {
+void refuseCodeOfNoStation(const std::string& code, plan::ParticipantKind kind, const Station& station) {
     const std::string start = codeStart(kind, station);
     if (code.starts_with(start)) return;
     throw std::runtime_error("participant code '" + code + "': with " + std::to_string(station.count) +
@@ -17,9 +17,9 @@ void refuseCodeOfNoStation(const std::string& code, protocol::ParticipantKind ki
                              start + "001");
 }
 
-void refuseErasedCode(const Database& database, const std::string& code, protocol::ParticipantKind kind) {
+void refuseErasedCode(const Database& database, const std::string& code, plan::ParticipantKind kind) {
     const std::int64_t to = erasedCodesTo(database, kind);
-    if (protocol::participantNumber(code) <= to)
+    if (plan::participantNumber(code) <= to)
         throw std::runtime_error("participant code " + code +
                                  " may be that of somebody who was erased: take one with a number above " +
                                  std::to_string(to));
@@ -27,22 +27,22 @@ void refuseErasedCode(const Database& database, const std::string& code, protoco
 
 }  // namespace
 
-std::string codeStart(protocol::ParticipantKind kind, const Station& station) {
-    return protocol::codeLetter(kind) + (station.count > 1 ? station.name : "");
+std::string codeStart(plan::ParticipantKind kind, const Station& station) {
+    return plan::codeLetter(kind) + (station.count > 1 ? station.name : "");
 }
 
-bool insertParticipant(const Database& database, const std::string& code, protocol::ParticipantKind wanted,
+bool insertParticipant(const Database& database, const std::string& code, plan::ParticipantKind wanted,
                        const std::string& created_utc, const Station& station) {
-    const char* kind = protocol::participantKindName(wanted);
-    if (!protocol::isParticipantCode(code)) {
+    const char* kind = plan::participantKindName(wanted);
+    if (!plan::isParticipantCode(code)) {
         throw std::runtime_error("participant code '" + code +
                                  "' is not a capital letter, then capital letters, digits, '_' or '-', then a digit, "
                                  "such as " +
-                                 protocol::participantCode(wanted, 1));
+                                 plan::participantCode(wanted, 1));
     }
-    if (code.front() != protocol::codeLetter(wanted)) {
+    if (code.front() != plan::codeLetter(wanted)) {
         throw std::runtime_error("participant code '" + code + "': codes of " + kind + " participants begin with " +
-                                 protocol::codeLetter(wanted) + ", such as " + protocol::participantCode(wanted, 1));
+                                 plan::codeLetter(wanted) + ", such as " + plan::participantCode(wanted, 1));
     }
     Statement find = database.prepare("SELECT kind FROM participant WHERE participant_id=?");
     if (find.bind(code).step()) {

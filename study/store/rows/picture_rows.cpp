@@ -6,9 +6,9 @@
 
 namespace passung::store {
 
-Result<std::vector<PictureContent>> readPictures(const protocol::StudyPlan& plan) {
+Result<std::vector<PictureContent>> readPictures(const plan::StudyPlan& plan) {
     std::vector<PictureContent> pictures;
-    for (const protocol::PictureSource& picture : plan.pictures) {
+    for (const plan::PictureSource& picture : plan.pictures) {
         const auto bytes = readFile(picture.path);
         if (!bytes) return bytes.errors();
         pictures.push_back({picture.name, sha256Hex(*bytes), static_cast<std::int64_t>(bytes->size())});

@@ -16,7 +16,7 @@ struct PictureContent {
     std::int64_t bytes = 0;
 };
 
-Result<std::vector<PictureContent>> readPictures(const protocol::StudyPlan& plan);
+Result<std::vector<PictureContent>> readPictures(const plan::StudyPlan& plan);
 
 void insertPictures(const Database& database, const std::string& protocol_sha256,
                     const std::vector<PictureContent>& pictures);

@@ -17,38 +17,38 @@
 namespace passung::store {
 namespace {
 
-std::string levelsJson(const protocol::Factor& factor) {
+std::string levelsJson(const plan::Factor& factor) {
     std::vector<std::string> labels;
-    for (const protocol::Level& level : factor.levels) labels.push_back(jsonText(level.label));
+    for (const plan::Level& level : factor.levels) labels.push_back(jsonText(level.label));
     return jsonList(labels);
 }
 
 /// Rows of the counterbalancing that the plan's orders take turns with.
-std::int64_t sequenceCount(const protocol::StudyPlan& plan) {
-    return static_cast<std::int64_t>(design::sequencesOf(protocol::designOf(plan)));
+std::int64_t sequenceCount(const plan::StudyPlan& plan) {
+    return static_cast<std::int64_t>(design::sequencesOf(plan::designOf(plan)));
 }
 
-void insertFactors(const Database& database, const std::string& sha256, const protocol::StudyPlan& plan) {
+void insertFactors(const Database& database, const std::string& sha256, const plan::StudyPlan& plan) {
     std::int64_t position = 0;
-    for (const protocol::Factor& factor : plan.factors) {
+    for (const plan::Factor& factor : plan.factors) {
         const auto unit = factor.unit.empty() ? std::nullopt : std::optional(factor.unit);
         const std::string levels = levelsJson(factor);
         insertRow(database, "factor", Named{"protocol_sha256", sha256}, Named{"factor", factor.name},
-                  Named{"kind", protocol::factorKindName(factor.kind)}, Named{"data_type", "text"}, Named{"unit", unit},
+                  Named{"kind", plan::factorKindName(factor.kind)}, Named{"data_type", "text"}, Named{"unit", unit},
                   Named{"label", factor.name}, Named{"position", position++}, Named{"levels_json", levels});
     }
 }
 
-void insertConditions(const Database& database, const std::string& sha256, const protocol::StudyPlan& plan) {
+void insertConditions(const Database& database, const std::string& sha256, const plan::StudyPlan& plan) {
     Statement insert =
         database.prepare("INSERT INTO condition(protocol_sha256, condition, levels_json, position) VALUES(?, ?, ?, ?)");
     std::int64_t position = 0;
-    for (const protocol::Condition& condition : plan.conditions) {
+    for (const plan::Condition& condition : plan.conditions) {
         insert.bind(sha256, condition.name, condition.levels_json, position++).run();
     }
 }
 
-void declareMeasures(const Database& database, const std::string& sha256, const protocol::StudyPlan& plan) {
+void declareMeasures(const Database& database, const std::string& sha256, const plan::StudyPlan& plan) {
     for (const measures::MeasureDefinition& definition : measures::definitions()) {
         const bool declared = plan.measures.empty() || std::find(plan.measures.begin(), plan.measures.end(),
                                                                  definition.name) != plan.measures.end();
@@ -80,7 +80,7 @@ void requireMeshes(const Database& database, const std::string& sha256, const st
 }
 
 /// One file holds one study, and a version of it is one text: else rows of two designs could not be told apart.
-void requireSameStudy(const Database& database, const protocol::StudyPlan& plan) {
+void requireSameStudy(const Database& database, const plan::StudyPlan& plan) {
     Statement other = database.prepare("SELECT name FROM protocol_version WHERE name<>? LIMIT 1");
     if (other.bind(plan.name).step()) {
         throw std::runtime_error("holds the study " + other.text(0) + ", not " + plan.name +
@@ -95,9 +95,9 @@ void requireSameStudy(const Database& database, const protocol::StudyPlan& plan)
 
 }  // namespace
 
-Result<std::vector<MeshContent>> readMeshes(const protocol::StudyPlan& plan) {
+Result<std::vector<MeshContent>> readMeshes(const plan::StudyPlan& plan) {
     std::vector<MeshContent> meshes;
-    for (const protocol::NamedMesh& mesh : plan.meshes) {
+    for (const plan::NamedMesh& mesh : plan.meshes) {
         const auto bytes = readRegularFile(mesh.path, kMostMeshBytes);
         if (!bytes) return bytes.errors();
         meshes.push_back({mesh.name, sha256Hex(*bytes), static_cast<std::int64_t>(bytes->size())});
@@ -131,9 +131,8 @@ void insertMeasures(const Database& database) {
     }
 }
 
-std::string importPlan(const Database& database, const protocol::StudyPlan& plan,
-                       const std::vector<MeshContent>& meshes, const std::vector<PictureContent>& pictures,
-                       const OpenOptions& options, bool keep) {
+std::string importPlan(const Database& database, const plan::StudyPlan& plan, const std::vector<MeshContent>& meshes,
+                       const std::vector<PictureContent>& pictures, const OpenOptions& options, bool keep) {
     const std::string sha256 = sha256Hex(plan.source_text);
     Transaction transaction(database);
     if (database.prepare("SELECT 1 FROM protocol_version WHERE protocol_sha256=?").bind(sha256).step()) {
@@ -162,13 +161,13 @@ std::string importPlan(const Database& database, const protocol::StudyPlan& plan
     insertQuestionnaires(database, plan);
     insertMeasures(database);
     declareMeasures(database, sha256, plan);
-    for (const protocol::StableStiffness& stable : plan.stable_stiffness)
+    for (const plan::StableStiffness& stable : plan.stable_stiffness)
         insertRow(database, "stable_stiffness", Named{"protocol_sha256", sha256}, Named{"device", stable.device},
                   Named{"stable_stiffness_N_per_m", stable.linear},
                   Named{"stable_rotational_stiffness_Nm_per_rad", stable.rotational}, Named{"origin", stable.origin});
     insertConsentClauses(database, sha256, plan.consent);
     while (slotCount(database, sha256) < plan.participants)
-        insertSlots(database, sha256, protocol::participantKindName(protocol::ParticipantKind::Real));
+        insertSlots(database, sha256, plan::participantKindName(plan::ParticipantKind::Real));
     if (keep) transaction.commit();
     return sha256;
 }

@@ -21,7 +21,7 @@ struct MeshContent {
 };
 
 /// The plan's mesh files. Errors: one that cannot be read.
-Result<std::vector<MeshContent>> readMeshes(const protocol::StudyPlan& plan);
+Result<std::vector<MeshContent>> readMeshes(const plan::StudyPlan& plan);
 
 /// Rows of the square and everybody's order follow from the seed: one protocol has one seed in a database.
 void requireSeed(const Database& database, const std::string& sha256, std::uint64_t seed);
@@ -31,8 +31,7 @@ void requireSeed(const Database& database, const std::string& sha256, std::uint6
 void insertMeasures(const Database& database);
 
 /// In a transaction, kept or not; returns the SHA-256 of the text.
-std::string importPlan(const Database& database, const protocol::StudyPlan& plan,
-                       const std::vector<MeshContent>& meshes, const std::vector<PictureContent>& pictures,
-                       const OpenOptions& options, bool keep);
+std::string importPlan(const Database& database, const plan::StudyPlan& plan, const std::vector<MeshContent>& meshes,
+                       const std::vector<PictureContent>& pictures, const OpenOptions& options, bool keep);
 
 }  // namespace passung::store

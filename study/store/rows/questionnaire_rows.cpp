@@ -10,7 +10,7 @@
 namespace passung::store {
 namespace {
 
-using protocol::PlannedQuestionnaire;
+using plan::PlannedQuestionnaire;
 
 /// Everything that decides what was shown and how it was scored.
 std::string definitionJson(const PlannedQuestionnaire& planned) {
@@ -73,12 +73,11 @@ std::vector<ScoreRow> readScores(const Database& database, std::int64_t run_id) 
 
 }  // namespace
 
-void insertQuestionnaires(const Database& database, const protocol::StudyPlan& plan) {
+void insertQuestionnaires(const Database& database, const plan::StudyPlan& plan) {
     for (const PlannedQuestionnaire& planned : plan.questionnaires) insertQuestionnaire(database, planned);
 }
 
-void requireQuestionnaires(const Database& database, const std::string& protocol_sha256,
-                           const protocol::StudyPlan& plan) {
+void requireQuestionnaires(const Database& database, const std::string& protocol_sha256, const plan::StudyPlan& plan) {
     Statement changed = database.prepare(
         "SELECT coalesce(json_extract(expanded_json, '$.questionnaires'), '[]') IS NOT "
         "coalesce(json_extract(?2, '$.questionnaires'), '[]') FROM protocol_version WHERE protocol_sha256=?1");
@@ -92,7 +91,7 @@ void insertQuestionnaireRun(const Database& database, const std::string& session
                             const session::QuestionnaireRun& run, const FormUtc& utc) {
     const session::Occasion& occasion = run.form.occasion;
     const PlannedQuestionnaire& planned = run.form.planned;
-    const char* moment = protocol::momentName(planned.moment);
+    const char* moment = plan::momentName(planned.moment);
     insertQuestionnaire(database, planned);  // the session's language may be another one than the protocol's first
     std::optional<std::int64_t> condition;
     if (occasion.condition) condition = static_cast<std::int64_t>(*occasion.condition);

@@ -13,12 +13,11 @@ namespace passung::store {
 class Database;
 
 /// The instruments that a plan names, each once per language; known ones stay.
-void insertQuestionnaires(const Database& database, const protocol::StudyPlan& plan);
+void insertQuestionnaires(const Database& database, const plan::StudyPlan& plan);
 
 /// Throws if the plan's questionnaires are not those with which the protocol was imported: its text names their files,
 /// and answers to two wordings must not mix.
-void requireQuestionnaires(const Database& database, const std::string& protocol_sha256,
-                           const protocol::StudyPlan& plan);
+void requireQuestionnaires(const Database& database, const std::string& protocol_sha256, const plan::StudyPlan& plan);
 
 /// When a questionnaire was filled.
 struct FormUtc {

@@ -40,7 +40,7 @@ void insertSlots(const Database& database, const std::string& sha256, const char
     Statement insert = database.prepare(
         "INSERT INTO design_slot(protocol_sha256, between_group, sequence_index, replicate, state, kind) "
         "VALUES(?, ?, ?, ?, 'free', ?)");
-    for (const design::Place& place : design::placesOf(a, protocol::kAllocationStratum, round))
+    for (const design::Place& place : design::placesOf(a, plan::kAllocationStratum, round))
         insert
             .bind(sha256, slots.groups[place.group], static_cast<std::int64_t>(place.sequence),
                   static_cast<std::int64_t>(place.replicate), kind)

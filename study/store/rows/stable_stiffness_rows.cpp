@@ -2,9 +2,8 @@
 
 namespace passung::store {
 
-std::vector<protocol::StableStiffness> readStableStiffness(const Database& database,
-                                                           const std::string& protocol_sha256) {
-    std::vector<protocol::StableStiffness> rows;
+std::vector<plan::StableStiffness> readStableStiffness(const Database& database, const std::string& protocol_sha256) {
+    std::vector<plan::StableStiffness> rows;
     if (database.integer("SELECT count(*) FROM sqlite_master WHERE name='stable_stiffness'") == 0) return rows;
     Statement row = database.prepare(
         "SELECT device, stable_stiffness_N_per_m, stable_rotational_stiffness_Nm_per_rad, origin "

@@ -9,7 +9,6 @@
 namespace passung::store {
 
 /// By device; none in files older than revision 4, nor for protocols from before it. For this room only: throws.
-std::vector<protocol::StableStiffness> readStableStiffness(const Database& database,
-                                                           const std::string& protocol_sha256);
+std::vector<plan::StableStiffness> readStableStiffness(const Database& database, const std::string& protocol_sha256);
 
 }  // namespace passung::store

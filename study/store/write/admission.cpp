@@ -15,14 +15,14 @@ constexpr const char* kMissingClauses =
 }  // namespace
 
 void requireAdmission(const Database& database, const std::string& protocol_sha256, const std::string& participant,
-                      std::optional<protocol::ParticipantKind> newcomer) {
+                      std::optional<plan::ParticipantKind> newcomer) {
     Statement find = database.prepare("SELECT kind, status FROM participant WHERE participant_id=?");
     const bool enrolled = find.bind(participant).step();
     if (!enrolled && !newcomer) throw std::runtime_error("participant " + participant + " is not enrolled");
     const std::string status = enrolled ? find.text(1) : "";
     if (status == "excluded" || status == "withdrawn")
         throw std::runtime_error("participant " + participant + " is " + status + " and takes part no more");
-    if ((enrolled ? find.text(0) : protocol::participantKindName(*newcomer)) == "simulated") return;
+    if ((enrolled ? find.text(0) : plan::participantKindName(*newcomer)) == "simulated") return;
     std::string missing;
     Statement clauses = database.prepare(kMissingClauses);
     clauses.bind(protocol_sha256, participant);

@@ -13,6 +13,6 @@ namespace passung::store {
 /// `newcomer`: what kind the participant will be who is not enrolled yet; none: that is refused too. For this room
 /// only.
 void requireAdmission(const Database& database, const std::string& protocol_sha256, const std::string& participant,
-                      std::optional<protocol::ParticipantKind> newcomer = {});
+                      std::optional<plan::ParticipantKind> newcomer = {});
 
 }  // namespace passung::store

@@ -203,11 +203,11 @@ Store::Opened Store::open(const std::string& path, const OpenOptions& options) {
     return opened;
 }
 
-Result<std::string> Store::importProtocol(const protocol::StudyPlan& plan) { return importOrCheck(plan, true); }
+Result<std::string> Store::importProtocol(const plan::StudyPlan& plan) { return importOrCheck(plan, true); }
 
-Result<std::string> Store::checkProtocol(const protocol::StudyPlan& plan) { return importOrCheck(plan, false); }
+Result<std::string> Store::checkProtocol(const plan::StudyPlan& plan) { return importOrCheck(plan, false); }
 
-Result<std::string> Store::importOrCheck(const protocol::StudyPlan& plan, bool keep) {
+Result<std::string> Store::importOrCheck(const plan::StudyPlan& plan, bool keep) {
     const auto meshes = readMeshes(plan);
     if (!meshes) return meshes.errors();
     const auto pictures = readPictures(plan);
@@ -224,7 +224,7 @@ Result<std::vector<AccuracyRow>> Store::accuracy(const std::string& protocol_sha
     });
 }
 
-Result<std::vector<protocol::StableStiffness>> Store::stableStiffness(const std::string& protocol_sha256) {
+Result<std::vector<plan::StableStiffness>> Store::stableStiffness(const std::string& protocol_sha256) {
     return thread_->call([&](const Database& database) { return readStableStiffness(database, protocol_sha256); });
 }
 
@@ -236,14 +236,14 @@ Result<Done> Store::keepAccuracy(const std::vector<AccuracyRow>& rows) {
 }
 
 Result<Done> Store::checkAdmission(const std::string& protocol_sha256, const std::string& code,
-                                   protocol::ParticipantKind kind) {
+                                   plan::ParticipantKind kind) {
     return thread_->call([&](const Database& database) {
         requireAdmission(database, protocol_sha256, code, kind);
         return Done{};
     });
 }
 
-Result<bool> Store::enrol(const std::string& code, protocol::ParticipantKind kind, const std::string& created_utc) {
+Result<bool> Store::enrol(const std::string& code, plan::ParticipantKind kind, const std::string& created_utc) {
     return thread_->call([&](const Database& database) {
         Transaction transaction(database);
         const bool fresh = insertParticipant(database, code, kind, created_utc, options_.station);
@@ -252,13 +252,13 @@ Result<bool> Store::enrol(const std::string& code, protocol::ParticipantKind kin
     });
 }
 
-Result<std::string> Store::nextCode(protocol::ParticipantKind kind) {
+Result<std::string> Store::nextCode(plan::ParticipantKind kind) {
     return thread_->call([&](const Database& database) {
         Statement find = database.prepare("SELECT 1 FROM participant WHERE participant_id=?");
         // Whoever was erased may have had any code up to there: it must not come to mean somebody else.
         std::int64_t number = erasedCodesTo(database, kind) + 1;
         const auto code = [&] {
-            std::string text = protocol::participantCode(kind, number);
+            std::string text = plan::participantCode(kind, number);
             return options_.station.count > 1 ? text.insert(1, options_.station.name) : text;
         };
         while (find.bind(code()).step()) ++number;

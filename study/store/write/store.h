@@ -30,7 +30,7 @@ struct Slot {
     std::int64_t sequence_index = 0;  // row of the square
     std::int64_t replicate = 0;
     std::int64_t number = 0;  // replicate · rows + sequence_index: the slot of design::SessionKey
-    std::size_t group = 0;    // of protocol::groupNames()
+    std::size_t group = 0;    // of plan::groupNames()
 };
 
 struct SessionStart {
@@ -68,9 +68,9 @@ public:
     /// and a free slot for every planned participant. Returns the SHA-256 of the text. Importing the same text again
     /// changes nothing; another seed than that of the sessions of this protocol is refused, and so is a mesh or
     /// questionnaire file with another content.
-    Result<std::string> importProtocol(const protocol::StudyPlan& plan);
+    Result<std::string> importProtocol(const plan::StudyPlan& plan);
     /// The same answer, but nothing is stored.
-    Result<std::string> checkProtocol(const protocol::StudyPlan& plan);
+    Result<std::string> checkProtocol(const plan::StudyPlan& plan);
 
     /// What was measured and picked for the protocol's accuracy = "auto", by candidate; none if it never ran so.
     Result<std::vector<AccuracyRow>> accuracy(const std::string& protocol_sha256);
@@ -79,20 +79,20 @@ public:
 
     /// Stable stiffness of the devices as the plan had it when it was first imported: what the protocol's stiffnesses
     /// mean in this database, for good. None in protocols from before revision 4.
-    Result<std::vector<protocol::StableStiffness>> stableStiffness(const std::string& protocol_sha256);
+    Result<std::vector<plan::StableStiffness>> stableStiffness(const std::string& protocol_sha256);
 
     /// May somebody of this kind, enrolled or not, begin a session of the protocol? Nothing is stored. Errors:
     /// excluded, withdrawn, or a required clause of consent without a yes.
     Result<Done> checkAdmission(const std::string& protocol_sha256, const std::string& code,
-                                protocol::ParticipantKind kind);
+                                plan::ParticipantKind kind);
 
     /// True if the participant is new, false if already enrolled with this kind; another kind is an error, and so is a
     /// code that does not begin with the kind's letter (of several stations: with theirs behind it), or that an erased
     /// participant may have had.
-    Result<bool> enrol(const std::string& code, protocol::ParticipantKind kind, const std::string& created_utc);
+    Result<bool> enrol(const std::string& code, plan::ParticipantKind kind, const std::string& created_utc);
 
     /// The first unused code of the kind: P001, P002 … for real participants; of several stations PB001, PB002 ….
-    Result<std::string> nextCode(protocol::ParticipantKind kind);
+    Result<std::string> nextCode(plan::ParticipantKind kind);
 
     /// The participant's slot: the one they have, else the first free one in the order of design::placesOf(), its
     /// stratum the kind of participant; a further round of it if none is free. It is theirs for good once a session
@@ -131,7 +131,7 @@ public:
 
 private:
     friend class ParticipantRecords;
-    Result<std::string> importOrCheck(const protocol::StudyPlan& plan, bool keep);
+    Result<std::string> importOrCheck(const plan::StudyPlan& plan, bool keep);
     Store(OpenOptions options, std::unique_ptr<ProcessLock> lock, std::unique_ptr<WriterThread> thread);
 
     OpenOptions options_;

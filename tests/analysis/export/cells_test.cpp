@@ -39,13 +39,13 @@ class BlockedStudy : public testing::Test {
 protected:
     static constexpr double kTimeout = 8.0;
 
-    static protocol::StudyPlan plan() {
-        protocol::StudyPlan plan = fake::makePlan();
-        plan.factors = {{"method", protocol::FactorKind::Within, "", {{"a"}, {"b"}, {"c"}}}};
+    static plan::StudyPlan plan() {
+        plan::StudyPlan plan = fake::makePlan();
+        plan.factors = {{"method", plan::FactorKind::Within, "", {{"a"}, {"b"}, {"c"}}}};
         plan.conditions.clear();
         std::string conditions;
         const auto add = [&](const std::string& name, const std::string& label, const char* type, const char* timeout) {
-            protocol::Condition condition;
+            plan::Condition condition;
             condition.name = name;
             condition.levels_json = "{\"method\": \"" + label + "\"}";
             condition.params_json = "{}";
@@ -77,7 +77,7 @@ protected:
 
     void exportNow() { require(exportAll(require(store::StoreReader::open(folder_ / "s.db")), folder_ / "out", {})); }
 
-    static void writePerson(store::Store& store, const protocol::StudyPlan& plan, int person) {
+    static void writePerson(store::Store& store, const plan::StudyPlan& plan, int person) {
         std::vector<design::PlannedTrial> trials = {{0, 0, "practice", 0, "practice", 0, 1}};
         for (std::int64_t i = 0; i < 6; ++i)
             trials.push_back(
@@ -87,8 +87,8 @@ protected:
         store::SessionStart start;
         start.protocol_sha256 = require(store.importProtocol(plan));
         start.participant = "S00" + std::to_string(person);
-        require(store.enrol(start.participant, protocol::ParticipantKind::Simulated,
-                            store::UtcClock::virtualEpoch().at(0)));
+        require(
+            store.enrol(start.participant, plan::ParticipantKind::Simulated, store::UtcClock::virtualEpoch().at(0)));
         require(store.assignSlot(start.protocol_sha256, start.participant));
         start.ordinal = require(store.nextOrdinal(start.participant));
         start.seed = plan.seed;

@@ -51,7 +51,7 @@ protected:
     }
 
     fake::TempFolder folder_;
-    protocol::StudyPlan plan_ = fake::makeAskingPlan();
+    plan::StudyPlan plan_ = fake::makeAskingPlan();
 };
 
 TEST_F(QuestionnaireTables, ItemsHaveOneRowPerAnswerAsShown) {

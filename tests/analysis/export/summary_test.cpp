@@ -62,7 +62,7 @@ TEST(Summary, CountsOnlyValidMainTrialsAndAveragesThem) {
 TEST(Summary, KeepsVersionsOfAProtocolApart) {
     // Truth: closed form: one participant with one attempt (1.0 s) under each of two versions.
     const fake::TempFolder folder;
-    protocol::StudyPlan later = fake::makePlan();
+    plan::StudyPlan later = fake::makePlan();
     later.version = "1.1";
     later.source_text += "# changed\n";
     {

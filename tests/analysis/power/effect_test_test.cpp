@@ -14,21 +14,21 @@
 namespace passung::power {
 namespace {
 
-using protocol::FactorKind;
+using plan::FactorKind;
 using test::smallPlan;
 
 constexpr const char* kTime = "completion_time_s";
 
 PlantedEffect effectOf(const std::string& text, const std::string& against = "",
-                       const protocol::StudyPlan& plan = smallPlan()) {
+                       const plan::StudyPlan& plan = smallPlan()) {
     const auto effect = readEffect(text, against, kTime, plan);
     if (!effect) throw std::runtime_error(toString(effect.errors().front()));
     return *effect;
 }
 
 /// The small plan with its second factor between participants.
-protocol::StudyPlan groupedPlan() {
-    protocol::StudyPlan plan = smallPlan();
+plan::StudyPlan groupedPlan() {
+    plan::StudyPlan plan = smallPlan();
     plan.factors[1].kind = FactorKind::Between;
     return plan;
 }
@@ -70,8 +70,8 @@ TEST(TestEffect, ComparesMeansOfCellMeans) {
 
 TEST(TestEffect, TakesEverybodyWhereNobodyMeetsEveryCondition) {
     // Truth: invariant; the sizes are assigned to the methods, a participant meets three of the six conditions.
-    protocol::StudyPlan plan = smallPlan();
-    plan.factors[1].kind = protocol::FactorKind::Nuisance;
+    plan::StudyPlan plan = smallPlan();
+    plan.factors[1].kind = plan::FactorKind::Nuisance;
     const exporter::StudyData study = *modelStudy(plan, 6);
     EXPECT_EQ(study.attempts.size(), 6u * 7u);
     EXPECT_EQ(testEffect(effectOf("method:d=+0"), "paired_t", plan, study).n, 6u);
@@ -93,7 +93,7 @@ Means meansOf(const exporter::StudyData& study, const std::string& factor) {
 
 TEST(TestEffect, GroupsAreComparedByTheirPeoplesMeans) {
     // Truth: independent path: means taken straight from the attempts, which are equally many in each cell.
-    const protocol::StudyPlan plan = groupedPlan();
+    const plan::StudyPlan plan = groupedPlan();
     const exporter::StudyData study = *modelStudy(plan, 12);
     std::map<std::string, std::vector<double>> groups;
     std::map<std::string, std::vector<std::vector<double>>> rows;
@@ -131,7 +131,7 @@ TEST(TestEffect, GroupsAreComparedByTheirPeoplesMeans) {
 
 TEST(ChooseTest, IsThePlannedOneOrWhatSuitsTheFactor) {
     // Truth: closed form
-    protocol::StudyPlan plan = groupedPlan();
+    plan::StudyPlan plan = groupedPlan();
     const PlantedEffect size = effectOf("size:1=+0", "", plan), method = effectOf("method:d=+0", "", plan);
     EXPECT_EQ(*chooseTest("", method, plan), "paired_t");
     EXPECT_EQ(*chooseTest("", size, plan), "welch_t");

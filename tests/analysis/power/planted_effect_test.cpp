@@ -84,7 +84,7 @@ TEST(ModelStudy, IsTheSameForTheSamePlanAndDiffersBetweenPeople) {
     // Truth: invariant
     const std::vector<double> times = timesOf(*modelStudy(smallPlan(), 3));
     EXPECT_EQ(times, timesOf(*modelStudy(smallPlan(), 3)));
-    protocol::StudyPlan other = smallPlan();
+    plan::StudyPlan other = smallPlan();
     other.seed = 12;
     EXPECT_NE(times, timesOf(*modelStudy(other, 3)));
     for (std::size_t i = 0; i < 13; ++i) EXPECT_NE(times[i], times[13 + i]);
@@ -92,7 +92,7 @@ TEST(ModelStudy, IsTheSameForTheSamePlanAndDiffersBetweenPeople) {
 
 TEST(ModelStudy, ASecondSessionIsDrawnAnew) {
     // Truth: invariant; the same block again, trial by trial.
-    protocol::StudyPlan plan = smallPlan();
+    plan::StudyPlan plan = smallPlan();
     plan.blocks.erase(plan.blocks.begin());
     plan.blocks.push_back(plan.blocks.front());
     plan.blocks.back().name = "again";

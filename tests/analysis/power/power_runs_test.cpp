@@ -11,7 +11,7 @@
 namespace passung::power {
 namespace {
 
-PowerResult run(const protocol::StudyPlan& plan, const std::string& text, int repeats, const Shard& shard = {},
+PowerResult run(const plan::StudyPlan& plan, const std::string& text, int repeats, const Shard& shard = {},
                 const std::string& test = "paired_t") {
     const auto effect = readEffect(text, "", kModelMeasure, plan);
     if (!effect) throw std::runtime_error(toString(effect.errors().front()));
@@ -27,7 +27,7 @@ PowerResult run(const protocol::StudyPlan& plan, const std::string& text, int re
 
 TEST(PowerRuns, ShardsRunWhatTheWholeRuns) {
     // Truth: invariant, byte for byte, whatever thread did what
-    const protocol::StudyPlan plan = test::smallPlan();
+    const plan::StudyPlan plan = test::smallPlan();
     const std::string whole = powerText(run(plan, "method:d=+0.3", 30));
     EXPECT_EQ(powerText(run(plan, "method:d=+0.3", 30)), whole);
     std::vector<PowerResult> shards;
@@ -61,12 +61,12 @@ TEST(PowerRuns, EveryTestFindsOneFalsePositiveInTwenty) {
     // tests are asked. Rank tests of few people can only come close from
     // below: 24 people. Orders are drawn for each person: a balanced square takes learning out of the levels' means but
     // not out of the error that tests compare them with, and would make them conservative (mixed_anova: 3.5 %).
-    protocol::StudyPlan within = test::smallPlan(), between = test::smallPlan();
-    between.factors[1].kind = protocol::FactorKind::Between;
+    plan::StudyPlan within = test::smallPlan(), between = test::smallPlan();
+    between.factors[1].kind = plan::FactorKind::Between;
     within.participants = between.participants = 24;
-    within.blocks[1].order = between.blocks[1].order = protocol::BlockOrder::Random;
+    within.blocks[1].order = between.blocks[1].order = plan::BlockOrder::Random;
     struct Case {
-        const protocol::StudyPlan& plan;
+        const plan::StudyPlan& plan;
         const char* effect;
         const char* test;
     };
@@ -83,8 +83,8 @@ TEST(PowerRuns, EveryTestFindsOneFalsePositiveInTwenty) {
 
 TEST(PowerRuns, EveryTestFindsALargeEffect) {
     // Truth: invariant: of one standard deviation between persons or more, few of 200 studies of 24 people miss it.
-    protocol::StudyPlan plan = test::smallPlan();
-    plan.factors[1].kind = protocol::FactorKind::Between;
+    plan::StudyPlan plan = test::smallPlan();
+    plan.factors[1].kind = plan::FactorKind::Between;
     plan.participants = 24;
     for (const char* test : {"paired_t", "wilcoxon", "rm_anova", "friedman", "mixed_anova"})
         EXPECT_GT(summarise(run(plan, "method:d=x2", 200, {}, test)).power, 0.95) << test;
@@ -110,14 +110,13 @@ TEST(PowerRuns, APlantedEffectIsRecovered) {
 
 TEST(PowerRuns, TheFirstErrorEndsIt) {
     // Truth: invariant
-    const protocol::StudyPlan plan = test::smallPlan();
+    const plan::StudyPlan plan = test::smallPlan();
     const auto effect = readEffect("method:d=+0", "", kModelMeasure, plan);
     PowerJob job = describeJob(plan, *effect, "paired_t");
     job.repeats = 50;
     const auto result = runShard(
         job, {}, *effect, plan,
-        [](const protocol::StudyPlan&, int) -> Result<exporter::StudyData> { return Error{.message = "no device"}; },
-        {});
+        [](const plan::StudyPlan&, int) -> Result<exporter::StudyData> { return Error{.message = "no device"}; }, {});
     ASSERT_FALSE(result);
     EXPECT_EQ(result.errors().front().message, "no device");
 }

@@ -5,28 +5,28 @@
 namespace passung::power::test {
 
 /// Two factors, three by two levels; a Williams order, twice, after a practice trial. No scene: for the model.
-inline protocol::StudyPlan smallPlan() {
-    protocol::StudyPlan plan;
+inline plan::StudyPlan smallPlan() {
+    plan::StudyPlan plan;
     plan.name = "small";
     plan.version = "1.0";
     plan.seed = 11;
     plan.participants = 12;
     plan.source_text = "[study]";
-    plan.factors = {{"method", protocol::FactorKind::Within, "", {{"a"}, {"b=c"}, {"d"}}},
-                    {"size", protocol::FactorKind::Within, "mm", {{"1"}, {"2"}}}};
+    plan.factors = {{"method", plan::FactorKind::Within, "", {{"a"}, {"b=c"}, {"d"}}},
+                    {"size", plan::FactorKind::Within, "mm", {{"1"}, {"2"}}}};
     plan.measures = {"completion_time_s", "peak_force_N"};
     for (std::size_t method = 0; method < 3; ++method) {
         for (std::size_t size = 0; size < 2; ++size) {
-            protocol::Condition condition;
+            plan::Condition condition;
             condition.levels = {method, size};
             condition.name = plan.factors[0].levels[method].label + '/' + plan.factors[1].levels[size].label;
             plan.conditions.push_back(condition);
         }
     }
-    protocol::Block practice, main;
+    plan::Block practice, main;
     practice.name = "practice";
-    practice.phase = protocol::Phase::Practice;
-    practice.order = protocol::BlockOrder::Random;
+    practice.phase = plan::Phase::Practice;
+    practice.order = plan::BlockOrder::Random;
     practice.trials = 1;
     main.name = "main";
     main.repetitions = 2;

@@ -30,17 +30,17 @@ protected:
     BallOnCube() {
         scene_.parts.resize(2);
         scene_.parts[0].name = "cube";
-        scene_.parts[0].geometry = model::Box{0.004, 0.004, 0.004};
+        scene_.parts[0].geometry = shape::Box{0.004, 0.004, 0.004};
         scene_.parts[1].name = "ball";
-        scene_.parts[1].geometry = model::Sphere{0.002};
+        scene_.parts[1].geometry = shape::Sphere{0.002};
         scene_.parts[1].held = true;
     }
     Result<std::vector<SettingCost>> measure(const std::vector<double>& budgets) {
         return measureCandidates(
             {{&scene_, {contact_}}}, budgets, [](const std::string&, double) {}, nullptr);
     }
-    model::SceneSpec scene_;
-    model::ContactSpec contact_;
+    scene::SceneSpec scene_;
+    scene::ContactSpec contact_;
 };
 
 TEST_F(BallOnCube, MeasuresEverySpacingForALargeBudgetAndOnlyTheCoarsestForNone) {
@@ -52,14 +52,14 @@ TEST_F(BallOnCube, MeasuresEverySpacingForALargeBudgetAndOnlyTheCoarsestForNone)
     EXPECT_EQ(std::count_if(all->begin(), all->end(), [](const auto& row) { return row.setting.budget_nodes > 0; }), 0);
     EXPECT_LT(all->back().setting.spacing, 0.2 * coarsest);
     EXPECT_LT(all->back().force.mean, all->front().force.mean);
-    contact_.method = model::ContactMethod::Penalty;
+    contact_.method = scene::ContactMethod::Penalty;
     const auto first = measure({1e-12});
     ASSERT_TRUE(first);
     for (const SettingCost& row : *first) EXPECT_EQ(row.setting.spacing, coarsest);
     EXPECT_GT(std::count_if(first->begin(), first->end(), [](const auto& row) { return row.setting.budget_nodes > 0; }),
               0);
     EXPECT_EQ(pickFinest(*first, 1e-12), std::nullopt);
-    contact_.method = model::ContactMethod::GodObject;  // its proxy would stop where a query ended early
+    contact_.method = scene::ContactMethod::GodObject;  // its proxy would stop where a query ended early
     const auto whole = measure({1e-12});
     ASSERT_TRUE(whole);
     EXPECT_EQ(std::count_if(whole->begin(), whole->end(), [](const auto& row) { return row.setting.budget_nodes > 0; }),
@@ -69,8 +69,8 @@ TEST_F(BallOnCube, MeasuresEverySpacingForALargeBudgetAndOnlyTheCoarsestForNone)
 TEST_F(BallOnCube, TwoWayContactFindsWhatPokesBetweenTheHeldPartsPoints) {
     // Truth: invariant. A rod of 0.1 mm and points about 0.3 mm apart on the held cube, of which hardly any meets it;
     // the rod's own corners do.
-    scene_.parts[0].geometry = model::Box{0.0001, 0.0001, 0.003};
-    scene_.parts[1].geometry = model::Box{0.004, 0.004, 0.004};
+    scene_.parts[0].geometry = shape::Box{0.0001, 0.0001, 0.003};
+    scene_.parts[1].geometry = shape::Box{0.004, 0.004, 0.004};
     const auto one_way = measure({1e-12});
     contact_.two_way = true;
     const auto two_way = measure({1e-12});

@@ -36,8 +36,8 @@ TEST(AccuracyFront, HoldsExactlyTheRowsThatNoOtherBeatsInBoth) {
 /// A ball that is pressed into a cube by three depths, and once apart.
 class BallOnCube : public ::testing::Test {
 protected:
-    const model::PartSpec cube_ = test::namedPart("cube", model::Box{0.04, 0.04, 0.04}),
-                          ball_ = test::namedPart("ball", model::Sphere{0.02});
+    const scene::PartSpec cube_ = test::namedPart("cube", shape::Box{0.04, 0.04, 0.04}),
+                          ball_ = test::namedPart("ball", shape::Sphere{0.02});
     const AccuracySpace space_{.tolerances = {50e-6}, .spacings = {1e-3, 0.5e-3}, .budgets = {0, 30}, .repetitions = 1};
 
     std::vector<JudgedPose> poses() const {
@@ -62,7 +62,7 @@ TEST_F(BallOnCube, ErrsByNoMoreThanTheSpacingAdmitsAndLessWithFinerPoints) {
     for (const SettingCost& row : result->rows) {
         if (row.setting.budget_nodes > 0) continue;
         // A layer is off by half a cell besides, and cells are at most 1/72 of the cube's side.
-        const double layer = row.setting.mode == model::FieldMode::Layered ? 0.5 * 0.04 / 72 : 0.0;
+        const double layer = row.setting.mode == field::FieldMode::Layered ? 0.5 * 0.04 / 72 : 0.0;
         for (const Spread& error : {row.depth, row.distance})
             EXPECT_LE(error.max, row.setting.spacing * row.setting.spacing / 0.02 + 50e-6 + layer);
         EXPECT_GT(row.time.p99, 0.0);
@@ -71,7 +71,7 @@ TEST_F(BallOnCube, ErrsByNoMoreThanTheSpacingAdmitsAndLessWithFinerPoints) {
     }
     const auto find = [&](double spacing) {
         return std::find_if(result->rows.begin(), result->rows.end(), [&](const SettingCost& row) {
-            return row.setting.mode == model::FieldMode::Trilinear && row.setting.spacing == spacing &&
+            return row.setting.mode == field::FieldMode::Trilinear && row.setting.spacing == spacing &&
                    row.setting.budget_nodes == 0;
         });
     };
@@ -83,8 +83,8 @@ TEST_F(BallOnCube, AsksAsTheTickOfTheContactMethodAsks) {
     // Truth: closed form. The ball's depth is 0.4 mm however it is turned. A tick of penalty contact follows the
     // surface between the points: the field's tolerance is left, and 1 um of steps that end. The god object's tick
     // takes points as they are, 3 mm apart: in some pose the nearest one is 1 mm aside, which costs 1 mm² / 2r = 50 um.
-    const auto built = [](const model::PartSpec& part, const model::PartNeeds& needs) {
-        return std::make_shared<const model::Part>(*model::buildPart(part, needs));
+    const auto built = [](const scene::PartSpec& part, const scene::PartNeeds& needs) {
+        return std::make_shared<const scene::Part>(*scene::buildPart(part, needs));
     };
     const auto cube = built(cube_, {.field = true, .tolerance = 20e-6});
     const auto ball = built(ball_, {.shell = true, .spacing = 3e-3});
@@ -93,13 +93,13 @@ TEST_F(BallOnCube, AsksAsTheTickOfTheContactMethodAsks) {
         turned.push_back({{rotationFromVector({0.3 * i, 0.5, -0.2 * i}), Vec3(0.001, 0.002, 0.03 - 0.4e-3)}, {}});
         turned.back().truth.distance = -0.4e-3;
     }
-    const auto errorOf = [&](model::ContactMethod method) {
-        model::ContactSpec contact;
+    const auto errorOf = [&](scene::ContactMethod method) {
+        scene::ContactSpec contact;
         contact.method = method;
         return measureSetting({}, contact, cube, ball, turned, {}, 1, 0.01).depth.max;
     };
-    EXPECT_LE(errorOf(model::ContactMethod::Penalty), 20e-6 + 1e-6);
-    EXPECT_GT(errorOf(model::ContactMethod::GodObjectHeuristic), 50e-6);
+    EXPECT_LE(errorOf(scene::ContactMethod::Penalty), 20e-6 + 1e-6);
+    EXPECT_GT(errorOf(scene::ContactMethod::GodObjectHeuristic), 50e-6);
 }
 
 TEST_F(BallOnCube, NamesThePoseWhereAnAnswerContradictsTheTruth) {

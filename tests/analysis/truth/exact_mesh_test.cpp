@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kChord = 20e-6;  // of the tessellated round shapes [m]
 
-ExactMesh meshOf(const model::Shape& shape) { return ExactMesh(model::tessellate(shape, kChord)); }
+ExactMesh meshOf(const shape::Shape& shape) { return ExactMesh(shape::tessellate(shape, kChord)); }
 
 Vec3 randomPoint(Random& random, const Vec3& half) {
     return {random.uniform(-half.x(), half.x()), random.uniform(-half.y(), half.y()),
@@ -62,7 +62,7 @@ TEST(DistanceToTriangle, TreatsASliverAsItsEdges) {
 TEST(ExactMesh, HasTheSignedDistanceOfABox) {
     // Truth: closed form (a box is its mesh)
     const Vec3 half(0.03, 0.02, 0.01);
-    const ExactMesh mesh = meshOf(model::Box{0.06, 0.04, 0.02});
+    const ExactMesh mesh = meshOf(shape::Box{0.06, 0.04, 0.02});
     Random random(1);
     for (int i = 0; i < 20000; ++i) {
         const Vec3 p = randomPoint(random, 2.0 * half);
@@ -72,7 +72,7 @@ TEST(ExactMesh, HasTheSignedDistanceOfABox) {
 
 TEST(ExactMesh, HasTheSignedDistanceOfASphereUpToItsChords) {
     // Truth: closed form (|p| - r; the mesh lies at most one chord error inside)
-    const ExactMesh mesh = meshOf(model::Sphere{0.04});
+    const ExactMesh mesh = meshOf(shape::Sphere{0.04});
     Random random(2);
     for (int i = 0; i < 5000; ++i) {
         const Vec3 p = randomPoint(random, Vec3::Constant(0.04));
@@ -84,7 +84,7 @@ TEST(ExactMesh, HasTheSignedDistanceOfASphereUpToItsChords) {
 
 TEST(ExactMesh, FindsTheNearestOfAllTriangles) {
     // Truth: invariant (the smallest distance over every triangle, no grid)
-    const ExactMesh mesh = meshOf(model::BorePlate{0.06, 0.05, 0.02, 0.0202, 0.015, 0.001});
+    const ExactMesh mesh = meshOf(shape::BorePlate{0.06, 0.05, 0.02, 0.0202, 0.015, 0.001});
     Random random(3);
     for (int i = 0; i < 2000; ++i) {
         const Vec3 p = randomPoint(random, Vec3(0.08, 0.08, 0.05));
@@ -98,7 +98,7 @@ TEST(ExactMesh, FindsTheNearestOfAllTriangles) {
 
 TEST(ExactMesh, CollectsEveryTriangleAround) {
     // Truth: invariant (every triangle within the radius, found by looking at all, is in the list)
-    const ExactMesh mesh = meshOf(model::Peg{0.02, 0.04, 0.001});
+    const ExactMesh mesh = meshOf(shape::Peg{0.02, 0.04, 0.001});
     Random random(4);
     for (int i = 0; i < 500; ++i) {
         const Vec3 p = randomPoint(random, Vec3(0.02, 0.02, 0.05));
@@ -115,25 +115,25 @@ TEST(ExactMesh, CollectsEveryTriangleAround) {
 TEST(ExactMesh, ContainsWhatTheWindingNumberContains) {
     // Truth: invariant (winding number, another way to tell inside from outside, summed over all triangles)
     Random random(5);
-    for (const model::Shape& shape : {model::Shape{model::Sphere{0.04}}, model::Shape{model::Peg{0.02, 0.04, 0.002}},
-                                      model::Shape{model::BorePlate{0.04, 0.04, 0.03, 0.02, 0.02, 0.001}},
-                                      model::Shape{model::BorePlate{0.04, 0.04, 0.03, 0.02, 0.03, 0.0}}}) {
+    for (const shape::Shape& shape : {shape::Shape{shape::Sphere{0.04}}, shape::Shape{shape::Peg{0.02, 0.04, 0.002}},
+                                      shape::Shape{shape::BorePlate{0.04, 0.04, 0.03, 0.02, 0.02, 0.001}},
+                                      shape::Shape{shape::BorePlate{0.04, 0.04, 0.03, 0.02, 0.03, 0.0}}}) {
         const ExactMesh mesh = meshOf(shape);
         int inside = 0;
         for (int i = 0; i < 1000; ++i) {
             const Vec3 p = randomPoint(random, Vec3(0.022, 0.022, 0.042));
             const double winding = windingNumber(mesh, p);
             if (std::abs(winding - 0.5) < 0.4) continue;  // within rounding of the surface
-            ASSERT_EQ(mesh.contains(p), winding > 0.5) << model::kindName(shape) << ' ' << p.transpose();
+            ASSERT_EQ(mesh.contains(p), winding > 0.5) << shape::kindName(shape) << ' ' << p.transpose();
             inside += winding > 0.5 ? 1 : 0;
         }
-        EXPECT_GT(inside, 50) << model::kindName(shape);
+        EXPECT_GT(inside, 50) << shape::kindName(shape);
     }
 }
 
 TEST(ExactMesh, ContainsIsRightForPointsStraightBelowVertices) {
     // Truth: closed form (the grid of a box's corners and edge directions, where rays along axes would graze)
-    const ExactMesh mesh = meshOf(model::Box{2.0, 2.0, 2.0});
+    const ExactMesh mesh = meshOf(shape::Box{2.0, 2.0, 2.0});
     for (const double x : {-1.5, -0.5, 0.0, 0.5, 1.5}) {
         for (const double y : {-1.5, -0.5, 0.0, 0.5, 1.5}) {
             for (const double z : {-1.5, -0.5, 0.0, 0.5, 1.5}) {
@@ -146,8 +146,8 @@ TEST(ExactMesh, ContainsIsRightForPointsStraightBelowVertices) {
 
 TEST(DeepestPoint, IsTheDepthOfABallInABlock) {
     // Truth: closed form (ball 2 mm deep; the ball's mesh lies at most one chord error inside the ball)
-    const ExactMesh block = meshOf(model::Box{0.1, 0.1, 0.1});
-    const ExactMesh ball = meshOf(model::Sphere{0.02});
+    const ExactMesh block = meshOf(shape::Box{0.1, 0.1, 0.1});
+    const ExactMesh ball = meshOf(shape::Sphere{0.02});
     Random random(6);
     for (int i = 0; i < 20; ++i) {
         const Pose X_FS{randomPose(random, 0.0).q, Vec3(random.uniform(-0.03, 0.03), 0.01, 0.05 + 0.01 - 0.002)};
@@ -161,8 +161,8 @@ TEST(DeepestPoint, IsTheDepthOfABallInABlock) {
 
 TEST(DeepestPoint, FindsACornerThatPiercesAFace) {
     // Truth: closed form (a cube stands on its corner, which is 1 mm deep; every triangle's centre is outside)
-    const ExactMesh block = meshOf(model::Box{0.1, 0.1, 0.1});
-    const ExactMesh cube = meshOf(model::Box{0.02, 0.02, 0.02});
+    const ExactMesh block = meshOf(shape::Box{0.1, 0.1, 0.1});
+    const ExactMesh cube = meshOf(shape::Box{0.02, 0.02, 0.02});
     const Quat on_corner = Quat::FromTwoVectors(Vec3(1, 1, 1), Vec3(0, 0, -1));
     const double half_diagonal = 0.01 * std::sqrt(3.0);
     const Pose X_FS{on_corner, Vec3(0.003, 0.001, 0.05 + half_diagonal - 1e-3)};
@@ -173,8 +173,8 @@ TEST(DeepestPoint, FindsACornerThatPiercesAFace) {
 
 TEST(DeepestPoint, IsExactAndQuickForFacesFlatOnEachOther) {
     // Truth: closed form (a plate sunk 0.1 mm into a block; all of its lower face is equally deep)
-    const ExactMesh block = meshOf(model::Box{0.1, 0.1, 0.1});
-    const ExactMesh plate = meshOf(model::Box{0.04, 0.04, 0.01});
+    const ExactMesh block = meshOf(shape::Box{0.1, 0.1, 0.1});
+    const ExactMesh plate = meshOf(shape::Box{0.04, 0.04, 0.01});
     const DeepestPoint deepest = deepestPoint(block, plate, {.p = Vec3(0, 0, 0.05 + 0.005 - 1e-4)}, 1e-6);
     EXPECT_NEAR(deepest.depth, 1e-4, 1e-15);
     EXPECT_LT(deepest.pieces, 20000U);  // the face alone has 1.6e9 patches as small as the resolution
@@ -182,15 +182,15 @@ TEST(DeepestPoint, IsExactAndQuickForFacesFlatOnEachOther) {
 
 TEST(DeepestPoint, IsZeroForAGapHoweverSmall) {
     // Truth: closed form (faces 1 nm apart, and a peg in a bore with 10 µm of clearance)
-    const ExactMesh block = meshOf(model::Box{0.1, 0.1, 0.1});
-    const ExactMesh plate = meshOf(model::Box{0.04, 0.04, 0.01});
+    const ExactMesh block = meshOf(shape::Box{0.1, 0.1, 0.1});
+    const ExactMesh plate = meshOf(shape::Box{0.04, 0.04, 0.01});
     const DeepestPoint flat = deepestPoint(block, plate, {.p = Vec3(0, 0, 0.05 + 0.005 + 1e-9)}, 1e-7);
     EXPECT_EQ(flat.depth, 0.0);
     EXPECT_LE(flat.uncertainty, 1e-7);
     EXPECT_LT(flat.pieces, 1000U);
 
-    const ExactMesh bore(model::tessellate(model::BorePlate{0.06, 0.06, 0.03, 0.02002, 0.02, 0.0}, 1e-6));
-    const ExactMesh peg(model::tessellate(model::Peg{0.02, 0.05, 0.0}, 1e-6));
+    const ExactMesh bore(shape::tessellate(shape::BorePlate{0.06, 0.06, 0.03, 0.02002, 0.02, 0.0}, 1e-6));
+    const ExactMesh peg(shape::tessellate(shape::Peg{0.02, 0.05, 0.0}, 1e-6));
     const DeepestPoint fit = deepestPoint(bore, peg, {.p = Vec3(0, 0, -0.015)}, 1e-6);
     EXPECT_EQ(fit.depth, 0.0);
     EXPECT_LE(fit.uncertainty, 1e-6);
@@ -199,8 +199,8 @@ TEST(DeepestPoint, IsZeroForAGapHoweverSmall) {
 
 TEST(DeepestPoint, IsNeverLessThanTheDeepestOfManySamples) {
     // Truth: invariant (no sample of the surface is deeper than depth + uncertainty; one comes within the spacing)
-    const ExactMesh plate = meshOf(model::BorePlate{0.05, 0.05, 0.02, 0.0202, 0.015, 0.0005});
-    const ExactMesh peg = meshOf(model::Peg{0.02, 0.03, 0.001});
+    const ExactMesh plate = meshOf(shape::BorePlate{0.05, 0.05, 0.02, 0.0202, 0.015, 0.0005});
+    const ExactMesh peg = meshOf(shape::Peg{0.02, 0.03, 0.001});
     const double resolution = 1e-5, spacing = 1e-3;
     Random random(7);
     int penetrating = 0;
@@ -229,8 +229,8 @@ TEST(DeepestPoint, IsNeverLessThanTheDeepestOfManySamples) {
 
 TEST(DeepestPoint, SaysHowUncertainItIsWhenItIsStoppedEarly) {
     // Truth: closed form (ball 2 mm deep in a block: the interval must hold the truth at every stop)
-    const ExactMesh block = meshOf(model::Box{0.1, 0.1, 0.1});
-    const ExactMesh ball = meshOf(model::Sphere{0.02});
+    const ExactMesh block = meshOf(shape::Box{0.1, 0.1, 0.1});
+    const ExactMesh ball = meshOf(shape::Sphere{0.02});
     const Pose X_FS{.p = Vec3(0, 0, 0.05 + 0.01 - 0.002)};
     for (const std::size_t pieces : {1U, 10U, 100U, 1000U, 10000U}) {
         const DeepestPoint deepest = deepestPoint(block, ball, X_FS, 1e-9, pieces);

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kChord = 20e-6;  // of the tessellated balls [m]
 
-MeshOracle oracleOf(const model::Shape& a, const model::Shape& b) {
-    return {model::tessellate(a, kChord), model::tessellate(b, kChord)};
+MeshOracle oracleOf(const shape::Shape& a, const shape::Shape& b) {
+    return {shape::tessellate(a, kChord), shape::tessellate(b, kChord)};
 }
 
 Quat randomTurn(Random& random) {
@@ -24,7 +24,7 @@ Quat randomTurn(Random& random) {
 
 TEST(MeshOracle, SeparatesTwoBalls) {
     // Truth: closed form (distance of the centres minus both radii; each mesh lies up to a chord error inside)
-    const MeshOracle oracle = oracleOf(model::Sphere{0.04}, model::Sphere{0.02});
+    const MeshOracle oracle = oracleOf(shape::Sphere{0.04}, shape::Sphere{0.02});
     Random random(1);
     for (int i = 0; i < 200; ++i) {
         const double gap = random.uniform(1e-4, 0.02);
@@ -40,8 +40,8 @@ TEST(MeshOracle, SeparatesACornerFromABallOfTinyTriangles) {
     // Truth: closed form (the corner is nearest to a ball in its octant). The ball's triangles have edges of about
     // 0.1 mm, whose faces FCL in metres leaves out: it would say 0, or how far an edge is.
     constexpr double kFine = 0.5e-6, kRadius = 2.5e-3;
-    const MeshOracle oracle(model::tessellate(model::Box{0.01, 0.01, 0.01}, kFine),
-                            model::tessellate(model::Sphere{2 * kRadius}, kFine));
+    const MeshOracle oracle(shape::tessellate(shape::Box{0.01, 0.01, 0.01}, kFine),
+                            shape::tessellate(shape::Sphere{2 * kRadius}, kFine));
     Random random(3);
     for (int i = 0; i < 200; ++i) {
         const double gap = random.uniform(2e-6, 20e-6);
@@ -55,7 +55,7 @@ TEST(MeshOracle, SeparatesACornerFromABallOfTinyTriangles) {
 
 TEST(MeshOracle, FindsBallsThatOverlap) {
     // Truth: closed form (surfaces meet if |r1 - r2| < centres' distance < r1 + r2, chord errors kept off)
-    const MeshOracle oracle = oracleOf(model::Sphere{0.04}, model::Sphere{0.02});
+    const MeshOracle oracle = oracleOf(shape::Sphere{0.04}, shape::Sphere{0.02});
     Random random(2);
     for (int i = 0; i < 200; ++i) {
         const double centres = random.uniform(0.01 + 1e-4, 0.03 - 1e-4);
@@ -67,8 +67,8 @@ TEST(MeshOracle, FindsBallsThatOverlap) {
 
 TEST(MeshOracle, KnowsContainmentFromBothSidesAndFromAbsence) {
     // Truth: closed form (the small ball lies wholly in the big one while the centres are closer than r1 - r2)
-    const MeshOracle big_small = oracleOf(model::Sphere{0.04}, model::Sphere{0.02});
-    const MeshOracle small_big = oracleOf(model::Sphere{0.02}, model::Sphere{0.04});
+    const MeshOracle big_small = oracleOf(shape::Sphere{0.04}, shape::Sphere{0.02});
+    const MeshOracle small_big = oracleOf(shape::Sphere{0.02}, shape::Sphere{0.04});
     Random random(3);
     for (int i = 0; i < 200; ++i) {
         const double centres = random.uniform(0.0, 0.01 - 1e-4);
@@ -82,7 +82,7 @@ TEST(MeshOracle, KnowsContainmentFromBothSidesAndFromAbsence) {
 
 TEST(MeshOracle, MeasuresTheDepthOfABallInABox) {
     // Truth: closed form (box face at z = 50 mm, ball of 20 mm sunk by a known depth)
-    const MeshOracle oracle = oracleOf(model::Box{0.1, 0.1, 0.1}, model::Sphere{0.02});
+    const MeshOracle oracle = oracleOf(shape::Box{0.1, 0.1, 0.1}, shape::Sphere{0.02});
     Random random(4);
     for (int i = 0; i < 20; ++i) {
         const double depth = random.uniform(1e-4, 0.015);
@@ -94,7 +94,7 @@ TEST(MeshOracle, MeasuresTheDepthOfABallInABox) {
 
 TEST(MeshOracle, SeparatesAndIntersectsBoxesExactly) {
     // Truth: closed form (boxes along x, faces parallel; both meshes are exact)
-    const MeshOracle oracle = oracleOf(model::Box{0.02, 0.02, 0.02}, model::Box{0.04, 0.01, 0.01});
+    const MeshOracle oracle = oracleOf(shape::Box{0.02, 0.02, 0.02}, shape::Box{0.04, 0.01, 0.01});
     EXPECT_NEAR(*oracle.separation({.p = Vec3(0.035, 0, 0)}), 0.005, 1e-12);
     EXPECT_FALSE(*oracle.surfacesIntersect({.p = Vec3(0.03 + 1e-9, 0, 0)}));
     EXPECT_TRUE(*oracle.surfacesIntersect({.p = Vec3(0.03 - 1e-9, 0, 0)}));
@@ -104,7 +104,7 @@ TEST(MeshOracle, SeparatesAndIntersectsBoxesExactly) {
 
 TEST(MeshOracle, RefusesAPoseThatIsNotFinite) {
     // Truth: invariant (no answer about a pose that does not exist)
-    const MeshOracle oracle = oracleOf(model::Box{1, 1, 1}, model::Box{1, 1, 1});
+    const MeshOracle oracle = oracleOf(shape::Box{1, 1, 1}, shape::Box{1, 1, 1});
     Pose broken;
     broken.p.y() = std::numeric_limits<double>::quiet_NaN();
     EXPECT_FALSE(oracle.surfacesIntersect(broken));

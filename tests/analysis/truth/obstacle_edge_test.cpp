@@ -37,10 +37,10 @@ struct Overlap {
 /// Overlap of a held shape and a fixed one by three means.
 class OverlapMeter {
 public:
-    OverlapMeter(const model::Shape& held, const model::Shape& fixed, const test::Bench& bench, const Pose& X_WFixed)
+    OverlapMeter(const shape::Shape& held, const shape::Shape& fixed, const test::Bench& bench, const Pose& X_WFixed)
         : fixed_(fixed),
-          held_mesh_(model::tessellate(held, kChord)),
-          fixed_mesh_(model::tessellate(fixed, kChord)),
+          held_mesh_(shape::tessellate(held, kChord)),
+          fixed_mesh_(shape::tessellate(fixed, kChord)),
           bench_(bench),
           X_FixedW_(X_WFixed.inverse()) {}
 
@@ -49,7 +49,7 @@ public:
         Overlap overlap;
         overlap.recorded = tick::makeRecord(0, {}, out).proxy_depth_m;
         for (const auto& point : bench_.model().shell->points()) {
-            overlap.sampled = std::max(overlap.sampled, -model::signedDistance(fixed_, X_FS * point.position));
+            overlap.sampled = std::max(overlap.sampled, -shape::signedDistance(fixed_, X_FS * point.position));
         }
         overlap.dense =
             std::max(truth::deepestPoint(fixed_mesh_, held_mesh_, X_FS, kResolution, 300'000).depth,
@@ -63,7 +63,7 @@ public:
         double deepest = 0.0, error = 0.0;
         for (const auto& point : bench_.model().shell->points()) {
             const Vec3 p = X_FS * point.position;
-            const double depth = -model::signedDistance(fixed_, p);
+            const double depth = -shape::signedDistance(fixed_, p);
             if (depth <= deepest) continue;
             deepest = depth;
             error = bench_.model().obstacles.front().field->errorBound(p, bench_.model().contact.mode);
@@ -72,7 +72,7 @@ public:
     }
 
 private:
-    model::Shape fixed_;
+    shape::Shape fixed_;
     truth::ExactMesh held_mesh_, fixed_mesh_;
     const test::Bench& bench_;
     Pose X_FixedW_;
@@ -104,8 +104,8 @@ struct Worst {
 
 /// A peg's flat tip is lowered by 3 mm onto the upright edge or corner of a box; `upright` turns the box.
 void lowerOnto(const char* what, const Quat& upright, const Vec3& sharp, double cone, double least_gap) {
-    const model::Shape peg = model::Peg{0.02, 0.03, 0.0}, box = model::Box{0.02, 0.02, 0.02};
-    for (const auto method : {model::ContactMethod::Penalty, model::ContactMethod::GodObjectHeuristic}) {
+    const shape::Shape peg = shape::Peg{0.02, 0.03, 0.0}, box = shape::Box{0.02, 0.02, 0.02};
+    for (const auto method : {scene::ContactMethod::Penalty, scene::ContactMethod::GodObjectHeuristic}) {
         Random random(11);
         Worst worst;
         double cover = 0.0;
@@ -131,7 +131,7 @@ void lowerOnto(const char* what, const Quat& upright, const Vec3& sharp, double 
                 worst.see(overlap, bound);
             }
         }
-        const bool god_object = method == model::ContactMethod::GodObjectHeuristic;
+        const bool god_object = method == scene::ContactMethod::GodObjectHeuristic;
         worst.print((std::string(what) + (god_object ? ", god object" : ", penalty")).c_str(), cover);
         EXPECT_GT(worst.overlapping, 40);
         if (god_object) {
@@ -161,10 +161,10 @@ TEST(ObstacleEdge, APegTiltedInAChamferedBoreHidesAlmostNothing) {
     // behind the wall's surface, and the distance to the nearer of wall and chamfer (45°) is at least cos(45° + t) of
     // that. Hence  δ ≤ d / cos(45° + t) + 2 c tan t + 2 c² (1/R_peg - 1/R_bore).  The same holds, without the cosine,
     // for the peg's rim in the wall.
-    const model::Peg peg{0.02, 0.04, 0.001};
-    const model::BorePlate plate{0.04, 0.04, 0.02, 0.0202, 0.02, 0.001};
+    const shape::Peg peg{0.02, 0.04, 0.001};
+    const shape::BorePlate plate{0.04, 0.04, 0.02, 0.0202, 0.02, 0.001};
     const double curvature = 2.0 / peg.diameter - 2.0 / plate.bore_diameter;
-    for (const auto method : {model::ContactMethod::Penalty, model::ContactMethod::GodObjectHeuristic}) {
+    for (const auto method : {scene::ContactMethod::Penalty, scene::ContactMethod::GodObjectHeuristic}) {
         const Pose X_WPlate{rotationFromVector(Vec3(0, 0, 0.3)), Vec3(0.0011, -0.0007, 0.0003)};  // off the grid
         const Pose start{Quat::Identity(), Vec3(0, 0, -0.012)};
         auto spec = test::scene(peg, X_WPlate * start, plate, X_WPlate, method);
@@ -190,7 +190,7 @@ TEST(ObstacleEdge, APegTiltedInAChamferedBoreHidesAlmostNothing) {
             ASSERT_LE(overlap.sampled, overlap.recorded + meter.fieldError(out) + 1e-9) << "tick " << i;
             worst.see(overlap, bound);
         }
-        const bool god_object = method == model::ContactMethod::GodObjectHeuristic;
+        const bool god_object = method == scene::ContactMethod::GodObjectHeuristic;
         worst.print(god_object ? "peg in a bore, god object" : "peg in a bore, penalty", c);
         EXPECT_GT(worst.overlapping, god_object ? 5 : 20);
     }

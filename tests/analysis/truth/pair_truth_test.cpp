@@ -11,8 +11,8 @@
 namespace passung::truth {
 namespace {
 
-const auto kCube = model::Box{0.1, 0.1, 0.1};
-const auto kBall = model::Sphere{0.02};
+const auto kCube = shape::Box{0.1, 0.1, 0.1};
+const auto kBall = shape::Sphere{0.02};
 
 TEST(PairTruth, ABallOnACubeHasItsClosedFormDistanceAndForce) {
     // Truth: closed form. The ball's lowest point is `d` below or above the face; the penalty of the cap is κ V,
@@ -72,7 +72,7 @@ TEST(PairTruth, NamesContainmentWhichFclCallsFree) {
 TEST(PairTruth, RefusesAFieldWithoutAnInside) {
     // Truth: invariant
     const auto truth =
-        PairTruth::build(test::namedPart("sheet", model::Sheet{0.05, 0.05}), test::namedPart("ball", kBall));
+        PairTruth::build(test::namedPart("sheet", shape::Sheet{0.05, 0.05}), test::namedPart("ball", kBall));
     ASSERT_FALSE(truth);
     EXPECT_NE(truth.errors().front().message.find("watertight"), std::string::npos);
 }
@@ -101,8 +101,8 @@ TEST(ContactPath, OfAPegIncludesPosesInItsBore) {
     // Truth: invariant. Every other path begins where the peg is free in the bore: there its middle is below the
     // mouth's plane or less than half the peg's length above, and its axis upright.
     const auto truth =
-        PairTruth::build(test::namedPart("plate", model::BorePlate{0.06, 0.06, 0.03, 0.021, 0.025, 0.5e-3}),
-                         test::namedPart("peg", model::Peg{0.02, 0.05, 0.5e-3}));
+        PairTruth::build(test::namedPart("plate", shape::BorePlate{0.06, 0.06, 0.03, 0.021, 0.025, 0.5e-3}),
+                         test::namedPart("peg", shape::Peg{0.02, 0.05, 0.5e-3}));
     ASSERT_TRUE(truth);
     int in_bore = 0;
     for (const JudgedPose& pose : contactPath(*truth, 2, 1, [](double) {})) {

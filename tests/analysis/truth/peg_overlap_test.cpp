@@ -15,17 +15,17 @@ constexpr double kCell = 0.5e-3;
 
 /// Deepest overlap of the true peg (dense points) with the true plate (closed form): independent of the shell's points
 /// and of the field.
-double trueOverlap(const std::vector<Vec3>& peg_points, const model::Shape& plate, const Pose& X_WPlate,
+double trueOverlap(const std::vector<Vec3>& peg_points, const shape::Shape& plate, const Pose& X_WPlate,
                    const Pose& X_WG) {
     const Pose X_PG = X_WPlate.inverse() * X_WG;
     double depth = 0.0;
-    for (const Vec3& p : peg_points) depth = std::max(depth, -model::signedDistance(plate, X_PG * p));
+    for (const Vec3& p : peg_points) depth = std::max(depth, -shape::signedDistance(plate, X_PG * p));
     return depth;
 }
 
 /// Points of a chamfered peg by its closed form: rings every 0.3 mm along its outline (tip disc, chamfer, side), the
 /// two rims included, a point every degree and a half.
-std::vector<Vec3> densePoints(const model::Peg& peg) {
+std::vector<Vec3> densePoints(const shape::Peg& peg) {
     const double R = 0.5 * peg.diameter, c = peg.chamfer;
     const Eigen::Vector2d outline[] = {{0, 0}, {R - c, 0}, {R, c}, {R, peg.length}};  // r, z
     std::vector<Vec3> points;
@@ -48,19 +48,19 @@ TEST(PegOverlap, GodObjectHoldsATrueOverlapOfAFewHundredthsOfAMillimetreWherePen
     // path that presses, slides, tilts and inserts with 0.1 mm radial clearance. What is allowed is stated: the overlap
     // that the proxy accepts (5 % of a cell) plus what lies between the shell's samples and the field's error at the
     // rims.
-    const model::Peg peg{0.02, 0.05, 0.001};
-    const model::Shape plate = model::BorePlate{0.06, 0.06, 0.03, 0.0202, 0.03, 0.001};
+    const shape::Peg peg{0.02, 0.05, 0.001};
+    const shape::Shape plate = shape::BorePlate{0.06, 0.06, 0.03, 0.0202, 0.03, 0.001};
     const std::vector<Vec3> points = densePoints(peg);
     double deepest[2] = {0, 0};
     Random random(3);
     const Pose X_WPlate{rotationFromVector(Vec3(0.3, -0.2, 0.5)), Vec3(0.011, -0.007, 0.003)};  // off the grid
-    for (const auto method : {model::ContactMethod::Penalty, model::ContactMethod::GodObjectHeuristic}) {
+    for (const auto method : {scene::ContactMethod::Penalty, scene::ContactMethod::GodObjectHeuristic}) {
         auto spec = test::scene(peg, X_WPlate * Pose{Quat::Identity(), Vec3(0, 0, 0.01)}, plate, X_WPlate, method);
         spec.contact.cell = kCell;
         spec.contact.stiffness = 4000;
         spec.contact.rotational_stiffness = 1;
         test::Bench bench(spec);
-        double& worst = deepest[method == model::ContactMethod::Penalty ? 0 : 1];
+        double& worst = deepest[method == scene::ContactMethod::Penalty ? 0 : 1];
         for (int i = 0; i < 8000; ++i) {
             const double t = i * 1e-3;
             Vec3 p(0.003, 0, 0.01 - 0.011 * t);

@@ -17,7 +17,7 @@ constexpr double kDepthResolution = 50e-6;  // to which the true depth is known;
 constexpr double kSpread = 2e-3;            // of the poses near first contact
 constexpr int kPoses = 700;                 // a pair
 
-test::MeshPair pairOf(const char* name, const model::TriangleMesh& field, const model::TriangleMesh& shell) {
+test::MeshPair pairOf(const char* name, const geometry::TriangleMesh& field, const geometry::TriangleMesh& shell) {
     return {name, test::meshPart(field, "fcl_field", kCell, kSpacing),
             test::meshPart(shell, "fcl_shell", kCell, kSpacing)};
 }
@@ -92,8 +92,8 @@ TEST_F(QueryAgainstFcl, BumpyBallsAgreeWithinTheStatedBound) {
 
 TEST_F(QueryAgainstFcl, BoxInsideAndOutsideOfACylinderAgreesWithinTheStatedBound) {
     // Truth: independent program (FCL 0.7), ray parity and dense geometry for what it cannot say; see above
-    test::MeshPair pair = pairOf("small box, big cylinder", model::tessellate(model::Box{0.005, 0.006, 0.004}, 5e-6),
-                                 model::tessellate(model::Cylinder{0.018, 0.014}, 5e-6));
+    test::MeshPair pair = pairOf("small box, big cylinder", shape::tessellate(shape::Box{0.005, 0.006, 0.004}, 5e-6),
+                                 shape::tessellate(shape::Cylinder{0.018, 0.014}, 5e-6));
     const Counts counts = compare(pair, random_);
     expectDecided(counts, 0.15);
     EXPECT_GT(counts[Relation::AInsideB], kPoses / 20);
@@ -103,8 +103,8 @@ TEST_F(QueryAgainstFcl, PegAndBorePlateAgreeWithinTheStatedBound) {
     // Truth: independent program (FCL 0.7), ray parity and dense geometry for what it cannot say; see above. The plate
     // has no room for the peg within its walls.
     test::MeshPair pair =
-        pairOf("peg, bore plate", model::tessellate(model::BorePlate{0.016, 0.016, 0.008, 0.0064, 0.006, 0.5e-3}, 5e-6),
-               model::tessellate(model::Peg{0.006, 0.012, 0.5e-3}, 5e-6));
+        pairOf("peg, bore plate", shape::tessellate(shape::BorePlate{0.016, 0.016, 0.008, 0.0064, 0.006, 0.5e-3}, 5e-6),
+               shape::tessellate(shape::Peg{0.006, 0.012, 0.5e-3}, 5e-6));
     const Counts counts = compare(pair, random_);
     expectDecided(counts, 0.15);
     EXPECT_EQ(counts[Relation::BInsideA] + counts[Relation::AInsideB], 0);

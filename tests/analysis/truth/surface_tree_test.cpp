@@ -16,8 +16,8 @@ constexpr double kStiffness = 1e9;
 /// A ball that dips `depth` into the top face z = 0.05 of a cube of 0.1 m, off its middle.
 struct DippedBall {
     static constexpr double kRadius = 0.01, kDepth = 1e-3;
-    ExactMesh cube{model::tessellate(model::Box{0.1, 0.1, 0.1}, 1e-3)};
-    ExactMesh ball{model::tessellate(model::Sphere{2 * kRadius}, 2e-6)};
+    ExactMesh cube{shape::tessellate(shape::Box{0.1, 0.1, 0.1}, 1e-3)};
+    ExactMesh ball{shape::tessellate(shape::Sphere{2 * kRadius}, 2e-6)};
     Pose X_FS{rotationFromVector({0.4, -0.2, 0.9}), Vec3(0.011, -0.007, 0.05 + kRadius - kDepth)};
 };
 
@@ -39,7 +39,7 @@ TEST(SurfaceTree, TorqueIsAboutTheOriginOfTheSurface) {
     // through the ball's middle, T = (R c) × F.
     DippedBall s;
     const Vec3 c(0.02, 0.03, -0.01);
-    model::TriangleMesh shifted = model::tessellate(model::Sphere{2 * DippedBall::kRadius}, 2e-6);
+    geometry::TriangleMesh shifted = shape::tessellate(shape::Sphere{2 * DippedBall::kRadius}, 2e-6);
     for (Vec3& v : shifted.vertices) v += c;
     const ExactMesh ball(shifted);
     s.X_FS.p -= s.X_FS.q * c;
@@ -61,8 +61,8 @@ TEST(SurfaceTree, SmallestDistanceBracketsTheDepthOfADippedBall) {
 TEST(SurfaceTree, SmallestDistanceAgreesWithASearchOverAllTriangles) {
     // Truth: independent program (truth::deepestPoint, which begins at every triangle and knows no spheres). Both give
     // an interval that holds the same number, so the intervals meet.
-    const ExactMesh cube(model::tessellate(model::Box{0.1, 0.1, 0.1}, 1e-3));
-    const ExactMesh peg(model::tessellate(model::Peg{0.02, 0.06, 2e-3}, 20e-6));
+    const ExactMesh cube(shape::tessellate(shape::Box{0.1, 0.1, 0.1}, 1e-3));
+    const ExactMesh peg(shape::tessellate(shape::Peg{0.02, 0.06, 2e-3}, 20e-6));
     const SurfaceTree tree(peg);
     Random random(7);
     int inside = 0;
@@ -86,9 +86,9 @@ TEST(SurfaceTree, SmallestDistanceToAShapeIsItsClosedFormAlsoWhereFacesLieFlush)
     // Truth: closed form. A peg of radius r, upright in a bore of radius R and moved sideways by e, reaches e + r - R
     // into the wall along a line; pressed onto the plate's face, its flat tip is as deep everywhere. Chords of both are
     // within 1 µm.
-    const model::Shape plate = model::BorePlate{0.06, 0.06, 0.03, 0.021, 0.025, 0.0};
-    const ExactMesh plate_mesh(model::tessellate(plate, 1e-6));
-    const ExactMesh peg(model::tessellate(model::Peg{0.02, 0.05, 0.0}, 1e-6));
+    const shape::Shape plate = shape::BorePlate{0.06, 0.06, 0.03, 0.021, 0.025, 0.0};
+    const ExactMesh plate_mesh(shape::tessellate(plate, 1e-6));
+    const ExactMesh peg(shape::tessellate(shape::Peg{0.02, 0.05, 0.0}, 1e-6));
     const Solid solid{plate_mesh, &plate, 1e-6};
     const SurfaceTree tree(peg);
     const double e = 0.9e-3;

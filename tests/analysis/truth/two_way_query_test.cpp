@@ -106,8 +106,8 @@ TEST(TwoWayQuery, ErrorBoundHoldsWhereTheShellHoldsTheField) {
     // Truth: independent program (FCL 0.7) and dense geometry, see above
     test::MeshPair pair(
         "small cylinder, big box",
-        test::meshPart(model::tessellate(model::Cylinder{0.004, 0.006}, 5e-6), "two_in", 0.2e-3, 1.6e-3),
-        test::meshPart(model::tessellate(model::Box{0.02, 0.015, 0.012}, 5e-6), "two_out", 0.3e-3, 0.4e-3));
+        test::meshPart(shape::tessellate(shape::Cylinder{0.004, 0.006}, 5e-6), "two_in", 0.2e-3, 1.6e-3),
+        test::meshPart(shape::tessellate(shape::Box{0.02, 0.015, 0.012}, 5e-6), "two_out", 0.3e-3, 0.4e-3));
     Random random(2);
     const Outcome outcome = compareAll(pair, [&](int i) {
         return i % 2 == 0 ? test::poseNearContact(pair, 1e-3, random) : test::poseAnywhere(pair, random);
@@ -120,7 +120,7 @@ TEST(TwoWayQuery, ErrorBoundHoldsForEdgesAcrossEdges) {
     // Truth: independent program (FCL 0.7) and dense geometry, see above; a gap is the closed form
     const Vec3 half_a(0.006, 0.008, 0.005), half_b(0.004, 0.009, 0.006);
     const auto box = [](const Vec3& half) {
-        return model::tessellate(model::Box{2 * half.x(), 2 * half.y(), 2 * half.z()}, 5e-6);
+        return shape::tessellate(shape::Box{2 * half.x(), 2 * half.y(), 2 * half.z()}, 5e-6);
     };
     test::MeshPair pair("boxes, edge across edge", test::meshPart(box(half_a), "two_edge_a", 0.2e-3, 0.4e-3),
                         test::meshPart(box(half_b), "two_edge_b", 0.3e-3, 1.6e-3));
@@ -141,11 +141,11 @@ TEST(TwoWayQuery, TheFinerShellSharpensTheBoundOnceThePartsAreProvenApart) {
     // Truth: closed form of two balls 0.7 mm apart. The coarse shell alone cannot tell whether they touch; what the
     // fine one proves is more than the coarse one doubts, so that the finer interval holds for both.
     const auto ball = [](double diameter, double spacing) {
-        model::PartSpec spec;
-        spec.geometry = model::Shape{model::Sphere{diameter}};
-        return std::move(*model::buildPart(spec, {.field = true, .shell = true, .cell = 0.3e-3, .spacing = spacing}));
+        scene::PartSpec spec;
+        spec.geometry = shape::Shape{shape::Sphere{diameter}};
+        return std::move(*scene::buildPart(spec, {.field = true, .shell = true, .cell = 0.3e-3, .spacing = spacing}));
     };
-    const model::Part fine = ball(0.02, 0.3e-3), coarse = ball(0.02, 0.85e-3);
+    const scene::Part fine = ball(0.02, 0.3e-3), coarse = ball(0.02, 0.85e-3);
     query::PartQueryRequest request;
     request.tolerance = std::numeric_limits<double>::infinity();  // the points alone
     const Pose X_FS{Quat::Identity(), 0.0207 * Vec3(3, 4, 12) / 13.0};

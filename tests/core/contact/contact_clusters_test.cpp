@@ -16,11 +16,11 @@
 namespace passung {
 namespace {
 
-using tick::ContactCluster;
+using contact::ContactCluster;
 
 /// Points of `shell` at `X_WS` that are below the plane z = 0.
-void pressOnPlane(const model::PointShell& shell, const Pose& X_WS, tick::ContactManifold& manifold) {
-    for (const model::SurfacePoint& point : shell.points) {
+void pressOnPlane(const shell::PointShell& shell, const Pose& X_WS, contact::ContactManifold& manifold) {
+    for (const shell::SurfacePoint& point : shell.points) {
         const Vec3 p = X_WS * point.position;
         if (!(p.z() < 0.0)) continue;
         manifold.tryPush({.position = p,
@@ -37,8 +37,8 @@ TEST(ContactClusters, FindsAHundredDisjointPatchesEachWithItsAreaDepthAndPlace) 
     // much within a cover radius of the border; in the mean over a hundred what is missed and what is too much cancel
     // but for 1 % (areas are off by 5 % of their own, and √100).
     constexpr double R = 4e-3;
-    const model::PointShell ball = model::samplePoints(model::tessellate(model::Sphere{2 * R}, 2e-6), 0.3e-3);
-    tick::ContactManifold manifold(100'000);
+    const shell::PointShell ball = shell::samplePoints(shape::tessellate(shape::Sphere{2 * R}, 2e-6), 0.3e-3);
+    contact::ContactManifold manifold(100'000);
     Random random(3);
     std::vector<double> depth;
     for (int i = 0; i < 100; ++i) {
@@ -47,7 +47,7 @@ TEST(ContactClusters, FindsAHundredDisjointPatchesEachWithItsAreaDepthAndPlace) 
         pressOnPlane(ball, {rotationFromVector(turn), Vec3(12e-3 * (i % 10), 12e-3 * (i / 10), R - depth.back())},
                      manifold);
     }
-    tick::ClusterFinder finder(manifold.size());
+    contact::ClusterFinder finder(manifold.size());
     support::RtGuard guard;
     const auto clusters = finder.find(manifold, 2.0 * ball.cover_radius);
     if (support::RtGuard::available()) {
@@ -86,10 +86,10 @@ TEST(ContactClusters, TakesARingOfContactAsOne) {
     // 2 √(2rh - h²); ∫ over the tube's angle of r dψ times the mean circumference gives the area. Its middle is the
     // torus's; off by the border, two circles of about 125 mm each, and by 1 % in the mean.
     constexpr double r = 6e-3, ring = 20e-3, h = 0.4e-3;
-    const model::PointShell torus = model::samplePoints(model::tessellate(model::Torus{2 * ring, 2 * r}, 2e-6), 0.6e-3);
-    tick::ContactManifold manifold(torus.points.size());
+    const shell::PointShell torus = shell::samplePoints(shape::tessellate(shape::Torus{2 * ring, 2 * r}, 2e-6), 0.6e-3);
+    contact::ContactManifold manifold(torus.points.size());
     pressOnPlane(torus, {Quat::Identity(), Vec3(0, 0, r - h)}, manifold);
-    tick::ClusterFinder finder(manifold.size());
+    contact::ClusterFinder finder(manifold.size());
     const auto clusters = finder.find(manifold, 2.0 * torus.cover_radius);
     ASSERT_EQ(clusters.size(), 1u);
     const double area = 2.0 * std::numbers::pi * ring * 2.0 * r * std::acos((r - h) / r);
@@ -102,11 +102,11 @@ TEST(ContactClusters, PartsTheTwoWallsOfASlotHoweverThinTheWallBetweenThem) {
     // Truth: closed form. A wall 0.2 mm thick is squeezed on both faces, its edges with it: two patches of 10 mm x 10
     // mm with opposite normals, though the points of one face are nearer to the other face than to each other. An edge
     // pushes as the obstacle's face next to it does; all edges belong to one of the two.
-    const model::PointShell wall =
-        model::samplePoints(model::tessellate(model::Box{0.2e-3, 10e-3, 10e-3}, 1e-6), 0.5e-3);
-    tick::ContactManifold manifold(wall.points.size());
+    const shell::PointShell wall =
+        shell::samplePoints(shape::tessellate(shape::Box{0.2e-3, 10e-3, 10e-3}, 1e-6), 0.5e-3);
+    contact::ContactManifold manifold(wall.points.size());
     std::size_t edges = 0;
-    for (const model::SurfacePoint& point : wall.points) {
+    for (const shell::SurfacePoint& point : wall.points) {
         const double side = point.position.x() > 0.0 ? 1.0 : -1.0;
         const bool edge = !(point.area > 0.0);
         if (!edge && std::abs(point.normal.x()) < 0.9) continue;
@@ -118,7 +118,7 @@ TEST(ContactClusters, PartsTheTwoWallsOfASlotHoweverThinTheWallBetweenThem) {
                           .area = point.area});
     }
     ASSERT_GT(edges, 20u);
-    tick::ClusterFinder finder(manifold.size());
+    contact::ClusterFinder finder(manifold.size());
     const auto clusters = finder.find(manifold, 2.0 * wall.cover_radius);
     ASSERT_EQ(clusters.size(), 2u);
     for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
@@ -133,7 +133,7 @@ TEST(ContactClusters, PartsTheTwoWallsOfASlotHoweverThinTheWallBetweenThem) {
 TEST(ContactClusters, ListsTheDeepestAndCountsTheOthers) {
     // Truth: invariant. Three hundred points far from each other, half of them without area; what is not inside and
     // spheres are no contact.
-    tick::ContactManifold manifold(1000);
+    contact::ContactManifold manifold(1000);
     for (int i = 0; i < 300; ++i)
         manifold.tryPush({.position = Vec3(0.01 * i, 0, 0),
                           .normal = -Vec3::UnitZ(),
@@ -148,10 +148,10 @@ TEST(ContactClusters, ListsTheDeepestAndCountsTheOthers) {
                       .phi = -1e-3,
                       .area = 1e-6,
                       .radius = 1e-3});
-    tick::ClusterFinder finder(manifold.size());
+    contact::ClusterFinder finder(manifold.size());
     const auto clusters = finder.find(manifold, 1e-3);
     EXPECT_EQ(finder.found(), 300u);
-    ASSERT_EQ(clusters.size(), tick::ClusterFinder::kMostClusters);
+    ASSERT_EQ(clusters.size(), contact::ClusterFinder::kMostClusters);
     for (std::size_t i = 0; i < clusters.size(); ++i) {
         EXPECT_NEAR(clusters[i].phi, -1e-6 * static_cast<double>(300 - i), 1e-15);
         EXPECT_EQ(clusters[i].points, 1u);

@@ -15,10 +15,10 @@
 namespace passung {
 namespace {
 
-model::Part build(const model::Shape& shape, double spacing = 1e-3) {
-    model::PartSpec spec;
+scene::Part build(const shape::Shape& shape, double spacing = 1e-3) {
+    scene::PartSpec spec;
     spec.geometry = shape;
-    auto part = model::buildPart(spec, {.field = true, .shell = true, .cell = 0.7e-3, .spacing = spacing});
+    auto part = scene::buildPart(spec, {.field = true, .shell = true, .cell = 0.7e-3, .spacing = spacing});
     EXPECT_TRUE(part);
     return std::move(*part);
 }
@@ -35,8 +35,8 @@ Pose pegInPlate(int i, Random& random) {
             Vec3(random.uniform(-2e-4, 2e-4), random.uniform(-2e-4, 2e-4), -0.01)};
 }
 
-const model::Shape kPlate = model::BorePlate{0.05, 0.05, 0.02, 0.0204, 0.02, 0.001};
-const model::Shape kPeg = model::Peg{0.02, 0.04, 0.001};
+const shape::Shape kPlate = shape::BorePlate{0.05, 0.05, 0.02, 0.0204, 0.02, 0.001};
+const shape::Shape kPeg = shape::Peg{0.02, 0.04, 0.001};
 
 struct BruteForce {
     double phi = 1e300;
@@ -44,11 +44,11 @@ struct BruteForce {
 };
 
 /// Every point of the shell through the same field, without the tree.
-BruteForce bruteForce(const model::Part& field, const Pose& X_WF, const model::Part& shell, const Pose& X_WS) {
+BruteForce bruteForce(const scene::Part& field, const Pose& X_WF, const scene::Part& shell, const Pose& X_WS) {
     BruteForce result;
     for (const auto& point : shell.shell->points()) {
         const Vec3 p = X_WF.inverse() * (X_WS * point.position);
-        const double phi = field.field->sample(p, model::FieldMode::Trilinear).phi;
+        const double phi = field.field->sample(p, field::FieldMode::Trilinear).phi;
         result.phi = std::min(result.phi, phi);
         result.inside += phi < 0.0 ? 1 : 0;
     }
@@ -57,18 +57,18 @@ BruteForce bruteForce(const model::Part& field, const Pose& X_WF, const model::P
 
 TEST(ContactQuery, FindsExactlyWhatTestingEveryPointFinds) {
     // Truth: invariant. The tree prunes only what is proven to be out of reach.
-    const model::Part plate = build(kPlate), peg = build(kPeg);
-    tick::QueryWorkspace workspace(peg.shell->nodes().size());
-    tick::ContactManifold manifold(peg.shell->points().size());
+    const scene::Part plate = build(kPlate), peg = build(kPeg);
+    contact::QueryWorkspace workspace(peg.shell->nodes().size());
+    contact::ContactManifold manifold(peg.shell->points().size());
     Random random(1);
     int touching = 0;
     for (int i = 0; i < 500; ++i) {
         const Pose X_WF = somewhere(0.2, random);
         const Pose X_WS = X_WF * pegInPlate(i, random);
         manifold.clear();
-        tick::QueryRequest request;
+        contact::QueryRequest request;
         request.search_below = 1.0;
-        const auto answer = tick::queryContacts(*plate.field, X_WF, *peg.shell, X_WS, request, workspace, manifold);
+        const auto answer = contact::queryContacts(*plate.field, X_WF, *peg.shell, X_WS, request, workspace, manifold);
         const BruteForce truth = bruteForce(plate, X_WF, peg, X_WS);
         ASSERT_NEAR(answer.phi, truth.phi, 1e-12);
         ASSERT_EQ(manifold.size(), truth.inside);
@@ -84,11 +84,11 @@ TEST(ContactQuery, FindsExactlyWhatTestingEveryPointFinds) {
 TEST(ContactQuery, ManifoldHoldsEveryPointThatIsTrulyNearOnceAndNoneThatIsFar) {
     // Truth: closed form of the plate. φ is read with an error of at most e(p), so what is truly below the limit by
     // more than e must be there, and what is truly above it by more than e must not.
-    const model::Part plate = build(kPlate), peg = build(kPeg);
+    const scene::Part plate = build(kPlate), peg = build(kPeg);
     const auto points = peg.shell->points();
     const double limit = 0.3e-3;
-    tick::QueryWorkspace workspace(peg.shell->nodes().size());
-    tick::ContactManifold manifold(points.size());
+    contact::QueryWorkspace workspace(peg.shell->nodes().size());
+    contact::ContactManifold manifold(points.size());
     const auto keyOf = [](const Vec3& p) {  // points lie tenths of a millimetre apart, poses round to far below a nm
         return std::array{std::llround(p.x() * 1e9), std::llround(p.y() * 1e9), std::llround(p.z() * 1e9)};
     };
@@ -97,14 +97,14 @@ TEST(ContactQuery, ManifoldHoldsEveryPointThatIsTrulyNearOnceAndNoneThatIsFar) {
     for (int i = 0; i < 200; ++i) {
         const Pose X_FS = pegInPlate(i, random);
         manifold.clear();
-        tick::queryContacts(*plate.field, Pose{}, *peg.shell, X_FS, {.collect_below = limit, .search_below = limit},
-                            workspace, manifold);
+        contact::queryContacts(*plate.field, Pose{}, *peg.shell, X_FS, {.collect_below = limit, .search_below = limit},
+                               workspace, manifold);
         std::map<std::array<long long, 3>, int> times;
         for (const auto& contact : manifold) ++times[keyOf(contact.position)];
         for (const auto& point : points) {
             const Vec3 p = X_FS * point.position;
-            const double truth = model::signedDistance(kPlate, p);
-            const double error = plate.field->errorBound(p, model::FieldMode::Trilinear);
+            const double truth = shape::signedDistance(kPlate, p);
+            const double error = plate.field->errorBound(p, field::FieldMode::Trilinear);
             const auto found = times.find(keyOf(p));
             const int count = found == times.end() ? 0 : found->second;
             ASSERT_LE(count, 1) << "pose " << i << ", point " << point.position.transpose();
@@ -125,18 +125,18 @@ TEST(ContactQuery, ManifoldHoldsEveryPointThatIsTrulyNearOnceAndNoneThatIsFar) {
 TEST(ContactQuery, InEveryModeMissesNothingThatIsDeeperThanTheModesError) {
     // Truth: closed form. Pruning asks for true distances, whatever the mode reads; contacts are off by the mode's
     // bound at most, layered ones too, which take the peg's own normals.
-    const model::Part plate = build(kPlate), peg = build(kPeg);
-    tick::QueryWorkspace workspace(peg.shell->nodes().size());
-    tick::ContactManifold manifold(peg.shell->points().size());
-    const model::DistanceField& field = *plate.field;
+    const scene::Part plate = build(kPlate), peg = build(kPeg);
+    contact::QueryWorkspace workspace(peg.shell->nodes().size());
+    contact::ContactManifold manifold(peg.shell->points().size());
+    const field::DistanceField& field = *plate.field;
     Random random(6);
-    for (const model::FieldMode mode : model::kFieldModes) {
+    for (const field::FieldMode mode : field::kFieldModes) {
         std::size_t deep = 0;
         for (int i = 0; i < 60; ++i) {
             const Pose X_FS = pegInPlate(i, random);
             manifold.clear();
-            const tick::QueryRequest request{.search_below = 1.0, .mode = mode, .prove = true};
-            const auto answer = tick::queryContacts(field, Pose{}, *peg.shell, X_FS, request, workspace, manifold);
+            const contact::QueryRequest request{.search_below = 1.0, .mode = mode, .prove = true};
+            const auto answer = contact::queryContacts(field, Pose{}, *peg.shell, X_FS, request, workspace, manifold);
             double least = 1e300;
             std::size_t must = 0;
             for (const auto& point : peg.shell->points()) {
@@ -150,7 +150,7 @@ TEST(ContactQuery, InEveryModeMissesNothingThatIsDeeperThanTheModesError) {
             ASSERT_LE(std::min(answer.lower_bound, answer.phi), least) << modeName(mode);
             ASSERT_LE(least, answer.phi + field.errorBound(answer.closest_F, mode)) << modeName(mode);
             ASSERT_GE(manifold.size(), must) << modeName(mode);
-            for (const tick::ContactPoint& contact : manifold)
+            for (const contact::ContactPoint& contact : manifold)
                 ASSERT_NEAR(contact.phi, signedDistance(kPlate, contact.position),
                             field.errorBound(contact.position, mode) + 1e-12)
                     << modeName(mode);
@@ -162,16 +162,16 @@ TEST(ContactQuery, InEveryModeMissesNothingThatIsDeeperThanTheModesError) {
 TEST(ContactQuery, LayeredContactsTakeTheNormalOfThePointThatAsks) {
     // Truth: closed form: a flat tip in a flat face reads every depth within half a cell; with any other normal the
     // way from the voxel's centre would be lost, another half of it.
-    const model::Part block = build(model::Box{0.05, 0.05, 0.02}), peg = build(model::Peg{0.02, 0.04, 0.0});
-    tick::QueryWorkspace workspace(peg.shell->nodes().size());
-    tick::ContactManifold manifold(peg.shell->points().size());
+    const scene::Part block = build(shape::Box{0.05, 0.05, 0.02}), peg = build(shape::Peg{0.02, 0.04, 0.0});
+    contact::QueryWorkspace workspace(peg.shell->nodes().size());
+    contact::ContactManifold manifold(peg.shell->points().size());
     for (const double depth : {0.1e-3, 0.5e-3, 0.9e-3}) {
         manifold.clear();
         const Pose X_FS{Quat::Identity(), Vec3(0.0, 0.0, 0.01 - depth)};
-        const tick::QueryRequest request{.mode = model::FieldMode::Layered};
-        tick::queryContacts(*block.field, Pose{}, *peg.shell, X_FS, request, workspace, manifold);
+        const contact::QueryRequest request{.mode = field::FieldMode::Layered};
+        contact::queryContacts(*block.field, Pose{}, *peg.shell, X_FS, request, workspace, manifold);
         std::size_t of_the_tip = 0;
-        for (const tick::ContactPoint& contact : manifold) {
+        for (const contact::ContactPoint& contact : manifold) {
             if (contact.normal.z() > -0.99) continue;
             ++of_the_tip;
             ASSERT_NEAR(contact.phi, -depth, 0.5 * block.field->cell() + 1e-7);
@@ -186,21 +186,21 @@ TEST(ContactQuery, ABudgetKeepsTheWeightOfAPlatePressedFlatAndSaysWhatItDidNotPr
     // is flat and equally deep, so a node that stands in with its point and the area below gives what its points would
     // give; 1 % is for nodes that join points of the lower face and samples of its rim. From 72 nodes on, eight roots
     // and their children, no node that stands in joins faces that face apart.
-    const model::Part table = build(model::Box{0.06, 0.06, 0.02});
-    const model::Part plate = build(model::Box{0.02, 0.02, 0.008}, 0.5e-3);
+    const scene::Part table = build(shape::Box{0.06, 0.06, 0.02});
+    const scene::Part plate = build(shape::Box{0.02, 0.02, 0.008}, 0.5e-3);
     const double h = 1e-3, kappa = 1e9;
     const Pose X_WS{Quat::Identity(), Vec3(0.003, -0.002, 0.01 + 0.004 - h)};
-    model::ContactSpec contact;
-    contact.variant = model::PenaltyVariant::AreaWeighted;
+    scene::ContactSpec contact;
+    contact.variant = scene::PenaltyVariant::AreaWeighted;
     contact.area_stiffness = kappa;
-    tick::QueryWorkspace workspace(plate.shell->nodes().size());
-    tick::ContactManifold manifold(plate.shell->nodes().size() + plate.shell->points().size());
+    contact::QueryWorkspace workspace(plate.shell->nodes().size());
+    contact::ContactManifold manifold(plate.shell->nodes().size() + plate.shell->points().size());
     const double truth = kappa * 0.02 * 0.02 * h;
     double last_quality = 1.1;
     for (const int budget : {0, 110, 100, 90, 80}) {
         manifold.clear();
-        const auto answer = tick::queryContacts(*table.field, Pose{}, *plate.shell, X_WS,
-                                                {.search_below = 1.0, .max_nodes = budget}, workspace, manifold);
+        const auto answer = contact::queryContacts(*table.field, Pose{}, *plate.shell, X_WS,
+                                                   {.search_below = 1.0, .max_nodes = budget}, workspace, manifold);
         const Wrench wrench = tick::penaltyWrench(contact, manifold, X_WS.p);
         EXPECT_EQ(answer.budget_reached, budget > 0) << budget;
         if (budget > 0) {
@@ -219,11 +219,11 @@ TEST(ContactQuery, ABudgetKeepsTheWeightOfAPlatePressedFlatAndSaysWhatItDidNotPr
 }
 
 /// The least φ of `obstacle` over a ball, by its closed form on a net of directions that is made finer around the best.
-double deepestOfBall(const model::Shape& obstacle, const Vec3& centre, double radius) {
+double deepestOfBall(const shape::Shape& obstacle, const Vec3& centre, double radius) {
     double least = 1e300;
     Vec3 best = Vec3::UnitZ();
     const auto look = [&](const Vec3& direction) {
-        const double phi = model::signedDistance(obstacle, centre + radius * direction.normalized());
+        const double phi = shape::signedDistance(obstacle, centre + radius * direction.normalized());
         if (!(phi < least)) return;
         least = phi;
         best = direction.normalized();
@@ -242,16 +242,16 @@ TEST(ContactQuery, RefiningFindsTheDeepestPointBetweenSamplesOnRidgesToo) {
     // Truth: closed forms of both. A ball in the edge of a box is deepest where two faces are equally near, on a ridge.
     // The field keeps its tolerance there, the ball's triangles lie up to the chord error inside; 5 µm more is a
     // hundredth of how far samples lie apart. Without refining some pose is off by more than 50 µm.
-    const model::Shape box = model::Box{0.03, 0.03, 0.03};
-    model::PartSpec spec;
+    const shape::Shape box = shape::Box{0.03, 0.03, 0.03};
+    scene::PartSpec spec;
     spec.geometry = box;
     const double tolerance = 10e-6, deepest = 1.5e-3;
-    const auto obstacle = model::buildPart(spec, {.field = true, .tolerance = tolerance, .depth = deepest});
+    const auto obstacle = scene::buildPart(spec, {.field = true, .tolerance = tolerance, .depth = deepest});
     ASSERT_TRUE(obstacle);
-    const model::DistanceField& field = *obstacle->field;
-    const model::Part ball = build(model::Sphere{0.016}, 0.5e-3);
-    tick::QueryWorkspace workspace(ball.shell->nodes().size());
-    tick::ContactManifold manifold(ball.shell->points().size());
+    const field::DistanceField& field = *obstacle->field;
+    const scene::Part ball = build(shape::Sphere{0.016}, 0.5e-3);
+    contact::QueryWorkspace workspace(ball.shell->nodes().size());
+    contact::ContactManifold manifold(ball.shell->points().size());
     Random random(6);
     double worst_without = 0.0;
     int pressed = 0;
@@ -263,14 +263,14 @@ TEST(ContactQuery, RefiningFindsTheDeepestPointBetweenSamplesOnRidgesToo) {
         if (!(truth < -0.1e-3 && truth > -deepest)) continue;
         manifold.clear();
         const auto plain =
-            tick::queryContacts(field, Pose{}, *ball.shell, X, {.gradients = false}, workspace, manifold);
+            contact::queryContacts(field, Pose{}, *ball.shell, X, {.gradients = false}, workspace, manifold);
         manifold.clear();
-        const auto refined = tick::queryContacts(field, Pose{}, *ball.shell, X, {.gradients = false, .refine = true},
-                                                 workspace, manifold);
+        const auto refined = contact::queryContacts(field, Pose{}, *ball.shell, X, {.gradients = false, .refine = true},
+                                                    workspace, manifold);
         worst_without = std::max(worst_without, plain.phi - truth);
         EXPECT_LE(refined.phi, plain.phi);
         EXPECT_NEAR(refined.phi, truth, tolerance + ball.chord_error + 5e-6) << i;
-        EXPECT_EQ(refined.phi, field.sample(refined.closest_F, model::FieldMode::Trilinear).phi);
+        EXPECT_EQ(refined.phi, field.sample(refined.closest_F, field::FieldMode::Trilinear).phi);
         EXPECT_NEAR((X.inverse() * refined.closest_W).norm(), 0.008, ball.chord_error + 1e-7) << "on the ball";
         ++pressed;
     }
@@ -281,14 +281,14 @@ TEST(ContactQuery, RefiningFindsTheDeepestPointBetweenSamplesOnRidgesToo) {
 TEST(ContactQuery, GroupsWeighWhatTheirPointsWeighWhetherTheContactIsSmallOrLarge) {
     // Truth: closed form of the cap that a ball of radius R leaves in a plane, V = π h² (3 R - h) / 3, F = κ V; as near
     // as the sum over all points comes, which is 1 % here. Invariant: of a large contact fewer points are read.
-    const model::Part table = build(model::Box{0.08, 0.08, 0.02});
+    const scene::Part table = build(shape::Box{0.08, 0.08, 0.02});
     const double R = 0.015, kappa = 1e9;
-    const model::Part ball = build(model::Sphere{2.0 * R}, 0.4e-3);
-    model::ContactSpec contact;
-    contact.variant = model::PenaltyVariant::AreaWeighted;
+    const scene::Part ball = build(shape::Sphere{2.0 * R}, 0.4e-3);
+    scene::ContactSpec contact;
+    contact.variant = scene::PenaltyVariant::AreaWeighted;
     contact.area_stiffness = kappa;
-    tick::QueryWorkspace workspace(ball.shell->nodes().size());
-    tick::ContactManifold manifold(ball.shell->points().size());
+    contact::QueryWorkspace workspace(ball.shell->nodes().size());
+    contact::ContactManifold manifold(ball.shell->points().size());
     Random random(7);
     for (const double h : {0.3e-3, 1e-3, 2e-3, 4e-3}) {
         for (int i = 0; i < 10; ++i) {
@@ -296,13 +296,13 @@ TEST(ContactQuery, GroupsWeighWhatTheirPointsWeighWhetherTheContactIsSmallOrLarg
             X.p = Vec3(random.uniform(-0.01, 0.01), random.uniform(-0.01, 0.01), 0.01 + R - h);
             manifold.clear();
             const auto points =
-                tick::queryContacts(*table.field, Pose{}, *ball.shell, X, {.gradients = false}, workspace, manifold);
+                contact::queryContacts(*table.field, Pose{}, *ball.shell, X, {.gradients = false}, workspace, manifold);
             const std::size_t many = manifold.size();
             ASSERT_EQ(points.contacts, static_cast<int>(many));
             const Wrench pointwise = tick::penaltyWrench(contact, manifold, X.p);
             manifold.clear();
             const auto groups =
-                tick::queryContacts(*table.field, Pose{}, *ball.shell, X, {.load = true}, workspace, manifold);
+                contact::queryContacts(*table.field, Pose{}, *ball.shell, X, {.load = true}, workspace, manifold);
             ASSERT_EQ(manifold.size(), 0u);
             const Wrench wrench = tick::weightedWrench(contact, groups.load);
             const double truth = kappa * std::numbers::pi * h * h * (3.0 * R - h) / 3.0;

@@ -10,24 +10,24 @@
 #include "core/tick/proxy.h"
 #include "tests/support/scenes.h"
 
-namespace passung::tick {
+namespace passung::contact {
 namespace {
 
 constexpr double kHalf = 5e-3, kTolerance = 10e-6, kSpacing = 1e-3;
 
-model::Part partOf(const model::Shape& shape, bool field) {
-    auto part = model::buildPart({.name = "part", .geometry = shape, .X_WP = {}},
+scene::Part partOf(const shape::Shape& shape, bool field) {
+    auto part = scene::buildPart({.name = "part", .geometry = shape, .X_WP = {}},
                                  {.field = field, .shell = true, .tolerance = kTolerance, .spacing = kSpacing});
     if (!part) ADD_FAILURE() << toString(part.errors().front());
     return std::move(*part);
 }
 
-const model::Part& roof() {  // a block on its edge: that along y at the top is a right angle
-    static const model::Part part = partOf(model::Box{2 * kHalf, 4 * kHalf, 2 * kHalf}, true);
+const scene::Part& roof() {  // a block on its edge: that along y at the top is a right angle
+    static const scene::Part part = partOf(shape::Box{2 * kHalf, 4 * kHalf, 2 * kHalf}, true);
     return part;
 }
-const model::Part& beam() {
-    static const model::Part part = partOf(model::Box{4 * kHalf, 2 * kHalf, 2 * kHalf}, false);
+const scene::Part& beam() {
+    static const scene::Part part = partOf(shape::Box{4 * kHalf, 2 * kHalf, 2 * kHalf}, false);
     return part;
 }
 
@@ -88,7 +88,7 @@ TEST(EdgeSearch, TellsHowTheContactGivesWayToMotion) {
 TEST(EdgeSearch, FindsTheLowestPlaceOfARimBetweenItsSamples) {
     // Truth: closed form. A tilted disc over a block's face: its rim is lowest in one place, wherever the samples lie.
     // The chords of the rim are off by a share of the tolerance.
-    const model::Part disc = partOf(model::Cylinder{10e-3, 4e-3}, false);
+    const scene::Part disc = partOf(shape::Cylinder{10e-3, 4e-3}, false);
     ContactManifold manifold(1000);
     constexpr double kTilt = 0.3, kDepth = 3e-6;
     for (int i = 0; i < 100; ++i) {
@@ -119,17 +119,17 @@ TEST(EdgeSearch, LeavesCornersToTheSamples) {
 TEST(EdgeSearch, IsLeftOutUnderABudgetAndWhereTheFieldSaysTooLittle) {
     // Truth: invariant. Values that jump from voxel to voxel have no least place along an edge, cells of one size blunt
     // the other edge; a budget leaves no work but what it counts.
-    const model::Part blunt =
-        *model::buildPart({.name = "roof", .geometry = model::Box{2 * kHalf, 4 * kHalf, 2 * kHalf}, .X_WP = {}},
+    const scene::Part blunt =
+        *scene::buildPart({.name = "roof", .geometry = shape::Box{2 * kHalf, 4 * kHalf, 2 * kHalf}, .X_WP = {}},
                           {.field = true, .cell = 0.5e-3});
     const Pose X = across(50e-6, 0.4e-3, 0.7e-3, 0.15);
     ContactManifold manifold(1000);
-    const auto searched = [&](const model::DistanceField& field, const QueryRequest& request) {
+    const auto searched = [&](const field::DistanceField& field, const QueryRequest& request) {
         return searchEdges(field, kRoof, *beam().edges, X, request, manifold).points_tested > 0;
     };
     EXPECT_TRUE(searched(*roof().field, {}));
-    EXPECT_TRUE(searched(*roof().field, {.mode = model::FieldMode::Cubic}));
-    for (const auto mode : {model::FieldMode::Layered, model::FieldMode::SurfacePoint, model::FieldMode::Linear})
+    EXPECT_TRUE(searched(*roof().field, {.mode = field::FieldMode::Cubic}));
+    for (const auto mode : {field::FieldMode::Layered, field::FieldMode::SurfacePoint, field::FieldMode::Linear})
         EXPECT_FALSE(searched(*roof().field, {.mode = mode}));
     EXPECT_FALSE(searched(*roof().field, {.max_nodes = 1000}));
     EXPECT_FALSE(searched(*blunt.field, {}));
@@ -139,9 +139,9 @@ TEST(EdgeSearch, ProxyLeavesEdgesApartThatCrossBetweenTheirSamples) {
     // Truth: closed form. The beam is pushed 2 mm down on the ridge and to and fro along it; the edges part where the
     // beam's edge lies at the ridge's height. The proxy accepts as much overlap as the field may err by, and the field
     // errs; both are distances to a face, at 45° to the depth. The samples of an edge are 0.5 mm apart.
-    for (const auto method : {model::ContactMethod::GodObjectHeuristic, model::ContactMethod::GodObject}) {
-        auto spec = test::scene(model::Box{4 * kHalf, 2 * kHalf, 2 * kHalf}, across(-1e-3, 0, 0, 0),
-                                model::Box{2 * kHalf, 4 * kHalf, 2 * kHalf}, kRoof, method);
+    for (const auto method : {scene::ContactMethod::GodObjectHeuristic, scene::ContactMethod::GodObject}) {
+        auto spec = test::scene(shape::Box{4 * kHalf, 2 * kHalf, 2 * kHalf}, across(-1e-3, 0, 0, 0),
+                                shape::Box{2 * kHalf, 4 * kHalf, 2 * kHalf}, kRoof, method);
         spec.contact.cell = 0.0;
         spec.contact.tolerance = kTolerance;
         spec.contact.spacing = kSpacing;
@@ -161,4 +161,4 @@ TEST(EdgeSearch, ProxyLeavesEdgesApartThatCrossBetweenTheirSamples) {
 }
 
 }  // namespace
-}  // namespace passung::tick
+}  // namespace passung::contact

@@ -8,7 +8,7 @@
 #include "core/base/random.h"
 #include "core/scene/part.h"
 
-namespace passung::model {
+namespace passung::field {
 namespace {
 
 struct Points {
@@ -45,16 +45,16 @@ Points someAround(const DistanceField& field) {
 
 std::vector<DistanceField> someFields() {
     std::vector<DistanceField> fields;
-    const auto add = [&](const Shape& shape, const PartNeeds& needs) {
-        PartSpec spec;
+    const auto add = [&](const shape::Shape& shape, const scene::PartNeeds& needs) {
+        scene::PartSpec spec;
         spec.geometry = shape;
-        auto part = buildPart(spec, needs);
+        auto part = scene::buildPart(spec, needs);
         EXPECT_TRUE(part);
         fields.push_back(std::move(*part->field));
     };
-    add(Sphere{0.03}, {.field = true, .cell = 0.7e-3});
-    add(BorePlate{0.06, 0.06, 0.03, 0.0202, 0.025, 0.001}, {.field = true, .tolerance = 20e-6});
-    add(Sheet{0.05, 0.03}, {.field = true, .tolerance = 50e-6});
+    add(shape::Sphere{0.03}, {.field = true, .cell = 0.7e-3});
+    add(shape::BorePlate{0.06, 0.06, 0.03, 0.0202, 0.025, 0.001}, {.field = true, .tolerance = 20e-6});
+    add(shape::Sheet{0.05, 0.03}, {.field = true, .tolerance = 50e-6});
     return fields;
 }
 
@@ -104,10 +104,11 @@ TEST(SampleMany, GivesTheSameBitsWithAllInstructionsAndInAnyGrouping) {
 
 TEST(LowerBounds, AreNeverAboveTheDistanceAndHardlyBelowTheOneOfEachPoint) {
     // Truth: closed form; lowerBound() of each point.
-    std::vector<Shape> shapes{Sphere{0.03}, BorePlate{0.06, 0.06, 0.03, 0.0202, 0.025, 0.001}, Sheet{0.05, 0.03}};
+    std::vector<shape::Shape> shapes{shape::Sphere{0.03}, shape::BorePlate{0.06, 0.06, 0.03, 0.0202, 0.025, 0.001},
+                                     shape::Sheet{0.05, 0.03}};
     std::size_t k = 0;
     for (const DistanceField& field : someFields()) {
-        const Shape& shape = shapes[k++];
+        const shape::Shape& shape = shapes[k++];
         const Points points = someAround(field);
         const std::size_t count = points.x.size();
         std::vector<float> bound(count), other(count);
@@ -117,11 +118,11 @@ TEST(LowerBounds, AreNeverAboveTheDistanceAndHardlyBelowTheOneOfEachPoint) {
             const Vec3 p = kPose * points.at(i);
             if (!p.allFinite()) continue;
             const double value = static_cast<double>(bound[i]);
-            ASSERT_LE(value, signedDistance(shape, p) + 1e-12) << kindName(shape) << " " << i;
+            ASSERT_LE(value, shape::signedDistance(shape, p) + 1e-12) << shape::kindName(shape) << " " << i;
             ASSERT_LE(value, field.lowerBound(p) + 1e-12) << i;
             loosest = std::max(loosest, field.lowerBound(p) - value);
         }
-        EXPECT_LT(loosest, 2e-6) << kindName(shape);  // 2⁻¹⁸ of the largest distance, half a metre
+        EXPECT_LT(loosest, 2e-6) << shape::kindName(shape);  // 2⁻¹⁸ of the largest distance, half a metre
         for (const Instructions instructions : {Instructions::V3, Instructions::V4}) {
             if (instructions > bestInstructions()) continue;
             field.lowerBounds(field.place(kPose), points.x, points.y, points.z, other, instructions);
@@ -131,4 +132,4 @@ TEST(LowerBounds, AreNeverAboveTheDistanceAndHardlyBelowTheOneOfEachPoint) {
 }
 
 }  // namespace
-}  // namespace passung::model
+}  // namespace passung::field

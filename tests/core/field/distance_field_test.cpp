@@ -6,22 +6,23 @@
 #include "core/base/random.h"
 #include "core/scene/part.h"
 
-namespace passung::model {
+namespace passung::field {
 namespace {
 
-Part fieldOf(const Shape& shape, double cell, double tolerance = 20e-6) {
-    PartSpec spec;
-    spec.name = kindName(shape);
+scene::Part fieldOf(const shape::Shape& shape, double cell, double tolerance = 20e-6) {
+    scene::PartSpec spec;
+    spec.name = shape::kindName(shape);
     spec.geometry = shape;
-    auto part = buildPart(spec, {.field = true, .tolerance = tolerance, .cell = cell});
+    auto part = scene::buildPart(spec, {.field = true, .tolerance = tolerance, .cell = cell});
     EXPECT_TRUE(part);
     return std::move(*part);
 }
 
-const std::vector<Shape> kSolids{Sphere{0.03}, Box{0.02, 0.03, 0.04}, Cylinder{0.02, 0.03}, Peg{0.02, 0.05, 0.001},
-                                 BorePlate{0.06, 0.06, 0.03, 0.0202, 0.025, 0.001}};
+const std::vector<shape::Shape> kSolids{shape::Sphere{0.03}, shape::Box{0.02, 0.03, 0.04}, shape::Cylinder{0.02, 0.03},
+                                        shape::Peg{0.02, 0.05, 0.001},
+                                        shape::BorePlate{0.06, 0.06, 0.03, 0.0202, 0.025, 0.001}};
 
-Vec3 anywhere(const Bounds& bounds, double margin, Random& random) {
+Vec3 anywhere(const geometry::Bounds& bounds, double margin, Random& random) {
     Vec3 p;
     for (int axis = 0; axis < 3; ++axis)
         p[axis] = random.uniform(bounds.low[axis] - margin, bounds.high[axis] + margin);
@@ -31,15 +32,15 @@ Vec3 anywhere(const Bounds& bounds, double margin, Random& random) {
 TEST(DistanceField, ErrsLessThanItsRigorousBoundEverywhere) {
     // Truth: closed form of each shape; points near, far and outside the grid.
     Random random(1);
-    for (const Shape& shape : kSolids) {
-        const Part part = fieldOf(shape, 0.7e-3);
+    for (const shape::Shape& shape : kSolids) {
+        const scene::Part part = fieldOf(shape, 0.7e-3);
         for (const FieldMode mode : kFieldModes) {
             for (int i = 0; i < 20000; ++i) {
                 const Vec3 p = anywhere(part.field->bounds(), i % 2 ? 0.002 : 0.15, random);
                 const Vec3 inward(random.normal(), random.normal(), random.normal());
                 const double error =
-                    std::abs(part.field->sample(p, mode, inward.normalized()).phi - signedDistance(shape, p));
-                ASSERT_LE(error, part.field->errorBound(p, mode)) << kindName(shape) << " at " << p.transpose();
+                    std::abs(part.field->sample(p, mode, inward.normalized()).phi - shape::signedDistance(shape, p));
+                ASSERT_LE(error, part.field->errorBound(p, mode)) << shape::kindName(shape) << " at " << p.transpose();
             }
         }
     }
@@ -48,11 +49,11 @@ TEST(DistanceField, ErrsLessThanItsRigorousBoundEverywhere) {
 TEST(DistanceField, LowerBoundIsNeverAboveTheTrueDistance) {
     // Truth: closed form.
     Random random(2);
-    for (const Shape& shape : kSolids) {
-        const Part part = fieldOf(shape, 0.7e-3);
+    for (const shape::Shape& shape : kSolids) {
+        const scene::Part part = fieldOf(shape, 0.7e-3);
         for (int i = 0; i < 20000; ++i) {
             const Vec3 p = anywhere(part.field->bounds(), i % 2 ? 0.002 : 0.15, random);
-            ASSERT_LE(part.field->lowerBound(p), signedDistance(shape, p) + 1e-12) << kindName(shape);
+            ASSERT_LE(part.field->lowerBound(p), shape::signedDistance(shape, p) + 1e-12) << shape::kindName(shape);
         }
     }
 }
@@ -61,15 +62,16 @@ TEST(DistanceField, LowerBoundFarFromAConvexPartIsAsNearAsDerived) {
     // Truth: closed form. d - bound ≤ S/d with S ≤ 3/4 of the squared edge of a coarse cell, plus rounding.
     constexpr double kCell = 0.7e-3, kEdge = DistanceField::kBrickCells * kCell;
     Random random(4);
-    for (const Shape& shape : {Shape{Sphere{0.03}}, Shape{Box{0.02, 0.03, 0.04}}, Shape{Cylinder{0.02, 0.03}}}) {
-        const Part part = fieldOf(shape, kCell);
+    for (const shape::Shape& shape : {shape::Shape{shape::Sphere{0.03}}, shape::Shape{shape::Box{0.02, 0.03, 0.04}},
+                                      shape::Shape{shape::Cylinder{0.02, 0.03}}}) {
+        const scene::Part part = fieldOf(shape, kCell);
         int far = 0;
         for (int i = 0; i < 20000; ++i) {
             const Vec3 p = anywhere(part.field->bounds(), 0.03, random);
-            const double d = signedDistance(shape, p);
+            const double d = shape::signedDistance(shape, p);
             if (d < 2.0 * kEdge) continue;
             ++far;
-            ASSERT_LE(d - part.field->lowerBound(p), 0.75 * kEdge * kEdge / d + 1e-8) << kindName(shape);
+            ASSERT_LE(d - part.field->lowerBound(p), 0.75 * kEdge * kEdge / d + 1e-8) << shape::kindName(shape);
         }
         EXPECT_GT(far, 5000);
     }
@@ -81,8 +83,8 @@ TEST(DistanceField, TrilinearErrorOnAWallFallsWithTheSquareOfTheCell) {
     Random random(3);
     double last = 0.0;
     for (const double cell : {1e-3, 0.5e-3, 0.25e-3}) {
-        const Shape shape = Cylinder{2 * R, 0.04};
-        const Part part = fieldOf(shape, cell);
+        const shape::Shape shape = shape::Cylinder{2 * R, 0.04};
+        const scene::Part part = fieldOf(shape, cell);
         double worst = 0.0;
         for (int i = 0; i < 20000; ++i) {
             const double angle = random.uniform(0.0, 6.2831853), r = R + random.uniform(-0.5, 0.5) * cell;
@@ -99,7 +101,7 @@ TEST(DistanceField, TrilinearErrorOnAWallFallsWithTheSquareOfTheCell) {
 
 TEST(DistanceField, GradientIsThatOfTheInterpolantAndPointsOut) {
     // Truth: invariant (difference quotient of the same interpolant inside one cell), and closed form of a plane.
-    const Part part = fieldOf(Box{0.04, 0.04, 0.04}, 0.5e-3);
+    const scene::Part part = fieldOf(shape::Box{0.04, 0.04, 0.04}, 0.5e-3);
     const Vec3 p(0.0012, -0.0033, 0.0203);
     for (const FieldMode mode : {FieldMode::SurfacePoint, FieldMode::Linear, FieldMode::Trilinear, FieldMode::Cubic}) {
         const FieldSample s = part.field->sample(p, mode);
@@ -114,7 +116,7 @@ TEST(DistanceField, GradientIsThatOfTheInterpolantAndPointsOut) {
 
 TEST(DistanceField, HoldsAnOpenSheetOffByItsStatedOffsetOnBothSides) {
     // Truth: closed form: |z| - offset above and below the sheet's middle, outside its kink.
-    const Part part = fieldOf(Sheet{0.05, 0.05}, 0.5e-3);
+    const scene::Part part = fieldOf(shape::Sheet{0.05, 0.05}, 0.5e-3);
     ASSERT_GT(part.field->sheetOffset(), 0.0);
     for (const double side : {1.0, -1.0}) {
         for (double z = 0.0005; z < 0.0018; z += 0.0001) {
@@ -127,10 +129,10 @@ TEST(DistanceField, HoldsAnOpenSheetOffByItsStatedOffsetOnBothSides) {
 
 TEST(DistanceField, OfASheetStaysSmallAndItsBoundHoldsInFrontOfTheOffset) {
     // Truth: closed form: the distance to the rectangle less the stated offset.
-    const Shape shape = Sheet{0.1, 0.1};
-    PartSpec spec;
+    const shape::Shape shape = shape::Sheet{0.1, 0.1};
+    scene::PartSpec spec;
     spec.geometry = shape;
-    const auto part = buildPart(spec, {.field = true, .tolerance = 20e-6});
+    const auto part = scene::buildPart(spec, {.field = true, .tolerance = 20e-6});
     ASSERT_TRUE(part);
     const DistanceField& field = *part->field;
     EXPECT_LT(field.memoryBytes(), 50u << 20);
@@ -140,7 +142,7 @@ TEST(DistanceField, OfASheetStaysSmallAndItsBoundHoldsInFrontOfTheOffset) {
     int good = 0, near = 0;
     for (int i = 0; i < 40000; ++i) {
         const Vec3 p = anywhere(field.bounds(), i % 2 ? 0.002 : 0.15, random);
-        const double truth = signedDistance(shape, p) - field.sheetOffset();
+        const double truth = shape::signedDistance(shape, p) - field.sheetOffset();
         const double error = std::abs(field.sample(p, FieldMode::Trilinear).phi - truth);
         ASSERT_LE(error, field.errorBound(p, FieldMode::Trilinear)) << p.transpose();
         ASSERT_LE(field.lowerBound(p), truth) << p.transpose();
@@ -155,10 +157,11 @@ TEST(DistanceField, BoundsHoldForLargePartsWhereFloatsRoundTheMost) {
     // Truth: closed form. At the nodes nothing is interpolated: only the rounding of the stored floats is left, 6e-8 of
     // the distance. Points lie within 1e-9 of a cell of nodes of the fine cells and of the coarse grid.
     for (const double size : {1.0, 10.0}) {
-        for (const Shape& shape : {Shape(Sphere{size}), Shape(Box{size, 0.7 * size, 0.3 * size})}) {
+        for (const shape::Shape& shape :
+             {shape::Shape(shape::Sphere{size}), shape::Shape(shape::Box{size, 0.7 * size, 0.3 * size})}) {
             const double cell = size / 40.0, brick = 8.0 * cell;
-            const Part part = fieldOf(shape, cell, 1e-4 * size);  // of the triangles, which are not needed
-            const Vec3 origin = part.field->bounds().low;         // a node of the coarse grid
+            const scene::Part part = fieldOf(shape, cell, 1e-4 * size);  // of the triangles, which are not needed
+            const Vec3 origin = part.field->bounds().low;                // a node of the coarse grid
             Random random(7);
             double worst = 0.0;
             for (int i = 0; i < 8000; ++i) {
@@ -168,12 +171,12 @@ TEST(DistanceField, BoundsHoldForLargePartsWhereFloatsRoundTheMost) {
                     p[k] =
                         origin[k] + edge * (std::round((p[k] - origin[k]) / edge) + 1e-9 * random.uniform(-1.0, 1.0));
                 if (i % 8 == 0) p = anywhere(part.field->bounds(), size, random);
-                const double truth = signedDistance(shape, p);
-                ASSERT_LE(part.field->lowerBound(p), truth) << kindName(shape) << " at " << p.transpose();
+                const double truth = shape::signedDistance(shape, p);
+                ASSERT_LE(part.field->lowerBound(p), truth) << shape::kindName(shape) << " at " << p.transpose();
                 for (const FieldMode mode : {FieldMode::Trilinear, FieldMode::Linear}) {
                     const double error = std::abs(part.field->sample(p, mode).phi - truth);
                     const double bound = part.field->errorBound(p, mode);
-                    ASSERT_LE(error, bound) << kindName(shape) << " at " << p.transpose();
+                    ASSERT_LE(error, bound) << shape::kindName(shape) << " at " << p.transpose();
                     if (bound < 1e-6 * size) worst = std::max(worst, error / bound);
                 }
             }
@@ -184,16 +187,16 @@ TEST(DistanceField, BoundsHoldForLargePartsWhereFloatsRoundTheMost) {
 
 TEST(DistanceField, RefusesAGridThatWouldNotFitIntoMemory) {
     // Truth: invariant (the documented limit of 2 GiB).
-    PartSpec spec;
+    scene::PartSpec spec;
     spec.name = "large";
-    spec.geometry = Shape(Box{10, 10, 10});
-    const auto part = buildPart(spec, {.field = true, .cell = 1e-4});
+    spec.geometry = shape::Shape(shape::Box{10, 10, 10});
+    const auto part = scene::buildPart(spec, {.field = true, .cell = 1e-4});
     ASSERT_FALSE(part);
     EXPECT_NE(toString(part.errors().front()).find("2 GiB"), std::string::npos);
 }
 
 /// A plate with a bore of 10 mm through it; sharp.
-const BorePlate kSharpPlate{0.04, 0.04, 0.02, 0.01, 0.02, 0.0};
+const shape::BorePlate kSharpPlate{0.04, 0.04, 0.02, 0.01, 0.02, 0.0};
 
 /// A point up to `reach` (per axis) from the plate's surface: by turns on its faces, the bore's wall, a rim, an edge.
 Vec3 nearPlate(int turn, double reach, Random& random) {
@@ -213,10 +216,10 @@ Vec3 nearPlate(int turn, double reach, Random& random) {
 
 TEST(DistanceField, MeetsTheAskedToleranceAtRimsEdgesAndCorners) {
     // Truth: closed form. Depth: PartNeeds (40 tolerances, here 0.2 mm and more).
-    PartSpec spec;
-    spec.geometry = Shape{kSharpPlate};
+    scene::PartSpec spec;
+    spec.geometry = shape::Shape{kSharpPlate};
     for (const double tolerance : {20e-6, 5e-6}) {
-        const auto part = buildPart(spec, {.field = true, .tolerance = tolerance});
+        const auto part = scene::buildPart(spec, {.field = true, .tolerance = tolerance});
         ASSERT_TRUE(part);
         const DistanceField& field = *part->field;
         EXPECT_TRUE(field.refined());
@@ -225,7 +228,7 @@ TEST(DistanceField, MeetsTheAskedToleranceAtRimsEdgesAndCorners) {
         double worst = 0.0;
         for (int i = 0; i < 300'000; ++i) {
             const Vec3 p = nearPlate(i, 0.2e-3, random);
-            const double truth = signedDistance(*part->shape, p);
+            const double truth = shape::signedDistance(*part->shape, p);
             if (std::abs(truth) > 0.2e-3) continue;
             worst = std::max(worst, std::abs(field.sample(p, FieldMode::Trilinear).phi - truth));
         }
@@ -235,9 +238,9 @@ TEST(DistanceField, MeetsTheAskedToleranceAtRimsEdgesAndCorners) {
 
 TEST(DistanceField, HoldsAPegOffThatFitsWithFiftyMicrometres) {
     // Truth: closed form: a peg of 9.9 mm in the middle of a bore of 10 mm touches nothing.
-    PartSpec spec;
-    spec.geometry = Shape{kSharpPlate};
-    const auto part = buildPart(spec, {.field = true, .tolerance = 5e-6});
+    scene::PartSpec spec;
+    spec.geometry = shape::Shape{kSharpPlate};
+    const auto part = scene::buildPart(spec, {.field = true, .tolerance = 5e-6});
     ASSERT_TRUE(part);
     for (int i = 0; i < 6000; ++i) {
         const double angle = 2.39996323 * i;  // the golden angle
@@ -250,15 +253,15 @@ TEST(DistanceField, HoldsAPegOffThatFitsWithFiftyMicrometres) {
 
 TEST(DistanceField, IsOffByATenthOfTheDepthAtMostBelowItsFineCells) {
     // Truth: closed form. Below the depth of the tolerance, as deep as bricks reach (two largest cells are less).
-    PartSpec spec;
-    spec.geometry = Shape{kSharpPlate};
-    const auto part = buildPart(spec, {.field = true, .tolerance = 10e-6});
+    scene::PartSpec spec;
+    spec.geometry = shape::Shape{kSharpPlate};
+    const auto part = scene::buildPart(spec, {.field = true, .tolerance = 10e-6});
     ASSERT_TRUE(part);
     Random random(9);
     int deep = 0;
     for (int i = 0; i < 100'000; ++i) {
         const Vec3 p = nearPlate(i, 1e-3, random);
-        const double truth = signedDistance(*part->shape, p);
+        const double truth = shape::signedDistance(*part->shape, p);
         if (std::abs(truth) < 0.4e-3 || std::abs(truth) > 1e-3) continue;
         ++deep;
         ASSERT_LE(std::abs(part->field->sample(p, FieldMode::Trilinear).phi - truth), 0.1 * std::abs(truth));
@@ -269,22 +272,22 @@ TEST(DistanceField, IsOffByATenthOfTheDepthAtMostBelowItsFineCells) {
 TEST(DistanceField, BoundsHoldWhereCellsOfSeveralSizesMeet) {
     // Truth: closed form.
     Random random(10);
-    for (const Shape& shape : kSolids) {
-        PartSpec spec;
+    for (const shape::Shape& shape : kSolids) {
+        scene::PartSpec spec;
         spec.geometry = shape;
-        const auto part = buildPart(spec, {.field = true, .tolerance = 10e-6});
+        const auto part = scene::buildPart(spec, {.field = true, .tolerance = 10e-6});
         ASSERT_TRUE(part);
         const DistanceField& field = *part->field;
-        if (!std::holds_alternative<Sphere>(shape)) {
-            EXPECT_LT(field.finestCell(), field.cell()) << kindName(shape);
+        if (!std::holds_alternative<shape::Sphere>(shape)) {
+            EXPECT_LT(field.finestCell(), field.cell()) << shape::kindName(shape);
         }
         for (int i = 0; i < 30'000; ++i) {
             const Vec3 p = anywhere(field.bounds(), i % 2 ? 0.001 : 0.1, random);
-            const double truth = signedDistance(shape, p);
-            ASSERT_LE(field.lowerBound(p), truth) << kindName(shape) << " at " << p.transpose();
+            const double truth = shape::signedDistance(shape, p);
+            ASSERT_LE(field.lowerBound(p), truth) << shape::kindName(shape) << " at " << p.transpose();
             for (const FieldMode mode : kFieldModes)
                 ASSERT_LE(std::abs(field.sample(p, mode).phi - truth), field.errorBound(p, mode))
-                    << kindName(shape) << " at " << p.transpose();
+                    << shape::kindName(shape) << " at " << p.transpose();
         }
     }
 }
@@ -292,7 +295,7 @@ TEST(DistanceField, BoundsHoldWhereCellsOfSeveralSizesMeet) {
 TEST(DistanceField, SeesASpikeThatIsThinnerThanTheLargestCells) {
     // Truth: closed form of the spike's tip: its surface, φ = 0. A block of 60 mm carries a spike 0.4 mm high and wide
     // in the middle of a face; the cells begin at 0.5 mm and more.
-    const Shape block = Box{0.06, 0.06, 0.06};
+    const shape::Shape block = shape::Box{0.06, 0.06, 0.06};
     DistanceSource source;
     const Vec3 tip(0.0013, 0.0017, 0.0304);
     const double spike = 0.2e-3;
@@ -300,7 +303,7 @@ TEST(DistanceField, SeesASpikeThatIsThinnerThanTheLargestCells) {
     const auto phi = [=](const Vec3& p) {
         const Vec3 q = (p - (tip - Vec3(0, 0, spike))).cwiseAbs() - Vec3::Constant(spike);
         const double box = q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
-        return std::min(box, signedDistance(block, p));
+        return std::min(box, shape::signedDistance(block, p));
     };
     source.distance = [=](const Vec3& p) { return std::abs(phi(p)); };
     source.inside = [=](const Vec3& p) { return phi(p) < 0.0; };
@@ -338,16 +341,16 @@ TEST(DistanceField, IsSampledAtTheLastLevelWhereTheCellAskedForLiesBelow) {
 
 TEST(DistanceField, StopsRefiningAtItsLimitOfMemoryAndSaysSo) {
     // Truth: invariant.
-    const Shape shape{kSharpPlate};
-    PartSpec spec;
+    const shape::Shape shape{kSharpPlate};
+    scene::PartSpec spec;
     spec.geometry = shape;
-    const auto part = buildPart(spec, {});
+    const auto part = scene::buildPart(spec, {});
     ASSERT_TRUE(part);
     FieldAccuracy accuracy;
     accuracy.tolerance = 10e-6;
     accuracy.depth = 0.4e-3;
     accuracy.bytes = 6'000'000;
-    const auto field = DistanceField::build(exactSource(*part), 0.5e-3, 2e-3, accuracy);
+    const auto field = DistanceField::build(scene::exactSource(*part), 0.5e-3, 2e-3, accuracy);
     ASSERT_TRUE(field);
     EXPECT_FALSE(field->refined());
     EXPECT_LE(field->memoryBytes(), accuracy.bytes);
@@ -357,10 +360,10 @@ TEST(DistanceField, StopsRefiningAtItsLimitOfMemoryAndSaysSo) {
 
 TEST(DistanceField, KeepsCellsOfOneSizeWhereACellIsNamed) {
     // Truth: invariant.
-    const Part part = fieldOf(Shape{kSharpPlate}, 0.5e-3);
+    const scene::Part part = fieldOf(shape::Shape{kSharpPlate}, 0.5e-3);
     EXPECT_EQ(part.field->cell(), 0.5e-3);
     EXPECT_EQ(part.field->finestCell(), 0.5e-3);
 }
 
 }  // namespace
-}  // namespace passung::model
+}  // namespace passung::field

@@ -11,7 +11,7 @@
 #include "core/base/random.h"
 #include "core/field/distance_field.h"
 
-namespace passung::model {
+namespace passung::field {
 namespace {
 
 using Phi = std::function<double(const Vec3&)>;
@@ -178,4 +178,4 @@ TEST(FieldMode, GradientIsThatOfTheValue) {
 }
 
 }  // namespace
-}  // namespace passung::model
+}  // namespace passung::field

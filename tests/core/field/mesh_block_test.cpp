@@ -11,7 +11,7 @@
 #include "core/import/self_intersection.h"
 #include "core/shape/shape.h"
 
-namespace passung::model {
+namespace passung::field {
 namespace {
 
 Vec3 placeOf(std::size_t i, std::size_t side) {
@@ -20,25 +20,26 @@ Vec3 placeOf(std::size_t i, std::size_t side) {
 }
 
 struct Case {
-    Shape shape;
+    shape::Shape shape;
     double cell;
 };
 
 /// Fine and coarse cells, sharp edges, needles (a bore's sides) and faces that lie on nodes.
-const std::vector<Case> kCases{{Sphere{0.03}, 0.4e-3},
-                               {Torus{0.04, 0.012}, 1.5e-3},
-                               {Box{0.02, 0.03, 0.04}, 1e-3},
-                               {BorePlate{0.06, 0.06, 0.03, 0.0202, 0.025, 0.001}, 0.7e-3}};
+const std::vector<Case> kCases{{shape::Sphere{0.03}, 0.4e-3},
+                               {shape::Torus{0.04, 0.012}, 1.5e-3},
+                               {shape::Box{0.02, 0.03, 0.04}, 1e-3},
+                               {shape::BorePlate{0.06, 0.06, 0.03, 0.0202, 0.025, 0.001}, 0.7e-3}};
 
 /// Calls `check(low, block)` for blocks around the surface; every fourth begins at a corner of the part's box.
 template <class Check>
-void atSomeBlocks(const TriangleMesh& mesh, const MeshBlockSampler& sampler, double cell, const Check& check) {
+void atSomeBlocks(const geometry::TriangleMesh& mesh, const MeshBlockSampler& sampler, double cell,
+                  const Check& check) {
     Random random(3);
     const auto block = std::make_unique<SurfaceBlock>();
     for (int i = 0; i < 16; ++i) {
         const Vec3& vertex = mesh.vertices[random.below(mesh.vertices.size())];
         const Vec3 shift(random.uniform(), random.uniform(), random.uniform());
-        const Vec3 low = i % 4 == 0 ? Vec3(boundsOf(mesh).low - cell * Vec3(4.0, 4.0, 4.0))
+        const Vec3 low = i % 4 == 0 ? Vec3(geometry::boundsOf(mesh).low - cell * Vec3(4.0, 4.0, 4.0))
                                     : Vec3(vertex - SurfaceBlock::kCells * cell * shift);
         sampler.sample(low, cell, *block);
         check(low, *block);
@@ -50,26 +51,26 @@ TEST(MeshBlock, DistancesAndSignsAreThoseOfTheTreeAtEveryNodeAndInEveryCell) {
     // from the triangles that it names.
     Random random(7);
     for (const Case& c : kCases) {
-        const TriangleMesh mesh = tessellate(c.shape, 5e-6);
-        const auto tree = std::make_shared<const TriangleTree>(mesh);
+        const geometry::TriangleMesh mesh = shape::tessellate(c.shape, 5e-6);
+        const auto tree = std::make_shared<const geometry::TriangleTree>(mesh);
         const double rounding = 1e-13;  // some hundred roundings of a coordinate of 0.1 m
         const MeshBlockSampler sampler(tree, true, true);
         atSomeBlocks(mesh, sampler, c.cell, [&](const Vec3& low, const SurfaceBlock& block) {
             for (std::size_t i = 0; i < SurfaceBlock::kAllNodes; ++i) {
                 const Vec3 p = low + c.cell * placeOf(i, SurfaceBlock::kNodes);
                 const double d = tree->closest(p).distance;
-                ASSERT_NEAR(std::abs(block.node[i]), d, rounding) << kindName(c.shape);
+                ASSERT_NEAR(std::abs(block.node[i]), d, rounding) << shape::kindName(c.shape);
                 if (d > 1e-9) {
-                    ASSERT_EQ(block.node[i] < 0.0, tree->inside(p)) << kindName(c.shape) << " " << p.transpose();
+                    ASSERT_EQ(block.node[i] < 0.0, tree->inside(p)) << shape::kindName(c.shape) << " " << p.transpose();
                 }
             }
             for (std::size_t i = 0; i < SurfaceBlock::kAllCells; ++i) {
                 const Vec3 p = low + c.cell * (placeOf(i, SurfaceBlock::kCells) + Vec3::Constant(0.5));
-                ASSERT_NEAR(block.centre[i], tree->closest(p).distance, rounding) << kindName(c.shape);
+                ASSERT_NEAR(block.centre[i], tree->closest(p).distance, rounding) << shape::kindName(c.shape);
                 const Vec3 in =
                     p + 0.5 * c.cell * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
                 ASSERT_NEAR(sampler.distance(in, block.trianglesOf(i)), tree->closest(in).distance, rounding)
-                    << kindName(c.shape);
+                    << shape::kindName(c.shape);
             }
         });
     }
@@ -80,8 +81,8 @@ TEST(MeshBlock, DistanceTurnsInNoCellByMoreThanItsSlack) {
     Random random(11);
     double tightest = 1.0;
     for (const Case& c : kCases) {
-        const TriangleMesh mesh = tessellate(c.shape, 5e-6);
-        const auto tree = std::make_shared<const TriangleTree>(mesh);
+        const geometry::TriangleMesh mesh = shape::tessellate(c.shape, 5e-6);
+        const auto tree = std::make_shared<const geometry::TriangleTree>(mesh);
         atSomeBlocks(mesh, MeshBlockSampler(tree, true, true), c.cell, [&](const Vec3& low, const SurfaceBlock& block) {
             for (std::size_t i = 0; i < SurfaceBlock::kAllCells; ++i) {
                 const Vec3 place = placeOf(i, SurfaceBlock::kCells);
@@ -95,7 +96,7 @@ TEST(MeshBlock, DistanceTurnsInNoCellByMoreThanItsSlack) {
                 }
                 const Vec3 p = low + c.cell * (place + u);
                 const double d = tree->closest(p).distance, phi = tree->inside(p) ? -d : d;
-                ASSERT_LE(std::abs(value - phi), block.slack[i] * way + 1e-12) << kindName(c.shape);
+                ASSERT_LE(std::abs(value - phi), block.slack[i] * way + 1e-12) << shape::kindName(c.shape);
                 tightest = std::min(tightest, block.slack[i]);
             }
         });
@@ -104,23 +105,25 @@ TEST(MeshBlock, DistanceTurnsInNoCellByMoreThanItsSlack) {
 }
 
 /// Two boxes: a second one that overlaps the first, or lies inside it.
-TriangleMesh twoBoxes(double second, const Vec3& shift) {
-    TriangleMesh mesh = tessellate(Box{0.02, 0.02, 0.02}, 1e-6);
-    const TriangleMesh other = tessellate(Box{second, second, second}, 1e-6);
+geometry::TriangleMesh twoBoxes(double second, const Vec3& shift) {
+    geometry::TriangleMesh mesh = shape::tessellate(shape::Box{0.02, 0.02, 0.02}, 1e-6);
+    const geometry::TriangleMesh other = shape::tessellate(shape::Box{second, second, second}, 1e-6);
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     for (const Vec3& v : other.vertices) mesh.vertices.push_back(v + shift);
-    for (const Triangle& t : other.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    for (const geometry::Triangle& t : other.triangles)
+        mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
     return mesh;
 }
 
 TEST(MeshBlock, SlackHoldsWhereSolidsOverlapOrContainEachOther) {
     // Truth: TriangleTree; between the faces inside a union φ falls on both sides. Blocks end everywhere between them.
     Random random(5);
-    for (const TriangleMesh& mesh : {twoBoxes(0.02, Vec3(0.0085, 0.003, 0.002)), twoBoxes(0.0138, Vec3::Zero()),
-                                     twoBoxes(0.0138, Vec3(0.03, 0.0, 0.0))}) {
+    for (const geometry::TriangleMesh& mesh :
+         {twoBoxes(0.02, Vec3(0.0085, 0.003, 0.002)), twoBoxes(0.0138, Vec3::Zero()),
+          twoBoxes(0.0138, Vec3(0.03, 0.0, 0.0))}) {
         const bool apart = mesh.vertices.back().x() > 0.03;
-        const auto tree = std::make_shared<const TriangleTree>(mesh);
-        const MeshBlockSampler sampler(tree, true, crossingsOf(mesh).triangles == 0);
+        const auto tree = std::make_shared<const geometry::TriangleTree>(mesh);
+        const MeshBlockSampler sampler(tree, true, importer::crossingsOf(mesh).triangles == 0);
         const auto block = std::make_unique<SurfaceBlock>();
         int linear = 0;
         for (int i = 0; i < 60; ++i) {
@@ -150,16 +153,17 @@ TEST(MeshBlock, SlackHoldsWhereSolidsOverlapOrContainEachOther) {
 
 TEST(MeshBlock, WorksFarFromTheOriginWhereCoordinatesAreCoarse) {
     // Truth: TriangleTree. At 64 m the spacing of numbers doubles: corners of a cube round to different sides.
-    TriangleMesh mesh = tessellate(Box{0.0426, 0.03, 0.02}, 1e-6);
+    geometry::TriangleMesh mesh = shape::tessellate(shape::Box{0.0426, 0.03, 0.02}, 1e-6);
     Random random(9);
     for (int i = 0; i < 60; ++i) {
-        TriangleMesh moved = mesh;
+        geometry::TriangleMesh moved = mesh;
         const Vec3 shift(64.0 - 0.0213 * random.uniform(), 64.0 * random.uniform(), 0.01);
         for (Vec3& v : moved.vertices) v += shift;
-        const auto tree = std::make_shared<const TriangleTree>(moved);
+        const auto tree = std::make_shared<const geometry::TriangleTree>(moved);
         const MeshBlockSampler sampler(tree, true, true);
         const auto block = std::make_unique<SurfaceBlock>();
-        const Vec3 low = boundsOf(moved).low - 1e-4 * Vec3(random.uniform(), random.uniform(), random.uniform());
+        const Vec3 low =
+            geometry::boundsOf(moved).low - 1e-4 * Vec3(random.uniform(), random.uniform(), random.uniform());
         sampler.sample(low, 0.376e-3, *block);
         for (std::size_t k = 0; k < SurfaceBlock::kAllNodes; k += 7)
             ASSERT_NEAR(std::abs(block->node[k]),
@@ -168,4 +172,4 @@ TEST(MeshBlock, WorksFarFromTheOriginWhereCoordinatesAreCoarse) {
 }
 
 }  // namespace
-}  // namespace passung::model
+}  // namespace passung::field

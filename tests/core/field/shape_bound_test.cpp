@@ -10,26 +10,26 @@
 #include "core/field/interpolation.h"
 #include "core/scene/part.h"
 
-namespace passung::model {
+namespace passung::field {
 namespace {
 
-const std::vector<Shape> kShapes{Sphere{0.01},
-                                 Box{0.01, 0.015, 0.02},
-                                 Cylinder{0.01, 0.015},
-                                 Torus{0.02, 0.006},
-                                 Sheet{0.02, 0.03},
-                                 Peg{0.01, 0.02, 0.001},
-                                 SquarePeg{0.01, 0.008, 0.02, 0.001},
-                                 KeyedPeg{0.01, 0.02, 0.003, 0.0015, 0.0005},
-                                 BorePlate{0.03, 0.03, 0.02, 0.01, 0.015, 0.001},
-                                 BorePlate{0.03, 0.03, 0.02, 0.01, 0.02, 0.0},
-                                 SquareBorePlate{0.03, 0.03, 0.02, 0.01, 0.008, 0.02, 0.001},
-                                 KeyedBorePlate{0.03, 0.03, 0.02, 0.01, 0.003, 0.0015, 0.02, 0.0005}};
+const std::vector<shape::Shape> kShapes{shape::Sphere{0.01},
+                                        shape::Box{0.01, 0.015, 0.02},
+                                        shape::Cylinder{0.01, 0.015},
+                                        shape::Torus{0.02, 0.006},
+                                        shape::Sheet{0.02, 0.03},
+                                        shape::Peg{0.01, 0.02, 0.001},
+                                        shape::SquarePeg{0.01, 0.008, 0.02, 0.001},
+                                        shape::KeyedPeg{0.01, 0.02, 0.003, 0.0015, 0.0005},
+                                        shape::BorePlate{0.03, 0.03, 0.02, 0.01, 0.015, 0.001},
+                                        shape::BorePlate{0.03, 0.03, 0.02, 0.01, 0.02, 0.0},
+                                        shape::SquareBorePlate{0.03, 0.03, 0.02, 0.01, 0.008, 0.02, 0.001},
+                                        shape::KeyedBorePlate{0.03, 0.03, 0.02, 0.01, 0.003, 0.0015, 0.02, 0.0005}};
 
-SurfaceBlock blockAt(const Shape& shape, const Vec3& low, double cell) {
+SurfaceBlock blockAt(const shape::Shape& shape, const Vec3& low, double cell) {
     SurfaceBlock block;
     for (std::size_t i = 0; i < SurfaceBlock::kAllNodes; ++i)
-        block.node[i] = signedDistance(
+        block.node[i] = shape::signedDistance(
             shape, low + cell * Vec3(static_cast<double>(i % SurfaceBlock::kNodes),
                                      static_cast<double>(i / SurfaceBlock::kNodes % SurfaceBlock::kNodes),
                                      static_cast<double>(i / (SurfaceBlock::kNodes * SurfaceBlock::kNodes))));
@@ -37,7 +37,7 @@ SurfaceBlock blockAt(const Shape& shape, const Vec3& low, double cell) {
 }
 
 /// What interpolation errs by at a point of an octant, in cells from its corner.
-double errorAt(const Shape& shape, const SurfaceBlock& block, const Vec3& low, double cell, std::size_t octant,
+double errorAt(const shape::Shape& shape, const SurfaceBlock& block, const Vec3& low, double cell, std::size_t octant,
                const Vec3& in_octant) {
     const Vec3 in_block = in_octant + 4.0 * cornerAt(octant);
     const Vec3 whole = in_block.array().floor().min(7.0);
@@ -47,15 +47,15 @@ double errorAt(const Shape& shape, const SurfaceBlock& block, const Vec3& low, d
         values[i] = block.node[static_cast<std::size_t>(
             (at.z() * SurfaceBlock::kNodes + at.y()) * SurfaceBlock::kNodes + at.x())];
     }
-    return std::abs(trilinearValue(values, in_block - whole) - signedDistance(shape, low + cell * in_block));
+    return std::abs(trilinearValue(values, in_block - whole) - shape::signedDistance(shape, low + cell * in_block));
 }
 
 TEST(ShapeBound, IsNeverBelowTheErrorAtRimsEdgesCornersAndElsewhere) {
     // Truth: closed form, at many points of blocks that lie on every vertex of the shape (of its coarsest triangles:
     // rims, edges, corners, the inside corners of pockets and keyways among them) or anywhere near its faces.
     Random random(1);
-    for (const Shape& shape : kShapes) {
-        const TriangleMesh mesh = tessellate(shape, 1e-3);
+    for (const shape::Shape& shape : kShapes) {
+        const geometry::TriangleMesh mesh = shape::tessellate(shape, 1e-3);
         double tightest = 1e300;
         for (int turn = 0; turn < 150; ++turn) {
             const double cell = turn % 3 == 0 ? 0.5e-3 : turn % 3 == 1 ? 0.1e-3 : 0.02e-3;
@@ -73,17 +73,18 @@ TEST(ShapeBound, IsNeverBelowTheErrorAtRimsEdgesCornersAndElsewhere) {
                 }
                 // A bound of a cell or more says nothing: the Lipschitz constant then says more.
                 if (bound < cell) {
-                    ASSERT_LE(worst, bound + 1e-15) << kindName(shape) << " cell " << cell << " at " << low.transpose();
+                    ASSERT_LE(worst, bound + 1e-15)
+                        << shape::kindName(shape) << " cell " << cell << " at " << low.transpose();
                     if (worst > 1e-3 * cell) tightest = std::min(tightest, bound / worst);
                 }
             }
         }
-        EXPECT_LT(tightest, 6.0) << kindName(shape);
+        EXPECT_LT(tightest, 6.0) << shape::kindName(shape);
     }
 }
 
 /// The bound around a point, cells of half a millimetre.
-double boundAround(const Shape& shape, const Vec3& p, double cell) {
+double boundAround(const shape::Shape& shape, const Vec3& p, double cell) {
     const Vec3 low = p - Vec3::Constant(2.0 * cell);  // the middle of the first octant
     return boundInterpolation(shape, blockAt(shape, low, cell), low, cell, 0, 1.0);
 }
@@ -92,21 +93,21 @@ TEST(ShapeBound, OfFlatFacesIsNextToNothingAndOfWallsWhatTheirCurvatureMakes) {
     // Truth: derived: ½ t²/R with t half the diagonal of a cell: 3/8 s²/R, and half as much again for radii that are
     // tried in steps of two.
     const double cell = 0.25e-3;
-    const Shape plate = BorePlate{0.04, 0.04, 0.02, 0.01, 0.02, 0.0}, box = Box{0.02, 0.02, 0.02};
+    const shape::Shape plate = shape::BorePlate{0.04, 0.04, 0.02, 0.01, 0.02, 0.0}, box = shape::Box{0.02, 0.02, 0.02};
     EXPECT_LT(boundAround(box, {0.003, 0.002, 0.01}, cell), 1e-3 * cell);
     EXPECT_LT(boundAround(plate, {0.014, 0.002, 0.0}, cell), 1e-3 * cell);
-    EXPECT_LT(boundAround(Sheet{0.02, 0.02}, {0.0, 0.0, 0.002}, cell), 1e-3 * cell);
-    EXPECT_LT(boundAround(SquareBorePlate{0.04, 0.04, 0.02, 0.01, 0.01, 0.02, 0.0}, {0.005, 0.001, -0.01}, cell),
+    EXPECT_LT(boundAround(shape::Sheet{0.02, 0.02}, {0.0, 0.0, 0.002}, cell), 1e-3 * cell);
+    EXPECT_LT(boundAround(shape::SquareBorePlate{0.04, 0.04, 0.02, 0.01, 0.01, 0.02, 0.0}, {0.005, 0.001, -0.01}, cell),
               1e-3 * cell);
     EXPECT_LT(boundAround(plate, {0.005, 0.0, -0.01}, cell), 1.5 * 0.375 * cell * cell / 0.005);
-    EXPECT_LT(boundAround(Sphere{0.02}, {0.006, 0.0, 0.008}, cell), 1.5 * 0.375 * cell * cell / 0.01);
+    EXPECT_LT(boundAround(shape::Sphere{0.02}, {0.006, 0.0, 0.008}, cell), 1.5 * 0.375 * cell * cell / 0.01);
 }
 
 TEST(ShapeBound, LetsTheFieldOfAPlateStateMicrometres) {
     // Truth: invariant: on walls and faces; φ is 0 there. The Lipschitz constant alone would say 0.1 mm and more.
-    const PartSpec spec{
-        .name = "plate", .geometry = Shape(BorePlate{0.04, 0.04, 0.015, 0.02, 0.015, 0.001}), .X_WP = {}};
-    const auto part = buildPart(spec, {.field = true, .tolerance = 20e-6});
+    const scene::PartSpec spec{
+        .name = "plate", .geometry = shape::Shape(shape::BorePlate{0.04, 0.04, 0.015, 0.02, 0.015, 0.001}), .X_WP = {}};
+    const auto part = scene::buildPart(spec, {.field = true, .tolerance = 20e-6});
     ASSERT_TRUE(part);
     Random random(2);
     std::vector<double> bounds;
@@ -122,4 +123,4 @@ TEST(ShapeBound, LetsTheFieldOfAPlateStateMicrometres) {
 }
 
 }  // namespace
-}  // namespace passung::model
+}  // namespace passung::field

@@ -7,7 +7,7 @@
 
 #include "core/shape/shape.h"
 
-namespace passung::model {
+namespace passung::geometry {
 namespace {
 
 TriangleMesh smallMesh() {
@@ -51,11 +51,11 @@ TEST(ContentHash, ChangesWithTheLastBitOfAnyCoordinateAndWithAnyCorner) {
 
 TEST(ContentHash, TellsShapesApartByTheirDimensions) {
     // Truth: invariant.
-    const auto hashOf = [](const Shape& shape) { return contentHash(tessellate(shape, 1e-5)); };
-    EXPECT_EQ(hashOf(Peg{0.02, 0.05, 0.001}), hashOf(Peg{0.02, 0.05, 0.001}));
-    EXPECT_NE(hashOf(Peg{0.02, 0.05, 0.001}), hashOf(Peg{0.02, 0.05, 0.0010001}));
-    EXPECT_NE(hashOf(Box{0.02, 0.03, 0.04}), hashOf(Box{0.03, 0.02, 0.04}));
+    const auto hashOf = [](const shape::Shape& shape) { return contentHash(shape::tessellate(shape, 1e-5)); };
+    EXPECT_EQ(hashOf(shape::Peg{0.02, 0.05, 0.001}), hashOf(shape::Peg{0.02, 0.05, 0.001}));
+    EXPECT_NE(hashOf(shape::Peg{0.02, 0.05, 0.001}), hashOf(shape::Peg{0.02, 0.05, 0.0010001}));
+    EXPECT_NE(hashOf(shape::Box{0.02, 0.03, 0.04}), hashOf(shape::Box{0.03, 0.02, 0.04}));
 }
 
 }  // namespace
-}  // namespace passung::model
+}  // namespace passung::geometry

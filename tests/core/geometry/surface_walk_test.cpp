@@ -7,7 +7,7 @@
 
 #include "core/shape/shape.h"
 
-namespace passung::model {
+namespace passung::geometry {
 namespace {
 
 /// A strip of 10 × 1 in the plane z = 0, cut into 20 triangles.
@@ -77,8 +77,8 @@ TEST(SurfaceWalk, EndsAtABorderAndAtAnEdgeOfThreeTriangles) {
 TEST(SurfaceWalk, StaysOnTheSurfaceInEveryDirection) {
     // Truth: closed form of the sphere; its triangles lie at most the chord error below it.
     const double radius = 0.02, chord = 20e-6;
-    const Shape ball = Sphere{2.0 * radius};
-    const TriangleMesh mesh = tessellate(ball, chord);
+    const shape::Shape ball = shape::Sphere{2.0 * radius};
+    const TriangleMesh mesh = shape::tessellate(ball, chord);
     const SurfaceWalk walk(mesh);
     for (std::uint32_t t = 0; t < mesh.triangles.size(); t += 7) {
         const Vec3 middle = (mesh.vertices[mesh.triangles[t][0]] + mesh.vertices[mesh.triangles[t][1]] +
@@ -91,7 +91,7 @@ TEST(SurfaceWalk, StaysOnTheSurfaceInEveryDirection) {
             const auto angle = static_cast<float>(i * std::numbers::pi / 6.0);
             const Eigen::Vector3f step = 1e-3f * (std::cos(angle) * u + std::sin(angle) * v);
             const auto end = walk.moved({t, middle.cast<float>()}, step);
-            const double depth = -signedDistance(ball, end.position.cast<double>());
+            const double depth = -shape::signedDistance(ball, end.position.cast<double>());
             ASSERT_GT(depth, -1e-8);
             ASSERT_LT(depth, chord + 1e-8);
             // The way bends with the surface: its ends are nearer to each other than it is long, by far less than a
@@ -104,4 +104,4 @@ TEST(SurfaceWalk, StaysOnTheSurfaceInEveryDirection) {
 }
 
 }  // namespace
-}  // namespace passung::model
+}  // namespace passung::geometry

@@ -11,7 +11,7 @@
 #include "core/geometry/triangle_tree.h"
 #include "tests/support/broken_mesh.h"
 
-namespace passung::model {
+namespace passung::geometry {
 namespace {
 
 constexpr int kLattice = 24;
@@ -160,4 +160,4 @@ TEST(TriangleTree, FindsWhatReachesAboveAPlaneInABox) {
 }
 
 }  // namespace
-}  // namespace passung::model
+}  // namespace passung::geometry

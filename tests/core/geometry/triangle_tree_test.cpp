@@ -12,7 +12,7 @@
 #include "tests/support/broken_mesh.h"
 #include "tests/support/brute_force_mesh.h"
 
-namespace passung::model {
+namespace passung::geometry {
 namespace {
 
 std::vector<Vec3> pointsAround(const TriangleMesh& mesh, int count, Random& random) {
@@ -64,9 +64,9 @@ TriangleMesh needles(Random& random) {
 TEST(TriangleTree, FindsTheClosestPointThatASearchOverAllTrianglesFinds) {
     // Truth: closed form, a plain search over all triangles with another formula.
     Random random(11);
-    const std::vector<TriangleMesh> meshes{test::wavySphere(0.02, 2e-5),
-                                           tessellate(BorePlate{0.06, 0.05, 0.03, 0.0202, 0.02, 0.001}, 1e-5),
-                                           tessellate(Sheet{0.04, 0.03}, 1.0), soup(random), needles(random)};
+    const std::vector<TriangleMesh> meshes{
+        test::wavySphere(0.02, 2e-5), shape::tessellate(shape::BorePlate{0.06, 0.05, 0.03, 0.0202, 0.02, 0.001}, 1e-5),
+        shape::tessellate(shape::Sheet{0.04, 0.03}, 1.0), soup(random), needles(random)};
     for (const TriangleMesh& mesh : meshes) {
         const TriangleTree tree(mesh);
         const double size = boundsOf(mesh).size().norm();
@@ -83,7 +83,8 @@ TEST(TriangleTree, FindsTheClosestPointThatASearchOverAllTrianglesFinds) {
 TEST(TriangleTree, HoldsTheNearestTriangleOfEveryPointOfACube) {
     // Truth: invariant, TriangleTree::closest at random points of the cube and at its corners.
     Random random(8);
-    for (const TriangleMesh& mesh : {tessellate(Torus{0.04, 0.012}, 1e-5), soup(random), needles(random)}) {
+    for (const TriangleMesh& mesh :
+         {shape::tessellate(shape::Torus{0.04, 0.012}, 1e-5), soup(random), needles(random)}) {
         const TriangleTree tree(mesh);
         const Bounds bounds = boundsOf(mesh);
         std::size_t fewest = mesh.triangles.size();
@@ -116,7 +117,7 @@ TEST(TriangleTree, HoldsTheNearestTriangleOfEveryPointOfACube) {
 
 TEST(TriangleTree, StopsAtTheLimit) {
     // Truth: closed form. A box: 5 mm outside is found with a limit of 5.1 mm, and not with one of 4.9 mm.
-    const TriangleTree tree(tessellate(Box{0.02, 0.02, 0.02}, 1.0));
+    const TriangleTree tree(shape::tessellate(shape::Box{0.02, 0.02, 0.02}, 1.0));
     const Vec3 p(0.015, 0.001, 0.002);
     EXPECT_NEAR(tree.closest(p, 0.0051).distance, 0.005, 1e-15);
     EXPECT_EQ(tree.closest(p, 0.0049).distance, 0.0049);
@@ -137,9 +138,9 @@ TEST(TriangleTree, WindingNumberIsTheSumOfSolidAngles) {
     // radii away err by a few thousandths each (less with the square of that distance), 0.042 at most in sum here;
     // 0.06 leaves a wide margin to the threshold of 0.5.
     Random random(12);
-    const std::vector<TriangleMesh> meshes{test::wavySphere(0.02, 2e-5),
-                                           tessellate(BorePlate{0.06, 0.05, 0.03, 0.0202, 0.02, 0.001}, 1e-5),
-                                           tessellate(Sheet{0.04, 0.03}, 1.0)};
+    const std::vector<TriangleMesh> meshes{
+        test::wavySphere(0.02, 2e-5), shape::tessellate(shape::BorePlate{0.06, 0.05, 0.03, 0.0202, 0.02, 0.001}, 1e-5),
+        shape::tessellate(shape::Sheet{0.04, 0.03}, 1.0)};
     for (const TriangleMesh& mesh : meshes) {
         const TriangleTree tree(mesh);
         double worst = 0.0;
@@ -167,14 +168,16 @@ TEST(TriangleTree, KnowsInsideFromOutsideUpToTheTriangles) {
     // Truth: closed form. Points farther from the surface than the chord error, on both sides of it.
     const double chord_error = 1e-6;
     Random random(14);
-    for (const Shape& shape : {Shape(Sphere{0.02}), Shape(BorePlate{0.06, 0.05, 0.03, 0.0202, 0.02, 0.001}),
-                               Shape(BorePlate{0.06, 0.05, 0.03, 0.0202, 0.03, 0.0}), Shape(Peg{0.02, 0.05, 0.001})}) {
-        const TriangleMesh mesh = tessellate(shape, chord_error);
+    for (const shape::Shape& shape :
+         {shape::Shape(shape::Sphere{0.02}), shape::Shape(shape::BorePlate{0.06, 0.05, 0.03, 0.0202, 0.02, 0.001}),
+          shape::Shape(shape::BorePlate{0.06, 0.05, 0.03, 0.0202, 0.03, 0.0}),
+          shape::Shape(shape::Peg{0.02, 0.05, 0.001})}) {
+        const TriangleMesh mesh = shape::tessellate(shape, chord_error);
         const TriangleTree tree(mesh);
         for (const Vec3& p : pointsAround(mesh, 4000, random)) {
-            const double distance = signedDistance(shape, p);
+            const double distance = shape::signedDistance(shape, p);
             if (std::abs(distance) < 2 * chord_error) continue;
-            ASSERT_EQ(tree.inside(p), distance < 0.0) << kindName(shape) << " at " << p.transpose();
+            ASSERT_EQ(tree.inside(p), distance < 0.0) << shape::kindName(shape) << " at " << p.transpose();
         }
     }
 }
@@ -183,8 +186,8 @@ TEST(TriangleTree, KnowsInsideFromOutsideDespiteDefects) {
     // Truth: closed form. A patch within 2 mm around the pole of a sphere of radius 10 mm is missing, turned or
     // doubled. From 4 mm away it fills less than a tenth of the view (π·2²/4² of 4π is 0.06): a hole moves the winding
     // number by that, a turned patch by twice that, a doubled one by that again: never past one half.
-    const Shape sphere = Sphere{0.02};
-    const TriangleMesh sound = tessellate(sphere, 2e-6);
+    const shape::Shape sphere = shape::Sphere{0.02};
+    const TriangleMesh sound = shape::tessellate(sphere, 2e-6);
     const Vec3 pole(0.0, 0.0, 0.01);
     const auto patch = test::patchAround(sound, pole, 2e-3);
     ASSERT_GT(patch.size(), 50u);
@@ -193,7 +196,7 @@ TEST(TriangleTree, KnowsInsideFromOutsideDespiteDefects) {
          {test::withHole(sound, patch), test::withFlipped(sound, patch), test::withDuplicates(sound, patch)}) {
         const TriangleTree tree(mesh);
         for (const Vec3& p : pointsAround(sound, 4000, random)) {
-            const double distance = signedDistance(sphere, p);
+            const double distance = shape::signedDistance(sphere, p);
             if (std::abs(distance) < 4e-6 || (p - pole).norm() < 4e-3) continue;
             ASSERT_EQ(tree.inside(p), distance < 0.0) << p.transpose();
         }
@@ -201,4 +204,4 @@ TEST(TriangleTree, KnowsInsideFromOutsideDespiteDefects) {
 }
 
 }  // namespace
-}  // namespace passung::model
+}  // namespace passung::geometry

@@ -15,19 +15,19 @@
 #include "tests/support/broken_mesh.h"
 #include "tests/support/brute_force_mesh.h"
 
-namespace passung::model {
+namespace passung::importer {
 namespace {
 
-Part partOf(const TriangleMesh& mesh) {
+scene::Part partOf(const geometry::TriangleMesh& mesh) {
     ImportedMesh repaired = repairMesh(mesh);
-    Part part;
+    scene::Part part;
     part.mesh = std::move(repaired.mesh);
     part.report = std::move(repaired.report);
     return part;
 }
 
-DistanceField fieldOf(const Part& part, double cell) {
-    auto field = DistanceField::build(exactSource(part), cell, 4.0 * cell);
+field::DistanceField fieldOf(const scene::Part& part, double cell) {
+    auto field = field::DistanceField::build(scene::exactSource(part), cell, 4.0 * cell);
     EXPECT_TRUE(field);
     return std::move(*field);
 }
@@ -46,22 +46,24 @@ Vec3 inBall(double radius, Random& random) {
 }
 
 /// Every triangle apart, its corners moved by up to `jitter`: no two of them meet exactly.
-TriangleMesh cracked(const TriangleMesh& mesh, double jitter) {
-    TriangleMesh result = test::unshared(mesh);
+geometry::TriangleMesh cracked(const geometry::TriangleMesh& mesh, double jitter) {
+    geometry::TriangleMesh result = test::unshared(mesh);
     Random random(5);
     for (Vec3& v : result.vertices) v += jitter * Vec3(random.normal(), random.normal(), random.normal());
     return result;
 }
 
 // A ball of 20 mm; edges of about 1.3 mm.
-const Sphere kBall{0.02};
-TriangleMesh ball() { return tessellate(kBall, 20e-6); }
-TriangleMesh holedBall() { return test::withHole(ball(), test::patchAround(ball(), Vec3(0.01, 0, 0), 0.006)); }
+const shape::Sphere kBall{0.02};
+geometry::TriangleMesh ball() { return shape::tessellate(kBall, 20e-6); }
+geometry::TriangleMesh holedBall() {
+    return test::withHole(ball(), test::patchAround(ball(), Vec3(0.01, 0, 0), 0.006));
+}
 
 TEST(HoleClosing, ClosesARoundHoleWithAFanThatLeavesNoEdgeOpen) {
     // Truth: closed form. The hole is a cap of radius about 6 mm, cut off flat: volume π h² (3R - h)/3 is missing,
     // where h is the height of the rim, between those of the triangles' corners around it.
-    const Part part = partOf(holedBall());
+    const scene::Part part = partOf(holedBall());
     EXPECT_EQ(part.report.kind, SurfaceKind::Solid);
     EXPECT_EQ(part.report.closed_holes, 1u);
     EXPECT_EQ(part.report.closing_triangles, part.report.boundary_edges);
@@ -82,8 +84,8 @@ TEST(HoleClosing, ClosesARoundHoleWithAFanThatLeavesNoEdgeOpen) {
 
 TEST(HoleClosing, GivesAFieldWhoseSignAndBoundsHoldBehindTheHole) {
     // Truth: independent program (brute force over the closed mesh: distance and winding number by other formulas).
-    const Part part = partOf(holedBall());
-    const DistanceField field = fieldOf(part, 0.5e-3);
+    const scene::Part part = partOf(holedBall());
+    const field::DistanceField field = fieldOf(part, 0.5e-3);
     EXPECT_TRUE(field.boundProven());
     Random random(1);
     for (int i = 0; i < 4000; ++i) {
@@ -91,7 +93,7 @@ TEST(HoleClosing, GivesAFieldWhoseSignAndBoundsHoldBehindTheHole) {
         const double inside = test::windingNumber(part.mesh, p);
         const double truth = (inside > 0.5 ? -1.0 : 1.0) * test::distanceToMesh(part.mesh, p);
         ASSERT_LE(field.lowerBound(p), truth) << p.transpose();
-        for (const FieldMode mode : kFieldModes) {
+        for (const field::FieldMode mode : field::kFieldModes) {
             ASSERT_LE(std::abs(field.sample(p, mode).phi - truth), field.errorBound(p, mode)) << p.transpose();
         }
     }
@@ -99,22 +101,22 @@ TEST(HoleClosing, GivesAFieldWhoseSignAndBoundsHoldBehindTheHole) {
 
 TEST(HoleClosing, TurnsAHoledSolidThatIsInsideOutInsteadOfTakingItForASheet) {
     // Truth: closed form. The box comes back: 12 triangles, its volume.
-    for (const TriangleMesh& mesh : {tessellate(Box{0.02, 0.03, 0.04}, 1.0), ball()}) {
-        const Part part = partOf(test::insideOut(test::withHole(mesh, {3})));
+    for (const geometry::TriangleMesh& mesh : {shape::tessellate(shape::Box{0.02, 0.03, 0.04}, 1.0), ball()}) {
+        const scene::Part part = partOf(test::insideOut(test::withHole(mesh, {3})));
         EXPECT_EQ(part.report.kind, SurfaceKind::Solid);
         EXPECT_TRUE(part.report.turned_inside_out);
         EXPECT_EQ(part.report.closing_triangles, 1u);
         EXPECT_NEAR(part.report.volume, test::volume(mesh), 1e-12);
         EXPECT_NE(notesOf(part.report).find("inside out"), std::string::npos);
-        EXPECT_FALSE(exactSource(part).open_sheet);
-        EXPECT_TRUE(exactSource(part).inside(Vec3::Zero()));
+        EXPECT_FALSE(scene::exactSource(part).open_sheet);
+        EXPECT_TRUE(scene::exactSource(part).inside(Vec3::Zero()));
     }
 }
 
 TEST(HoleClosing, LeavesSheetsOpen) {
     // Truth: closed form. Flat, and bent to less than half a turn: just behind and just in front the winding numbers
     // cancel, or fall short of a solid's.
-    TriangleMesh bent;
+    geometry::TriangleMesh bent;
     for (int i = 0; i <= 20; ++i)
         for (const double z : {-0.03, 0.03}) {
             const double angle = 0.1 * (i - 10);
@@ -124,20 +126,21 @@ TEST(HoleClosing, LeavesSheetsOpen) {
         bent.triangles.push_back({2 * i, 2 * i + 2, 2 * i + 1});
         bent.triangles.push_back({2 * i + 1, 2 * i + 2, 2 * i + 3});
     }
-    for (const TriangleMesh& mesh : {tessellate(Sheet{0.04, 0.03}, 1.0), bent, test::insideOut(bent)}) {
-        const Part part = partOf(mesh);
+    for (const geometry::TriangleMesh& mesh :
+         {shape::tessellate(shape::Sheet{0.04, 0.03}, 1.0), bent, test::insideOut(bent)}) {
+        const scene::Part part = partOf(mesh);
         EXPECT_EQ(part.report.kind, SurfaceKind::OpenSheet);
         EXPECT_FALSE(part.report.turned_inside_out);
         EXPECT_EQ(part.mesh.triangles.size(), mesh.triangles.size());
         EXPECT_NE(notesOf(part.report).find("treated as a sheet"), std::string::npos);
-        EXPECT_TRUE(exactSource(part).open_sheet);
+        EXPECT_TRUE(scene::exactSource(part).open_sheet);
     }
 }
 
 TEST(HoleClosing, SplitsHolesThatTouchAtAVertex) {
     // Truth: invariant. Two triangles that share one vertex are missing: that vertex has four open edges. All partners
     // of one triangle in turn, so that the walk meets the vertex from all sides.
-    const TriangleMesh whole = ball();
+    const geometry::TriangleMesh whole = ball();
     const std::size_t first = 500;
     std::size_t partners = 0;
     for (std::size_t second = 0; second < whole.triangles.size(); ++second) {
@@ -146,7 +149,7 @@ TEST(HoleClosing, SplitsHolesThatTouchAtAVertex) {
             shared += std::count(whole.triangles[first].begin(), whole.triangles[first].end(), v) > 0 ? 1 : 0;
         if (shared != 1) continue;
         ++partners;
-        const Part part = partOf(test::withHole(whole, {std::min(first, second), std::max(first, second)}));
+        const scene::Part part = partOf(test::withHole(whole, {std::min(first, second), std::max(first, second)}));
         EXPECT_EQ(part.report.kind, SurfaceKind::Solid);
         EXPECT_EQ(part.report.closed_holes, 2u);
         EXPECT_EQ(part.report.closing_triangles, 2u);
@@ -157,13 +160,13 @@ TEST(HoleClosing, SplitsHolesThatTouchAtAVertex) {
 
 TEST(HoleClosing, ClosesASeamWhoseVertexLiesOnANeighboursEdge) {
     // Truth: closed form. One edge of a box is halved on one side only.
-    TriangleMesh mesh = tessellate(Box{0.02, 0.03, 0.04}, 1.0);
-    const Triangle t = mesh.triangles[0];
+    geometry::TriangleMesh mesh = shape::tessellate(shape::Box{0.02, 0.03, 0.04}, 1.0);
+    const geometry::Triangle t = mesh.triangles[0];
     mesh.vertices.push_back(0.5 * (mesh.vertices[t[0]] + mesh.vertices[t[1]]));
     const auto middle = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
     mesh.triangles[0] = {t[0], middle, t[2]};
     mesh.triangles.push_back({middle, t[1], t[2]});
-    const Part part = partOf(mesh);
+    const scene::Part part = partOf(mesh);
     EXPECT_EQ(part.report.kind, SurfaceKind::Solid);
     EXPECT_EQ(part.report.closing_triangles, 1u);
     EXPECT_EQ(part.report.closed_seams, 1u);
@@ -176,45 +179,46 @@ TEST(HoleClosing, ClosesASeamWhoseVertexLiesOnANeighboursEdge) {
 TEST(HoleClosing, BuildsNoWallAlongACrack) {
     // Truth: closed form. Two half balls whose rims miss each other by 1 um: the middle stays a radius from the
     // surface.
-    TriangleMesh mesh = ball();
+    geometry::TriangleMesh mesh = ball();
     const std::size_t count = mesh.vertices.size();
     std::vector<std::uint32_t> twin(count);
     for (std::uint32_t v = 0; v < count; ++v) {
         twin[v] = static_cast<std::uint32_t>(mesh.vertices.size());
         mesh.vertices.push_back(mesh.vertices[v] + Vec3(0.0, 0.0, 1e-6));
     }
-    for (Triangle& t : mesh.triangles) {
+    for (geometry::Triangle& t : mesh.triangles) {
         const double z = mesh.vertices[t[0]].z() + mesh.vertices[t[1]].z() + mesh.vertices[t[2]].z();
         if (z > 0.0)
             for (auto& v : t) v = twin[v];
     }
-    const Part part = partOf(mesh);
+    const scene::Part part = partOf(mesh);
     EXPECT_EQ(part.report.kind, SurfaceKind::HoledSolid);
     EXPECT_EQ(part.report.closed_holes, 0u);
     EXPECT_EQ(part.report.open_edges_left, part.report.boundary_edges);
     EXPECT_NE(notesOf(part.report).find("no error bound"), std::string::npos);
-    const DistanceField field = fieldOf(part, 0.5e-3);
+    const field::DistanceField field = fieldOf(part, 0.5e-3);
     // The middle lies in a cell of the coarse grid, 4 mm, whose corners lie within 3.5 mm of it; those of a cell on a
     // wall would lie within 4 mm of that.
-    EXPECT_NEAR(field.sample(Vec3::Zero(), FieldMode::Trilinear).phi, -0.01, 3.5e-3);
+    EXPECT_NEAR(field.sample(Vec3::Zero(), field::FieldMode::Trilinear).phi, -0.01, 3.5e-3);
 }
 
 TEST(HoleClosing, OwnsUpToUnprovenBoundsWhereCracksAreLeft) {
     // Truth: closed form of the ball, whose surface holds the triangles within a chord error and the jitter.
     const double jitter = 1e-6, off = 20e-6 + 4 * jitter;
-    const Part part = partOf(cracked(ball(), jitter));
+    const scene::Part part = partOf(cracked(ball(), jitter));
     ASSERT_EQ(part.report.kind, SurfaceKind::HoledSolid);
-    const DistanceField field = fieldOf(part, 0.5e-3);
+    const field::DistanceField field = fieldOf(part, 0.5e-3);
     EXPECT_FALSE(field.boundProven());
     Random random(2);
     int wrong = 0;
     for (int i = 0; i < 20000; ++i) {
         const Vec3 p = inBall(0.02, random);
-        const double truth = signedDistance(kBall, p);
-        wrong += std::abs(truth) > 1e-3 && (field.sample(p, FieldMode::Trilinear).phi < 0.0) != (truth < 0.0) ? 1 : 0;
+        const double truth = shape::signedDistance(kBall, p);
+        wrong +=
+            std::abs(truth) > 1e-3 && (field.sample(p, field::FieldMode::Trilinear).phi < 0.0) != (truth < 0.0) ? 1 : 0;
         ASSERT_LE(field.lowerBound(p), truth + off);
         const Vec3 inward = p.normalized();
-        for (const FieldMode mode : kFieldModes) {
+        for (const field::FieldMode mode : field::kFieldModes) {
             ASSERT_LE(std::abs(field.sample(p, mode, inward).phi - truth), field.errorBound(p, mode) + off);
         }
     }
@@ -225,20 +229,20 @@ TEST(HoleClosing, FieldOfAnOpenHoleKeepsTheSignOfTheWindingNumberAndItsBounds) {
     // Truth: closed form of the ball for the bounds (its surface holds the triangles within the chord error); the sign
     // is that of the geometry given, wherever it does not change within a cell.
     const double cell = 0.5e-3;
-    Part part;
+    scene::Part part;
     part.mesh = holedBall();
     part.report.kind = SurfaceKind::HoledSolid;
-    const DistanceSource source = exactSource(part);
-    const DistanceField field = fieldOf(part, cell);
+    const field::DistanceSource source = scene::exactSource(part);
+    const field::DistanceField field = fieldOf(part, cell);
     EXPECT_FALSE(field.boundProven());
     Random random(3);
     int probes = 0;
     for (int i = 0; i < 8000; ++i) {
         const Vec3 p = inBall(0.02, random);
-        const double truth = signedDistance(kBall, p);
+        const double truth = shape::signedDistance(kBall, p);
         ASSERT_LE(field.lowerBound(p), truth + 20e-6);
-        ASSERT_LE(std::abs(field.sample(p, FieldMode::Trilinear).phi - truth),
-                  field.errorBound(p, FieldMode::Trilinear) + 20e-6);
+        ASSERT_LE(std::abs(field.sample(p, field::FieldMode::Trilinear).phi - truth),
+                  field.errorBound(p, field::FieldMode::Trilinear) + 20e-6);
         const double reach = (source.distance(p) < 4.0 * cell ? 1.0 : 8.0) * cell;  // of the cell that holds p
         bool steady = true;
         for (std::size_t c = 0; c < 27 && steady; ++c) {
@@ -248,7 +252,7 @@ TEST(HoleClosing, FieldOfAnOpenHoleKeepsTheSignOfTheWindingNumberAndItsBounds) {
         }
         if (!steady) continue;
         ++probes;
-        ASSERT_EQ(field.sample(p, FieldMode::Trilinear).phi < 0.0, source.inside(p)) << p.transpose();
+        ASSERT_EQ(field.sample(p, field::FieldMode::Trilinear).phi < 0.0, source.inside(p)) << p.transpose();
     }
     EXPECT_GT(probes, 1000);
 }
@@ -256,15 +260,15 @@ TEST(HoleClosing, FieldOfAnOpenHoleKeepsTheSignOfTheWindingNumberAndItsBounds) {
 /// A sound mesh, where to damage it, and points 1 to 20 mm from its surface with their truth.
 struct Sound {
     std::string name;
-    TriangleMesh mesh;
+    geometry::TriangleMesh mesh;
     Vec3 place;
     std::vector<std::pair<Vec3, double>> probes;
 };
 
-Sound soundOf(const std::string& name, const TriangleMesh& mesh, const Vec3& place,
+Sound soundOf(const std::string& name, const geometry::TriangleMesh& mesh, const Vec3& place,
               const std::function<double(const Vec3&)>& distance) {
     Sound sound{name, mesh, place, {}};
-    const Bounds bounds = boundsOf(mesh);
+    const geometry::Bounds bounds = geometry::boundsOf(mesh);
     Random random(4);
     while (sound.probes.size() < 20000) {
         Vec3 p;
@@ -277,15 +281,15 @@ Sound soundOf(const std::string& name, const TriangleMesh& mesh, const Vec3& pla
 
 std::vector<Sound> soundMeshes() {
     std::vector<Sound> sounds;
-    const auto add = [&](const Shape& shape, const Vec3& place) {
-        sounds.push_back(soundOf(kindName(shape), tessellate(shape, 20e-6), place,
-                                 [&](const Vec3& p) { return signedDistance(shape, p); }));
+    const auto add = [&](const shape::Shape& shape, const Vec3& place) {
+        sounds.push_back(soundOf(shape::kindName(shape), shape::tessellate(shape, 20e-6), place,
+                                 [&](const Vec3& p) { return shape::signedDistance(shape, p); }));
     };
-    add(Sphere{0.06}, Vec3(0.03, 0, 0));
-    add(Peg{0.04, 0.06, 0.002}, Vec3(0.02, 0, 0.0213));
-    add(BorePlate{0.06, 0.06, 0.03, 0.0202, 0.025, 0.001}, Vec3(0.0101, 0, -0.01));
-    const TriangleMesh wavy = test::wavySphere(0.08, 20e-6);
-    const TriangleTree tree(wavy);
+    add(shape::Sphere{0.06}, Vec3(0.03, 0, 0));
+    add(shape::Peg{0.04, 0.06, 0.002}, Vec3(0.02, 0, 0.0213));
+    add(shape::BorePlate{0.06, 0.06, 0.03, 0.0202, 0.025, 0.001}, Vec3(0.0101, 0, -0.01));
+    const geometry::TriangleMesh wavy = test::wavySphere(0.08, 20e-6);
+    const geometry::TriangleTree tree(wavy);
     sounds.push_back(soundOf("wavy ball", wavy, Vec3(0.04, 0, 0),
                              [&](const Vec3& p) { return (tree.inside(p) ? -1.0 : 1.0) * tree.closest(p).distance; }));
     return sounds;
@@ -294,7 +298,7 @@ std::vector<Sound> soundMeshes() {
 TEST(HoleClosing, DamagedMeshesKeepTheirSigns) {
     // Truth: closed form of shapes; for the wavy ball the intact mesh (by our own tree, which is tested against brute
     // force). Required: at most 0.1 % wrong signs at 1 to 20 mm from the intact surface.
-    using Damage = std::function<TriangleMesh(const Sound&)>;
+    using Damage = std::function<geometry::TriangleMesh(const Sound&)>;
     const auto hole = [](double radius) {
         return [=](const Sound& s) { return test::withHole(s.mesh, test::patchAround(s.mesh, s.place, radius)); };
     };
@@ -310,14 +314,14 @@ TEST(HoleClosing, DamagedMeshesKeepTheirSigns) {
     };
     for (const Sound& sound : soundMeshes()) {
         for (const auto& [name, damage] : damages) {
-            const Part part = partOf(damage(sound));
+            const scene::Part part = partOf(damage(sound));
             const MeshReport& r = part.report;
             EXPECT_GT(r.closed_holes + r.turned_triangles + r.duplicate_triangles, 0u) << sound.name << ", " << name;
             EXPECT_EQ(r.kind, SurfaceKind::Solid) << sound.name << ", " << name;
-            const DistanceField field = fieldOf(part, 2e-3);
+            const field::DistanceField field = fieldOf(part, 2e-3);
             int wrong = 0;
             for (const auto& [p, truth] : sound.probes)
-                wrong += (field.sample(p, FieldMode::Trilinear).phi < 0.0) != (truth < 0.0) ? 1 : 0;
+                wrong += (field.sample(p, field::FieldMode::Trilinear).phi < 0.0) != (truth < 0.0) ? 1 : 0;
             const double share = wrong / static_cast<double>(sound.probes.size());
             std::printf("  %-10s %-18s %5.3f %% wrong, %zu holes closed with %zu triangles\n", sound.name.c_str(),
                         name.c_str(), 100.0 * share, r.closed_holes, r.closing_triangles);
@@ -327,4 +331,4 @@ TEST(HoleClosing, DamagedMeshesKeepTheirSigns) {
 }
 
 }  // namespace
-}  // namespace passung::model
+}  // namespace passung::importer

@@ -15,7 +15,7 @@
 #include "tests/support/hostile_scene.h"
 #include "tests/support/temp_folder.h"
 
-namespace passung::model {
+namespace passung::importer {
 namespace {
 
 std::string written(const test::TempFolder& folder, const std::string& name, const std::string& content) {
@@ -96,7 +96,7 @@ TEST(HostileMesh, ASurfaceThatCrossesItselfNearlyEverywhereIsRefused) {
     EXPECT_NE(scraps.errors()[0].message.find("passes through 8.1 others (mean), at most 5.0"), std::string::npos)
         << toString(scraps.errors()[0]);
 
-    const TriangleMesh ball = tessellate(Sphere{20}, 0.1);
+    const geometry::TriangleMesh ball = shape::tessellate(shape::Sphere{20}, 0.1);
     const std::size_t corners = ball.vertices.size(), faces = ball.triangles.size();
     balls += std::to_string(20 * corners) + ' ' + std::to_string(20 * faces) + " 0\n";
     for (int i = 0; i < 20; ++i)
@@ -104,7 +104,7 @@ TEST(HostileMesh, ASurfaceThatCrossesItselfNearlyEverywhereIsRefused) {
             balls += std::to_string(v.x() + i) + ' ' + std::to_string(v.y() + 0.1 * i) + ' ' +
                      std::to_string(v.z() + 0.3 * i) + '\n';
     for (std::size_t i = 0; i < 20; ++i)
-        for (const Triangle& t : ball.triangles)
+        for (const geometry::Triangle& t : ball.triangles)
             balls += "3 " + std::to_string(t[0] + i * corners) + ' ' + std::to_string(t[1] + i * corners) + ' ' +
                      std::to_string(t[2] + i * corners) + '\n';
     const auto read = importMesh(written(folder, "balls.off", balls), 1e-3);
@@ -116,7 +116,7 @@ TEST(HostileMesh, ASurfaceThatCrossesItselfNearlyEverywhereIsRefused) {
 /// itself; the first without its second end. OFF text.
 std::string latticeOfBars() {
     std::vector<Vec3> corners;
-    std::vector<Triangle> faces;
+    std::vector<geometry::Triangle> faces;
     const auto bar = [&](const Vec3& from, const Vec3& to) {
         const Vec3 along = (to - from).normalized(), right = along.unitOrthogonal(), up = along.cross(right);
         const bool open = corners.empty();
@@ -147,7 +147,7 @@ std::string latticeOfBars() {
     std::string text = "OFF\n" + std::to_string(corners.size()) + ' ' + std::to_string(faces.size()) + " 0\n";
     for (const Vec3& v : corners)
         text += std::to_string(v.x()) + ' ' + std::to_string(v.y()) + ' ' + std::to_string(v.z()) + '\n';
-    for (const Triangle& t : faces)
+    for (const geometry::Triangle& t : faces)
         text += "3 " + std::to_string(t[0]) + ' ' + std::to_string(t[1]) + ' ' + std::to_string(t[2]) + '\n';
     return text;
 }
@@ -199,7 +199,7 @@ TEST(HostileMesh, AFaceOfTooManyCornersIsRefusedInEveryFormat) {
 }
 
 ImportedMesh imported() {
-    ImportedMesh result = repairMesh(tessellate(BorePlate{0.06, 0.05, 0.03, 0.0202, 0.03, 0.001}, 1e-4));
+    ImportedMesh result = repairMesh(shape::tessellate(shape::BorePlate{0.06, 0.05, 0.03, 0.0202, 0.03, 0.001}, 1e-4));
     result.report.file = "plate\n.stl";
     result.report.format = "stl";
     result.report.notes = {"one", "", "three"};
@@ -218,7 +218,7 @@ TEST(MeshBytes, BringTheSameMeshReportAndErrorsBack) {
         EXPECT_EQ(toBytes(*back), bytes);
     }
     const auto back = importedFrom(toBytes(mesh));
-    EXPECT_EQ(contentHash((*back)->mesh), contentHash(mesh->mesh));
+    EXPECT_EQ(geometry::contentHash((*back)->mesh), geometry::contentHash(mesh->mesh));
     EXPECT_EQ((*back)->report.notes, mesh->report.notes);
     EXPECT_EQ((*back)->report.kind, mesh->report.kind);
     EXPECT_EQ(importedFrom(toBytes(errors))->errors()[0].line, 3);
@@ -245,4 +245,4 @@ TEST(MeshBytes, OfAnUntrueWriterAreRefusedWhateverTheySay) {
 }
 
 }  // namespace
-}  // namespace passung::model
+}  // namespace passung::importer

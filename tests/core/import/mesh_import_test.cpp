@@ -20,13 +20,13 @@
 #include "tests/support/brute_force_mesh.h"
 #include "tests/support/stored_zip.h"
 
-namespace passung::model {
+namespace passung::importer {
 namespace {
 
 // The part of most tests: 20 × 30 × 40 mm.
-const Box kBox{0.02, 0.03, 0.04};
+const shape::Box kBox{0.02, 0.03, 0.04};
 
-TriangleMesh boxMesh() { return tessellate(kBox, 1.0); }
+geometry::TriangleMesh boxMesh() { return shape::tessellate(kBox, 1.0); }
 
 /// A folder of its own for every test, removed at the end.
 class MeshImport : public testing::Test {
@@ -58,7 +58,7 @@ std::ostringstream text() {
 }
 
 // Writers; coordinates leave in millimetres.
-std::string asciiStl(const TriangleMesh& mesh) {
+std::string asciiStl(const geometry::TriangleMesh& mesh) {
     auto out = text();
     out << "solid part\n";
     for (const auto& t : mesh.triangles) {
@@ -78,7 +78,7 @@ void appendBytes(std::string& bytes, T value) {
     bytes.append(raw, sizeof(T));
 }
 
-std::string binaryStl(const TriangleMesh& mesh) {
+std::string binaryStl(const geometry::TriangleMesh& mesh) {
     std::string bytes(80, ' ');
     appendBytes(bytes, static_cast<std::uint32_t>(mesh.triangles.size()));
     for (const auto& t : mesh.triangles) {
@@ -90,7 +90,7 @@ std::string binaryStl(const TriangleMesh& mesh) {
     return bytes;
 }
 
-std::string off(const TriangleMesh& mesh) {
+std::string off(const geometry::TriangleMesh& mesh) {
     auto out = text();
     out << "OFF\n" << mesh.vertices.size() << " " << mesh.triangles.size() << " 0\n";
     for (const Vec3& v : mesh.vertices) out << (1e3 * v).transpose() << "\n";
@@ -98,7 +98,7 @@ std::string off(const TriangleMesh& mesh) {
     return out.str();
 }
 
-std::string ply(const TriangleMesh& mesh) {
+std::string ply(const geometry::TriangleMesh& mesh) {
     auto out = text();
     out << "ply\nformat ascii 1.0\nelement vertex " << mesh.vertices.size()
         << "\nproperty float x\nproperty float y\nproperty float z\nelement face " << mesh.triangles.size()
@@ -108,7 +108,7 @@ std::string ply(const TriangleMesh& mesh) {
     return out.str();
 }
 
-std::string obj(const TriangleMesh& mesh) {
+std::string obj(const geometry::TriangleMesh& mesh) {
     auto out = text();
     for (const Vec3& v : mesh.vertices) out << "v " << (1e3 * v).transpose() << "\n";
     for (const auto& t : mesh.triangles) out << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
@@ -121,7 +121,7 @@ std::string threeMf(const std::string& unit_attribute) {
     out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model" << unit_attribute
         << " xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">"
         << "<resources><object id=\"1\" type=\"model\"><mesh><vertices>";
-    const TriangleMesh mesh = boxMesh();
+    const geometry::TriangleMesh mesh = boxMesh();
     for (const Vec3& v : mesh.vertices)
         out << "<vertex x=\"" << 1e3 * v.x() << "\" y=\"" << 1e3 * v.y() << "\" z=\"" << 1e3 * v.z() << "\"/>";
     out << "</vertices><triangles>";
@@ -157,7 +157,7 @@ std::string base64(const std::string& bytes) {
 
 /// The box in metres under a node that moves it by 1 m along x, under a node that scales by `scale`.
 std::string gltf(const std::string& scale) {
-    const TriangleMesh mesh = boxMesh();
+    const geometry::TriangleMesh mesh = boxMesh();
     std::string bytes;
     for (const auto& t : mesh.triangles)
         for (const auto v : t) appendBytes(bytes, static_cast<std::uint16_t>(v));
@@ -238,7 +238,7 @@ TEST_F(MeshImport, AppliesTheTransformsOfAllNodes) {
     for (const double sign : {1.0, -1.0}) {
         const auto result = importMesh(write("box.gltf", gltf(sign > 0 ? "[2,2,2]" : "[-2,2,2]")), 1e-3);
         ASSERT_TRUE(result);
-        const Bounds bounds = boundsOf(result->mesh);
+        const geometry::Bounds bounds = geometry::boundsOf(result->mesh);
         EXPECT_LE((bounds.low - Vec3(sign * 2.0 - 0.02, -0.03, -0.04)).norm(), 1e-6);
         EXPECT_LE((bounds.high - Vec3(sign * 2.0 + 0.02, 0.03, 0.04)).norm(), 1e-6);
         EXPECT_GT(test::volume(result->mesh), 0.0);
@@ -290,7 +290,7 @@ TEST_F(MeshImport, ReadsBinaryPlyOfBothByteOrders) {
             for (int axis = 1; axis <= 3; ++axis) put(std::bit_cast<std::uint64_t>(v == axis ? 1.0 : 0.0), 8);
             put(200, 1);
         }
-        for (const Triangle& t : {Triangle{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}) {
+        for (const geometry::Triangle& t : {geometry::Triangle{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}) {
             put(3, 1);
             for (const std::uint32_t v : t) put(v, 2);
         }
@@ -339,7 +339,7 @@ TEST_F(MeshImport, TurnsASolidThatIsInsideOut) {
 
 TEST_F(MeshImport, DropsDuplicateAndDegenerateTriangles) {
     // Truth: closed form. Two repeats (one the other way round), a line and a point are added to a box.
-    TriangleMesh mesh = test::withDuplicates(boxMesh(), {0, 7});
+    geometry::TriangleMesh mesh = test::withDuplicates(boxMesh(), {0, 7});
     std::swap(mesh.triangles.back()[0], mesh.triangles.back()[1]);
     mesh.vertices.push_back(0.5 * (mesh.vertices[0] + mesh.vertices[1]));
     mesh.triangles.push_back({0, 1, static_cast<std::uint32_t>(mesh.vertices.size() - 1)});
@@ -357,7 +357,7 @@ TEST_F(MeshImport, DropsDuplicateAndDegenerateTriangles) {
 TEST_F(MeshImport, ReportsEdgesOfThreeTriangles) {
     // Truth: closed form. A fin on one edge of a box: that edge has three triangles, the fin two open ones. The box is
     // a solid, the fin is no hole of it.
-    TriangleMesh mesh = boxMesh();
+    geometry::TriangleMesh mesh = boxMesh();
     mesh.vertices.emplace_back(0.05, 0.05, 0.0);
     mesh.triangles.push_back({0, 1, 8});
     const auto result = importMesh(write("fin.obj", obj(mesh)), 1e-3);
@@ -373,8 +373,8 @@ TEST_F(MeshImport, ReportsEdgesOfThreeTriangles) {
 
 TEST_F(MeshImport, CountsShells) {
     // Truth: closed form. Two boxes apart, one of them with a hole.
-    TriangleMesh mesh = boxMesh();
-    const TriangleMesh other = test::withHole(boxMesh(), {0});
+    geometry::TriangleMesh mesh = boxMesh();
+    const geometry::TriangleMesh other = test::withHole(boxMesh(), {0});
     for (const Vec3& v : other.vertices) mesh.vertices.push_back(v + Vec3(0.1, 0.0, 0.0));
     for (const auto& t : other.triangles) mesh.triangles.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
     const auto result = importMesh(write("two.stl", asciiStl(mesh)), 1e-3);
@@ -387,12 +387,12 @@ TEST_F(MeshImport, CountsShells) {
 TEST_F(MeshImport, NamesFileAndReasonWhenItFails) {
     // Truth: closed form. One row per way to fail; nothing throws.
     std::filesystem::create_directories(folder() + "/folder.stl");
-    TriangleMesh line;
+    geometry::TriangleMesh line;
     line.vertices = {Vec3(0, 0, 0), Vec3(1, 1, 1), Vec3(2, 2, 2)};
     line.triangles = {{0, 1, 2}};
-    TriangleMesh broken = boxMesh();
+    geometry::TriangleMesh broken = boxMesh();
     broken.vertices[3].y() = std::numeric_limits<double>::quiet_NaN();
-    TriangleMesh endless = boxMesh();
+    geometry::TriangleMesh endless = boxMesh();
     endless.vertices[3].z() = std::numeric_limits<double>::infinity();
     const std::vector<std::pair<std::string, std::string>> cases{
         {folder() + "/absent.stl", "does not exist"},
@@ -423,18 +423,20 @@ TEST_F(MeshImport, NamesFileAndReasonWhenItFails) {
 
 TEST(MeshRepair, FindsNothingToRepairInOurShapes) {
     // Truth: invariant. Tessellated shapes are sound: nothing dropped, joined or turned.
-    for (const Shape& shape : {Shape(Sphere{0.02}), Shape(kBox), Shape(Cylinder{0.02, 0.03}),
-                               Shape(Peg{0.02, 0.05, 0.001}), Shape(BorePlate{0.06, 0.05, 0.03, 0.0202, 0.03, 0.001}),
-                               Shape(BorePlate{0.06, 0.05, 0.03, 0.0202, 0.02, 0.0})}) {
-        const TriangleMesh mesh = tessellate(shape, 1e-6);
+    for (const shape::Shape& shape :
+         {shape::Shape(shape::Sphere{0.02}), shape::Shape(kBox), shape::Shape(shape::Cylinder{0.02, 0.03}),
+          shape::Shape(shape::Peg{0.02, 0.05, 0.001}),
+          shape::Shape(shape::BorePlate{0.06, 0.05, 0.03, 0.0202, 0.03, 0.001}),
+          shape::Shape(shape::BorePlate{0.06, 0.05, 0.03, 0.0202, 0.02, 0.0})}) {
+        const geometry::TriangleMesh mesh = shape::tessellate(shape, 1e-6);
         const ImportedMesh checked = repairMesh(mesh);
-        EXPECT_EQ(checked.report.triangles, mesh.triangles.size()) << kindName(shape);
-        EXPECT_EQ(checked.report.vertices, mesh.vertices.size()) << kindName(shape);
-        EXPECT_TRUE(checked.report.watertight) << kindName(shape);
-        EXPECT_TRUE(checked.report.notes.empty()) << kindName(shape);
-        EXPECT_NEAR(checked.report.volume, test::volume(mesh), 1e-15) << kindName(shape);
+        EXPECT_EQ(checked.report.triangles, mesh.triangles.size()) << shape::kindName(shape);
+        EXPECT_EQ(checked.report.vertices, mesh.vertices.size()) << shape::kindName(shape);
+        EXPECT_TRUE(checked.report.watertight) << shape::kindName(shape);
+        EXPECT_TRUE(checked.report.notes.empty()) << shape::kindName(shape);
+        EXPECT_NEAR(checked.report.volume, test::volume(mesh), 1e-15) << shape::kindName(shape);
     }
-    const ImportedMesh sheet = repairMesh(tessellate(Sheet{0.04, 0.03}, 1.0));
+    const ImportedMesh sheet = repairMesh(shape::tessellate(shape::Sheet{0.04, 0.03}, 1.0));
     EXPECT_FALSE(sheet.report.watertight);
     EXPECT_EQ(sheet.report.boundary_edges, 4u);
     EXPECT_EQ(sheet.report.holes, 1u);
@@ -443,11 +445,12 @@ TEST(MeshRepair, FindsNothingToRepairInOurShapes) {
 TEST(MeshRepair, PutsAMangledMeshTogetherAgain) {
     // Truth: invariant. Corners unshared, a tenth of the triangles flipped, some repeated: the closed surface comes
     // back.
-    const TriangleMesh sound = test::wavySphere(0.02, 5e-5);
+    const geometry::TriangleMesh sound = test::wavySphere(0.02, 5e-5);
     std::vector<std::size_t> flipped, repeated;
     for (std::size_t i = 0; i < sound.triangles.size(); i += 10) flipped.push_back(i);
     for (std::size_t i = 3; i < sound.triangles.size(); i += 50) repeated.push_back(i);
-    const TriangleMesh mangled = test::unshared(test::withDuplicates(test::withFlipped(sound, flipped), repeated));
+    const geometry::TriangleMesh mangled =
+        test::unshared(test::withDuplicates(test::withFlipped(sound, flipped), repeated));
     const ImportedMesh mended = repairMesh(mangled);
     EXPECT_EQ(mended.report.vertices, sound.vertices.size());
     EXPECT_EQ(mended.report.triangles, sound.triangles.size());
@@ -462,7 +465,7 @@ TEST(MeshRepair, PutsAMangledMeshTogetherAgain) {
 TEST(MeshRepair, JoinsVerticesThatOnlyRoundingParts) {
     // Truth: closed form. Every triangle with corners of its own, rounded apart by up to 1e-7 of the size: the box
     // comes back, its volume off by no more than that.
-    TriangleMesh mesh = test::unshared(boxMesh());
+    geometry::TriangleMesh mesh = test::unshared(boxMesh());
     Random random(3);
     const double apart = 1e-7 * kBox.height;
     for (Vec3& v : mesh.vertices) v += apart * Vec3(random.uniform(), random.uniform(), random.uniform());
@@ -479,7 +482,7 @@ TEST(MeshRepair, JoinsVerticesThatOnlyRoundingParts) {
 TEST(MeshRepair, AsksForTheUnitOfPartsOfUnusualSize) {
     // Truth: closed form. 40 mm as metres are 40 m; as micrometres they are 0.04 mm.
     for (const auto& [scale, words] : {std::pair{1e3, "4e+04 mm long"}, {1e-3, "0.04 mm long"}}) {
-        TriangleMesh mesh = boxMesh();
+        geometry::TriangleMesh mesh = boxMesh();
         for (Vec3& v : mesh.vertices) v *= scale;
         const MeshReport report = repairMesh(mesh).report;
         ASSERT_EQ(report.notes.size(), 1u);
@@ -490,7 +493,7 @@ TEST(MeshRepair, AsksForTheUnitOfPartsOfUnusualSize) {
 
 TEST(MeshRepair, SurvivesASurfaceWithOneSide) {
     // Truth: invariant. A Möbius strip has no orientation: it stays open, and the work ends.
-    TriangleMesh mesh;
+    geometry::TriangleMesh mesh;
     const int n = 12;
     for (int i = 0; i < n; ++i) {
         const double angle = 2 * 3.14159265358979 * i / n;
@@ -514,11 +517,11 @@ TEST(MeshRepair, SurvivesASurfaceWithOneSide) {
 
 TEST(MeshRepair, ReportsAnEmptyMeshAsSuch) {
     // Truth: closed form.
-    const ImportedMesh empty = repairMesh(TriangleMesh{});
+    const ImportedMesh empty = repairMesh(geometry::TriangleMesh{});
     EXPECT_EQ(empty.report.triangles, 0u);
     EXPECT_FALSE(empty.report.watertight);
     EXPECT_EQ(empty.report.size, Vec3(Vec3::Zero()));
 }
 
 }  // namespace
-}  // namespace passung::model
+}  // namespace passung::importer

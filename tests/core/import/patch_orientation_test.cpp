@@ -12,23 +12,23 @@
 #include "tests/support/broken_mesh.h"
 #include "tests/support/brute_force_mesh.h"
 
-namespace passung::model {
+namespace passung::importer {
 namespace {
 
-TriangleMesh ball(double diameter, const Vec3& centre = Vec3::Zero()) {
-    TriangleMesh mesh = tessellate(Sphere{diameter}, 2e-3 * diameter);
+geometry::TriangleMesh ball(double diameter, const Vec3& centre = Vec3::Zero()) {
+    geometry::TriangleMesh mesh = shape::tessellate(shape::Sphere{diameter}, 2e-3 * diameter);
     for (Vec3& v : mesh.vertices) v += centre;
     return mesh;
 }
 
-TriangleMesh together(TriangleMesh a, const TriangleMesh& b) {
+geometry::TriangleMesh together(geometry::TriangleMesh a, const geometry::TriangleMesh& b) {
     const auto base = static_cast<std::uint32_t>(a.vertices.size());
     a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
-    for (const Triangle& t : b.triangles) a.triangles.push_back({base + t[0], base + t[1], base + t[2]});
+    for (const geometry::Triangle& t : b.triangles) a.triangles.push_back({base + t[0], base + t[1], base + t[2]});
     return a;
 }
 
-bool inside(const TriangleMesh& mesh, const Vec3& p) { return test::windingNumber(mesh, p) > 0.5; }
+bool inside(const geometry::TriangleMesh& mesh, const Vec3& p) { return test::windingNumber(mesh, p) > 0.5; }
 
 bool says(const MeshReport& report, const std::string& words) {
     return std::any_of(report.notes.begin(), report.notes.end(),
@@ -40,7 +40,7 @@ TEST(PatchOrientation, TurnsAnInsideOutShellBesideASoundOne) {
     const Vec3 apart(0.03, 0.0, 0.0);
     for (const double diameter : {0.01, 0.03}) {
         for (const bool first : {true, false}) {
-            const TriangleMesh a = ball(0.02), b = ball(diameter, apart);
+            const geometry::TriangleMesh a = ball(0.02), b = ball(diameter, apart);
             const ImportedMesh repaired =
                 repairMesh(first ? together(test::insideOut(a), b) : together(a, test::insideOut(b)));
             EXPECT_EQ(repaired.report.kind, SurfaceKind::Solid);
@@ -58,8 +58,8 @@ TEST(PatchOrientation, TurnsAnInsideOutShellBesideASoundOne) {
 TEST(PatchOrientation, KeepsACavityAndWhatLiesInIt) {
     // Truth: closed form. A ball of 20 mm with a hollow of 12 mm that holds a ball of 6 mm; the file may give them in
     // any order.
-    const TriangleMesh outer = ball(0.02), hollow = test::insideOut(ball(0.012)), core = ball(0.006);
-    for (const TriangleMesh& mesh :
+    const geometry::TriangleMesh outer = ball(0.02), hollow = test::insideOut(ball(0.012)), core = ball(0.006);
+    for (const geometry::TriangleMesh& mesh :
          {together(together(outer, hollow), core), together(together(core, hollow), outer)}) {
         const ImportedMesh repaired = repairMesh(mesh);
         EXPECT_EQ(repaired.report.kind, SurfaceKind::Solid);
@@ -75,7 +75,7 @@ TEST(PatchOrientation, KeepsACavityAndWhatLiesInIt) {
 
 TEST(PatchOrientation, TurnsASolidWithItsCavityTogether) {
     // Truth: closed form (a ball with a hollow, all triangles inside out).
-    const TriangleMesh sound = together(ball(0.02), test::insideOut(ball(0.012)));
+    const geometry::TriangleMesh sound = together(ball(0.02), test::insideOut(ball(0.012)));
     const ImportedMesh repaired = repairMesh(test::insideOut(sound));
     EXPECT_TRUE(repaired.report.turned_inside_out);
     EXPECT_EQ(repaired.report.turned_patches, 0u);
@@ -97,7 +97,7 @@ TEST(PatchOrientation, SaysThatASolidLiesWithinASolid) {
 TEST(PatchOrientation, TurnsAnIslandThatAGapCutsOff) {
     // Truth: closed form. A cap of 6 mm radius on a ball of 20 mm is cut off by a gap of some 1.5 mm and turned: the
     // repaired mesh is the one without the turn.
-    const TriangleMesh whole = ball(0.02);
+    const geometry::TriangleMesh whole = ball(0.02);
     const Vec3 pole(0.01, 0.0, 0.0);
     const auto cap = test::patchAround(whole, pole, 6e-3), wider = test::patchAround(whole, pole, 7.5e-3);
     std::vector<std::size_t> gap;
@@ -114,11 +114,11 @@ TEST(PatchOrientation, TurnsAnIslandThatAGapCutsOff) {
 TEST(PatchOrientation, TurnsOneInFiveOfTrianglesThatShareNoEdges) {
     // Truth: closed form of the ball. Every triangle stands alone, 20 um off; one in five is turned. From 1 mm to the
     // surface on, at most one point in a thousand may have the wrong sign.
-    TriangleMesh mesh = test::unshared(ball(0.02));
+    geometry::TriangleMesh mesh = test::unshared(ball(0.02));
     Random random(8);
     for (Vec3& v : mesh.vertices) v += 20e-6 * Vec3(random.normal(), random.normal(), random.normal());
     std::size_t turned = 0;
-    for (Triangle& t : mesh.triangles) {
+    for (geometry::Triangle& t : mesh.triangles) {
         if (random.uniform() >= 0.2) continue;
         std::swap(t[0], t[1]);
         ++turned;
@@ -127,7 +127,7 @@ TEST(PatchOrientation, TurnsOneInFiveOfTrianglesThatShareNoEdges) {
     EXPECT_EQ(repaired.report.kind, SurfaceKind::HoledSolid);
     EXPECT_NEAR(static_cast<double>(repaired.report.turned_patches), static_cast<double>(turned),
                 0.05 * static_cast<double>(turned));
-    const TriangleTree tree(repaired.mesh);
+    const geometry::TriangleTree tree(repaired.mesh);
     int wrong = 0;
     for (int i = 0; i < 10000; ++i) {
         const Vec3 p = random.uniform(0.0, 0.03) * Vec3(random.normal(), random.normal(), random.normal()).normalized();
@@ -139,11 +139,11 @@ TEST(PatchOrientation, TurnsOneInFiveOfTrianglesThatShareNoEdges) {
 
 TEST(PatchOrientation, LeavesAnOpenSheetBesideASolidAsItIs) {
     // Truth: invariant (a sheet has no right way to face).
-    TriangleMesh sheet = tessellate(Sheet{0.01, 0.01}, 1.0);
+    geometry::TriangleMesh sheet = shape::tessellate(shape::Sheet{0.01, 0.01}, 1.0);
     for (Vec3& v : sheet.vertices) v += Vec3(0.0, 0.0, 0.02);
-    for (const TriangleMesh& s : {sheet, test::insideOut(sheet)})
+    for (const geometry::TriangleMesh& s : {sheet, test::insideOut(sheet)})
         EXPECT_EQ(repairMesh(together(ball(0.02), s)).report.turned_patches, 0u);
 }
 
 }  // namespace
-}  // namespace passung::model
+}  // namespace passung::importer

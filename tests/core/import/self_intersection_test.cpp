@@ -8,26 +8,27 @@
 #include "core/shape/shape.h"
 #include "tests/support/broken_mesh.h"
 
-namespace passung::model {
+namespace passung::importer {
 namespace {
 
-TriangleMesh together(TriangleMesh a, const TriangleMesh& b, const Vec3& offset) {
+geometry::TriangleMesh together(geometry::TriangleMesh a, const geometry::TriangleMesh& b, const Vec3& offset) {
     const auto base = static_cast<std::uint32_t>(a.vertices.size());
     for (const Vec3& v : b.vertices) a.vertices.push_back(v + offset);
-    for (const Triangle& t : b.triangles) a.triangles.push_back({base + t[0], base + t[1], base + t[2]});
+    for (const geometry::Triangle& t : b.triangles) a.triangles.push_back({base + t[0], base + t[1], base + t[2]});
     return a;
 }
 
 TEST(SelfIntersection, FindsNoneInSoundShapes) {
     // Truth: invariant (a shape's surface passes through itself nowhere), at three sizes.
     for (const double scale : {1e-6, 1.0, 1e6}) {
-        for (const Shape& shape : {Shape(Box{0.02, 0.03, 0.04}), Shape(Sphere{0.02}), Shape(Peg{0.02, 0.05, 0.001}),
-                                   Shape(BorePlate{0.06, 0.05, 0.03, 0.0202, 0.03, 0.001})}) {
-            TriangleMesh mesh = tessellate(shape, 2e-5);
+        for (const shape::Shape& shape : {shape::Shape(shape::Box{0.02, 0.03, 0.04}), shape::Shape(shape::Sphere{0.02}),
+                                          shape::Shape(shape::Peg{0.02, 0.05, 0.001}),
+                                          shape::Shape(shape::BorePlate{0.06, 0.05, 0.03, 0.0202, 0.03, 0.001})}) {
+            geometry::TriangleMesh mesh = shape::tessellate(shape, 2e-5);
             for (Vec3& v : mesh.vertices) v *= scale;
-            EXPECT_EQ(crossingsOf(mesh).triangles, 0u) << kindName(shape);
+            EXPECT_EQ(crossingsOf(mesh).triangles, 0u) << shape::kindName(shape);
         }
-        TriangleMesh wavy = test::wavySphere(0.08, 2e-5);
+        geometry::TriangleMesh wavy = test::wavySphere(0.08, 2e-5);
         for (Vec3& v : wavy.vertices) v *= scale;
         EXPECT_EQ(crossingsOf(wavy).triangles, 0u);
     }
@@ -35,7 +36,7 @@ TEST(SelfIntersection, FindsNoneInSoundShapes) {
 
 TEST(SelfIntersection, CountsTheTrianglesOfTwoSpikesThatCross) {
     // Truth: closed form. One triangle stands upright in another: both cross. Moved aside by more than its width: none.
-    TriangleMesh mesh;
+    geometry::TriangleMesh mesh;
     mesh.vertices = {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0), Vec3(1, 1, -1), Vec3(1.2, 1, 1), Vec3(0.8, 1, 1)};
     mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
     EXPECT_EQ(crossingsOf(mesh).triangles, 2u);
@@ -46,7 +47,7 @@ TEST(SelfIntersection, CountsTheTrianglesOfTwoSpikesThatCross) {
 TEST(SelfIntersection, CountsNoTouch) {
     // Truth: closed form. Two boxes that share a face, an edge or a corner touch; pushed 1 mm into each other at an
     // angle of none of their axes they cross.
-    const TriangleMesh box = tessellate(Box{0.02, 0.03, 0.04}, 1.0);
+    const geometry::TriangleMesh box = shape::tessellate(shape::Box{0.02, 0.03, 0.04}, 1.0);
     EXPECT_EQ(crossingsOf(together(box, box, Vec3(0.02, 0.0, 0.0))).triangles, 0u);
     EXPECT_EQ(crossingsOf(together(box, box, Vec3(0.02, 0.03, 0.0))).triangles, 0u);
     EXPECT_EQ(crossingsOf(together(box, box, Vec3(0.02, 0.03, 0.04))).triangles, 0u);
@@ -55,7 +56,7 @@ TEST(SelfIntersection, CountsNoTouch) {
 
 TEST(SelfIntersection, IsToldByTheReport) {
     // Truth: closed form. Two balls of 20 mm, 15 mm apart, overlap: what either encloses is inside.
-    const TriangleMesh ball = tessellate(Sphere{0.02}, 4e-5);
+    const geometry::TriangleMesh ball = shape::tessellate(shape::Sphere{0.02}, 4e-5);
     const ImportedMesh repaired = repairMesh(together(ball, ball, Vec3(0.015, 0.0003, 0.0007)));
     EXPECT_GT(repaired.report.crossing_triangles, 20u);
     EXPECT_EQ(repaired.report.kind, SurfaceKind::Solid);
@@ -66,4 +67,4 @@ TEST(SelfIntersection, IsToldByTheReport) {
 }
 
 }  // namespace
-}  // namespace passung::model
+}  // namespace passung::importer

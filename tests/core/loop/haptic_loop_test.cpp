@@ -40,9 +40,9 @@ private:
 };
 
 test::Bench ballInTable() {
-    return test::Bench(test::scene(model::Sphere{0.02}, {Quat::Identity(), Vec3(0, 0, 0.012)},
-                                   model::Box{0.06, 0.06, 0.02}, {Quat::Identity(), Vec3(0, 0, -0.01)},
-                                   model::ContactMethod::GodObjectHeuristic));
+    return test::Bench(test::scene(shape::Sphere{0.02}, {Quat::Identity(), Vec3(0, 0, 0.012)},
+                                   shape::Box{0.06, 0.06, 0.02}, {Quat::Identity(), Vec3(0, 0, -0.01)},
+                                   scene::ContactMethod::GodObjectHeuristic));
 }
 const Pose kPressed{Quat::Identity(), Vec3(0, 0, 0.008)};
 

@@ -13,10 +13,10 @@
 namespace passung {
 namespace {
 
-using tick::ConstrainedMotion;
-using tick::ContactManifold;
-using tick::ContactPoint;
-using tick::Motion;
+using contact::ContactManifold;
+using contact::ContactPoint;
+using motion::ConstrainedMotion;
+using motion::Motion;
 
 constexpr double kRho = 0.02;       // [m]
 constexpr double kKeepOut = -1e-6;  // [m]
@@ -44,7 +44,7 @@ ConstrainedMotion solve(const Motion& wanted, const std::vector<ContactPoint>& c
                         const std::vector<std::uint32_t>& likely = {}) {
     ContactManifold manifold(contacts.size());
     for (const auto& c : contacts) EXPECT_TRUE(manifold.tryPush(c));
-    return tick::constrainMotion(wanted, {manifold, Vec3::Zero(), kRho, kKeepOut}, likely);
+    return motion::constrainMotion(wanted, {manifold, Vec3::Zero(), kRho, kKeepOut}, likely);
 }
 
 double pushOf(const ConstrainedMotion& motion) {
@@ -144,8 +144,8 @@ TEST(ConstrainedMotion, EqualsTheNearestMotionFoundByTryingEveryActiveSet) {
         const Motion truth = nearestByEnumeration(wanted, rowsOf(contacts));
         // A violation of the tolerance moves the nearest point by at most the tolerance over the sine of the least
         // angle between rows; random rows are farther apart than 1e-2.
-        ASSERT_LT((result.u - truth).norm(), tick::kMotionTolerance / 1e-2) << trial;
-        ASSERT_LE(worstViolation(result.u, contacts), tick::kMotionTolerance) << trial;
+        ASSERT_LT((result.u - truth).norm(), motion::kMotionTolerance / 1e-2) << trial;
+        ASSERT_LE(worstViolation(result.u, contacts), motion::kMotionTolerance) << trial;
         bent += result.active > 0 ? 1 : 0;
         full += result.active >= 4 ? 1 : 0;
     }
@@ -190,12 +190,12 @@ TEST(ConstrainedMotion, EndsOnContactsThatAreNearlyDependent) {
         const Motion wanted = randomMotion(random, 1e-3);
         const auto result = solve(wanted, contacts);
         ASSERT_TRUE(result.converged) << trial;
-        ASSERT_LE(worstViolation(result.u, contacts), tick::kMotionTolerance) << trial;
+        ASSERT_LE(worstViolation(result.u, contacts), motion::kMotionTolerance) << trial;
         ASSERT_LE((result.u - wanted).norm(), wanted.norm() * (1.0 + 1e-12)) << trial;
         most = std::max(most, result.iterations);
     }
     RecordProperty("most_iterations", most);
-    EXPECT_LT(most, tick::kMaxIterations / 2);
+    EXPECT_LT(most, motion::kMaxIterations / 2);
 }
 
 TEST(ConstrainedMotion, LosesNothingOfManyContacts) {
@@ -208,7 +208,7 @@ TEST(ConstrainedMotion, LosesNothingOfManyContacts) {
         const Motion wanted = randomMotion(random, 1e-3);
         const auto result = solve(wanted, contacts);
         ASSERT_TRUE(result.converged && !result.relaxed) << trial;
-        ASSERT_LE(worstViolation(result.u, contacts), tick::kMotionTolerance);
+        ASSERT_LE(worstViolation(result.u, contacts), motion::kMotionTolerance);
         Motion pushed = wanted;
         for (int i = 0; i < result.active; ++i) {
             const auto& held = result.held[static_cast<std::size_t>(i)];
@@ -242,11 +242,11 @@ TEST(ConstrainedMotion, MeetsItsConditionsWhereverTheBodyLies) {
             if (random.below(8) == 0) contact.radius = 1e-3;
             ASSERT_TRUE(manifold.tryPush(contact));
         }
-        const tick::Surroundings around{manifold, origin, rho, keep_out, sunk_out};
+        const motion::Surroundings around{manifold, origin, rho, keep_out, sunk_out};
         const Motion wanted = randomMotion(random, std::pow(10.0, random.uniform(-6.0, -4.0)));
         std::vector<std::uint32_t> likely;
         for (int round = 0; round < 3; ++round) {
-            const auto result = tick::constrainMotion(wanted, around, likely);
+            const auto result = motion::constrainMotion(wanted, around, likely);
             ASSERT_TRUE(result.converged);
             const auto rowOf = [&](const ContactPoint& c) {
                 Row row;
@@ -257,8 +257,8 @@ TEST(ConstrainedMotion, MeetsItsConditionsWhereverTheBodyLies) {
             };
             for (const ContactPoint& c : manifold) {
                 const Row row = rowOf(c);
-                if (c.gradient.norm() > tick::kLeastGradient) {
-                    ASSERT_GE(row.a.dot(result.u), row.b - 1.001 * tick::kMotionTolerance) << trial;
+                if (c.gradient.norm() > motion::kLeastGradient) {
+                    ASSERT_GE(row.a.dot(result.u), row.b - 1.001 * motion::kMotionTolerance) << trial;
                 }
             }
             Motion pushed = wanted;
@@ -267,7 +267,7 @@ TEST(ConstrainedMotion, MeetsItsConditionsWhereverTheBodyLies) {
                 const auto& held = result.held[static_cast<std::size_t>(i)];
                 const ContactPoint& c = manifold[held.contact];
                 const Row row = rowOf(c);
-                ASSERT_GT(c.gradient.norm(), tick::kLeastGradient);
+                ASSERT_GT(c.gradient.norm(), motion::kLeastGradient);
                 ASSERT_GE(held.push, 0.0);
                 ASSERT_NEAR(row.a.dot(result.u), row.b, 1e-9 * (1.0 + size)) << trial;
                 pushed += held.push / c.gradient.norm() * row.a;
@@ -306,8 +306,9 @@ TEST(ConstrainedMotion, BeginsWarmAndEndsWhereItEndsCold) {
             const auto wrong = solve(wanted, contacts, any);
             // |u₁ - u₂|² = λ₁ · (b - N₁ᵀu₂) + λ₂ · (b - N₂ᵀu₁): each violates the other's rows by the tolerance at
             // most.
-            ASSERT_LT((warm.u - cold.u).squaredNorm(), tick::kMotionTolerance * (pushOf(warm) + pushOf(cold))) << trial;
-            ASSERT_LT((wrong.u - cold.u).squaredNorm(), tick::kMotionTolerance * (pushOf(wrong) + pushOf(cold)))
+            ASSERT_LT((warm.u - cold.u).squaredNorm(), motion::kMotionTolerance * (pushOf(warm) + pushOf(cold)))
+                << trial;
+            ASSERT_LT((wrong.u - cold.u).squaredNorm(), motion::kMotionTolerance * (pushOf(wrong) + pushOf(cold)))
                 << trial;
             held.clear();
             for (int i = 0; i < warm.active; ++i) held.push_back(warm.held[static_cast<std::size_t>(i)].contact);

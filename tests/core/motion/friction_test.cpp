@@ -13,12 +13,12 @@
 namespace passung {
 namespace {
 
-using tick::ContactManifold;
-using tick::ContactPoint;
-using tick::Friction;
-using tick::FrictionPatches;
-using tick::Motion;
-using tick::RubbedMotion;
+using contact::ContactManifold;
+using contact::ContactPoint;
+using motion::Friction;
+using motion::FrictionPatches;
+using motion::Motion;
+using motion::RubbedMotion;
 
 constexpr double kRho = 0.02;       // [m]
 constexpr double kKeepOut = -1e-6;  // [m]
@@ -247,10 +247,10 @@ TEST(Friction, BalancesTheSpringByWhatItTells) {
             contacts.back().area = random.uniform(1e-7, 1e-5);
         }
         const auto manifold = manifoldOf(contacts);
-        const tick::Surroundings around{manifold, origin, rho, kKeepOut, -2e-6};
+        const motion::Surroundings around{manifold, origin, rho, kKeepOut, -2e-6};
         Motion wanted;
         wanted << any(2e-4) - Vec3(1e-4, 0, 1e-4), any(1e-4);
-        const RubbedMotion found = tick::constrainWithFriction(wanted, around, friction, {});
+        const RubbedMotion found = motion::constrainWithFriction(wanted, around, friction, {});
         ASSERT_LE(found.motion.active, 6);
         Motion sum = wanted;
         double push = 0.0, pressure = 0.0;
@@ -267,7 +267,7 @@ TEST(Friction, BalancesTheSpringByWhatItTells) {
         }
         for (int p = 0; p < found.patches.count; ++p) {
             const auto& patch = found.patches.patch[static_cast<std::size_t>(p)];
-            const Vec3 rubbed = tick::rubAlong(patch), lever = patch.centre - origin;
+            const Vec3 rubbed = motion::rubAlong(patch), lever = patch.centre - origin;
             sum.head<3>() += rubbed;
             sum.tail<3>() += (lever.cross(rubbed) + patch.radius * patch.rub.z() * patch.normal) / rho;
             pressure += patch.pressure;
@@ -280,7 +280,7 @@ TEST(Friction, BalancesTheSpringByWhatItTells) {
             ASSERT_LE(patch.rub.norm(), rough.at_rest * patch.pressure * (1.0 + 1e-6) + 1e-9 * wanted.norm());
         }
         ASSERT_NEAR(push, pressure, 1e-9 * (push + wanted.norm())) << trial;
-        if (!found.converged || found.sweeps == tick::kRubSweeps) continue;
+        if (!found.converged || found.sweeps == motion::kRubSweeps) continue;
         ++balanced;
         for (const ContactPoint& c : contacts) {
             const double b = (c.phi < kKeepOut ? -2e-6 : kKeepOut) - c.phi;
@@ -448,7 +448,7 @@ TEST(Friction, WithoutFrictionIsTheConstrainedMotion) {
                                          Vec3(random.normal(), random.normal(), random.normal()).normalized()));
         const Motion wanted = motion(1e-4 * Vec3(random.normal(), random.normal(), random.normal()));
         const auto manifold = manifoldOf(contacts);
-        const auto plain = tick::constrainMotion(wanted, {manifold, Vec3::Zero(), kRho, kKeepOut});
+        const auto plain = motion::constrainMotion(wanted, {manifold, Vec3::Zero(), kRho, kKeepOut});
         EXPECT_EQ(rub(wanted, manifold, Friction{}).motion.u, plain.u);
     }
 }

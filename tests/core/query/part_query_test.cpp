@@ -14,10 +14,10 @@ namespace {
 
 constexpr double kCell = 0.7e-3;
 
-model::Part build(const model::Shape& shape, double spacing = 1e-3) {
-    model::PartSpec spec;
+scene::Part build(const shape::Shape& shape, double spacing = 1e-3) {
+    scene::PartSpec spec;
     spec.geometry = shape;
-    auto part = model::buildPart(spec, {.field = true, .shell = true, .cell = kCell, .spacing = spacing});
+    auto part = scene::buildPart(spec, {.field = true, .shell = true, .cell = kCell, .spacing = spacing});
     EXPECT_TRUE(part);
     return std::move(*part);
 }
@@ -29,7 +29,7 @@ Pose somewhere(double reach, Random& random) {
 
 /// How far above the ball's lowest point its lowest sample lies at most: within the cover radius c a ball of radius R
 /// rises by c²/2R, and its mesh lies a chord error higher.
-double sampledHeight(const model::Part& ball, double radius) {
+double sampledHeight(const scene::Part& ball, double radius) {
     const double c = ball.shell->coverRadius();
     return c * c / (2.0 * radius) + ball.chord_error;
 }
@@ -37,8 +37,8 @@ double sampledHeight(const model::Part& ball, double radius) {
 TEST(PartQuery, ABudgetIsKeptUnlessAQualityIsAskedFor) {
     // Truth: closed form (a ball 3 mm deep in a table); the interval holds at any budget; what is proven from
     // below can only fall with it (the same nodes are opened in the same order).
-    const model::Part table = build(model::Box{0.06, 0.06, 0.02});
-    const model::Part ball = build(model::Sphere{0.03}, 0.5e-3);
+    const scene::Part table = build(shape::Box{0.06, 0.06, 0.02});
+    const scene::Part ball = build(shape::Sphere{0.03}, 0.5e-3);
     query::PartQueryRequest request;
     const double depth = 0.003;
     const Pose X_FS{Quat::Identity(), Vec3(0, 0, 0.01 + 0.015 - depth)};
@@ -71,8 +71,8 @@ TEST(PartQuery, TwoWaysOfASphereInAPlaneAgreeOnDepthAndWrench) {
     // Depth: the field of a plane is exact (up to its floats), that of a ball never below φ, which is convex; the
     // lowest point lies within sampledHeight of a sample. Force: sums over a disc of 9 mm radius sampled every 0.7 mm,
     // 1 %.
-    const model::Part table = build(model::Box{0.08, 0.08, 0.04}, 0.7e-3);
-    const model::Part ball = build(model::Sphere{0.04}, 0.7e-3);
+    const scene::Part table = build(shape::Box{0.08, 0.08, 0.04}, 0.7e-3);
+    const scene::Part ball = build(shape::Sphere{0.04}, 0.7e-3);
     query::PartQueryRequest request;
     request.two_way = true;
     const double h = 0.002, R = 0.02, off = R - h;
@@ -92,15 +92,15 @@ TEST(PartQuery, OfAShapeTheFieldsErrorWhereItWasReadIsKnownExactly) {
     // Truth: closed form of the plate. A peg leans towards a bore that is 0.1 mm wider; at rims and over the blind
     // floor the field's own bound, the largest of 64 cells, is many times what it errs by. What is above the distance
     // read are that error, and the chords.
-    const auto built = [](const model::Shape& shape) {
-        model::PartSpec spec;
+    const auto built = [](const shape::Shape& shape) {
+        scene::PartSpec spec;
         spec.geometry = shape;
-        auto part = model::buildPart(spec, {.field = true, .shell = true});
+        auto part = scene::buildPart(spec, {.field = true, .shell = true});
         EXPECT_TRUE(part);
         return std::move(*part);
     };
-    const model::Shape bore = model::BorePlate{0.03, 0.03, 0.025, 0.01, 0.02, 0.5e-3};
-    const model::Part plate = built(bore), peg = built(model::Peg{0.0099, 0.03, 0.5e-3});
+    const shape::Shape bore = shape::BorePlate{0.03, 0.03, 0.025, 0.01, 0.02, 0.5e-3};
+    const scene::Part plate = built(bore), peg = built(shape::Peg{0.0099, 0.03, 0.5e-3});
     query::PartQueryRequest unrefined;
     unrefined.tolerance = std::numeric_limits<double>::infinity();
     query::PartQuery query(plate, peg, unrefined);
@@ -110,11 +110,11 @@ TEST(PartQuery, OfAShapeTheFieldsErrorWhereItWasReadIsKnownExactly) {
     for (int i = 0; i < 100; ++i) {
         const double lean = 40e-6 * random.uniform();
         const auto r = query.at({Quat::Identity(), Vec3(lean, 0.5 * lean, -0.02 * random.uniform())});
-        const double error = std::abs(r.signed_distance - model::signedDistance(bore, r.closest));
+        const double error = std::abs(r.signed_distance - shape::signedDistance(bore, r.closest));
         ASSERT_NEAR(r.upper_bound, r.signed_distance + error + chords, 1e-11);
         ASSERT_GE(r.field_error_bound, error);
         largest_bound =
-            std::max(largest_bound, plate.field->errorBound(r.closest, model::FieldMode::Trilinear) - error);
+            std::max(largest_bound, plate.field->errorBound(r.closest, field::FieldMode::Trilinear) - error);
     }
     EXPECT_GT(largest_bound, 20e-6);
 }
@@ -122,7 +122,7 @@ TEST(PartQuery, OfAShapeTheFieldsErrorWhereItWasReadIsKnownExactly) {
 TEST(PartQuery, TheBoundHoldsAndIsNoLargerThanSpacingAndCellAllow) {
     // Truth: closed form of two spheres. Within the fine bricks (four cells of the surface) the field errs by less than
     // √3 cells (each corner is nearer than a diagonal), which enters twice: at the closest point and below it.
-    const model::Part a = build(model::Sphere{0.03}), b = build(model::Sphere{0.02});
+    const scene::Part a = build(shape::Sphere{0.03}), b = build(shape::Sphere{0.02});
     const double chords = a.chord_error + b.chord_error;
     const double most = std::sqrt(3.0) * kCell + b.shell->coverRadius() + chords;
     Random random(3);
@@ -165,7 +165,7 @@ TEST(PartQuery, TheBoundHoldsAndIsNoLargerThanSpacingAndCellAllow) {
 TEST(PartQuery, TheBoundHoldsUnderEveryBudget) {
     // Truth: closed form of two spheres, at poses where they overlap, touch and are apart. A budget leaves more to be
     // proven, never something wrong; the mean bound falls with the budget.
-    const model::Part a = build(model::Sphere{0.03}), b = build(model::Sphere{0.02}, 0.5e-3);
+    const scene::Part a = build(shape::Sphere{0.03}), b = build(shape::Sphere{0.02}, 0.5e-3);
     double last_mean = 1e300;
     for (const int budget : {8, 20, 50, 150, 500, 2000}) {
         query::PartQueryRequest request;
@@ -193,7 +193,7 @@ TEST(PartQuery, TheBoundHoldsUnderEveryBudget) {
 
 TEST(PartQuery, BeyondTheProximityTheTruthIsNotBelowWhatIsSaid) {
     // Truth: closed form of two spheres. 10 mm is below all true distances; two-way, one found direction is enough.
-    const model::Part a = build(model::Sphere{0.03}), b = build(model::Sphere{0.02});
+    const scene::Part a = build(shape::Sphere{0.03}), b = build(shape::Sphere{0.02});
     for (const bool two_way : {false, true}) {
         query::PartQueryRequest request;
         request.proximity = 0.01;
@@ -216,7 +216,7 @@ TEST(PartQuery, BeyondTheProximityTheTruthIsNotBelowWhatIsSaid) {
 TEST(PartQuery, TheBoundOfASheetHoldsItsOffset) {
     // Truth: closed form. A ball above an open sheet: the distance from the sheet itself, which the field takes its
     // offset from.
-    const model::Part sheet = build(model::Sheet{0.05, 0.05}), ball = build(model::Sphere{0.02}, 0.4e-3);
+    const scene::Part sheet = build(shape::Sheet{0.05, 0.05}), ball = build(shape::Sphere{0.02}, 0.4e-3);
     ASSERT_GT(sheet.field->sheetOffset(), 0.0);
     query::PartQuery query(sheet, ball, {});
     for (double gap = 0.0; gap < 0.004; gap += 0.1e-3) {

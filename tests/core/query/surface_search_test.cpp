@@ -10,15 +10,15 @@
 namespace passung {
 namespace {
 
-model::Part build(const model::Shape& shape, double tolerance, bool field) {
-    const model::PartSpec spec{.name = {}, .geometry = shape, .X_WP = {}};
-    auto part = model::buildPart(spec, {.field = field, .shell = false, .tolerance = tolerance});
+scene::Part build(const shape::Shape& shape, double tolerance, bool field) {
+    const scene::PartSpec spec{.name = {}, .geometry = shape, .X_WP = {}};
+    auto part = scene::buildPart(spec, {.field = field, .shell = false, .tolerance = tolerance});
     EXPECT_TRUE(part);
     return std::move(*part);
 }
 
 /// The distance of two meshes that do not meet, from every triangle of `b`.
-double distanceOf(const model::TriangleTree& a, const model::TriangleMesh& b, const Pose& X_AB) {
+double distanceOf(const geometry::TriangleTree& a, const geometry::TriangleMesh& b, const Pose& X_AB) {
     double nearest = 1e3;
     for (const auto& v : b.triangles) {
         const auto corner = [&](std::size_t i) { return Vec3(X_AB * b.vertices[v[i]]); };
@@ -30,9 +30,9 @@ double distanceOf(const model::TriangleTree& a, const model::TriangleMesh& b, co
 TEST(SurfaceSearch, ProvesTheDistanceThatAllTrianglesTogetherHaveToAnyTolerance) {
     // Truth: exhaustive search over all triangles of B. A ring over a peg with key: rims, edges and curved faces next
     // to each other, from touching to far away.
-    const model::Part key = build(model::KeyedPeg{0.02, 0.05, 0.004, 0.003, 0.001}, 100e-6, true);
-    const model::Part ring = build(model::Torus{0.03, 0.008}, 200e-6, false);
-    const model::TriangleTree exact(key.mesh);
+    const scene::Part key = build(shape::KeyedPeg{0.02, 0.05, 0.004, 0.003, 0.001}, 100e-6, true);
+    const scene::Part ring = build(shape::Torus{0.03, 0.008}, 200e-6, false);
+    const geometry::TriangleTree exact(key.mesh);
     query::SurfaceSearch search(key, ring);
     Random random(7);
     int near = 0;

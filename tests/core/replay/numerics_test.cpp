@@ -77,7 +77,7 @@ DeviceReading readingAt(int tick, Random& random) {
     return reading;
 }
 
-std::uint64_t hashOf(const model::SceneSpec& spec) {
+std::uint64_t hashOf(const scene::SceneSpec& spec) {
     const test::Bench bench(spec);
     const tick::SceneTurn turn{&bench.model()};
     tick::SceneSequence scenes(std::span(&turn, 1));

@@ -12,7 +12,7 @@
 #include "core/scene/part.h"
 #include "core/shell/shell_bytes.h"
 
-namespace passung::model {
+namespace passung::scene {
 namespace {
 
 /// In memory; counts, and lets a test look at and spoil what it holds.
@@ -33,7 +33,7 @@ struct MemoryStore : BuildStore {
 
 const PartNeeds kNeeds{.field = true, .shell = true, .tolerance = 50e-6, .spacing = 2e-3};
 
-Part build(const Shape& shape, BuildStore* store, const PartNeeds& needs = kNeeds) {
+Part build(const shape::Shape& shape, BuildStore* store, const PartNeeds& needs = kNeeds) {
     PartSpec spec;
     spec.name = "part";
     spec.geometry = shape;
@@ -53,11 +53,11 @@ bool sameBits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == st
 void expectSameBits(const Part& a, const Part& b) {
     EXPECT_EQ(a.field->toBytes(), b.field->toBytes());
     Random random(1);
-    const Bounds bounds = a.field->bounds();
+    const geometry::Bounds bounds = a.field->bounds();
     for (int i = 0; i < 3000; ++i) {
         Vec3 p;
         for (int k = 0; k < 3; ++k) p[k] = random.uniform(bounds.low[k] - 0.003, bounds.high[k] + 0.003);
-        for (const FieldMode mode : kFieldModes) {
+        for (const field::FieldMode mode : field::kFieldModes) {
             ASSERT_TRUE(sameBits(a.field->sample(p, mode).phi, b.field->sample(p, mode).phi));
             ASSERT_TRUE(sameBits(a.field->errorBound(p, mode), b.field->errorBound(p, mode)));
         }
@@ -66,7 +66,7 @@ void expectSameBits(const Part& a, const Part& b) {
     ASSERT_EQ(a.shell->nodes().size(), b.shell->nodes().size());
     ASSERT_EQ(a.shell->points().size(), b.shell->points().size());
     for (std::size_t i = 0; i < a.shell->points().size(); ++i) {
-        const SurfacePoint &p = a.shell->points()[i], &q = b.shell->points()[i];
+        const shell::SurfacePoint &p = a.shell->points()[i], &q = b.shell->points()[i];
         ASSERT_TRUE(p.position == q.position && p.normal == q.normal && sameBits(p.area, q.area));
     }
     for (std::size_t i = 0; i < a.shell->nodes().size(); ++i)
@@ -75,7 +75,8 @@ void expectSameBits(const Part& a, const Part& b) {
 
 TEST(BuildStore, WhatComesBackHasTheBitsOfWhatWasBuilt) {
     // Truth: invariant. A refined solid and an open sheet.
-    for (const Shape& shape : {Shape(BorePlate{0.02, 0.02, 0.008, 0.01, 0.006, 0.0}), Shape(Sheet{0.02, 0.01})}) {
+    for (const shape::Shape& shape : {shape::Shape(shape::BorePlate{0.02, 0.02, 0.008, 0.01, 0.006, 0.0}),
+                                      shape::Shape(shape::Sheet{0.02, 0.01})}) {
         MemoryStore store;
         const Part built = build(shape, nullptr), kept = build(shape, &store);
         EXPECT_EQ(store.kept, 2);
@@ -93,28 +94,28 @@ TEST(BuildStore, WhatComesBackHasTheBitsOfWhatWasBuilt) {
 TEST(BuildStore, OtherGeometryAndOtherNeedsAreOtherBuilds) {
     // Truth: invariant.
     MemoryStore store;
-    build(Sphere{0.01}, &store);
-    build(Sphere{0.0100000001}, &store);
+    build(shape::Sphere{0.01}, &store);
+    build(shape::Sphere{0.0100000001}, &store);
     EXPECT_EQ(store.kept, 4);
     PartNeeds finer = kNeeds;
     finer.tolerance = 40e-6;
-    build(Sphere{0.01}, &store, finer);
+    build(shape::Sphere{0.01}, &store, finer);
     PartNeeds even = kNeeds;
     even.cell = 1e-3;
-    build(Sphere{0.01}, &store, even);
+    build(shape::Sphere{0.01}, &store, even);
     PartNeeds deeper = kNeeds;
     deeper.depth = 1e-3;
-    build(Sphere{0.01}, &store, deeper);
+    build(shape::Sphere{0.01}, &store, deeper);
     PartNeeds closer = kNeeds;
     closer.spacing = 1e-3;
-    build(Sphere{0.01}, &store, closer);
+    build(shape::Sphere{0.01}, &store, closer);
     EXPECT_EQ(store.files.size(), static_cast<std::size_t>(store.kept));
     EXPECT_GE(store.kept, 4 + 4);
 }
 
 TEST(BuildStore, NeverTakesATornOrSpoiledFileAndMendsIt) {
     // Truth: invariant. A file cut at any of many places, with any of many bits turned, or with more at its end.
-    const Sphere ball{0.01};
+    const shape::Sphere ball{0.01};
     MemoryStore store;
     const Part sound = build(ball, &store);
     const auto files = store.files;
@@ -145,10 +146,10 @@ TEST(BuildStore, NeverTakesATornOrSpoiledFileAndMendsIt) {
 TEST(BuildStore, NeverTakesAFileOfAnotherKey) {
     // Truth: invariant. Two sound files in each other's place: their keys say so.
     MemoryStore store;
-    const Part sound = build(Sphere{0.01}, &store);
+    const Part sound = build(shape::Sphere{0.01}, &store);
     const auto first = store.files.begin(), second = std::next(first);
     std::swap(first->second, second->second);
-    const Part part = build(Sphere{0.01}, &store);
+    const Part part = build(shape::Sphere{0.01}, &store);
     EXPECT_TRUE(tellsDamage(part));
     EXPECT_EQ(part.field->toBytes(), sound.field->toBytes());
     EXPECT_FALSE(unsealed("another", sealed("key", "content")));
@@ -168,19 +169,19 @@ TEST(BuildStore, EveryBitOfASmallFileCounts) {
 
 TEST(BuildStore, BytesThatHoldNoFieldAreRefused) {
     // Truth: invariant. Behind a right checksum, too: a brick that is its own child would never end a query.
-    const Part part = build(Sphere{0.01}, nullptr);
+    const Part part = build(shape::Sphere{0.01}, nullptr);
     const std::string bytes = part.field->toBytes();
-    EXPECT_TRUE(DistanceField::fromBytes(bytes));
-    EXPECT_FALSE(DistanceField::fromBytes(bytes.substr(0, bytes.size() - 1)));
-    EXPECT_FALSE(DistanceField::fromBytes(bytes + '\0'));
-    EXPECT_FALSE(DistanceField::fromBytes(""));
+    EXPECT_TRUE(field::DistanceField::fromBytes(bytes));
+    EXPECT_FALSE(field::DistanceField::fromBytes(bytes.substr(0, bytes.size() - 1)));
+    EXPECT_FALSE(field::DistanceField::fromBytes(bytes + '\0'));
+    EXPECT_FALSE(field::DistanceField::fromBytes(""));
     Random random(3);
     int refused = 0;
     for (int i = 0; i < 400; ++i) {
         std::string turned = bytes;
         const std::size_t at = random.below(200);  // the head: bounds, counts, cells
         turned[at] = static_cast<char>(turned[at] ^ 0x40);
-        const auto field = DistanceField::fromBytes(turned);
+        const auto field = field::DistanceField::fromBytes(turned);
         refused += field ? 0 : 1;
         EXPECT_TRUE(!field || field->brickCount() > 0);
     }
@@ -188,4 +189,4 @@ TEST(BuildStore, BytesThatHoldNoFieldAreRefused) {
 }
 
 }  // namespace
-}  // namespace passung::model
+}  // namespace passung::scene

@@ -10,7 +10,7 @@
 #include "core/base/digest.h"
 #include "core/scene/part.h"
 
-namespace passung::model {
+namespace passung::scene {
 namespace {
 
 /// Keeps nothing; everything that it is given goes into one digest, with its name.
@@ -42,11 +42,11 @@ TEST(KeptFormat, HoldsTheBitsOfItsNumber) {
     DigestStore store;
     const PartNeeds adaptive{.field = true, .shell = true, .tolerance = 50e-6, .spacing = 2e-3};
     const PartNeeds uniform{.field = true, .shell = true, .cell = 0.7e-3, .spacing = 1.5e-3};
-    const BorePlate plate{0.02, 0.02, 0.008, 0.01, 0.006, 0.0};
+    const shape::BorePlate plate{0.02, 0.02, 0.008, 0.01, 0.006, 0.0};
     const std::vector<std::pair<decltype(PartSpec::geometry), PartNeeds>> builds = {
-        {Shape(plate), adaptive},
-        {Shape(plate), uniform},
-        {Shape(Sheet{0.02, 0.01}), adaptive},
+        {shape::Shape(plate), adaptive},
+        {shape::Shape(plate), uniform},
+        {shape::Shape(shape::Sheet{0.02, 0.01}), adaptive},
         {tetrahedron(), adaptive}};
     for (const auto& [geometry, needs] : builds) {
         PartSpec spec;
@@ -59,4 +59,4 @@ TEST(KeptFormat, HoldsTheBitsOfItsNumber) {
 }
 
 }  // namespace
-}  // namespace passung::model
+}  // namespace passung::scene

@@ -4,7 +4,7 @@
 
 #include <map>
 
-namespace passung::model {
+namespace passung::scene {
 namespace {
 
 struct MemoryStore : BuildStore {
@@ -56,4 +56,4 @@ TEST(TimedStore, TimesWithoutAStoreToo) {
 }
 
 }  // namespace
-}  // namespace passung::model
+}  // namespace passung::scene

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace passung::model {
+namespace passung::shape {
 namespace {
 
 /// Deviations in µm, "+28/+15", with at most one decimal.
@@ -222,4 +222,4 @@ TEST(IsoFit, RefusesWhatTheStandardDoesNotHave) {
 }
 
 }  // namespace
-}  // namespace passung::model
+}  // namespace passung::shape

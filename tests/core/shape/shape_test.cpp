@@ -12,7 +12,7 @@
 #include "core/base/random.h"
 #include "tests/support/brute_force_mesh.h"
 
-namespace passung::model {
+namespace passung::shape {
 namespace {
 
 using std::numbers::pi;
@@ -55,8 +55,8 @@ std::string described(const Shape& shape) {
 
 /// Half uniform in the bounds and around them, half close to the surface.
 std::vector<Vec3> pointsAround(const Shape& shape, int count, Random& random) {
-    const TriangleMesh mesh = tessellate(shape, 1e-5);
-    const Bounds bounds = boundsOf(mesh);
+    const geometry::TriangleMesh mesh = tessellate(shape, 1e-5);
+    const geometry::Bounds bounds = geometry::boundsOf(mesh);
     const double margin = 0.3 * bounds.size().norm();
     std::vector<Vec3> points;
     for (int i = 0; i < count; ++i) {
@@ -244,7 +244,7 @@ TEST(Shape, DistanceIsThatToItsTrianglesWithinTheChordError) {
     const double chord_error = 4e-6;
     Random random(1);
     for (const Shape& shape : allShapes()) {
-        const TriangleMesh mesh = tessellate(shape, chord_error);
+        const geometry::TriangleMesh mesh = tessellate(shape, chord_error);
         for (const Vec3& p : pointsAround(shape, 600, random))
             ASSERT_NEAR(std::abs(signedDistance(shape, p)), test::distanceToMesh(mesh, p), chord_error + 1e-12)
                 << described(shape) << " at " << p.transpose();
@@ -258,7 +258,7 @@ TEST(Shape, DistanceToChamfersIsThatToAFineMesh) {
     Random random(7);
     for (const Shape& shape : {Shape(KeyedPeg{0.02, 0.05, 0.006, 0.0025, 0.002}),
                                Shape(KeyedBorePlate{0.06, 0.05, 0.03, 0.02, 0.016, 0.001, 0.02, 0.002})}) {
-        const TriangleMesh mesh = tessellate(shape, chord_error);
+        const geometry::TriangleMesh mesh = tessellate(shape, chord_error);
         const double sign = std::holds_alternative<KeyedPeg>(shape) ? 1.0 : -1.0;
         for (int i = 0; i < 200; ++i) {
             // About the chamfer, where x > 0.
@@ -370,7 +370,7 @@ TEST(Tessellation, VerticesLieOnTheSurfaceAndTrianglesWithinTheChordError) {
     // Truth: closed form. Points spread over every triangle, corners and edges included.
     for (const double chord_error : {1e-4, 1e-5, 1e-6}) {
         for (const Shape& shape : allShapes()) {
-            const TriangleMesh mesh = tessellate(shape, chord_error);
+            const geometry::TriangleMesh mesh = tessellate(shape, chord_error);
             double worst = 0.0;
             for (const Vec3& v : mesh.vertices) ASSERT_NEAR(signedDistance(shape, v), 0.0, 1e-14) << described(shape);
             for (const auto& t : mesh.triangles)
@@ -400,7 +400,7 @@ TEST(Tessellation, HasTheVolumeAndAreaOfTheShape) {
     // an inscribed polygon falls short by its relative sagitta, here below 1e-4.
     const double chord_error = 5e-7;
     for (const Shape& shape : allShapes()) {
-        const TriangleMesh mesh = tessellate(shape, chord_error);
+        const geometry::TriangleMesh mesh = tessellate(shape, chord_error);
         EXPECT_NEAR(test::area(mesh), exactArea(shape), 1e-4 * exactArea(shape)) << described(shape);
         EXPECT_NEAR(test::volume(mesh), exactVolume(shape), chord_error * exactArea(shape)) << described(shape);
     }
@@ -408,13 +408,13 @@ TEST(Tessellation, HasTheVolumeAndAreaOfTheShape) {
 
 TEST(Tessellation, ReachesTheExtremePointsOnTheAxes) {
     // Truth: closed form. Segment counts are divisible by four, so the bounds of a round part are exact.
-    const Bounds bounds = boundsOf(tessellate(Peg{0.02, 0.05, 0.001}, 1e-5));
+    const geometry::Bounds bounds = geometry::boundsOf(tessellate(Peg{0.02, 0.05, 0.001}, 1e-5));
     EXPECT_EQ(bounds.low, Vec3(-0.01, -0.01, 0.0));
     EXPECT_EQ(bounds.high, Vec3(0.01, 0.01, 0.05));
-    const Bounds keyed = boundsOf(tessellate(KeyedPeg{0.02, 0.05, 0.006, 0.0025, 0.001}, 1e-5));
+    const geometry::Bounds keyed = geometry::boundsOf(tessellate(KeyedPeg{0.02, 0.05, 0.006, 0.0025, 0.001}, 1e-5));
     EXPECT_EQ(keyed.low, Vec3(-0.01, -0.01, 0.0));
     EXPECT_EQ(keyed.high, Vec3(0.0125, 0.01, 0.05));
-    const Bounds torus = boundsOf(tessellate(Torus{0.04, 0.012}, 1e-5));
+    const geometry::Bounds torus = geometry::boundsOf(tessellate(Torus{0.04, 0.012}, 1e-5));
     EXPECT_EQ(torus.low, Vec3(-(0.02 + 0.006), -(0.02 + 0.006), -0.006));
     EXPECT_EQ(torus.high, Vec3(0.02 + 0.006, 0.02 + 0.006, 0.006));
 }
@@ -433,7 +433,7 @@ TEST(Tessellation, ReachesNoSmallerChordErrorThanItSays) {
     for (const double asked : {1e-4, 1e-6, 1e-9}) {
         for (const Shape& shape : {Shape(Sphere{1.0}), Shape(Cylinder{2.0, 0.5}), Shape(Peg{1.5, 0.5, 0.1}),
                                    Shape(BorePlate{3.0, 3.0, 0.5, 2.0, 0.3, 0.05}), Shape(Sphere{0.02})}) {
-            const TriangleMesh mesh = tessellate(shape, asked);
+            const geometry::TriangleMesh mesh = tessellate(shape, asked);
             const double said = chordError(shape, asked);
             double worst = 0.0;
             for (const auto& t : mesh.triangles)
@@ -506,4 +506,4 @@ TEST(ShapeValidation, NamesEachValueThatCannotBe) {
 }
 
 }  // namespace
-}  // namespace passung::model
+}  // namespace passung::shape

@@ -10,7 +10,7 @@
 
 #include "core/base/random.h"
 
-namespace passung::model {
+namespace passung::shell {
 namespace {
 
 constexpr double kRadius = 0.07;
@@ -139,4 +139,4 @@ TEST(PointBuckets, HoldPointsAlongALongThinLine) {
 }
 
 }  // namespace
-}  // namespace passung::model
+}  // namespace passung::shell

@@ -8,10 +8,10 @@
 
 #include "core/shape/shape.h"
 
-namespace passung::model {
+namespace passung::shell {
 namespace {
 
-TriangleMesh meshOf(const Shape& shape) { return tessellate(shape, 1e-6); }
+geometry::TriangleMesh meshOf(const shape::Shape& shape) { return shape::tessellate(shape, 1e-6); }
 
 /// Length of all curves, without what a curve that runs round repeats.
 double lengthOf(const EdgeCurves& edges) {
@@ -25,18 +25,18 @@ double lengthOf(const EdgeCurves& edges) {
 TEST(EdgeCurves, AreTheEdgesThatStandOut) {
     // Truth: closed form. A box has twelve; a bored plate those twelve and its mouth, not the edge round the bore's
     // floor; a sheet its border; a ball none. 1e-4: chords of the mouth, and lengths are rounded up to floats.
-    EXPECT_NEAR(lengthOf(EdgeCurves(meshOf(Box{0.01, 0.02, 0.03}), 1e-3)), 4 * 0.06, 1e-6);
+    EXPECT_NEAR(lengthOf(EdgeCurves(meshOf(shape::Box{0.01, 0.02, 0.03}), 1e-3)), 4 * 0.06, 1e-6);
     const double mouth = std::numbers::pi * 0.01;
-    EXPECT_NEAR(lengthOf(EdgeCurves(meshOf(BorePlate{0.02, 0.02, 0.02, 0.01, 0.01, 0.0}), 1e-3)), 12 * 0.02 + mouth,
-                1e-4 * mouth);
-    EXPECT_NEAR(lengthOf(EdgeCurves(meshOf(Sheet{0.01, 0.02}), 1e-3)), 0.06, 1e-6);
-    EXPECT_TRUE(EdgeCurves(meshOf(Sphere{0.01}), 1e-3).stretches().empty());
+    EXPECT_NEAR(lengthOf(EdgeCurves(meshOf(shape::BorePlate{0.02, 0.02, 0.02, 0.01, 0.01, 0.0}), 1e-3)),
+                12 * 0.02 + mouth, 1e-4 * mouth);
+    EXPECT_NEAR(lengthOf(EdgeCurves(meshOf(shape::Sheet{0.01, 0.02}), 1e-3)), 0.06, 1e-6);
+    EXPECT_TRUE(EdgeCurves(meshOf(shape::Sphere{0.01}), 1e-3).stretches().empty());
 }
 
 TEST(EdgeCurves, HasStationsNoFartherApartThanAskedAndEachInOneStretch) {
     // Truth: invariant.
     constexpr double kSpacing = 0.7e-3;
-    const EdgeCurves edges(meshOf(Cylinder{0.02, 0.013}), kSpacing);
+    const EdgeCurves edges(meshOf(shape::Cylinder{0.02, 0.013}), kSpacing);
     std::vector<int> seen(edges.stations().size(), 0);
     for (const EdgeCurves::Stretch& stretch : edges.stretches()) {
         ASSERT_LE(stretch.count, EdgeCurves::kStretchStations);
@@ -54,7 +54,7 @@ TEST(EdgeCurves, HasStationsNoFartherApartThanAskedAndEachInOneStretch) {
 
 TEST(EdgeCurves, SpheresHoldTheirStretchesAsFarAsToTheStationsBeside) {
     // Truth: invariant.
-    const EdgeCurves edges(meshOf(BorePlate{0.02, 0.02, 0.02, 0.01, 0.01, 1e-3}), 1e-3);
+    const EdgeCurves edges(meshOf(shape::BorePlate{0.02, 0.02, 0.02, 0.01, 0.01, 1e-3}), 1e-3);
     for (std::size_t i = 0; i < edges.stretches().size(); ++i) {
         const EdgeCurves::Stretch& stretch = edges.stretches()[i];
         const std::uint32_t first = stretch.first - (stretch.begins ? 0 : 1);
@@ -65,4 +65,4 @@ TEST(EdgeCurves, SpheresHoldTheirStretchesAsFarAsToTheStationsBeside) {
 }
 
 }  // namespace
-}  // namespace passung::model
+}  // namespace passung::shell

@@ -13,10 +13,10 @@
 #include "core/shell/sphere_tree.h"
 #include "tests/support/broken_mesh.h"
 
-namespace passung::model {
+namespace passung::shell {
 namespace {
 
-double meshArea(const TriangleMesh& mesh) {
+double meshArea(const geometry::TriangleMesh& mesh) {
     double area = 0.0;
     for (const auto& t : mesh.triangles) {
         area +=
@@ -25,13 +25,14 @@ double meshArea(const TriangleMesh& mesh) {
     return area;
 }
 
-const std::vector<Shape> kShapes{Sphere{0.02}, Box{0.02, 0.01, 0.03}, Peg{0.01, 0.03, 0.001}, Sheet{0.03, 0.02}};
+const std::vector<shape::Shape> kShapes{shape::Sphere{0.02}, shape::Box{0.02, 0.01, 0.03},
+                                        shape::Peg{0.01, 0.03, 0.001}, shape::Sheet{0.03, 0.02}};
 constexpr double kSpacing = 1e-3;
 
 TEST(PointShell, AreasAddUpToTheSurfaceAndAreaVectorsCloseIt) {
     // Truth: closed form. Σ a = area of the mesh; Σ a n = 0 on a closed surface.
-    for (const Shape& shape : kShapes) {
-        const TriangleMesh mesh = tessellate(shape, 1e-6);
+    for (const shape::Shape& shape : kShapes) {
+        const geometry::TriangleMesh mesh = shape::tessellate(shape, 1e-6);
         const PointShell shell = samplePoints(mesh, kSpacing);
         double area = 0.0;
         Vec3 sum = Vec3::Zero();
@@ -39,17 +40,17 @@ TEST(PointShell, AreasAddUpToTheSurfaceAndAreaVectorsCloseIt) {
             area += point.area;
             sum += point.area * point.normal;
         }
-        EXPECT_NEAR(area, meshArea(mesh), 1e-9 * area) << kindName(shape);
-        if (!std::holds_alternative<Sheet>(shape)) {
-            EXPECT_LT(sum.norm(), 2e-3 * area) << kindName(shape);
+        EXPECT_NEAR(area, meshArea(mesh), 1e-9 * area) << shape::kindName(shape);
+        if (!std::holds_alternative<shape::Sheet>(shape)) {
+            EXPECT_LT(sum.norm(), 2e-3 * area) << shape::kindName(shape);
         }
     }
 }
 
 TEST(PointShell, EveryPointOfTheSurfaceIsWithinTheCoverRadius) {
     // Truth: independent dense sampling of the shape's triangles (barycentric lattice).
-    for (const Shape& shape : kShapes) {
-        const TriangleMesh mesh = tessellate(shape, 5e-6);
+    for (const shape::Shape& shape : kShapes) {
+        const geometry::TriangleMesh mesh = shape::tessellate(shape, 5e-6);
         const PointShell shell = samplePoints(mesh, kSpacing);
         double farthest = 0.0;
         for (const auto& t : mesh.triangles) {
@@ -64,14 +65,14 @@ TEST(PointShell, EveryPointOfTheSurfaceIsWithinTheCoverRadius) {
                 }
             }
         }
-        EXPECT_LE(farthest, shell.cover_radius) << kindName(shape);
-        EXPECT_LT(shell.cover_radius, 1.6 * kSpacing) << kindName(shape);
+        EXPECT_LE(farthest, shell.cover_radius) << shape::kindName(shape);
+        EXPECT_LT(shell.cover_radius, 1.6 * kSpacing) << shape::kindName(shape);
     }
 }
 
 TEST(PointShell, KeepsItsSpacingOnFaces) {
     // Truth: invariant of a relaxed Poisson-disk set: no two samples of a face are much closer than the disk radius.
-    const PointShell shell = samplePoints(tessellate(Sphere{0.02}, 1e-6), kSpacing);
+    const PointShell shell = samplePoints(shape::tessellate(shape::Sphere{0.02}, 1e-6), kSpacing);
     for (std::size_t i = 0; i < shell.points.size(); ++i) {
         for (std::size_t j = i + 1; j < shell.points.size(); ++j) {
             ASSERT_GT((shell.points[i].position - shell.points[j].position).norm(), 0.4 * kSpacing);
@@ -82,7 +83,7 @@ TEST(PointShell, KeepsItsSpacingOnFaces) {
 TEST(PointShell, SamplesEveryCornerAndRimOfABox) {
     // Truth: closed form. Eight corners exactly, rounded to floats; along each edge no gap wider than half the
     // spacing's disk.
-    const PointShell shell = samplePoints(tessellate(Box{0.02, 0.01, 0.03}, 1e-6), kSpacing);
+    const PointShell shell = samplePoints(shape::tessellate(shape::Box{0.02, 0.01, 0.03}, 1e-6), kSpacing);
     for (int corner = 0; corner < 8; ++corner) {
         const Vec3 exact((corner & 1) ? 0.01 : -0.01, (corner & 2) ? 0.005 : -0.005, (corner & 4) ? 0.015 : -0.015);
         const Vec3 c = roundedToFloat(exact);
@@ -101,8 +102,8 @@ TEST(PointShell, SamplesEveryCornerAndRimOfABox) {
 
 TEST(SphereTree, EverySphereHoldsAllPointsBelowAndEveryLevelTheWholeSurface) {
     // Truth: invariant, checked by descending from every node.
-    for (const Shape& shape : kShapes) {
-        const PointShell shell = samplePoints(tessellate(shape, 1e-6), kSpacing);
+    for (const shape::Shape& shape : kShapes) {
+        const PointShell shell = samplePoints(shape::tessellate(shape, 1e-6), kSpacing);
         const SphereTree tree(shell);
         ASSERT_EQ(tree.points().size(), shell.points.size());
         std::vector<int> seen(tree.points().size(), 0);
@@ -149,8 +150,9 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> pointsBelow(const SphereTre
 TEST(SphereTree, NoClusterJoinsTheTwoSidesOfAThinWall) {
     // Truth: invariant. A wall thinner than the spacing: all points on faces below any node but the roots face within
     // 120° of each other.
-    for (const Shape& shape : {Shape(Box{0.02, 0.02, 0.3e-3}), Shape(Peg{0.01, 0.03, 0.001})}) {
-        const SphereTree tree(samplePoints(tessellate(shape, 1e-6), kSpacing));
+    for (const shape::Shape& shape :
+         {shape::Shape(shape::Box{0.02, 0.02, 0.3e-3}), shape::Shape(shape::Peg{0.01, 0.03, 0.001})}) {
+        const SphereTree tree(samplePoints(shape::tessellate(shape, 1e-6), kSpacing));
         const auto below = pointsBelow(tree);
         for (std::size_t k = tree.roots().size(); k < below.size(); ++k) {
             const auto [begin, end] = below[k];
@@ -158,7 +160,7 @@ TEST(SphereTree, NoClusterJoinsTheTwoSidesOfAThinWall) {
                 for (std::uint32_t j = begin; j < i; ++j) {
                     const SurfacePoint &a = tree.points()[i], &b = tree.points()[j];
                     if (a.area > 0.0 && b.area > 0.0) {
-                        ASSERT_GT(a.normal.dot(b.normal), -0.5 - 1e-6) << kindName(shape);
+                        ASSERT_GT(a.normal.dot(b.normal), -0.5 - 1e-6) << shape::kindName(shape);
                     }
                 }
             }
@@ -168,7 +170,7 @@ TEST(SphereTree, NoClusterJoinsTheTwoSidesOfAThinWall) {
 
 TEST(SphereTree, EveryNodeCarriesTheAreaVectorOfItsPointsAndOneOfThemStandsForThem) {
     // Truth: invariant, sums over the points below.
-    const SphereTree tree(samplePoints(tessellate(Shape(Peg{0.01, 0.03, 0.001}), 1e-6), kSpacing));
+    const SphereTree tree(samplePoints(shape::tessellate(shape::Shape(shape::Peg{0.01, 0.03, 0.001}), 1e-6), kSpacing));
     const auto below = pointsBelow(tree);
     for (std::size_t k = 0; k < below.size(); ++k) {
         const SphereNode& node = tree.nodes()[k];
@@ -193,7 +195,7 @@ TEST(SphereTree, ChildrenFollowLevelByLevelAndLeavesAreSmall) {
     const auto at = [](const FloatPositions& positions, std::size_t i) {
         return Eigen::Vector3f(positions.x(i, 1)[0], positions.y(i, 1)[0], positions.z(i, 1)[0]).cast<double>().eval();
     };
-    const SphereTree tree(samplePoints(tessellate(Shape(Sphere{0.04}), 1e-6), 0.5e-3));
+    const SphereTree tree(samplePoints(shape::tessellate(shape::Shape(shape::Sphere{0.04}), 1e-6), 0.5e-3));
     std::size_t next = tree.roots().size();
     std::size_t points = 0;
     for (const SphereNode& node : tree.nodes()) {
@@ -249,13 +251,13 @@ TEST(EnclosingBall, IsTheSmallestOfRandomPointsAndOfKnownSolids) {
 
 TEST(PointShell, CoordinatesAreFloatsAndLieOnTheSurfaceUpToTheirRounding) {
     // Truth: closed form of a box, whose triangles lie exactly in its faces.
-    const Shape box = Box{0.02, 0.01, 0.03};
-    const PointShell shell = samplePoints(tessellate(box, 1e-6), kSpacing);
+    const shape::Shape box = shape::Box{0.02, 0.01, 0.03};
+    const PointShell shell = samplePoints(shape::tessellate(box, 1e-6), kSpacing);
     EXPECT_LT(shell.rounding, 1e-8);
     double farthest = 0.0;
     for (const auto& point : shell.points) {
         EXPECT_EQ(point.position, roundedToFloat(point.position));
-        farthest = std::max(farthest, std::abs(signedDistance(box, point.position)));
+        farthest = std::max(farthest, std::abs(shape::signedDistance(box, point.position)));
     }
     EXPECT_LE(farthest, shell.rounding);
     EXPECT_GT(farthest, 0.0);
@@ -266,7 +268,7 @@ TEST(PointShell, SumsOverPatchesAreExactForWhatChangesLinearly) {
     // makes the first exact up to the rounding of floats; a patch about one spacing s wide leaves of the second about
     // its own moment, s²/12 per area (twice that is allowed).
     const double w = 0.02, d = 0.01;
-    const PointShell shell = samplePoints(tessellate(Box{w, d, 0.03}, 1e-6), kSpacing);
+    const PointShell shell = samplePoints(shape::tessellate(shape::Box{w, d, 0.03}, 1e-6), kSpacing);
     double area = 0.0, first = 0.0, second = 0.0;
     for (const auto& point : shell.points) {
         if (!(point.normal.z() > 0.99)) continue;
@@ -284,7 +286,7 @@ TEST(PointShell, EveryTriangleHasASampleNearThatFacesItWithin60Degrees) {
     // turn away from a part of their patch. Triangles are so small that each is one candidate, and a sample lies on
     // one, up to its rounding, which gives its direction; on an edge of two, either.
     for (const double diameter : {0.4e-3, 0.8e-3, 1.2e-3, 1.6e-3, 2.0e-3}) {
-        const TriangleMesh mesh = test::wavySphere(diameter, 2.5e-4 * diameter);
+        const geometry::TriangleMesh mesh = test::wavySphere(diameter, 2.5e-4 * diameter);
         const PointShell shell = samplePoints(mesh, kSpacing);
         std::vector<Vec3> middles, normals;
         for (const auto& t : mesh.triangles) {
@@ -296,8 +298,8 @@ TEST(PointShell, EveryTriangleHasASampleNearThatFacesItWithin60Degrees) {
         for (const auto& point : shell.points)
             for (std::size_t i = 0; i < middles.size(); ++i) {
                 const auto& t = mesh.triangles[i];
-                const Vec3 on =
-                    closestOnTriangle(point.position, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+                const Vec3 on = geometry::closestOnTriangle(point.position, mesh.vertices[t[0]], mesh.vertices[t[1]],
+                                                            mesh.vertices[t[2]]);
                 if (point.area > 0.0 && (on - point.position).norm() <= shell.rounding) samples.push_back(i);
             }
         ASSERT_GT(samples.size(), 4u);
@@ -312,7 +314,7 @@ TEST(PointShell, EveryTriangleHasASampleNearThatFacesItWithin60Degrees) {
 
 TEST(PointShell, IsTheSameEveryTime) {
     // Truth: invariant (fixed seed).
-    const TriangleMesh mesh = tessellate(Sphere{0.02}, 1e-5);
+    const geometry::TriangleMesh mesh = shape::tessellate(shape::Sphere{0.02}, 1e-5);
     const PointShell a = samplePoints(mesh, kSpacing), b = samplePoints(mesh, kSpacing);
     ASSERT_EQ(a.points.size(), b.points.size());
     for (std::size_t i = 0; i < a.points.size(); ++i) EXPECT_EQ(a.points[i].position, b.points[i].position);
@@ -320,15 +322,16 @@ TEST(PointShell, IsTheSameEveryTime) {
 
 TEST(SphereTree, EveryPointLiesOnItsTriangleAndInOneGroupThatWeighsTheSame) {
     // Truth: invariant.
-    for (const Shape& shape : {Shape(Peg{0.01, 0.03, 0.001}), Shape(BorePlate{0.03, 0.03, 0.01, 0.01, 0.01, 0.001})}) {
-        const TriangleMesh mesh = tessellate(shape, 1e-6);
+    for (const shape::Shape& shape : {shape::Shape(shape::Peg{0.01, 0.03, 0.001}),
+                                      shape::Shape(shape::BorePlate{0.03, 0.03, 0.01, 0.01, 0.01, 0.001})}) {
+        const geometry::TriangleMesh mesh = shape::tessellate(shape, 1e-6);
         const PointShell shell = samplePoints(mesh, 0.7e-3);
         const SphereTree tree(shell, mesh);
         for (const SurfacePoint& p : tree.points()) {
             ASSERT_LT(p.triangle, mesh.triangles.size());
             const auto& t = mesh.triangles[p.triangle];
             const Vec3 on =
-                closestOnTriangle(p.position, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+                geometry::closestOnTriangle(p.position, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
             ASSERT_LT((on - p.position).norm(), tree.rounding() * (1.0 + 1e-9));
         }
         const auto first = tree.groupPoints();
@@ -361,4 +364,4 @@ TEST(SphereTree, EveryPointLiesOnItsTriangleAndInOneGroupThatWeighsTheSame) {
 }
 
 }  // namespace
-}  // namespace passung::model
+}  // namespace passung::shell

@@ -10,16 +10,16 @@
 namespace passung {
 namespace {
 
-using model::ContactMethod;
+using scene::ContactMethod;
 
 constexpr double kStiffness = 1000.0;  // [N/m]
 
 /// A ball that touches a floor (z = 0) and a wall (x = 10 mm).
-model::SceneSpec ballInCorner(ContactMethod method) {
-    model::SceneSpec spec = test::scene(model::Sphere{0.02}, {Quat::Identity(), {0, 0, 0.01}},
-                                        model::Box{0.06, 0.06, 0.02}, {Quat::Identity(), {0, 0, -0.01}}, method);
+scene::SceneSpec ballInCorner(ContactMethod method) {
+    scene::SceneSpec spec = test::scene(shape::Sphere{0.02}, {Quat::Identity(), {0, 0, 0.01}},
+                                        shape::Box{0.06, 0.06, 0.02}, {Quat::Identity(), {0, 0, -0.01}}, method);
     spec.parts.push_back({.name = "wall",
-                          .geometry = model::Shape(model::Box{0.02, 0.06, 0.06}),
+                          .geometry = shape::Shape(shape::Box{0.02, 0.06, 0.06}),
                           .X_WP = {Quat::Identity(), {0.02, 0, 0.03}}});
     spec.contact.stiffness = kStiffness;
     spec.contact.rotational_stiffness = 1.0;
@@ -89,7 +89,7 @@ TEST(ContactEnergy, OfTheOnlyObstacleInContactIsTheWhole) {
 }
 
 /// Everything that may come between contact and motor.
-model::SceneSpec withEverything(ContactMethod method, bool two_way) {
+scene::SceneSpec withEverything(ContactMethod method, bool two_way) {
     auto spec = ballInCorner(method);
     spec.contact.two_way = two_way;
     spec.contact.damping = 3.0;
@@ -139,7 +139,7 @@ TEST(ContactEnergy, OfAllPairsIsTheAccountOfTheWhole) {
 TEST(ContactEnergy, OfPenaltyVariantsIsSplitByTheirForces) {
     // Truth: closed form. Pressed into the floor alone, then into the wall alone: each spring keeps its own.
     for (const auto variant :
-         {model::PenaltyVariant::MaxNormalised, model::PenaltyVariant::AreaWeighted, model::PenaltyVariant::Raw}) {
+         {scene::PenaltyVariant::MaxNormalised, scene::PenaltyVariant::AreaWeighted, scene::PenaltyVariant::Raw}) {
         auto spec = ballInCorner(ContactMethod::Penalty);
         spec.contact.variant = variant;
         spec.contact.area_stiffness = 1e9;

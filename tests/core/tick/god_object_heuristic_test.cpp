@@ -9,16 +9,16 @@
 namespace passung {
 namespace {
 
-using model::ContactMethod;
+using scene::ContactMethod;
 
 constexpr double kCell = 0.5e-3;
 const Pose kTableTop{Quat::Identity(), Vec3(0, 0, -0.02)};
-const model::Shape kTable = model::Box{0.08, 0.08, 0.04};
+const shape::Shape kTable = shape::Box{0.08, 0.08, 0.04};
 
 Pose at(double x, double y, double z) { return {Quat::Identity(), Vec3(x, y, z)}; }
 
 test::Bench ballOverTable(double stiffness = 1000.0) {
-    auto spec = test::scene(model::Sphere{0.02}, at(0, 0, 0.02), kTable, kTableTop, ContactMethod::GodObjectHeuristic);
+    auto spec = test::scene(shape::Sphere{0.02}, at(0, 0, 0.02), kTable, kTableTop, ContactMethod::GodObjectHeuristic);
     spec.contact.stiffness = stiffness;
     return test::Bench(spec);
 }
@@ -87,7 +87,7 @@ TEST(GodObjectHeuristic, NeverLetsABallThroughAZeroThicknessSheet) {
     // Truth: closed form. The ball's centre stays a radius away from the rectangle, at every tick and between them, for
     // any tilt, from both sides, over the middle and at the border, with and without a budget of nodes.
     constexpr double kHalf = 0.03, kRadius = 0.005;
-    auto spec = test::scene(model::Sphere{2 * kRadius}, Pose{}, model::Sheet{2 * kHalf, 2 * kHalf}, Pose{},
+    auto spec = test::scene(shape::Sphere{2 * kRadius}, Pose{}, shape::Sheet{2 * kHalf, 2 * kHalf}, Pose{},
                             ContactMethod::GodObjectHeuristic);
     Random random(11);
     for (const int budget : {0, 500, 100, 20}) {
@@ -123,7 +123,7 @@ TEST(GodObjectHeuristic, NeverLetsABallThroughAZeroThicknessSheet) {
 TEST(GodObjectHeuristic, NeverLetsATumblingBoxThroughASheet) {
     // Truth: closed form. A box is the convex hull of its corners: while all eight are on their side, so is the box.
     constexpr double kHalf = 0.01;
-    auto spec = test::scene(model::Box{2 * kHalf, kHalf, 3 * kHalf}, at(0, 0, 0.03), model::Sheet{0.2, 0.2}, Pose{},
+    auto spec = test::scene(shape::Box{2 * kHalf, kHalf, 3 * kHalf}, at(0, 0, 0.03), shape::Sheet{0.2, 0.2}, Pose{},
                             ContactMethod::GodObjectHeuristic);
     spec.contact.cell = 1e-3;
     for (const int budget : {0, 300, 40}) {
@@ -150,8 +150,8 @@ TEST(GodObjectHeuristic, FollowsAPegIntoABoreOfFiftyMicrometresWithoutGivingUp) 
     // the solver ends by itself in all ticks but a few whose way bends, and no step has to be taken back. Pushed and
     // tilted all the way.
     for (const double rotational_stiffness : {1.0, 10.0}) {
-        auto spec = test::scene(model::Peg{0.02, 0.05, 0.001}, at(0, 0, 0.01),
-                                model::BorePlate{0.06, 0.06, 0.03, 0.0201, 0.03, 0.001}, Pose{},
+        auto spec = test::scene(shape::Peg{0.02, 0.05, 0.001}, at(0, 0, 0.01),
+                                shape::BorePlate{0.06, 0.06, 0.03, 0.0201, 0.03, 0.001}, Pose{},
                                 ContactMethod::GodObjectHeuristic);
         spec.contact.stiffness = 3000;
         spec.contact.rotational_stiffness = rotational_stiffness;
@@ -180,10 +180,10 @@ TEST(GodObjectHeuristic, LeavesACornerForceAlongTheBisector) {
     Random random(5);
     for (int trial = 0; trial < 5; ++trial) {
         const Quat turn = rotationFromVector(Vec3(random.normal(), random.normal(), random.normal()));
-        auto spec = test::scene(model::Sphere{0.01}, {turn, turn * Vec3(0.012, 0, 0.012)}, model::Box{0.05, 0.05, 0.02},
+        auto spec = test::scene(shape::Sphere{0.01}, {turn, turn * Vec3(0.012, 0, 0.012)}, shape::Box{0.05, 0.05, 0.02},
                                 {turn, turn * Vec3(0.025, 0, -0.01)}, ContactMethod::GodObjectHeuristic);
         spec.parts.push_back(
-            {.name = "wall", .geometry = model::Box{0.02, 0.05, 0.05}, .X_WP = {turn, turn * Vec3(-0.01, 0, 0.02)}});
+            {.name = "wall", .geometry = shape::Box{0.02, 0.05, 0.05}, .X_WP = {turn, turn * Vec3(-0.01, 0, 0.02)}});
         test::Bench bench(spec);
         tick::TickOutput out;
         for (int i = 0; i < 600; ++i) {
@@ -200,7 +200,7 @@ TEST(GodObjectHeuristic, LeavesACornerForceAlongTheBisector) {
 
 TEST(GodObjectHeuristic, LeavesADeepOverlapWithoutAKick) {
     // Truth: invariant. Started 2 mm inside, the proxy comes out; no tick moves it by more than the step limits allow.
-    auto spec = test::scene(model::Sphere{0.02}, at(0, 0, 0.008), kTable, kTableTop, ContactMethod::GodObjectHeuristic);
+    auto spec = test::scene(shape::Sphere{0.02}, at(0, 0, 0.008), kTable, kTableTop, ContactMethod::GodObjectHeuristic);
     test::Bench bench(spec);
     Pose last = at(0, 0, 0.008);
     tick::TickOutput out;
@@ -226,7 +226,7 @@ TEST(GodObjectHeuristic, StaysOnItsSideOfAPlateThroughADriverThatIsStuck) {
     // Truth: closed form (the ball rests on the plate, a radius above it). Pressed 11 mm into a plate of 4 mm; the
     // driver then repeats a pose half a metre away, for fewer ticks than it takes to get there at 20 m/s.
     for (const int wrong : {1, 2, 3, 10, 20}) {
-        auto spec = test::scene(model::Sphere{0.02}, at(0, 0, 0.012), model::Box{0.08, 0.08, 0.004}, at(0, 0, -0.002),
+        auto spec = test::scene(shape::Sphere{0.02}, at(0, 0, 0.012), shape::Box{0.08, 0.08, 0.004}, at(0, 0, -0.002),
                                 ContactMethod::GodObjectHeuristic);
         test::Bench bench(spec);
         for (int i = 0; i < 500; ++i) bench.step(at(0, 0, 0.012 - 2.6e-5 * i));
@@ -256,8 +256,8 @@ TEST(GodObjectHeuristic, KeepsABoxOnItsSideOfASheetAtEveryBudget) {
                     return lowest;
                 };
                 const double high = kCell + 0.5e-3 - lowestCorner({turn, Vec3::Zero()});
-                auto spec = test::scene(model::Box{2 * kHalf[0], 2 * kHalf[1], 2 * kHalf[2]}, {turn, Vec3(0, 0, high)},
-                                        model::Sheet{0.3, 0.3}, Pose{}, ContactMethod::GodObjectHeuristic);
+                auto spec = test::scene(shape::Box{2 * kHalf[0], 2 * kHalf[1], 2 * kHalf[2]}, {turn, Vec3(0, 0, high)},
+                                        shape::Sheet{0.3, 0.3}, Pose{}, ContactMethod::GodObjectHeuristic);
                 spec.contact.budget_nodes = budget;
                 test::Bench bench(spec);
                 const double step = 1e-3 * speed;
@@ -273,7 +273,7 @@ TEST(GodObjectHeuristic, KeepsABoxOnItsSideOfASheetAtEveryBudget) {
 
 TEST(GodObjectHeuristic, SaysSoWhereTheHandIsTooFastToFollow) {
     // Truth: invariant. Just over a table, faster and faster: where the proxy lags the status says it.
-    auto spec = test::scene(model::Box{0.02, 0.02, 0.01}, at(0, 0, 0.0051), kTable, kTableTop,
+    auto spec = test::scene(shape::Box{0.02, 0.02, 0.01}, at(0, 0, 0.0051), kTable, kTableTop,
                             ContactMethod::GodObjectHeuristic);
     test::Bench bench(spec);
     Vec3 hand(0, 0, 0.0051);
@@ -291,7 +291,7 @@ TEST(GodObjectHeuristic, SaysSoWhereTheHandIsTooFastToFollow) {
 TEST(GodObjectHeuristic, GoesRoundSharpEdgesWithoutFallingIn) {
     // Truth: invariant. A box is dragged and turned over the edges of another at up to 1.5 m/s: what a step leaves of
     // overlap is pushed out before it comes to kAccept, so that hardly any step has to be taken back.
-    auto spec = test::scene(model::Box{0.02, 0.02, 0.02}, at(0, 0, 0.03), model::Box{0.03, 0.03, 0.02}, Pose{},
+    auto spec = test::scene(shape::Box{0.02, 0.02, 0.02}, at(0, 0, 0.03), shape::Box{0.03, 0.03, 0.02}, Pose{},
                             ContactMethod::GodObjectHeuristic);
     test::Bench bench(spec);
     int rejected = 0;

@@ -14,7 +14,7 @@
 namespace passung {
 namespace {
 
-using model::ContactMethod;
+using scene::ContactMethod;
 
 constexpr double kCell = 0.5e-3;
 constexpr double kOverlap = tick::kAccepted * kCell;
@@ -28,14 +28,14 @@ Quat anyTurn(Random& random) {
 
 /// A held shape among boxes that are turned as one with it.
 struct Room {
-    model::SceneSpec spec;
+    scene::SceneSpec spec;
     Quat turn;
 
-    Room(const model::Shape& held, const Vec3& start, const Quat& q) : turn(q) {
-        spec = test::scene(held, {q, q * start}, model::Box{0.06, 0.06, 0.02}, {q, q * Vec3(0, 0, -0.01)},
+    Room(const shape::Shape& held, const Vec3& start, const Quat& q) : turn(q) {
+        spec = test::scene(held, {q, q * start}, shape::Box{0.06, 0.06, 0.02}, {q, q * Vec3(0, 0, -0.01)},
                            ContactMethod::GodObject);
     }
-    void add(const model::Box& box, const Vec3& centre) {
+    void add(const shape::Box& box, const Vec3& centre) {
         spec.parts.push_back(
             {.name = "wall " + std::to_string(spec.parts.size()), .geometry = box, .X_WP = {turn, turn * centre}});
     }
@@ -60,10 +60,10 @@ TEST(GodObject, IsTheHandsProjectionOntoAPlaneAnEdgeAndACorner) {
     Random random(5);
     const Vec3 hands[] = {{0.012, 0.011, -0.003}, {-0.002, 0.011, 0.001}, {-0.002, 0.001, -0.003}};
     for (int trial = 0; trial < 4; ++trial) {
-        Room room(model::Sphere{2 * R}, {0.012, 0.012, 0.012}, anyTurn(random));
+        Room room(shape::Sphere{2 * R}, {0.012, 0.012, 0.012}, anyTurn(random));
         room.spec.contact.spacing = 0.5e-3;
-        room.add(model::Box{0.02, 0.06, 0.06}, {-0.01, 0, 0.01});
-        room.add(model::Box{0.06, 0.02, 0.06}, {0, -0.01, 0.01});
+        room.add(shape::Box{0.02, 0.06, 0.06}, {-0.01, 0, 0.01});
+        room.add(shape::Box{0.06, 0.02, 0.06}, {0, -0.01, 0.01});
         for (const Vec3& hand : hands) {
             test::Bench bench(room.spec);
             drive(bench, room, {0.012, 0.012, 0.012}, hand, 400);
@@ -85,7 +85,7 @@ TEST(GodObject, KeepsABoxFlatUntilItsTiltOutweighsThePress) {
     constexpr double a = 0.01, h = 0.005, d = 1e-3, K = 1000.0, Kr = 1.0;
     Random random(8);
     for (const double tilt : {0.005, 0.02}) {
-        Room room(model::Box{2 * a, 2 * a, 2 * h}, {0, 0, 0.006}, anyTurn(random));
+        Room room(shape::Box{2 * a, 2 * a, 2 * h}, {0, 0, 0.006}, anyTurn(random));
         test::Bench bench(room.spec);
         tick::TickOutput out;
         for (int i = 1; i <= 300; ++i) {
@@ -104,7 +104,7 @@ TEST(GodObject, SlidesWithoutFrictionAlongAPlane) {
     // Truth: invariant. Nothing holds along the surface, and the overlap stays what is kept.
     Random random(9);
     const Quat turn = anyTurn(random);
-    Room room(model::Box{0.02, 0.02, 0.01}, {0, 0, 0.006}, turn);
+    Room room(shape::Box{0.02, 0.02, 0.01}, {0, 0, 0.006}, turn);
     test::Bench bench(room.spec);
     drive(bench, room, {0, 0, 0.006}, {0, 0, 0.002}, 300);
     for (int i = 0; i < 500; ++i) {
@@ -121,7 +121,7 @@ TEST(GodObject, SlidesAlongAPlaneWhosePointsItsRimPasses) {
     // any speed, with both god objects.
     for (const auto method : {ContactMethod::GodObject, ContactMethod::GodObjectHeuristic}) {
         for (const double speed : {0.1, 0.5}) {
-            Room room(model::Box{0.02, 0.02, 0.01}, {-0.015, 0, 0.005}, Quat::Identity());
+            Room room(shape::Box{0.02, 0.02, 0.01}, {-0.015, 0, 0.005}, Quat::Identity());
             room.spec.contact.method = method;
             room.spec.contact.two_way = true;
             test::Bench bench(room.spec);
@@ -141,7 +141,7 @@ TEST(GodObject, SlidesAlongAPlaneWhosePointsItsRimPasses) {
 
 TEST(GodObject, FollowsTheHandExactlyInFreeMotion) {
     // Truth: invariant. Without contact G = H and the wrench is zero, down to a hundredth of a millimetre over a plate.
-    Room room(model::Sphere{0.02}, {0, 0, 0.03}, Quat::Identity());
+    Room room(shape::Sphere{0.02}, {0, 0, 0.03}, Quat::Identity());
     test::Bench bench(room.spec);
     Random random(3);
     Vec3 hand(0, 0, 0.03);
@@ -178,8 +178,8 @@ TEST(GodObject, TakesAPegIntoATightBorePushedAndTiltedWithoutOverlap) {
     // Truth: closed form (the bore's wall against dense circles of the peg, not the solver's points; the bore reaches
     // to -14 mm, the hand goes 12 mm down). Radial clearance 20 um; two-way.
     constexpr double r = 0.005, l = 0.025, c = 0.5e-3, R = r + 20e-6, kTolerance = 10e-6;
-    auto spec = test::scene(model::Peg{2 * r, l, c}, at({0, 0, 0.005}),
-                            model::BorePlate{0.02, 0.02, 0.014, 2 * R, 0.014, c}, Pose{}, ContactMethod::GodObject);
+    auto spec = test::scene(shape::Peg{2 * r, l, c}, at({0, 0, 0.005}),
+                            shape::BorePlate{0.02, 0.02, 0.014, 2 * R, 0.014, c}, Pose{}, ContactMethod::GodObject);
     spec.contact.cell = 0.0;
     spec.contact.tolerance = kTolerance;
     spec.contact.stiffness = 3000;
@@ -210,8 +210,8 @@ TEST(GodObject, IsNotHeldByARimThatItRollsOver) {
     // by many times what is accepted; cuts keep its steps from being taken back tick after tick.
     constexpr double kSpacing = 2e-3, kTolerance = 5e-6;
     auto spec =
-        test::scene(model::Peg{0.02, 0.04, 0.5e-3}, at({0.001, 0, 0.001}),
-                    model::BorePlate{0.06, 0.06, 0.03, 20.2e-3, 0.025, 0.5e-3}, Pose{}, ContactMethod::GodObject);
+        test::scene(shape::Peg{0.02, 0.04, 0.5e-3}, at({0.001, 0, 0.001}),
+                    shape::BorePlate{0.06, 0.06, 0.03, 20.2e-3, 0.025, 0.5e-3}, Pose{}, ContactMethod::GodObject);
     spec.contact.cell = 0.0;
     spec.contact.tolerance = kTolerance;
     spec.contact.spacing = kSpacing;
@@ -242,7 +242,7 @@ TEST(GodObject, RestsOnANeedleThatItsOwnSamplesMiss) {
     // post's own points tell. One way the block goes through it.
     constexpr double kHalf = 0.01;
     for (const bool two_way : {true, false}) {
-        auto spec = test::scene(model::Box{0.04, 0.04, 2 * kHalf}, at({0, 0, 0.012}), model::Box{1e-3, 1e-3, 0.02},
+        auto spec = test::scene(shape::Box{0.04, 0.04, 2 * kHalf}, at({0, 0, 0.012}), shape::Box{1e-3, 1e-3, 0.02},
                                 at({0, 0, -0.01}), ContactMethod::GodObject);
         spec.contact.spacing = 4e-3;
         spec.contact.rotational_stiffness = 100.0;  // so stiff that the block does not tilt on the post
@@ -281,8 +281,8 @@ bool meets(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec
 }
 
 /// Do the surfaces of two parts meet? Every edge of each against every triangle of the other.
-bool meet(const model::TriangleMesh& one, const Pose& X_WA, const model::TriangleMesh& other, const Pose& X_WB) {
-    const auto against = [](const model::TriangleMesh& edges, const model::TriangleMesh& faces, const Pose& X) {
+bool meet(const geometry::TriangleMesh& one, const Pose& X_WA, const geometry::TriangleMesh& other, const Pose& X_WB) {
+    const auto against = [](const geometry::TriangleMesh& edges, const geometry::TriangleMesh& faces, const Pose& X) {
         for (const auto& e : edges.triangles)
             for (std::size_t k = 0; k < 3; ++k) {
                 const Vec3 p = X * edges.vertices[e[k]], q = X * edges.vertices[e[(k + 1) % 3]];
@@ -301,7 +301,7 @@ TEST(GodObject, NeverCrossesAZeroThicknessSheet) {
     // Truth: closed form (every edge of tool and sheet against every triangle of the other; nothing of the solver's).
     // Strokes at 0.1-5 m/s from both sides, over the middle and the border, straight, edge-on and tumbling; at every
     // tick and at three poses between two. The hand ends 20 mm behind the sheet.
-    const model::Shape tool = model::Box{0.012, 0.008, 0.02};
+    const shape::Shape tool = shape::Box{0.012, 0.008, 0.02};
     Random random(23);
     int strokes = 0, through = 0;
     for (const double speed : {0.1, 0.5, 2.0, 5.0}) {
@@ -314,7 +314,7 @@ TEST(GodObject, NeverCrossesAZeroThicknessSheet) {
             Vec3 hand(border ? 0.03 : random.uniform(-0.01, 0.01), random.uniform(-0.01, 0.01), side * 0.018);
             const Vec3 way(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), -side);
             auto spec =
-                test::scene(tool, X_WS * Pose{start, hand}, model::Sheet{0.06, 0.06}, X_WS, ContactMethod::GodObject);
+                test::scene(tool, X_WS * Pose{start, hand}, shape::Sheet{0.06, 0.06}, X_WS, ContactMethod::GodObject);
             spec.contact.spacing =
                 0.5e-3;  // less than two cells: no gap between samples is wider than the sheet's offset
             spec.contact.two_way = stroke % 3 == 0;
@@ -343,7 +343,7 @@ TEST(GodObject, LeavesADeepOverlapAtABoundedSpeed) {
     // Truth: closed form. Started 2 mm inside with the hand there: out at kRepair cells a tick, no faster, and the
     // force never rises by more than K times that.
     const double most = tick::kRepair * kCell;
-    auto spec = test::scene(model::Sphere{0.02}, at({0, 0, 0.008}), model::Box{0.08, 0.08, 0.04}, at({0, 0, -0.02}),
+    auto spec = test::scene(shape::Sphere{0.02}, at({0, 0, 0.008}), shape::Box{0.08, 0.08, 0.04}, at({0, 0, -0.02}),
                             ContactMethod::GodObject);
     test::Bench bench(spec);
     Pose last = at({0, 0, 0.008});
@@ -361,7 +361,7 @@ TEST(GodObject, LeavesADeepOverlapAtABoundedSpeed) {
 TEST(GodObject, LeavesByTheNearestFaceWhereSomePointsAskForAnother) {
     // Truth: closed form. A block 5 mm deep in a table, two-way: of the table's points inside the block those near its
     // sides would leave it sideways, to all sides at once. The deepest first: it rises, straight.
-    auto spec = test::scene(model::Box{0.02, 0.02, 0.02}, at({0, 0, 0.005}), model::Box{0.06, 0.06, 0.03},
+    auto spec = test::scene(shape::Box{0.02, 0.02, 0.02}, at({0, 0, 0.005}), shape::Box{0.06, 0.06, 0.03},
                             at({0, 0, -0.015}), ContactMethod::GodObject);
     spec.contact.two_way = true;
     test::Bench bench(spec);
@@ -374,9 +374,9 @@ TEST(GodObject, LeavesByTheNearestFaceWhereSomePointsAskForAnother) {
 TEST(GodObject, HoldsWhatIsWedgedTooTight) {
     // Truth: invariant. A block between two walls 0.2 mm too near: nothing can remove the overlap, the block stays
     // between them and slides along them only.
-    Room room(model::Box{0.02, 0.02, 0.02}, {0, 0, 0.012}, Quat::Identity());
-    room.add(model::Box{0.02, 0.06, 0.06}, {-0.0199, 0, 0.03});
-    room.add(model::Box{0.02, 0.06, 0.06}, {0.0199, 0, 0.03});
+    Room room(shape::Box{0.02, 0.02, 0.02}, {0, 0, 0.012}, Quat::Identity());
+    room.add(shape::Box{0.02, 0.06, 0.06}, {-0.0199, 0, 0.03});
+    room.add(shape::Box{0.02, 0.06, 0.06}, {0.0199, 0, 0.03});
     test::Bench bench(room.spec);
     tick::TickOutput out;
     for (int i = 0; i < 500; ++i) out = bench.step(at({1e-5 * i, 1e-5 * i, 0.012}));

@@ -15,9 +15,9 @@ namespace {
 Pose at(double z) { return {Quat::Identity(), Vec3(0, 0, z)}; }
 
 /// A ball over a table; the ball touches at z = 0.01.
-model::SceneSpec pressing() {
-    auto spec = test::scene(model::Sphere{0.02}, at(0.02), model::Box{0.08, 0.08, 0.04}, at(-0.02),
-                            model::ContactMethod::GodObjectHeuristic);
+scene::SceneSpec pressing() {
+    auto spec = test::scene(shape::Sphere{0.02}, at(0.02), shape::Box{0.08, 0.08, 0.04}, at(-0.02),
+                            scene::ContactMethod::GodObjectHeuristic);
     spec.contact.stiffness = 1000;
     return spec;
 }
@@ -125,7 +125,7 @@ TEST(OutputStage, RampsInFromZeroWhereContactIsThereAtTheStart) {
     spec.parts[0].X_WP = at(0.00575);
     spec.contact.damping = 0;
     spec.limits.max_force_rate = 500;
-    spec.contact.method = model::ContactMethod::Penalty;
+    spec.contact.method = scene::ContactMethod::Penalty;
     auto unlimited = spec;
     unlimited.limits.max_force_rate = 1e12;
     const double asked = test::Bench(unlimited).step(at(0.00575)).F_D_B.force.norm();
@@ -311,7 +311,7 @@ TEST(OutputStage, DoesTheSameWorkAtTheHandleAsAtTheHeldPart) {
 /// Follows tick by tick what was asked and what was sent, with the contract's own words.
 class Watch {
 public:
-    explicit Watch(const model::OutputLimits& limits) : limits_(limits) {}
+    explicit Watch(const scene::OutputLimits& limits) : limits_(limits) {}
 
     /// `asked` at the handle, base axes, of the tick's frame.
     void see(const Wrench& asked, const tick::TickFrame& frame) {
@@ -358,7 +358,7 @@ private:
         const Vec3 direction = v.normalized();
         return std::max({0.0, (last_.*of).dot(direction), exempt ? (before_last_.*of).dot(direction) : 0.0});
     }
-    model::OutputLimits limits_;
+    scene::OutputLimits limits_;
     Wrench last_, before_last_;
     bool held_last_ = false;
 };
@@ -421,7 +421,7 @@ tick::TickFrame g_asked;  // what reached the last stage of the scene below
 TEST(OutputStage, KeepsItsContractUnderHostileInput) {
     // Truth: invariant. 20 000 ticks of a hand that presses, slides and turns, with a lever arm, and of bad samples of
     // every kind, alone and in rows.
-    for (const auto method : {model::ContactMethod::Penalty, model::ContactMethod::GodObjectHeuristic}) {
+    for (const auto method : {scene::ContactMethod::Penalty, scene::ContactMethod::GodObjectHeuristic}) {
         auto spec = pressing();
         spec.contact.method = method;
         spec.contact.damping = 5;
@@ -531,12 +531,12 @@ TEST(OutputStage, SharesOutWhatItSendsAsThePushesShareWhatWasAskedFor) {
 TEST(OutputStage, DelaysForceTorqueAndPushesBySoManyTicks) {
     // Truth: closed form, y_k = x_{k-n}, zero before the first; what was asked for without usable input is zero. Up to
     // the longest delay, several times round the line.
-    for (const int n : {1, 2, 7, model::kMaxDelayTicks}) {
+    for (const int n : {1, 2, 7, scene::kMaxDelayTicks}) {
         tick::TickModel model;
         model.limits.delay_ticks = n;
         tick::TickState state;
         state.pushes.resize(2);
-        state.push_line.resize(2 * (model::kMaxDelayTicks + 1));
+        state.push_line.resize(2 * (scene::kMaxDelayTicks + 1));
         Random random(2);
         std::vector<Wrench> asked, pushed;
         for (int i = 0; i < 3 * n + 20; ++i) {

@@ -16,17 +16,17 @@ namespace {
 constexpr double kStiffness = 1000.0;  // [N/m]
 
 /// A ball over a plate whose top is z = 0; its lowest point at `height`.
-model::SceneSpec ballOverPlate(double height) {
-    model::SceneSpec spec =
-        test::scene(model::Sphere{0.02}, Pose{Quat::Identity(), {0, 0, 0.01 + height}}, model::Box{0.06, 0.06, 0.02},
-                    Pose{Quat::Identity(), {0, 0, -0.01}}, model::ContactMethod::Penalty);
+scene::SceneSpec ballOverPlate(double height) {
+    scene::SceneSpec spec =
+        test::scene(shape::Sphere{0.02}, Pose{Quat::Identity(), {0, 0, 0.01 + height}}, shape::Box{0.06, 0.06, 0.02},
+                    Pose{Quat::Identity(), {0, 0, -0.01}}, scene::ContactMethod::Penalty);
     spec.contact.stiffness = kStiffness;
     spec.contact.rotational_stiffness = 0.0;
     return spec;
 }
 
 /// Lowers the handle by `steps` steps of `step` [m] from where the ball touches and lifts it again; the energy then.
-double pressAndRelease(const model::SceneSpec& spec, const Pose& X_BD, int steps, double step) {
+double pressAndRelease(const scene::SceneSpec& spec, const Pose& X_BD, int steps, double step) {
     test::Bench bench(spec);
     const Vec3 down = spec.registration.X_WB.q.conjugate() * -Vec3::UnitZ();
     double energy = 0.0;
@@ -329,7 +329,7 @@ TEST(PassivityController, DoesNothingWhereNothingIsOwedOrNothingIsKnown) {
 
 TEST(PassivityController, IsNoStageOfASceneWithoutIt) {
     // Truth: invariant. Only the effects that a scene names are built.
-    const auto has = [](const model::SceneSpec& spec) {
+    const auto has = [](const scene::SceneSpec& spec) {
         test::Bench bench(spec);
         for (const auto& stage : bench.model().stages)
             if (stage.run == tick::runStage<tick::kPassivityController>) return true;

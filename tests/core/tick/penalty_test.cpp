@@ -17,11 +17,11 @@ constexpr double kSpeed = 0.1, kSpin = 0.5;
 class Contact {
 public:
     Contact() {
-        model_.contact.variant = model::PenaltyVariant::Raw;
+        model_.contact.variant = scene::PenaltyVariant::Raw;
         model_.contact.stiffness = kStiffness;
         model_.contact.damping = kDamping;
         model_.contact.rotational_damping = kTurnDamping;
-        state_.manifold = tick::ContactManifold(1);
+        state_.manifold = contact::ContactManifold(1);
     }
     Wrench render(int at_tick, int sample_periods = 1, bool usable = true) {
         const double t = at_tick * kTickSeconds;
@@ -90,8 +90,8 @@ TEST(Penalty, StaysContinuousThroughABadSampleOfAHandThatPresses) {
     // Truth: closed form. Into the table at 0.1 m/s: per tick the force rises by K v T, on a held tick by nothing, in
     // the tick after it by twice that. (The distance of a plane is linear, so that its field is exact to its 16 bits:
     // some 0.01 µm or 0.01 mN here.)
-    auto spec = test::scene(model::Sphere{0.02}, {Quat::Identity(), Vec3(0, 0, 0.02)}, model::Box{0.08, 0.08, 0.04},
-                            {Quat::Identity(), Vec3(0, 0, -0.02)}, model::ContactMethod::Penalty);
+    auto spec = test::scene(shape::Sphere{0.02}, {Quat::Identity(), Vec3(0, 0, 0.02)}, shape::Box{0.08, 0.08, 0.04},
+                            {Quat::Identity(), Vec3(0, 0, -0.02)}, scene::ContactMethod::Penalty);
     spec.contact.stiffness = kStiffness;
     spec.contact.damping = kDamping;
     test::Bench bench(spec);

@@ -11,15 +11,15 @@
 namespace passung {
 namespace {
 
-using model::PenaltyCoupling;
-using model::PenaltyVariant;
+using scene::PenaltyCoupling;
+using scene::PenaltyVariant;
 
 constexpr double kStiffness = 2000, kContact = 6000, kTurn = 1.0;
 
 /// `held` over a block whose top is z = 0, everything turned by `R`.
-model::SceneSpec overBlock(const model::Shape& held, const Vec3& p, const Quat& R = Quat::Identity()) {
-    auto spec = test::scene(held, {R, R * p}, model::Box{0.08, 0.08, 0.04}, {R, R * Vec3(0, 0, -0.02)},
-                            model::ContactMethod::Penalty);
+scene::SceneSpec overBlock(const shape::Shape& held, const Vec3& p, const Quat& R = Quat::Identity()) {
+    auto spec = test::scene(held, {R, R * p}, shape::Box{0.08, 0.08, 0.04}, {R, R * Vec3(0, 0, -0.02)},
+                            scene::ContactMethod::Penalty);
     spec.contact.coupling = PenaltyCoupling::QuasiStatic;
     spec.contact.stiffness = kStiffness;
     spec.contact.penalty_stiffness = kContact;
@@ -45,7 +45,7 @@ TEST(PenaltyTool, ShowsSpringAndContactInSeriesOnAPlane) {
     const double h = 2e-3;
     for (const auto coupling : {PenaltyCoupling::QuasiStatic, PenaltyCoupling::Virtual})
         for (const Quat& R : {Quat::Identity(), kTilted}) {
-            auto spec = overBlock(model::Sphere{0.02}, Vec3(0, 0, 0.0105), R);
+            auto spec = overBlock(shape::Sphere{0.02}, Vec3(0, 0, 0.0105), R);
             spec.contact.coupling = coupling;
             spec.contact.damping = 5;
             spec.contact.rotational_damping = 1e-3;
@@ -65,9 +65,9 @@ TEST(PenaltyTool, SlidesAsIfThePartsHadNoFriction) {
     for (const auto coupling : {PenaltyCoupling::Direct, PenaltyCoupling::QuasiStatic, PenaltyCoupling::Virtual}) {
         tick::TickOutput out[2];
         for (const double friction : {0.0, 0.8}) {
-            auto spec = overBlock(model::Sphere{0.02}, Vec3(0, 0, 0.0105));
+            auto spec = overBlock(shape::Sphere{0.02}, Vec3(0, 0, 0.0105));
             spec.contact.coupling = coupling;
-            for (model::PartSpec& part : spec.parts) part.friction = part.sliding_friction = friction;
+            for (scene::PartSpec& part : spec.parts) part.friction = part.sliding_friction = friction;
             test::Bench bench(spec);
             press(bench, {Quat::Identity(), Vec3(0, 0, 0.0105)}, {Quat::Identity(), Vec3(0, 0, 0.009)}, 200);
             out[friction > 0.0] =
@@ -83,7 +83,7 @@ TEST(PenaltyTool, TurnsAgainstATiltedBoxLikeTwoSpringsInSeries) {
     // with e the height of the box's centre above that of its immersed part.
     const double a = 0.02, b = 0.016, height = 0.01, kappa = 2e7;
     const Vec3 start(0, 0, height / 2 + 1e-3);
-    auto spec = overBlock(model::Box{a, b, height}, start);
+    auto spec = overBlock(shape::Box{a, b, height}, start);
     spec.contact.variant = PenaltyVariant::AreaWeighted;
     spec.contact.area_stiffness = kappa;
     test::Bench bench(spec);
@@ -101,9 +101,9 @@ TEST(PenaltyTool, RestsInACornerWhereEachWallBalancesItsPartOfTheSpring) {
     // Truth: closed form. Area-weighted, a ball pushed into two walls: per wall K (h - d) = κ π d² (R - d/3), the cap
     // under it; the walls are at right angles and far from each other's caps.
     const double radius = 0.01, kappa = 2e7;
-    auto spec = overBlock(model::Sphere{2 * radius}, Vec3(0, 0, 0.0105));
+    auto spec = overBlock(shape::Sphere{2 * radius}, Vec3(0, 0, 0.0105));
     spec.parts.push_back({.name = "wall",
-                          .geometry = model::Shape(model::Box{0.02, 0.08, 0.04}),
+                          .geometry = shape::Shape(shape::Box{0.02, 0.08, 0.04}),
                           .X_WP = {Quat::Identity(), Vec3(0.0205, 0, 0.0205)}});  // its face: x = 10.5 mm
     spec.contact.spacing = 0.25e-3;
     spec.contact.variant = PenaltyVariant::AreaWeighted;
@@ -127,7 +127,7 @@ TEST(PenaltyTool, RestsInACornerWhereEachWallBalancesItsPartOfTheSpring) {
 
 TEST(PenaltyTool, IsTheGodObjectWhereContactsAreHard) {
     // Truth: closed form. k → ∞: the tool stays on the plane and the spring has all of the depth.
-    auto spec = overBlock(model::Box{0.02, 0.016, 0.01}, Vec3(0, 0, 0.006));
+    auto spec = overBlock(shape::Box{0.02, 0.016, 0.01}, Vec3(0, 0, 0.006));
     spec.contact.penalty_stiffness = 1e8;
     for (const auto variant : {PenaltyVariant::MaxNormalised, PenaltyVariant::Raw}) {
         spec.contact.variant = variant;
@@ -145,7 +145,7 @@ TEST(PenaltyTool, IsTheDirectPenaltyWhereTheCouplingIsHard) {
     // tool is at the hand; 1.5 %, for K is 200 times the contacts' stiffness.
     const Pose X_WH{rotationFromVector(Vec3(0.05, 0.08, 0)), Vec3(0.001, 0, 0.0045)};
     for (const auto variant : {PenaltyVariant::MaxNormalised, PenaltyVariant::AreaWeighted, PenaltyVariant::Raw}) {
-        auto spec = overBlock(model::Box{0.02, 0.016, 0.01}, X_WH.p);
+        auto spec = overBlock(shape::Box{0.02, 0.016, 0.01}, X_WH.p);
         spec.parts[0].X_WP = X_WH;
         spec.contact.variant = variant;
         spec.contact.area_stiffness = 1e7;
@@ -168,7 +168,7 @@ TEST(PenaltyTool, IsTheDirectPenaltyWhereTheCouplingIsHard) {
 struct Cycle {
     double given = 0, most = 0;
 };
-Cycle around(model::SceneSpec spec) {
+Cycle around(scene::SceneSpec spec) {
     test::Bench bench(spec);
     const int ticks = 4000;
     const auto at = [&](int i) {
@@ -194,7 +194,7 @@ Cycle around(model::SceneSpec spec) {
 TEST(PenaltyTool, CostsNoEnergyAroundAClosedSlowPath) {
     // Truth: invariant. Without mass, damper and friction: what is put in comes out. 1 % of the most that was stored:
     // the penalty sums over points in place of a surface, so that it has an energy only nearly.
-    auto spec = overBlock(model::Box{0.02, 0.016, 0.01}, Vec3(0, 0, 0.0055));
+    auto spec = overBlock(shape::Box{0.02, 0.016, 0.01}, Vec3(0, 0, 0.0055));
     spec.contact.spacing = 0.5e-3;
     spec.contact.variant = PenaltyVariant::AreaWeighted;
     spec.contact.area_stiffness = 2e7;
@@ -207,7 +207,7 @@ TEST(PenaltyTool, LeavesDeepOverlapWithoutAKick) {
     // Truth: invariant. 3 mm deep at the start: the force rises by no more than K kRepair cells a tick, and the tool
     // moves no faster; it ends where spring and contact balance.
     for (const auto coupling : {PenaltyCoupling::QuasiStatic, PenaltyCoupling::Virtual}) {
-        auto spec = overBlock(model::Sphere{0.02}, Vec3(0, 0, 0.007));
+        auto spec = overBlock(shape::Sphere{0.02}, Vec3(0, 0, 0.007));
         spec.contact.coupling = coupling;
         spec.contact.penalty_stiffness = 20 * kStiffness;
         test::Bench bench(spec);
@@ -229,7 +229,7 @@ TEST(PenaltyTool, LeavesDeepOverlapWithoutAKick) {
 TEST(PenaltyTool, FollowsAFreeHandWhereverItGoes) {
     // Truth: closed form. Without contact the tool without mass is where the hand is, at 2 m/s and 20 rad/s too, and
     // there is no force; also beside the block, whose top it nearly touches.
-    auto spec = overBlock(model::Box{0.02, 0.016, 0.01}, Vec3(0, 0, 0.0052));
+    auto spec = overBlock(shape::Box{0.02, 0.016, 0.01}, Vec3(0, 0, 0.0052));
     test::Bench bench(spec);
     for (int i = 0; i < 200; ++i) {
         const double t = i * kTickSeconds;
@@ -243,9 +243,9 @@ TEST(PenaltyTool, FollowsAFreeHandWhereverItGoes) {
 
 TEST(PenaltyTool, SharesItsForceAmongObstaclesAndBooksIt) {
     // Truth: invariant. The pushes of obstacles and of nobody add up to the wrench on the hand.
-    auto spec = overBlock(model::Sphere{0.02}, Vec3(0, 0, 0.0105));
+    auto spec = overBlock(shape::Sphere{0.02}, Vec3(0, 0, 0.0105));
     spec.parts.push_back({.name = "wall",
-                          .geometry = model::Shape(model::Box{0.02, 0.08, 0.04}),
+                          .geometry = shape::Shape(shape::Box{0.02, 0.08, 0.04}),
                           .X_WP = {Quat::Identity(), Vec3(0.0205, 0, 0.0205)}});
     spec.contact.variant = PenaltyVariant::Raw;
     test::Bench bench(spec);
@@ -263,7 +263,7 @@ TEST(PenaltyTool, WithMassSwingsLikeAMassOnASpringAndDamper) {
     // Truth: closed form. The hand jumps by 1 mm in free room, which is a step of spring and damper: with ω² = K/m,
     // 2 ζ ω = B/m and s = h - x, s'' + 2ζω s' + ω² s = 0 from s = h(1 - dt B/m ...) on. 3 % of the jump: the implicit
     // rule is of first order, ω T = 0.02.
-    auto spec = overBlock(model::Sphere{0.02}, Vec3(0, 0, 0.05));
+    auto spec = overBlock(shape::Sphere{0.02}, Vec3(0, 0, 0.05));
     spec.contact.coupling = PenaltyCoupling::Virtual;
     spec.contact.stiffness = 200;
     spec.contact.rotational_stiffness = 0.2;
@@ -288,7 +288,7 @@ TEST(PenaltyTool, WithMassSwingsLikeAMassOnASpringAndDamper) {
 TEST(PenaltyTool, WithMassComesToRestAndStaysThere) {
     // Truth: invariant. Energy of mass, spring and contact, once the hand stands: never more than the tick before, for
     // 100 000 ticks of a box pressed tilted onto the block; then none is left in motion.
-    auto spec = overBlock(model::Box{0.02, 0.016, 0.01}, Vec3(0, 0, 0.006));
+    auto spec = overBlock(shape::Box{0.02, 0.016, 0.01}, Vec3(0, 0, 0.006));
     spec.contact.coupling = PenaltyCoupling::Virtual;
     spec.contact.damping = 1;
     spec.contact.rotational_damping = 1e-4;

@@ -11,38 +11,38 @@
 namespace passung {
 namespace {
 
-using model::Part;
+using scene::Part;
 
 /// Area-weighted penalty of `shell` at X_WS against `field` at X_WF, about the origin of S.
 Wrench areaPenalty(const Part& field, const Pose& X_WF, const Part& shell, const Pose& X_WS, double kappa) {
-    tick::QueryWorkspace workspace(shell.shell->nodes().size());
-    tick::ContactManifold manifold(shell.shell->points().size());
-    tick::queryContacts(*field.field, X_WF, *shell.shell, X_WS, {}, workspace, manifold);
-    model::ContactSpec contact;
-    contact.variant = model::PenaltyVariant::AreaWeighted;
+    contact::QueryWorkspace workspace(shell.shell->nodes().size());
+    contact::ContactManifold manifold(shell.shell->points().size());
+    contact::queryContacts(*field.field, X_WF, *shell.shell, X_WS, {}, workspace, manifold);
+    scene::ContactSpec contact;
+    contact.variant = scene::PenaltyVariant::AreaWeighted;
     contact.area_stiffness = kappa;
     return tick::penaltyWrench(contact, manifold, X_WS.p);
 }
 
-Part part(const model::Shape& shape, const model::PartNeeds& needs) {
-    model::PartSpec spec;
-    spec.name = model::kindName(shape);
+Part part(const shape::Shape& shape, const scene::PartNeeds& needs) {
+    scene::PartSpec spec;
+    spec.name = shape::kindName(shape);
     spec.geometry = shape;
-    auto built = model::buildPart(spec, needs);
+    auto built = scene::buildPart(spec, needs);
     EXPECT_TRUE(built);
     return std::move(*built);
 }
 
 /// A box so large that its top face (z = 0 after X_WF) is a plane for the small bodies above it.
 const Pose kTableTop{Quat::Identity(), Vec3(0, 0, -0.04)};
-Part table() { return part(model::Box{0.12, 0.12, 0.08}, {.field = true, .cell = 1e-3}); }
+Part table() { return part(shape::Box{0.12, 0.12, 0.08}, {.field = true, .cell = 1e-3}); }
 
 constexpr double kKappa = 1e9;
 
 TEST(PenaltyTruth, SphereIntoPlaneFeelsItsSubmergedVolume) {
     // Truth: closed form. F = κ π h² (3R - h) / 3 along the normal, no torque; 1 %.
     const Part plane = table();
-    const Part ball = part(model::Sphere{0.04}, {.shell = true, .spacing = 0.5e-3});
+    const Part ball = part(shape::Sphere{0.04}, {.shell = true, .spacing = 0.5e-3});
     const double R = 0.02, h = 0.002;
     const Wrench w = areaPenalty(plane, kTableTop, ball, {Quat::Identity(), Vec3(0.001, 0.0003, R - h)}, kKappa);
     const double expected = kKappa * std::numbers::pi * h * h * (3 * R - h) / 3;
@@ -56,7 +56,7 @@ TEST(PenaltyTruth, TiltedBoxIntoPlaneFeelsItsSubmergedVolumeAtItsCentroid) {
     // of depth d at the edge, legs d/sin α and d/cos α, so V = w d² / (2 sin α cos α); its centroid is that of the
     // triangle.
     const Part plane = table();
-    const Part box = part(model::Box{0.03, 0.02, 0.03}, {.shell = true, .spacing = 0.5e-3});
+    const Part box = part(shape::Box{0.03, 0.02, 0.03}, {.shell = true, .spacing = 0.5e-3});
     const double alpha = 0.5, d = 0.003;
     const Quat q(Eigen::AngleAxisd(alpha, Vec3::UnitY()));
     const Vec3 lowest = q * Vec3(0.015, 0, -0.015);  // the edge that dips in
@@ -78,9 +78,9 @@ TEST(PenaltyTruth, AnyBodyAtAnyPoseFeelsItsSubmergedVolumeAtItsCentroid) {
     // clipping.
     const Part plane = table();
     Random random(17);
-    for (const model::Shape& shape :
-         {model::Shape(model::Peg{0.02, 0.03, 0.002}), model::Shape(model::Box{0.02, 0.03, 0.025}),
-          model::Shape(model::BorePlate{0.03, 0.03, 0.02, 0.012, 0.015, 0.001})}) {
+    for (const shape::Shape& shape :
+         {shape::Shape(shape::Peg{0.02, 0.03, 0.002}), shape::Shape(shape::Box{0.02, 0.03, 0.025}),
+          shape::Shape(shape::BorePlate{0.03, 0.03, 0.02, 0.012, 0.015, 0.001})}) {
         const Part body = part(shape, {.shell = true, .spacing = 0.6e-3});
         for (int i = 0; i < 10; ++i) {
             const Quat q = rotationFromVector(2.0 * Vec3(random.normal(), random.normal(), random.normal()));
@@ -90,7 +90,7 @@ TEST(PenaltyTruth, AnyBodyAtAnyPoseFeelsItsSubmergedVolumeAtItsCentroid) {
             const test::Submerged wet = test::submerged(body.mesh, X_WS);
             const Wrench w = areaPenalty(plane, kTableTop, body, X_WS, kKappa);
             const double expected = kKappa * wet.volume;
-            ASSERT_NEAR(w.force.z(), expected, 0.01 * expected) << model::kindName(shape) << " pose " << i;
+            ASSERT_NEAR(w.force.z(), expected, 0.01 * expected) << shape::kindName(shape) << " pose " << i;
             ASSERT_LT(std::hypot(w.force.x(), w.force.y()), 0.01 * expected);
             const Vec3 torque = (wet.moment / wet.volume - X_WS.p).cross(Vec3(0, 0, expected));
             ASSERT_LT((w.torque - torque).norm(), 0.01 * expected * body.shell->reach());
@@ -101,8 +101,8 @@ TEST(PenaltyTruth, AnyBodyAtAnyPoseFeelsItsSubmergedVolumeAtItsCentroid) {
 TEST(PenaltyTruth, SphereInSphereMatchesTheIntegral) {
     // Truth: closed form (A in the test's comment): with a = D² + R_A², g(s) = R_B a s²/2 - R_B s⁴/4 - a s³/3 + s⁵/5,
     // F = (κπ/D²) [g(R_B) - g(D - R_A)] along the centre line, with the shell's normals. 20, 30, 48 mm: 1.47093e-7 κ.
-    const Part large = part(model::Sphere{0.06}, {.field = true, .cell = 0.5e-3});
-    const Part small = part(model::Sphere{0.04}, {.shell = true, .spacing = 0.4e-3});
+    const Part large = part(shape::Sphere{0.06}, {.field = true, .cell = 0.5e-3});
+    const Part small = part(shape::Sphere{0.04}, {.shell = true, .spacing = 0.4e-3});
     const double RA = 0.02, RB = 0.03, D = 0.048, a = D * D + RA * RA;
     const auto g = [&](double s) {
         return RB * a * s * s / 2 - RB * std::pow(s, 4) / 4 - a * std::pow(s, 3) / 3 + std::pow(s, 5) / 5;
@@ -121,13 +121,13 @@ TEST(PenaltyTruth, SphereInSphereMatchesTheIntegral) {
 TEST(PenaltyTruth, MaxNormalisedForceIsStiffnessTimesDepthWhateverTheContactArea) {
     // Truth: closed form. F = K p_max, by definition of the variant.
     const Part plane = table();
-    for (const model::Shape& shape : {model::Shape(model::Box{0.02, 0.02, 0.02}), model::Shape(model::Sphere{0.02})}) {
+    for (const shape::Shape& shape : {shape::Shape(shape::Box{0.02, 0.02, 0.02}), shape::Shape(shape::Sphere{0.02})}) {
         const Part body = part(shape, {.shell = true, .spacing = 0.5e-3});
-        tick::QueryWorkspace workspace(body.shell->nodes().size());
-        tick::ContactManifold manifold(body.shell->points().size());
+        contact::QueryWorkspace workspace(body.shell->nodes().size());
+        contact::ContactManifold manifold(body.shell->points().size());
         const Pose X_WS{Quat::Identity(), Vec3(0, 0, 0.01 - 0.001)};
-        const auto answer = tick::queryContacts(*plane.field, kTableTop, *body.shell, X_WS, {}, workspace, manifold);
-        model::ContactSpec contact;
+        const auto answer = contact::queryContacts(*plane.field, kTableTop, *body.shell, X_WS, {}, workspace, manifold);
+        scene::ContactSpec contact;
         contact.stiffness = 2000;
         const Wrench w = tick::penaltyWrench(contact, manifold, X_WS.p);
         EXPECT_NEAR(w.force.norm(), 2000 * -answer.phi, 1e-9);

@@ -16,7 +16,7 @@
 namespace passung::tick {
 namespace {
 
-using model::ContactMethod;
+using scene::ContactMethod;
 
 /// What a method's margins are [per cell], and how much of the scene's tolerance they may use up.
 struct Method {
@@ -28,9 +28,9 @@ constexpr std::array kMethods{Method{ContactMethod::GodObjectHeuristic, {kKeep, 
                               Method{ContactMethod::GodObject, {kKept, kRelieved, kAccepted}, 0.5}};
 
 /// A block over a table whose top is z = 0.
-model::SceneSpec blockOnTable(ContactMethod method, double cell, double tolerance) {
-    auto spec = test::scene(model::Box{0.02, 0.02, 0.01}, {Quat::Identity(), Vec3(0, 0, 0.0052)},
-                            model::Box{0.06, 0.06, 0.02}, {Quat::Identity(), Vec3(0, 0, -0.01)}, method);
+scene::SceneSpec blockOnTable(ContactMethod method, double cell, double tolerance) {
+    auto spec = test::scene(shape::Box{0.02, 0.02, 0.01}, {Quat::Identity(), Vec3(0, 0, 0.0052)},
+                            shape::Box{0.06, 0.06, 0.02}, {Quat::Identity(), Vec3(0, 0, -0.01)}, method);
     spec.contact.cell = cell;
     spec.contact.tolerance = tolerance;
     return spec;
@@ -40,7 +40,7 @@ model::SceneSpec blockOnTable(ContactMethod method, double cell, double toleranc
 struct Overlap {
     double most = 0.0, last = 0.0;
 };
-Overlap pressed(const model::SceneSpec& spec) {
+Overlap pressed(const scene::SceneSpec& spec) {
     test::Bench bench(spec);
     Overlap overlap;
     for (int i = 0; i < 120; ++i) {
@@ -82,9 +82,9 @@ TEST(Proxy, OverlapsByAShareOfTheCellWhereTheToleranceIsWide) {
 
 constexpr double kBlock = 0.01, kTable = 0.03;
 
-model::SceneSpec blockOverEdge(double tolerance) {
-    auto spec = test::scene(model::Box{kBlock, kBlock, kBlock}, {Quat::Identity(), Vec3::Zero()},
-                            model::Box{kTable, kTable, kTable}, {Quat::Identity(), Vec3(-kTable / 2, 0, -kTable / 2)},
+scene::SceneSpec blockOverEdge(double tolerance) {
+    auto spec = test::scene(shape::Box{kBlock, kBlock, kBlock}, {Quat::Identity(), Vec3::Zero()},
+                            shape::Box{kTable, kTable, kTable}, {Quat::Identity(), Vec3(-kTable / 2, 0, -kTable / 2)},
                             ContactMethod::GodObject);
     spec.contact.cell = 0.0;
     spec.contact.tolerance = tolerance;

@@ -11,13 +11,13 @@
 namespace passung::tick {
 namespace {
 
-model::SceneSpec twoBoxes() {
-    return test::scene(model::Box{0.02, 0.02, 0.01}, {Quat::Identity(), Vec3(0, 0, 0.02)}, model::Box{0.06, 0.06, 0.02},
-                       Pose{}, model::ContactMethod::GodObject);
+scene::SceneSpec twoBoxes() {
+    return test::scene(shape::Box{0.02, 0.02, 0.01}, {Quat::Identity(), Vec3(0, 0, 0.02)}, shape::Box{0.06, 0.06, 0.02},
+                       Pose{}, scene::ContactMethod::GodObject);
 }
 
-Motion shift(double x, double y) {
-    Motion u = Motion::Zero();
+motion::Motion shift(double x, double y) {
+    motion::Motion u = motion::Motion::Zero();
     u.head<2>() << x, y;
     return u;
 }
@@ -33,7 +33,7 @@ TEST(ProxyWay, IsBentByTheHeightOfItsJointOverTheLine) {
     EXPECT_NEAR(way.bentBy(shift(-3e-4, 0)), 3e-4, 1e-15);  // there and back: the line is a point
     way.add(shift(0, 4e-4));
     EXPECT_NEAR(way.length(), 7e-4, 1e-15);
-    EXPECT_NEAR(way.bentBy(Motion::Zero()), 2.4e-4, 1e-15);
+    EXPECT_NEAR(way.bentBy(motion::Motion::Zero()), 2.4e-4, 1e-15);
 }
 
 TEST(ProxyWay, LeavesNoPlaceOfTheLineFartherFromItThanItsBend) {
@@ -42,26 +42,26 @@ TEST(ProxyWay, LeavesNoPlaceOfTheLineFartherFromItThanItsBend) {
     const double turn_scale = bench.model().shell->reach() / bench.model().metric_radius;
     Random random(9);
     const auto leg = [&random] {
-        Motion u;
+        motion::Motion u;
         for (int i = 0; i < 6; ++i) u[i] = 1e-4 * random.normal();
         return u;
     };
     for (int run = 0; run < 50; ++run) {
         ProxyWay way(bench.model());
-        std::vector<Motion> joints{Motion::Zero()};
+        std::vector<motion::Motion> joints{motion::Motion::Zero()};
         const int legs = 2 + run % 4;
         double bent = 0.0;
         for (int i = 0; i < legs; ++i) {
-            const Motion u = leg();
+            const motion::Motion u = leg();
             bent = way.bentBy(u);
             way.add(u);
-            Motion scaled = u;
+            motion::Motion scaled = u;
             scaled.tail<3>() *= turn_scale;
             joints.push_back(joints.back() + scaled);
         }
         double farthest = 0.0;
         for (int k = 0; k <= 200; ++k) {
-            const Motion place = k / 200.0 * joints.back();
+            const motion::Motion place = k / 200.0 * joints.back();
             double nearest = 1e300;
             for (std::size_t i = 0; i + 1 < joints.size(); ++i)
                 for (int m = 0; m <= 400; ++m)

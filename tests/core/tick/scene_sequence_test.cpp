@@ -15,9 +15,9 @@ namespace {
 constexpr int kHold = 5;  // ticks that the start gate asks for
 
 /// A ball pressed 2 mm into a table by penalty, behind a start gate that lets the pressed pose count.
-model::SceneSpec pressed(double stiffness) {
-    auto spec = test::scene(model::Sphere{0.02}, {Quat::Identity(), Vec3(0, 0, 0.012)}, model::Box{0.06, 0.06, 0.02},
-                            {Quat::Identity(), Vec3(0, 0, -0.01)}, model::ContactMethod::Penalty);
+scene::SceneSpec pressed(double stiffness) {
+    auto spec = test::scene(shape::Sphere{0.02}, {Quat::Identity(), Vec3(0, 0, 0.012)}, shape::Box{0.06, 0.06, 0.02},
+                            {Quat::Identity(), Vec3(0, 0, -0.01)}, scene::ContactMethod::Penalty);
     spec.contact.cell = 1e-3;
     spec.contact.stiffness = stiffness;
     spec.start_gate = {0.01, 1.0, kHold};

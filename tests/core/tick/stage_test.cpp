@@ -40,11 +40,11 @@ void eachPart(tick::Parts<Part...>& whole, F f) {
 }
 
 /// A held box beside and above a plate, and what the stages of one kind need.
-model::SceneSpec boxOverPlate(model::ContactMethod method) {
-    auto spec = test::scene(model::Box{0.01, 0.01, 0.01}, {Quat::Identity(), Vec3(0, 0, 0.01)},
-                            model::Box{0.03, 0.03, 0.01}, Pose{}, method);
+scene::SceneSpec boxOverPlate(scene::ContactMethod method) {
+    auto spec = test::scene(shape::Box{0.01, 0.01, 0.01}, {Quat::Identity(), Vec3(0, 0, 0.01)},
+                            shape::Box{0.03, 0.03, 0.01}, Pose{}, method);
     spec.parts.push_back(
-        {.name = "post", .geometry = model::Cylinder{0.004, 0.01}, .X_WP = {Quat::Identity(), Vec3(0.01, 0, 0.01)}});
+        {.name = "post", .geometry = shape::Cylinder{0.004, 0.01}, .X_WP = {Quat::Identity(), Vec3(0.01, 0, 0.01)}});
     spec.contact.spacing = 2.5e-3;
     spec.contact.damping = 2.0;
     spec.contact.rotational_damping = 0.001;
@@ -56,17 +56,17 @@ model::SceneSpec boxOverPlate(model::ContactMethod method) {
 }
 
 /// Scenes that have every stage between them.
-std::vector<model::SceneSpec> scenesOfAllStages() {
-    using enum model::ContactMethod;
+std::vector<scene::SceneSpec> scenesOfAllStages() {
+    using enum scene::ContactMethod;
     auto free = boxOverPlate(GodObject);
     free.parts.resize(1);
     auto penalty = boxOverPlate(Penalty);
-    penalty.contact.variant = model::PenaltyVariant::AreaWeighted;
+    penalty.contact.variant = scene::PenaltyVariant::AreaWeighted;
     penalty.limits.delay_ticks = 3;
     penalty.effects.transients.amplitude = 1.0;
     penalty.start_gate = {0.1, 3.0, 5};
     auto tool = boxOverPlate(Penalty);
-    tool.contact.coupling = model::PenaltyCoupling::Virtual;
+    tool.contact.coupling = scene::PenaltyCoupling::Virtual;
     tool.display_wrench = false;
     auto god_object = boxOverPlate(GodObject);
     for (auto& part : god_object.parts) part.friction = part.sliding_friction = 0.3;

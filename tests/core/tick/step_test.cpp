@@ -11,9 +11,9 @@ namespace passung {
 namespace {
 
 /// A peg over a plate with a narrow bore.
-model::SceneSpec pegAndPlate(model::ContactMethod method) {
-    auto spec = test::scene(model::Peg{0.02, 0.05, 0.001}, {Quat::Identity(), Vec3(0, 0, 0.01)},
-                            model::BorePlate{0.06, 0.06, 0.03, 0.0204, 0.03, 0.001}, Pose{}, method);
+scene::SceneSpec pegAndPlate(scene::ContactMethod method) {
+    auto spec = test::scene(shape::Peg{0.02, 0.05, 0.001}, {Quat::Identity(), Vec3(0, 0, 0.01)},
+                            shape::BorePlate{0.06, 0.06, 0.03, 0.0204, 0.03, 0.001}, Pose{}, method);
     spec.contact.spacing = 1.5e-3;
     spec.contact.stiffness = 3000;
     spec.contact.rotational_stiffness = 1;
@@ -35,23 +35,23 @@ Pose path(int tick) {
 
 constexpr int kTicks = 10000;
 
-std::vector<std::pair<const char*, model::SceneSpec>> everyKindOfScene() {
-    std::vector<std::pair<const char*, model::SceneSpec>> scenes;
+std::vector<std::pair<const char*, scene::SceneSpec>> everyKindOfScene() {
+    std::vector<std::pair<const char*, scene::SceneSpec>> scenes;
     for (const auto variant :
-         {model::PenaltyVariant::MaxNormalised, model::PenaltyVariant::AreaWeighted, model::PenaltyVariant::Raw}) {
-        scenes.emplace_back("penalty", pegAndPlate(model::ContactMethod::Penalty));
+         {scene::PenaltyVariant::MaxNormalised, scene::PenaltyVariant::AreaWeighted, scene::PenaltyVariant::Raw}) {
+        scenes.emplace_back("penalty", pegAndPlate(scene::ContactMethod::Penalty));
         scenes.back().second.contact.variant = variant;
     }
-    scenes.emplace_back("penalty, two-way", pegAndPlate(model::ContactMethod::Penalty));
+    scenes.emplace_back("penalty, two-way", pegAndPlate(scene::ContactMethod::Penalty));
     scenes.back().second.contact.two_way = true;
-    for (const auto coupling : {model::PenaltyCoupling::QuasiStatic, model::PenaltyCoupling::Virtual}) {
-        scenes.emplace_back("coupled penalty", pegAndPlate(model::ContactMethod::Penalty));
+    for (const auto coupling : {scene::PenaltyCoupling::QuasiStatic, scene::PenaltyCoupling::Virtual}) {
+        scenes.emplace_back("coupled penalty", pegAndPlate(scene::ContactMethod::Penalty));
         scenes.back().second.contact.coupling = coupling;
         scenes.emplace_back("coupled penalty, two-way, budget", scenes.back().second);
         scenes.back().second.contact.two_way = true;
         scenes.back().second.contact.budget_nodes = 200;
     }
-    for (const auto method : {model::ContactMethod::GodObjectHeuristic, model::ContactMethod::GodObject}) {
+    for (const auto method : {scene::ContactMethod::GodObjectHeuristic, scene::ContactMethod::GodObject}) {
         scenes.emplace_back("god object", pegAndPlate(method));
         scenes.emplace_back("god object, everything named", pegAndPlate(method));
         scenes.back().second.contact.proxy_filter = 150;
@@ -65,7 +65,7 @@ std::vector<std::pair<const char*, model::SceneSpec>> everyKindOfScene() {
         scenes.back().second.contact.two_way = true;
         for (auto& part : scenes.back().second.parts) part.friction = part.sliding_friction = 0.2;
     }
-    scenes.emplace_back("free", pegAndPlate(model::ContactMethod::GodObjectHeuristic));
+    scenes.emplace_back("free", pegAndPlate(scene::ContactMethod::GodObjectHeuristic));
     scenes.back().second.parts.pop_back();
     return scenes;
 }
@@ -101,7 +101,7 @@ TEST(Step, GodObjectOverlapsFarLessThanPenaltyOnTheSamePath) {
     // independent ones.
     double deepest[3] = {0, 0, 0};
     for (const auto method :
-         {model::ContactMethod::Penalty, model::ContactMethod::GodObjectHeuristic, model::ContactMethod::GodObject}) {
+         {scene::ContactMethod::Penalty, scene::ContactMethod::GodObjectHeuristic, scene::ContactMethod::GodObject}) {
         test::Bench bench(pegAndPlate(method));
         double& worst = deepest[static_cast<int>(method)];
         int limits = 0;
@@ -123,28 +123,28 @@ TEST(Step, GodObjectOverlapsFarLessThanPenaltyOnTheSamePath) {
 
 TEST(Step, BuildsOnlyTheStagesThatTheSceneNames) {
     // Truth: invariant (the third promise): the list of stages follows the scene.
-    const auto names = [](const model::SceneSpec& spec) {
+    const auto names = [](const scene::SceneSpec& spec) {
         test::Bench bench(spec);
         std::vector<std::string> all;
         for (const auto& stage : bench.model().stages) all.emplace_back(stage.name);
         return all;
     };
     using Names = std::vector<std::string>;
-    auto spec = pegAndPlate(model::ContactMethod::Penalty);
+    auto spec = pegAndPlate(scene::ContactMethod::Penalty);
     EXPECT_EQ(names(spec), (Names{"input guard", "energy account", "contacts at the hand", "penalty wrench",
                                   "contact shares", "output limits"}));
-    spec.contact.coupling = model::PenaltyCoupling::QuasiStatic;
+    spec.contact.coupling = scene::PenaltyCoupling::QuasiStatic;
     EXPECT_EQ(names(spec), (Names{"input guard", "energy account", "penalty tool", "proxy record", "hand depth",
                                   "virtual coupling", "contact shares", "output limits"}));
-    spec.contact.coupling = model::PenaltyCoupling::Direct;
-    spec.contact.method = model::ContactMethod::GodObjectHeuristic;
+    spec.contact.coupling = scene::PenaltyCoupling::Direct;
+    spec.contact.method = scene::ContactMethod::GodObjectHeuristic;
     spec.record_hand_depth = false;
     EXPECT_EQ(names(spec), (Names{"input guard", "energy account", "proxy correction", "proxy motion", "proxy record",
                                   "virtual coupling", "contact shares", "output limits"}));
-    spec.contact.method = model::ContactMethod::GodObject;
+    spec.contact.method = scene::ContactMethod::GodObject;
     EXPECT_EQ(names(spec), (Names{"input guard", "energy account", "proxy sweep", "proxy record", "virtual coupling",
                                   "contact shares", "output limits"}));
-    spec.contact.method = model::ContactMethod::GodObjectHeuristic;
+    spec.contact.method = scene::ContactMethod::GodObjectHeuristic;
     spec.start_gate = {0.003, 0.1, 100};
     spec.limits.delay_ticks = 1;
     spec.contact.proxy_filter = 100;
@@ -152,14 +152,14 @@ TEST(Step, BuildsOnlyTheStagesThatTheSceneNames) {
     EXPECT_EQ(names(spec), (Names{"input guard", "energy account", "start gate", "proxy correction", "proxy motion",
                                   "proxy filter", "proxy record", "hand depth", "virtual coupling", "contact shares",
                                   "output delay", "output limits"}));
-    spec = pegAndPlate(model::ContactMethod::Penalty);
+    spec = pegAndPlate(scene::ContactMethod::Penalty);
     spec.parts.pop_back();
     EXPECT_EQ(names(spec), (Names{"input guard", "energy account", "free hand", "output limits"}));
 }
 
 TEST(Step, RendersNothingBeforeTheHandHasHeldTheStartPose) {
     // Truth: invariant. Zero wrench and the proxy at its start until hold_ticks ticks within the tolerance.
-    auto spec = pegAndPlate(model::ContactMethod::GodObjectHeuristic);
+    auto spec = pegAndPlate(scene::ContactMethod::GodObjectHeuristic);
     spec.start_gate = {0.002, 0.05, 200};
     test::Bench bench(spec);
     const Pose start = spec.parts[0].X_WP;

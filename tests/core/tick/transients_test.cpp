@@ -18,14 +18,14 @@ namespace {
 constexpr double kAmplitude = 8.0, kFrequency = 120.0, kDecay = 0.015;  // [N·s/m], [Hz], [s]
 
 /// A ball over a plate whose top is z = 0; its lowest point at `height`.
-model::SceneSpec ballOverPlate(model::ContactMethod method, double height) {
-    model::SceneSpec spec = test::scene(model::Sphere{0.02}, Pose{Quat::Identity(), {0, 0, 0.01 + height}},
-                                        model::Box{0.06, 0.06, 0.02}, Pose{Quat::Identity(), {0, 0, -0.01}}, method);
+scene::SceneSpec ballOverPlate(scene::ContactMethod method, double height) {
+    scene::SceneSpec spec = test::scene(shape::Sphere{0.02}, Pose{Quat::Identity(), {0, 0, 0.01 + height}},
+                                        shape::Box{0.06, 0.06, 0.02}, Pose{Quat::Identity(), {0, 0, -0.01}}, method);
     spec.contact.rotational_stiffness = 0.0;
     return spec;
 }
 
-model::SceneSpec withTransients(model::SceneSpec spec) {
+scene::SceneSpec withTransients(scene::SceneSpec spec) {
     spec.effects.transients = {.amplitude = kAmplitude, .frequency = kFrequency, .decay = kDecay};
     return spec;
 }
@@ -39,7 +39,7 @@ double waveform(int ticks) {
 /// What the transients alone do along a motion: the same scene with them and without.
 class Added {
 public:
-    explicit Added(const model::SceneSpec& spec) : with_(withTransients(spec)), without_(spec) {}
+    explicit Added(const scene::SceneSpec& spec) : with_(withTransients(spec)), without_(spec) {}
 
     Vec3 step(const DeviceReading& reading) {
         const auto a = with_.step(reading), b = without_.step(reading);
@@ -56,8 +56,8 @@ private:
     test::Bench with_, without_;
 };
 
-constexpr model::ContactMethod kMethods[] = {model::ContactMethod::Penalty, model::ContactMethod::GodObjectHeuristic,
-                                             model::ContactMethod::GodObject};
+constexpr scene::ContactMethod kMethods[] = {scene::ContactMethod::Penalty, scene::ContactMethod::GodObjectHeuristic,
+                                             scene::ContactMethod::GodObject};
 
 TEST(Transients, OfAnImpactOnAPlaneAreADecayingSineInProportionToItsSpeed) {
     // Truth: closed form, A s exp(-t/tau) sin(2 pi f t) along the contact's force n at the impact, zero in the impact's
@@ -89,8 +89,8 @@ TEST(Transients, OfAnImpactOnAPlaneAreADecayingSineInProportionToItsSpeed) {
 }
 
 /// The whole scene carried by `way`.
-model::SceneSpec carried(model::SceneSpec spec, const Vec3& way) {
-    for (model::PartSpec& part : spec.parts) part.X_WP.p += way;
+scene::SceneSpec carried(scene::SceneSpec spec, const Vec3& way) {
+    for (scene::PartSpec& part : spec.parts) part.X_WP.p += way;
     return spec;
 }
 
@@ -146,7 +146,7 @@ TEST(Transients, DoNotComeFromAProxyThatLagsBehindInFreeRoom) {
     // Truth: closed form. A block that moves along a plate, 20 um above it, touches nothing.
     for (const auto method : kMethods) {
         auto spec = ballOverPlate(method, 0.0);
-        spec.parts[0].geometry = model::Box{0.01, 0.01, 0.01};
+        spec.parts[0].geometry = shape::Box{0.01, 0.01, 0.01};
         spec.parts[0].X_WP.p = Vec3(-0.02, 0, 0.00502);
         spec.contact.cell = 0.1e-3;
         Added sliding(spec);
@@ -162,9 +162,9 @@ TEST(Transients, OfContactsWhoseForcesCancelAreNoStrongerThanTheirPointsAreFast)
     // Truth: invariant, s ≤ V: a bar that turns against two posts at once has hardly a force there, but a torque.
     for (const auto method : kMethods) {
         auto spec = ballOverPlate(method, 0.0);
-        spec.parts[0].geometry = model::Box{0.03, 0.004, 0.004};
+        spec.parts[0].geometry = shape::Box{0.03, 0.004, 0.004};
         spec.parts[0].X_WP = Pose{};
-        spec.parts[1].geometry = model::Cylinder{0.006, 0.02};
+        spec.parts[1].geometry = shape::Cylinder{0.006, 0.02};
         spec.parts[1].X_WP.p = Vec3(0.012, 0.006, 0);
         spec.parts.push_back(spec.parts[1]);
         spec.parts[2].name = "other";
@@ -183,7 +183,7 @@ TEST(Transients, OfContactsWhoseForcesCancelAreNoStrongerThanTheirPointsAreFast)
 
 TEST(Transients, OfImpactsThatFollowOneAnotherAddUp) {
     // Truth: closed form. Two taps 10 ticks apart: the sum of two waveforms.
-    const auto spec = ballOverPlate(model::ContactMethod::GodObjectHeuristic, 0.5e-4);
+    const auto spec = ballOverPlate(scene::ContactMethod::GodObjectHeuristic, 0.5e-4);
     Added added(spec);
     std::vector<int> impacts;
     bool before = false;
@@ -204,10 +204,10 @@ TEST(Transients, OfImpactsThatFollowOneAnotherAddUp) {
 TEST(Transients, OfAPartThatTurnsComeFromTheSpeedOfThePointThatHits) {
     // Truth: closed form. A bar whose end lies 50 mm beside its own axis of rotation: turning at w, with the origin
     // at rest, its point in contact comes down at about 0.05 w, and the vibration has the contact's line of action.
-    auto spec = ballOverPlate(model::ContactMethod::GodObjectHeuristic, 0.0);
-    spec.parts[0].geometry = model::Box{0.1, 0.01, 0.01};
+    auto spec = ballOverPlate(scene::ContactMethod::GodObjectHeuristic, 0.0);
+    spec.parts[0].geometry = shape::Box{0.1, 0.01, 0.01};
     spec.parts[0].X_WP = {Quat::Identity(), Vec3(0, 0, 0.0065)};
-    spec.parts[1].geometry = model::Box{0.2, 0.06, 0.02};
+    spec.parts[1].geometry = shape::Box{0.2, 0.06, 0.02};
     spec.contact.rotational_stiffness = 2.0;
     test::Bench with(withTransients(spec)), without(spec);
     constexpr double kSpin = 3.0;  // [rad/s]
@@ -270,7 +270,7 @@ TEST(Transients, GiveOutNoMoreThanTheirBoundOfEnergy) {
 
 TEST(Transients, AreLimitedWithTheContactByTheOutputStage) {
     // Truth: invariant: the device's limit holds for the sum, at 0.5 m/s some eight times over it.
-    auto spec = withTransients(ballOverPlate(model::ContactMethod::GodObjectHeuristic, 1e-3));
+    auto spec = withTransients(ballOverPlate(scene::ContactMethod::GodObjectHeuristic, 1e-3));
     spec.limits.max_force = 0.4;
     test::Bench bench(spec);
     int limited = 0;
@@ -286,13 +286,13 @@ TEST(Transients, AreLimitedWithTheContactByTheOutputStage) {
 
 TEST(Transients, AreNoStageOfASceneWithoutThem) {
     // Truth: invariant. Only the effects that a scene names are built; they come before delay and limits.
-    const auto stagesOf = [](const model::SceneSpec& spec) {
+    const auto stagesOf = [](const scene::SceneSpec& spec) {
         test::Bench bench(spec);
         std::vector<std::string> names;
         for (const auto& stage : bench.model().stages) names.emplace_back(stage.name);
         return names;
     };
-    auto spec = ballOverPlate(model::ContactMethod::Penalty, 0.0);
+    auto spec = ballOverPlate(scene::ContactMethod::Penalty, 0.0);
     spec.limits.delay_ticks = 1;
     auto names = stagesOf(spec);
     EXPECT_EQ(std::count(names.begin(), names.end(), "contact transients"), 0);

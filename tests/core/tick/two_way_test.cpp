@@ -9,14 +9,14 @@
 namespace passung {
 namespace {
 
-using model::ContactMethod;
+using scene::ContactMethod;
 
 constexpr double kHeldHalf = 0.01, kPostHalf = 0.5e-3, kPostHeight = 0.02, kStiffness = 1000.0, kTolerance = 20e-6;
 
 /// A block whose points lie 4 mm apart, over a post 1 mm wide that ends at z = 0.
-model::SceneSpec blockOverPost(ContactMethod method, bool two_way) {
-    auto spec = test::scene(model::Box{0.04, 0.04, 2 * kHeldHalf}, {Quat::Identity(), Vec3(0, 0, 0.02)},
-                            model::Box{2 * kPostHalf, 2 * kPostHalf, kPostHeight},
+scene::SceneSpec blockOverPost(ContactMethod method, bool two_way) {
+    auto spec = test::scene(shape::Box{0.04, 0.04, 2 * kHeldHalf}, {Quat::Identity(), Vec3(0, 0, 0.02)},
+                            shape::Box{2 * kPostHalf, 2 * kPostHalf, kPostHeight},
                             {Quat::Identity(), Vec3(0, 0, -kPostHeight / 2)}, method);
     spec.contact.spacing = 4e-3;
     spec.contact.stiffness = kStiffness;
@@ -30,7 +30,7 @@ Pose between(const test::Bench& bench, double depth) {
     for (double x = -0.01; x <= 0.01; x += 0.25e-3)
         for (double y = -0.01; y <= 0.01; y += 0.25e-3) {
             bool free = true;
-            for (const model::SurfacePoint& point : bench.model().shell->points())
+            for (const shell::SurfacePoint& point : bench.model().shell->points())
                 free = free && std::max(std::abs(point.position.x() + x), std::abs(point.position.y() + y)) >
                                    kPostHalf + 0.7e-3;
             if (free) return {Quat::Identity(), Vec3(x, y, kHeldHalf - depth)};
@@ -84,11 +84,11 @@ TEST(TwoWay, GivesTheMeanOfBothWaysOfASphereInAPlane) {
     // from the centre) dA over the disc that the face cuts out. Sums over a disc of 9 mm radius sampled every 0.7 mm:
     // 1 %.
     constexpr double R = 0.02, h = 0.002, off = R - h;
-    auto spec = test::scene(model::Sphere{2 * R}, {Quat::Identity(), Vec3(0, 0, 0.1)}, model::Box{0.03, 0.03, 0.02},
+    auto spec = test::scene(shape::Sphere{2 * R}, {Quat::Identity(), Vec3(0, 0, 0.1)}, shape::Box{0.03, 0.03, 0.02},
                             {Quat::Identity(), Vec3(0, 0, -0.01)}, ContactMethod::Penalty);
     spec.contact.cell = 0.7e-3;
     spec.contact.spacing = 0.7e-3;
-    spec.contact.variant = model::PenaltyVariant::AreaWeighted;
+    spec.contact.variant = scene::PenaltyVariant::AreaWeighted;
     spec.contact.two_way = true;
     test::Bench bench(spec);
     const auto out = bench.step(Pose{Quat::Identity(), Vec3(0, 0, R - h)});

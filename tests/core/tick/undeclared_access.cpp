@@ -17,14 +17,14 @@ void renderHum(const TickModel& model, const Reading& device, const HandSample& 
     hum.phase += hand.X_WH.p.x() + proxy.X_WG.p.x() + device.reading.X_BD.p.x();
     wrench.F_H_W.force.x() += hum.phase * model.contact.stiffness;
 #ifdef FAULTS
-    hand.X_WH.p.x() = 0.0;                                       // FAULT: writes what it declares to read
-    model.contact.stiffness = 0.0;                               // FAULT: writes the model
-    proxy.manifold.clear();                                      // FAULT: changes a list that it declares to read
-    proxy.manifold.begin()->phi = 0.0;                           // FAULT: writes through an element of it
-    static_cast<TickFrame&>(wrench).status = 0;                  // FAULT: goes from a part to the whole
-    static_cast<TickState&>(hum).engaged = true;                 // FAULT: the same in what lasts
-    device.reading.fresh = true;                                 // FAULT: writes the reading
-    for (ContactPoint& point : proxy.manifold) point.phi = 0.0;  // FAULT: writes the elements
+    hand.X_WH.p.x() = 0.0;                        // FAULT: writes what it declares to read
+    model.contact.stiffness = 0.0;                // FAULT: writes the model
+    proxy.manifold.clear();                       // FAULT: changes a list that it declares to read
+    proxy.manifold.begin()->phi = 0.0;            // FAULT: writes through an element of it
+    static_cast<TickFrame&>(wrench).status = 0;   // FAULT: goes from a part to the whole
+    static_cast<TickState&>(hum).engaged = true;  // FAULT: the same in what lasts
+    device.reading.fresh = true;                  // FAULT: writes the reading
+    for (contact::ContactPoint& point : proxy.manifold) point.phi = 0.0;  // FAULT: writes the elements
 #endif
 }
 

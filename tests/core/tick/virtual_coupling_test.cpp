@@ -121,8 +121,8 @@ TEST(VirtualCoupling, StaysContinuousThroughABadSampleOfAHandThatPressesAndSlide
     // Truth: closed form. Into the table at 0.1 m/s and along it at 0.05 m/s: per tick the force may change by K v T,
     // in the tick after the bad sample by twice that. 2 %: the proxy keeps its overlap of the surface to a part of a
     // cell.
-    auto spec = test::scene(model::Sphere{0.02}, {Quat::Identity(), Vec3(0, 0, 0.02)}, model::Box{0.08, 0.08, 0.04},
-                            {Quat::Identity(), Vec3(0, 0, -0.02)}, model::ContactMethod::GodObjectHeuristic);
+    auto spec = test::scene(shape::Sphere{0.02}, {Quat::Identity(), Vec3(0, 0, 0.02)}, shape::Box{0.08, 0.08, 0.04},
+                            {Quat::Identity(), Vec3(0, 0, -0.02)}, scene::ContactMethod::GodObjectHeuristic);
     spec.contact.stiffness = kStiffness;
     spec.contact.damping = kDamping;
     test::Bench bench(spec);

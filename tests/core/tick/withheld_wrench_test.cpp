@@ -12,11 +12,11 @@ namespace {
 Pose at(double x, double z) { return {Quat::Identity(), Vec3(x, 0, z)}; }
 
 /// A ball that is pressed into a table and drawn along it.
-model::SceneSpec rubbing(model::ContactMethod method) {
-    auto spec = test::scene(model::Sphere{0.02}, at(0, 0.02), model::Box{0.08, 0.08, 0.04}, at(0, -0.02), method);
+scene::SceneSpec rubbing(scene::ContactMethod method) {
+    auto spec = test::scene(shape::Sphere{0.02}, at(0, 0.02), shape::Box{0.08, 0.08, 0.04}, at(0, -0.02), method);
     spec.contact.stiffness = 1000;
     spec.limits.max_force = 3;  // acts
-    if (method != model::ContactMethod::Penalty)
+    if (method != scene::ContactMethod::Penalty)
         for (auto& part : spec.parts) part.friction = part.sliding_friction = 0.3;
     return spec;
 }
@@ -25,7 +25,7 @@ Pose handAt(int tick) { return at(2e-5 * std::max(0, tick - 300), 0.012 - 2e-5 *
 
 TEST(WithheldWrench, EverythingButTheWrenchIsAsWithIt) {
     // Truth: invariant: no stage but the last reads what was commanded, so that the same hand gives the same bits.
-    using enum model::ContactMethod;
+    using enum scene::ContactMethod;
     for (const auto method : {Penalty, GodObjectHeuristic, GodObject}) {
         auto spec = rubbing(method);
         test::Bench with(spec);
@@ -63,7 +63,7 @@ TEST(WithheldWrench, EverythingButTheWrenchIsAsWithIt) {
 
 TEST(WithheldWrench, OneThatIsNotFiniteIsToldAllTheSame) {
     // Truth: invariant: the attempt ends by kNonFiniteLatched, as with a displayed wrench.
-    auto spec = rubbing(model::ContactMethod::Penalty);
+    auto spec = rubbing(scene::ContactMethod::Penalty);
     spec.display_wrench = false;
     spec.contact.stiffness = std::numeric_limits<double>::max();
     test::Bench bench(spec);

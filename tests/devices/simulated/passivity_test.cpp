@@ -25,9 +25,9 @@ struct Bounce {
 Bounce bounce(double share, double passivity_damping) {
     simulated::DeviceParams preset = *simulated::findPreset("sigma7");
     preset.coulomb_force.value = preset.coulomb_torque.value = 0.0;
-    model::SceneSpec spec =
-        test::scene(model::Sphere{0.02}, Pose{Quat::Identity(), {0, 0, 0.011}}, model::Box{0.05, 0.05, 0.02},
-                    Pose{Quat::Identity(), {0, 0, -0.01}}, model::ContactMethod::GodObjectHeuristic);
+    scene::SceneSpec spec =
+        test::scene(shape::Sphere{0.02}, Pose{Quat::Identity(), {0, 0, 0.011}}, shape::Box{0.05, 0.05, 0.02},
+                    Pose{Quat::Identity(), {0, 0, -0.01}}, scene::ContactMethod::GodObjectHeuristic);
     const loop::SampledWall wall{.mass = preset.mass.value,
                                  .damping = preset.damping.value,
                                  .virtual_damping = preset.recommended_damping.value,
@@ -88,12 +88,12 @@ struct Accounts {
     double contact = 0.0;  // share of ticks in contact
 };
 
-Accounts searchOnAPlate(const simulated::DeviceParams& preset, model::ContactMethod method, double passivity_damping,
+Accounts searchOnAPlate(const simulated::DeviceParams& preset, scene::ContactMethod method, double passivity_damping,
                         int ticks) {
     const DeviceDescription rated = simulated::describe(preset);
     simulated::VisibleTask task;
     task.X_WHeldStart = {Quat::Identity(), Vec3(-0.002, 0.001, 0.008)};
-    model::SceneSpec spec = test::scene(model::Peg{0.01, 0.03, 0.0005}, task.X_WHeldStart, model::Box{0.08, 0.08, 0.02},
+    scene::SceneSpec spec = test::scene(shape::Peg{0.01, 0.03, 0.0005}, task.X_WHeldStart, shape::Box{0.08, 0.08, 0.02},
                                         {Quat::Identity(), Vec3(0, 0, -0.01)}, method);
     spec.registration.X_DH.p = Vec3(0, 0, -0.02);
     spec.contact.spacing = 2e-3;
@@ -137,7 +137,7 @@ TEST(HandsPort, GivesOutNoEnergyInAMinuteOfContactAtTheRatedStiffness) {
     // Truth: invariant. Net energy at the hand's port at least -1 mJ with the passivity controller off, and at the
     // controller's port at least -1 mJ with it on: that of the motors on the handle's true motion, and by the
     // controller's own account, which knows the motion in encoder steps only.
-    using Method = model::ContactMethod;
+    using Method = scene::ContactMethod;
     for (const simulated::DeviceParams& preset : simulated::presets()) {
         const bool longest = preset.name == "sigma7" || preset.name == "falcon";
         for (const auto method : {Method::Penalty, Method::GodObject}) {

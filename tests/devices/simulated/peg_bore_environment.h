@@ -32,7 +32,7 @@ public:
 
     explicit PegBoreEnvironment(const Setup& setup)
         : setup_(setup),
-          plate_{model::BorePlate{0.08, 0.08, 0.03, setup.bore_diameter, 0.03, 1e-3}},
+          plate_{shape::BorePlate{0.08, 0.08, 0.03, setup.bore_diameter, 0.03, 1e-3}},
           X_WG_(setup.X_WStart),
           X_WH_last_(setup.X_WStart) {
         // radius, height: tip face, chamfer, side
@@ -72,7 +72,7 @@ private:
         Vec3 position, normal;  // world
     };
 
-    double distance(const Vec3& p_P) const { return model::signedDistance(plate_, p_P); }
+    double distance(const Vec3& p_P) const { return shape::signedDistance(plate_, p_P); }
 
     void collect(const Pose& X_WS, double below) {
         contacts_.clear();
@@ -160,7 +160,7 @@ private:
     };
 
     Setup setup_;
-    model::Shape plate_;
+    shape::Shape plate_;
     std::vector<Vec3> points_;
     std::vector<Contact> contacts_;
     std::vector<Row> rows_;

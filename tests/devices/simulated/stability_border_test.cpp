@@ -142,9 +142,9 @@ Press settle(test::Bench& bench, DeviceDynamics& dynamics, const simulated::Hand
     return result;
 }
 
-Press press(const DeviceParams& preset, model::ContactMethod method, double stiffness) {
-    model::SceneSpec spec = test::scene(model::Sphere{0.02}, Pose{Quat::Identity(), {0, 0, 0.0101}},
-                                        model::Box{0.05, 0.05, 0.02}, Pose{Quat::Identity(), {0, 0, -0.01}}, method);
+Press press(const DeviceParams& preset, scene::ContactMethod method, double stiffness) {
+    scene::SceneSpec spec = test::scene(shape::Sphere{0.02}, Pose{Quat::Identity(), {0, 0, 0.0101}},
+                                        shape::Box{0.05, 0.05, 0.02}, Pose{Quat::Identity(), {0, 0, -0.01}}, method);
     spec.contact.stiffness = stiffness;
     spec.contact.damping = preset.recommended_damping.value;
     spec.contact.rotational_stiffness = 0.0;
@@ -173,11 +173,11 @@ TEST(StabilityBorder, AtNineteenTwentiethsOfItAPressedHandleComesToRest) {
             SampledWall wall = wallOf(preset, Axis::Translation);
             wall.delay_ticks = delay;
             const double stiffness = 0.95 * stableStiffnessBorder(wall);
-            for (const auto method : {model::ContactMethod::Penalty, model::ContactMethod::GodObject}) {
+            for (const auto method : {scene::ContactMethod::Penalty, scene::ContactMethod::GodObject}) {
                 const Press found = press(preset, method, stiffness);
                 std::printf("%-11s %d ms %-10s K %7.0f N/m: swing %8.2f um, later %8.2f um\n",
                             std::string(preset.name).c_str(), delay,
-                            method == model::ContactMethod::Penalty ? "penalty" : "god object", stiffness,
+                            method == scene::ContactMethod::Penalty ? "penalty" : "god object", stiffness,
                             1e6 * found.early, 1e6 * found.late);
                 EXPECT_TRUE(found.touches) << preset.name << delay;
                 EXPECT_LE(found.late, found.early + 3.0 * preset.quantum.value) << preset.name << delay;
@@ -189,10 +189,10 @@ TEST(StabilityBorder, AtNineteenTwentiethsOfItAPressedHandleComesToRest) {
 
 /// As press(), for rotation: a bar is turned by a constant torque onto two posts beside its ends.
 Press turnOntoPosts(const DeviceParams& preset, double stiffness) {
-    model::SceneSpec spec = test::scene(model::Box{0.04, 0.004, 0.004}, Pose{}, model::Cylinder{0.006, 0.02},
-                                        Pose{Quat::Identity(), {0.015, 0.0052, 0}}, model::ContactMethod::GodObject);
+    scene::SceneSpec spec = test::scene(shape::Box{0.04, 0.004, 0.004}, Pose{}, shape::Cylinder{0.006, 0.02},
+                                        Pose{Quat::Identity(), {0.015, 0.0052, 0}}, scene::ContactMethod::GodObject);
     spec.parts.push_back({.name = "other",
-                          .geometry = model::Shape(model::Cylinder{0.006, 0.02}),
+                          .geometry = shape::Shape(shape::Cylinder{0.006, 0.02}),
                           .X_WP = {Quat::Identity(), {-0.015, -0.0052, 0}}});
     spec.contact.two_way = true;
     spec.contact.stiffness = 200.0;

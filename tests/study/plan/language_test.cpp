@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace passung::protocol {
+namespace passung::plan {
 namespace {
 
 using Languages = std::vector<std::string>;
@@ -35,4 +35,4 @@ TEST(Language, IsTheFirstUnlessAnotherOneOfTheStudyIsAskedFor) {
 }
 
 }  // namespace
-}  // namespace passung::protocol
+}  // namespace passung::plan

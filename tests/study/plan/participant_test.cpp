@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace passung::protocol {
+namespace passung::plan {
 namespace {
 
 TEST(Participant, CodesBeginWithTheKindsLetterAndGrowBeyondThreeDigits) {
@@ -34,4 +34,4 @@ TEST(Participant, KindsAreNamedAsTheDatabaseAllowsThem) {
 }
 
 }  // namespace
-}  // namespace passung::protocol
+}  // namespace passung::plan

@@ -71,7 +71,7 @@ std::string thresholdBlock(const std::string& more) {
            "\"contact.stiffness_N_per_m\" = 400 }\n";
 }
 
-Result<StudyPlan> read(const std::string& text, const std::string& path = "p.toml") {
+Result<plan::StudyPlan> read(const std::string& text, const std::string& path = "p.toml") {
     static const auto devices = fakeDevices();
     return readProtocolText(text, path, devices, kMeasures);
 }
@@ -84,9 +84,9 @@ std::string errorsOf(const std::string& text) {
     return lines;
 }
 
-std::vector<std::string> namesOf(const StudyPlan& plan, const std::string& block) {
+std::vector<std::string> namesOf(const plan::StudyPlan& plan, const std::string& block) {
     std::vector<std::string> names;
-    const auto trials = design::planSession(designOf(plan), {plan.name, plan.seed, "P001", 0, 0, 1});
+    const auto trials = design::planSession(plan::designOf(plan), {plan.name, plan.seed, "P001", 0, 0, 1});
     for (const auto& trial : *trials)
         if (trial.block == block) names.push_back(plan.conditions[trial.condition].name);
     return names;
@@ -143,7 +143,7 @@ TEST(BlockConditions, AStaircaseStandsInAStudyAtOneReferenceWithoutDummyKeys) {
     ASSERT_EQ(plan->staircases.size(), 1u);
     EXPECT_EQ(plan->staircases[0].first_variant.size(), 1u);
     EXPECT_EQ(plan->conditions.size(), 6u + 1u + 4u);
-    const auto& variant = plan->conditions[variantOf(*plan, plan->staircases[0], 6, 2)];
+    const auto& variant = plan->conditions[plan::variantOf(*plan, plan->staircases[0], 6, 2)];
     EXPECT_EQ(variant.name, "penalty/15@threshold@stiffness=1500");
     EXPECT_EQ(variant.comparison->contact.stiffness, 1500.0);
 }

@@ -13,7 +13,7 @@ namespace {
 const std::vector<std::string> kMeasures = {"trial_time_s", "secondary_hit_rate"};
 
 /// A study of one condition with these tables beside it.
-Result<StudyPlan> read(const std::string& tables, const std::string& task = "") {
+Result<plan::StudyPlan> read(const std::string& tables, const std::string& task = "") {
     const std::string text = R"(passung = 1
 study = { name = "extras", version = "1", seed = 1, participants = 2 }
 [scene]
@@ -35,7 +35,7 @@ target = "plate"
     return readProtocolText(text, "extras.toml", fakeDevices(), kMeasures);
 }
 
-std::string faultOf(const Result<StudyPlan>& plan) { return plan ? "" : toString(plan.errors().front()); }
+std::string faultOf(const Result<plan::StudyPlan>& plan) { return plan ? "" : toString(plan.errors().front()); }
 
 TEST(Messages, OfFrictionUnderThePenaltySayThatItIsNotFelt) {
     // Truth: invariant: every condition is a penalty's, so that there is no other in which the friction acts.
@@ -93,7 +93,7 @@ TEST(Feedback, EveryCombinationIsAConditionOfItsOwn) {
         const auto plan = read("[feedback]\ncues = [" + cues + "]\nkinesthetic = " + (on(3) ? "true" : "false") +
                                "\nmasking_noise = " + (on(4) ? "true" : "false") + "\n");
         ASSERT_TRUE(plan) << faultOf(plan);
-        const Condition& condition = plan->conditions.front();
+        const plan::Condition& condition = plan->conditions.front();
         EXPECT_EQ(condition.cues.visual, on(0));
         EXPECT_EQ(condition.cues.vibrotactile, on(1));
         EXPECT_EQ(condition.cues.audio, on(2));
@@ -101,7 +101,7 @@ TEST(Feedback, EveryCombinationIsAConditionOfItsOwn) {
         EXPECT_EQ(condition.cues.masking_noise, on(4));
         const std::size_t masked = on(2) && on(4) ? 1 : 0, nowhere = on(1) ? 1 : 0;
         EXPECT_EQ(plan->warnings.size(), masked + nowhere) << "a sound that is masked, a vibration without actuator";
-        EXPECT_EQ(isForPeople(*plan), nowhere == 0);
+        EXPECT_EQ(plan::isForPeople(*plan), nowhere == 0);
         stored.insert(condition.params_json);
     }
     EXPECT_EQ(stored.size(), 32u);
@@ -117,8 +117,8 @@ TEST(Secondary, IsOffByDefaultAndKeepsItsNumbers) {
     const auto plan =
         read("[secondary]\nstimulus = \"visual\"\ninterval_max_s = 6\nresponse_max_ms = 2000\nbutton = 3\n");
     ASSERT_TRUE(plan) << faultOf(plan);
-    const SecondaryTask& task = plan->conditions.front().secondary;
-    EXPECT_EQ(task.stimulus, Stimulus::Visual);
+    const plan::SecondaryTask& task = plan->conditions.front().secondary;
+    EXPECT_EQ(task.stimulus, plan::Stimulus::Visual);
     EXPECT_EQ(task.least_interval, 3.0);
     EXPECT_EQ(task.most_interval, 6.0);
     EXPECT_EQ(task.duration, 1.0);
@@ -135,7 +135,7 @@ TEST(Secondary, OfABlockAloneIsStoredToo) {
     ASSERT_TRUE(plan) << faultOf(plan);
     ASSERT_EQ(plan->conditions.size(), 2u);
     EXPECT_FALSE(plan->conditions[0].secondary.any());
-    EXPECT_EQ(plan->conditions[1].secondary.stimulus, Stimulus::Audio);
+    EXPECT_EQ(plan->conditions[1].secondary.stimulus, plan::Stimulus::Audio);
     EXPECT_EQ(plan->measures, kMeasures);
 }
 
@@ -154,9 +154,9 @@ TEST(Secondary, AStimulusThatNothingGivesNamesItsConditions) {
         ASSERT_EQ(plan->warnings.size(), 1u);
         EXPECT_NE(plan->warnings[0].find(std::string("secondary.stimulus = \"") + stimulus), std::string::npos);
         EXPECT_NE(plan->warnings[0].find("conditions: " + plan->conditions.front().name), std::string::npos);
-        EXPECT_FALSE(isForPeople(*plan));
+        EXPECT_FALSE(plan::isForPeople(*plan));
     }
-    EXPECT_TRUE(isForPeople(*read("[secondary]\nstimulus = \"audio\"\n")));
+    EXPECT_TRUE(plan::isForPeople(*read("[secondary]\nstimulus = \"audio\"\n")));
 }
 
 TEST(TimedBy, NeedsAConditionThatRendersNothing) {
@@ -166,7 +166,7 @@ TEST(TimedBy, NeedsAConditionThatRendersNothing) {
         EXPECT_NE(faultOf(read("", task)).find("needs feedback.kinesthetic = false"), std::string::npos);
         const auto plan = read("[feedback]\nkinesthetic = false\n", task);
         ASSERT_TRUE(plan) << faultOf(plan);
-        EXPECT_STREQ(timedByName(plan->conditions.front().timed_by), who);
+        EXPECT_STREQ(plan::timedByName(plan->conditions.front().timed_by), who);
     }
     EXPECT_NE(faultOf(read("", "timed_by = \"nobody\"")), "");
     EXPECT_NE(faultOf(read("", "timed_by = 3")), "");

@@ -62,10 +62,10 @@ public:
     std::string file(const std::string& name) const { return (path_ / name).string(); }
 
     /// A block of 40 x 40 x 10 mm, top at z = 0, and another shape on it, in one OFF file [mm].
-    void write(const std::string& name, const model::Shape& shape, double height) const {
-        model::TriangleMesh mesh = model::tessellate(model::Box{40, 40, 10}, 0.01);
+    void write(const std::string& name, const shape::Shape& shape, double height) const {
+        geometry::TriangleMesh mesh = shape::tessellate(shape::Box{40, 40, 10}, 0.01);
         for (Vec3& v : mesh.vertices) v.z() -= 5;
-        const model::TriangleMesh other = model::tessellate(shape, 0.01);
+        const geometry::TriangleMesh other = shape::tessellate(shape, 0.01);
         const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
         for (const Vec3& v : other.vertices) mesh.vertices.emplace_back(v + Vec3(0, 0, 0.25 * height));
         for (const auto& t : other.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
@@ -77,8 +77,8 @@ public:
 
     /// A closed box of 60 mm with walls of 5 mm, in one OFF file [mm].
     void writeHollow(const std::string& name) const {
-        const auto outer = model::tessellate(model::Box{60, 60, 60}, 0.01);
-        const auto inner = model::tessellate(model::Box{50, 50, 50}, 0.01);
+        const auto outer = shape::tessellate(shape::Box{60, 60, 60}, 0.01);
+        const auto inner = shape::tessellate(shape::Box{50, 50, 50}, 0.01);
         std::ofstream out(file(name));
         out << "OFF\n" << 2 * outer.vertices.size() << ' ' << 2 * outer.triangles.size() << " 0\n";
         for (const auto& mesh : {outer, inner})
@@ -587,9 +587,9 @@ std::vector<Row> odd() {
 }
 
 void writeMeshes(const Folder& folder) {
-    folder.write("pin.off", model::Cylinder{1, 10}, 10);
-    folder.write("fin.off", model::Box{12, 0.5, 10}, 10);
-    folder.write("post.off", model::Box{20, 20, 20}, 20);
+    folder.write("pin.off", shape::Cylinder{1, 10}, 10);
+    folder.write("fin.off", shape::Box{12, 0.5, 10}, 10);
+    folder.write("post.off", shape::Box{20, 20, 20}, 20);
     folder.writeHollow("hollow.off");
 }
 

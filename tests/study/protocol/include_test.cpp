@@ -119,7 +119,7 @@ TEST_F(IncludeTest, ABlocksOwnKeysHoldInItsConditionsOnly) {
     ASSERT_EQ(plan->conditions.size(), 4u);
     EXPECT_EQ(plan->conditions[2].name, "penalty@short");
     EXPECT_EQ(plan->conditions[2].levels_json, plan->conditions[0].levels_json);
-    const auto trials = *design::planSession(designOf(*plan), {"small", 1, "P001"});
+    const auto trials = *design::planSession(plan::designOf(*plan), {"small", 1, "P001"});
     ASSERT_EQ(trials.size(), 4u);
     for (const auto& trial : trials) {
         const auto& condition = plan->conditions[trial.condition];

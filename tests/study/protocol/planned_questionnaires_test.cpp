@@ -10,11 +10,11 @@
 namespace passung::protocol {
 namespace {
 
-StudyPlan planOf(const std::string& tables, Errors& errors) {
-    StudyPlan plan;
+plan::StudyPlan planOf(const std::string& tables, Errors& errors) {
+    plan::StudyPlan plan;
     plan.source_path = "studies/study.toml";
-    plan.blocks = {{"practice", Phase::Practice, 1, BlockOrder::Listed, 0},
-                   {"main", Phase::Main, 1, BlockOrder::Listed, 0}};
+    plan.blocks = {{"practice", plan::Phase::Practice, 1, plan::BlockOrder::Listed, 0},
+                   {"main", plan::Phase::Main, 1, plan::BlockOrder::Listed, 0}};
     const auto document = parseDocument(tables, plan.source_path);
     plan.questionnaires = readQuestionnaires(document->find("questionnaire")->items, plan.blocks, errors);
     return plan;
@@ -40,12 +40,12 @@ constexpr const char* kTlx = "[[questionnaire]]\nfile = \"q/tlx.toml\"\nmoment =
 TEST(PlannedQuestionnaires, FilesLieBesideTheStudyAndGoIntoItsExpandedText) {
     // Truth: closed form
     Errors errors;
-    StudyPlan plan = planOf(kTlx, errors);
+    plan::StudyPlan plan = planOf(kTlx, errors);
     EXPECT_TRUE(errors.empty());
     Files files{{{"studies/q/tlx.toml", shipped("nasa_tlx_raw")}}};
     ASSERT_TRUE(loadQuestionnaires(plan, std::ref(files)));
-    const PlannedQuestionnaire& planned = plan.questionnaires.front();
-    EXPECT_EQ(planned.moment, Moment::AfterBlock);
+    const plan::PlannedQuestionnaire& planned = plan.questionnaires.front();
+    EXPECT_EQ(planned.moment, plan::Moment::AfterBlock);
     EXPECT_EQ(planned.definition.language, "de");
     EXPECT_EQ(planned.definition.items.size(), 6u);
     EXPECT_NE(plan.expanded_json.find(planned.source_json), std::string::npos);
@@ -55,7 +55,7 @@ TEST(PlannedQuestionnaires, FilesLieBesideTheStudyAndGoIntoItsExpandedText) {
 TEST(PlannedQuestionnaires, AFaultLeavesThePlanAsItWasAndNamesTheFile) {
     // Truth: invariant: a golden vector of the file was changed.
     Errors errors;
-    StudyPlan plan = planOf(kTlx, errors);
+    plan::StudyPlan plan = planOf(kTlx, errors);
     std::string wrong = shipped("nasa_tlx_raw");
     wrong.replace(wrong.find("47.5"), 4, "47.6");
     Files files{{{"studies/q/tlx.toml", wrong}}};
@@ -74,7 +74,7 @@ TEST(PlannedQuestionnaires, ASlotNeedsTextsInTheStudysLanguageAndNothingElseTake
     Files files{{{"studies/u.toml", shipped("ueq_s")}, {"studies/t.toml", texts}, {"studies/n.toml", shipped("ssq")}}};
     const auto faultOf = [&](const std::string& table) -> std::string {
         Errors errors;
-        StudyPlan plan = planOf("[[questionnaire]]\nmoment = \"session_end\"\n" + table, errors);
+        plan::StudyPlan plan = planOf("[[questionnaire]]\nmoment = \"session_end\"\n" + table, errors);
         const auto done = loadQuestionnaires(plan, std::ref(files));
         return done ? "" : toString(done.errors().front());
     };
@@ -91,11 +91,11 @@ TEST(PlannedQuestionnaires, ASlotNeedsTextsInTheStudysLanguageAndNothingElseTake
 TEST(PlannedQuestionnaires, OfAStudyInSeveralLanguagesAreAskedInThatOfTheSession) {
     // Truth: closed form (the shipped file's own texts); the words are a regression
     Errors errors;
-    StudyPlan plan = planOf(kTlx, errors);
+    plan::StudyPlan plan = planOf(kTlx, errors);
     plan.languages = {"en", "de"};
     Files files{{{"studies/q/tlx.toml", shipped("nasa_tlx_raw")}}};
     ASSERT_TRUE(loadQuestionnaires(plan, std::ref(files)));
-    EXPECT_EQ(languagesAsked(plan, plan.questionnaires[0]), plan.languages);
+    EXPECT_EQ(plan::languagesAsked(plan, plan.questionnaires[0]), plan.languages);
     const std::string stored = plan.expanded_json;
     ASSERT_TRUE(loadQuestionnaires(plan, std::ref(files), "en"));
     EXPECT_EQ(plan.questionnaires[0].definition.language, "en");
@@ -130,13 +130,13 @@ TEST(PlannedQuestionnaires, ASlotOfAStudyInSeveralLanguagesHasItsTextsInEach) {
                ".toml\"\nlanguage = \"" + language + "\"\n";
     };
     Errors errors;
-    StudyPlan one = planOf(table("de"), errors);
+    plan::StudyPlan one = planOf(table("de"), errors);
     one.languages = {"en", "de"};
     const auto missing = loadQuestionnaires(one, std::ref(files));
     ASSERT_FALSE(missing);
     EXPECT_NE(toString(missing.errors().front()).find("\"de.toml\": the study is also in \"en\""), std::string::npos);
 
-    StudyPlan both = planOf(table("de") + table("en"), errors);
+    plan::StudyPlan both = planOf(table("de") + table("en"), errors);
     EXPECT_FALSE(loadQuestionnaires(both, std::ref(files))) << "asked twice at one moment";
     both.languages = {"en", "de"};
     const auto done = loadQuestionnaires(both, std::ref(files));

@@ -48,7 +48,7 @@ levels = [1000, { label = "stiff", value = "max" }]
 )";
 const std::string kBlock = "[[block]]\nname = \"main\"\n";
 
-Result<StudyPlan> read(const std::string& text, std::span<const std::string> measures = kMeasures) {
+Result<plan::StudyPlan> read(const std::string& text, std::span<const std::string> measures = kMeasures) {
     static const auto devices = fakeDevices();
     return readProtocolText(text, "p.toml", devices, measures);
 }
@@ -77,7 +77,7 @@ TEST(ProtocolReader, CrossesFactorsWithTheFirstVaryingSlowest) {
         EXPECT_EQ(condition.name, names[i]);
         EXPECT_EQ(condition.levels, (std::vector<std::size_t>{i / 2, i % 2}));
         EXPECT_EQ(condition.scene.contact.method,
-                  i < 2 ? model::ContactMethod::Penalty : model::ContactMethod::GodObjectHeuristic);
+                  i < 2 ? scene::ContactMethod::Penalty : scene::ContactMethod::GodObjectHeuristic);
         EXPECT_EQ(condition.scene.contact.stiffness, i % 2 == 0 ? 1000.0 : 4000.0);
         EXPECT_EQ(condition.scene.contact.rotational_stiffness, i % 2 == 0 ? 2.0 : 8.0);
         EXPECT_EQ(condition.device, "arm");
@@ -111,12 +111,12 @@ levels = [
     EXPECT_EQ(plan->conditions[0].scene.contact.stiffness, 1000.0);
     EXPECT_EQ(plan->conditions[0].task.timeout, 10.0);
     EXPECT_EQ(plan->conditions[0].scene.start_gate.hold_ticks, 250);
-    EXPECT_EQ(plan->conditions[0].shown, ShownPose::Proxy);
+    EXPECT_EQ(plan->conditions[0].shown, plan::ShownPose::Proxy);
     EXPECT_EQ(plan->conditions[1].device, "arm");
     EXPECT_EQ(plan->conditions[1].task.timeout, 30.0);
-    EXPECT_EQ(std::get<model::Peg>(std::get<model::Shape>(plan->conditions[1].scene.parts[1].geometry)).diameter,
+    EXPECT_EQ(std::get<shape::Peg>(std::get<shape::Shape>(plan->conditions[1].scene.parts[1].geometry)).diameter,
               0.019);
-    EXPECT_EQ(plan->conditions[1].shown, ShownPose::Device);
+    EXPECT_EQ(plan->conditions[1].shown, plan::ShownPose::Device);
 }
 
 TEST(ProtocolReader, ReportsAWrongLevelOnceAtItsOwnLine) {
@@ -192,12 +192,12 @@ TEST(ProtocolReader, ReadsBlocks) {
                            kBlock + "repetitions = 3\n");
     ASSERT_TRUE(plan);
     ASSERT_EQ(plan->blocks.size(), 2u);
-    EXPECT_EQ(plan->blocks[0].phase, Phase::Practice);
-    EXPECT_EQ(plan->blocks[0].order, BlockOrder::Random);
+    EXPECT_EQ(plan->blocks[0].phase, plan::Phase::Practice);
+    EXPECT_EQ(plan->blocks[0].order, plan::BlockOrder::Random);
     EXPECT_EQ(plan->blocks[0].trials, 2);
     EXPECT_EQ(plan->blocks[0].repetitions, 1);
-    EXPECT_EQ(plan->blocks[1].phase, Phase::Main);
-    EXPECT_EQ(plan->blocks[1].order, BlockOrder::Williams);
+    EXPECT_EQ(plan->blocks[1].phase, plan::Phase::Main);
+    EXPECT_EQ(plan->blocks[1].order, plan::BlockOrder::Williams);
     EXPECT_EQ(plan->blocks[1].trials, 0);
     EXPECT_EQ(plan->blocks[1].repetitions, 3);
     EXPECT_EQ(errorsOf(kHead + kScene + kTask + kFactors + kBlock + "trials = 5\n"),
@@ -210,7 +210,7 @@ TEST(ProtocolReader, UnderstandsALatinSquare) {
     for (const char* word : {"williams", "latin_square"}) {
         const auto plan = read(text + "order = \"" + word + "\"\n");
         ASSERT_TRUE(plan) << word;
-        EXPECT_EQ(plan->blocks[0].order, BlockOrder::Williams) << word;
+        EXPECT_EQ(plan->blocks[0].order, plan::BlockOrder::Williams) << word;
     }
     EXPECT_EQ(errorsOf(text + "order = \"latin\"\n").find("p.toml:"), 0u);
 }
@@ -261,7 +261,7 @@ TEST(ProtocolReader, WarnsOfPenaltiesThatNoStiffnessLimits) {
 TEST(ProtocolReader, WarnsOfMainBlocksThatDoNotRepeatWhatDoesNotCount) {
     // Truth: invariant: a whole session needs an attempt that counts at every main trial, and at none of practice.
     const std::string text = kHead + kScene + kTask + kFactors + kBlock;
-    EXPECT_EQ(read(text)->blocks[0].on_invalid, Repeat::AtBlockEnd) << "unless the protocol says otherwise";
+    EXPECT_EQ(read(text)->blocks[0].on_invalid, plan::Repeat::AtBlockEnd) << "unless the protocol says otherwise";
     const auto never = read(text + "on_invalid = \"never\"\n");
     ASSERT_TRUE(never);
     ASSERT_EQ(never->warnings.size(), 1u);

@@ -23,7 +23,7 @@ shape = { kind = "peg", diameter = 20, length = 50, chamfer = 1 }
 pose = { position = [20, 0, 30], rotation_deg = [10, 20, 30] }
 )";
 
-Result<model::SceneSpec> read(const std::string& text) {
+Result<scene::SceneSpec> read(const std::string& text) {
     static const auto devices = fakeDevices();
     return readSceneText(text, "s.toml", devices);
 }
@@ -44,7 +44,7 @@ TEST(SceneReader, ReadsLengthsInTheFilesUnit) {
     // Truth: closed form: millimetres to metres, by hand.
     const auto scene = read(kParts);
     ASSERT_TRUE(scene) << errorsOf(kParts);
-    const auto& plate = std::get<model::BorePlate>(std::get<model::Shape>(scene->parts[0].geometry));
+    const auto& plate = std::get<shape::BorePlate>(std::get<shape::Shape>(scene->parts[0].geometry));
     EXPECT_EQ(plate.width, 0.060);
     EXPECT_EQ(plate.depth, 0.050);
     EXPECT_EQ(plate.bore_diameter, 0.021);
@@ -60,13 +60,13 @@ TEST(SceneReader, ReadsEveryShape) {
     // Truth: closed form: millimetres to metres, every key another number.
     const auto shapeOf = [](const std::string& keys) {
         const auto scene = read("[[part]]\nname = \"a\"\nheld = true\nshape = { kind = " + keys + " }\n");
-        return scene ? std::get<model::Shape>(scene->parts[0].geometry) : model::Shape(model::Sphere{0.0});
+        return scene ? std::get<shape::Shape>(scene->parts[0].geometry) : shape::Shape(shape::Sphere{0.0});
     };
     const auto valuesOf = [&](const std::string& keys) {
         std::string text;
         const auto shape = shapeOf(keys);
-        text += model::kindName(shape);
-        for (const auto& [key, value] : model::namedDimensions(shape)) {
+        text += shape::kindName(shape);
+        for (const auto& [key, value] : shape::namedDimensions(shape)) {
             text += ' ';
             text += key;
             text += ' ' + std::to_string(std::lround(1e3 * value));
@@ -99,7 +99,7 @@ TEST(SceneReader, MakesDiametersOfFits) {
         const auto scene = read(partOf(shape));
         EXPECT_TRUE(scene) << errorsOf(partOf(shape));
         if (!scene) return 0.0;
-        for (const auto& [key, value] : model::namedDimensions(std::get<model::Shape>(scene->parts[0].geometry)))
+        for (const auto& [key, value] : shape::namedDimensions(std::get<shape::Shape>(scene->parts[0].geometry)))
             if (std::string(key).ends_with("diameter")) return value;
         return 0.0;
     };
@@ -116,7 +116,7 @@ TEST(SceneReader, MakesDiametersOfFits) {
     const auto inches =
         read("unit = \"in\"\n" + partOf(R"(kind = "peg", length = 2, fit = "H8/h7", nominal_diameter = 1)"));
     ASSERT_TRUE(inches);
-    EXPECT_NEAR(std::get<model::Peg>(std::get<model::Shape>(inches->parts[0].geometry)).diameter, 0.0254 - 10.5e-6,
+    EXPECT_NEAR(std::get<shape::Peg>(std::get<shape::Shape>(inches->parts[0].geometry)).diameter, 0.0254 - 10.5e-6,
                 1e-15);
 }
 
@@ -146,8 +146,8 @@ TEST(SceneReader, ReportsWhatIsWrongWithAFitWhereItIsWritten) {
 TEST(SceneReader, KnowsItsUnits) {
     // Truth: closed form: definition of the units; the part's own unit wins.
     const std::string sphere = "[[part]]\nname = \"ball\"\nheld = true\nshape = { kind = \"sphere\", diameter = 2 }\n";
-    const auto diameter = [](const Result<model::SceneSpec>& scene) {
-        return std::get<model::Sphere>(std::get<model::Shape>(scene->parts[0].geometry)).diameter;
+    const auto diameter = [](const Result<scene::SceneSpec>& scene) {
+        return std::get<shape::Sphere>(std::get<shape::Shape>(scene->parts[0].geometry)).diameter;
     };
     EXPECT_EQ(diameter(read(sphere)), 2e-3);
     EXPECT_EQ(diameter(read("unit = \"m\"\n" + sphere + "[contact]\nspacing_mm = 10\n")), 2.0);
@@ -194,7 +194,7 @@ TEST(SceneReader, CouplesThePenaltyThroughATool) {
     const std::string head = kParts + "[device]\npreset = \"arm\"\n[contact]\nmethod = \"penalty\"\ncoupling = ";
     const auto scene = readSceneText(head + "\"virtual\"\n", "s.toml", devices);
     ASSERT_TRUE(scene);
-    EXPECT_EQ(scene->contact.coupling, model::PenaltyCoupling::Virtual);
+    EXPECT_EQ(scene->contact.coupling, scene::PenaltyCoupling::Virtual);
     EXPECT_EQ(scene->contact.penalty_stiffness, 40000.0);
     EXPECT_DOUBLE_EQ(scene->contact.tool_mass, 0.06);
     EXPECT_DOUBLE_EQ(scene->contact.tool_inertia, 8e-5);
@@ -202,7 +202,7 @@ TEST(SceneReader, CouplesThePenaltyThroughATool) {
         head + "\"quasi_static\"\npenalty_stiffness_N_per_m = 7000\ntool_mass_kg = 0.2\ntool_inertia_kg_m2 = 0.001\n",
         "s.toml", devices);
     ASSERT_TRUE(named);
-    EXPECT_EQ(named->contact.coupling, model::PenaltyCoupling::QuasiStatic);
+    EXPECT_EQ(named->contact.coupling, scene::PenaltyCoupling::QuasiStatic);
     EXPECT_EQ(named->contact.penalty_stiffness, 7000.0);
     EXPECT_EQ(named->contact.tool_mass, 0.2);
     EXPECT_EQ(named->contact.tool_inertia, 0.001);
@@ -345,7 +345,7 @@ TEST(SceneReader, BoundsLengths) {
 
 TEST(SceneReader, KnowsEveryModeByItsName) {
     // Truth: closed form.
-    for (const model::FieldMode mode : model::kFieldModes) {
+    for (const field::FieldMode mode : field::kFieldModes) {
         const auto scene = read(kParts + "[contact]\nmode = \"" + modeName(mode) + "\"\n");
         ASSERT_TRUE(scene);
         EXPECT_EQ(scene->contact.mode, mode);
@@ -401,7 +401,7 @@ TEST(SceneReader, FindsMeshesBesideTheFile) {
     std::ofstream(folder / "s.toml") << "[[part]]\nname = \"b\"\nheld = true\nmesh = \"corner.off\"\nunit = \"cm\"\n";
     const auto scene = readScene((folder / "s.toml").string(), {});
     ASSERT_TRUE(scene) << toString(scene.errors().front());
-    const auto& mesh = std::get<model::MeshFile>(scene->parts[0].geometry);
+    const auto& mesh = std::get<scene::MeshFile>(scene->parts[0].geometry);
     EXPECT_TRUE(std::filesystem::exists(mesh.path));
     EXPECT_EQ(mesh.metres_per_unit, 0.01);
     std::filesystem::remove(folder / "corner.off");
@@ -417,7 +417,7 @@ TEST(SceneReader, ReadsAFileWithOnePart) {
     std::ofstream(path) << "[[part]]\nname = \"ball\"\nshape = { kind = \"sphere\", diameter = 2 }\n";
     const auto part = readPart(path.string(), 1.0);
     ASSERT_TRUE(part);
-    EXPECT_EQ(std::get<model::Sphere>(std::get<model::Shape>(part->geometry)).diameter, 2.0);
+    EXPECT_EQ(std::get<shape::Sphere>(std::get<shape::Shape>(part->geometry)).diameter, 2.0);
     std::ofstream(path, std::ios::app) << "[[part]]\nname = \"b\"\nshape = { kind = \"sphere\", diameter = 2 }\n";
     const auto two = readPart(path.string());
     ASSERT_FALSE(two);

@@ -13,7 +13,7 @@
 namespace passung::protocol {
 namespace {
 
-Result<StudyPlan> readShipped(const std::string& name) {
+Result<plan::StudyPlan> readShipped(const std::string& name) {
     return readProtocol(PASSUNG_SOURCE_DIR "/protocols/" + name, knownDevices(), knownMeasures());
 }
 
@@ -22,7 +22,7 @@ TEST(ShippedFiles, PegInHoleAsksForConsentInTwoLanguages) {
     const auto plan = readShipped("peg_in_hole/study.toml");
     ASSERT_TRUE(plan) << toString(plan.errors()[0]);
     std::string clauses;
-    for (const ConsentClause& clause : plan->consent) {
+    for (const plan::ConsentClause& clause : plan->consent) {
         clauses += clause.clause + (clause.required ? " " : "? ");
         ASSERT_EQ(clause.texts.size(), 2u) << clause.clause;
         for (const auto& [language, text] : clause.texts) {
@@ -34,11 +34,11 @@ TEST(ShippedFiles, PegInHoleAsksForConsentInTwoLanguages) {
     EXPECT_EQ(clauses, "taking_part data_use sharing? ");
 }
 
-double radialClearance(const Condition& condition) {
-    const auto& shape = [&](std::size_t i) -> const model::Shape& {
-        return std::get<model::Shape>(condition.scene.parts[i].geometry);
+double radialClearance(const plan::Condition& condition) {
+    const auto& shape = [&](std::size_t i) -> const shape::Shape& {
+        return std::get<shape::Shape>(condition.scene.parts[i].geometry);
     };
-    return 0.5 * (std::get<model::BorePlate>(shape(0)).bore_diameter - std::get<model::Peg>(shape(1)).diameter);
+    return 0.5 * (std::get<shape::BorePlate>(shape(0)).bore_diameter - std::get<shape::Peg>(shape(1)).diameter);
 }
 
 TEST(ShippedFiles, PegInHoleHasItsTwelveConditions) {
@@ -47,8 +47,8 @@ TEST(ShippedFiles, PegInHoleHasItsTwelveConditions) {
     ASSERT_TRUE(plan) << toString(plan.errors()[0]);
     EXPECT_TRUE(plan->warnings.empty());
     ASSERT_EQ(plan->conditions.size(), 12u);
-    using enum model::ContactMethod;
-    constexpr model::ContactMethod kMethods[]{Penalty, GodObjectHeuristic, GodObject};
+    using enum scene::ContactMethod;
+    constexpr scene::ContactMethod kMethods[]{Penalty, GodObjectHeuristic, GodObject};
     const auto sigma7 = simulated::describe(*simulated::findPreset("sigma7"));
     for (std::size_t i = 0; i < 12; ++i) {
         const auto& condition = plan->conditions[i];
@@ -81,9 +81,9 @@ TEST(ShippedFiles, PegInHoleAsksForLoadAfterItsMainBlockAndForTheContactOfEachCo
     ASSERT_TRUE(plan);
     ASSERT_EQ(plan->questionnaires.size(), 2u);
     EXPECT_EQ(plan->questionnaires[0].definition.key, "nasa_tlx_raw");
-    EXPECT_EQ(plan->questionnaires[0].moment, Moment::AfterBlock);
+    EXPECT_EQ(plan->questionnaires[0].moment, plan::Moment::AfterBlock);
     EXPECT_EQ(plan->questionnaires[1].definition.key, "contact_perception");
-    EXPECT_EQ(plan->questionnaires[1].moment, Moment::AfterCondition);
+    EXPECT_EQ(plan->questionnaires[1].moment, plan::Moment::AfterCondition);
 }
 
 TEST(ShippedFiles, DesignsGivesEveryCombinationEquallyOften) {
@@ -94,9 +94,9 @@ TEST(ShippedFiles, DesignsGivesEveryCombinationEquallyOften) {
     ASSERT_EQ(plan->warnings.size(), 1u) << "no actuator gives the vibration";
     EXPECT_NE(plan->warnings[0].find("\"vibrotactile\""), std::string::npos);
     EXPECT_EQ(plan->conditions.size(), 32u);
-    EXPECT_EQ(groupNames(*plan), (std::vector<std::string>{"proxy", "device"}));
-    EXPECT_EQ(sessionsOf(*plan), 2);
-    const auto design = designOf(*plan);
+    EXPECT_EQ(plan::groupNames(*plan), (std::vector<std::string>{"proxy", "device"}));
+    EXPECT_EQ(plan::sessionsOf(*plan), 2);
+    const auto design = plan::designOf(*plan);
     ASSERT_EQ(design::sequencesOf(design), 8u);
     std::map<std::size_t, int> seen;
     for (std::size_t group = 0; group < 2; ++group)
@@ -124,12 +124,13 @@ TEST(ShippedFiles, RealVsVirtualHasItsEnvironmentsThreeTimesInBalancedOrders) {
     ASSERT_EQ(plan->warnings.size(), 1u) << "no actuator gives the vibration";
     EXPECT_NE(plan->warnings[0].find("\"vibrotactile\""), std::string::npos);
     ASSERT_EQ(plan->conditions.size(), 21u);
-    const Condition &real = plan->conditions[0], &kinesthetic = plan->conditions[4], &alone = plan->conditions[13];
-    EXPECT_EQ(real.timed_by, TimedBy::Experimenter);
+    const plan::Condition &real = plan->conditions[0], &kinesthetic = plan->conditions[4],
+                          &alone = plan->conditions[13];
+    EXPECT_EQ(real.timed_by, plan::TimedBy::Experimenter);
     EXPECT_FALSE(real.scene.display_wrench);
     EXPECT_TRUE(kinesthetic.scene.display_wrench);
     EXPECT_EQ(alone.name, "alone@secondary_task");
-    EXPECT_EQ(alone.timed_by, TimedBy::Clock);
+    EXPECT_EQ(alone.timed_by, plan::TimedBy::Clock);
     for (std::size_t i = 0; i < 21; ++i) {
         EXPECT_EQ(plan->conditions[i].secondary.any(), i / 7 == 1) << plan->conditions[i].name;
         EXPECT_EQ(plan->conditions[i].cues.masking_noise, i / 7 == 2) << plan->conditions[i].name;
@@ -137,7 +138,7 @@ TEST(ShippedFiles, RealVsVirtualHasItsEnvironmentsThreeTimesInBalancedOrders) {
     EXPECT_EQ(plan->languages, (std::vector<std::string>{"en", "de"}));
     EXPECT_EQ(plan->instructions.size(), 5u);
     EXPECT_EQ(plan->pictures.size(), 1u);
-    const auto design = designOf(*plan);
+    const auto design = plan::designOf(*plan);
     ASSERT_EQ(design::sequencesOf(design), 6u);
     std::map<std::pair<std::int64_t, std::size_t>, int> seen;  // position in the regular block, condition
     for (std::size_t slot = 0; slot < 6; ++slot) {
@@ -159,14 +160,14 @@ TEST(ShippedFiles, NarrowPassageBalancesItsSixConditionsOver42People) {
     ASSERT_EQ(plan->conditions.size(), 6u);
     EXPECT_EQ(plan->participants, 42);
     for (std::size_t i = 0; i < 6; ++i) {
-        const Condition& condition = plan->conditions[i];
+        const plan::Condition& condition = plan->conditions[i];
         EXPECT_EQ(condition.scene.display_wrench, i / 2 == 2) << condition.name;
         EXPECT_EQ(condition.cues.visual, i / 2 == 0);
         EXPECT_EQ(condition.cues.vibrotactile, i / 2 == 1);
         EXPECT_NEAR(radialClearance(condition), i % 2 == 0 ? 3e-3 : 0.5e-3, 1e-12);
-        EXPECT_NEAR(std::get<NarrowPassageTask>(condition.task.form).width, i % 2 == 0 ? 0.026 : 0.021, 1e-12);
+        EXPECT_NEAR(std::get<plan::NarrowPassageTask>(condition.task.form).width, i % 2 == 0 ? 0.026 : 0.021, 1e-12);
     }
-    const auto design = designOf(*plan);
+    const auto design = plan::designOf(*plan);
     ASSERT_EQ(design::sequencesOf(design), 6u);
     std::map<std::pair<std::int64_t, std::size_t>, int> seen;
     for (std::size_t slot = 0; slot < 42; ++slot) {

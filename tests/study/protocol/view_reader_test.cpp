@@ -25,7 +25,7 @@ name = "main"
 order = "listed"
 )";
 
-Result<StudyPlan> read(const std::string& text) {
+Result<plan::StudyPlan> read(const std::string& text) {
     static const auto devices = fakeDevices();
     return readProtocolText(text, "p.toml", devices, std::vector<std::string>{"completion_time_s"});
 }
@@ -54,8 +54,8 @@ max_picture_age_ms = 250
 min_pictures_per_s = 20
 )");
     ASSERT_TRUE(plan) << toString(plan.errors().front());
-    const View& view = plan->view;
-    EXPECT_EQ(view.theme, Theme::Light);
+    const plan::View& view = plan->view;
+    EXPECT_EQ(view.theme, plan::Theme::Light);
     EXPECT_DOUBLE_EQ(view.text_scale, 1.5);
     EXPECT_EQ(view.camera_from, Vec3(0, -2, 1));
     EXPECT_NEAR((*view.camera_target - Vec3(0.01, 0.02, 0.03)).norm(), 0.0, 1e-15);
@@ -75,7 +75,7 @@ TEST(ViewReader, AnEmptyTableIsTheSameAsNone) {
     // Truth: invariant: the defaults of the key table are those of the value.
     const auto none = read(kStudy), empty = read(kStudy + "[view]\n");
     ASSERT_TRUE(none && empty);
-    EXPECT_EQ(viewJson(empty->view), viewJson(View{}));
+    EXPECT_EQ(plan::viewJson(empty->view), plan::viewJson(plan::View{}));
     EXPECT_EQ(none->expanded_json, empty->expanded_json);
 }
 

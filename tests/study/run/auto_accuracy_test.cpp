@@ -2,16 +2,16 @@
 
 #include <gtest/gtest.h>
 
-namespace passung::app {
+namespace passung::run {
 namespace {
 
 TEST(AutoAccuracy, WritesTheKeptPickIntoTheScenesThatAskForIt) {
     // Truth: invariant. SI from the units in the names; another protocol's pick, another budget and a fixed condition
     // do not count.
-    protocol::StudyPlan plan;
+    plan::StudyPlan plan;
     plan.conditions.resize(2);
     plan.conditions[0].accuracy_budget = 50e-6;
-    const model::ContactSpec untouched = plan.conditions[1].scene.contact;
+    const scene::ContactSpec untouched = plan.conditions[1].scene.contact;
     store::AccuracyRow pick{.protocol_sha256 = "a",
                             .candidate = 0,
                             .mode = "linear",
@@ -23,10 +23,10 @@ TEST(AutoAccuracy, WritesTheKeptPickIntoTheScenesThatAskForIt) {
     pick.picked_for_us.push_back(50.0);
     EXPECT_FALSE(applyAccuracy("another", std::vector{pick}, plan));
     ASSERT_TRUE(applyAccuracy("a", std::vector{pick}, plan));
-    const model::ContactSpec& contact = plan.conditions[0].scene.contact;
+    const scene::ContactSpec& contact = plan.conditions[0].scene.contact;
     EXPECT_NEAR(contact.tolerance, 50e-6, 1e-15);
     EXPECT_NEAR(contact.spacing, 2e-3, 1e-15);
-    EXPECT_EQ(contact.mode, model::FieldMode::Linear);
+    EXPECT_EQ(contact.mode, field::FieldMode::Linear);
     EXPECT_EQ(contact.budget_nodes, 300);
     EXPECT_NE(plan.conditions[0].params_json.find("\"budget_nodes\":300"), std::string::npos)
         << plan.conditions[0].params_json;
@@ -36,16 +36,16 @@ TEST(AutoAccuracy, WritesTheKeptPickIntoTheScenesThatAskForIt) {
 
 TEST(AutoAccuracy, APickIsFeltBothWaysWhereOneWayWouldMissAPin) {
     // Truth: closed form: a pin of 1 mm is thinner than the gap between points 1 mm apart to all sides; a post is not.
-    protocol::StudyPlan plan;
+    plan::StudyPlan plan;
     plan.conditions.resize(2);
-    const model::Shape obstacles[] = {model::Cylinder{0.001, 0.01}, model::Box{0.02, 0.02, 0.02}};
+    const shape::Shape obstacles[] = {shape::Cylinder{0.001, 0.01}, shape::Box{0.02, 0.02, 0.02}};
     for (std::size_t i = 0; i < 2; ++i) {
         plan.conditions[i].accuracy_budget = 50e-6;
         auto& parts = plan.conditions[i].scene.parts;
         parts.resize(2);
         parts[0].name = "block";
         parts[0].held = true;
-        parts[0].geometry = model::Box{0.04, 0.02, 0.02};
+        parts[0].geometry = shape::Box{0.04, 0.02, 0.02};
         parts[1].name = "still";
         parts[1].geometry = obstacles[i];
     }
@@ -62,15 +62,15 @@ TEST(AutoAccuracy, APickIsFeltBothWaysWhereOneWayWouldMissAPin) {
 
 TEST(AutoAccuracy, NamesThePicksThatThisMachineIsTooSlowFor) {
     // Truth: invariant. A query takes more than a picosecond and less than a minute.
-    protocol::StudyPlan plan;
+    plan::StudyPlan plan;
     plan.conditions.resize(1);
     plan.conditions[0].accuracy_budget = 1e-6;
     auto& parts = plan.conditions[0].scene.parts;
     parts.resize(2);
     parts[0].name = "cube";
-    parts[0].geometry = model::Box{0.004, 0.004, 0.004};
+    parts[0].geometry = shape::Box{0.004, 0.004, 0.004};
     parts[1].name = "ball";
-    parts[1].geometry = model::Sphere{0.002};
+    parts[1].geometry = shape::Sphere{0.002};
     parts[1].held = true;
     const store::AccuracyRow pick{.protocol_sha256 = "a",
                                   .candidate = 0,
@@ -85,4 +85,4 @@ TEST(AutoAccuracy, NamesThePicksThatThisMachineIsTooSlowFor) {
 }
 
 }  // namespace
-}  // namespace passung::app
+}  // namespace passung::run

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdlib>
 
-namespace passung::app {
+namespace passung::run {
 namespace {
 
 TEST(Discreet, LeavesOutWhatPeopleAreNamedByAndWhatTheyTyped) {
@@ -49,4 +49,4 @@ TEST(Discreet, ALineIsBoundedAndCutBetweenCharacters) {
 }
 
 }  // namespace
-}  // namespace passung::app
+}  // namespace passung::run

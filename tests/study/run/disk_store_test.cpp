@@ -15,7 +15,7 @@ namespace {
 TEST(DiskStore, GivesBackWhatItKept) {
     // Truth: invariant. Bytes of every value; written over; nothing else is left in the folder, which is made.
     const TempFolder folder;
-    app::DiskStore store(folder.path() / "new" / "folder");
+    run::DiskStore store(folder.path() / "new" / "folder");
     EXPECT_FALSE(store.load("a.build"));
     std::string bytes;
     for (int i = 0; i < 70000; ++i) bytes.push_back(static_cast<char>(i));
@@ -32,11 +32,11 @@ TEST(DiskStore, KeepsNothingWhereItCannotWrite) {
     // Truth: invariant. Its folder is a file; the name is that of a folder.
     const TempFolder folder;
     writeText(folder / "file", "");
-    app::DiskStore nowhere(folder / "file");
+    run::DiskStore nowhere(folder / "file");
     nowhere.keep("a.build", "x");
     EXPECT_FALSE(nowhere.load("a.build"));
     std::filesystem::create_directory(folder / "a.build");
-    app::DiskStore store(folder.path());
+    run::DiskStore store(folder.path());
     store.keep("a.build", "x");
     EXPECT_FALSE(store.load("a.build"));
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2);

@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace passung::app {
+namespace passung::run {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;  // [ns]
@@ -122,4 +122,4 @@ TEST(FrameClock, TheOldestPictureAgesUntilAnotherTakesItsPlace) {
 }
 
 }  // namespace
-}  // namespace passung::app
+}  // namespace passung::run

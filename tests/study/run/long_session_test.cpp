@@ -23,11 +23,11 @@ constexpr double kMegabytesAnHour = 500.0;
 /// kTrialSeconds of what a simulated person does in the small study, trial after trial, with times that ticks take.
 std::vector<TickRecord> realRecords(const std::string& path) {
     const auto plan =
-        require(protocol::readProtocolText(smallStudy(), "study.toml", app::knownDevices(), app::knownMeasures()));
-    app::RunOptions options;
+        require(protocol::readProtocolText(smallStudy(), "study.toml", run::knownDevices(), run::knownMeasures()));
+    run::RunOptions options;
     options.database = path;
     options.backup = false;
-    require(app::runStudy(plan, options, {}));
+    require(run::runStudy(plan, options, {}));
     const store::StoreReader reader = require(store::StoreReader::open(path));
     std::vector<TickRecord> all;
     for (const store::AttemptRow& attempt : require(reader.attempts()))

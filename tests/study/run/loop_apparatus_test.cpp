@@ -17,16 +17,16 @@
 #include "tests/study/run/stub_performer.h"
 #include "tests/ui/cli/small_study.h"
 
-namespace passung::app {
+namespace passung::run {
 namespace {
 
 using Names = std::vector<std::string>;
 
 /// The small study's conditions: "none" is rendered by penalty, "fair" by the god object heuristic.
-const protocol::Condition& condition(const std::string& name) {
+const plan::Condition& condition(const std::string& name) {
     static const auto plan =
         protocol::readProtocolText(test::smallStudy(), "small.toml", knownDevices(), knownMeasures());
-    for (const protocol::Condition& c : plan->conditions) {
+    for (const plan::Condition& c : plan->conditions) {
         if (c.name == name) return c;
     }
     throw std::runtime_error("no condition " + name);
@@ -34,7 +34,7 @@ const protocol::Condition& condition(const std::string& name) {
 
 LoopApparatus makeApparatus() { return {*simulated::findPreset("sigma7"), {}, Clock::Virtual}; }
 
-Names stagesOf(const protocol::Condition& c) {
+Names stagesOf(const plan::Condition& c) {
     LoopApparatus apparatus = makeApparatus();
     const auto stages = apparatus.prepare(c, 1, 0);
     Names names;
@@ -46,7 +46,7 @@ Names stagesOf(const protocol::Condition& c) {
 }
 
 /// Runs some ticks; all records and what stop() says.
-std::pair<std::vector<TickRecord>, session::LoopHealth> runTicks(const protocol::Condition& c, std::uint64_t seed,
+std::pair<std::vector<TickRecord>, session::LoopHealth> runTicks(const plan::Condition& c, std::uint64_t seed,
                                                                  std::int64_t ticks) {
     LoopApparatus apparatus = makeApparatus();
     EXPECT_TRUE(apparatus.prepare(c, seed, 0));
@@ -69,7 +69,7 @@ TEST(LoopApparatus, NamesTheStagesThatTheConditionCallsForAndNoOthers) {
     EXPECT_EQ(stagesOf(condition("fair")),
               (Names{"input guard", "energy account", "start gate", "proxy correction", "proxy motion", "proxy record",
                      "hand depth", "virtual coupling", "contact shares", "output limits"}));
-    protocol::Condition bare = condition("fair");
+    plan::Condition bare = condition("fair");
     bare.scene.start_gate = {};
     bare.scene.record_hand_depth = false;
     bare.scene.contact.proxy_filter = 100.0;
@@ -82,9 +82,9 @@ TEST(LoopApparatus, NamesTheStagesThatTheConditionCallsForAndNoOthers) {
 /// Somebody of this kind takes part in windows; the device is held by a simulated hand all the same.
 class Somebody final : public test::StubPerformer {
 public:
-    Somebody(protocol::ParticipantKind kind, std::string sound, std::optional<std::int64_t> coloured)
+    Somebody(plan::ParticipantKind kind, std::string sound, std::optional<std::int64_t> coloured)
         : kind_(kind), sound_(std::move(sound)), coloured_(coloured) {}
-    protocol::ParticipantKind kind() const override { return kind_; }
+    plan::ParticipantKind kind() const override { return kind_; }
     DeviceDescription describe(const simulated::DeviceParams& preset) const override {
         return simulated::describe(preset);
     }
@@ -96,14 +96,14 @@ public:
     }
 
 private:
-    protocol::ParticipantKind kind_;
+    plan::ParticipantKind kind_;
     std::string sound_;
     std::optional<std::int64_t> coloured_;  // pictures with the cue's colour
 };
 
-session::Delivered deliveredTo(protocol::ParticipantKind kind, const std::string& sound, bool masking,
+session::Delivered deliveredTo(plan::ParticipantKind kind, const std::string& sound, bool masking,
                                std::optional<std::int64_t> coloured = {}) {
-    protocol::Condition everything = condition("none");
+    plan::Condition everything = condition("none");
     everything.cues.visual = everything.cues.vibrotactile = everything.cues.audio = true;
     everything.cues.masking_noise = masking;
     Somebody somebody(kind, sound, coloured);
@@ -122,7 +122,7 @@ session::Delivered deliveredTo(protocol::ParticipantKind kind, const std::string
 TEST(LoopApparatus, TellsWhatOfTheFeedbackReachedWhom) {
     // Truth: invariant: a simulated person's senses take everything, those of a person what was drawn, played and
     // acknowledged: no vibration as there is no actuator, no sound without output, no colour without a picture.
-    using enum protocol::ParticipantKind;
+    using enum plan::ParticipantKind;
     const session::Delivered simulated = deliveredTo(Simulated, "silent", true);
     EXPECT_GT(simulated.force, 0);
     EXPECT_GT(simulated.visual, 0);
@@ -146,7 +146,7 @@ TEST(LoopApparatus, TellsWhatOfTheFeedbackReachedWhom) {
 
 TEST(LoopApparatus, RefusesADeviceThatItDoesNotKnow) {
     // Truth: invariant (an error that names key and value)
-    protocol::Condition other = condition("fair");
+    plan::Condition other = condition("fair");
     other.device = "sigma8";
     LoopApparatus apparatus = makeApparatus();
     const auto stages = apparatus.prepare(other, 1, 0);
@@ -278,8 +278,8 @@ private:
 class DeviceOfHis : public test::StubPerformer {
 public:
     std::unique_ptr<loop::HapticDevice> device(const simulated::DeviceParams& preset,
-                                               const protocol::Condition& c) override {
-        const model::Registration& r = c.scene.registration;
+                                               const plan::Condition& c) override {
+        const scene::Registration& r = c.scene.registration;
         auto hand = std::make_unique<simulated::SimulatedDevice>(
             preset, simulatedHand({}, 0), visibleTask(c), simulated::HandRegistration{r.X_WB, r.scale, r.X_DH}, 5);
         auto watched = std::make_unique<WatchedDevice>(std::move(hand), forces);
@@ -314,4 +314,4 @@ TEST(LoopApparatus, AHaltInContactTurnsTheMotorsOffWithinTwoTicks) {
 }
 
 }  // namespace
-}  // namespace passung::app
+}  // namespace passung::run

@@ -17,12 +17,12 @@ using Clock = std::chrono::steady_clock;
 TEST(NoSocket, ASessionThatWaitsWithoutOneDoesNotSpin) {
     // Truth: closed form. Between two looks for a command lies at least the time that a socket would be waited for. The
     // database's name leaves no room for one beside it.
-    const auto plan = protocol::readProtocolText(smallStudy(), "study.toml", app::knownDevices(), app::knownMeasures());
+    const auto plan = protocol::readProtocolText(smallStudy(), "study.toml", run::knownDevices(), run::knownMeasures());
     ASSERT_TRUE(plan);
     const TempFolder folder;
     std::vector<Clock::time_point> looks;
     std::vector<std::string> warnings;
-    app::RunOptions options;
+    run::RunOptions options;
     options.database = folder / (std::string(100, 'd') + ".db");
     options.backup = false;
     options.wait = true;
@@ -34,10 +34,10 @@ TEST(NoSocket, ASessionThatWaitsWithoutOneDoesNotSpin) {
     const auto listener = [&](const session::SessionEvent& event) {
         if (const auto* warned = std::get_if<session::Warned>(&event)) warnings.push_back(warned->text);
     };
-    const auto end = app::runStudy(*plan, options, listener);
+    const auto end = run::runStudy(*plan, options, listener);
     ASSERT_TRUE(end);
     ASSERT_EQ(warnings.size(), 1u) << "there was a socket after all";
-    EXPECT_GE(looks.back() - looks.front(), (looks.size() - 1) * app::CommandSocket::kServeWait);
+    EXPECT_GE(looks.back() - looks.front(), (looks.size() - 1) * run::CommandSocket::kServeWait);
 }
 
 }  // namespace

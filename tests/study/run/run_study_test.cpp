@@ -9,10 +9,10 @@
 #include "tests/support/temp_folder.h"
 #include "tests/ui/cli/small_study.h"
 
-namespace passung::app {
+namespace passung::run {
 namespace {
 
-protocol::StudyPlan planOf(const std::string& text) {
+plan::StudyPlan planOf(const std::string& text) {
     auto plan = protocol::readProtocolText(text, "study.toml", knownDevices(), knownMeasures());
     if (!plan) throw std::runtime_error(toString(plan.errors().front()));
     return *std::move(plan);
@@ -72,4 +72,4 @@ TEST(RunStudy, EverySessionInRealTimeBeginsWhenItBegins) {
 }
 
 }  // namespace
-}  // namespace passung::app
+}  // namespace passung::run

@@ -6,10 +6,10 @@
 #include "study/protocol/protocol_reader.h"
 #include "study/run/freeze.h"
 
-namespace passung::app {
+namespace passung::run {
 namespace {
 
-protocol::StudyPlan shippedStudy() {
+plan::StudyPlan shippedStudy() {
     auto plan =
         protocol::readProtocol(PASSUNG_SOURCE_DIR "/protocols/peg_in_hole/study.toml", knownDevices(), knownMeasures());
     if (!plan) throw std::runtime_error(toString(plan.errors().front()));
@@ -48,4 +48,4 @@ TEST(SimulatedAnswers, AStudyThatKeepsItsStiffnessKeepsItsQuestionnaires) {
 }
 
 }  // namespace
-}  // namespace passung::app
+}  // namespace passung::run

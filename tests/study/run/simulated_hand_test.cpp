@@ -6,7 +6,7 @@
 #include <set>
 #include <string_view>
 
-namespace passung::app {
+namespace passung::run {
 namespace {
 
 bool differ(const simulated::HandParams& a, const simulated::HandParams& b) { return std::memcmp(&a, &b, sizeof a); }
@@ -43,4 +43,4 @@ TEST(SimulatedHand, IsFasterAfterPractice) {
 }
 
 }  // namespace
-}  // namespace passung::app
+}  // namespace passung::run

@@ -19,7 +19,7 @@ namespace {
 constexpr std::chrono::milliseconds kDelay{200};
 
 /// The small study with trials that end by their time-out only.
-protocol::StudyPlan shortTrials() {
+plan::StudyPlan shortTrials() {
     std::string text = smallStudy();
     const auto replace = [&](const std::string& from, const std::string& to) {
         const auto at = text.find(from);
@@ -28,7 +28,7 @@ protocol::StudyPlan shortTrials() {
     };
     replace("\"task.timeout_s\" = 20", "\"task.timeout_s\" = 1.2");
     replace("repetitions = 3", "repetitions = 1");
-    auto plan = protocol::readProtocolText(text, "study.toml", app::knownDevices(), app::knownMeasures());
+    auto plan = protocol::readProtocolText(text, "study.toml", run::knownDevices(), run::knownMeasures());
     if (!plan) throw std::runtime_error(toString(plan.errors().front()));
     return *std::move(plan);
 }
@@ -38,11 +38,11 @@ TEST(SlowDisk, NoWriteOf200MillisecondsReachesTheTick) {
     // tick that waited for one would have that in its own record, as computing time or as the periods that the next one
     // came late. One tick is left to a system that gives this process no time. Nothing is dropped.
     const fake::TempFolder folder;
-    const protocol::StudyPlan plan = shortTrials();
-    app::RunOptions options;
+    const plan::StudyPlan plan = shortTrials();
+    run::RunOptions options;
     options.database = folder / "s.db";
     options.participant = "S001";
-    options.clock = app::Clock::RealTime;
+    options.clock = run::Clock::RealTime;
     options.backup = false;
     std::atomic<int> waits = 0;
     std::atomic<bool> runs = false;
@@ -58,7 +58,7 @@ TEST(SlowDisk, NoWriteOf200MillisecondsReachesTheTick) {
             runs = true;  // the session is there
             return false;
         };
-        const auto end = app::runStudy(plan, options, {});
+        const auto end = run::runStudy(plan, options, {});
         ASSERT_TRUE(end) << toString(end.errors().front());
     }
     EXPECT_GE(waits, 50);

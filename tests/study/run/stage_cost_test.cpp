@@ -9,17 +9,17 @@
 
 #include "core/scene/scene.h"
 
-namespace passung::app {
+namespace passung::run {
 namespace {
 
-model::SceneSpec pegOverPlate() {
-    model::SceneSpec spec;
-    model::PartSpec plate, peg;
+scene::SceneSpec pegOverPlate() {
+    scene::SceneSpec spec;
+    scene::PartSpec plate, peg;
     plate.name = "plate";
-    plate.geometry = model::Shape(model::BorePlate{0.04, 0.04, 0.012, 0.022, 0.01, 0.001});
+    plate.geometry = shape::Shape(shape::BorePlate{0.04, 0.04, 0.012, 0.022, 0.01, 0.001});
     peg.name = "peg";
     peg.held = true;
-    peg.geometry = model::Shape(model::Peg{0.02, 0.02, 0.001});
+    peg.geometry = shape::Shape(shape::Peg{0.02, 0.02, 0.001});
     peg.X_WP.p = Vec3(0.004, 0.0, 0.008);
     spec.parts = {plate, peg};
     spec.contact.cell = 1e-3;
@@ -49,8 +49,8 @@ private:
 
 TEST(TickCost, IsOfThousandsOfTicksInContactAndOneVerdict) {
     // Truth: invariant (quantiles are in order; a stage is a part of the tick; a peg on a plate takes microseconds).
-    model::PartCache cache;
-    const auto scene = model::buildScene(pegOverPlate(), cache);
+    scene::PartCache cache;
+    const auto scene = scene::buildScene(pegOverPlate(), cache);
     ASSERT_TRUE(scene) << toString(scene.errors()[0]);
     const TickCost cost = measureTick(*scene);
     EXPECT_GE(cost.ticks, 2000);
@@ -68,8 +68,8 @@ TEST(TickCost, IsOfThousandsOfTicksInContactAndOneVerdict) {
 TEST(TickCost, DoesNotCountOtherPrograms) {
     // Truth: invariant (processor time of equal work): under a load that lets a thread wait for milliseconds in one
     // tick of a hundred the 99th percentile stays where it was. The factor is what shared caches may cost.
-    model::PartCache cache;
-    const auto scene = model::buildScene(pegOverPlate(), cache);
+    scene::PartCache cache;
+    const auto scene = scene::buildScene(pegOverPlate(), cache);
     ASSERT_TRUE(scene);
     const double quiet = measureTick(*scene).p99_us;
     const Load load;
@@ -77,4 +77,4 @@ TEST(TickCost, DoesNotCountOtherPrograms) {
 }
 
 }  // namespace
-}  // namespace passung::app
+}  // namespace passung::run

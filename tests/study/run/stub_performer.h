@@ -5,10 +5,10 @@
 namespace passung::test {
 
 /// Somebody with a device at a computer that shows nothing.
-class StubPerformer : public app::Performer {
+class StubPerformer : public run::Performer {
 public:
-    protocol::ParticipantKind kind() const override { return protocol::ParticipantKind::Pilot; }
-    std::unique_ptr<loop::HapticDevice> device(const simulated::DeviceParams&, const protocol::Condition&) override {
+    plan::ParticipantKind kind() const override { return plan::ParticipantKind::Pilot; }
+    std::unique_ptr<loop::HapticDevice> device(const simulated::DeviceParams&, const plan::Condition&) override {
         return nullptr;
     }
     DeviceDescription describe(const simulated::DeviceParams&) const override { return {}; }
@@ -17,7 +17,7 @@ public:
     session::QuestionnaireSource* answers() override { return nullptr; }
     session::InstructionReader* reader() override { return nullptr; }
     void begins(session::Apparatus&, const session::SessionSetup&) override {}
-    void prepares(const protocol::Condition&, std::int64_t, std::uint64_t) override {}
+    void prepares(const plan::Condition&, std::int64_t, std::uint64_t) override {}
     bool builds(double) override { return true; }
     void look(session::Session&) override {}
     void over() override {}

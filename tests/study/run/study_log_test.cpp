@@ -11,7 +11,7 @@
 
 #include "tests/support/temp_folder.h"
 
-namespace passung::app {
+namespace passung::run {
 namespace {
 
 namespace fs = std::filesystem;
@@ -148,4 +148,4 @@ TEST_F(StudyLogTest, RightsThatAreLostBeforeItRotatesAreOneWarning) {
 }
 
 }  // namespace
-}  // namespace passung::app
+}  // namespace passung::run

@@ -5,10 +5,10 @@
 #include <map>
 #include <vector>
 
-namespace passung::app {
+namespace passung::run {
 namespace {
 
-class Memory final : public model::BuildStore {
+class Memory final : public scene::BuildStore {
 public:
     std::map<std::string, std::string> kept;
     std::optional<std::string> load(const std::string& name) override {
@@ -53,4 +53,4 @@ TEST(WatchedStore, ABuildThatIsGivenUpLosesNothingThatWasBuilt) {
 }
 
 }  // namespace
-}  // namespace passung::app
+}  // namespace passung::run

@@ -5,12 +5,12 @@
 
 namespace passung::session {
 
-inline SessionSetup setupOf(const protocol::FrozenPlan& plan) { return {plan, {}, "P001"}; }
+inline SessionSetup setupOf(const plan::FrozenPlan& plan) { return {plan, {}, "P001"}; }
 
 #ifdef FAULTS
-inline SessionSetup setupOf(const protocol::StudyPlan& draft) { return {draft, {}, "P001"}; }  // FAULT: takes a draft
-inline void turn(protocol::FrozenPlan& it, const protocol::StudyPlan& draft) { it = draft; }   // FAULT: turns into it
-inline void change(protocol::FrozenPlan& plan) { plan->seed = 1; }                             // FAULT: changes it
+inline SessionSetup setupOf(const plan::StudyPlan& draft) { return {draft, {}, "P001"}; }  // FAULT: takes a draft
+inline void turn(plan::FrozenPlan& it, const plan::StudyPlan& draft) { it = draft; }       // FAULT: turns into it
+inline void change(plan::FrozenPlan& plan) { plan->seed = 1; }                             // FAULT: changes it
 #endif
 
 }  // namespace passung::session

@@ -21,7 +21,7 @@ protected:
         return FormFilling(ShownQuestionnaire{planned_, {}, "1|session_end|||", {2, 1, 0}, {}}, now_ms);
     }
 
-    protocol::PlannedQuestionnaire planned_;
+    plan::PlannedQuestionnaire planned_;
 };
 
 TEST_F(FormFillingTest, TimesEveryItemFromItsFirstShowingToItsLastAnswer) {

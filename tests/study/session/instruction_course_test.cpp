@@ -5,7 +5,7 @@
 namespace passung::session {
 namespace {
 
-using protocol::ShowAt;
+using plan::ShowAt;
 
 /// Reads a page at the third look at it and remembers what it was shown.
 class SlowReader : public InstructionReader {
@@ -51,7 +51,7 @@ protected:
         }
     }
     SessionSetup setup(InstructionReader* reader, const std::string& language, bool timing_measured) {
-        SessionSetup with{protocol::FrozenPlan(plan_), trials_, "P001", 7, timing_measured};
+        SessionSetup with{plan::FrozenPlan(plan_), trials_, "P001", 7, timing_measured};
         with.language = language;
         with.reader = reader;
         return with;

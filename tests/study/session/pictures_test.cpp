@@ -17,7 +17,7 @@ protected:
         given.frames = frames;
         given.frame_age_max_us = age_us;
         apparatus_.given = given;
-        Session session({protocol::FrozenPlan(plan_), trials_, participant, 7, false}, apparatus_, sink_, {});
+        Session session({plan::FrozenPlan(plan_), trials_, participant, 7, false}, apparatus_, sink_, {});
         EXPECT_TRUE(session.run());
         return sink_.ends.at(0);
     }

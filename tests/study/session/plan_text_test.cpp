@@ -7,24 +7,24 @@
 namespace passung::session {
 namespace {
 
-protocol::StudyPlan smallPlan() {
-    protocol::StudyPlan plan;
+plan::StudyPlan smallPlan() {
+    plan::StudyPlan plan;
     plan.name = "demo";
     plan.version = "1";
     plan.title = "A demonstration";
     plan.seed = 42;
     plan.participants = 4;
-    plan.factors = {{"method", protocol::FactorKind::Within, "", {{"a"}, {"b"}, {"c"}, {"d"}}}};
+    plan.factors = {{"method", plan::FactorKind::Within, "", {{"a"}, {"b"}, {"c"}, {"d"}}}};
     for (const char* label : {"a", "b", "c", "d"}) {
-        protocol::Condition condition;
+        plan::Condition condition;
         condition.name = label;
         condition.levels = {plan.conditions.size()};
         condition.device = "arm";
         condition.task.timeout = 30.0;
         plan.conditions.push_back(condition);
     }
-    plan.blocks = {{"practice", protocol::Phase::Practice, 1, protocol::BlockOrder::Random, 2},
-                   {"main", protocol::Phase::Main, 3, protocol::BlockOrder::Williams, 0}};
+    plan.blocks = {{"practice", plan::Phase::Practice, 1, plan::BlockOrder::Random, 2},
+                   {"main", plan::Phase::Main, 3, plan::BlockOrder::Williams, 0}};
     return plan;
 }
 
@@ -73,7 +73,7 @@ TEST(PlanText, WarnsOfUnbalancedNumbers) {
     EXPECT_EQ(planWarnings(plan),
               std::vector<std::string>{"study.participants = 6 is not a multiple of the 4 rows of the Williams square: "
                                        "orders will not be balanced"});
-    plan.blocks[1].order = protocol::BlockOrder::Listed;
+    plan.blocks[1].order = plan::BlockOrder::Listed;
     EXPECT_TRUE(planWarnings(plan).empty());
 }
 
@@ -91,15 +91,14 @@ TEST(PlanText, ListsWhatIsAskedAndWhen) {
     // Truth: closed form; the words are a regression
     auto plan = smallPlan();
     EXPECT_EQ(describePlan(plan, 1)->find("Questionnaires"), std::string::npos);
-    for (const auto moment :
-         {protocol::Moment::SessionEnd, protocol::Moment::AfterBlock, protocol::Moment::AfterTrial}) {
-        protocol::PlannedQuestionnaire planned;
+    for (const auto moment : {plan::Moment::SessionEnd, plan::Moment::AfterBlock, plan::Moment::AfterTrial}) {
+        plan::PlannedQuestionnaire planned;
         planned.definition.key = "ssq";
         planned.definition.version = "1.0";
         planned.definition.items.resize(16);
         planned.language = "de";
         planned.moment = moment;
-        if (moment == protocol::Moment::AfterTrial) planned.block = "practice";
+        if (moment == plan::Moment::AfterTrial) planned.block = "practice";
         plan.questionnaires.push_back(planned);
     }
     EXPECT_NE(describePlan(plan, 1)->find("\nQuestionnaires\n"

@@ -8,8 +8,8 @@ namespace passung::session {
 namespace {
 
 /// A questionnaire of six ratings from 0 to 10; the mean of the first three is a scale.
-protocol::PlannedQuestionnaire sixRatings(const char* key, protocol::Moment moment) {
-    protocol::PlannedQuestionnaire planned;
+plan::PlannedQuestionnaire sixRatings(const char* key, plan::Moment moment) {
+    plan::PlannedQuestionnaire planned;
     planned.moment = moment;
     planned.definition.key = key;
     planned.definition.shuffled = true;
@@ -79,8 +79,8 @@ protected:
     QuestionnaireDeskTest() {
         plan_.name = "study";
         plan_.conditions.resize(2);
-        plan_.questionnaires = {sixRatings("first", protocol::Moment::AfterTrial),
-                                sixRatings("second", protocol::Moment::AfterBlock)};
+        plan_.questionnaires = {sixRatings("first", plan::Moment::AfterTrial),
+                                sixRatings("second", plan::Moment::AfterBlock)};
         for (std::int64_t i = 0; i < 2; ++i)
             trials_.push_back({i, 0, "main", i, "main", static_cast<std::size_t>(i), 1});
     }
@@ -88,7 +88,7 @@ protected:
 
     std::span<const design::PlannedTrial> from(std::size_t next) const { return std::span(trials_).subspan(next); }
 
-    protocol::StudyPlan plan_;
+    plan::StudyPlan plan_;
     std::vector<design::PlannedTrial> trials_;
     StoringSink sink_;
     SlowPerson person_;
@@ -218,7 +218,7 @@ TEST_F(QuestionnaireDeskTest, WhoGoesBackWhileAFormIsOpenIsToldToTakeItAway) {
 
 TEST_F(QuestionnaireDeskTest, AFormOfTheNextBlockIsTakenAwayFromWhoGoesBackBeforeIt) {
     // Truth: invariant: it is about no trial, and comes anew before its block.
-    plan_.questionnaires = {sixRatings("first", protocol::Moment::BeforeBlock)};
+    plan_.questionnaires = {sixRatings("first", plan::Moment::BeforeBlock)};
     plan_.questionnaires[0].block = "next";
     trials_.push_back({2, 1, "next", 0, "main", 0, 1});
     person_.looks = 1;

@@ -7,7 +7,7 @@
 namespace passung::session {
 namespace {
 
-using protocol::Moment;
+using plan::Moment;
 
 /// Two practice trials, then two passes of conditions 0, 1 in block "main", then one trial of block "last".
 std::vector<design::PlannedTrial> sevenTrials() {
@@ -22,14 +22,14 @@ std::vector<design::PlannedTrial> sevenTrials() {
     return trials;
 }
 
-std::vector<Occasion> between(const protocol::StudyPlan& plan, const std::vector<design::PlannedTrial>& trials,
+std::vector<Occasion> between(const plan::StudyPlan& plan, const std::vector<design::PlannedTrial>& trials,
                               std::size_t next) {
     return occasionsBetween(plan, next > 0 ? &trials[next - 1] : nullptr, std::span(trials).subspan(next));
 }
 
 /// When a questionnaire with this moment and block is asked: "next trial: block/trial/condition", - for nothing.
 std::vector<std::string> askedAt(Moment moment, const std::string& block = "") {
-    protocol::StudyPlan plan;
+    plan::StudyPlan plan;
     plan.questionnaires.emplace_back();
     plan.questionnaires[0].moment = moment;
     plan.questionnaires[0].block = block;
@@ -65,7 +65,7 @@ TEST(QuestionnaireMoments, OfOneBlockComeThereOnlyPracticeIncluded) {
 
 TEST(QuestionnaireMoments, WhatEndsComesBeforeWhatBegins) {
     // Truth: invariant: what is over is asked about before anything new, however the plan lists it.
-    protocol::StudyPlan plan;
+    plan::StudyPlan plan;
     for (const Moment moment : {Moment::BeforeBlock, Moment::AfterBlock, Moment::AfterCondition, Moment::AfterTrial}) {
         plan.questionnaires.emplace_back();
         plan.questionnaires.back().moment = moment;
@@ -77,7 +77,7 @@ TEST(QuestionnaireMoments, WhatEndsComesBeforeWhatBegins) {
 
 TEST(QuestionnaireMoments, ATrialThatIsToBeRepeatedKeepsItsConditionAndBlockOpen) {
     // Truth: closed form: trial 2 of block "main" was repeated after 5, so the block ends with it, its condition too.
-    protocol::StudyPlan plan;
+    plan::StudyPlan plan;
     for (const Moment moment :
          {Moment::AfterCondition, Moment::AfterBlock, Moment::SessionStart, Moment::BeforeBlock}) {
         plan.questionnaires.emplace_back();
@@ -95,7 +95,7 @@ TEST(QuestionnaireMoments, ATrialThatIsToBeRepeatedKeepsItsConditionAndBlockOpen
 
 TEST(QuestionnaireMoments, AFormIsAboutTheTrialsOfItsOccasion) {
     // Truth: closed form
-    protocol::StudyPlan plan;
+    plan::StudyPlan plan;
     plan.questionnaires.resize(1);
     const auto count = [&](Moment moment, const Occasion& occasion) {
         plan.questionnaires[0].moment = moment;

@@ -11,7 +11,7 @@
 namespace passung::session {
 namespace {
 
-using protocol::Repeat;
+using plan::Repeat;
 
 /// What the experimenter does when so many attempts have ended, and how the next one goes.
 struct Turn {
@@ -30,14 +30,14 @@ struct Cut {
 class ResumeOrderTest : public SessionTest {
 protected:
     ResumeOrderTest() {
-        plan_.blocks = {{.name = "practice", .phase = protocol::Phase::Practice}, {.name = "main"}, {.name = "stairs"}};
+        plan_.blocks = {{.name = "practice", .phase = plan::Phase::Practice}, {.name = "main"}, {.name = "stairs"}};
         plan_.blocks[2].adaptive = true;
         for (auto& condition : plan_.conditions) condition.task.timeout = 1.2;
         plan_.first_variant = 2;
         addStaircase();
         const auto add = [&](std::size_t block, int count) {
             for (int i = 0; i < count; ++i) {
-                const char* phase = block == 0 ? "practice" : block == 1 ? "main" : protocol::kAdaptivePhase;
+                const char* phase = block == 0 ? "practice" : block == 1 ? "main" : plan::kAdaptivePhase;
                 const std::string& name = plan_.blocks[block].name;
                 trials_.push_back({static_cast<std::int64_t>(trials_.size()), static_cast<std::int64_t>(block), name, i,
                                    phase, static_cast<std::size_t>(i % 2), i / 2 + 1});
@@ -47,7 +47,7 @@ protected:
     }
 
     void addStaircase() {
-        protocol::Staircase staircase;
+        plan::Staircase staircase;
         staircase.name = "time";
         staircase.block = 2;
         staircase.levels = {1.0, 2.0, 3.0};
@@ -93,7 +93,7 @@ protected:
     }
 
     void drawPolicies(Random& random) {
-        for (protocol::Block& block : plan_.blocks) {
+        for (plan::Block& block : plan_.blocks) {
             block.on_timeout = static_cast<Repeat>(random.below(3));
             block.on_invalid = static_cast<Repeat>(random.below(3));
             block.max_attempts = static_cast<int>(1 + random.below(3));
@@ -136,7 +136,7 @@ protected:
         }
     }
 
-    SessionSetup setup() const { return {protocol::FrozenPlan(plan_), trials_, "P001", 7, false}; }
+    SessionSetup setup() const { return {plan::FrozenPlan(plan_), trials_, "P001", 7, false}; }
 
     std::vector<StoredAttempt> stored() const {
         std::vector<StoredAttempt> attempts;

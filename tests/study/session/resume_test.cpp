@@ -9,14 +9,14 @@
 namespace passung::session {
 namespace {
 
-using protocol::Repeat;
+using plan::Repeat;
 using Order = std::vector<std::size_t>;
 
 /// Two trials of practice, then four of the main block.
 class ResumeTest : public testing::Test {
 protected:
     ResumeTest() {
-        plan_.blocks.push_back({.name = "practice", .phase = protocol::Phase::Practice});
+        plan_.blocks.push_back({.name = "practice", .phase = plan::Phase::Practice});
         plan_.blocks.push_back({.name = "main"});
         for (std::size_t i = 0; i < 6; ++i) {
             design::PlannedTrial trial;
@@ -39,7 +39,7 @@ protected:
         return order;
     }
 
-    protocol::StudyPlan plan_;
+    plan::StudyPlan plan_;
     std::vector<design::PlannedTrial> trials_;
     std::vector<StoredAttempt> attempts_;
     std::vector<OrderStep> steps_;

@@ -38,7 +38,7 @@ public:
 
     const DeviceDescription& device() const override { return device_; }
 
-    Result<std::vector<StageNote>> prepare(const protocol::Condition& condition, std::uint64_t seed,
+    Result<std::vector<StageNote>> prepare(const plan::Condition& condition, std::uint64_t seed,
                                            std::int64_t before) override {
         log_.push_back("prepare " + condition.name);
         if (seeds.size() == fail_prepare_at) return Error{"the mesh is gone", {}, 0, 0, {}, {}};
@@ -169,13 +169,13 @@ class SessionTest : public testing::Test {
 protected:
     SessionTest() {
         for (const char* name : {"soft", "hard"}) {
-            protocol::Condition condition;
+            plan::Condition condition;
             condition.name = name;
             condition.params_json = std::string(R"({"name":")") + name + "\"}";
             condition.task.target = "plate";
             condition.scene.parts = {
-                {.name = "peg", .geometry = model::Peg{0.02, 0.05, 0.0}, .X_WP = {}, .held = true},
-                {.name = "plate", .geometry = model::BorePlate{0.1, 0.1, 0.03, 0.0201, 0.02, 0.0}, .X_WP = {}}};
+                {.name = "peg", .geometry = shape::Peg{0.02, 0.05, 0.0}, .X_WP = {}, .held = true},
+                {.name = "plate", .geometry = shape::BorePlate{0.1, 0.1, 0.03, 0.0201, 0.02, 0.0}, .X_WP = {}}};
             plan_.conditions.push_back(condition);
         }
         plan_.name = "study";
@@ -202,7 +202,7 @@ protected:
             EXPECT_EQ(ended->outcome, sink_.ends.back().outcome);
             trial_times_.push_back(ended->trial_time_s);
         };
-        Session session({protocol::FrozenPlan(plan_), trials_, "P001", 7, false}, apparatus_, sink_, listener);
+        Session session({plan::FrozenPlan(plan_), trials_, "P001", 7, false}, apparatus_, sink_, listener);
         return session.run();
     }
 
@@ -221,7 +221,7 @@ protected:
     }
 
     Log log_;
-    protocol::StudyPlan plan_;
+    plan::StudyPlan plan_;
     std::vector<design::PlannedTrial> trials_;
     ScriptedApparatus apparatus_{log_};
     RememberingSink sink_{log_};

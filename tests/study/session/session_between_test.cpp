@@ -33,7 +33,7 @@ protected:
             trials_[i].trial_in_block = i > 0 && blocks[i] == blocks[i - 1] ? 1 : 0;
         }
         plan_.blocks[1].rest_ends = rest_ends_;
-        SessionSetup setup{protocol::FrozenPlan(plan_), trials_, "P001", 7, true};
+        SessionSetup setup{plan::FrozenPlan(plan_), trials_, "P001", 7, true};
         setup.waits = waits;
         setup.reader = &reader_;
         session_.emplace(std::move(setup), apparatus_, sink_, SessionListener{});
@@ -49,13 +49,13 @@ protected:
         while (session_->state() == SessionState::InTrial) session_->advance();
     }
     SlowReader reader_;
-    protocol::RestEnds rest_ends_ = protocol::RestEnds::ByTime;
+    plan::RestEnds rest_ends_ = plan::RestEnds::ByTime;
     std::optional<Session> session_;
 };
 
 TEST_F(Between, CommandsAreObeyedWhileSomebodyReads) {
     // Truth: invariant
-    plan_.instructions = {{protocol::ShowAt::SessionStart, "", "welcome", ""}};
+    plan_.instructions = {{plan::ShowAt::SessionStart, "", "welcome", ""}};
     begin({0, 0});
     session_->advance();
     EXPECT_TRUE(session_->command({.kind = CommandKind::Stop}).accepted);
@@ -69,18 +69,18 @@ TEST_F(Between, CommandsAreObeyedWhileSomebodyReads) {
 
 TEST_F(Between, TheParticipantEndsARestButNotBeforeItsLeastTime) {
     // Truth: closed form: 200 periods of rest, then as often as it is asked.
-    rest_ends_ = protocol::RestEnds::ByParticipant;
+    rest_ends_ = plan::RestEnds::ByParticipant;
     reader_.rested = true;  // would go on at once
     begin({0, 1});
     advanceToTrial();
     finishTrial();
     session_->advance();
     EXPECT_EQ(apparatus_.waited_ticks, 100);
-    EXPECT_EQ(session_->view().rest, (RestView{1, protocol::RestEnds::ByParticipant}));
+    EXPECT_EQ(session_->view().rest, (RestView{1, plan::RestEnds::ByParticipant}));
     EXPECT_EQ(reader_.asked, 0);
     reader_.rested = false;
     for (int i = 0; i < 30; ++i) session_->advance();
-    EXPECT_EQ(session_->view().rest, (RestView{0, protocol::RestEnds::ByParticipant}));
+    EXPECT_EQ(session_->view().rest, (RestView{0, plan::RestEnds::ByParticipant}));
     EXPECT_EQ(apparatus_.waited_ticks, 200);
     EXPECT_EQ(sink_.starts.size(), 1u);
     reader_.rested = true;
@@ -91,7 +91,7 @@ TEST_F(Between, TheParticipantEndsARestButNotBeforeItsLeastTime) {
 
 TEST_F(Between, TheExperimenterEndsARestByContinue) {
     // Truth: invariant; without anybody who commands it ends by its time.
-    rest_ends_ = protocol::RestEnds::ByExperimenter;
+    rest_ends_ = plan::RestEnds::ByExperimenter;
     begin({0, 1}, true);
     advanceToTrial();
     finishTrial();

@@ -14,8 +14,8 @@ protected:
     void begin(std::size_t trials, bool waits = false) {
         planTrials(std::vector<Records>(trials, successScript()));
         for (int i = 0; i < 8; ++i) apparatus_.scripts.push_back(successScript());  // of repetitions
-        session_.emplace(SessionSetup{protocol::FrozenPlan(plan_), trials_, "P001", 7, false, 1, waits}, apparatus_,
-                         sink_, SessionListener{});
+        session_.emplace(SessionSetup{plan::FrozenPlan(plan_), trials_, "P001", 7, false, 1, waits}, apparatus_, sink_,
+                         SessionListener{});
     }
     Reply tell(Kind kind, const std::string& text = {}, std::optional<AttemptId> attempt = {}) {
         return session_->command({kind, text, attempt});

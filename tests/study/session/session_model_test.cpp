@@ -39,7 +39,7 @@ public:
     bool runs = false, halted = false;
 
     const DeviceDescription& device() const override { return device_; }
-    Result<std::vector<StageNote>> prepare(const protocol::Condition&, std::uint64_t, std::int64_t) override {
+    Result<std::vector<StageNote>> prepare(const plan::Condition&, std::uint64_t, std::int64_t) override {
         fuse_.burn();
         return std::vector<StageNote>{};
     }
@@ -215,13 +215,12 @@ protected:
     SessionModel() {
         plan_.conditions.push_back(plan_.conditions[0]);
         for (auto& condition : plan_.conditions) condition.task.timeout = 0.06;
-        plan_.conditions[0].timed_by = protocol::TimedBy::Clock;         // succeeds
-        plan_.conditions[2].timed_by = protocol::TimedBy::Experimenter;  // as they say, else it times out like 1
+        plan_.conditions[0].timed_by = plan::TimedBy::Clock;         // succeeds
+        plan_.conditions[2].timed_by = plan::TimedBy::Experimenter;  // as they say, else it times out like 1
         plan_.conditions[0].device = plan_.conditions[1].device = "arm";
         plan_.conditions[2].device = "stick";
-        plan_.blocks = {{.name = "practice", .phase = protocol::Phase::Practice},
-                        {.name = "first"},
-                        {.name = "second", .rest = 0.25}};
+        plan_.blocks = {
+            {.name = "practice", .phase = plan::Phase::Practice}, {.name = "first"}, {.name = "second", .rest = 0.25}};
         for (std::size_t block = 0; block < 3; ++block)
             for (int i = 0; i < (block == 0 ? 2 : 4); ++i) {
                 design::PlannedTrial trial;
@@ -233,28 +232,27 @@ protected:
                 trial.condition = (block + static_cast<std::size_t>(i)) % 3;
                 trials_.push_back(trial);
             }
-        for (const auto moment :
-             {protocol::Moment::AfterTrial, protocol::Moment::AfterBlock, protocol::Moment::SessionEnd}) {
-            protocol::PlannedQuestionnaire planned;
+        for (const auto moment : {plan::Moment::AfterTrial, plan::Moment::AfterBlock, plan::Moment::SessionEnd}) {
+            plan::PlannedQuestionnaire planned;
             planned.moment = moment;
-            planned.definition.key = protocol::momentName(moment);
+            planned.definition.key = plan::momentName(moment);
             planned.definition.items.resize(1);
             planned.definition.items[0].response.high = 10.0;
             plan_.questionnaires.push_back(planned);
         }
-        plan_.instructions = {{protocol::ShowAt::SessionStart, "", "welcome", ""},
-                              {protocol::ShowAt::BeforeBlock, "second", "noise", ""},
-                              {protocol::ShowAt::SessionEnd, "", "thanks", ""}};
+        plan_.instructions = {{plan::ShowAt::SessionStart, "", "welcome", ""},
+                              {plan::ShowAt::BeforeBlock, "second", "noise", ""},
+                              {plan::ShowAt::SessionEnd, "", "thanks", ""}};
     }
 
     /// Another participant, in a study of other policies.
     void beginParticipant() {
-        for (protocol::Block& block : plan_.blocks) {
-            block.on_timeout = static_cast<protocol::Repeat>(random_.below(3));
-            block.on_invalid = static_cast<protocol::Repeat>(random_.below(3));
-            block.on_failure = static_cast<protocol::Repeat>(random_.below(3));
+        for (plan::Block& block : plan_.blocks) {
+            block.on_timeout = static_cast<plan::Repeat>(random_.below(3));
+            block.on_invalid = static_cast<plan::Repeat>(random_.below(3));
+            block.on_failure = static_cast<plan::Repeat>(random_.below(3));
             block.max_attempts = static_cast<int>(1 + random_.below(3));
-            block.rest_ends = static_cast<protocol::RestEnds>(random_.below(3));
+            block.rest_ends = static_cast<plan::RestEnds>(random_.below(3));
         }
         session_.reset();
         durable_.emplace(fuse_, trials_.size());
@@ -265,7 +263,7 @@ protected:
     }
 
     void beginSession(std::optional<Resumption> resumed) {
-        SessionSetup setup{protocol::FrozenPlan(plan_), trials_, "P001", 7, false};
+        SessionSetup setup{plan::FrozenPlan(plan_), trials_, "P001", 7, false};
         setup.waits = waits_;
         setup.answers = &*person_;
         setup.reader = &*person_;

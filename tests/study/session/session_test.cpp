@@ -69,7 +69,7 @@ TEST_F(SessionTest, WaitsForTheExperimenterWhenADeviceIsSwapped) {
     plan_.conditions[0].device = "arm";
     plan_.conditions[1].device = "stick";
     plan_.stable_stiffness = {{"arm", 4000.0, 8.0, "model"}, {"stick", 1000.0, 0.0, "calibrated"}};
-    SessionSetup setup{protocol::FrozenPlan(plan_), trials_, "P001", 7, false};
+    SessionSetup setup{plan::FrozenPlan(plan_), trials_, "P001", 7, false};
     setup.waits = true;
     Session session(std::move(setup), apparatus_, sink_, {});
     ASSERT_TRUE(session.command({CommandKind::Start}).accepted);
@@ -102,10 +102,10 @@ private:
 
 TEST_F(SessionTest, QuestionnairesAreAskedWhenTheTrialBeforeIsDurableAndTheNextHasNotBegun) {
     // Truth: invariant: the list of calls. Nobody there to answer: the session fails before its first trial.
-    for (const auto& [key, moment] : {std::pair{"start", protocol::Moment::SessionStart},
-                                      {"trial", protocol::Moment::AfterTrial},
-                                      {"end", protocol::Moment::SessionEnd}}) {
-        protocol::PlannedQuestionnaire planned;
+    for (const auto& [key, moment] : {std::pair{"start", plan::Moment::SessionStart},
+                                      {"trial", plan::Moment::AfterTrial},
+                                      {"end", plan::Moment::SessionEnd}}) {
+        plan::PlannedQuestionnaire planned;
         planned.definition.key = key;
         planned.definition.items.resize(1);
         planned.definition.items[0].response.high = 1.0;
@@ -115,7 +115,7 @@ TEST_F(SessionTest, QuestionnairesAreAskedWhenTheTrialBeforeIsDurableAndTheNextH
     planTrials({successScript(), successScript()});
     Answering answers;
     {
-        SessionSetup setup{protocol::FrozenPlan(plan_), trials_, "P001", 7, false};
+        SessionSetup setup{plan::FrozenPlan(plan_), trials_, "P001", 7, false};
         setup.answers = &answers;
         Session session(setup, apparatus_, sink_, {});
         ASSERT_TRUE(session.run());
@@ -125,7 +125,7 @@ TEST_F(SessionTest, QuestionnairesAreAskedWhenTheTrialBeforeIsDurableAndTheNextH
                          "appendRecords", "stop", "finishAttempt", "storeQuestionnaire trial", "storeQuestionnaire end",
                          "finishSession"}));
     EXPECT_EQ(sink_.complete, true);
-    Session alone({protocol::FrozenPlan(plan_), trials_, "P001", 7, false}, apparatus_, sink_, {});
+    Session alone({plan::FrozenPlan(plan_), trials_, "P001", 7, false}, apparatus_, sink_, {});
     EXPECT_FALSE(alone.run());
     EXPECT_EQ(alone.errors().front().message, "nobody is there to answer it");
 }
@@ -172,12 +172,12 @@ TEST_F(SessionTest, SeedBelongsToParticipantTrialAndAttemptAndNotToWhatRanBefore
     EXPECT_EQ(apparatus_.trials_before, (std::vector<std::int64_t>{0, 1}));
     EXPECT_NE(apparatus_.seeds[0], apparatus_.seeds[1]);
     EXPECT_EQ(sink_.starts[1].seed, apparatus_.seeds[1]);
-    const SessionSetup resumed{protocol::FrozenPlan(plan_), {trials_[1]}, "P001", 7, false};
+    const SessionSetup resumed{plan::FrozenPlan(plan_), {trials_[1]}, "P001", 7, false};
     EXPECT_EQ(attemptSeed(resumed, trials_[1], 1), apparatus_.seeds[1]);
     EXPECT_NE(attemptSeed(resumed, trials_[1], 2), apparatus_.seeds[1]);
-    const SessionSetup other{protocol::FrozenPlan(plan_), {trials_[1]}, "P002", 7, false};
+    const SessionSetup other{plan::FrozenPlan(plan_), {trials_[1]}, "P002", 7, false};
     EXPECT_NE(attemptSeed(other, trials_[1], 1), apparatus_.seeds[1]);
-    const SessionSetup again{protocol::FrozenPlan(plan_), {trials_[1]}, "P001", 7, false, 2};
+    const SessionSetup again{plan::FrozenPlan(plan_), {trials_[1]}, "P001", 7, false, 2};
     EXPECT_NE(attemptSeed(again, trials_[1], 1), apparatus_.seeds[1]);
 }
 
@@ -374,7 +374,7 @@ TEST_F(SessionTest, UnknownTargetIsAnErrorThatNamesIt) {
 TEST_F(SessionTest, AnInterruptionKeepsTheRunningTrialAsAborted) {
     // Truth: closed form: two looks of 20 ticks were taken of the second trial, which had not started by then.
     planTrials({successScript(), successScript()});
-    Session session({protocol::FrozenPlan(plan_), trials_, "P001", 7, false}, apparatus_, sink_, {});
+    Session session({plan::FrozenPlan(plan_), trials_, "P001", 7, false}, apparatus_, sink_, {});
     while (sink_.ends.empty()) session.advance();
     for (int i = 0; i < 3; ++i) session.advance();
     session.interrupt("interrupted");
@@ -395,7 +395,7 @@ TEST_F(SessionTest, AnInterruptionKeepsTheRunningTrialAsAborted) {
 TEST_F(SessionTest, AnInterruptionAfterTheLastTrialLeavesTheSessionComplete) {
     // Truth: invariant: nothing was left to do.
     planTrials({successScript()});
-    Session session({protocol::FrozenPlan(plan_), trials_, "P001", 7, false}, apparatus_, sink_, {});
+    Session session({plan::FrozenPlan(plan_), trials_, "P001", 7, false}, apparatus_, sink_, {});
     while (sink_.ends.empty()) session.advance();
     session.interrupt("interrupted");
     EXPECT_EQ(session.state(), SessionState::Complete);
@@ -406,7 +406,7 @@ TEST_F(SessionTest, SessionThatIsDroppedInATrialStopsTheApparatus) {
     // Truth: invariant: motors never stay on behind a session that is gone.
     planTrials({successScript()});
     {
-        Session session({protocol::FrozenPlan(plan_), trials_, "P001", 7, false}, apparatus_, sink_, {});
+        Session session({plan::FrozenPlan(plan_), trials_, "P001", 7, false}, apparatus_, sink_, {});
         EXPECT_EQ(session.advance(), SessionState::InTrial);
         EXPECT_EQ(session.advance(), SessionState::InTrial);
         EXPECT_EQ(std::count(log_.begin(), log_.end(), "stop"), 0);

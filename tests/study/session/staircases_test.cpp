@@ -16,7 +16,7 @@ namespace {
 class StaircasesTest : public SessionTest {
 protected:
     StaircasesTest() {
-        protocol::Staircase staircase;
+        plan::Staircase staircase;
         staircase.name = "time";
         staircase.key = "task.hold_s";
         staircase.measure = "trial_time_s";
@@ -60,7 +60,7 @@ protected:
         log_.clear();
         apparatus_.scripts.clear();
         for (const char answer : answers) apparatus_.scripts.push_back(trialOf(answer));
-        SessionSetup setup{protocol::FrozenPlan(plan_), trials_, "P001", 7, false};
+        SessionSetup setup{plan::FrozenPlan(plan_), trials_, "P001", 7, false};
         setup.resumed = std::move(resumed);
         Session session(std::move(setup), apparatus_, sink_, {});
         while (!session.isOver() && (session.state() == SessionState::InTrial || !apparatus_.scripts.empty()))
@@ -154,7 +154,7 @@ TEST_F(StaircasesTest, TrialsThatNoTrackNeedsAreLeftOut) {
 
 TEST_F(StaircasesTest, AnAttemptThatDoesNotCountTellsNothing) {
     // Truth: closed form: the trial is presented once more, at the same level of the same track.
-    plan_.blocks[0].on_timeout = protocol::Repeat::Now;
+    plan_.blocks[0].on_timeout = plan::Repeat::Now;
     for (auto& condition : plan_.conditions) condition.task.timeout = 1.7;
     const auto names = presented("10");
     ASSERT_EQ(sink_.starts.size(), 2u);
@@ -177,7 +177,7 @@ TEST_F(StaircasesTest, ATrialThatGivesItsTrackNoAnswerIsRepeatedUpToTheMaximum) 
     std::deque<Records> scripts(24, trialOf('1'));
     for (const std::size_t i : {0, 1, 2, 18, 19}) scripts[i] = lost();
     apparatus_.scripts = scripts;
-    Session session({protocol::FrozenPlan(plan_), trials_, "P001", 7, false}, apparatus_, sink_, {});
+    Session session({plan::FrozenPlan(plan_), trials_, "P001", 7, false}, apparatus_, sink_, {});
     ASSERT_TRUE(session.run());
     std::vector<std::int64_t> ends;
     for (std::size_t i = 16; i < sink_.starts.size(); ++i)

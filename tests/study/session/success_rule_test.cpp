@@ -23,7 +23,7 @@ TickRecord tipAt(std::int64_t tick, double depth, double beside = 0.0) {
 
 /// First tick of 0 … `last` at which the rule is fulfilled, -1 if none; `at(tick)` makes the record.
 std::int64_t firstFulfilled(std::int64_t last, const std::function<TickRecord(std::int64_t)>& at) {
-    protocol::PegInHoleTask task;
+    plan::PegInHoleTask task;
     task.clearance = kClearance;
     SuccessRule rule(task, Pose{});
     for (std::int64_t tick = 0; tick <= last; ++tick)
@@ -110,7 +110,7 @@ TEST(SuccessRule, OneQuantumOfACoarseEncoderIsNoMotion) {
 
 TEST(SuccessRule, MissingTickBeginsTheHoldAnew) {
     // Truth: closed form. Tick 300 is lost; the speed is known again 50 ticks after the gap.
-    SuccessRule rule(protocol::PegInHoleTask{}, Pose{});
+    SuccessRule rule(plan::PegInHoleTask{}, Pose{});
     std::int64_t fulfilled = -1;
     for (std::int64_t tick = 0; tick < 2000 && fulfilled < 0; ++tick)
         if (tick != 300 && rule.fulfilledAt(tipAt(tick, 0.0195))) fulfilled = tick;
@@ -128,7 +128,7 @@ TEST(SuccessRule, DepthIsTakenInTheTargetsFrame) {
     Pose X_WT;
     X_WT.p.z() = -0.005;
     for (const double depth : {0.0245, 0.0235}) {
-        SuccessRule rule(protocol::PegInHoleTask{}, X_WT);
+        SuccessRule rule(plan::PegInHoleTask{}, X_WT);
         bool fulfilled = false;
         for (std::int64_t tick = 0; tick < 2000; ++tick) fulfilled = rule.fulfilledAt(tipAt(tick, depth)) || fulfilled;
         EXPECT_EQ(fulfilled, depth > 0.024) << depth;

@@ -12,13 +12,13 @@ using Kind = CommandKind;
 
 class TimedTrial : public SessionTest {
 protected:
-    void begin(protocol::TimedBy timed_by, std::size_t trials = 1, TrialTimer* timer = nullptr) {
+    void begin(plan::TimedBy timed_by, std::size_t trials = 1, TrialTimer* timer = nullptr) {
         for (auto& condition : plan_.conditions) {
             condition.timed_by = timed_by;
             condition.task.timeout = 3.0;
         }
         planTrials(std::vector<Records>(trials, script(9000, kNever, kNever)));
-        SessionSetup setup{protocol::FrozenPlan(plan_), trials_, "P001", 7, false};
+        SessionSetup setup{plan::FrozenPlan(plan_), trials_, "P001", 7, false};
         setup.timer = timer;
         session_.emplace(std::move(setup), apparatus_, sink_, SessionListener{});
     }
@@ -38,7 +38,7 @@ protected:
 
 TEST_F(TimedTrial, TheExperimenterStartsAndStopsTheClock) {
     // Truth: closed form: the trial is begun, 10 looks of 20 ticks, start, 50 looks, done: from tick 200 to tick 1200.
-    begin(protocol::TimedBy::Experimenter);
+    begin(plan::TimedBy::Experimenter);
     look(11);
     EXPECT_EQ(tell(Kind::Done).text, "the trial's clock has not been started");
     EXPECT_EQ(tell(Kind::Start).text, "the clock of trial 1 runs");
@@ -66,7 +66,7 @@ TEST_F(TimedTrial, TheExperimenterStartsAndStopsTheClock) {
 
 TEST_F(TimedTrial, AFailureIsOneAndATimeOutEndsItAlone) {
     // Truth: closed form: the second trial's clock starts at its tick 0 and runs 3 s.
-    begin(protocol::TimedBy::Experimenter, 2);
+    begin(plan::TimedBy::Experimenter, 2);
     look(1);
     ASSERT_TRUE(tell(Kind::Start).accepted);
     look(5);
@@ -84,7 +84,7 @@ TEST_F(TimedTrial, AFailureIsOneAndATimeOutEndsItAlone) {
 
 TEST_F(TimedTrial, WaitsForTheExperimenterHoweverLong) {
     // Truth: invariant: a hand that never comes to the start pose aborts a trial that the program times, no other.
-    begin(protocol::TimedBy::Experimenter);
+    begin(plan::TimedBy::Experimenter);
     apparatus_.scripts.front() = script(TrialCourse::kStartLimit + 500, kNever, kNever);
     look(static_cast<int>(TrialCourse::kStartLimit / Session::kTicksPerPoll) + 10);
     EXPECT_EQ(session_->state(), SessionState::InTrial);
@@ -95,7 +95,7 @@ TEST_F(TimedTrial, WaitsForTheExperimenterHoweverLong) {
 TEST_F(TimedTrial, CommandsOfTheClockAreRefusedWhereTheProgramTimes) {
     // Truth: invariant
     planTrials({successScript()});
-    session_.emplace(SessionSetup{protocol::FrozenPlan(plan_), trials_, "P001", 7, false}, apparatus_, sink_,
+    session_.emplace(SessionSetup{plan::FrozenPlan(plan_), trials_, "P001", 7, false}, apparatus_, sink_,
                      SessionListener{});
     look(3);
     EXPECT_FALSE(tell(Kind::Start).accepted);
@@ -107,7 +107,7 @@ TEST_F(TimedTrial, CommandsOfTheClockAreRefusedWhereTheProgramTimes) {
 
 TEST_F(TimedTrial, TheClockAloneGivesItsTimeAndASuccess) {
     // Truth: closed form: 3 s from the first tick on.
-    begin(protocol::TimedBy::Clock);
+    begin(plan::TimedBy::Clock);
     ASSERT_TRUE(session_->run());
     EXPECT_EQ(sink_.ends.front().outcome, Outcome::Success);
     EXPECT_EQ(value(sink_.ends.front(), "trial_time_s"), 3.0);
@@ -117,7 +117,7 @@ TEST_F(TimedTrial, TheClockAloneGivesItsTimeAndASuccess) {
 /// Says start after 500 periods and done after 1500.
 class FixedTimer : public TrialTimer {
 public:
-    void begin(const protocol::Condition&, std::uint64_t, std::int64_t) override {}
+    void begin(const plan::Condition&, std::uint64_t, std::int64_t) override {}
     std::optional<Command> commandAt(std::int64_t periods) override {
         const int due = periods >= 1500 ? 2 : periods >= 500 ? 1 : 0;
         if (due <= said_) return std::nullopt;
@@ -131,7 +131,7 @@ private:
 TEST_F(TimedTrial, ATimerSpeaksForTheExperimenterAndIsLoggedAsItself) {
     // Truth: closed form: after tick 499 25 looks are over (ticks 0 to 499), the record after is tick 500.
     FixedTimer timer;
-    begin(protocol::TimedBy::Experimenter, 1, &timer);
+    begin(plan::TimedBy::Experimenter, 1, &timer);
     ASSERT_TRUE(session_->run());
     EXPECT_NEAR(*value(sink_.ends.front(), "trial_time_s"), 1.0, 0.020 + 1e-9) << "to one look";
     std::size_t simulated = 0;
@@ -142,11 +142,10 @@ TEST_F(TimedTrial, ATimerSpeaksForTheExperimenterAndIsLoggedAsItself) {
 TEST_F(TimedTrial, ASecondaryTaskIsScoredAndScoredAlikeAgain) {
     // Truth: closed form: 3 s of clock, stimuli 0.6 to 0.8 s apart: 3 or 4 can be
     // missed; with a press 200 ms after the first one it is a hit.
-    for (auto& condition : plan_.conditions)
-        condition.secondary = {protocol::Stimulus::Audio, 0.6, 0.8, 0.3, 0.1, 0.5, 1};
-    begin(protocol::TimedBy::Clock);
+    for (auto& condition : plan_.conditions) condition.secondary = {plan::Stimulus::Audio, 0.6, 0.8, 0.3, 0.1, 0.5, 1};
+    begin(plan::TimedBy::Clock);
     const std::uint64_t seed =
-        attemptSeed(SessionSetup{protocol::FrozenPlan(plan_), trials_, "P001", 7, false}, trials_.front(), 1);
+        attemptSeed(SessionSetup{plan::FrozenPlan(plan_), trials_, "P001", 7, false}, trials_.front(), 1);
     const std::int64_t first = measures::StimulusTimes({0.6, 0.8, 0.3, 0.1, 0.5, 1}, seed).next();
     Records& records = apparatus_.scripts.front();
     for (std::int64_t tick = first + 200; tick < first + 260; ++tick)
@@ -166,15 +165,15 @@ TEST_F(TimedTrial, ASecondaryTaskIsScoredAndScoredAlikeAgain) {
 TEST_F(TimedTrial, InstructionsAreLoggedAtTheirMoments) {
     // Truth: closed form. Nobody is there to show them.
     plan_.blocks = {{.name = "first"}, {.name = "second"}};
-    plan_.instructions = {{protocol::ShowAt::SessionEnd, "", "thanks", ""},
-                          {protocol::ShowAt::SessionStart, "", "welcome", "start.png"},
-                          {protocol::ShowAt::BeforeBlock, "second", "noise", ""}};
-    begin(protocol::TimedBy::Clock, 3);
+    plan_.instructions = {{plan::ShowAt::SessionEnd, "", "thanks", ""},
+                          {plan::ShowAt::SessionStart, "", "welcome", "start.png"},
+                          {plan::ShowAt::BeforeBlock, "second", "noise", ""}};
+    begin(plan::TimedBy::Clock, 3);
     for (std::size_t i = 0; i < 3; ++i) {
         trials_[i].block = i == 0 ? "first" : "second";
         trials_[i].block_index = i == 0 ? 0 : 1;
     }
-    session_.emplace(SessionSetup{protocol::FrozenPlan(plan_), trials_, "P001", 7, false}, apparatus_, sink_,
+    session_.emplace(SessionSetup{plan::FrozenPlan(plan_), trials_, "P001", 7, false}, apparatus_, sink_,
                      SessionListener{});
     ASSERT_TRUE(session_->run());
     std::vector<std::string> shown;

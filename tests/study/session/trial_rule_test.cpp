@@ -16,7 +16,7 @@ struct Followed {
 };
 
 template <class MakeRecord>
-Followed follow(const protocol::Task& task, std::int64_t ticks, MakeRecord at, std::uint64_t seed = 1) {
+Followed follow(const plan::Task& task, std::int64_t ticks, MakeRecord at, std::uint64_t seed = 1) {
     TrialCourse course(task, Pose{}, seed);
     std::vector<TrialEvent> events;
     for (std::int64_t tick = 0; tick < ticks && !course.ended(); ++tick) {
@@ -35,10 +35,10 @@ Followed follow(const protocol::Task& task, std::int64_t ticks, MakeRecord at, s
 
 using Events = std::vector<std::string>;
 
-protocol::Task pairTask(double answer = 0.5) {
-    protocol::Task task;
+plan::Task pairTask(double answer = 0.5) {
+    plan::Task task;
     task.timeout = 0.3;  // not the pair's: it times itself
-    task.form = protocol::DiscriminationPairTask{.interval = 0.1, .answer = answer, .question = "Which?"};
+    task.form = plan::DiscriminationPairTask{.interval = 0.1, .answer = answer, .question = "Which?"};
     return task;
 }
 
@@ -78,7 +78,7 @@ TEST(TrialRule, AHandThatDoesNotComeBackAbortsThePair) {
 
 TEST(TrialRule, APairsIntervalsFollowTheAttemptsSeed) {
     // Truth: invariant: about half of many attempts have the comparison first; scenes and measures agree on which.
-    protocol::Condition condition;
+    plan::Condition condition;
     condition.task = pairTask();
     condition.scene.contact.stiffness = 100.0;
     condition.comparison = condition.scene;
@@ -98,14 +98,14 @@ TEST(TrialRule, APairsIntervalsFollowTheAttemptsSeed) {
         EXPECT_EQ(std::get<measures::PairFacts>(context.form).comparison_interval, comparisonInterval(seed));
     }
     EXPECT_NEAR(first, 500, 80);  // five standard deviations of a fair coin
-    condition.task.form = protocol::PegInHoleTask{};
+    condition.task.form = plan::PegInHoleTask{};
     EXPECT_EQ(renderedScenes(condition, 3).size(), 1u);
 }
 
 TEST(TrialRule, APassageIsDoneOnceTheHeldPartIsThrough) {
     // Truth: closed form: 1 mm a tick from 10 mm above; the mouth at tick 10, 20 mm below it and more at tick 31.
-    protocol::Task task;
-    task.form = protocol::NarrowPassageTask{0.0205, 0.01};
+    plan::Task task;
+    task.form = plan::NarrowPassageTask{0.0205, 0.01};
     const auto passage = follow(task, 100, [](std::int64_t tick, TickRecord& record) {
         record.status |= kEngaged;
         record.proxy_position_m[2] = 1e-3f * static_cast<float>(10 - tick);
@@ -116,8 +116,8 @@ TEST(TrialRule, APassageIsDoneOnceTheHeldPartIsThrough) {
 
 TEST(TrialRule, ALineIsDoneWithTheAskedShare) {
     // Truth: closed form: 100 mm, half of it asked, a millimetre a tick
-    protocol::Task task;
-    task.form = protocol::ContourFollowingTask{{Vec3::Zero(), Vec3(0.1, 0, 0)}, 0.005, 0.5005, 2.0};
+    plan::Task task;
+    task.form = plan::ContourFollowingTask{{Vec3::Zero(), Vec3(0.1, 0, 0)}, 0.005, 0.5005, 2.0};
     const auto line = follow(task, 200, [](std::int64_t tick, TickRecord& record) {
         record.status |= kEngaged;
         record.proxy_position_m[0] = 1e-3f * static_cast<float>(tick);
@@ -128,8 +128,8 @@ TEST(TrialRule, ALineIsDoneWithTheAskedShare) {
 
 TEST(TrialRule, APlacementIsJudgedWhenItIsConfirmed) {
     // Truth: closed form: 5 mm allowed; 4 mm away at the confirmation, or 6 mm.
-    protocol::Task task;
-    task.form = protocol::FreePlacementTask{Pose{}, 0.005, 0.1, false};
+    plan::Task task;
+    task.form = plan::FreePlacementTask{Pose{}, 0.005, 0.1, false};
     for (const float away : {0.004f, 0.006f}) {
         const auto placed = follow(task, 200, [away](std::int64_t tick, TickRecord& record) {
             record.status |= kEngaged;

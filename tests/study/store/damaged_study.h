@@ -14,7 +14,7 @@ inline constexpr std::int64_t kSecond = 1'000'000'000;
 
 /// A whole session of two trials with samples, events, a form and a note.
 inline void performAsking(const std::string& path, const std::string& code,
-                          const protocol::StudyPlan& plan = makeAskingPlan()) {
+                          const plan::StudyPlan& plan = makeAskingPlan()) {
     const auto store = openStore(path);
     const auto writer = beginAskingSession(*store, plan, code, 2);
     for (int trial = 0; trial < 2; ++trial) require(writeAttempt(*writer, trial, 1200));

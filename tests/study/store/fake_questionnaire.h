@@ -9,10 +9,10 @@
 /// The fake study with shipped questionnaires, for tests of store and export.
 namespace passung::fake {
 
-inline protocol::PlannedQuestionnaire shippedQuestionnaire(const std::string& key, protocol::Moment moment) {
+inline plan::PlannedQuestionnaire shippedQuestionnaire(const std::string& key, plan::Moment moment) {
     const std::string path = PASSUNG_SOURCE_DIR "/protocols/questionnaires/" + key + ".toml";
     const std::string text = *readFile(path);
-    protocol::PlannedQuestionnaire planned;
+    plan::PlannedQuestionnaire planned;
     planned.language = "de";
     planned.moment = moment;
     planned.definition = *protocol::readQuestionnaire(text, path, "de");
@@ -21,20 +21,20 @@ inline protocol::PlannedQuestionnaire shippedQuestionnaire(const std::string& ke
 }
 
 /// Contact perception after each condition, demographics at the end.
-inline protocol::StudyPlan makeAskingPlan() {
-    protocol::StudyPlan plan = makePlan();
+inline plan::StudyPlan makeAskingPlan() {
+    plan::StudyPlan plan = makePlan();
     plan.source_text += "# asks\n";
-    plan.questionnaires = {shippedQuestionnaire("contact_perception", protocol::Moment::AfterCondition),
-                           shippedQuestionnaire("demographics", protocol::Moment::SessionEnd)};
+    plan.questionnaires = {shippedQuestionnaire("contact_perception", plan::Moment::AfterCondition),
+                           shippedQuestionnaire("demographics", plan::Moment::SessionEnd)};
     plan.expanded_json = R"({"questionnaires": ["contact_perception", "demographics"]})";
     return plan;
 }
 
-inline std::unique_ptr<store::SessionWriter> beginAskingSession(store::Store& store, const protocol::StudyPlan& plan,
+inline std::unique_ptr<store::SessionWriter> beginAskingSession(store::Store& store, const plan::StudyPlan& plan,
                                                                 const std::string& participant, std::int64_t trials) {
     store::SessionStart start;
     start.protocol_sha256 = require(store.importProtocol(plan));
-    require(store.enrol(participant, protocol::ParticipantKind::Simulated, store::UtcClock::virtualEpoch().at(0)));
+    require(store.enrol(participant, plan::ParticipantKind::Simulated, store::UtcClock::virtualEpoch().at(0)));
     require(store.assignSlot(start.protocol_sha256, participant));
     start.participant = participant;
     start.seed = plan.seed;
@@ -44,7 +44,7 @@ inline std::unique_ptr<store::SessionWriter> beginAskingSession(store::Store& st
 }
 
 /// Stores a filled form: `numbers` in the order of the items, shown last item first; none for a skipped one.
-inline Result<Done> storeForm(store::SessionWriter& writer, const protocol::StudyPlan& plan,
+inline Result<Done> storeForm(store::SessionWriter& writer, const plan::StudyPlan& plan,
                               const session::Occasion& occasion, const std::vector<std::optional<double>>& numbers,
                               std::int64_t time_ns, const std::string& text = "") {
     const auto& planned = plan.questionnaires.at(occasion.questionnaire);

@@ -20,25 +20,25 @@ using test::TempFolder;
 /// Texts with everything that CSV and JSON find hard.
 inline constexpr const char* kHardText = "it's \"hard\",\nreally; Größe 1/2 \\ end";
 
-inline protocol::StudyPlan makePlan(int participants = 4) {
-    protocol::StudyPlan plan;
+inline plan::StudyPlan makePlan(int participants = 4) {
+    plan::StudyPlan plan;
     plan.name = "fake";
     plan.version = "1.0";
     plan.title = "A fake study";
     plan.seed = 7;
     plan.participants = participants;
-    plan.factors = {{"method", protocol::FactorKind::Within, "", {{"penalty"}, {"god"}}},
-                    {"clearance", protocol::FactorKind::Within, "mm", {{"0.1"}, {"0,5"}}}};
+    plan.factors = {{"method", plan::FactorKind::Within, "", {{"penalty"}, {"god"}}},
+                    {"clearance", plan::FactorKind::Within, "mm", {{"0.1"}, {"0,5"}}}};
     const std::vector<std::pair<std::string, std::string>> names = {
         {"penalty", "0.1"}, {"penalty", "0,5"}, {"god", "0.1"}, {"god", "0,5"}};
     for (const auto& [method, clearance] : names) {
-        protocol::Condition condition;
+        plan::Condition condition;
         condition.name = method + "/" + clearance;
         condition.levels_json = R"({"method": ")" + method + R"(", "clearance": ")" + clearance + R"("})";
         condition.params_json = "{}";
         plan.conditions.push_back(condition);
     }
-    plan.blocks = {{"main", protocol::Phase::Main, 1, protocol::BlockOrder::Williams, 0}};
+    plan.blocks = {{"main", plan::Phase::Main, 1, plan::BlockOrder::Williams, 0}};
     plan.measures = {"completion_time_s", "peak_force_N"};
     plan.source_text = "# a fake protocol\nname = \"fake\"\n";
     plan.expanded_json = "{}";
@@ -105,7 +105,7 @@ inline store::OpenOptions options() {
 }
 
 /// Listed order: trial i has condition i modulo the number of conditions.
-inline std::vector<design::PlannedTrial> makeTrials(const protocol::StudyPlan& plan, std::int64_t count,
+inline std::vector<design::PlannedTrial> makeTrials(const plan::StudyPlan& plan, std::int64_t count,
                                                     const std::string& phase = "main") {
     std::vector<design::PlannedTrial> trials;
     for (std::int64_t i = 0; i < count; ++i) {
@@ -136,10 +136,10 @@ inline std::unique_ptr<store::Store> openStore(const std::string& path, const st
 
 inline std::unique_ptr<store::SessionWriter> beginSession(store::Store& store, const std::string& participant,
                                                           std::int64_t trials, bool timing_measured = false,
-                                                          const protocol::StudyPlan& plan = makePlan()) {
+                                                          const plan::StudyPlan& plan = makePlan()) {
     store::SessionStart start;
     start.protocol_sha256 = require(store.importProtocol(plan));
-    require(store.enrol(participant, protocol::ParticipantKind::Simulated, store::UtcClock::virtualEpoch().at(0)));
+    require(store.enrol(participant, plan::ParticipantKind::Simulated, store::UtcClock::virtualEpoch().at(0)));
     require(store.assignSlot(start.protocol_sha256, participant));
     start.participant = participant;
     start.ordinal = require(store.nextOrdinal(participant));

@@ -15,7 +15,7 @@ class KilledFile {
 public:
     KilledFile(const std::string& database, std::string copy) : path_(std::move(copy)) {
         const auto store = openStore(database);
-        require(store->enrol("S009", protocol::ParticipantKind::Simulated, "2001"));
+        require(store->enrol("S009", plan::ParticipantKind::Simulated, "2001"));
         for (const char* suffix : {"", kLog}) std::filesystem::copy_file(database + suffix, path_ + suffix);
         file_ = bytesOf(path_);
         log_ = bytesOf(path_ + kLog);

@@ -19,7 +19,7 @@ TEST(HardSimulate, TheProgramGivesWhatTheHardCasesJudge) {
         SCOPED_TRACE(name);
         hard::Case some = *hard::findCase(name);
         some.seconds = std::min(some.seconds, 1.0);
-        const auto run = hard::runCase(some, model::ContactMethod::GodObjectHeuristic, 0, false);
+        const auto run = hard::runCase(some, scene::ContactMethod::GodObjectHeuristic, 0, false);
         ASSERT_TRUE(run);
         writeText(folder / "path.csv", hard::trajectoryCsv(*run));
         const std::string out = std::string(name) + ".csv";
@@ -50,7 +50,7 @@ TEST(HardSimulate, ThePressOfABallIsTheSpringOfItsDepth) {
     // the tolerance of 20 um, and the spring of 1000 N/m pushes with 1 N up and with nothing aside.
     const TempFolder folder;
     const hard::Case some = *hard::findCase("a13_cycle");
-    const auto run = hard::runCase(some, model::ContactMethod::GodObjectHeuristic, 0, false);
+    const auto run = hard::runCase(some, scene::ContactMethod::GodObjectHeuristic, 0, false);
     ASSERT_TRUE(run);
     writeText(folder / "path.csv", hard::trajectoryCsv(*run));
     const Ended ended = runProgram(

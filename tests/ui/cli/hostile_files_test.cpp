@@ -182,7 +182,7 @@ TEST(HostileFiles, MeshReadElsewhereIsThatReadHere) {
     writeText(folder / "a.off", kOff);
     writeText(folder / "b.3mf", tens(1));
     for (const std::string name : {"a.off", "b.3mf"}) {
-        const auto here = model::importMesh(folder / name, 1e-3);
+        const auto here = importer::importMesh(folder / name, 1e-3);
         ASSERT_TRUE(here);
         const Ended there = runWithin(folder.path(), {"mesh", name});
         ASSERT_EQ(there.exit_code, 0) << there.err;

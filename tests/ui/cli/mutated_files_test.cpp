@@ -98,7 +98,7 @@ TEST(MutatedFiles, AreMeshesOrOneErrorForTheLibrary) {
     for (int i = 0; i < mutations(500); ++i) {
         const Sound& file = files[static_cast<std::size_t>(i) % files.size()];
         writeText(folder / file.name, mutated(file.content, static_cast<std::uint64_t>(i)));
-        const auto mesh = model::importMesh(folder / file.name, 1e-3);
+        const auto mesh = importer::importMesh(folder / file.name, 1e-3);
         if (!mesh) {
             ASSERT_EQ(mesh.errors().size(), 1u) << i;
             ASSERT_FALSE(mesh.errors()[0].message.empty()) << i;
@@ -115,7 +115,7 @@ TEST(MutatedFiles, AreStudiesOrErrorsWithAPlaceForTheLibrary) {
     for (int i = 0; i < mutations(150); ++i) {
         const Sound& file = files[static_cast<std::size_t>(i) % files.size()];
         writeText(folder / file.name, mutated(file.content, static_cast<std::uint64_t>(i)));
-        const auto examined = protocol::examineProtocol(folder / file.name, app::knownDevices(), app::knownMeasures());
+        const auto examined = protocol::examineProtocol(folder / file.name, run::knownDevices(), run::knownMeasures());
         for (const Error& error : examined.errors) ASSERT_FALSE(error.file.empty()) << i << " " << toString(error);
     }
 }

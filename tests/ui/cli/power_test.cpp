@@ -137,7 +137,7 @@ TEST_F(Power, AVirtualStudyIsARunAndItsExportWithTheEffectOnTop) {
     const auto result = power::readPowerText(readText(folder_ / "p.csv"), "p.csv");
     ASSERT_TRUE(result);
 
-    protocol::StudyPlan plan;
+    plan::StudyPlan plan;
     plan.name = "small";
     plan.seed = 7;
     const std::string seed = std::to_string(power::runSeed(plan, 0));

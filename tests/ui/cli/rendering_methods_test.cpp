@@ -15,16 +15,16 @@ namespace {
 
 const std::string kStudy = std::string(PASSUNG_SOURCE_DIR) + "/protocols/rendering_methods/study.toml";
 
-protocol::StudyPlan shippedPlan() {
-    auto plan = protocol::readProtocol(kStudy, app::presetDevices(), app::knownMeasures());
+plan::StudyPlan shippedPlan() {
+    auto plan = protocol::readProtocol(kStudy, run::presetDevices(), run::knownMeasures());
     EXPECT_TRUE(plan);
-    return plan ? *plan : protocol::StudyPlan{};
+    return plan ? *plan : plan::StudyPlan{};
 }
 
 TEST(RenderingMethods, EveryConditionFollowsEveryOtherThreeTimesInEachExercise) {
     // Truth: closed form: three Williams squares of order 8: 24 people, each of the 8 · 7 successions three times, each
     // condition in each of the 8 positions three times.
-    const protocol::StudyPlan plan = shippedPlan();
+    const plan::StudyPlan plan = shippedPlan();
     ASSERT_EQ(plan.participants, 24);
     using Pair = std::pair<std::size_t, std::size_t>;
     std::map<std::string, std::map<Pair, int>> successions, positions;
@@ -49,9 +49,9 @@ TEST(RenderingMethods, EveryConditionFollowsEveryOtherThreeTimesInEachExercise) 
 
 TEST(RenderingMethods, StiffnessIsThatOfEachDevice) {
     // Truth: closed form: max is what the device displays stably, half is half of it, translation and rotation.
-    const protocol::StudyPlan plan = shippedPlan();
+    const plan::StudyPlan plan = shippedPlan();
     std::set<std::string> devices;
-    for (const protocol::Condition& condition : plan.conditions) {
+    for (const plan::Condition& condition : plan.conditions) {
         const auto device = std::find_if(plan.stable_stiffness.begin(), plan.stable_stiffness.end(),
                                          [&](const auto& stable) { return stable.device == condition.device; });
         ASSERT_NE(device, plan.stable_stiffness.end());

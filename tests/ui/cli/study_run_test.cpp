@@ -57,8 +57,8 @@ std::vector<store::EventRow> eventsOf(const store::AttemptRow& attempt, const st
 }
 
 /// The tip above the target's mouth, along its axis [m].
-double heightOverMouth(const protocol::Condition& condition, const TickRecord& record) {
-    for (const model::PartSpec& part : condition.scene.parts) {
+double heightOverMouth(const plan::Condition& condition, const TickRecord& record) {
+    for (const scene::PartSpec& part : condition.scene.parts) {
         if (part.name != condition.task.target) continue;
         const auto& p = record.proxy_position_m;
         return (part.X_WP.inverse() * Vec3(p[0], p[1], p[2])).z();
@@ -68,7 +68,7 @@ double heightOverMouth(const protocol::Condition& condition, const TickRecord& r
 
 /// The recorded ticks themselves say whether the outcome happened.
 void expectOutcomeInRecords(const store::AttemptRow& attempt, std::int64_t start_ns,
-                            const std::vector<TickRecord>& records, const protocol::Condition& condition) {
+                            const std::vector<TickRecord>& records, const plan::Condition& condition) {
     const std::int64_t end_tick = (*attempt.end_ns - attempt.start_ns) / kTickNanoseconds;
     const std::int64_t start_tick = (start_ns - attempt.start_ns) / kTickNanoseconds;
     ASSERT_LT(static_cast<std::size_t>(end_tick), records.size());
@@ -76,9 +76,9 @@ void expectOutcomeInRecords(const store::AttemptRow& attempt, std::int64_t start
     EXPECT_EQ(at(start_tick).status & kEngaged, kEngaged);
     ASSERT_GT(start_tick, 0) << "the hand holds the start pose first";
     EXPECT_EQ(at(start_tick - 1).status & kEngaged, 0u);
-    const auto* peg = std::get_if<protocol::PegInHoleTask>(&condition.task.form);
+    const auto* peg = std::get_if<plan::PegInHoleTask>(&condition.task.form);
     if (peg == nullptr) return;  // trial_types_test.cpp has the other types
-    const protocol::PegInHoleTask& task = *peg;
+    const plan::PegInHoleTask& task = *peg;
     if (attempt.outcome == "success") {
         const auto hold = static_cast<std::int64_t>(std::llround(task.hold / kTickSeconds));
         for (std::int64_t tick = end_tick - hold; tick <= end_tick; ++tick) {
@@ -97,7 +97,7 @@ TEST_P(ShippedStudy, RunsToItsDataFileAndEveryRowSaysWhatHappened) {
     // Truth: invariant (an outcome is what the events, the recorded ticks and the protocol's rules say)
     const TempFolder folder;
     const std::string file = std::string(PASSUNG_SOURCE_DIR) + "/protocols/" + GetParam();
-    const auto plan = protocol::readProtocol(file, app::knownDevices(), app::knownMeasures());
+    const auto plan = protocol::readProtocol(file, run::knownDevices(), run::knownMeasures());
     ASSERT_TRUE(plan);
     const Ended run = runProgram(folder.path(), {"run", file, "--simulated", "1"});
     ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -106,7 +106,7 @@ TEST_P(ShippedStudy, RunsToItsDataFileAndEveryRowSaysWhatHappened) {
     const auto reader = store::StoreReader::open(folder / (plan->name + ".db"));
     ASSERT_TRUE(reader);
     const auto sessions = reader->sessions();
-    ASSERT_EQ(sessions->size(), static_cast<std::size_t>(protocol::sessionsOf(*plan)));
+    ASSERT_EQ(sessions->size(), static_cast<std::size_t>(plan::sessionsOf(*plan)));
     std::int64_t planned_trials = 0;
     for (const auto& session : *sessions) {
         EXPECT_EQ(session.end_state, "complete");
@@ -142,7 +142,7 @@ TEST_P(ShippedStudy, RunsToItsDataFileAndEveryRowSaysWhatHappened) {
         const auto condition = std::find_if(plan->conditions.begin(), plan->conditions.end(),
                                             [&](const auto& c) { return c.name == attempt.presented_condition; });
         ASSERT_NE(condition, plan->conditions.end());
-        if (condition->timed_by != protocol::TimedBy::Program) continue;  // nothing of it is in the ticks
+        if (condition->timed_by != plan::TimedBy::Program) continue;  // nothing of it is in the ticks
         expectOutcomeInRecords(attempt, happened.front().t_ns, *records, *condition);
     }
     for (const auto& [outcome, count] : outcomes)

@@ -65,7 +65,7 @@ TEST(PointerMotion, EveryPlaneKeepsToItsDirections) {
 TEST(ShadedMesh, ACylinderIsSmoothAroundAndHasSharpRims) {
     // Truth: closed form. Normals of the mantle are radial to within half a segment, those of the caps axial; none
     // between.
-    const model::TriangleMesh mesh = model::tessellate(model::Cylinder{0.02, 0.05}, 1e-5);
+    const geometry::TriangleMesh mesh = shape::tessellate(shape::Cylinder{0.02, 0.05}, 1e-5);
     const ShadedMesh shaded = shade(mesh);
     ASSERT_EQ(shaded.indices.size(), 3 * mesh.triangles.size());
     int mantle = 0, caps = 0;
@@ -88,20 +88,20 @@ TEST(ShadedMesh, ACylinderIsSmoothAroundAndHasSharpRims) {
 
 TEST(ShadedMesh, ABoxHasThreeNormalsAtEveryCorner) {
     // Truth: closed form.
-    const ShadedMesh shaded = shade(model::tessellate(model::Box{0.02, 0.03, 0.04}, 1e-4));
+    const ShadedMesh shaded = shade(shape::tessellate(shape::Box{0.02, 0.03, 0.04}, 1e-4));
     EXPECT_EQ(shaded.vertices.size(), 24u);
 }
 
 /// A scene of a plate (target) and a held peg.
-protocol::Condition conditionOf(decltype(protocol::Task::form) form) {
-    protocol::Condition condition;
-    model::PartSpec plate, peg;
+plan::Condition conditionOf(decltype(plan::Task::form) form) {
+    plan::Condition condition;
+    scene::PartSpec plate, peg;
     plate.name = "plate";
-    plate.geometry = model::Shape(model::Box{0.06, 0.06, 0.02});
+    plate.geometry = shape::Shape(shape::Box{0.06, 0.06, 0.02});
     plate.X_WP = {Quat::Identity(), Vec3(0.1, 0.0, 0.0)};
     peg.name = "peg";
     peg.held = true;
-    peg.geometry = model::Shape(model::Cylinder{0.02, 0.05});
+    peg.geometry = shape::Shape(shape::Cylinder{0.02, 0.05});
     peg.shown_offset = Vec3(0.0, 0.003, 0.0);
     condition.scene.parts = {plate, peg};
     condition.task.target = "plate";
@@ -116,7 +116,7 @@ Vec3 middleOf(const Mark& mark) {
     return mark.X_W * middle;
 }
 
-std::vector<Mark> marksOf(decltype(protocol::Task::form) form) {
+std::vector<Mark> marksOf(decltype(plan::Task::form) form) {
     SceneArtist artist;
     const auto scene = artist.draw(conditionOf(std::move(form)), {});
     EXPECT_TRUE(scene);
@@ -127,13 +127,13 @@ TEST(SceneArtist, TheCameraStandsWhereTheStudyPutsIt) {
     // Truth: closed form. Its axis runs through what it looks at, the picture's upward direction shows no tilt; what is
     // not said is such that a sphere about all parts fits between the picture's lower and upper edge.
     SceneArtist artist;
-    protocol::View look;
+    plan::View look;
     look.camera_from = {-1.0, -2.0, 2.0};
     look.camera_target = Vec3(0.02, 0.01, 0.03);
     look.camera_distance = 0.3;
     look.camera_opening = 0.4;
     look.light_from = Vec3(0, 0, 2);
-    const auto scene = artist.draw(conditionOf(protocol::PegInHoleTask{}), look);
+    const auto scene = artist.draw(conditionOf(plan::PegInHoleTask{}), look);
     ASSERT_TRUE(scene);
     const Camera& camera = (*scene)->camera;
     EXPECT_NEAR((camera.X_WC.p - Vec3(0.02 - 0.1, 0.01 - 0.2, 0.03 + 0.2)).norm(), 0.0, 1e-12);
@@ -145,7 +145,7 @@ TEST(SceneArtist, TheCameraStandsWhereTheStudyPutsIt) {
 
     look.camera_distance.reset();
     look.camera_from = Vec3::UnitZ();  // straight from above
-    const auto above = artist.draw(conditionOf(protocol::PegInHoleTask{}), look);
+    const auto above = artist.draw(conditionOf(plan::PegInHoleTask{}), look);
     ASSERT_TRUE(above);
     const Camera& down = (*above)->camera;
     EXPECT_NEAR((down.X_WC.q * -Vec3::UnitZ() + Vec3::UnitZ()).norm(), 0.0, 1e-12);
@@ -160,17 +160,17 @@ TEST(SceneArtist, TheCameraStandsWhereTheStudyPutsIt) {
 
 TEST(ShadedMesh, KnowsWhetherItsInsideCanBeSeen) {
     // Truth: closed form: a box is closed, without a triangle or turned inside out it is not.
-    model::TriangleMesh box = model::tessellate(model::Box{0.02, 0.03, 0.04}, 1e-4);
+    geometry::TriangleMesh box = shape::tessellate(shape::Box{0.02, 0.03, 0.04}, 1e-4);
     EXPECT_FALSE(shade(box).two_sided);
-    for (const auto& shape : {model::Shape(model::Torus{0.1, 0.02}), model::Shape(model::BorePlate{.width = 0.06,
+    for (const auto& shape : {shape::Shape(shape::Torus{0.1, 0.02}), shape::Shape(shape::BorePlate{.width = 0.06,
                                                                      .depth = 0.06,
                                                                      .height = 0.03,
                                                                      .bore_diameter = 0.02,
                                                                      .bore_depth = 0.02,
                                                                      .chamfer = 0.001})})
-        EXPECT_FALSE(shade(model::tessellate(shape, 1e-4)).two_sided) << model::kindName(shape);
-    EXPECT_TRUE(shade(model::tessellate(model::Sheet{0.02, 0.03}, 1e-4)).two_sided);
-    model::TriangleMesh inside_out = box;
+        EXPECT_FALSE(shade(shape::tessellate(shape, 1e-4)).two_sided) << shape::kindName(shape);
+    EXPECT_TRUE(shade(shape::tessellate(shape::Sheet{0.02, 0.03}, 1e-4)).two_sided);
+    geometry::TriangleMesh inside_out = box;
     for (auto& [a, b, c] : inside_out.triangles) std::swap(b, c);
     EXPECT_TRUE(shade(inside_out).two_sided);
     box.triangles.pop_back();
@@ -180,21 +180,21 @@ TEST(ShadedMesh, KnowsWhetherItsInsideCanBeSeen) {
 TEST(TaskMarks, EveryTypeOfTrialShowsWhatItAsksFor) {
     // Truth: closed form. Rings stand at the mouths, a contour along its points in the target's frame, a placed part
     // where it would be drawn, that is, moved by the offset at which it is shown.
-    const auto bore = marksOf(protocol::PegInHoleTask{});
+    const auto bore = marksOf(plan::PegInHoleTask{});
     ASSERT_EQ(bore.size(), 1u);
     EXPECT_NEAR((middleOf(bore[0]) - Vec3(0.1, 0, 0)).norm(), 0.0, 1e-6);
-    const auto passage = marksOf(protocol::NarrowPassageTask{.length = 0.02, .width = 0.03});
+    const auto passage = marksOf(plan::NarrowPassageTask{.length = 0.02, .width = 0.03});
     ASSERT_EQ(passage.size(), 2u);
     EXPECT_NEAR((middleOf(passage[1]) - Vec3(0.1, 0, -0.02)).norm(), 0.0, 1e-6);
     const auto contour =
-        marksOf(protocol::ContourFollowingTask{.points = {{-0.02, 0, 0.01}, {0.02, 0, 0.01}, {0.02, 0.02, 0.01}}});
+        marksOf(plan::ContourFollowingTask{.points = {{-0.02, 0, 0.01}, {0.02, 0, 0.01}, {0.02, 0.02, 0.01}}});
     ASSERT_EQ(contour.size(), 1u);
     EXPECT_NEAR((middleOf(contour[0]) - Vec3(0.1, 0.01, 0.01)).norm(), 0.0, 1e-6);
-    const auto placement = marksOf(protocol::FreePlacementTask{.X_WGoal = {Quat::Identity(), Vec3(0.2, 0.0, 0.05)}});
+    const auto placement = marksOf(plan::FreePlacementTask{.X_WGoal = {Quat::Identity(), Vec3(0.2, 0.0, 0.05)}});
     ASSERT_EQ(placement.size(), 1u);
     EXPECT_TRUE(placement[0].pale);
     EXPECT_NEAR((middleOf(placement[0]) - Vec3(0.2, 0.003, 0.05)).norm(), 0.0, 1e-6);
-    EXPECT_TRUE(marksOf(protocol::DiscriminationPairTask{}).empty());
+    EXPECT_TRUE(marksOf(plan::DiscriminationPairTask{}).empty());
 }
 
 TEST(TaskMarks, ALineIsAsThickAsItIsToBeAllAlong) {

@@ -23,7 +23,7 @@ SessionView shown(SessionState state) {
 class Participant : public testing::Test {
 protected:
     Participant() {
-        protocol::StudyPlan plan;
+        plan::StudyPlan plan;
         plan.conditions.resize(1);
         run_.open(plan);
     }
@@ -109,7 +109,7 @@ TEST_F(Participant, IsLedThroughAPair) {
 TEST_F(Participant, WaitsForTheExperimentersClockWithoutAScene) {
     // Truth: invariant.
     begin();
-    beginTrial({.timed_by = protocol::TimedBy::Experimenter});
+    beginTrial({.timed_by = plan::TimedBy::Experimenter});
     tick(50, true);
     EXPECT_EQ(view().screen, ParticipantScreen::ByHand);
     EXPECT_FALSE(view().scene);
@@ -123,7 +123,7 @@ TEST_F(Participant, WaitsForTheExperimentersClockWithoutAScene) {
 
 TEST_F(Participant, LearnsTheResultOnlyAsFarAsTheProtocolSays) {
     // Truth: closed form
-    const auto resultOf = [this](protocol::ShownResult result, measures::Outcome outcome) {
+    const auto resultOf = [this](plan::ShownResult result, measures::Outcome outcome) {
         beginTrial({.result = result});
         tick(5, true);
         EXPECT_FALSE(view().result) << "of the trial before";
@@ -131,23 +131,23 @@ TEST_F(Participant, LearnsTheResultOnlyAsFarAsTheProtocolSays) {
         return view().result;
     };
     begin();
-    EXPECT_FALSE(resultOf(protocol::ShownResult::None, measures::Outcome::Success));
-    const auto outcome = resultOf(protocol::ShownResult::Outcome, measures::Outcome::Timeout);
+    EXPECT_FALSE(resultOf(plan::ShownResult::None, measures::Outcome::Success));
+    const auto outcome = resultOf(plan::ShownResult::Outcome, measures::Outcome::Timeout);
     ASSERT_TRUE(outcome);
     EXPECT_FALSE(outcome->success);
     EXPECT_FALSE(outcome->time_s);
-    const auto time = resultOf(protocol::ShownResult::Time, measures::Outcome::Success);
+    const auto time = resultOf(plan::ShownResult::Time, measures::Outcome::Success);
     ASSERT_TRUE(time);
     EXPECT_TRUE(time->success);
     EXPECT_EQ(time->time_s, 3.4);
-    EXPECT_FALSE(resultOf(protocol::ShownResult::Time, measures::Outcome::Aborted)) << "not their doing";
+    EXPECT_FALSE(resultOf(plan::ShownResult::Time, measures::Outcome::Aborted)) << "not their doing";
 }
 
 TEST_F(Participant, SeesARestAndTheChangeOfADevice) {
     // Truth: invariant
     begin();
     SessionView resting = shown(SessionState::BetweenTrials);
-    resting.rest = session::RestView{90, protocol::RestEnds::ByParticipant};
+    resting.rest = session::RestView{90, plan::RestEnds::ByParticipant};
     run_.take(resting);
     EXPECT_EQ(state(), RunState::Resting);
     EXPECT_EQ(view().screen, ParticipantScreen::Rest);

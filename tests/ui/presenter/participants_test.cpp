@@ -11,12 +11,12 @@ namespace {
 
 using namespace presenter;
 using fake::require;
-using protocol::ParticipantKind;
+using plan::ParticipantKind;
 
 const store::Actor kActor{"experimenter", "2001-02-03T04:05:06.000Z"};
 
-protocol::StudyPlan planWithConsent() {
-    protocol::StudyPlan plan = fake::makePlan();
+plan::StudyPlan planWithConsent() {
+    plan::StudyPlan plan = fake::makePlan();
     plan.consent = {{"data_use", true, {{"de", "Auswertung?"}, {"en", "Analysis?"}}},
                     {"photos", false, {{"de", "Fotos?"}, {"en", "Photos?"}}}};
     return plan;
@@ -61,7 +61,7 @@ protected:
     }
 
     fake::TempFolder folder_;
-    protocol::StudyPlan plan_ = planWithConsent();
+    plan::StudyPlan plan_ = planWithConsent();
     std::unique_ptr<store::Store> store_;
     std::string sha256_;
 };

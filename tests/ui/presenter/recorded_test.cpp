@@ -200,7 +200,7 @@ TEST(Playback, ShowsTheOtherPoseAsAGhostWhereItIsAnother) {
     EXPECT_TRUE(view.arrow) << "whoever felt it";
     EXPECT_NEAR(view.arrow_from.z(), 0.012, 1e-9) << "at the drawn part's top";
     EXPECT_NEAR(view.arrow_way.z(), 2.0 * kArrowPerNewton, 1e-12);
-    scene.shown = protocol::ShownPose::Device;
+    scene.shown = plan::ShownPose::Device;
     view = playbackView(scene, record);
     EXPECT_NEAR(view.X_WHeld.p.z(), 0.0, 1e-9);
     EXPECT_NEAR(view.X_WStart.p.z(), 0.002, 1e-9);

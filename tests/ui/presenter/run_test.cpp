@@ -15,7 +15,7 @@ using session::SessionView;
 
 /// A run of four trials; conditions "a" and "b" in turn.
 Run begun() {
-    protocol::StudyPlan plan;
+    plan::StudyPlan plan;
     plan.name = "study";
     plan.conditions.resize(2);
     plan.conditions[0].name = "a";

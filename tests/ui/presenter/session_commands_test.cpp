@@ -17,8 +17,8 @@ protected:
             run_.take(event);
             if (std::holds_alternative<SessionView>(event)) prepared_.push_back(run_.view());
         };
-        session_.emplace(SessionSetup{protocol::FrozenPlan(plan_), trials_, "P001", 7, false, 1, waits}, apparatus_,
-                         sink_, listener);
+        session_.emplace(SessionSetup{plan::FrozenPlan(plan_), trials_, "P001", 7, false, 1, waits}, apparatus_, sink_,
+                         listener);
         run_.open(plan_);
         run_.take(presenter::SessionBegun{"P001", trials_});
     }
@@ -98,7 +98,7 @@ TEST_F(ShownCommands, WhileASceneIsBuiltTheCommandsOfItsTrialAreOffered) {
 
 TEST_F(ShownCommands, AClockThatTheExperimenterHoldsIsStartedAndStoppedOnce) {
     // Truth: invariant.
-    for (auto& condition : plan_.conditions) condition.timed_by = protocol::TimedBy::Experimenter;
+    for (auto& condition : plan_.conditions) condition.timed_by = plan::TimedBy::Experimenter;
     begin(1);
     expectRefused(Kind::Done, WhyNot::NoTrial);
     enterTrial();

@@ -25,7 +25,7 @@ class Asked : public Windows {
 protected:
     void begin(const std::string& participant, const char* language, const std::string& more = "") {
         const std::string file = writeAskingStudy(folder_ / "asking", more);
-        const auto plan = protocol::readProtocol(file, app::knownDevices(), app::knownMeasures());
+        const auto plan = protocol::readProtocol(file, run::knownDevices(), run::knownMeasures());
         ASSERT_TRUE(plan) << toString(plan.errors().front());
         app_->desk().start(*plan, {.database = database_,
                                    .participant = participant,

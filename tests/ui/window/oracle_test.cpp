@@ -49,27 +49,27 @@ double hueDistance(double a, double b) {
 
 /// What was to be seen at one moment.
 struct Moment {
-    const protocol::Condition* condition = nullptr;
+    const plan::Condition* condition = nullptr;
     std::optional<TickRecord> tick;  // none: the attempt has not begun
     bool in_trial = false;           // the start pose was reached, and the trial is not over
 };
 
-model::TriangleMesh meshOf(const model::PartSpec& part) {
-    if (const auto* file = std::get_if<model::MeshFile>(&part.geometry)) {
-        auto read = model::importMesh(file->path, file->metres_per_unit);
+geometry::TriangleMesh meshOf(const scene::PartSpec& part) {
+    if (const auto* file = std::get_if<scene::MeshFile>(&part.geometry)) {
+        auto read = importer::importMesh(file->path, file->metres_per_unit);
         if (!read) throw std::runtime_error(toString(read.errors().front()));
         return read->mesh;
     }
-    return model::tessellate(std::get<model::Shape>(part.geometry), kFine);
+    return shape::tessellate(std::get<shape::Shape>(part.geometry), kFine);
 }
 
 /// Where everything stands: obstacles where they are drawn, the held part where the condition shows it in that tick.
 std::vector<Standing> standing(const Moment& moment) {
     std::vector<Standing> parts;
-    for (const model::PartSpec& part : moment.condition->scene.parts) {
+    for (const scene::PartSpec& part : moment.condition->scene.parts) {
         Pose X_W = part.X_WP;
         if (part.held && moment.tick) {
-            const bool proxy = moment.condition->shown == protocol::ShownPose::Proxy;
+            const bool proxy = moment.condition->shown == plan::ShownPose::Proxy;
             const auto& p = proxy ? moment.tick->proxy_position_m : moment.tick->hand_position_m;
             const auto& q = proxy ? moment.tick->proxy_quaternion : moment.tick->hand_quaternion;
             X_W = {Eigen::Quaternionf(q[0], q[1], q[2], q[3]).cast<double>().normalized(), Vec3(p[0], p[1], p[2])};
@@ -81,7 +81,7 @@ std::vector<Standing> standing(const Moment& moment) {
 }
 
 /// The camera that [view] describes in full; else the scene's.
-Eye eyeOf(const protocol::View& view, const presenter::Camera& camera) {
+Eye eyeOf(const plan::View& view, const presenter::Camera& camera) {
     if (!view.camera_target || !view.camera_distance) return {camera.X_WC, camera.opening};
     const Vec3 back = view.camera_from.normalized(), right = Vec3::UnitZ().cross(back).normalized();
     Mat3 axes;
@@ -89,12 +89,12 @@ Eye eyeOf(const protocol::View& view, const presenter::Camera& camera) {
     return {{Quat(axes), *view.camera_target + *view.camera_distance * back}, view.camera_opening};
 }
 
-double expectedHue(const Moment& moment, const protocol::View& view) {
-    const protocol::Cues& cues = moment.condition->cues;
+double expectedHue(const Moment& moment, const plan::View& view) {
+    const plan::Cues& cues = moment.condition->cues;
     double cue = 0.0;
     if (cues.visual && moment.in_trial && moment.tick)
         cue = std::min(1.0, static_cast<double>(moment.tick->hand_depth_m) / cues.full_depth);
-    const QColor plain = view.theme == protocol::Theme::Dark ? kHeldDark : kHeldLight;
+    const QColor plain = view.theme == plan::Theme::Dark ? kHeldDark : kHeldLight;
     const auto mixed = [cue](float from, float to) { return from + static_cast<float>(cue) * (to - from); };
     return QColor::fromRgbF(mixed(plain.redF(), kHit.redF()), mixed(plain.greenF(), kHit.greenF()),
                             mixed(plain.blueF(), kHit.blueF()))
@@ -104,12 +104,12 @@ double expectedHue(const Moment& moment, const protocol::View& view) {
 class Oracle;
 
 /// Shows a session that runs in virtual time in the windows, step by step, in the thread of the windows.
-class Showman final : public app::Performer {
+class Showman final : public run::Performer {
 public:
     Showman(window::Desk& desk, std::function<void(const Moment&)> look) : desk_(desk), look_(std::move(look)) {}
 
-    protocol::ParticipantKind kind() const override { return protocol::ParticipantKind::Simulated; }
-    std::unique_ptr<loop::HapticDevice> device(const simulated::DeviceParams&, const protocol::Condition&) override {
+    plan::ParticipantKind kind() const override { return plan::ParticipantKind::Simulated; }
+    std::unique_ptr<loop::HapticDevice> device(const simulated::DeviceParams&, const plan::Condition&) override {
         return nullptr;
     }
     DeviceDescription describe(const simulated::DeviceParams& preset) const override {
@@ -127,7 +127,7 @@ public:
         plan_ = &*setup.plan;
         desk_.bring({presenter::SessionBegun{setup.participant, setup.trials, {}, setup.plan->view}}, {});
     }
-    void prepares(const protocol::Condition& condition, std::int64_t trial_index, std::uint64_t) override {
+    void prepares(const plan::Condition& condition, std::int64_t trial_index, std::uint64_t) override {
         bring();
         ++scenes;
         seen_ = {};
@@ -138,7 +138,7 @@ public:
         brief.kind = static_cast<presenter::TrialBrief::Kind>(condition.task.form.index());
         brief.timed_by = condition.timed_by;
         desk_.bring({presenter::AttemptPrepared{trial_index, condition.name, *scene, false, brief}}, {});
-        if (condition.timed_by == protocol::TimedBy::Program) look_(moment_);
+        if (condition.timed_by == plan::TimedBy::Program) look_(moment_);
     }
     bool builds(double) override { return true; }
     void look(session::Session& session) override {
@@ -146,7 +146,7 @@ public:
         bring();
         desk_.bring({session.view()}, {});
         if (session.state() != session::SessionState::InTrial || !moment_.tick) return;
-        if (moment_.condition->timed_by != protocol::TimedBy::Program) return;
+        if (moment_.condition->timed_by != plan::TimedBy::Program) return;
         moment_.in_trial = desk_.run().view().state == RunState::Running && isTask();
         if (!moment_.in_trial) return;
         // The first picture of the trial, one once the part has gone in, and one as deep as half of the cue's scale.
@@ -178,7 +178,7 @@ private:
 
     window::Desk& desk_;
     std::function<void(const Moment&)> look_;
-    const protocol::StudyPlan* plan_ = nullptr;
+    const plan::StudyPlan* plan_ = nullptr;
     presenter::SceneArtist artist_;
     loop::ScreenRing screen_{4096};
     std::vector<loop::ScreenRing*> screens_{&screen_};
@@ -195,25 +195,25 @@ protected:
         if (window->isExposed()) waitFor([&] { return window->grabWindow().size() == size_; });  // the surface as well
     }
 
-    static protocol::StudyPlan planOf(const std::string& text, const std::string& path) {
-        auto plan = protocol::readProtocolText(text, path, app::knownDevices(), app::knownMeasures());
+    static plan::StudyPlan planOf(const std::string& text, const std::string& path) {
+        auto plan = protocol::readProtocolText(text, path, run::knownDevices(), run::knownMeasures());
         if (!plan) throw std::runtime_error(toString(plan.errors().front()));
         return *std::move(plan);
     }
 
     /// A session of the plan, or what is left of the newest one, until so many scenes were shown.
-    int show(const protocol::StudyPlan& plan, const std::string& database, bool resumes = false, int scenes = 1 << 20) {
+    int show(const plan::StudyPlan& plan, const std::string& database, bool resumes = false, int scenes = 1 << 20) {
         plan_ = &plan;
         app_->desk().open(plan, "en");
         waitFor([&] { return app_->participant()->isExposed(); });
         if (size_.isValid()) resize(size_.width(), size_.height());
         Showman showman(app_->desk(), [this](const Moment& moment) { compare(moment); });
-        app::RunOptions options;
+        run::RunOptions options;
         options.database = database;
         options.backup = false;
         options.performer = &showman;
         options.interrupted = [&] { return showman.scenes >= scenes; };
-        const auto end = resumes ? app::resumeStudy({}, options, {}) : app::runStudy(plan, options, {});
+        const auto end = resumes ? run::resumeStudy({}, options, {}) : run::runStudy(plan, options, {});
         EXPECT_TRUE(end) << toString(end.errors().front());
         scenes_ += showman.scenes;
         return showman.scenes;
@@ -347,7 +347,7 @@ protected:
             what, scenes_, samples_, mirrored_, compared_, least_overlap_, hidden_, hues_, worst_hue_, red_);
     }
 
-    const protocol::StudyPlan* plan_ = nullptr;
+    const plan::StudyPlan* plan_ = nullptr;
     QSize size_;
     int scenes_ = 0, samples_ = 0, mirrored_ = 0, compared_ = 0, hidden_ = 0, hues_ = 0, red_ = 0;
     double least_overlap_ = 1.0, worst_hue_ = 0.0;
@@ -463,12 +463,12 @@ TEST_F(Oracle, TheConsolesLookAndLanguageChangeNothingOfTheParticipantsPicture) 
         EXPECT_EQ(picture(app_->participant(), "look_after"), before) << compared;
         ++compared;
     });
-    app::RunOptions options;
+    run::RunOptions options;
     options.database = folder_ / "look.db";
     options.backup = false;
     options.performer = &showman;
     options.interrupted = [&] { return showman.scenes >= 6; };
-    const auto end = app::runStudy(plan, options, {});
+    const auto end = run::runStudy(plan, options, {});
     ASSERT_TRUE(end) << toString(end.errors().front());
     EXPECT_GE(compared, 8);
 }
@@ -480,7 +480,7 @@ TEST_F(Oracle, EveryTrialOfEveryShippedStudyShowsWhatItsConditionSays) {
     for (const auto& folder : std::filesystem::directory_iterator(PASSUNG_SOURCE_DIR "/protocols")) {
         const std::string path = folder.path() / "study.toml";
         if (!std::filesystem::exists(path)) continue;
-        auto plan = protocol::readProtocol(path, app::knownDevices(), app::knownMeasures());
+        auto plan = protocol::readProtocol(path, run::knownDevices(), run::knownMeasures());
         ASSERT_TRUE(plan) << toString(plan.errors().front());
         show(*plan, folder_ / (plan->name + ".db"), false, scenes);
         report(plan->name.c_str());

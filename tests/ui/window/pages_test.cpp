@@ -45,7 +45,7 @@ text.en = "You take part."
 text.de = "Sie nehmen teil."
 )";
 
-    std::string database() const { return app::studyDatabase(data_, "small"); }
+    std::string database() const { return presenter::studyDatabase(data_, "small"); }
 
     store::StoreReader reader() const {
         auto opened = store::StoreReader::open(database());
@@ -57,13 +57,13 @@ text.de = "Sie nehmen teil."
     void perform(int participants) {
         std::filesystem::create_directories(std::filesystem::path(database()).parent_path());
         const auto plan =
-            protocol::readProtocol(protocols_ + "/small/study.toml", app::knownDevices(), app::knownMeasures());
+            protocol::readProtocol(protocols_ + "/small/study.toml", run::knownDevices(), run::knownMeasures());
         ASSERT_TRUE(plan) << toString(plan.errors().front());
-        app::RunOptions options;
+        run::RunOptions options;
         options.database = database();
         options.simulated = participants;
         options.backup = false;
-        const auto end = app::runStudy(*plan, options, {});
+        const auto end = run::runStudy(*plan, options, {});
         ASSERT_TRUE(end) << toString(end.errors().front());
     }
 
@@ -398,9 +398,9 @@ struct StageText {
 /// Of every stage that a scene with everything in it has, with each method.
 std::vector<StageText> stageTexts() {
     std::vector<StageText> all;
-    model::PartCache cache;
-    using model::ContactMethod;
-    using model::PenaltyCoupling;
+    scene::PartCache cache;
+    using scene::ContactMethod;
+    using scene::PenaltyCoupling;
     const std::pair<ContactMethod, PenaltyCoupling> methods[] = {
         {ContactMethod::Penalty, PenaltyCoupling::Direct},
         {ContactMethod::Penalty, PenaltyCoupling::QuasiStatic},
@@ -409,13 +409,13 @@ std::vector<StageText> stageTexts() {
         {ContactMethod::GodObject, PenaltyCoupling::Direct}};
     for (const auto& [method, coupling] : methods) {
         for (const bool two_way : {false, true}) {
-            model::SceneSpec spec;
+            scene::SceneSpec spec;
             spec.parts.push_back({.name = "ball",
-                                  .geometry = model::Sphere{0.02},
+                                  .geometry = shape::Sphere{0.02},
                                   .X_WP = {Quat::Identity(), Vec3(0.0, 0.0, 0.03)},
                                   .held = true});
             spec.parts.push_back({.name = "table",
-                                  .geometry = model::Box{0.06, 0.06, 0.02},
+                                  .geometry = shape::Box{0.06, 0.06, 0.02},
                                   .X_WP = {Quat::Identity(), Vec3(0.0, 0.0, -0.01)}});
             spec.contact.cell = 2e-3;
             spec.contact.method = method;
@@ -428,7 +428,7 @@ std::vector<StageText> stageTexts() {
             spec.effects.passivity_damping = 1.0;
             spec.effects.transients.amplitude = 1.0;
             spec.display_wrench = false;
-            const auto scene = model::buildScene(spec, cache);
+            const auto scene = scene::buildScene(spec, cache);
             if (!scene) throw std::runtime_error(toString(scene.errors().front()));
             for (const auto& stage : tick::makeModel(*scene).stages) all.push_back({stage.name, stage.reason});
         }

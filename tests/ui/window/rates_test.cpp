@@ -28,9 +28,9 @@ constexpr std::size_t kTriangles = 59'000;
 
 /// A ring of at least that many triangles, as a file.
 std::size_t writeRing(const std::string& path) {
-    model::TriangleMesh mesh;
+    geometry::TriangleMesh mesh;
     for (double error = 20e-6; mesh.triangles.size() < kTriangles; error *= 0.9)
-        mesh = model::tessellate(model::Torus{0.12, 0.04}, error);
+        mesh = shape::tessellate(shape::Torus{0.12, 0.04}, error);
     std::ofstream file(path);
     file << "OFF\n" << mesh.vertices.size() << " " << mesh.triangles.size() << " 0\n";
     for (const Vec3& v : mesh.vertices) file << 1e3 * v.x() << " " << 1e3 * v.y() << " " << 1e3 * v.z() << "\n";
@@ -92,8 +92,8 @@ protected:
         warnings.clear();
     }
 
-    protocol::StudyPlan plan() {
-        auto read = protocol::readProtocol(protocols_ + "/ring/study.toml", app::knownDevices(), app::knownMeasures());
+    plan::StudyPlan plan() {
+        auto read = protocol::readProtocol(protocols_ + "/ring/study.toml", run::knownDevices(), run::knownMeasures());
         if (!read) throw std::runtime_error(toString(read.errors().front()));
         return *read;
     }
@@ -121,7 +121,8 @@ TEST_F(Rates, OfAHeavyPartInBothWindows) {
     ASSERT_GE(triangles_, kTriangles);
     const auto withoutWindows = [&](const std::string& database) {
         const Spent spent;
-        app::LiveSession session(plan(), {.database = database, .hand = app::LiveHand::Simulated, .try_out = true});
+        window::LiveSession session(plan(),
+                                    {.database = database, .hand = window::LiveHand::Simulated, .try_out = true});
         std::array<loop::ScreenTick, 256> ticks;
         for (bool over = false; !over;) {
             while (session.takeTicks(ticks) > 0) {
@@ -143,7 +144,7 @@ TEST_F(Rates, OfAHeavyPartInBothWindows) {
     for (const bool shadows : {false, true}) {
         open("en", true);
         int pictures = 0, mirrored = 0;
-        app_->desk().tryOut(plan(), app::LiveHand::Simulated, "en");
+        app_->desk().tryOut(plan(), window::LiveHand::Simulated, "en");
         waitFor([&] { return item(app_->participant(), "scene") != nullptr; });
         item(app_->participant(), "scene")->setProperty("shadows", shadows);
         click("page-session");
@@ -175,7 +176,7 @@ TEST_F(Rates, QualityFallsUntilPicturesAreFastEnoughOrHalfAsLarge) {
     quality_.reset();
     for (const QSize& size : {QSize(1280, 720), QSize(2560, 1440)}) {
         open("en", true);
-        app_->desk().tryOut(plan(), app::LiveHand::Simulated, "en");
+        app_->desk().tryOut(plan(), window::LiveHand::Simulated, "en");
         app_->participant()->setGeometry(QRect({0, 0}, size));
         int pictures = 0;
         const QObject context;

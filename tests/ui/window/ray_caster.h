@@ -12,7 +12,7 @@ namespace passung::test {
 
 /// A part as it stands in the world.
 struct Standing {
-    model::TriangleMesh mesh;
+    geometry::TriangleMesh mesh;
     Pose X_W;
 };
 

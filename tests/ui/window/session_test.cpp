@@ -203,7 +203,7 @@ TEST_F(WholeSession, KilledResumedRepeatedInvalidatedAndStoppedItLeavesWhatARunW
     const std::string file = writeFourTrials(folder + "/protocols");
     performAndKill(folder);
     ASSERT_FALSE(HasFatalFailure());
-    const std::string database = app::studyDatabase(folder + "/data", "peg_in_hole");
+    const std::string database = presenter::studyDatabase(folder + "/data", "peg_in_hole");
     EXPECT_EQ(query(database, "SELECT count(*) FROM attempt WHERE outcome='success' AND valid"), "1");
 
     openLab(folder);
@@ -268,11 +268,11 @@ TEST_F(WholeSession, KilledResumedRepeatedInvalidatedAndStoppedItLeavesWhatARunW
     EXPECT_EQ(count("segment"), "2");
 
     const std::string headless = folder + "/headless.db";
-    const auto plan = protocol::readProtocol(file, app::knownDevices(), app::knownMeasures());
-    app::RunOptions options;
+    const auto plan = protocol::readProtocol(file, run::knownDevices(), run::knownMeasures());
+    run::RunOptions options;
     options.database = headless;
     options.backup = false;
-    const auto end = app::runStudy(*plan, options, {});
+    const auto end = run::runStudy(*plan, options, {});
     ASSERT_TRUE(end) << toString(end.errors().front());
     for (const char* same : {kSchema, kConditions, kItems, kMeasures})
         EXPECT_EQ(query(database, same), query(headless, same)) << same;

@@ -216,13 +216,13 @@ private:
     /// A simulated participant's whole session.
     void perform(const std::string& study) {
         const auto plan =
-            protocol::readProtocol(protocols_ + "/" + study + "/study.toml", app::knownDevices(), app::knownMeasures());
+            protocol::readProtocol(protocols_ + "/" + study + "/study.toml", run::knownDevices(), run::knownMeasures());
         ASSERT_TRUE(plan) << toString(plan.errors().front());
-        app::RunOptions options;
-        options.database = app::studyDatabase(data_, study);
+        run::RunOptions options;
+        options.database = presenter::studyDatabase(data_, study);
         options.simulated = 1;
         options.backup = false;
-        const auto end = app::runStudy(*plan, options, {});
+        const auto end = run::runStudy(*plan, options, {});
         ASSERT_TRUE(end) << toString(end.errors().front());
     }
 

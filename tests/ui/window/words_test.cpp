@@ -30,14 +30,14 @@ protected:
 
     /// A simulated participant's session in the study's own database.
     void perform() {
-        app::RunOptions options;
-        options.database = app::studyDatabase(data_, "small");
+        run::RunOptions options;
+        options.database = presenter::studyDatabase(data_, "small");
         options.simulated = 1;
         options.backup = false;
         std::filesystem::create_directories(std::filesystem::path(options.database).parent_path());
-        const auto plan = app::readProtocol(protocols_ + "/small/study.toml");
+        const auto plan = run::readProtocol(protocols_ + "/small/study.toml");
         ASSERT_TRUE(plan) << toString(plan.errors().front());
-        const auto end = app::runStudy(*plan, options, {});
+        const auto end = run::runStudy(*plan, options, {});
         ASSERT_TRUE(end) << toString(end.errors().front());
     }
 
@@ -53,7 +53,7 @@ TEST_F(Words, EveryMeasureAndDeviceHasAGermanName) {
     app_->setLanguage("de");
     for (const auto& measure : measures::definitions())
         EXPECT_NE(window::measureWord(measure.label).toStdString(), measure.label) << measure.name;
-    for (const DeviceDescription& device : app::presetDevices())
+    for (const DeviceDescription& device : run::presetDevices())
         EXPECT_NE(window::deviceWord(device.label).toStdString(), device.label) << device.name;
     EXPECT_EQ(window::deviceWord("Some arm"), "Some arm");
     EXPECT_TRUE(app_->studies().cards()[0].toMap()["device"].toString().endsWith("(simuliert)"));

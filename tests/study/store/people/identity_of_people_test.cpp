@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using fake::require;
-using protocol::ParticipantKind;
+using plan::ParticipantKind;
 
 const Actor kActor{"e", "2001-02-03T04:05:06.000Z"};
 const std::string kEnrolled = "2001-02-03T04:05:06.007Z";
@@ -43,7 +43,7 @@ void makeStudy(const std::string& path, int people) {
     require(store->importProtocol(fake::makePlan()));
     ParticipantRecords desk(*store, kActor);
     for (int i = 1; i <= people; ++i)
-        require(desk.enrol(protocol::participantCode(ParticipantKind::Real, i), ParticipantKind::Real, kEnrolled));
+        require(desk.enrol(plan::participantCode(ParticipantKind::Real, i), ParticipantKind::Real, kEnrolled));
     const auto writer = fake::beginSession(*store, "S001", 1);
     require(fake::writeAttempt(*writer, 0, 100));
     require(writer->finishSession(true, 1'000'000'000));
@@ -83,7 +83,7 @@ std::set<std::string> guessedFrom(const std::string& path) {
     while (time.step()) times.insert(time.text(0));
     std::set<std::string> found;
     for (int number = 1; number <= 999; ++number) {
-        const std::string code = protocol::participantCode(ParticipantKind::Real, number);
+        const std::string code = plan::participantCode(ParticipantKind::Real, number);
         for (const std::string& text : guesses(code, values, times)) {
             const std::string hash = sha256Hex(text);
             for (const std::string& value : values)

@@ -11,12 +11,12 @@ namespace passung::store {
 namespace {
 
 using fake::require;
-using protocol::ParticipantKind;
+using plan::ParticipantKind;
 
 const Actor kActor{"experimenter", "2001-02-03T04:05:06.000Z"};
 
-protocol::StudyPlan planWithConsent() {
-    protocol::StudyPlan plan = fake::makePlan();
+plan::StudyPlan planWithConsent() {
+    plan::StudyPlan plan = fake::makePlan();
     plan.consent = {{"data_use", true, {{"de", "Auswertung?"}, {"en", "Analysis?"}}},
                     {"photos", false, {{"de", "Fotos?"}, {"en", "Photos?"}}}};
     return plan;
@@ -85,7 +85,7 @@ TEST(ParticipantRecords, NobodyTakesPartWithoutTheRequiredConsentToTheProtocolsO
     require(store->enrol("S001", ParticipantKind::Simulated, ""));
     EXPECT_TRUE(begin(*store, sha256, "S001")) << "simulated participants are not asked";
 
-    protocol::StudyPlan changed = planWithConsent();
+    plan::StudyPlan changed = planWithConsent();
     changed.version = "1.1";
     changed.source_text += "# changed\n";
     changed.consent[0].texts[1].second = "Analysis and publication?";

@@ -47,7 +47,7 @@ protected:
 
     fake::TempFolder folder_;
     const std::string path_ = folder_ / "s.db";
-    const protocol::StudyPlan plan_ = fake::makeAskingPlan();
+    const plan::StudyPlan plan_ = fake::makeAskingPlan();
 };
 
 TEST_F(Verify, FindsNothingInWhatWasWritten) {

@@ -15,10 +15,10 @@ namespace {
 using fake::require;
 
 /// 4 orders of method × clearance for each of two groups.
-protocol::StudyPlan twoGroups(int participants) {
-    protocol::StudyPlan plan = fake::makePlan();
+plan::StudyPlan twoGroups(int participants) {
+    plan::StudyPlan plan = fake::makePlan();
     plan.participants = participants;
-    plan.factors.push_back({"training", protocol::FactorKind::Between, "", {{"none"}, {"long"}}});
+    plan.factors.push_back({"training", plan::FactorKind::Between, "", {{"none"}, {"long"}}});
     const auto half = plan.conditions;
     plan.conditions.clear();
     for (std::size_t i = 0; i < half.size(); ++i)
@@ -33,8 +33,7 @@ protocol::StudyPlan twoGroups(int participants) {
 }
 
 /// One session of the participant without trials; false: it does not complete.
-void hold(Store& store, const protocol::StudyPlan& plan, const std::string& sha, const std::string& code,
-          bool complete) {
+void hold(Store& store, const plan::StudyPlan& plan, const std::string& sha, const std::string& code, bool complete) {
     SessionStart start;
     start.protocol_sha256 = sha;
     start.participant = code;
@@ -50,14 +49,14 @@ TEST(Slots, StayBalancedWhenThreeInTenDropOut) {
     // Truth: invariant: 32 people who complete fill 2 groups × 4 rows 4 times each, whoever left in between.
     const fake::TempFolder folder;
     const auto store = fake::openStore(folder / "s.db");
-    const protocol::StudyPlan plan = twoGroups(32);
+    const plan::StudyPlan plan = twoGroups(32);
     const std::string sha = require(store->importProtocol(plan));
     Random random(5);
     std::map<std::pair<std::size_t, std::int64_t>, int> completed;
     int done = 0, left = 0;
     for (std::int64_t number = 1; done < 32; ++number) {
-        const std::string code = protocol::participantCode(protocol::ParticipantKind::Real, number);
-        require(store->enrol(code, protocol::ParticipantKind::Real, "2001-01-01T00:00:00.000Z"));
+        const std::string code = plan::participantCode(plan::ParticipantKind::Real, number);
+        require(store->enrol(code, plan::ParticipantKind::Real, "2001-01-01T00:00:00.000Z"));
         const Slot slot = require(store->assignSlot(sha, code));
         const bool stays = random.uniform() >= 0.3;
         hold(*store, plan, sha, code, stays);
@@ -72,7 +71,7 @@ TEST(Slots, StayBalancedWhenThreeInTenDropOut) {
 TEST(Slots, OfTwoStationsFillOneSquareTogether) {
     // Truth: closed form: 4 rows, two stations with two people each: every row once, and once more with two more each.
     const fake::TempFolder folder;
-    const protocol::StudyPlan plan = fake::makePlan();
+    const plan::StudyPlan plan = fake::makePlan();
     std::map<std::int64_t, int> rows;
     std::vector<std::unique_ptr<Store>> stores;
     for (const Station& station : {Station{"A", 0, 2}, Station{"B", 1, 2}}) {
@@ -83,8 +82,8 @@ TEST(Slots, OfTwoStationsFillOneSquareTogether) {
     for (int round = 1; round <= 4; ++round) {
         for (const auto& store : stores) {
             const std::string sha = require(store->importProtocol(plan));
-            const std::string code = require(store->nextCode(protocol::ParticipantKind::Real));
-            require(store->enrol(code, protocol::ParticipantKind::Real, "2001-01-01T00:00:00.000Z"));
+            const std::string code = require(store->nextCode(plan::ParticipantKind::Real));
+            require(store->enrol(code, plan::ParticipantKind::Real, "2001-01-01T00:00:00.000Z"));
             ++rows[require(store->assignSlot(sha, code)).sequence_index];
         }
         if (round % 2 == 0) {
@@ -98,7 +97,7 @@ TEST(Slots, OfSeveralStationsStayBalancedWhenThreeInTenDropOut) {
     // Truth: invariant. A station fills its own passes through the 2 groups × 4 rows, one after another: no two people
     // who complete have one place, whoever enrols where in between; a station leaves at most its running pass open, so
     // that no order has more than one completed session per station more than another; and none once all are full.
-    const protocol::StudyPlan plan = twoGroups(48);
+    const plan::StudyPlan plan = twoGroups(48);
     for (const int stations : {2, 3, 5}) {
         const fake::TempFolder folder;
         std::vector<std::unique_ptr<Store>> stores;
@@ -124,8 +123,8 @@ TEST(Slots, OfSeveralStationsStayBalancedWhenThreeInTenDropOut) {
             if (done[station] == 16) continue;
             Store& store = *stores[station];
             const std::string sha = require(store.importProtocol(plan));
-            const std::string code = require(store.nextCode(protocol::ParticipantKind::Real));
-            require(store.enrol(code, protocol::ParticipantKind::Real, "2001-01-01T00:00:00.000Z"));
+            const std::string code = require(store.nextCode(plan::ParticipantKind::Real));
+            require(store.enrol(code, plan::ParticipantKind::Real, "2001-01-01T00:00:00.000Z"));
             const Slot slot = require(store.assignSlot(sha, code));
             const bool stays = random.uniform() >= 0.3;
             hold(store, plan, sha, code, stays);
@@ -146,14 +145,14 @@ TEST(Slots, OfSeveralStationsStayBalancedWhenThreeInTenDropOut) {
 TEST(Slots, AreKeptOverAParticipantsSessions) {
     // Truth: invariant: two sessions, one person, one row; the second may fail and be done again.
     const fake::TempFolder folder;
-    const protocol::StudyPlan plan = twoGroups(8);
+    const plan::StudyPlan plan = twoGroups(8);
     const std::string code = "P001";
     Slot slot;
     std::string sha;
     {
         const auto store = fake::openStore(folder / "s.db");
         sha = require(store->importProtocol(plan));
-        require(store->enrol(code, protocol::ParticipantKind::Real, "2001-01-01T00:00:00.000Z"));
+        require(store->enrol(code, plan::ParticipantKind::Real, "2001-01-01T00:00:00.000Z"));
         slot = require(store->assignSlot(sha, code));
         EXPECT_EQ(require(store->nextPart(sha, code)), 1);
         hold(*store, plan, sha, code, true);

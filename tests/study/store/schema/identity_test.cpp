@@ -17,7 +17,7 @@ TEST(Identity, SessionsOfDifferentPeopleOrdinalsAndSeedsDiffer) {
         for (int person = 1; person <= 50; ++person) {
             for (int ordinal = 1; ordinal <= 3; ++ordinal) {
                 for (const std::uint64_t seed : {0u, 1u, 2u}) {
-                    const auto code = protocol::participantCode(protocol::ParticipantKind::Real, person);
+                    const auto code = plan::participantCode(plan::ParticipantKind::Real, person);
                     const std::string id = sessionId(study, code, ordinal, seed);
                     EXPECT_EQ(id, sessionId(study, code, ordinal, seed));
                     EXPECT_EQ(id.size(), 16u);

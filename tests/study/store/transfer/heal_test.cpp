@@ -98,7 +98,7 @@ TEST_F(Heal, GivesBackWhatARowWasBeforeItWasChangedLater) {
 TEST_F(Heal, GivesRowsNumbersThatNobodyElseHas) {
     // Truth: invariant: B's notes have the numbers 2 to 4 in the file of all, and 1 to 3 in their own.
     const std::string b = folder_ / "b.db", all = folder_ / "all.db";
-    const protocol::StudyPlan plan = fake::makeAskingPlan();
+    const plan::StudyPlan plan = fake::makeAskingPlan();
     {
         const auto store = fake::openStore(b);
         const auto writer = fake::beginAskingSession(*store, plan, "S101", 2);

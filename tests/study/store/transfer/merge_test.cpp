@@ -17,7 +17,7 @@ namespace passung::store {
 namespace {
 
 using fake::require;
-using protocol::ParticipantKind;
+using plan::ParticipantKind;
 
 namespace fs = std::filesystem;
 
@@ -31,8 +31,7 @@ std::string bytesOf(const std::string& path) {
 /// One place where the fake study runs with real participants.
 class Place {
 public:
-    Place(std::string path, const Station& station, protocol::StudyPlan plan = fake::makePlan())
-        : path_(std::move(path)) {
+    Place(std::string path, const Station& station, plan::StudyPlan plan = fake::makePlan()) : path_(std::move(path)) {
         OpenOptions options = fake::options();
         options.station = station;
         station_ = station.name;
@@ -69,7 +68,7 @@ public:
 
 private:
     std::string path_, station_, sha256_;
-    protocol::StudyPlan plan_;
+    plan::StudyPlan plan_;
     std::unique_ptr<Store> store_;
 };
 
@@ -428,8 +427,8 @@ TEST(Merge, RefusesAnotherStudyTextSeedOrFormula) {
     const std::string a = folder / "A.db", all = folder / "ALL.db";
     Place(a, kA).perform("2001-01-01");
     merge({a}, all);
-    const auto with = [&](const std::string& name, const std::function<void(protocol::StudyPlan&)>& change) {
-        protocol::StudyPlan plan = fake::makePlan();
+    const auto with = [&](const std::string& name, const std::function<void(plan::StudyPlan&)>& change) {
+        plan::StudyPlan plan = fake::makePlan();
         change(plan);
         Place(folder / name, kB, plan).perform("2001-01-02");
         return folder / name;

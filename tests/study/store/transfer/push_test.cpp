@@ -307,7 +307,7 @@ TEST_F(Push, WhoWasPushedBeforeThereWereIdentitiesIsErasedThereToo) {
     {
         const auto store = fake::openStore(path);
         ParticipantRecords desk(*store, {"e", "2001-02-03"});
-        require(desk.enrol("P001", protocol::ParticipantKind::Real, "2001-02-03"));
+        require(desk.enrol("P001", plan::ParticipantKind::Real, "2001-02-03"));
     }
     const std::string nonce =
         Database(path, OpenMode::ReadOnly)

@@ -133,7 +133,7 @@ TEST_F(RestoreAnew, NeverReplacesAFileWhosePagesAreSound) {
 
 TEST_F(RestoreAnew, NeverReplacesAFileByAnotherStudy) {
     // Truth: invariant
-    protocol::StudyPlan other = fake::makeAskingPlan();
+    plan::StudyPlan other = fake::makeAskingPlan();
     other.name = "another";
     other.source_text += "# another\n";
     fake::performAsking(folder_ / "other.db", "S001", other);
@@ -176,7 +176,7 @@ TEST_F(RestoreAnew, TakesNoDamagedRowWhereSessionsCannotBeFound) {
 
 TEST_F(RestoreAnew, AFileThatCannotSayItsStudyIsReplacedByNone) {
     // Truth: invariant: of the file no page but the first has its header.
-    protocol::StudyPlan other = fake::makeAskingPlan();
+    plan::StudyPlan other = fake::makeAskingPlan();
     other.name = "another";
     other.source_text += "# another\n";
     fake::performAsking(folder_ / "other.db", "S001", other);

@@ -126,7 +126,7 @@ TEST(Crash, AKilledWriterLosesAtMostTheRunningAttempt) {
     Random random(20240601);
     std::size_t reported = 0;
     for (int i = 0; i < kills; ++i) {
-        const std::string participant = protocol::participantCode(protocol::ParticipantKind::Simulated, i + 1);
+        const std::string participant = plan::participantCode(plan::ParticipantKind::Simulated, i + 1);
         const auto finished = killWriter(path, participant, static_cast<Kill>(i % 3), random);
         reported += finished.size();
         const auto opened = Store::open(path, fake::options());

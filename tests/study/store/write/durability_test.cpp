@@ -226,7 +226,7 @@ TEST(Durability, ABackupIsTheDatabaseWithItsSumAndReplacedAsAWhole) {
     require(store->backup());
     EXPECT_EQ(bytesOf(path + ".backup.sha256"), sha256Hex(bytesOf(path + ".backup")) + "  s.db.backup\n");
     const std::string first = bytesOf(path + ".backup");
-    require(store->enrol("S002", protocol::ParticipantKind::Simulated, ""));
+    require(store->enrol("S002", plan::ParticipantKind::Simulated, ""));
     {
         // SQLite's writes to the copy only: the database itself is not written.
         fake::FaultyDisk disk([](DiskWork work, std::int64_t number) {
@@ -369,7 +369,7 @@ TEST(Durability, AClockThatGoesBackwardsIsToldAndChangesNoOrder) {
         const auto opened = Store::open(path, options);
         SessionStart start;
         start.protocol_sha256 = require(opened.store->importProtocol(fake::makePlan()));
-        require(opened.store->enrol(code, protocol::ParticipantKind::Simulated, options.now_utc));
+        require(opened.store->enrol(code, plan::ParticipantKind::Simulated, options.now_utc));
         require(opened.store->assignSlot(start.protocol_sha256, code));
         start.participant = code;
         start.seed = 7;

@@ -36,7 +36,7 @@ protected:
     }
     std::unique_ptr<SessionWriter> begin(Store& store) {
         sha256_ = fake::require(store.importProtocol(plan_));
-        fake::require(store.enrol("P001", protocol::ParticipantKind::Real, utc(0)));
+        fake::require(store.enrol("P001", plan::ParticipantKind::Real, utc(0)));
         fake::require(store.assignSlot(sha256_, "P001"));
         return fake::require(store.createSession(startOf(UtcClock::running(now())), fake::makeTrials(plan_, 4)));
     }
@@ -47,7 +47,7 @@ protected:
 
     const fake::TempFolder folder_;
     const std::string path_ = folder_ / "s.db";
-    const protocol::StudyPlan plan_ = fake::makeAskingPlan();
+    const plan::StudyPlan plan_ = fake::makeAskingPlan();
     std::string sha256_;
     std::int64_t now_ms_ = kNoon;
 };

@@ -117,7 +117,7 @@ TEST(Store, AProtocolKeepsTheMeshesThatItWasImportedWith) {
     // Truth: closed form (SHA-256 of "abc", FIPS 180-2) and invariant: one protocol, one geometry.
     const fake::TempFolder folder;
     std::ofstream(folder / "a.stl") << "abc";
-    protocol::StudyPlan plan = fake::makePlan();
+    plan::StudyPlan plan = fake::makePlan();
     plan.meshes = {{"parts/a.stl", folder / "a.stl"}};
     const std::string path = folder / "s.db";
     auto store = fake::openStore(path);
@@ -444,22 +444,22 @@ TEST(Store, SlotsGoRowByRowAndKindsDoNotShareThem) {
     const std::string sha = require(store->importProtocol(fake::makePlan(4)));
     ASSERT_EQ(design::williamsRows(4), 4u);
     for (int i = 1; i <= 6; ++i) {
-        const std::string code = require(store->nextCode(protocol::ParticipantKind::Simulated));
+        const std::string code = require(store->nextCode(plan::ParticipantKind::Simulated));
         EXPECT_EQ(code, "S00" + std::to_string(i));
-        EXPECT_TRUE(require(store->enrol(code, protocol::ParticipantKind::Simulated, "")));
-        EXPECT_FALSE(require(store->enrol(code, protocol::ParticipantKind::Simulated, ""))) << "known already";
+        EXPECT_TRUE(require(store->enrol(code, plan::ParticipantKind::Simulated, "")));
+        EXPECT_FALSE(require(store->enrol(code, plan::ParticipantKind::Simulated, ""))) << "known already";
         const Slot slot = require(store->assignSlot(sha, code));
         EXPECT_EQ(slot.number, i - 1);
         EXPECT_EQ(slot.sequence_index, (i - 1) % 4);
         EXPECT_EQ(slot.replicate, (i - 1) / 4);
         EXPECT_EQ(require(store->assignSlot(sha, code)).number, slot.number) << "keeps its slot";
     }
-    const std::string real = require(store->nextCode(protocol::ParticipantKind::Real));
+    const std::string real = require(store->nextCode(plan::ParticipantKind::Real));
     EXPECT_EQ(real, "P001");
-    require(store->enrol(real, protocol::ParticipantKind::Real, ""));
+    require(store->enrol(real, plan::ParticipantKind::Real, ""));
     EXPECT_EQ(require(store->assignSlot(sha, real)).number, 0);
-    EXPECT_FALSE(store->enrol("S001", protocol::ParticipantKind::Real, "")) << "a simulated code never turns real";
-    EXPECT_FALSE(store->enrol("Anna", protocol::ParticipantKind::Real, ""));
+    EXPECT_FALSE(store->enrol("S001", plan::ParticipantKind::Real, "")) << "a simulated code never turns real";
+    EXPECT_FALSE(store->enrol("Anna", plan::ParticipantKind::Real, ""));
     EXPECT_FALSE(store->assignSlot(sha, "P999"));
     EXPECT_FALSE(store->assignSlot("no such protocol", real));
 }
@@ -469,12 +469,12 @@ TEST(Store, ASessionIsWrittenWholeOrNotAtAll) {
     const fake::TempFolder folder;
     const std::string path = folder / "s.db";
     auto store = fake::openStore(path);
-    const protocol::StudyPlan plan = fake::makePlan();
+    const plan::StudyPlan plan = fake::makePlan();
     SessionStart start;
     start.protocol_sha256 = require(store->importProtocol(plan));
     start.session_id = "x";
     start.participant = "S001";
-    require(store->enrol("S001", protocol::ParticipantKind::Simulated, ""));
+    require(store->enrol("S001", plan::ParticipantKind::Simulated, ""));
     auto trials = fake::makeTrials(plan, 8);
     trials.back().condition = 99;
     EXPECT_FALSE(store->createSession(start, trials));
@@ -608,10 +608,10 @@ TEST(Store, NobodyCompletesAProtocolTwiceAndItsSeedStays) {
     require(fake::writeAttempt(*writer, 0, 20));
     require(writer->finishSession(true, 0));
     EXPECT_THROW(fake::beginSession(*store, "S001", 1), std::runtime_error);
-    protocol::StudyPlan plan = fake::makePlan();
+    plan::StudyPlan plan = fake::makePlan();
     plan.seed = 8;
     EXPECT_FALSE(store->importProtocol(plan));
-    EXPECT_FALSE(store->enrol("P001", protocol::ParticipantKind::Simulated, ""));
+    EXPECT_FALSE(store->enrol("P001", plan::ParticipantKind::Simulated, ""));
 }
 
 TEST(Store, ASymbolicLinkIsNoWayAroundTheLock) {
@@ -631,7 +631,7 @@ TEST(Store, ADatabaseHoldsOneStudyAndOneTextPerVersion) {
     const fake::TempFolder folder;
     auto store = fake::openStore(folder / "s.db");
     require(store->importProtocol(fake::makePlan()));
-    protocol::StudyPlan changed = fake::makePlan();
+    plan::StudyPlan changed = fake::makePlan();
     changed.source_text += "# changed\n";
     const auto same_version = store->importProtocol(changed);
     ASSERT_FALSE(same_version);
@@ -644,7 +644,7 @@ TEST(Store, ADatabaseHoldsOneStudyAndOneTextPerVersion) {
     ASSERT_FALSE(other_study);
     EXPECT_NE(other_study.errors()[0].message.find("holds the study fake, not another"), std::string::npos);
     EXPECT_TRUE(store->importProtocol(fake::makePlan())) << "what is stored already goes on";
-    const auto code = store->enrol("s1", protocol::ParticipantKind::Simulated, "");
+    const auto code = store->enrol("s1", plan::ParticipantKind::Simulated, "");
     ASSERT_FALSE(code);
     EXPECT_NE(code.errors()[0].message.find("such as S001"), std::string::npos);
 }
@@ -655,7 +655,7 @@ TEST(Store, AnotherFormulaUnderAnOldNameIsRefused) {
     const std::string path = folder / "s.db";
     require(fake::openStore(path)->importProtocol(fake::makePlan()));
     Database(path, OpenMode::ReadWrite).execute("UPDATE measure SET formula_version=99 WHERE measure='peak_force_N'");
-    protocol::StudyPlan plan = fake::makePlan();
+    plan::StudyPlan plan = fake::makePlan();
     plan.source_text += "# changed\n";
     plan.version = "1.1";
     const auto imported = fake::openStore(path)->importProtocol(plan);
