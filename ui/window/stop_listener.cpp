@@ -23,11 +23,11 @@ constexpr std::uint32_t kUnderThePointer = 1;  // in a focus' place: the keyboar
 constexpr int kDeepest = 64;                   // windows in windows
 
 template <class T>
-using Reply = std::unique_ptr<T, decltype(&std::free)>;
+using XcbReply = std::unique_ptr<T, decltype(&std::free)>;
 
 template <class T>
-Reply<T> owned(T* reply) {
-    return Reply<T>(reply, &std::free);
+XcbReply<T> owned(T* reply) {
+    return XcbReply<T>(reply, &std::free);
 }
 
 int pixels(xcb_input_fp1616_t fixed) { return static_cast<int>(fixed >> 16); }
@@ -48,7 +48,7 @@ public:
     bool hears() const { return hears_; }
     bool isLost() const { return xcb_connection_has_error(connection_) != 0; }
     int file() const { return xcb_get_file_descriptor(connection_); }
-    Reply<xcb_generic_event_t> event() { return owned(xcb_poll_for_event(connection_)); }
+    XcbReply<xcb_generic_event_t> event() { return owned(xcb_poll_for_event(connection_)); }
     /// The opcode of XInput's events.
     std::uint8_t opcode() const { return xcb_get_extension_data(connection_, &xcb_input_id)->major_opcode; }
 
