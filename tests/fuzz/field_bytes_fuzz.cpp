@@ -17,7 +17,7 @@
 namespace {
 
 using namespace passung;
-using namespace passung::model;
+using namespace passung::field;
 
 std::string soundBytes() {
     DistanceSource source;
@@ -60,8 +60,8 @@ std::string edited(std::string_view edits) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     std::string_view given(reinterpret_cast<const char*>(data), size);
-    (void)unsealed("key", given);
-    (void)shellFrom(given);
+    (void)scene::unsealed("key", given);
+    (void)shell::shellFrom(given);
     const bool edits = !given.empty() && (given[0] == 'e' || given[0] == 't');
     const auto field = edits ? DistanceField::fromBytes(edited(given)) : DistanceField::fromBytes(given);
     if (!field) return 0;

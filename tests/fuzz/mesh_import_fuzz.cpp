@@ -12,7 +12,6 @@
 namespace {
 
 using namespace passung;
-using namespace passung::model;
 
 constexpr std::size_t kMostTriangles = 3000;  // repaired: more take too long for a fuzzer
 
@@ -27,26 +26,26 @@ std::string binaryStl(std::string_view records) {
     return bytes + std::string(records.substr(0, 50 * count));
 }
 
-Result<TriangleMesh> read(char format, std::string_view bytes) {
+Result<geometry::TriangleMesh> read(char format, std::string_view bytes) {
     switch (format) {
         case 'b':
-            return readMesh(binaryStl(bytes), "f", "stl");
+            return importer::readMesh(binaryStl(bytes), "f", "stl");
         case 's':
-            return readMesh(bytes, "f", "stl");
+            return importer::readMesh(bytes, "f", "stl");
         case 'o':
-            return readMesh(bytes, "f", "off");
+            return importer::readMesh(bytes, "f", "off");
         case 'w':
-            return readMesh(bytes, "f", "obj");
+            return importer::readMesh(bytes, "f", "obj");
         case 'p':
-            return readMesh(bytes, "f", "ply");
+            return importer::readMesh(bytes, "f", "ply");
         default:
             return Error{.message = "none"};
     }
 }
 
-void requireSound(const TriangleMesh& mesh) {
+void requireSound(const geometry::TriangleMesh& mesh) {
     for (const Vec3& v : mesh.vertices) require(v.allFinite());
-    for (const Triangle& t : mesh.triangles)
+    for (const geometry::Triangle& t : mesh.triangles)
         for (const std::uint32_t v : t) require(v < mesh.vertices.size());
 }
 
@@ -64,9 +63,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const Vec3& v : mesh->vertices)
         if (v.cwiseAbs().maxCoeff() > 1e5) return 0;  // importMesh refuses it
     const std::size_t count = mesh->triangles.size();
-    const ImportedMesh repaired = repairMesh(std::move(*mesh));
+    const importer::ImportedMesh repaired = importer::repairMesh(std::move(*mesh));
     requireSound(repaired.mesh);
-    const MeshReport& r = repaired.report;
+    const importer::MeshReport& r = repaired.report;
     require(r.triangles_read == count && r.triangles <= count);
     require(r.triangles + r.degenerate_triangles + r.duplicate_triangles == count);
     require(repaired.mesh.triangles.size() == r.triangles + r.closing_triangles);
