@@ -5,7 +5,6 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
-#include <memory>
 #include <string>
 
 #include "core/base/printable.h"
@@ -42,27 +41,25 @@ ssize_t print(void* cookie, const char* bytes, size_t size) {
 }
 
 int end(void* cookie) {
-    const std::unique_ptr<Output> output(static_cast<Output*>(cookie));
+    const auto* output = static_cast<const Output*>(cookie);
     return writeAll(output->descriptor, printableLines(output->begun)) ? 0 : EOF;
 }
 
-/// A stream through which everything passes to `descriptor`; nullptr if there is none to be had.
-std::FILE* safeStream(int descriptor, bool returns, int buffering) {
-    auto output = std::make_unique<Output>(Output{descriptor, returns});
-    std::FILE* stream =
-        fopencookie(output.get(), "w", {.read = nullptr, .write = print, .seek = nullptr, .close = end});
-    if (stream == nullptr) return nullptr;
-    output.release();  // closed with the stream
-    std::setvbuf(stream, nullptr, buffering, BUFSIZ);
+/// A stream through which everything passes to `output`, which outlives it; nullptr if there is none to be had.
+std::FILE* safeStream(Output& output, int buffering) {
+    std::FILE* stream = fopencookie(&output, "w", {.read = nullptr, .write = print, .seek = nullptr, .close = end});
+    if (stream != nullptr) std::setvbuf(stream, nullptr, buffering, BUFSIZ);
     return stream;
 }
 
 }  // namespace
 
 void makeOutputSafe() {
-    const int buffering = isatty(STDOUT_FILENO) != 0 ? _IOLBF : _IOFBF;
-    if (std::FILE* safe = safeStream(STDOUT_FILENO, false, buffering)) stdout = safe;
-    if (std::FILE* safe = safeStream(STDERR_FILENO, isatty(STDERR_FILENO) != 0, _IONBF)) stderr = safe;
+    // The C library flushes after everything static is gone: these two are never destroyed.
+    static Output* const out = new Output{STDOUT_FILENO, false};
+    static Output* const error = new Output{STDERR_FILENO, isatty(STDERR_FILENO) != 0};
+    if (std::FILE* safe = safeStream(*out, isatty(STDOUT_FILENO) != 0 ? _IOLBF : _IOFBF)) stdout = safe;
+    if (std::FILE* safe = safeStream(*error, _IONBF)) stderr = safe;
 }
 
 }  // namespace passung::cli
