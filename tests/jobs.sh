@@ -39,11 +39,9 @@ every_job() {
     job 'g++, assertions, all tests, warnings are errors' env PASSUNG_PRESET=ci ./dev test
     job 'an edit in a kernel to its tests' edit_to_tests core/motion/constrained_motion.cpp core/motion
     job 'demo study (./dev run), its build from nothing' env -u DISPLAY -u WAYLAND_DISPLAY ./dev run
-    job 'clang: determinism' ./dev clang-check
-    job 'ASan and UBSan: files, data, devices, program' ./dev asan-check
-    job 'TSan: threads' ./dev tsan-check
-    job 'Debug: replay' ./dev debug-check
+    job 'clang, ASan, UBSan: files, data, program' ./dev asan-check
     job 'fuzzers' ./dev fuzz-check "$1"
+    job 'TSan: threads' ./dev tsan-check
     job 'lint of the last commit' ./dev lint
 }
 
