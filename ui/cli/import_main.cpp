@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/base/sanitizer.h"
 #include "core/import/mesh_bytes.h"
 #include "core/import/mesh_import.h"
 #include "study/run/import_exit.h"
@@ -36,11 +37,7 @@ void limitOneself(rlim_t seconds, rlim_t bytes) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody waits for the answer any more
     lower(RLIMIT_CORE, 0);
     lower(RLIMIT_CPU, seconds);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which reserve terabytes
-    lower(RLIMIT_AS, bytes);
-#else
-    (void)bytes;
-#endif
+    if (!kSanitized) lower(RLIMIT_AS, bytes);
 }
 
 bool writeAll(int to, const std::string& bytes) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/sanitizer.h"
 #include "tests/ui/cli/program.h"
 
 namespace passung::test {
@@ -121,11 +122,7 @@ protected:
     void SetUp() override {
         getrlimit(RLIMIT_AS, &before_);
         const rlimit little{kAddresses, before_.rlim_max};
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which reserve terabytes
-        setrlimit(RLIMIT_AS, &little);
-#else
-        (void)little;
-#endif
+        if (!kSanitized) setrlimit(RLIMIT_AS, &little);
     }
     void TearDown() override { setrlimit(RLIMIT_AS, &before_); }
 
