@@ -16,7 +16,8 @@ MotionSolver::MotionSolver(const Surroundings& around, std::span<const std::uint
     for (const std::uint32_t place : likely.first(std::min<std::size_t>(likely.size(), 6))) {
         const int before = count_;
         addRow(around.contacts[place]);
-        if (count_ > before) held_[static_cast<std::size_t>(held_count_++)] = rows_[static_cast<std::size_t>(before)];
+        if (count_ > before)
+            last_active_[static_cast<std::size_t>(last_active_count_++)] = rows_[static_cast<std::size_t>(before)];
     }
 }
 
@@ -78,8 +79,8 @@ bool MotionSolver::meetsMore(const Motion& u) noexcept {
         which[bin] = &contact;
     }
     if (count_ + static_cast<int>(kBins) > kMostRows) {  // forget what does not hold
-        std::copy_n(held_.begin(), held_count_, rows_.begin());
-        count_ = held_count_;
+        std::copy_n(last_active_.begin(), last_active_count_, rows_.begin());
+        count_ = last_active_count_;
     }
     const int before = count_;
     for (const contact::ContactPoint* contact : which)
@@ -91,7 +92,7 @@ bool MotionSolver::meetsMore(const Motion& u) noexcept {
 bool MotionSolver::attempt(const Motion& wanted, ConstrainedMotion& result) noexcept {
     for (MotionRow& row : std::span(rows_).first(static_cast<std::size_t>(count_))) row.bound = boundOf(row);
     ActiveSet active;
-    for (MotionRow& row : std::span(held_).first(static_cast<std::size_t>(held_count_))) {
+    for (MotionRow& row : std::span(last_active_).first(static_cast<std::size_t>(last_active_count_))) {
         row.bound = boundOf(row);
         active.tryAdd(row, 0.0);
     }
@@ -101,8 +102,8 @@ bool MotionSolver::attempt(const Motion& wanted, ConstrainedMotion& result) noex
     while (true) {
         const MotionRow* worst = mostViolated(result.u);
         if (worst == nullptr) {
-            held_count_ = active.size();
-            for (int i = 0; i < held_count_; ++i) held_[static_cast<std::size_t>(i)] = active.row(i);
+            last_active_count_ = active.size();
+            for (int i = 0; i < last_active_count_; ++i) last_active_[static_cast<std::size_t>(i)] = active.row(i);
             if (meetsMore(result.u)) worst = mostViolated(result.u);
         }
         if (worst == nullptr) break;
@@ -113,10 +114,11 @@ bool MotionSolver::attempt(const Motion& wanted, ConstrainedMotion& result) noex
             break;
         }
     }
-    result.active = held_count_ = active.size();
+    result.active = last_active_count_ = active.size();
     for (int i = 0; i < active.size(); ++i) {
-        const MotionRow& row = held_[static_cast<std::size_t>(i)] = active.row(i);
-        result.held[static_cast<std::size_t>(i)] = {row.contact, active.lambda(i) * row.gradient / row.length};
+        const MotionRow& row = last_active_[static_cast<std::size_t>(i)] = active.row(i);
+        result.active_contacts[static_cast<std::size_t>(i)] = {row.contact,
+                                                               active.lambda(i) * row.gradient / row.length};
     }
     return true;
 }
@@ -137,7 +139,7 @@ ConstrainedMotion MotionSolver::solve(const Motion& wanted) noexcept {
     }
     if (!found) {  // rounding only: these rows allow u = 0
         result.u.setZero();
-        result.active = held_count_ = 0;
+        result.active = last_active_count_ = 0;
         result.converged = false;
     }
     return result;

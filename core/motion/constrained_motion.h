@@ -25,16 +25,16 @@ struct Surroundings {
 };
 
 /// A contact that holds a motion.
-struct HeldContact {
+struct ActiveContact {
     std::uint32_t contact = 0;  // its place in the manifold
     double push = 0.0;          // of it along its normal, as a motion [m]: times the coupling's stiffness, its force
 };
 
 struct ConstrainedMotion {
     Motion u = Motion::Zero();
-    std::array<HeldContact, 6> held{};  // the first `active`
-    int active = 0;                     // contacts that hold the motion, at most six
-    int iterations = 0;                 // contacts taken up or let go
+    std::array<ActiveContact, 6> active_contacts{};  // the first `active`
+    int active = 0;                                  // contacts that hold the motion, at most six
+    int iterations = 0;                              // contacts taken up or let go
     bool relaxed = false;   // the overlap could not be removed within this motion: it is only kept from growing
     bool converged = true;  // false: kMaxIterations reached; contacts may be violated
 };
@@ -90,8 +90,8 @@ private:
     const Surroundings& around_;
     std::array<MotionRow, kMostRows> rows_;
     int count_ = 0;
-    std::array<MotionRow, 6> held_;  // the last motion
-    int held_count_ = 0;
+    std::array<MotionRow, 6> last_active_;  // the last motion
+    int last_active_count_ = 0;
     double tolerance_ = kMotionTolerance;
     bool relaxed_ = false;
 };

@@ -8,9 +8,10 @@
 
 namespace passung::motion {
 
-RubbedMotion constrainWithFriction(const Motion& wanted, const Surroundings& around, std::span<const Friction> friction,
-                                   const FrictionPatches& before, std::span<const std::uint32_t> likely) noexcept {
-    RubbedMotion result;
+FrictionMotion constrainWithFriction(const Motion& wanted, const Surroundings& around,
+                                     std::span<const Friction> friction, const FrictionPatches& before,
+                                     std::span<const std::uint32_t> likely) noexcept {
+    FrictionMotion result;
     result.motion = constrainMotion(wanted, around, likely);
     const bool smooth =
         std::all_of(friction.begin(), friction.end(), [](const Friction& f) { return f.at_rest == 0.0; });

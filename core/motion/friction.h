@@ -15,18 +15,18 @@ struct Friction {
 
 /// Contacts with one obstacle that face one way and rub as one.
 struct FrictionPatch {
-    Vec3 normal = Vec3::Zero();  // unit, out of the obstacle
-    Vec3 centre = Vec3::Zero();  // of pressure; world
-    double radius = 0.0;         // r_e, the effective one of its torsion [m]
-    double pressure = 0.0;       // what the contacts push with, as a motion [m]: times the coupling's stiffness [N]
-    Vec3 rub = Vec3::Zero();     // x below [m]
+    Vec3 normal = Vec3::Zero();   // unit, out of the obstacle
+    Vec3 centre = Vec3::Zero();   // of pressure; world
+    double radius = 0.0;          // r_e, the effective one of its torsion [m]
+    double pressure = 0.0;        // what the contacts push with, as a motion [m]: times the coupling's stiffness [N]
+    Vec3 impulse = Vec3::Zero();  // x below [m]
     std::uint32_t obstacle = 0;
     double slip = 0.0;  // |s| below [m]
     bool slides = false;
 };
 
-/// `rub` along the surface, as a vector of the world [m]; its third part, the torsion, apart. rt-safe.
-Vec3 rubAlong(const FrictionPatch& patch) noexcept;
+/// `impulse` along the surface, as a vector of the world [m]; its third part, the torsion, apart. rt-safe.
+Vec3 impulseAlong(const FrictionPatch& patch) noexcept;
 
 /// Patches of one motion. At most six, since no more contacts hold it.
 struct FrictionPatches {
@@ -34,7 +34,7 @@ struct FrictionPatches {
     int count = 0;
 };
 
-struct RubbedMotion {
+struct FrictionMotion {
     ConstrainedMotion motion;
     FrictionPatches patches;
     int sweeps = 0;
@@ -42,7 +42,7 @@ struct RubbedMotion {
     bool converged = true;  // false: contacts and cone are obeyed, but what slips rises
 };
 
-inline constexpr int kRubSweeps = 30;
+inline constexpr int kFrictionSweeps = 30;
 inline constexpr int kMostSteps = 1000;  // rows that these take up in all
 
 /// The motion that the contacts leave to a body that is drawn along `wanted` by a spring, with friction.
@@ -63,7 +63,8 @@ inline constexpr int kMostSteps = 1000;  // rows that these take up in all
 /// Limit cases: μ = 0 → constrainMotion. All patches at rest → u is zero along them, exactly: nothing creeps. One plane
 /// → |x| = μ λ in slip, along -s.
 /// `friction`: of each obstacle. `before`: patches of the motion before, which tell what was sliding. rt-safe, bounded.
-RubbedMotion constrainWithFriction(const Motion& wanted, const Surroundings& around, std::span<const Friction> friction,
-                                   const FrictionPatches& before, std::span<const std::uint32_t> likely = {}) noexcept;
+FrictionMotion constrainWithFriction(const Motion& wanted, const Surroundings& around,
+                                     std::span<const Friction> friction, const FrictionPatches& before,
+                                     std::span<const std::uint32_t> likely = {}) noexcept;
 
 }  // namespace passung::motion

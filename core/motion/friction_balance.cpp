@@ -39,7 +39,7 @@ FrictionBalance::FrictionBalance(const Motion& wanted, const Surroundings& aroun
       u_(plain.u) {
     std::array<int, 6> patch_of;
     for (int i = 0; i < plain.active; ++i) {
-        const HeldContact& held = plain.held[static_cast<std::size_t>(i)];
+        const ActiveContact& held = plain.active_contacts[static_cast<std::size_t>(i)];
         const contact::ContactPoint& contact = around.contacts[held.contact];
         const int at = patch_of[static_cast<std::size_t>(i)] = patchFor(contact);
         Patch& patch = patches_[static_cast<std::size_t>(at)];
@@ -58,7 +58,7 @@ FrictionBalance::FrictionBalance(const Motion& wanted, const Surroundings& aroun
             const FrictionPatch& old = before.patch[static_cast<std::size_t>(k)];
             if (old.obstacle != patch.is.obstacle || !(old.normal.dot(patch.is.normal) > kSameWay)) continue;
             patch.is.slides = old.slides;
-            patch.is.rub = turned(old, patch.is.normal);
+            patch.is.impulse = turned(old, patch.is.normal);
             patch.given = old.slides ? old.slip : 0.0;
             break;
         }
@@ -69,11 +69,11 @@ FrictionBalance::FrictionBalance(const Motion& wanted, const Surroundings& aroun
     for (int i = 0; i < plain.active; ++i) {
         const int at = patch_of[static_cast<std::size_t>(i)];
         const Patch& patch = patches_[static_cast<std::size_t>(at)];
-        const Vec3 along = patch.is.rub.norm() > 0.0 ? Vec3(-patch.is.rub) : patch.slip;
-        addCut(plain.held[static_cast<std::size_t>(i)].contact, at,
+        const Vec3 along = patch.is.impulse.norm() > 0.0 ? Vec3(-patch.is.impulse) : patch.slip;
+        addCut(plain.active_contacts[static_cast<std::size_t>(i)].contact, at,
                along.norm() > kAtRest * size_ ? Vec3(along.normalized()) : Vec3(Vec3::Zero()));
         active_.tryAdd(rows_[static_cast<std::size_t>(i)], 0.0);
-        watch({plain.held[static_cast<std::size_t>(i)].contact, at, Vec3::Zero()});
+        watch({plain.active_contacts[static_cast<std::size_t>(i)].contact, at, Vec3::Zero()});
     }
     u_ = active_.start(wanted_);
 }
@@ -160,7 +160,7 @@ void FrictionBalance::watch(const Cut& contact) noexcept {
 }
 
 /// Adds tangents of the contacts that hold, where the motion of now violates these by more than `enough`.
-bool FrictionBalance::cutHeld(double enough) noexcept {
+bool FrictionBalance::cutActive(double enough) noexcept {
     const int before = cut_count_;
     for (int i = 0; i < active_.size(); ++i) {
         const Cut cut = cuts_[active_.row(i).contact];
@@ -217,7 +217,7 @@ bool FrictionBalance::cutAmong(bool all, double enough) noexcept {
 bool FrictionBalance::cutOff(double enough, bool all) noexcept {
     makeRoom();
     noteSlips();
-    return cutHeld(enough) || cutAmong(false, enough) || (all && cutAmong(true, enough));
+    return cutActive(enough) || cutAmong(false, enough) || (all && cutAmong(true, enough));
 }
 
 /// Slips of the motion of now.
@@ -289,7 +289,7 @@ void FrictionBalance::measure() noexcept {
         Patch& patch = patches_[static_cast<std::size_t>(p)];
         patch.pressure = 0.0;
         patch.moment.setZero();
-        patch.is.rub.setZero();
+        patch.is.impulse.setZero();
         patch.slip = patch.B * u_;
     }
     for (int i = 0; i < active_.size(); ++i) {
@@ -299,7 +299,7 @@ void FrictionBalance::measure() noexcept {
         const double push = active_.lambda(i) * row.gradient / row.length;
         patch.pressure += push;
         patch.moment += push * around_.contacts[cut.contact].position;
-        patch.is.rub -= coefficientOf(patch) * push * cut.direction;
+        patch.is.impulse -= coefficientOf(patch) * push * cut.direction;
     }
 }
 
@@ -311,7 +311,8 @@ double FrictionBalance::turn(bool centres) noexcept {
         Patch& patch = patches_[static_cast<std::size_t>(p)];
         if (centres && patch.pressure > 1e-9 * size_) {
             const Vec3 centre = patch.moment / patch.pressure;
-            moved = std::max(moved, (centre - patch.is.centre).norm() / around_.metric_radius * patch.is.rub.norm());
+            moved =
+                std::max(moved, (centre - patch.is.centre).norm() / around_.metric_radius * patch.is.impulse.norm());
             patch.is.centre = centre;
             place(patch);
         }
@@ -345,17 +346,18 @@ double FrictionBalance::turn(bool centres) noexcept {
 }
 
 /// What holds the motion, and the patches that bear something.
-void FrictionBalance::tell(RubbedMotion& result) const noexcept {
+void FrictionBalance::tell(FrictionMotion& result) const noexcept {
     result.motion.u = u_;
     result.motion.relaxed = relaxed_;
     result.motion.iterations = iterations_;
     for (int i = 0; i < active_.size(); ++i) {
         const MotionRow& row = active_.row(i);
-        const HeldContact held{cuts_[row.contact].contact, active_.lambda(i) * row.gradient / row.length};
+        const ActiveContact held{cuts_[row.contact].contact, active_.lambda(i) * row.gradient / row.length};
         int to = 0;
-        while (to < result.motion.active && result.motion.held[static_cast<std::size_t>(to)].contact != held.contact)
+        while (to < result.motion.active &&
+               result.motion.active_contacts[static_cast<std::size_t>(to)].contact != held.contact)
             ++to;
-        HeldContact& into = result.motion.held[static_cast<std::size_t>(to)];
+        ActiveContact& into = result.motion.active_contacts[static_cast<std::size_t>(to)];
         into = {held.contact, to < result.motion.active ? into.push + held.push : held.push};
         result.motion.active = std::max(result.motion.active, to + 1);
     }
@@ -370,10 +372,10 @@ void FrictionBalance::tell(RubbedMotion& result) const noexcept {
     }
 }
 
-RubbedMotion FrictionBalance::find() noexcept {
-    RubbedMotion result;
+FrictionMotion FrictionBalance::find() noexcept {
+    FrictionMotion result;
     bool settled = false, all = true;
-    for (int sweep = 0; sweep < kRubSweeps && !settled; ++sweep) {
+    for (int sweep = 0; sweep < kFrictionSweeps && !settled; ++sweep) {
         // What cuts leave is quadratic in what is off.
         const double enough = last_change_ * std::min(kInner, last_change_ / size_);
         bool found = solveCuts(enough, all);
@@ -387,7 +389,7 @@ RubbedMotion FrictionBalance::find() noexcept {
         converged_ = converged_ && found;
         measure();
         result.sweeps = sweep + 1;
-        const double change = turn(sweep < kRubSweeps / 2);
+        const double change = turn(sweep < kFrictionSweeps / 2);
         result.change = change / size_;
         const bool still = change <= kTurnTolerance * size_;
         if (still)

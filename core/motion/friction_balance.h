@@ -24,15 +24,15 @@ namespace passung::motion {
 /// motion has violated (they are watched), and once σ has settled among these all again. Where overlap is to be removed
 /// and the rows have no common solution it is only kept from growing, as in constrained_motion.h.
 /// Limit cases: u = 0 is allowed, hence |u| ≤ |w|: nothing is thrown out of a groove. A groove that locks itself: at
-/// σ = 0 already u = 0. σ that does not settle in kRubSweeps turns: σ = 0, which obeys contacts and cone but lets what
-/// slips rise by up to μ |s|. Bounded by kMostRounds sets of cuts and kMostSteps rows taken up. rt-safe.
+/// σ = 0 already u = 0. σ that does not settle in kFrictionSweeps turns: σ = 0, which obeys contacts and cone but lets
+/// what slips rise by up to μ |s|. Bounded by kMostRounds sets of cuts and kMostSteps rows taken up. rt-safe.
 class FrictionBalance {
 public:
     /// `plain`: the motion without friction.
     FrictionBalance(const Motion& wanted, const Surroundings& around, std::span<const Friction> friction,
                     const ConstrainedMotion& plain, const FrictionPatches& before) noexcept;
 
-    RubbedMotion find() noexcept;
+    FrictionMotion find() noexcept;
 
 private:
     struct Patch {
@@ -62,7 +62,7 @@ private:
     void buildRow(int cut) noexcept;
     double violationOf(const contact::ContactPoint& contact, const Patch& patch) const noexcept;
     int mostViolated() const noexcept;
-    bool cutHeld(double enough) noexcept;
+    bool cutActive(double enough) noexcept;
     void makeRoom() noexcept;
     void noteSlips() noexcept;
     bool cutAmong(bool all, double enough) noexcept;
@@ -72,7 +72,7 @@ private:
     void restart() noexcept;
     void measure() noexcept;
     double turn(bool centres) noexcept;
-    void tell(RubbedMotion& result) const noexcept;
+    void tell(FrictionMotion& result) const noexcept;
 
     const Motion& wanted_;
     const Surroundings& around_;

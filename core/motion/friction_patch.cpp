@@ -13,13 +13,13 @@ std::pair<Vec3, Vec3> tangentsOf(const Vec3& n) noexcept {
 
 Vec3 turned(const FrictionPatch& patch, const Vec3& normal) noexcept {
     const auto [s1, s2] = tangentsOf(normal);
-    const Vec3 along = rubAlong(patch);
-    return {along.dot(s1), along.dot(s2), patch.rub.z()};
+    const Vec3 along = impulseAlong(patch);
+    return {along.dot(s1), along.dot(s2), patch.impulse.z()};
 }
 
-Vec3 rubAlong(const FrictionPatch& patch) noexcept {
+Vec3 impulseAlong(const FrictionPatch& patch) noexcept {
     const auto [t1, t2] = tangentsOf(patch.normal);
-    return patch.rub.x() * t1 + patch.rub.y() * t2;
+    return patch.impulse.x() * t1 + patch.impulse.y() * t2;
 }
 
 double effectiveRadius(const Surroundings& around, const FrictionPatch& patch, const Motion& u) noexcept {

@@ -25,7 +25,7 @@ void notePushes(const TickModel& model, const Proxy& proxy, const motion::Constr
     const double K = model.contact.stiffness;
     const double turn = model.contact.rotational_stiffness / (model.metric_radius * model.metric_radius);
     for (int i = 0; i < motion.active; ++i) {
-        const motion::HeldContact& held = motion.held[static_cast<std::size_t>(i)];
+        const motion::ActiveContact& held = motion.active_contacts[static_cast<std::size_t>(i)];
         const contact::ContactPoint& contact = proxy.manifold[held.contact];
         const Vec3 push = held.push * contact.gradient.normalized();
         add(pushes.pushes[contact.obstacle], {K * push, turn * (contact.position - proxy.X_WG.p).cross(push)},
@@ -33,9 +33,10 @@ void notePushes(const TickModel& model, const Proxy& proxy, const motion::Constr
     }
     for (int p = 0; p < rubbing.count; ++p) {
         const motion::FrictionPatch& patch = rubbing.patch[static_cast<std::size_t>(p)];
-        const Vec3 rub = motion::rubAlong(patch);
-        const Vec3 torsion = patch.radius * patch.rub.z() * patch.normal;
-        add(pushes.pushes[patch.obstacle], {K * rub, turn * ((patch.centre - proxy.X_WG.p).cross(rub) + torsion)}, 0.0);
+        const Vec3 impulse = motion::impulseAlong(patch);
+        const Vec3 torsion = patch.radius * patch.impulse.z() * patch.normal;
+        add(pushes.pushes[patch.obstacle],
+            {K * impulse, turn * ((patch.centre - proxy.X_WG.p).cross(impulse) + torsion)}, 0.0);
     }
 }
 

@@ -13,23 +13,23 @@ namespace {
 /// Where a step begins, and what is known there.
 struct StepStart {
     Pose X_WG;
-    double reach, clearance, room;
+    double reach, clearance, clearance_bound;
     std::size_t contacts;
 };
 
 StepStart startOf(const Proxy& proxy) noexcept {
-    return {proxy.X_WG, proxy.manifold_reach, proxy.clearance, proxy.room, proxy.manifold.size()};
+    return {proxy.X_WG, proxy.manifold_reach, proxy.clearance, proxy.clearance_bound, proxy.manifold.size()};
 }
 
-/// From where a step ended in overlap back to where it began. Its contacts are those that `look` left in the scratch
-/// memory, which now holds what the step met.
+/// From where a step ended in overlap back to where it began. Its contacts are those that `queryAround` left in the
+/// scratch memory, which now holds what the step met.
 void takeBack(const ProxyView& view, const StepStart& start) noexcept {
     Proxy& proxy = view.proxy;
     std::swap(proxy.manifold, view.memory.scratch);
     proxy.X_WG = start.X_WG;
     proxy.manifold_reach = start.reach;
     proxy.clearance = start.clearance;
-    proxy.room = start.room;
+    proxy.clearance_bound = start.clearance_bound;
 }
 
 /// What the step `u` met and went more than `relieve` into, as contacts of the place where it began (cuts:
@@ -77,7 +77,7 @@ Step makeStep(const MovingProxy& moving, const motion::Motion& wanted, const mot
             return {.rubbing = allowed.rubbing, .at_rest = true};
         }
         const motion::Motion u = share * (length > bounds.known ? bounds.known / length : 1.0) * allowed.u;
-        look(moving, moved(model, here.X_WG, u), bounds.reach, bounds.search);
+        queryAround(moving, moved(model, here.X_WG, u), bounds.reach, bounds.search);
         if (overlap(proxy) <= bounds.accepted) {
             return {.u = u,
                     .rubbing = allowed.rubbing,
@@ -120,7 +120,7 @@ void sweepProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pr
         arrived = path < kStill && before <= margins.relieve;
         if (arrived) break;
         const double accepted = std::max(margins.accept, before + 0.1 * margins.keep);
-        if (sweep < kSweeps && proxy.room > path) {
+        if (sweep < kSweeps && proxy.clearance_bound > path) {
             if (!way.goesOn(model, wanted, path)) break;
             if (way.bentBy(wanted) > margins.relieve && cutsCorner(moving, X_before, hand.X_WH, between)) break;
             report.iterations = static_cast<std::uint32_t>(sweep + 1);
@@ -137,7 +137,7 @@ void sweepProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pr
         const bool on_the_way = whole && before <= margins.relieve;
         arrived = step < (on_the_way ? std::max(kEnough * model.finest_cell, kRest * way.length()) : kStill);
         if (arrived && sweep == 0) motion.rubbing = allowed.rubbing;
-        const double known = std::max(proxy.manifold_reach, proxy.room);
+        const double known = std::max(proxy.manifold_reach, proxy.clearance_bound);
         const bool stops = !way.goesOn(model, (step > known ? known / step : 1.0) * allowed.u, step);
         arrived = arrived || (on_the_way && stops);
         if (arrived || stops) break;
@@ -152,7 +152,7 @@ void sweepProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pr
         if (!made.made) break;
         way.add(made.u);
         if (way.bentBy(motion::Motion::Zero()) > margins.relieve && cutsCorner(moving, X_before, proxy.X_WG, between)) {
-            look(moving, X_here, reach, reach);
+            queryAround(moving, X_here, reach, reach);
             break;
         }
         if (!made.halved) motion.rubbing = made.rubbing;

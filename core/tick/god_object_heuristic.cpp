@@ -62,7 +62,7 @@ void relieve(const ProxyView& view, double reach, double left) noexcept {
         const motion::ConstrainedMotion out =
             motion::constrainMotion(motion::Motion::Zero(), around(model, proxy, left));
         if (longestPath(model, out.u) > kLongestStep * s) return;
-        look(view, moved(model, proxy.X_WG, out.u), reach, reach);
+        queryAround(view, moved(model, proxy.X_WG, out.u), reach, reach);
     }
 }
 
@@ -108,15 +108,15 @@ void moveProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pro
         report.iterations = static_cast<std::uint32_t>(sub_step + 1);
         const Pose X_here = proxy.X_WG;
         const double accepted = std::max(model.margins.accept, overlap(proxy));
-        if (proxy.room > path) {
+        if (proxy.clearance_bound > path) {
             if (!way.goesOn(model, wanted, path)) break;
             if (way.bentBy(wanted) > model.margins.relieve && cutsCorner(moving, X_before, hand.X_WH, between)) break;
         }
         // Nothing in the way: arrive.
-        arrived = proxy.room > path && arriveFreely(moving, path, reach, accepted);
+        arrived = proxy.clearance_bound > path && arriveFreely(moving, path, reach, accepted);
         if (arrived) break;
         // Step as far as the contacts are known, farther only where there is proven room.
-        const double known = std::max(proxy.manifold_reach, proxy.room);
+        const double known = std::max(proxy.manifold_reach, proxy.clearance_bound);
         const AllowedMotion allowed = allowedMotion(moving, wanted, around(model, proxy, left));
         motion::Motion u = allowed.u;
         const double step_path = longestPath(model, u);
@@ -128,7 +128,7 @@ void moveProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pro
         const double next_reach = std::clamp(kReachGrowth * std::min(step_path, path), reach, kLongestStep * s);
         bool good = false, whole = step_path <= known;
         for (int half = 0; half <= kHalvings; ++half, u *= 0.5) {
-            look(moving, moved(model, X_here, u), next_reach, std::max(next_reach, path));
+            queryAround(moving, moved(model, X_here, u), next_reach, std::max(next_reach, path));
             relieve(moving, next_reach, left);
             good = overlap(proxy) <= accepted;
             if (good && half == 0) motion.rubbing = allowed.rubbing;
@@ -142,7 +142,7 @@ void moveProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pro
                    !cutsCorner(moving, X_before, proxy.X_WG, between);
         }
         arrived = good && whole;  // the whole constrained motion was made
-        if (!good) look(moving, X_here, next_reach, next_reach);
+        if (!good) queryAround(moving, X_here, next_reach, next_reach);
         if (!good || whole) break;
         reach = next_reach;
     }

@@ -18,7 +18,7 @@ constexpr double kSamePoint = 1e-6;  // [m]: points of one part are farther apar
 std::span<const std::uint32_t> likelyContacts(const MovingProxy& moving,
                                               std::array<std::uint32_t, 6>& places) noexcept {
     const Proxy& proxy = moving.proxy;
-    const HeldPoints& last = moving.motion.held;
+    const ActivePoints& last = moving.motion.held;
     std::size_t found = 0;
     std::array<Vec3, 12> held;
     const auto count = static_cast<std::size_t>(2 * last.count);
@@ -41,12 +41,12 @@ std::span<const std::uint32_t> likelyContacts(const MovingProxy& moving,
     return {places.data(), found};
 }
 
-void noteHeld(const motion::ConstrainedMotion& motion, const Proxy& proxy, HeldPoints& held) noexcept {
+void noteActive(const motion::ConstrainedMotion& motion, const Proxy& proxy, ActivePoints& held) noexcept {
     held.count = motion.active;
     const Pose X_GW = proxy.X_WG.inverse();
     for (int i = 0; i < motion.active; ++i) {
         const auto at = static_cast<std::size_t>(i);
-        const Vec3& p = proxy.manifold[motion.held[at].contact].position;
+        const Vec3& p = proxy.manifold[motion.active_contacts[at].contact].position;
         held.point[at] = {X_GW * p, p};
     }
 }
@@ -76,7 +76,7 @@ double overlap(const Proxy& proxy) noexcept { return std::max(0.0, -proxy.cleara
 
 bool isInside(const contact::ContactPoint& contact) noexcept { return contact.phi < 0.0 && !(contact.radius > 0.0); }
 
-void look(const ProxyView& view, const Pose& X_WG, double reach, double search) noexcept {
+void queryAround(const ProxyView& view, const Pose& X_WG, double reach, double search) noexcept {
     const auto& [model, proxy, memory, report] = view;
     memory.scratch.clear();
     contact::QueryRequest request{.collect_below = reach,
@@ -89,14 +89,15 @@ void look(const ProxyView& view, const Pose& X_WG, double reach, double search) 
     std::swap(proxy.manifold, memory.scratch);
     proxy.X_WG = X_WG;
     proxy.manifold_reach = reach;
-    proxy.clearance = proxy.room = answer.phi;
-    for (const contact::ContactPoint& contact : proxy.manifold) proxy.room = std::min(proxy.room, contact.phi);
-    if (!(proxy.room > reach)) return;
+    proxy.clearance = proxy.clearance_bound = answer.phi;
+    for (const contact::ContactPoint& contact : proxy.manifold)
+        proxy.clearance_bound = std::min(proxy.clearance_bound, contact.phi);
+    if (!(proxy.clearance_bound > reach)) return;
     request.prove = true;
     memory.scratch.clear();
     answer = queryObstacles(model, X_WG, request, memory.workspace, memory.scratch);
     account(answer, report);
-    proxy.room = std::max(reach, answer.lower_bound);
+    proxy.clearance_bound = std::max(reach, answer.lower_bound);
 }
 
 bool overlapsBetween(const ProxyView& view, const Pose& X_from, const Pose& X_to, double share,
@@ -113,7 +114,7 @@ bool overlapsBetween(const ProxyView& view, const Pose& X_from, const Pose& X_to
 
 void surveyContacts(const ProxyView& view, const Pose& X_WG) noexcept {
     const double reach = kLongestStep * view.model.finest_cell;
-    look(view, X_WG, reach, reach);
+    queryAround(view, X_WG, reach, reach);
 }
 
 void startProxy(const MovingProxy& moving) noexcept {
@@ -134,14 +135,14 @@ double nextReach(const TickModel& model, double last_motion) noexcept {
 
 bool arriveFreely(const MovingProxy& moving, double path, double reach, double accepted) noexcept {
     const Pose X_here = moving.proxy.X_WG;
-    look(moving, moving.hand.X_WH, reach, std::max(reach, 2.0 * path));
+    queryAround(moving, moving.hand.X_WH, reach, std::max(reach, 2.0 * path));
     if (overlap(moving.proxy) <= accepted) {
         moving.motion.rubbing = {};  // free
         clearPushes(moving.pushes);
         return true;
     }
     moving.report.status |= kStepRejected;
-    look(moving, X_here, reach, reach);
+    queryAround(moving, X_here, reach, reach);
     return false;
 }
 
@@ -161,16 +162,16 @@ AllowedMotion allowedMotion(const MovingProxy& moving, const motion::Motion& wan
         if (!constrained.converged) report.status |= kIterationLimit;
         note(constrained.iterations, report.rows_taken);
         allowed.u = constrained.u;
-        noteHeld(constrained, moving.proxy, moving.motion.held);
+        noteActive(constrained, moving.proxy, moving.motion.held);
         notePushes(model, moving.proxy, constrained, allowed.rubbing, moving.pushes);
     } else {
-        const motion::RubbedMotion rubbed =
+        const motion::FrictionMotion rubbed =
             motion::constrainWithFriction(wanted, around, model.friction, moving.motion.rubbing, likely);
         if (!rubbed.converged || !rubbed.motion.converged) report.status |= kIterationLimit;
         note(rubbed.motion.iterations, report.rows_taken);
         note(rubbed.sweeps, report.friction_turns);
         allowed = {rubbed.motion.u, rubbed.patches};
-        noteHeld(rubbed.motion, moving.proxy, moving.motion.held);
+        noteActive(rubbed.motion, moving.proxy, moving.motion.held);
         notePushes(model, moving.proxy, rubbed.motion, rubbed.patches, moving.pushes);
     }
     return allowed;
@@ -189,8 +190,8 @@ void filterProxy(const TickModel& model, const HandSample& hand, ProxyFilter& fi
         const motion::Motion u = unconstrainedMotion(model, filter.X_WG_last, X_target);
         const double reach = proxy.manifold_reach;
         const double accepted = std::max(model.margins.accept, overlap(proxy));
-        look(view, moved(model, filter.X_WG_last, alpha * u), reach, reach);
-        if (overlap(proxy) > accepted) look(view, X_target, reach, reach);
+        queryAround(view, moved(model, filter.X_WG_last, alpha * u), reach, reach);
+        if (overlap(proxy) > accepted) queryAround(view, X_target, reach, reach);
     }
     filter.X_WG_last = proxy.X_WG;
     filter.has_last_proxy = true;

@@ -49,7 +49,7 @@ bool isInside(const contact::ContactPoint& contact) noexcept;
 /// Puts the proxy at `X_WG` and looks around: all contacts within `reach`, and up to `search` [m] how far the nearest
 /// one is if none is. Room beyond the reach is used without another look, so that it has to be proven. Where it
 /// overlaps there, the scratch memory then holds what the manifold held before.
-void look(const ProxyView& view, const Pose& X_WG, double reach, double search) noexcept;
+void queryAround(const ProxyView& view, const Pose& X_WG, double reach, double search) noexcept;
 
 /// True if a point overlaps by more than `accepted` [m] at the pose `share` of the way between two; the proxy and what
 /// is known of it stay. rt-safe.

@@ -16,11 +16,11 @@ struct Proxy {
     contact::ContactManifold manifold;  // at X_WG, points with φ < manifold_reach
     double manifold_reach = -1.0;       // < 0: nothing known
     double clearance = 0.0;             // least φ of the points that were looked at, as interpolated [m]
-    double room = 0.0;                  // least φ known of any point: beyond the reach proven, spheres included [m]
+    double clearance_bound = 0.0;       // least φ known of any point: beyond the reach proven, spheres included [m]
 };
 
 /// Where contacts held the proxy's last motion: each is a point of the held part or of an obstacle.
-struct HeldPoints {
+struct ActivePoints {
     struct Point {
         Vec3 p_G, p_W;  // in the proxy, in the world
     };
@@ -33,7 +33,7 @@ struct HeldPoints {
 struct ProxyMotion {
     static constexpr bool kHandedOn = true;
     motion::FrictionPatches rubbing;  // of the last motion in contact
-    HeldPoints held;                  // of the last motion: where the solver of the next one begins
+    ActivePoints held;                // of the last motion: where the solver of the next one begins
     double last_motion = 0.0;         // of the proxy, in the metric of metric_radius [m]
 };
 

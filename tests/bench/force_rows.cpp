@@ -140,7 +140,8 @@ public:
             const motion::Surroundings around{nearest, state.X_WG.p, model_.metric_radius, -model_.margins.keep};
             const motion::ConstrainedMotion last = motion::constrainMotion(before, around);
             std::vector<std::uint32_t> held;
-            for (int i = 0; i < last.active; ++i) held.push_back(last.held[static_cast<std::size_t>(i)].contact);
+            for (int i = 0; i < last.active; ++i)
+                held.push_back(last.active_contacts[static_cast<std::size_t>(i)].contact);
             double best = kNotGiven;
             for (int repetition = 0; repetition < repetitions; ++repetition) {
                 const Stopwatch watch;

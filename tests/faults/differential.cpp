@@ -252,7 +252,7 @@ void add(Bits& bits, const motion::ConstrainedMotion& motion) {
     bits.addAll(motion.u);
     bits.add(std::uint64_t{(motion.relaxed ? 1u : 0u) | (motion.converged ? 2u : 0u)});
     for (int i = 0; i < motion.active; ++i) {
-        const motion::HeldContact& held = motion.held[static_cast<std::size_t>(i)];
+        const motion::ActiveContact& held = motion.active_contacts[static_cast<std::size_t>(i)];
         bits.add(std::uint64_t{held.contact});
         bits.add(held.push);
     }
@@ -276,13 +276,14 @@ void runSolver(Random& random) {
         for (int tick = 0; tick < 3; ++tick) {
             add(smooth_bits, motion::constrainMotion(wanted, around, likely));
             add(smooth_bits, solver.solve(wanted));
-            const motion::RubbedMotion rubbed = motion::constrainWithFriction(wanted, around, friction, before, likely);
+            const motion::FrictionMotion rubbed =
+                motion::constrainWithFriction(wanted, around, friction, before, likely);
             add(rubbed_bits, rubbed.motion);
             rubbed_bits.add(std::uint64_t{rubbed.converged ? 1u : 0u});
             for (int p = 0; p < rubbed.patches.count; ++p) {
                 const motion::FrictionPatch& patch = rubbed.patches.patch[static_cast<std::size_t>(p)];
                 rubbed_bits.addAll(patch.centre);
-                rubbed_bits.addAll(patch.rub);
+                rubbed_bits.addAll(patch.impulse);
                 rubbed_bits.add(patch.radius);
                 rubbed_bits.add(patch.pressure);
                 rubbed_bits.add(std::uint64_t{patch.slides ? 1u : 0u});
@@ -290,7 +291,7 @@ void runSolver(Random& random) {
             before = rubbed.patches;
             likely.clear();
             for (int i = 0; i < rubbed.motion.active; ++i)
-                likely.push_back(rubbed.motion.held[static_cast<std::size_t>(i)].contact);
+                likely.push_back(rubbed.motion.active_contacts[static_cast<std::size_t>(i)].contact);
             if (random.below(4) == 0)
                 for (std::uint32_t& place : likely) place = static_cast<std::uint32_t>(random.below(manifold.size()));
             wanted += 0.1 * size * motion::Motion::Constant(random.normal());

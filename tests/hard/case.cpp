@@ -30,8 +30,8 @@ Caps capsOf(const Run& run) {
                                   [](const scene::PartSpec& part) { return part.friction > 0.0; });
     // Without friction every motion is found before the cap. With it a tight fit may come to the cap, and then every
     // solution of a turn, of which there are two at most, and the last one notices that by one more.
-    const int rows = rubs ? motion::kMostSteps + 2 * motion::kRubSweeps + 1 : motion::kMaxIterations - 1;
-    const int turns = rubs ? motion::kRubSweeps : 0;
+    const int rows = rubs ? motion::kMostSteps + 2 * motion::kFrictionSweeps + 1 : motion::kMaxIterations - 1;
+    const int turns = rubs ? motion::kFrictionSweeps : 0;
     if (run.spec.contact.method == scene::ContactMethod::GodObject)
         return {tick::kSweeps, 2 * tick::kSweeps * (tick::kCuts + tick::kHalvings + 3), rows, turns};
     // Corrections with their halvings, then per sub-step an arrival, its return and the halvings with their reliefs.

@@ -49,7 +49,7 @@ ConstrainedMotion solve(const Motion& wanted, const std::vector<ContactPoint>& c
 
 double pushOf(const ConstrainedMotion& motion) {
     double sum = 1e-12;
-    for (int i = 0; i < motion.active; ++i) sum += motion.held[static_cast<std::size_t>(i)].push;
+    for (int i = 0; i < motion.active; ++i) sum += motion.active_contacts[static_cast<std::size_t>(i)].push;
     return sum;
 }
 
@@ -211,7 +211,7 @@ TEST(ConstrainedMotion, LosesNothingOfManyContacts) {
         ASSERT_LE(worstViolation(result.u, contacts), motion::kMotionTolerance);
         Motion pushed = wanted;
         for (int i = 0; i < result.active; ++i) {
-            const auto& held = result.held[static_cast<std::size_t>(i)];
+            const auto& held = result.active_contacts[static_cast<std::size_t>(i)];
             const auto& contact = contacts[held.contact];
             ASSERT_GE(held.push, 0.0);
             Motion a;
@@ -264,7 +264,7 @@ TEST(ConstrainedMotion, MeetsItsConditionsWhereverTheBodyLies) {
             Motion pushed = wanted;
             double size = wanted.norm();
             for (int i = 0; i < result.active; ++i) {
-                const auto& held = result.held[static_cast<std::size_t>(i)];
+                const auto& held = result.active_contacts[static_cast<std::size_t>(i)];
                 const ContactPoint& c = manifold[held.contact];
                 const Row row = rowOf(c);
                 ASSERT_GT(c.gradient.norm(), motion::kLeastGradient);
@@ -280,7 +280,7 @@ TEST(ConstrainedMotion, MeetsItsConditionsWhereverTheBodyLies) {
             likely.clear();
             if (round == 0)
                 for (int i = 0; i < result.active; ++i)
-                    likely.push_back(result.held[static_cast<std::size_t>(i)].contact);
+                    likely.push_back(result.active_contacts[static_cast<std::size_t>(i)].contact);
             else
                 for (int i = 0; i < 6; ++i) likely.push_back(static_cast<std::uint32_t>(random.below(count)));
         }
@@ -311,7 +311,8 @@ TEST(ConstrainedMotion, BeginsWarmAndEndsWhereItEndsCold) {
             ASSERT_LT((wrong.u - cold.u).squaredNorm(), motion::kMotionTolerance * (pushOf(wrong) + pushOf(cold)))
                 << trial;
             held.clear();
-            for (int i = 0; i < warm.active; ++i) held.push_back(warm.held[static_cast<std::size_t>(i)].contact);
+            for (int i = 0; i < warm.active; ++i)
+                held.push_back(warm.active_contacts[static_cast<std::size_t>(i)].contact);
             if (tick == 0) continue;
             cold_steps += cold.iterations;
             warm_steps += warm.iterations;

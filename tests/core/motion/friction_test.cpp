@@ -16,9 +16,9 @@ namespace {
 using contact::ContactManifold;
 using contact::ContactPoint;
 using motion::Friction;
+using motion::FrictionMotion;
 using motion::FrictionPatches;
 using motion::Motion;
-using motion::RubbedMotion;
 
 constexpr double kRho = 0.02;       // [m]
 constexpr double kKeepOut = -1e-6;  // [m]
@@ -46,8 +46,8 @@ Motion motion(const Vec3& dx, const Vec3& turn = Vec3::Zero()) {
     return u;
 }
 
-RubbedMotion rub(const Motion& wanted, const ContactManifold& manifold, const Friction& friction = kDry,
-                 const FrictionPatches& before = {}) {
+FrictionMotion rub(const Motion& wanted, const ContactManifold& manifold, const Friction& friction = kDry,
+                   const FrictionPatches& before = {}) {
     return constrainWithFriction(wanted, {manifold, Vec3::Zero(), kRho, kKeepOut}, {&friction, 1}, before);
 }
 
@@ -71,13 +71,13 @@ TEST(Friction, SticksUpToItsCoefficientAtRestAndSlidesAgainstTheOtherBeyond) {
     for (const double share : {0.0, 0.2, 0.49, 0.51, 1.0, 10.0}) {
         for (int k = 0; k < 7; ++k) {
             const Vec3 aside(std::cos(k), std::sin(k), 0.0);
-            const RubbedMotion found = rub(motion(share * d * aside - d * Vec3::UnitZ()), manifold);
+            const FrictionMotion found = rub(motion(share * d * aside - d * Vec3::UnitZ()), manifold);
             const double slip = share <= kDry.at_rest ? 0.0 : share * d - kDry.sliding * d;
             EXPECT_TRUE(found.converged);
             EXPECT_NEAR((found.motion.u.head<3>() - slip * aside).norm(), 0.0, 1e-9 * d) << share;
             ASSERT_EQ(found.patches.count, 1);
             EXPECT_NEAR(found.patches.patch[0].pressure, d, 1e-9 * d);
-            EXPECT_NEAR(found.patches.patch[0].rub.norm(), (slip > 0.0 ? kDry.sliding : share) * d, 1e-8 * d);
+            EXPECT_NEAR(found.patches.patch[0].impulse.norm(), (slip > 0.0 ? kDry.sliding : share) * d, 1e-8 * d);
             EXPECT_EQ(found.patches.patch[0].slides, slip > 0.0);
         }
     }
@@ -87,7 +87,7 @@ TEST(Friction, KeepsSlidingBetweenItsTwoCoefficients) {
     // Truth: closed form. Drawn by 0.4 d, between μ_d and μ_s: at rest it stays, sliding it follows.
     const auto manifold = manifoldOf({contactAt(Vec3::Zero(), Vec3::UnitZ())});
     const Motion wanted = motion({0.4e-4, 0.0, -1e-4});
-    const RubbedMotion started = rub(motion({2e-4, 0.0, -1e-4}), manifold);
+    const FrictionMotion started = rub(motion({2e-4, 0.0, -1e-4}), manifold);
     EXPECT_NEAR(rub(wanted, manifold).motion.u.x(), 0.0, 1e-14);
     EXPECT_NEAR(rub(wanted, manifold, kDry, started.patches).motion.u.x(), 0.1e-4, 1e-13);
 }
@@ -98,7 +98,7 @@ TEST(Friction, HoldsAPressedDiscAgainstTwoThirdsOfItsRadius) {
     constexpr double d = 1e-4, R = 0.01;
     const auto manifold = manifoldOf(disc(R, 0.25e-3));
     for (const double turn : {0.1, -0.1}) {
-        const RubbedMotion found = rub(motion(-d * Vec3::UnitZ(), turn * Vec3::UnitZ()), manifold);
+        const FrictionMotion found = rub(motion(-d * Vec3::UnitZ(), turn * Vec3::UnitZ()), manifold);
         EXPECT_TRUE(found.converged);
         ASSERT_EQ(found.patches.count, 1);
         EXPECT_NEAR(found.patches.patch[0].radius, 2.0 / 3.0 * R, 0.01 * R);
@@ -113,7 +113,7 @@ TEST(Friction, TwoFeetHoldAsTheirForcesDo) {
     // torque 2 μ F a b/(a+b).
     constexpr double a = 0.004, b = 0.012;
     const auto manifold = manifoldOf({contactAt({a, 0, 0}, Vec3::UnitZ()), contactAt({-b, 0, 0}, Vec3::UnitZ())});
-    const RubbedMotion found = rub(motion(-1e-4 * Vec3::UnitZ(), 0.2 * Vec3::UnitZ()), manifold);
+    const FrictionMotion found = rub(motion(-1e-4 * Vec3::UnitZ(), 0.2 * Vec3::UnitZ()), manifold);
     ASSERT_EQ(found.patches.count, 1);
     EXPECT_NEAR(found.patches.patch[0].centre.norm(), 0.0, 1e-9);
     EXPECT_NEAR(found.patches.patch[0].radius, 2.0 * a * b / (a + b), 1e-8);
@@ -135,7 +135,7 @@ TEST(Friction, ObeysCoulombsLawOnRandomContacts) {
         for (int i = 0; i < count; ++i) contacts.push_back(contactAt(any(0.02), any(1.0).normalized()));
         const Motion wanted = motion(any(2e-4), any(1e-2));
         const auto manifold = manifoldOf(contacts);
-        const RubbedMotion found = rub(wanted, manifold);
+        const FrictionMotion found = rub(wanted, manifold);
         const double size = wanted.norm();
         sweeps += found.sweeps;
         for (const auto& c : contacts) {
@@ -150,7 +150,7 @@ TEST(Friction, ObeysCoulombsLawOnRandomContacts) {
             const auto& patch = found.patches.patch[static_cast<std::size_t>(i)];
             const Vec3 dx = found.motion.u.head<3>() + (found.motion.u.tail<3>() / kRho).cross(patch.centre);
             const Vec3 slip = dx - patch.normal * patch.normal.dot(dx);
-            const double x = patch.rub.norm();
+            const double x = patch.impulse.norm();
             EXPECT_LE(x, kDry.at_rest * patch.pressure * (1 + 1e-6) + 1e-8 * size);
             if (patch.slides) {
                 EXPECT_NEAR(x, kDry.sliding * patch.pressure,
@@ -204,13 +204,13 @@ TEST(Friction, HoldsInATightFitOfManyContacts) {
         Motion wanted;
         for (int i = 0; i < 6; ++i) wanted[i] = random.normal() * std::pow(10.0, random.uniform(-5, -2));
         const double at_rest = random.uniform(0.1, 1.0);
-        const RubbedMotion found =
+        const FrictionMotion found =
             rub(wanted, manifold, {.at_rest = at_rest, .sliding = at_rest * random.uniform(0.5, 1.0)});
         settled += found.converged ? 1 : 0;
         ASSERT_LE(found.motion.u.norm(), wanted.norm() * (1.0 + 1e-6)) << run;
         for (int i = 0; i < found.patches.count; ++i) {
             const auto& patch = found.patches.patch[static_cast<std::size_t>(i)];
-            ASSERT_LE(patch.rub.norm(), at_rest * patch.pressure * (1.0 + 1e-6) + 1e-8 * wanted.norm()) << run;
+            ASSERT_LE(patch.impulse.norm(), at_rest * patch.pressure * (1.0 + 1e-6) + 1e-8 * wanted.norm()) << run;
         }
         if (!found.converged) continue;
         const Vec3 turn = found.motion.u.tail<3>() / kRho;
@@ -250,12 +250,12 @@ TEST(Friction, BalancesTheSpringByWhatItTells) {
         const motion::Surroundings around{manifold, origin, rho, kKeepOut, -2e-6};
         Motion wanted;
         wanted << any(2e-4) - Vec3(1e-4, 0, 1e-4), any(1e-4);
-        const RubbedMotion found = motion::constrainWithFriction(wanted, around, friction, {});
+        const FrictionMotion found = motion::constrainWithFriction(wanted, around, friction, {});
         ASSERT_LE(found.motion.active, 6);
         Motion sum = wanted;
         double push = 0.0, pressure = 0.0;
         for (int i = 0; i < found.motion.active; ++i) {
-            const auto& held = found.motion.held[static_cast<std::size_t>(i)];
+            const auto& held = found.motion.active_contacts[static_cast<std::size_t>(i)];
             const ContactPoint& c = contacts[held.contact];
             const Vec3 force = held.push * c.gradient.normalized(), lever = c.position - origin;
             sum.head<3>() += force;
@@ -263,24 +263,25 @@ TEST(Friction, BalancesTheSpringByWhatItTells) {
             push += held.push;
             ASSERT_GE(held.push, 0.0);
             for (int k = 0; k < i; ++k)
-                ASSERT_NE(held.contact, found.motion.held[static_cast<std::size_t>(k)].contact) << "told twice";
+                ASSERT_NE(held.contact, found.motion.active_contacts[static_cast<std::size_t>(k)].contact)
+                    << "told twice";
         }
         for (int p = 0; p < found.patches.count; ++p) {
             const auto& patch = found.patches.patch[static_cast<std::size_t>(p)];
-            const Vec3 rubbed = motion::rubAlong(patch), lever = patch.centre - origin;
+            const Vec3 rubbed = motion::impulseAlong(patch), lever = patch.centre - origin;
             sum.head<3>() += rubbed;
-            sum.tail<3>() += (lever.cross(rubbed) + patch.radius * patch.rub.z() * patch.normal) / rho;
+            sum.tail<3>() += (lever.cross(rubbed) + patch.radius * patch.impulse.z() * patch.normal) / rho;
             pressure += patch.pressure;
-            rubbing += patch.rub.norm() > 1e-9 ? 1 : 0;
+            rubbing += patch.impulse.norm() > 1e-9 ? 1 : 0;
             const Vec3 dx = found.motion.u.head<3>() + (found.motion.u.tail<3>() / rho).cross(lever);
             const double along = (dx - patch.normal * patch.normal.dot(dx)).norm();
             const double turning = patch.radius / rho * patch.normal.dot(found.motion.u.tail<3>());
             ASSERT_NEAR(patch.slip, std::hypot(along, turning), 1e-6 * wanted.norm()) << trial;
             const Friction& rough = friction[patch.obstacle];
-            ASSERT_LE(patch.rub.norm(), rough.at_rest * patch.pressure * (1.0 + 1e-6) + 1e-9 * wanted.norm());
+            ASSERT_LE(patch.impulse.norm(), rough.at_rest * patch.pressure * (1.0 + 1e-6) + 1e-9 * wanted.norm());
         }
         ASSERT_NEAR(push, pressure, 1e-9 * (push + wanted.norm())) << trial;
-        if (!found.converged || found.sweeps == motion::kRubSweeps) continue;
+        if (!found.converged || found.sweeps == motion::kFrictionSweeps) continue;
         ++balanced;
         for (const ContactPoint& c : contacts) {
             const double b = (c.phi < kKeepOut ? -2e-6 : kKeepOut) - c.phi;
@@ -301,7 +302,7 @@ TEST(Friction, DoesNotCreepAtRest) {
     Vec3 p = Vec3::Zero();
     FrictionPatches before;
     for (int i = 0; i < 10000; ++i) {
-        const RubbedMotion found = rub(motion(Vec3(0.4e-4, 0, -1e-4) - p, {0, 0, 1e-4}), manifold, kDry, before);
+        const FrictionMotion found = rub(motion(Vec3(0.4e-4, 0, -1e-4) - p, {0, 0, 1e-4}), manifold, kDry, before);
         before = found.patches;
         p += found.motion.u.head<3>();
     }
@@ -317,7 +318,7 @@ TEST(Friction, NeverThrowsABodyOutOfAGroove) {
     const double narrow = 15.0 * std::numbers::pi / 180.0;
     const auto groove =
         manifoldOf({wall(1, narrow, 0.01), wall(-1, narrow, 0.01), wall(1, narrow, -0.01), wall(-1, narrow, -0.01)});
-    const RubbedMotion pressed = rub(motion({2e-4, 0, -1e-3}), groove, {.at_rest = 0.4, .sliding = 0.3});
+    const FrictionMotion pressed = rub(motion({2e-4, 0, -1e-3}), groove, {.at_rest = 0.4, .sliding = 0.3});
     EXPECT_LT(pressed.motion.u.z(), 1e-8);
     Random random(5);
     for (int trial = 0; trial < 1000; ++trial) {
@@ -327,7 +328,7 @@ TEST(Friction, NeverThrowsABodyOutOfAGroove) {
         std::vector<ContactPoint> contacts;
         for (int i = 0; i < 3; ++i) contacts.push_back(contactAt(any(0.02), any(1.0).normalized()));
         const Motion wanted = motion(any(1e-3), any(1e-2));
-        const RubbedMotion found = rub(wanted, manifoldOf(contacts), {.at_rest = 1.0, .sliding = 1.0});
+        const FrictionMotion found = rub(wanted, manifoldOf(contacts), {.at_rest = 1.0, .sliding = 1.0});
         EXPECT_LE(found.motion.u.norm(), 1.01 * wanted.norm()) << trial << ' ' << found.converged;
     }
 }
@@ -340,7 +341,7 @@ TEST(Friction, SlidesAlongARightAngledCornerAgainstBothItsWalls) {
     const auto manifold = manifoldOf({contactAt(Vec3::Zero(), Vec3::UnitZ()), contactAt(Vec3::Zero(), -Vec3::UnitX())});
     for (const double share : {0.2, 0.49, 0.7, 1.0, 3.0}) {
         const Motion wanted = motion({a, share * (a + d), -d});
-        const RubbedMotion found = rub(wanted, manifold);
+        const FrictionMotion found = rub(wanted, manifold);
         const double slip = share <= kDry.at_rest ? 0.0 : (share - kDry.sliding) * (a + d);
         EXPECT_TRUE(found.converged);
         EXPECT_NEAR((found.motion.u.head<3>() - slip * Vec3::UnitY()).norm(), 0.0, 1e-5 * wanted.norm()) << share;
@@ -353,7 +354,7 @@ TEST(Friction, SlidesOnTheEdgeOfATableThatItTipsOver) {
     constexpr double d = 1e-4, b = 0.008;
     const auto manifold = manifoldOf({contactAt({-b, 0, 0}, Vec3::UnitZ()), contactAt({-2 * b, 0, 0}, Vec3::UnitZ())});
     for (const double share : {0.2, 0.49, 0.51, 0.7, 3.0}) {
-        const RubbedMotion found = rub(motion({0, share * d, -d}), manifold);
+        const FrictionMotion found = rub(motion({0, share * d, -d}), manifold);
         const Vec3 turn = found.motion.u.tail<3>() / kRho;
         const double slip = found.motion.u.y() + turn.cross(Vec3(-b, 0, 0)).y();
         EXPECT_TRUE(found.converged);
@@ -380,7 +381,7 @@ TEST(Friction, MovesInACornerWithoutEverHoldingWhatSlides) {
             return Vec3(random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size));
         };
         const Motion wanted = motion(Vec3(2e-4, 2e-3, -2e-4) + any(2e-4), any(5e-3));
-        const RubbedMotion found = rub(wanted, manifold);
+        const FrictionMotion found = rub(wanted, manifold);
         unsolved += found.converged ? 0 : 1;
         EXPECT_GT(found.motion.u.y(), 0.2e-3) << trial;
         for (const auto& c : contacts) {
@@ -389,7 +390,7 @@ TEST(Friction, MovesInACornerWithoutEverHoldingWhatSlides) {
         }
         for (int i = 0; i < found.patches.count; ++i) {
             const auto& patch = found.patches.patch[static_cast<std::size_t>(i)];
-            EXPECT_LE(patch.rub.norm(), kDry.at_rest * patch.pressure * (1 + 1e-9)) << trial;
+            EXPECT_LE(patch.impulse.norm(), kDry.at_rest * patch.pressure * (1 + 1e-9)) << trial;
         }
     }
     EXPECT_LE(unsolved, 10);
@@ -401,7 +402,7 @@ TEST(Friction, FindsTheCentreWhereAContactBearsNothing) {
         std::vector<ContactPoint> contacts{contactAt({0.009, 0, 0}, Vec3::UnitZ()),
                                            contactAt(Vec3::Zero(), Vec3::UnitZ())};
         if (swapped) std::swap(contacts[0], contacts[1]);
-        const RubbedMotion found =
+        const FrictionMotion found =
             rub(motion({0, 1e-4, -5e-4}), manifoldOf(contacts), {.at_rest = 0.5, .sliding = 0.3});
         ASSERT_EQ(found.patches.count, 1);
         EXPECT_LT(found.patches.patch[0].centre.norm(), 0.01);
@@ -423,10 +424,10 @@ TEST(Friction, BeginsWithTheFrictionBeforeAndEndsWhereItEndsWithout) {
         const Motion wanted = motion({5e-7 * i, 3e-4, -2e-4});
         FrictionPatches unknown = before;
         for (auto& patch : unknown.patch) {
-            patch.rub.setZero();
+            patch.impulse.setZero();
             patch.slip = 0.0;
         }
-        const RubbedMotion warm = rub(wanted, manifold, kDry, before), cold = rub(wanted, manifold, kDry, unknown);
+        const FrictionMotion warm = rub(wanted, manifold, kDry, before), cold = rub(wanted, manifold, kDry, unknown);
         ASSERT_TRUE(warm.converged && cold.converged);
         ASSERT_TRUE(warm.patches.patch[0].slides);
         EXPECT_LT((warm.motion.u - cold.motion.u).norm(), 1e-6 * wanted.norm()) << i;
