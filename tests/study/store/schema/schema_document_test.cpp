@@ -12,14 +12,16 @@
 namespace passung::store {
 namespace {
 
-/// What the revisions' SQL says of tables and added columns.
+using ColumnName = std::pair<std::string, std::string>;  // with its table first
+
+/// What the revisions' SQL says of tables, and when it added columns to them.
 struct Remarks {
     struct Remark {
         int revision = 0;
         std::string text;
     };
-    std::map<std::string, Remark> tables;                           // by name
-    std::map<std::pair<std::string, std::string>, Remark> columns;  // that were added later, by table and name
+    std::map<std::string, Remark> tables;     // by name
+    std::map<ColumnName, int> added_columns;  // with the revision
 };
 
 /// The word after `start` at the beginning of the line, up to a space or bracket; empty: the line begins otherwise.
@@ -46,34 +48,26 @@ Remarks readRemarks() {
                 remarks.tables[table] = {revision.number, comment};
             if (const std::string table = wordAfter(line, "ALTER TABLE "); !table.empty()) {
                 const std::string column = wordAfter(line, "ALTER TABLE " + table + " ADD COLUMN ");
-                remarks.columns[{table, column}] = {revision.number, comment};
+                remarks.added_columns[{table, column}] = revision.number;
             }
         }
     }
     return remarks;
 }
 
-/// A column, or a rule of the table, as its statement has it.
-struct Clause {
-    std::string text, comment;
-};
-
-/// What stands between the brackets of a CREATE TABLE. A comment belongs to the clause of its line.
-std::vector<Clause> clausesOf(const std::string& sql) {
-    std::vector<Clause> clauses(1);
+/// Columns and rules of the table: what stands between the brackets of a CREATE TABLE, without comments.
+std::vector<std::string> clausesOf(const std::string& sql) {
+    std::vector<std::string> clauses(1);
     int depth = 0;
     for (std::size_t i = sql.find('('); i < sql.size(); ++i) {
         const char c = sql[i];
         if (sql.compare(i, 2, "--") == 0) {
-            const std::size_t end = sql.find('\n', i);
-            Clause& of = clauses.back().text.empty() ? clauses[clauses.size() - 2] : clauses.back();
-            of.comment = sql.substr(i + 3, end - i - 3);
-            i = end - 1;
+            i = sql.find('\n', i) - 1;
             continue;
         }
         if (c == '(' && ++depth == 1) continue;
         if (c == ')' && --depth == 0) break;
-        std::string& text = clauses.back().text;
+        std::string& text = clauses.back();
         if (c == ',' && depth == 1) {
             clauses.emplace_back();
         } else if (c != ' ' && c != '\n') {
@@ -108,22 +102,42 @@ std::string unitOf(const std::string& column) {
     return {};
 }
 
-std::string columnLine(const std::string& table, const Clause& clause, const Remarks& remarks) {
-    std::istringstream words(clause.text);
-    std::string name, type, rule, since, meaning = clause.comment;
+/// Meanings by table and column; table `*`: of every other one. The statements of released revisions cannot hold them,
+/// because files keep the statements' text, comments included.
+using Meanings = std::map<ColumnName, std::string>;
+
+Meanings readMeanings() {
+    Meanings meanings;
+    std::ifstream stream(PASSUNG_SOURCE_DIR "/study/store/schema/column_meanings.txt");
+    for (std::string line; std::getline(stream, line);) {
+        if (line.empty() || line.front() == '#') continue;
+        const std::size_t dot = line.find('.'), space = line.find(' ');
+        meanings[{line.substr(0, dot), line.substr(dot + 1, space - dot - 1)}] = line.substr(space + 1);
+    }
+    return meanings;
+}
+
+std::string meaningOf(const Meanings& meanings, const std::string& table, const std::string& column) {
+    auto found = meanings.find({table, column});
+    if (found == meanings.end()) found = meanings.find({"*", column});
+    return found == meanings.end() ? "" : found->second;
+}
+
+std::string columnLine(const std::string& table, const std::string& clause, const Remarks& remarks) {
+    static const Meanings meanings = readMeanings();
+    std::istringstream words(clause);
+    std::string name, type, rule;
     words >> name >> type >> std::ws;
     std::getline(words, rule);
-    if (const auto later = remarks.columns.find({table, name}); later != remarks.columns.end()) {
-        since = "since revision " + std::to_string(later->second.revision) + ": " + later->second.text;
-        meaning += (meaning.empty() ? "" : "; ") + since;
-    }
+    std::string meaning = meaningOf(meanings, table, name);
+    if (const auto added = remarks.added_columns.find({table, name}); added != remarks.added_columns.end())
+        meaning += "; since revision " + std::to_string(added->second);
     return "| `" + name + "` | " + type + " | " + unitOf(name) + " | " + (rule.empty() ? "" : "`" + rule + "`") +
            " | " + meaning + " |\n";
 }
 
-bool isRuleOfTable(const Clause& clause) {
-    return clause.text.starts_with("PRIMARY KEY") || clause.text.starts_with("UNIQUE") ||
-           clause.text.starts_with("FOREIGN KEY");
+bool isRuleOfTable(const std::string& clause) {
+    return clause.starts_with("PRIMARY KEY") || clause.starts_with("UNIQUE") || clause.starts_with("FOREIGN KEY");
 }
 
 std::string tableText(const std::string& name, const std::string& sql, const Remarks& remarks) {
@@ -132,9 +146,9 @@ std::string tableText(const std::string& name, const std::string& sql, const Rem
                        (remark.text.empty() ? "" : ": " + remark.text) +
                        "\n\n| column | type | unit | rule | meaning |\n| --- | --- | --- | --- | --- |\n";
     std::string rules;
-    for (const Clause& clause : clausesOf(sql)) {
+    for (const std::string& clause : clausesOf(sql)) {
         if (isRuleOfTable(clause))
-            rules += "\n`" + clause.text + "`\n";
+            rules += "\n`" + clause + "`\n";
         else
             text += columnLine(name, clause, remarks);
     }
@@ -145,10 +159,9 @@ std::string schemaDocument() {
     const Database database(":memory:", OpenMode::ReadWrite);
     upgradeSchema(database, "2000-01-01T00:00:00Z");
     std::string text =
-        "# Schema of a study's database\n\nMade by a test from the numbered revisions in `schema`. Times in ns are "
-        "monotonic, counted from the segment's zero. NULL means \"not measured\" where nothing else is said. All "
-        "tables "
-        "are STRICT.\n\n"
+        "# Schema of a study's database\n\nMade by a test from the numbered revisions and the meanings of columns in "
+        "`schema`. Times in ns are monotonic, counted from the segment's zero. NULL means \"not measured\" where "
+        "nothing else is said. All tables are STRICT.\n\n"
         "| revision | what it brought | oldest program that reads it knows revision |\n| --- | --- | --- |\n";
     for (const Revision& revision : revisions())
         text += "| " + std::to_string(revision.number) + " | " + revision.sentence + " | " +
@@ -186,6 +199,22 @@ TEST(SchemaDocument, HasEveryColumnThatTheDatabaseHas) {
             << columns.text(0) << "." << columns.text(1);
     }
     EXPECT_GT(found, 200);
+}
+
+TEST(SchemaDocument, SaysWhatEveryColumnMeansAndNothingOfOthers) {
+    // Truth: SQLite's own list of columns.
+    const Database database(":memory:", OpenMode::ReadWrite);
+    upgradeSchema(database, "2000-01-01T00:00:00Z");
+    Meanings unused = readMeanings();
+    const Meanings meanings = unused;
+    Statement columns = database.prepare(
+        "SELECT t.name, c.name FROM sqlite_schema t, pragma_table_info(t.name) c WHERE t.type='table'");
+    while (columns.step()) {
+        const std::string table = columns.text(0), column = columns.text(1);
+        EXPECT_NE(meaningOf(meanings, table, column), "") << table << "." << column;
+        if (unused.erase({table, column}) == 0 && meanings.count({table, column}) == 0) unused.erase({"*", column});
+    }
+    for (const auto& [name, meaning] : unused) ADD_FAILURE() << name.first << "." << name.second << " is no column";
 }
 
 }  // namespace
