@@ -1,6 +1,7 @@
 #include "study/run/freeze.h"
 
 #include "study/plan/plan_contents.h"
+#include "study/protocol/plan_json.h"
 #include "study/protocol/planned_questionnaires.h"
 #include "study/run/files/protocol_files.h"
 #include "study/run/machine/auto_accuracy.h"
@@ -10,16 +11,17 @@ namespace passung::run {
 
 namespace {
 
-/// Reads the draft anew where the kept maxima are others.
+/// Takes from another reading of the draft's text what follows from stable maxima, if the kept ones are others.
 Result<Done> keepStiffness(std::span<const plan::StableStiffness> kept, plan::StudyPlan& plan,
                            const ImportLimits& limits) {
     const auto devices = devicesAsKept(kept);
     if (sameStiffness(plan::stableStiffnessOf(plan, devices), plan.stable_stiffness)) return Done{};
     auto again = readBegunProtocol(plan.source_text, plan.source_path, devices, limits);
     if (!again) return again.errors();
-    again->seed = plan.seed;
-    again->questionnaires = plan.questionnaires;  // their files are not part of the text
-    plan = *std::move(again);
+    plan.conditions = std::move(again->conditions);
+    plan.stable_stiffness = std::move(again->stable_stiffness);
+    plan.warnings = std::move(again->warnings);
+    plan.expanded_json = protocol::expandedJson(plan);
     return Done{};
 }
 

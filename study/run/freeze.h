@@ -24,9 +24,9 @@ struct KeptPlan {
     std::string language = {};  // of these questionnaires; empty: the protocol's
 };
 
-/// The plan as the database runs it; the draft as it was read stays what it is. What other stable maxima than the
-/// draft's change is read anew from its text. Errors: a stiffness above a kept maximum; a budget of accuracy = "auto"
-/// that nothing was picked for; a questionnaire that cannot be read.
+/// The plan as the database runs it: the draft, with what a caller changed in it, and what the database keeps. Where
+/// kept stable maxima differ from the draft's, its conditions are read again from its text. Errors: a stiffness above a
+/// kept maximum; a budget of accuracy = "auto" that nothing was picked for; a questionnaire that cannot be read.
 Result<plan::FrozenPlan> freeze(plan::StudyPlan draft, const KeptPlan& kept, const ImportLimits& limits = {});
 
 }  // namespace passung::run

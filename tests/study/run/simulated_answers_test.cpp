@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "study/protocol/protocol_reader.h"
-#include "study/run/freeze.h"
 
 namespace passung::run {
 namespace {
@@ -32,19 +31,6 @@ TEST(SimulatedAnswers, AFormsTrialsDecideAndNothingElse) {
     };
     EXPECT_GT(performance(bad), performance(good) + 30.0);
     EXPECT_EQ(performance(bad), performance(bad));
-}
-
-TEST(SimulatedAnswers, AStudyThatKeepsItsStiffnessKeepsItsQuestionnaires) {
-    // Truth: invariant: the protocol is read again from its text, which only names the questionnaires' files.
-    const auto plan = shippedStudy();
-    auto kept = plan.stable_stiffness;
-    ASSERT_EQ(kept.size(), 1u);
-    kept[0].linear *= 0.5;
-    const auto again = freeze(plan, {"", kept, {}});
-    ASSERT_TRUE(again);
-    EXPECT_NE((*again)->conditions[1].scene.contact.stiffness, plan.conditions[1].scene.contact.stiffness);
-    ASSERT_EQ((*again)->questionnaires.size(), 2u);
-    EXPECT_EQ((*again)->questionnaires[0].definition.items.size(), 6u);
 }
 
 }  // namespace

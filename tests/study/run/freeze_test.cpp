@@ -1,0 +1,53 @@
+#include "study/run/freeze.h"
+
+#include <gtest/gtest.h>
+
+#include "study/run/files/protocol_files.h"
+
+namespace passung::run {
+namespace {
+
+plan::StudyPlan shippedStudy() {
+    auto plan = readProtocol(PASSUNG_SOURCE_DIR "/protocols/peg_in_hole/study.toml");
+    if (!plan) throw std::runtime_error(toString(plan.errors().front()));
+    return *std::move(plan);
+}
+
+/// What a database keeps that began with half of the maxima.
+KeptPlan halfAsStiff(const plan::StudyPlan& plan) {
+    KeptPlan kept{"", plan.stable_stiffness, {}};
+    for (plan::StableStiffness& stable : kept.stable_stiffness) stable.linear *= 0.5;
+    return kept;
+}
+
+TEST(Freeze, AFractionOfTheMaximumIsOneOfTheKeptMaximum) {
+    // Truth: closed form: the protocol writes all stiffnesses as fractions of the maximum.
+    const auto draft = shippedStudy();
+    const auto frozen = freeze(draft, halfAsStiff(draft));
+    ASSERT_TRUE(frozen);
+    ASSERT_EQ((*frozen)->conditions.size(), draft.conditions.size());
+    for (std::size_t i = 0; i < draft.conditions.size(); ++i) {
+        EXPECT_DOUBLE_EQ((*frozen)->conditions[i].scene.contact.stiffness,
+                         0.5 * draft.conditions[i].scene.contact.stiffness);
+        EXPECT_NE((*frozen)->conditions[i].params_json, draft.conditions[i].params_json);
+    }
+    EXPECT_DOUBLE_EQ((*frozen)->stable_stiffness[0].linear, 0.5 * draft.stable_stiffness[0].linear);
+}
+
+TEST(Freeze, WhatDoesNotFollowFromMaximaIsTheDrafts) {
+    // Truth: invariant: a try-out takes consent away, a command sets another seed; questionnaires' items are in files
+    // of their own.
+    auto draft = shippedStudy();
+    ASSERT_FALSE(draft.consent.empty());
+    draft.consent.clear();
+    draft.seed += 1;
+    const auto frozen = freeze(draft, halfAsStiff(draft));
+    ASSERT_TRUE(frozen);
+    EXPECT_TRUE((*frozen)->consent.empty());
+    EXPECT_EQ((*frozen)->seed, draft.seed);
+    ASSERT_EQ((*frozen)->questionnaires.size(), 2u);
+    EXPECT_EQ((*frozen)->questionnaires[0].definition.items.size(), 6u);
+}
+
+}  // namespace
+}  // namespace passung::run
