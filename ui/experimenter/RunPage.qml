@@ -216,6 +216,16 @@ ColumnLayout {
                 color: run.refused ? look.bad : look.dim
             }
             Say {
+                objectName: "warnings"
+                Layout.fillWidth: true
+                visible: text !== ""
+                wrapMode: Text.WordWrap
+                maximumLineCount: page.low ? 2 : 4
+                elide: Text.ElideRight
+                text: run.warnings
+                color: look.care
+            }
+            Say {
                 objectName: "stopWaits"
                 Layout.fillWidth: true
                 visible: !stopPath.apart

@@ -58,6 +58,7 @@ void Run::take(const News& news) {
 void Run::hear(const session::SessionEvent& event) {
     if (const auto* view = std::get_if<session::SessionView>(&event)) show(*view);
     if (const auto* ended = std::get_if<session::AttemptEnded>(&event)) end(*ended);
+    if (const auto* warned = std::get_if<session::Warned>(&event)) view_.warnings.push_back(warned->text);
 }
 
 void Run::begin(const SessionBegun& begun) {

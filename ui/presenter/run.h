@@ -93,6 +93,7 @@ struct RunView {
     bool awaits_picture = false;          // the prepared trial begins with its first one
     double force_N = 0.0, depth_mm = 0.0;
     std::optional<CommandAnswered> answered;  // the last command
+    std::vector<std::string> warnings;        // of this run, in sentences
     std::string failure;                      // why the session failed
     Display display = Display::Shown;
     std::optional<double> built;  // of the scene that is being built: the share that is done

@@ -6,7 +6,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <utility>
@@ -97,8 +96,9 @@ Result<run::RunEnd> LiveSession::perform(const session::SessionListener& listene
     run.performer = this;
     if (!options_.try_out) run.language = options_.language;
     run.experimenter = options_.experimenter;
+    run.warns = true;
     run::StudyLog log(run.database, "passung-window",
-                      [](const std::string& problem) { std::fprintf(stderr, "warning: %s\n", problem.c_str()); });
+                      [this](const std::string& problem) { tell(session::Warned{problem}); });
     run.log = &log;
     run.interrupted = [this] { return ends_.load(); };
     if (!options_.try_out && kind() != plan::ParticipantKind::Simulated)

@@ -64,6 +64,12 @@ QString RunModel::line() const { return stateLine(view()); }
 QString RunModel::detail() const { return stateDetail(view()); }
 QString RunModel::answer() const { return view().answered ? answerLine(*view().answered) : QString(); }
 
+QString RunModel::warnings() const {
+    QStringList lines;
+    for (const std::string& warning : view().warnings) lines.push_back(warningLine(warning));
+    return lines.join('\n');
+}
+
 QString RunModel::sound() const { return view().sound ? soundLine(desk_.soundOutput()) : QString(); }
 
 QString RunModel::quality() const { return view().quality ? qualityLine(*view().quality) : QString(); }

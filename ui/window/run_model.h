@@ -21,6 +21,7 @@ class RunModel : public QObject {
     Q_PROPERTY(QString participant READ participant NOTIFY changed)
     Q_PROPERTY(double share READ share NOTIFY changed)
     Q_PROPERTY(QString answer READ answer NOTIFY changed)
+    Q_PROPERTY(QString warnings READ warnings NOTIFY changed)  // of this run, a line each
     Q_PROPERTY(bool refused READ refused NOTIFY changed)
     Q_PROPERTY(double built READ built NOTIFY changed)  // share of models that are being built; below 0: none are
     Q_PROPERTY(bool displayGone READ displayGone NOTIFY changed)   // the participant sees nothing
@@ -55,6 +56,7 @@ public:
     QString participant() const { return QString::fromStdString(view().participant); }
     double share() const;
     QString answer() const;
+    QString warnings() const;
     bool refused() const { return view().answered && !view().answered->answer.accepted; }
     double built() const { return view().built.value_or(-1.0); }
     bool displayGone() const { return known() && view().display != presenter::Display::Shown; }

@@ -187,6 +187,10 @@ QString whyNot(Why why) {
     return said(QT_TRANSLATE_NOOP("words", "No trial is running."));
 }
 
+QString warningLine(const std::string& warning) {
+    return said(QT_TRANSLATE_NOOP("words", "Warning: %1")).arg(QString::fromStdString(warning));
+}
+
 QString answerLine(const presenter::CommandAnswered& answered) {
     if (!answered.answer.accepted)
         return said(QT_TRANSLATE_NOOP("words", "Not possible now: %1")).arg(whyNot(answered.answer.why));

@@ -17,6 +17,7 @@ QString rowWord(presenter::RowState state);
 QString rowSign(presenter::RowState state);
 QString whyNot(presenter::Why why);
 /// What came of a command.
+QString warningLine(const std::string& warning);
 QString answerLine(const presenter::CommandAnswered& answered);
 QString qualityLine(const presenter::QualityFound& found);
 QString soundLine(const std::optional<sound::SoundOutput>& output);

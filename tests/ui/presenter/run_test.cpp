@@ -192,6 +192,16 @@ TEST(Run, TellsHowMuchOfASceneIsBuiltUntilItsTrialBegins) {
     EXPECT_FALSE(run.view().built);
 }
 
+TEST(Run, KeepsWhatItWasWarnedOfUntilAnotherRunOpens) {
+    // Truth: invariant.
+    presenter::Run run = begun();
+    run.take(session::SessionEvent(session::Warned{"no log is kept"}));
+    run.take(session::SessionEvent(session::Warned{"no backup copy was made"}));
+    EXPECT_EQ(run.view().warnings, (std::vector<std::string>{"no log is kept", "no backup copy was made"}));
+    run.open({});
+    EXPECT_TRUE(run.view().warnings.empty());
+}
+
 TEST(Run, CountsTheLoopsMissedCyclesAndItsRate) {
     // Truth: closed form. 1000 ticks over 1250 periods are 800 Hz.
     presenter::Run run = begun();

@@ -180,6 +180,16 @@ TEST_F(Windows, ATrialWithSomethingToHearSaysWhereItsSoundComesFromOrThatItHasNo
     EXPECT_EQ(last->sound_delay_us > 0.0, heard);
 }
 
+TEST_F(Windows, ASessionOfWhichNoLogCanBeKeptSaysSo) {
+    // Truth: the folder that stands where the log belongs.
+    std::filesystem::create_directories(folder_ / "data/peg_in_hole.db.log");
+    click("study-peg_in_hole");
+    click("watch");
+    waitFor(RunState::Running);
+    const QString said = item(app_->experimenter(), "warnings")->property("text").toString();
+    EXPECT_TRUE(said.startsWith("Warning: no log is kept beside the database")) << said.toStdString();
+}
+
 TEST_F(Windows, ARefusedCommandSaysWhyInTheLanguageOfTheWindows) {
     // Truth: invariant. The session refuses what its screen would not offer.
     click("study-peg_in_hole");

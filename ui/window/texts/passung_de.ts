@@ -2101,6 +2101,10 @@
         <translation>Jetzt nicht möglich: %1</translation>
     </message>
     <message>
+        <source>Warning: %1</source>
+        <translation>Warnung: %1</translation>
+    </message>
+    <message>
         <source>The session begins.</source>
         <translation>Die Sitzung beginnt.</translation>
     </message>
