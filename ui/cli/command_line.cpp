@@ -83,16 +83,17 @@ private:
         sub->add_option("PROTOCOL", check_.protocol, "study file (.toml)")->required();
         addImport(sub, check_.import_limits);
 
-        sub = command("explain", "design, orders and balance, or the stages of a scene's tick", explain_, explain);
+        sub =
+            command("explain", "print design, orders and balance, or the stages of a scene's tick", explain_, explain);
         sub->add_option("FILE", explain_.file, "protocol or scene")->required();
         addImport(sub, explain_.import_limits);
-        sub->add_option("--participants", explain_.participants, "how many orders to print")->check(wholeIntFrom(1));
-        sub->add_option("--stations", explain_.stations, "that they take part at in turn; default 1")
+        sub->add_option("--participants", explain_.participants, "number of orders to print")->check(wholeIntFrom(1));
+        sub->add_option("--stations", explain_.stations, "number of stations that take their turns; default 1")
             ->check(between(1.0, 26.0, "a number from 1 to 26"));
-        sub->add_option("--orders", explain_.orders, "csv: only the planned orders, a row for each trial")
+        sub->add_option("--orders", explain_.orders, "form of the orders: csv prints these alone, a row for each trial")
             ->check(CLI::IsMember({"csv"}));
         sub->add_option("--db", explain_.database,
-                        "the study's database: shows what accuracy = \"auto\" picked there instead of measuring anew");
+                        "database of the study: what accuracy = \"auto\" picked there is shown, not measured anew");
 
         sub = command("run", "perform a study with simulated participants", run_, passung::cli::run);
         sub->add_option("PROTOCOL", run_.protocol, "study file (.toml)")->required();
@@ -102,23 +103,25 @@ private:
         sub->add_option("--simulated", run_.simulated, "number of new participants; default 1")
             ->check(wholeIntFrom(1))
             ->excludes(participant);
-        sub->add_flag("--real-time", run_.real_time, "at 1 kHz by the clock instead of as fast as the machine goes");
-        sub->add_option("--seed", run_.seed, "instead of the protocol's")->check(wholeUnsigned());
+        sub->add_flag("--real-time", run_.real_time,
+                      "run at 1 kHz by the clock instead of as fast as the machine goes");
+        sub->add_option("--seed", run_.seed, "seed instead of the protocol's")->check(wholeUnsigned());
         addStation(sub, run_.station);
         addGroup(sub, run_.group);
         sub->add_flag("--no-backup", run_.no_backup, "leave out the copy DB.backup and its SHA-256 at the end");
         addAnswers(sub, run_.answers);
         sub->add_option("--language", run_.language,
-                        "of the session: one that the protocol has texts in; default its first one. It is "
-                        "stored; with --answers consent and instructions are shown in it");
+                        "language of the session, stored with it; default: the first of the protocol's. With --answers "
+                        "consent and instructions are shown in it");
         sub->add_flag("--wait", run_.wait, "begin every session only when `passung session start DB` says so");
         sub->add_option("--acknowledge-fd", run_.acknowledge_fd, "file descriptor for a line per durable attempt");
     }
 
     static void addAnswers(CLI::App* sub, std::string& answers) {
-        sub->add_option("--answers", answers,
-                        "who answers questionnaires and consent: simulated (default), or, asked in this terminal, "
-                        "participant or experimenter (who reads them out); trials stay those of a simulated hand")
+        sub->add_option(
+               "--answers", answers,
+               "source of the answers to questionnaires and consent: simulated (default), or, asked in this terminal, "
+               "participant or experimenter (who reads them out). Trials stay those of a simulated hand")
             ->check(CLI::IsMember({"simulated", "participant", "experimenter"}));
     }
 
@@ -141,16 +144,17 @@ private:
 
     static void addStation(CLI::App* sub, StationArguments& options) {
         auto* letter = sub->add_option("--station", options.station,
-                                       "letter of this station, where several run the study with a database each: it "
-                                       "takes places of the design and codes that no other one takes");
+                                       "letter of this station, where several run the study with a database each. Each "
+                                       "takes places of the design and codes of its own");
         letter->check(capitalLetter());
-        auto* count = sub->add_option("--stations", options.stations, "how many there are, the same for each");
+        auto* count = sub->add_option("--stations", options.stations, "number of stations, the same for each");
         count->check(between(2.0, 26.0, "a number from 2 to 26"))->needs(letter);
         letter->needs(count);
     }
 
     void addParticipantCommands() {
-        CLI::App& desk = *app_.add_subcommand("participant", "who takes part: codes and consent, never names");
+        CLI::App& desk =
+            *app_.add_subcommand("participant", "enrol and list participants: codes and consent, never names");
         desk.require_subcommand(1);
         const auto action = [&](const char* name, const char* help, int (*function)(const ParticipantArguments&)) {
             auto* sub = command(desk, name, help, participant_, function);
@@ -158,49 +162,51 @@ private:
             return sub;
         };
         const auto about = [&](CLI::App* sub) {
-            sub->add_option("CODE", participant_.code, "such as P001")->required();
-            sub->add_option("--by", participant_.by, "who does it, for the audit; default experimenter");
+            sub->add_option("CODE", participant_.code, "code, such as P001")->required();
+            sub->add_option("--by", participant_.by, "name for the audit of whoever does it; default experimenter");
         };
-        auto* sub = action("enrol", "add somebody; prints the code", enrolParticipant);
-        sub->add_option("CODE", participant_.code, "such as P001; default: the first unused one");
-        sub->add_option("--kind", participant_.kind, "default real")
+        auto* sub = action("enrol", "enrol a participant and print the code", enrolParticipant);
+        sub->add_option("CODE", participant_.code, "code, such as P001; default: the first unused one");
+        sub->add_option("--kind", participant_.kind, "kind of participant; default real")
             ->check(CLI::IsMember(passung::plan::participantKindNames()));
-        sub->add_option("--protocol", participant_.protocol,
-                        "study file: stored first if the database does not have it, which is made if it is not there");
-        sub->add_option("--by", participant_.by, "who does it, for the audit; default experimenter");
+        sub->add_option(
+            "--protocol", participant_.protocol,
+            "study file, stored first where the database does not have it. A database that is absent is made");
+        sub->add_option("--by", participant_.by, "name for the audit of whoever does it; default experimenter");
         addGroup(sub, participant_.group);
 
         addStation(sub, participant_.station);
 
-        action("list", "everybody, with state, place in the design and consent", listParticipants);
+        action("list", "list all participants, with state, place in the design and consent", listParticipants);
 
         sub = action("consent", "store decisions on the protocol's clauses of consent", decideConsent);
         about(sub);
-        sub->add_option("--decision", participant_.decision, "default yes")
+        sub->add_option("--decision", participant_.decision, "decision; default yes")
             ->check(CLI::IsMember({"yes", "no", "withdrawn"}));
-        sub->add_option("--clause", participant_.clauses, "default: all")->expected(1)->take_all();
-        sub->add_option("--language", participant_.language, "in which the text was read; default en");
+        sub->add_option("--clause", participant_.clauses, "clause of consent; default: all")->expected(1)->take_all();
+        sub->add_option("--language", participant_.language, "language of the text that was read; default en");
 
-        sub = action("withdraw", "somebody ends their part", withdrawParticipant);
+        sub = action("withdraw", "end a participant's part in the study", withdrawParticipant);
         about(sub);
         sub->add_option("--scope", participant_.scope,
-                        "stop: no more sessions, the data stays; exclude: it counts nowhere any more; erase: nothing "
-                        "of it is left in the database")
+                        "extent. stop: no more sessions, the data stays. exclude: the data counts nowhere any more. "
+                        "erase: nothing of the participant is left in the database")
             ->required()
             ->check(CLI::IsMember({"stop", "exclude", "erase"}));
-        sub->add_option("--backup", participant_.backup,
-                        "of the scope erase: what becomes of them in the database's backup: erase (default, asked "
-                        "in a terminal) or keep")
+        sub->add_option(
+               "--backup", participant_.backup,
+               "copies in the database's backup, with the scope erase: erase (default, asked in a terminal) or keep")
             ->check(CLI::IsMember({"erase", "keep"}));
-        sub->add_option("--reason", participant_.reason, "if they gave one; of no one else's concern: no names");
+        sub->add_option("--reason", participant_.reason, "reason, if the participant gave one; no names");
 
-        sub = action("exclude", "leave somebody out of the analysis and free their place", excludeParticipant);
+        sub = action("exclude", "exclude a participant from the analysis and free the place in the design",
+                     excludeParticipant);
         about(sub);
-        sub->add_option("--reason", participant_.reason, "stored with the status")->required();
+        sub->add_option("--reason", participant_.reason, "reason, stored with the status")->required();
 
         sub = action("readmit", "take an exclusion back; the audit keeps both", readmitParticipant);
         about(sub);
-        sub->add_option("--reason", participant_.reason, "stored with the status")->required();
+        sub->add_option("--reason", participant_.reason, "reason, stored with the status")->required();
 
         action("audit", "check the chain of what was done to participants", auditParticipants);
     }
@@ -210,22 +216,24 @@ private:
         sub->add_option("DB", resume_.database, "database of the study")->required();
         addImport(sub, resume_.import_limits);
         sub->add_option("--session", resume_.session, "session_id; default: the newest one that did not complete");
-        sub->add_option("--meshes", resume_.meshes, "as of replay")->check(CLI::ExistingDirectory);
+        sub->add_option("--meshes", resume_.meshes, "folder of the mesh files, as of replay")
+            ->check(CLI::ExistingDirectory);
         addStation(sub, resume_.station);
         addAnswers(sub, resume_.answers);
-        sub->add_flag("--no-backup", resume_.no_backup, "as of run");
+        sub->add_flag("--no-backup", resume_.no_backup, "leave out the copy, as of run");
         sub->add_option("--acknowledge-fd", resume_.acknowledge_fd, "file descriptor for a line per durable attempt");
 
-        sub = command("session", "an experimenter's command to the session that runs on a database", session_,
+        sub = command("session", "send an experimenter's command to the session that runs on a database", session_,
                       tellSession);
         sub->add_option("ACTION", session_.action,
-                        "start, pause (after the running trial), continue, repeat, skip, invalidate, back, note, abort "
-                        "(ends the session), stop (emergency: motors off at once, then paused)")
+                        "command: start, pause (after the running trial), continue, repeat, skip, invalidate, back, "
+                        "note, abort (ends the session), stop (emergency: motors off at once, then paused), done, "
+                        "failed (of a trial that the experimenter times)")
             ->required()
             ->check(CLI::IsMember(std::vector<std::string>(std::begin(passung::session::kCommandNames),
                                                            std::end(passung::session::kCommandNames))));
         sub->add_option("DB", session_.database, "database of the study")->required();
-        sub->add_option("--text,--reason", session_.text, "the note, or why; note and invalidate need it");
+        sub->add_option("--text,--reason", session_.text, "text of the note, or reason; note and invalidate need it");
         sub->add_option("--attempt", session_.attempt,
                         "attempt_id, for invalidate and note; default: the running attempt, else the last one")
             ->check(wholeFrom(1));
@@ -234,7 +242,7 @@ private:
     void addDataCommands() {
         auto* sub = command("export", "write all data as tables", export_, exportData);
         sub->add_option("DB", export_.database, "database of a study")->required();
-        sub->add_option("--out", export_.out, "folder")->required();
+        sub->add_option("--out", export_.out, "folder of the tables")->required();
         sub->add_flag("--no-samples", export_.no_samples, "leave out the recorded ticks");
         addGroup(sub, export_.group);
 
@@ -243,18 +251,19 @@ private:
         sub->add_option("--out", merge_.out, "database that gets what it does not have yet")->required();
         addGroup(sub, merge_.group);
 
-        sub = command("push", "copy a study into PostgreSQL; again: what is new", push_, push);
+        sub = command("push", "copy a study into PostgreSQL; from the second time on only what is new", push_, push);
         sub->add_option("DB", push_.database, "database of a study")->required();
-        sub->add_option("--to", push_.to, "postgresql://USER@HOST/DATABASE, or as libpq reads it")->required();
+        sub->add_option("--to", push_.to, "server and database: postgresql://USER@HOST/DATABASE, or as libpq reads it")
+            ->required();
 
         sub = command("verify", "look for damage: every page, every hash, every checksum", verify_, verify);
-        sub->add_option("DB", verify_.database, "database of a study; it is not changed")->required();
+        sub->add_option("DB", verify_.database, "database of a study; stays unchanged")->required();
 
         sub =
             command("restore", "heal a damaged database from a copy: only what is damaged changes", restore_, restore);
         sub->add_option("DB", restore_.database, "damaged database of a study")->required();
         sub->add_option("--from", restore_.from,
-                        "DB.backup, another database that has the sessions, or postgresql://USER@HOST/DATABASE")
+                        "copy: DB.backup, another database that has the sessions, or postgresql://USER@HOST/DATABASE")
             ->required();
 
         sub = command("replay", "run recorded inputs again and compare every bit", replay_, replay);
@@ -267,41 +276,41 @@ private:
     }
 
     void addPowerCommand() {
-        auto* sub = command("power", "how often a study like this one finds an effect that is really there", power_,
-                            passung::cli::power);
+        auto* sub = command("power", "estimate how often a study like this one finds an effect that is really there",
+                            power_, passung::cli::power);
         auto* protocol = sub->add_option("PROTOCOL", power_.protocol, "study file (.toml)");
         auto* effect = sub->add_option(
             "--effect", power_.effect,
-            "FACTOR:LEVEL=DELTA: what is planted in every virtual study at one level of a factor; DELTA "
-            "is +0.3 or -0.3 (added, in the measure's unit) or x1.2 (multiplied); +0 gives the rate "
-            "of false positives");
+            "effect FACTOR:LEVEL=DELTA, planted in every virtual study at one level of a factor. DELTA is +0.3 or -0.3 "
+            "(added, in the measure's unit) or x1.2 (multiplied); +0 gives the rate of false positives");
         sub->add_option("--against", power_.against, "level to compare with; default: the factor's first other one");
-        sub->add_option("--measure", power_.measure, "default time_s");
-        sub->add_option(
-               "--test", power_.test,
-               "paired_t, wilcoxon, rm_anova, friedman, mixed_anova of a within factor; welch_t, mann_whitney, "
-               "mixed_anova of a between factor; default: the protocol's analysis of that measure and factor, "
-               "else paired_t or welch_t")
+        sub->add_option("--measure", power_.measure, "measure of a trial; default time_s");
+        sub->add_option("--test", power_.test,
+                        "test of a within factor: paired_t, wilcoxon, rm_anova, friedman, mixed_anova; of a between "
+                        "factor: welch_t, mann_whitney, mixed_anova. Default: the protocol's analysis of that measure "
+                        "and factor, else paired_t or welch_t")
             ->check(CLI::IsMember(passung::power::testNames()));
-        sub->add_option("--participants", power_.participants, "of a virtual study; default: the protocol's")
+        sub->add_option("--participants", power_.participants,
+                        "participants of a virtual study; default: the protocol's")
             ->check(wholeIntFrom(2));
-        sub->add_option("--repeats", power_.repeats, "virtual studies; default 200")->check(wholeIntFrom(1));
-        sub->add_option("--simulation", power_.simulation,
-                        "haptic (default): every trial, tick by tick, through database and means of the export; model: "
-                        "times drawn for the same people, orders and means, thousands of studies in seconds")
+        sub->add_option("--repeats", power_.repeats, "number of virtual studies; default 200")->check(wholeIntFrom(1));
+        sub->add_option(
+               "--simulation", power_.simulation,
+               "kind of virtual study. haptic (default): every trial, tick by tick, through database and means of the "
+               "export. model: times drawn for the same people, orders and means, thousands of studies in seconds")
             ->check(CLI::IsMember({"haptic", "model"}));
         sub->add_option("--alpha", power_.alpha, "level of significance; default 0.05")->check(above0Below(0.8));
-        sub->add_option("--seed", power_.seed, "instead of the protocol's")->check(wholeUnsigned());
+        sub->add_option("--seed", power_.seed, "seed instead of the protocol's")->check(wholeUnsigned());
         auto* out = sub->add_option("--out", power_.out,
-                                    "file of results, a row per virtual study; appears when all are done, and what is "
-                                    "there already is not run again");
+                                    "file of results, a row per virtual study, written when all are done. Studies "
+                                    "whose rows are there are not run again");
         sub->add_option_function<std::string>(
                "--shard", [this](const std::string& text) { readShard(text); },
-               "i/n: only every n-th virtual study, the i-th first; shards run anywhere, in any order")
+               "part i/n: every n-th virtual study, the i-th first. Shards run anywhere, in any order")
             ->needs(out);
         auto* merge = sub->add_option("--merge", power_.merge,
                                       "files of all shards: the result is, byte for byte, that of one run without "
-                                      "--shard; with --out it is written")
+                                      "--shard. --out names its file")
                           ->excludes(protocol);
         sub->callback([this, protocol, effect, merge, sub] {
             if (merge->empty() && (protocol->empty() || effect->empty()))
@@ -322,41 +331,41 @@ private:
     void addCoreCommands() {
         const CLI::IsMember units({"m", "cm", "mm", "um", "in"});
         auto* sub = command("mesh", "report what a mesh file, or the mesh of a shape, is like", mesh_, mesh);
-        sub->add_option("FILE", mesh_.file, "STL, OBJ, PLY, OFF, glTF, 3MF ... or part.toml")->required();
+        sub->add_option("FILE", mesh_.file, "mesh (STL, OBJ, PLY, OFF, glTF, 3MF ...) or part.toml")->required();
         addImport(sub, mesh_.import_limits);
-        sub->add_option("--unit", mesh_.unit, "of files that have none; default mm")->check(units);
+        sub->add_option("--unit", mesh_.unit, "unit of files that have none; default mm")->check(units);
 
-        sub = command("query", "distance, depth and wrench of two parts at given poses", query_, query);
+        sub = command("query", "find distance, depth and wrench of two parts at given poses", query_, query);
         sub->add_option("FIELD", query_.field, "mesh or part.toml")->required();
         sub->add_option("SHELL", query_.shell, "mesh or part.toml")->required();
         sub->add_option("--poses", query_.poses,
                         "CSV of poses of SHELL in FIELD, in metres; header: x_m,y_m,z_m,qw,qx,qy,qz")
             ->required();
         sub->add_option("--out", query_.out,
-                        "CSV of results: the poses and what was found; force_* and torque_* are the penalty on SHELL "
-                        "about its origin, 1e9 N/m3 times depth times area, for comparisons; no device's force")
+                        "CSV of results: the poses and what was found. force_* and torque_* are the penalty on SHELL "
+                        "about its origin, 1e9 N/m3 times depth times area, for comparisons: no device's force")
             ->required();
         sub->add_option("--tolerance-um", query_.tolerance_um,
-                        "of the field and of every distance; default 20. Status bound_not_reached: the row's "
-                        "error_bound_m is above it (few steps, hard pose, or --budget-nodes)")
+                        "tolerance of the field and of every distance; default 20. Status bound_not_reached: the row's "
+                        "error_bound_m is above the tolerance (few steps, hard pose, or --budget-nodes)")
             ->check(above0());
-        sub->add_option("--cell-mm", query_.cell_mm, "of the field, instead of a tolerance")->check(above0());
+        sub->add_option("--cell-mm", query_.cell_mm, "cell of the field, instead of a tolerance")->check(above0());
         addImport(sub, query_.import_limits);
-        sub->add_option("--spacing-mm", query_.spacing_mm, "of the shell")->check(above0());
-        sub->add_option("--mode", query_.mode, "of interpolation; default trilinear")->check(aMode());
+        sub->add_option("--spacing-mm", query_.spacing_mm, "spacing of the shell's points")->check(above0());
+        sub->add_option("--mode", query_.mode, "mode of interpolation; default trilinear")->check(aMode());
         sub->add_option("--proximity-mm", query_.proximity_mm, "search no farther; default unlimited")
             ->check(atLeast0());
         sub->add_option("--budget-nodes", query_.budget_nodes, "most tree nodes a query visits")
             ->check(wholeIntFrom(1));
         sub->add_option("--quality", query_.quality, "least share of proven area; wins over the budget")
             ->check(between(0.0, 1.0, "a number from 0 to 1"));
-        sub->add_flag("--two-way", query_.two_way, "each part's points against the other's field");
+        sub->add_flag("--two-way", query_.two_way, "ask each part's points against the other's field");
         sub->add_option("--patches", query_.patches,
                         "JSON of the patches of contact at every pose, the deepest first: deepest point, area, mean "
                         "normal and force of each; not with --two-way");
-        sub->add_option("--unit", query_.unit, "of files that have none; default mm")->check(units);
-        sub->add_option("--field-unit", query_.field_unit, "of FIELD, instead of --unit")->check(units);
-        sub->add_option("--shell-unit", query_.shell_unit, "of SHELL, instead of --unit")->check(units);
+        sub->add_option("--unit", query_.unit, "unit of files that have none; default mm")->check(units);
+        sub->add_option("--field-unit", query_.field_unit, "unit of FIELD, instead of --unit")->check(units);
+        sub->add_option("--shell-unit", query_.shell_unit, "unit of SHELL, instead of --unit")->check(units);
 
         sub = command("simulate", "run a scene along a device path", simulate_, simulate);
         sub->add_option("SCENE", simulate_.scene, "scene file (.toml), not a study")->required();
@@ -366,37 +375,39 @@ private:
                         "t_s,x_m,y_m,z_m,qw,qx,qy,qz")
             ->required();
         sub->add_option("--out", simulate_.out,
-                        "CSV of ticks; force_* and torque_* are what the device would be told: on the hand, in the "
+                        "CSV of ticks. force_* and torque_* are what the device would be told: on the hand, in the "
                         "world, about the held part's origin, after all limits")
             ->required();
 
         addAccuracyCommand(units);
 
-        sub = command("bench", "our queries beside other engines, time and error on the same poses", bench_, bench);
+        sub =
+            command("bench", "compare our queries with other engines: time and error at the same poses", bench_, bench);
         sub->add_option("--out", bench_.out, "CSV of all rows");
         sub->add_option("--filter", bench_.filter,
-                        "only rows whose group and method contain this text: hard, forces, pieces, a mesh, an engine");
+                        "text that the rows' group and method contain: hard, forces, pieces, a mesh, an engine");
         sub->add_flag("--check", bench_.check, "compare with the marks; exit 1 if one is missed or not measured");
 
-        sub = command("doctor", "devices, permissions and a check of the loop", doctor_, doctor);
-        sub->add_option("--seconds", doctor_.seconds, "of the loop check")
+        sub = command("doctor", "show devices and permissions, and check the loop", doctor_, doctor);
+        sub->add_option("--seconds", doctor_.seconds, "length of the loop check")
             ->check(between(0.1, 3600.0, "a number from 0.1 to 3600"));
-        auto* device = sub->add_option("--device", doctor_.device, "tell of this device alone, without a loop check");
+        auto* device = sub->add_option("--device", doctor_.device, "device to show alone, without a loop check");
         auto* report = sub->add_option("--report", doctor_.report,
-                                       "file of text that gets all this and the logs of studies, for a bug report; no "
-                                       "log tells of participants or what they did")
+                                       "file of text for a bug report: all this and the logs of studies. No log tells "
+                                       "of participants or what they did")
                            ->excludes(device);
         sub->add_option("--db", doctor_.databases,
                         "databases whose logs (DB.log) the report takes; default: all here and the windows'")
             ->needs(report);
         sub->add_flag("--find-stiffness", doctor_.find_stiffness,
-                      "try how stiff a wall the device bears (nobody holds it) and keep it as this user's calibration: "
-                      "\"max\" of a stiffness then stands for it")
+                      "find the stiffest wall that the device bears while nobody holds it, and keep it as this user's "
+                      "calibration: a stiffness \"max\" then stands for it")
             ->needs(device);
     }
 
     void addAccuracyCommand(const CLI::Validator& units) {
-        auto* sub = command("accuracy", "error against truth over time, for every way to ask", accuracy_, accuracy);
+        auto* sub =
+            command("accuracy", "measure error against truth over time, for every way to ask", accuracy_, accuracy);
         sub->add_option("FIELD", accuracy_.field, "watertight mesh or part.toml")->required();
         addImport(sub, accuracy_.import_limits);
         sub->add_option("SHELL", accuracy_.shell, "mesh or part.toml")->required();
@@ -407,25 +418,27 @@ private:
         sub->add_option("--paths", accuracy_.paths, "contact paths of 11 poses each; default 12")
             ->check(wholeIntFrom(1))
             ->excludes(poses);
-        sub->add_option("--seed", accuracy_.seed, "of the paths; default 1")->check(wholeUnsigned());
+        sub->add_option("--seed", accuracy_.seed, "seed of the paths; default 1")->check(wholeUnsigned());
         const auto list = [](CLI::Option* option) { option->delimiter(',')->expected(1, -1); };
-        list(sub->add_option("--tolerances-um", accuracy_.tolerances_um, "of the field; default 100,50,20,10")
-                 ->check(above0()));
+        list(
+            sub->add_option("--tolerances-um", accuracy_.tolerances_um, "tolerances of the field; default 100,50,20,10")
+                ->check(above0()));
         list(sub->add_option("--spacings-mm", accuracy_.spacings_mm,
-                             "of SHELL's points; default: four around a fiftieth of its longest side")
+                             "spacings of SHELL's points; default: four around a fiftieth of SHELL's longest side")
                  ->check(above0()));
         list(sub->add_option("--budgets", accuracy_.budgets,
                              "most nodes of a query, 0: no limit; default 0,1000,300,100")
                  ->check(wholeIntFrom(0)));
-        list(sub->add_option("--modes", accuracy_.modes, "of interpolation; default: all")->check(aMode()));
-        sub->add_option("--repetitions", accuracy_.repetitions, "a pose's time is its fastest of so many; default 5")
+        list(sub->add_option("--modes", accuracy_.modes, "modes of interpolation; default: all")->check(aMode()));
+        sub->add_option("--repetitions", accuracy_.repetitions,
+                        "repetitions, the fastest of which is a pose's time; default 5")
             ->check(wholeIntFrom(1));
         sub->add_option("--fcl-poses", accuracy_.fcl_poses,
-                        "further poses whose separation and intersection are compared with FCL; default 1000")
+                        "number of further poses whose separation and intersection are compared with FCL; default 1000")
             ->check(wholeIntFrom(0));
-        sub->add_option("--unit", accuracy_.unit, "of files that have none; default mm")->check(units);
-        sub->add_option("--field-unit", accuracy_.field_unit, "of FIELD, instead of --unit")->check(units);
-        sub->add_option("--shell-unit", accuracy_.shell_unit, "of SHELL, instead of --unit")->check(units);
+        sub->add_option("--unit", accuracy_.unit, "unit of files that have none; default mm")->check(units);
+        sub->add_option("--field-unit", accuracy_.field_unit, "unit of FIELD, instead of --unit")->check(units);
+        sub->add_option("--shell-unit", accuracy_.shell_unit, "unit of SHELL, instead of --unit")->check(units);
     }
 
     CLI::App app_;
