@@ -60,7 +60,7 @@ set(PASSUNG_COLD_OPTIONS $<$<NOT:$<CONFIG:Debug>>:-O1>)
 set(PASSUNG_COLD_ROOMS "^(analysis/(export|power)|study/(plan|protocol|run|session|store/(schema|rows|read|write|people|transfer))|ui/.*)$")
 
 # Rooms that the tick runs stay in many pieces, so that an edit there is tested soon.
-set(PASSUNG_TICK_ROOMS "^core/(field|shell|contact|motion|tick|query|loop)$")
+set(PASSUNG_TICK_ROOMS "^core/(field|shell|contact|motion|closed_form|tick|query|loop)$")
 
 # passung_cold(TARGET "what TARGET links"): neither it nor its headers are optimised at length.
 function(passung_cold target links)

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/closed_form/touch_search.h"
+#include "core/motion/active_set.h"
+
+namespace passung::closed_form {
+
+using MotionMatrix = Eigen::Matrix<double, 6, 6>;  // [1/m]
+
+/// Which line meets which lump.
+struct TouchName {
+    bool of_held = true;  // the line is the held part's
+    bool core = false;    // among the cores, not the edges
+    std::uint16_t line = 0, lump = 0;
+
+    friend bool operator==(const TouchName&, const TouchName&) = default;
+};
+
+/// A contact of the two parts. A motion u of the held part changes its gap by a · u + ½ uᵀ H u + O(u³).
+struct Contact {
+    TouchName name;
+    Touch touch;
+    double gap = 0.0;                           // [m]
+    Vec3 point = Vec3::Zero();                  // on the line, world [m]
+    Vec3 normal = Vec3::Zero();                 // away from the obstacle, world; of a kink not of length 1
+    motion::Motion a = motion::Motion::Zero();  // (n, r × n / ρ)
+};
+
+/// Contacts of a pair at one pose. rt-safe.
+class PairContacts {
+public:
+    static constexpr std::size_t kMost = 256;
+
+    void add(const Contact& contact) noexcept {
+        if (count_ < kMost)
+            all_[count_++] = contact;
+        else
+            full_ = true;
+    }
+    void clear() noexcept {
+        count_ = 0;
+        full_ = false;
+    }
+    /// One more was found than there is room for: an overlap may be unknown.
+    bool full() const noexcept { return full_; }
+    void setFull() noexcept { full_ = true; }
+    std::span<const Contact> all() const noexcept { return {all_.data(), count_}; }
+    /// The most that any contact overlaps [m], ≥ 0.
+    double overlap() const noexcept;
+
+private:
+    std::array<Contact, kMost> all_;  // the first `count_`
+    std::size_t count_ = 0;
+    bool full_ = false;
+};
+
+/// A held part against an obstacle.
+struct SolidPair {
+    const SmoothSolid* held;
+    const SmoothSolid* obstacle;
+    Pose X_WO;             // of the obstacle
+    double metric_radius;  // ρ [m], > 0
+};
+
+/// Finds a pair's contacts at one pose after the other. What it knows of a line and a lump that are far from each other
+/// saves looks at them until the held part has moved so far that they could touch.
+class ContactSearch {
+public:
+    /// The pair's solids outlive this.
+    explicit ContactSearch(const SolidPair& pair);
+
+    const SolidPair& pair() const noexcept { return pair_; }
+
+    /// All contacts with a gap of at most `reach`. rt-safe.
+    void find(const Pose& X_WH, double reach, PairContacts& contacts) noexcept;
+
+private:
+    /// A line and a lump of the other part.
+    struct Meeting {
+        TouchName name;
+        double bound = 0.0;            // of the gap, when it was looked at last [m]
+        double lever = 0.0;            // of the line's points about the held part's origin, then [m]
+        double way = 0.0, turn = 0.0;  // of the held part, until then
+    };
+
+    void addMeetings(bool of_held);
+    bool isFar(const Meeting& meeting, double reach) const noexcept;
+    void look(const Pose& X_WH, double reach, Meeting& meeting, PairContacts& contacts) noexcept;
+
+    SolidPair pair_;
+    std::vector<Meeting> meetings_;
+    Pose X_last_;
+    double way_ = 0.0, turn_ = 0.0;  // that the held part has made [m], [rad]
+};
+
+/// The contact that the same place of the line makes at another pose, with the same faces. rt-safe.
+Contact atPose(const SolidPair& pair, const Pose& X_WH, const Contact& contact) noexcept;
+
+/// H of a contact, as X_WH has it. Where the contact moves along its line as the parts move (`slides`), that is
+/// eliminated: of a smooth minimum H - f_tu f_tuᵀ / f_tt, of a kink with the 2 × 2 system of t and the faces' shares.
+/// rt-safe.
+MotionMatrix curvatureOf(const SolidPair& pair, const Pose& X_WH, const Contact& contact, bool slides) noexcept;
+
+}  // namespace passung::closed_form

@@ -1,0 +1,200 @@
+#include "core/closed_form/pose_solver.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/motion/active_set.h"
+
+namespace passung::closed_form {
+
+namespace {
+
+constexpr double kReach = 1e-3;          // within which contacts become rows: no point goes farther in a look [m]
+constexpr double kSamePlace = 0.5;       // of a line's parameter: a contact that held is that one now
+constexpr int kMostTaken = 60;           // rows taken up or let go in a look
+constexpr double kRowTolerance = 1e-12;  // [m]
+
+motion::Motion wayTo(const Pose& X_WG, const Pose& X_WH, double rho) noexcept {
+    motion::Motion w;
+    w << X_WH.p - X_WG.p, rho * rotationVector(X_WH.q * X_WG.q.conjugate());
+    return w;
+}
+
+Pose movedBy(const Pose& X, const motion::Motion& u, double rho) noexcept {
+    Pose there{rotationFromVector(u.tail<3>() / rho) * X.q, X.p + u.head<3>()};
+    there.q.normalize();
+    return there;
+}
+
+double apart(const SmoothSolid& lines, const TouchName& name, double s, double t) noexcept {
+    const bool closed = (name.core ? lines.cores : lines.edges)[name.line].isClosed();
+    const double d = std::abs(s - t);
+    return closed ? std::min(d, 2.0 * std::numbers::pi - d) : d;
+}
+
+}  // namespace
+
+PoseSolver::PoseSolver(std::span<const SolidPair> pairs) : rows_(kMostRows), prepared_(kMostRows) {
+    for (const SolidPair& pair : pairs) searches_.emplace_back(pair);
+}
+
+void PoseSolver::add(const Row& row) noexcept {
+    if (count_ < kMostRows)
+        rows_[count_++] = row;
+    else
+        full_ = true;
+}
+
+/// What the last look of a tick has found holds for the first one of the next.
+void PoseSolver::find(const Pose& X) noexcept {
+    if (X_found_ && X_found_->p == X.p && X_found_->q.coeffs() == X.q.coeffs()) {
+        count_ = found_;
+        for (std::size_t i = 0; i < count_; ++i) rows_[i].from.push = 0.0;
+        return;
+    }
+    X_found_ = X;
+    count_ = 0;
+    overlap_ = 0.0;
+    full_ = false;
+    for (std::size_t p = 0; p < searches_.size(); ++p) {
+        searches_[p].find(X, kReach, contacts_);
+        overlap_ = std::max(overlap_, contacts_.overlap());
+        full_ = full_ || contacts_.full();
+        for (const Contact& contact : contacts_.all())
+            add({.from = {.contact = contact, .pair = static_cast<std::uint16_t>(p)},
+                 .slides = contact.touch.kind != Touch::Kind::Fixed});
+    }
+    found_ = count_;
+}
+
+double PoseSolver::distance(const Contact& contact, const HeldContact& old) const noexcept {
+    const SmoothSolid& lines = old.contact.name.of_held ? *pair(old.pair).held : *pair(old.pair).obstacle;
+    return apart(lines, old.contact.name, contact.touch.t, old.contact.touch.t);
+}
+
+PoseSolver::Row* PoseSolver::successorOf(const HeldContact& old) noexcept {
+    Row* best = nullptr;
+    double least = kSamePlace;
+    for (std::size_t i = 0; i < found_; ++i) {
+        Row& row = rows_[i];
+        if (row.from.pair != old.pair || !(row.from.contact.name == old.contact.name)) continue;
+        const double d = distance(row.from.contact, old) + (row.slides ? 0.0 : 1e-3);
+        if (d >= least) continue;
+        least = d;
+        best = &row;
+    }
+    return best;
+}
+
+/// What held in the look before pushes as its successor does now, and stays where it was for a while.
+void PoseSolver::remember(const Pose& X, const PoseMemory& memory) noexcept {
+    for (const HeldContact& old : memory.all()) {
+        Row* now = successorOf(old);
+        if (now != nullptr) now->from.push += old.push;
+        if ((now != nullptr && distance(now->from.contact, old) < kSameTouch) || old.age >= kKeptLooks) continue;
+        Row kept{.from = old, .slides = false};
+        kept.from.contact = atPose(pair(old.pair), X, old.contact);
+        kept.from.age = old.age + 1;
+        if (now != nullptr) kept.from.push = 0.0;
+        if (kept.from.contact.gap < kReach) add(kept);
+    }
+}
+
+/// B = L Lᵀ.
+MotionMatrix PoseSolver::factor(const Pose& X) const noexcept {
+    MotionMatrix B = MotionMatrix::Identity();
+    bool bent = false;
+    for (std::size_t i = 0; i < count_; ++i) {
+        const HeldContact& from = rows_[i].from;
+        if (!(from.push > 0.0)) continue;
+        B -= from.push * curvatureOf(pair(from.pair), X, from.contact, rows_[i].slides);
+        bent = true;
+    }
+    if (!bent) return B;
+    Eigen::LLT<MotionMatrix> chol(B);
+    if (chol.info() == Eigen::Success && chol.matrixLLT().diagonal().cwiseAbs2().minCoeff() > kLeastStiffness)
+        return chol.matrixL();
+    Eigen::SelfAdjointEigenSolver<MotionMatrix> eigen(B);
+    const motion::Motion values = eigen.eigenvalues().cwiseMax(kLeastStiffness);
+    B = eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
+    return Eigen::LLT<MotionMatrix>(B).matrixL();
+}
+
+bool PoseSolver::solveRows(const motion::Motion& wanted, motion::ActiveSet& active, motion::Motion& y) noexcept {
+    active = {};
+    for (std::size_t i = 0; i < count_; ++i)
+        if (rows_[i].from.push > 0.0) active.tryAdd(prepared_[i], 0.0);
+    y = active.start(wanted);
+    int taken = 0;
+    for (;;) {
+        const motion::MotionRow* worst = nullptr;
+        double most = kRowTolerance;
+        for (std::size_t i = 0; i < count_; ++i) {
+            const double violated = prepared_[i].bound - prepared_[i].a.dot(y);
+            if (violated <= most) continue;
+            most = violated;
+            worst = &prepared_[i];
+        }
+        if (worst == nullptr) return true;
+        if (active.takeUp(*worst, y, taken, kMostTaken) != motion::ActiveSet::Taken::Yes) return false;
+    }
+}
+
+/// The motion that the rows leave of `wanted`; what holds it is held from now on.
+motion::Motion PoseSolver::step(const Pose& X, const motion::Motion& wanted, PoseMemory& memory) noexcept {
+    const MotionMatrix L = factor(X);
+    const auto lower = L.triangularView<Eigen::Lower>();
+    const motion::Motion there = lower.solve(wanted);
+    for (std::size_t i = 0; i < count_; ++i) {
+        const motion::Motion a = lower.solve(rows_[i].from.contact.a);
+        const double length = a.norm();
+        prepared_[i].a = a / length;
+        prepared_[i].length = length;
+        prepared_[i].contact = static_cast<std::uint32_t>(i);
+        prepared_[i].bound = -rows_[i].from.contact.gap / length;
+    }
+    motion::ActiveSet active;
+    motion::Motion y;
+    if (!solveRows(there, active, y)) {
+        for (std::size_t i = 0; i < count_; ++i) prepared_[i].bound = std::min(prepared_[i].bound, 0.0);
+        if (!solveRows(there, active, y)) return motion::Motion::Zero();
+    }
+    memory.count = static_cast<std::size_t>(active.size());
+    for (std::size_t i = 0; i < memory.count; ++i) {
+        const motion::MotionRow& row = active.row(static_cast<int>(i));
+        memory.held[i] = rows_[row.contact].from;
+        memory.held[i].push = active.lambda(static_cast<int>(i)) / row.length;
+    }
+    return L.transpose().triangularView<Eigen::Upper>().solve(y);
+}
+
+ConstrainedPose PoseSolver::solve(const Pose& X_WG, const Pose& X_WH, PoseMemory& memory) noexcept {
+    ConstrainedPose result{.X_WG = X_WG};
+    const double rho = searches_.empty() ? 1.0 : pair(0).metric_radius;
+    Pose X = X_WG;
+    double last = std::numeric_limits<double>::infinity();  // length of the last look's motion
+    for (int i = 0;; ++i) {
+        find(X);
+        const motion::Motion wanted = wayTo(X, X_WH, rho);
+        if (overlap_ <= kKeptOverlap || i == 0) {
+            result.X_WG = X;
+            result.overlap = overlap_;
+            result.full = full_;
+            result.pull = wanted;
+        }
+        result.converged = overlap_ <= kKeptOverlap && last <= kStillMoving;
+        if (result.converged || i == kMostLooks) return result;
+        result.iterations = i + 1;
+        remember(X, memory);
+        motion::Motion u = step(X, wanted, memory);
+        last = u.norm();
+        if (last > kLongestLook) u *= kLongestLook / last;
+        X = movedBy(X, u, rho);
+    }
+}
+
+}  // namespace passung::closed_form

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/closed_form/pair_contacts.h"
+#include "core/motion/active_set.h"
+
+namespace passung::closed_form {
+
+/// A contact that held the proxy, and what it pushed with: `push` times the coupling's stiffness is its force [m].
+struct HeldContact {
+    Contact contact;
+    std::uint16_t pair = 0;
+    double push = 0.0;
+    int age = 0;  // looks since it was last found as a minimum
+};
+
+/// What held the pose that was found last: all that one tick leaves to the next.
+struct PoseMemory {
+    std::array<HeldContact, 6> held{};
+    std::size_t count = 0;
+
+    std::span<const HeldContact> all() const noexcept { return {held.data(), count}; }
+};
+
+struct ConstrainedPose {
+    Pose X_WG;             // the proxy
+    double overlap = 0.0;  // there [m]
+    int iterations = 0;
+    bool converged = true;  // false: kMostLooks were used up, or nothing was allowed
+    bool full = false;      // more contacts than there is room for: PairContacts::full()
+    motion::Motion pull =
+        motion::Motion::Zero();  // what is left of the way to the hand, (Δx, ρ Δφ) [m]: the spring's wrench over K
+};
+
+inline constexpr int kMostLooks = 24;
+inline constexpr double kLongestLook = 2.5e-4;  // of |u| [m]
+inline constexpr double kKeptOverlap = 5e-8;    // [m]
+inline constexpr double kStillMoving = 2e-6;    // of |u| in a look: the error left is of second order [m]
+inline constexpr double kLeastStiffness = 0.3;  // of the least eigenvalue of B
+inline constexpr int kKeptLooks = 6;
+
+/// Finds the pose nearest to the hand's without overlap, from a free one on:
+///   min ½|x_H - x|² + ½ρ²|φ|²   s.t.   all gaps ≥ 0,
+/// by sequential quadratic programming: each look minimises ½ uᵀ B u - wᵀ u under a_i · u ≥ -gap_i, B = 1 - Σ λ_i H_i,
+/// λ of the look before. B is the algorithm: play of 10 µm with the hand 3 mm away has a constraint of 10 µm radius,
+/// past which rows alone run tangentially at every look. Where B is not positive its eigenvalues are raised to
+/// kLeastStiffness. Contacts that held stay as rows at their own place on the line for some looks (cuts), which ends
+/// cycles where a minimum moves along a kink. Where no pose is free, overlap is only kept from growing.
+/// What a solver knows of earlier poses changes its time, never its result.
+class PoseSolver {
+public:
+    /// The held part's pairs, with one ρ. Their solids outlive this.
+    explicit PoseSolver(std::span<const SolidPair> pairs);
+
+    /// rt-safe, bounded.
+    ConstrainedPose solve(const Pose& X_WG, const Pose& X_WH, PoseMemory& memory) noexcept;
+
+    const SolidPair& pair(std::size_t i) const noexcept { return searches_[i].pair(); }
+
+private:
+    static constexpr std::size_t kMostRows = 320;
+
+    /// A row of a look, with the push that its contact had in the one before.
+    struct Row {
+        HeldContact from;
+        bool slides = true;
+    };
+
+    void find(const Pose& X) noexcept;
+    void remember(const Pose& X, const PoseMemory& memory) noexcept;
+    motion::Motion step(const Pose& X, const motion::Motion& wanted, PoseMemory& memory) noexcept;
+    MotionMatrix factor(const Pose& X) const noexcept;
+    bool solveRows(const motion::Motion& wanted, motion::ActiveSet& active, motion::Motion& y) noexcept;
+    void add(const Row& row) noexcept;
+    Row* successorOf(const HeldContact& old) noexcept;
+    double distance(const Contact& contact, const HeldContact& old) const noexcept;
+
+    std::vector<ContactSearch> searches_;
+    PairContacts contacts_;
+    std::vector<Row> rows_;                    // kMostRows, the first `count_`
+    std::vector<motion::MotionRow> prepared_;  // the same
+    std::size_t count_ = 0, found_ = 0;        // rows; those of them that were found at `X_found_`
+    double overlap_ = 0.0;                     // there [m]
+    std::optional<Pose> X_found_;
+    bool full_ = false;  // there
+};
+
+}  // namespace passung::closed_form

@@ -1,0 +1,327 @@
+#include "core/closed_form/solid.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace passung::closed_form {
+
+namespace {
+
+using shape::BorePlate;
+using shape::Box;
+using shape::KeyedBorePlate;
+using shape::KeyedPeg;
+using shape::Peg;
+using shape::SquareBorePlate;
+using shape::SquarePeg;
+
+Curve circle(const Vec3& centre, double radius) {
+    return {Curve::Kind::Circle, centre, radius * Vec3::UnitX(), radius * Vec3::UnitY(), std::numbers::pi, 0.0};
+}
+
+/// The part of a circle on the side of -x where |y| > `half`, or x < 0.
+Curve arcBeside(const Vec3& centre, double radius, double half) {
+    Curve arc = circle(centre, radius);
+    arc.e1 = -arc.e1;
+    arc.e2 = -arc.e2;
+    arc.end = std::numbers::pi - std::asin(half / radius);
+    return arc;
+}
+
+Curve straight(const Vec3& from, const Vec3& to) {
+    return {Curve::Kind::Straight, 0.5 * (from + to), 0.5 * (to - from), Vec3::Zero(), 1.0, 0.0};
+}
+
+/// A convex polyhedron between parallel outlines, each the rectangle |x| <= hx, |y| <= hy at a height.
+struct RectangleAt {
+    double z, hx, hy;
+};
+
+Vec3 corner(const RectangleAt& level, int i) {
+    constexpr std::array<double, 4> kX = {1, -1, -1, 1}, kY = {1, 1, -1, -1};
+    const auto at = static_cast<std::size_t>(i % 4);
+    return {kX[at] * level.hx, kY[at] * level.hy, level.z};
+}
+
+/// Rings of edges and those between them.
+void addRectangleEdges(const std::vector<RectangleAt>& levels, std::vector<Curve>& edges) {
+    for (std::size_t k = 0; k < levels.size(); ++k)
+        for (int i = 0; i < 4; ++i) {
+            edges.push_back(straight(corner(levels[k], i), corner(levels[k], i + 1)));
+            if (k + 1 < levels.size()) edges.push_back(straight(corner(levels[k], i), corner(levels[k + 1], i)));
+        }
+}
+
+/// The planes |x| <= hx, |y| <= hy.
+void addSides(double hx, double hy, Lump& lump) {
+    for (const double sign : {1.0, -1.0}) {
+        lump.faces.push_back(plane({sign * hx, 0, 0}, {sign, 0, 0}));
+        lump.faces.push_back(plane({0, sign * hy, 0}, {0, sign, 0}));
+    }
+}
+
+void addEnds(double low, double high, Lump& lump) {
+    lump.faces.push_back(plane({0, 0, high}, {0, 0, 1}));
+    lump.faces.push_back(plane({0, 0, low}, {0, 0, -1}));
+}
+
+SmoothSolid solidFrom(const shape::Sphere& s) {
+    const double radius = 0.5 * s.diameter;
+    Curve core;
+    core.thickness = radius;
+    return {{{{sphere(Vec3::Zero(), radius)}}}, {}, {core}};
+}
+
+SmoothSolid solidFrom(const shape::Torus& t) {
+    Curve core = circle(Vec3::Zero(), 0.5 * t.diameter);
+    core.thickness = 0.5 * t.tube_diameter;
+    return {{{{torus(Vec3::Zero(), Vec3::UnitZ(), 0.5 * t.diameter, core.thickness)}}}, {}, {core}};
+}
+
+SmoothSolid solidFrom(const Box& b) {
+    SmoothSolid solid;
+    Lump& lump = solid.lumps.emplace_back();
+    addSides(0.5 * b.width, 0.5 * b.depth, lump);
+    addEnds(-0.5 * b.height, 0.5 * b.height, lump);
+    addRectangleEdges({{-0.5 * b.height, 0.5 * b.width, 0.5 * b.depth}, {0.5 * b.height, 0.5 * b.width, 0.5 * b.depth}},
+                      solid.edges);
+    return solid;
+}
+
+/// A round bar from `low` to `high` with a chamfer at its low end.
+void addRoundBar(double radius, double low, double high, double chamfer, SmoothSolid& solid) {
+    Lump& lump = solid.lumps.emplace_back();
+    lump.faces.push_back(cylinder(Vec3::Zero(), Vec3::UnitZ(), radius));
+    addEnds(low, high, lump);
+    solid.edges.push_back(circle({0, 0, low}, radius - chamfer));
+    solid.edges.push_back(circle({0, 0, high}, radius));
+    if (chamfer > 0.0) {
+        lump.faces.push_back(cone({0, 0, low}, Vec3::UnitZ(), radius - chamfer, 1.0));
+        solid.edges.push_back(circle({0, 0, low + chamfer}, radius));
+    }
+    Curve core = straight({0, 0, low + chamfer}, {0, 0, high});
+    core.thickness = radius;
+    solid.cores.push_back(core);
+}
+
+SmoothSolid solidFrom(const shape::Cylinder& c) {
+    SmoothSolid solid;
+    addRoundBar(0.5 * c.diameter, -0.5 * c.length, 0.5 * c.length, 0.0, solid);
+    return solid;
+}
+
+SmoothSolid solidFrom(const Peg& peg) {
+    SmoothSolid solid;
+    addRoundBar(0.5 * peg.diameter, 0.0, peg.length, peg.chamfer, solid);
+    return solid;
+}
+
+/// A bar of the rectangle from x0 to x1 and |y| <= hy, from z = 0 up, with a chamfer at its low end on the sides that
+/// are named by their normals.
+void addBar(double x0, double x1, double hy, double length, double chamfer, bool back, SmoothSolid& solid) {
+    Lump& lump = solid.lumps.emplace_back();
+    addEnds(0.0, length, lump);
+    const double middle = 0.5 * (x0 + x1), hx = 0.5 * (x1 - x0);
+    const Vec3 shift(middle, 0, 0);
+    const auto side = [&](const Vec3& normal, double half, bool bevelled) {
+        lump.faces.push_back(plane(shift + half * normal, normal));
+        if (chamfer > 0.0 && bevelled)
+            lump.faces.push_back(plane(shift + half * normal + Vec3(0, 0, chamfer), normal - Vec3::UnitZ()));
+    };
+    side(Vec3::UnitX(), hx, true);
+    side(-Vec3::UnitX(), hx, back);
+    side(Vec3::UnitY(), hy, true);
+    side(-Vec3::UnitY(), hy, true);
+    std::vector<RectangleAt> levels = {{length, hx, hy}, {chamfer, hx, hy}};
+    if (chamfer > 0.0) levels.push_back({0.0, hx - chamfer, hy - chamfer});
+    const std::size_t first = solid.edges.size();
+    addRectangleEdges(levels, solid.edges);
+    for (std::size_t i = first; i < solid.edges.size(); ++i) solid.edges[i].centre += shift;
+}
+
+SmoothSolid solidFrom(const SquarePeg& peg) {
+    SmoothSolid solid;
+    addBar(-0.5 * peg.width, 0.5 * peg.width, 0.5 * peg.depth, peg.length, peg.chamfer, true, solid);
+    return solid;
+}
+
+SmoothSolid solidFrom(const KeyedPeg& peg) {
+    SmoothSolid solid;
+    const double radius = 0.5 * peg.diameter;
+    addRoundBar(radius, 0.0, peg.length, peg.chamfer, solid);
+    addBar(0.0, radius + peg.key_height, 0.5 * peg.key_width, peg.length, peg.chamfer, false, solid);
+    return solid;
+}
+
+/// Faces that every lump of a plate has, and the plate's outer edges.
+Lump slab(double width, double depth, double height) {
+    Lump lump;
+    addEnds(-height, 0.0, lump);
+    addSides(0.5 * width, 0.5 * depth, lump);
+    return lump;
+}
+
+template <class Plate>
+void addOutside(const Plate& plate, SmoothSolid& solid) {
+    addRectangleEdges(
+        {{-plate.height, 0.5 * plate.width, 0.5 * plate.depth}, {0, 0.5 * plate.width, 0.5 * plate.depth}},
+        solid.edges);
+    if (plate.bore_depth >= plate.height) return;
+    Lump floor = slab(plate.width, plate.depth, plate.height);
+    floor.faces[0] = plane({0, 0, -plate.bore_depth}, {0, 0, 1});
+    solid.lumps.push_back(floor);
+}
+
+/// Height of the low end of a pocket's edges.
+template <class Plate>
+double lowEnd(const Plate& plate) {
+    return -std::min(plate.bore_depth, plate.height);
+}
+
+/// The wall of a round bore with its chamfer, added to a lump.
+void addHollow(double radius, double chamfer, Lump& lump) {
+    lump.faces.push_back(cylinder(Vec3::Zero(), Vec3::UnitZ(), radius, true));
+    if (chamfer > 0.0) lump.faces.push_back(cone(Vec3::Zero(), Vec3::UnitZ(), radius + chamfer, 1.0, true));
+}
+
+SmoothSolid solidFrom(const BorePlate& plate) {
+    SmoothSolid solid;
+    const double radius = 0.5 * plate.bore_diameter;
+    Lump around = slab(plate.width, plate.depth, plate.height);
+    addHollow(radius, plate.chamfer, around);
+    solid.lumps.push_back(around);
+    solid.edges.push_back(circle({0, 0, -plate.chamfer}, radius));
+    if (plate.chamfer > 0.0) solid.edges.push_back(circle(Vec3::Zero(), radius + plate.chamfer));
+    if (plate.bore_depth >= plate.height) solid.edges.push_back(circle({0, 0, -plate.height}, radius));
+    addOutside(plate, solid);
+    return solid;
+}
+
+/// A flat wall of a pocket whose material lies beyond it in the direction `into`, with its chamfer.
+void addWall(const Vec3& into, double half, double chamfer, Lump& lump) {
+    lump.faces.push_back(plane(half * into, -into));
+    if (chamfer > 0.0) lump.faces.push_back(plane((half + chamfer) * into, Vec3::UnitZ() - into));
+}
+
+SmoothSolid solidFrom(const SquareBorePlate& plate) {
+    SmoothSolid solid;
+    const double hx = 0.5 * plate.pocket_width, hy = 0.5 * plate.pocket_depth;
+    for (const double sign : {1.0, -1.0}) {
+        for (const auto& [into, half] : {std::pair(Vec3(sign, 0, 0), hx), std::pair(Vec3(0, sign, 0), hy)}) {
+            Lump wall = slab(plate.width, plate.depth, plate.height);
+            addWall(into, half, plate.chamfer, wall);
+            solid.lumps.push_back(wall);
+        }
+    }
+    const double c = plate.chamfer;
+    std::vector<RectangleAt> levels = {{-c, hx, hy}};
+    if (c > 0.0) levels.push_back({0.0, hx + c, hy + c});
+    if (plate.bore_depth >= plate.height) levels.push_back({-plate.height, hx, hy});
+    for (const RectangleAt& level : levels)  // the corners between them are concave: no edges
+        for (int i = 0; i < 4; ++i) solid.edges.push_back(straight(corner(level, i), corner(level, i + 1)));
+    addOutside(plate, solid);
+    return solid;
+}
+
+SmoothSolid solidFrom(const KeyedBorePlate& plate) {
+    SmoothSolid solid;
+    const double radius = 0.5 * plate.bore_diameter, half = 0.5 * plate.key_width, c = plate.chamfer;
+    const double reach = radius + plate.key_height;
+    const double crossing = std::sqrt(radius * radius - half * half);
+    const auto lump = [&] { return slab(plate.width, plate.depth, plate.height); };
+    for (const double sign : {1.0, -1.0}) {  // beside the keyway, outside the bore
+        Lump beside = lump();
+        addHollow(radius, c, beside);
+        addWall({0, sign, 0}, half, c, beside);
+        solid.lumps.push_back(beside);
+    }
+    Lump opposite = lump();
+    addHollow(radius, c, opposite);
+    opposite.faces.push_back(plane(Vec3::Zero(), Vec3::UnitX()));
+    solid.lumps.push_back(opposite);
+    Lump top = lump();
+    addWall({1, 0, 0}, reach, c, top);
+    solid.lumps.push_back(top);
+
+    solid.edges.push_back(arcBeside({0, 0, -c}, radius, half));
+    if (c > 0.0) solid.edges.push_back(arcBeside(Vec3::Zero(), radius + c, half + c));
+    if (plate.bore_depth >= plate.height) solid.edges.push_back(arcBeside({0, 0, -plate.height}, radius, half));
+    const double low = lowEnd(plate);
+    const double wide_crossing = std::sqrt((radius + c) * (radius + c) - (half + c) * (half + c));
+    for (const double sign : {1.0, -1.0}) {
+        solid.edges.push_back(straight({crossing, sign * half, low}, {crossing, sign * half, -c}));
+        // Where the cone of the mouth meets the keyway's slope: a conic, in pieces within some nanometres of it.
+        constexpr int kPieces = 16;
+        const auto at = [&](int i) {
+            const double grown = c * i / kPieces, y = half + grown;
+            return Vec3(std::sqrt((radius + grown) * (radius + grown) - y * y), sign * y, grown - c);
+        };
+        for (int i = 0; c > 0.0 && i < kPieces; ++i) solid.edges.push_back(straight(at(i), at(i + 1)));
+    }
+    std::vector<std::pair<double, double>> levels = {{-c, 0.0}};  // height, growth
+    if (c > 0.0) levels.emplace_back(0.0, c);
+    if (plate.bore_depth >= plate.height) levels.emplace_back(-plate.height, 0.0);
+    for (const auto& [z, grown] : levels) {
+        const double from = grown > 0.0 ? wide_crossing : crossing;
+        for (const double sign : {1.0, -1.0})
+            solid.edges.push_back(
+                straight({from, sign * (half + grown), z}, {reach + grown, sign * (half + grown), z}));
+        solid.edges.push_back(straight({reach + grown, -(half + grown), z}, {reach + grown, half + grown, z}));
+    }
+    addOutside(plate, solid);
+    return solid;
+}
+
+std::optional<SmoothSolid> solidFrom(const shape::Sheet&) { return std::nullopt; }
+
+}  // namespace
+
+std::optional<SmoothSolid> solidOf(const shape::Shape& shape) {
+    return std::visit([](const auto& s) -> std::optional<SmoothSolid> { return solidFrom(s); }, shape);
+}
+
+Vec3 pointOf(const Curve& curve, double t) noexcept {
+    switch (curve.kind) {
+        case Curve::Kind::Circle:
+            return curve.centre + std::cos(t) * curve.e1 + std::sin(t) * curve.e2;
+        case Curve::Kind::Straight:
+            return curve.centre + t * curve.e1;
+        case Curve::Kind::Point:
+            break;
+    }
+    return curve.centre;
+}
+
+Vec3 slopeOf(const Curve& curve, double t) noexcept {
+    switch (curve.kind) {
+        case Curve::Kind::Circle:
+            return std::cos(t) * curve.e2 - std::sin(t) * curve.e1;
+        case Curve::Kind::Straight:
+            return curve.e1;
+        case Curve::Kind::Point:
+            break;
+    }
+    return Vec3::Zero();
+}
+
+Vec3 bendOf(const Curve& curve, double t) noexcept {
+    if (curve.kind != Curve::Kind::Circle) return Vec3::Zero();
+    return -std::cos(t) * curve.e1 - std::sin(t) * curve.e2;
+}
+
+double valueOf(const Lump& lump, const Vec3& p) noexcept {
+    double most = -std::numeric_limits<double>::infinity();
+    for (const Face& face : lump.faces) most = std::max(most, valueOf(face, p));
+    return most;
+}
+
+double valueOf(const SmoothSolid& solid, const Vec3& p) noexcept {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Lump& lump : solid.lumps) least = std::min(least, valueOf(lump, p));
+    return least;
+}
+
+}  // namespace passung::closed_form

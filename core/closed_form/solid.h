@@ -1,0 +1,58 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/closed_form/face.h"
+#include "core/shape/shape.h"
+
+namespace passung::closed_form {
+
+/// A line of a solid: a straight piece, a circle or an arc of one, or a point. P(t), t from -end to end, is
+/// centre + cos t e1 + sin t e2, t in radians, of a circle; centre + t e1 of a straight piece. Frame of the part.
+struct Curve {
+    enum class Kind { Point, Straight, Circle };
+
+    Kind kind = Kind::Point;
+    Vec3 centre = Vec3::Zero();
+    Vec3 e1 = Vec3::Zero(), e2 = Vec3::Zero();  // [m]; of a straight piece e1 alone
+    double end = 1.0;                           // of t; π: a whole circle
+    double thickness = 0.0;                     // of the material around it [m]; 0: an edge
+
+    /// No point of it is farther from the centre [m].
+    double extent() const noexcept { return kind == Kind::Point ? 0.0 : e1.norm(); }
+    bool isClosed() const noexcept { return kind == Kind::Circle && end > 3.14159; }
+};
+
+inline constexpr std::size_t kMostFaces = 16;  // of a lump
+
+/// Material where all of its faces' functions are below 0.
+struct Lump {
+    std::vector<Face> faces;
+};
+
+/// The union of its lumps, with its lines. Edges: where two faces of a lump meet; every convex edge of the part is one,
+/// further ones run through material. Cores: the points, lines and circles about which a sphere's, a cylinder's and a
+/// torus' face lie, which touch where no edge is.
+struct SmoothSolid {
+    std::vector<Lump> lumps;
+    std::vector<Curve> edges;
+    std::vector<Curve> cores;
+};
+
+/// Nothing for a sheet, which has no inside.
+std::optional<SmoothSolid> solidOf(const shape::Shape& shape);
+
+// rt-safe.
+Vec3 pointOf(const Curve& curve, double t) noexcept;
+Vec3 slopeOf(const Curve& curve, double t) noexcept;  // dP/dt
+Vec3 bendOf(const Curve& curve, double t) noexcept;   // d²P/dt²
+
+/// The largest function of the lump's faces: how far the point is outside, exact beside a face, too small beside an
+/// edge.
+double valueOf(const Lump& lump, const Vec3& p) noexcept;
+
+/// The same of all lumps: the least.
+double valueOf(const SmoothSolid& solid, const Vec3& p) noexcept;
+
+}  // namespace passung::closed_form

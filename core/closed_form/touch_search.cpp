@@ -1,0 +1,293 @@
+#include "core/closed_form/touch_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace passung::closed_form {
+
+namespace {
+
+constexpr int kCircleSamples = 24;
+constexpr int kStraightSamples = 12;  // pieces
+constexpr int kRingSamples = 96;      // of a circle against a face that is not simple on it: minima may lie close
+constexpr int kSteps = 60;            // to close a bracket
+constexpr double kClosed = 1e-10;     // of a line's parameter
+constexpr double kOnFace = 1e-9;      // [m]
+
+/// Cosines and sines at the samples of a circle.
+struct CircleSamples {
+    std::array<double, kCircleSamples + 1> cosine{}, sine{};
+
+    CircleSamples() noexcept {
+        for (std::size_t i = 0; i < cosine.size(); ++i) {
+            const double t = std::numbers::pi * (2.0 * static_cast<double>(i) / kCircleSamples - 1.0);
+            cosine[i] = std::cos(t);
+            sine[i] = std::sin(t);
+        }
+    }
+};
+const CircleSamples kCircle;
+
+/// The i-th sample of a line.
+Vec3 samplePoint(const Curve& line, int i, double t) noexcept {
+    if (!line.isClosed()) return pointOf(line, t);
+    const auto at = static_cast<std::size_t>(i);
+    return line.centre + kCircle.cosine[at] * line.e1 + kCircle.sine[at] * line.e2;
+}
+
+Vec3 sampleSlope(const Curve& line, int i, double t) noexcept {
+    if (!line.isClosed()) return slopeOf(line, t);
+    const auto at = static_cast<std::size_t>(i);
+    return kCircle.cosine[at] * line.e2 - kCircle.sine[at] * line.e1;
+}
+
+std::uint8_t placeOf(const Lump& lump, const Face& face) noexcept {
+    return static_cast<std::uint8_t>(&face - lump.faces.data());
+}
+
+/// The faces of a lump that can be the largest somewhere along a line.
+class Highest {
+public:
+    Highest(const Curve& line, const Lump& lump) noexcept {
+        const double extent = line.extent();
+        least_ = -std::numeric_limits<double>::infinity();
+        std::array<double, kMostFaces> values{};
+        const std::size_t all = std::min(lump.faces.size(), kMostFaces);
+        for (std::size_t i = 0; i < all; ++i) {
+            values[i] = valueOf(lump.faces[i], line.centre);
+            least_ = std::max(least_, values[i] - extent);
+        }
+        for (std::size_t i = 0; i < all; ++i)
+            if (values[i] + extent >= least_) faces_[count_++] = &lump.faces[i];
+    }
+
+    /// The function is nowhere on the line below this.
+    double least() const noexcept { return least_; }
+    bool isConvex() const noexcept {
+        return std::all_of(faces_.begin(), faces_.begin() + static_cast<std::ptrdiff_t>(count_),
+                           [](const Face* face) { return face->isConvex(); });
+    }
+
+    const Face* at(const Vec3& p, double& value) const noexcept {
+        const Face* highest = faces_[0];
+        value = valueOf(*highest, p);
+        for (std::size_t i = 1; i < count_; ++i) {
+            const double other = valueOf(*faces_[i], p);
+            if (other <= value) continue;
+            value = other;
+            highest = faces_[i];
+        }
+        return highest;
+    }
+
+private:
+    std::array<const Face*, kMostFaces> faces_{};
+    std::size_t count_ = 0;
+    double least_;
+};
+
+double slopeOn(const Face& face, const Curve& line, double t) noexcept {
+    if (line.kind != Curve::Kind::Circle) return gradientOf(face, line.centre + t * line.e1).dot(line.e1);
+    const double c = std::cos(t), s = std::sin(t);
+    return gradientOf(face, line.centre + c * line.e1 + s * line.e2).dot(c * line.e2 - s * line.e1);
+}
+
+/// A place on the line, with the highest face there.
+struct Sample {
+    double t = 0.0, value = 0.0, slope = 0.0;
+    const Face* face = nullptr;
+    Vec3 p;
+};
+
+Sample sampleAt(const Curve& line, const Highest& highest, double t) noexcept {
+    Sample sample;
+    sample.t = t;
+    sample.p = pointOf(line, t);
+    sample.face = highest.at(sample.p, sample.value);
+    sample.slope = slopeOn(*sample.face, line, t);
+    return sample;
+}
+
+/// The zero of a function between two places where its sign differs, by false position after Illinois.
+template <class Function>
+double zeroBetween(double low, double high, double at_low, double at_high, Function function) noexcept {
+    int side = 0;
+    for (int i = 0; i < kSteps && high - low > kClosed; ++i) {
+        double t = at_high == at_low ? 0.5 * (low + high) : (low * at_high - high * at_low) / (at_high - at_low);
+        if (!(t > low && t < high)) t = 0.5 * (low + high);
+        const double value = function(t);
+        if (std::abs(value) < 1e-18) return t;
+        if ((value > 0.0) == (at_high > 0.0)) {
+            if (side == 1) at_low *= 0.5;
+            high = t;
+            at_high = value;
+            side = 1;
+        } else {
+            if (side == -1) at_high *= 0.5;
+            low = t;
+            at_low = value;
+            side = -1;
+        }
+    }
+    return 0.5 * (low + high);
+}
+
+/// The minimum between two samples of which the first falls and the second rises.
+Touch minimumBetween(const Curve& line, const Lump& lump, const Highest& highest, Sample low, Sample high) noexcept {
+    Sample here = low;
+    for (int i = 0; i < kSteps; ++i) {
+        const bool one_face = low.face == high.face;
+        const double t = one_face ? zeroBetween(low.t, high.t, low.slope, high.slope,
+                                                [&](double at) { return slopeOn(*low.face, line, at); })
+                                  : zeroBetween(low.t, high.t, valueOf(*high.face, low.p) - low.value,
+                                                high.value - valueOf(*low.face, high.p), [&](double at) {
+                                                    const Vec3 p = pointOf(line, at);
+                                                    return valueOf(*high.face, p) - valueOf(*low.face, p);
+                                                });
+        here = sampleAt(line, highest, t);
+        const double of_low = valueOf(*low.face, here.p);
+        if (here.value > of_low + 1e-15 && here.face != low.face && here.face != high.face) {
+            (here.slope < 0.0 ? low : high) = here;  // a third face
+            continue;
+        }
+        if (one_face) return {.kind = Touch::Kind::Smooth, .t = t, .gap = of_low, .a = placeOf(lump, *low.face)};
+        const double falls = slopeOn(*low.face, line, t), rises = slopeOn(*high.face, line, t);
+        if (falls <= 0.0 && rises >= 0.0) {
+            if (rises - falls <= 0.0)
+                return {.kind = Touch::Kind::Smooth, .t = t, .gap = of_low, .a = placeOf(lump, *low.face)};
+            return {.kind = Touch::Kind::Kink,
+                    .t = t,
+                    .gap = of_low,
+                    .a = placeOf(lump, *low.face),
+                    .b = placeOf(lump, *high.face),
+                    .share = rises / (rises - falls)};
+        }
+        if (falls > 0.0)
+            high = {t, of_low, falls, low.face, here.p};
+        else
+            low = {t, of_low, rises, high.face, here.p};
+    }
+    return {.kind = Touch::Kind::Fixed, .t = here.t, .gap = here.value, .a = placeOf(lump, *here.face)};
+}
+
+bool isBeside(const Touches& touches, const Curve& line, double t) noexcept {
+    for (const Touch& touch : touches.all()) {
+        double apart = std::abs(touch.t - t);
+        if (line.isClosed()) apart = std::min(apart, 2.0 * std::numbers::pi - apart);
+        if (apart < (touch.kind == Touch::Kind::Kink ? kBesideKink : kSameTouch)) return true;
+    }
+    return false;
+}
+
+void addFixed(const Curve& edge, const Lump& lump, const Sample& at, double reach, Touches& touches) noexcept {
+    if (at.value > reach || isBeside(touches, edge, at.t)) return;
+    touches.add({.kind = Touch::Kind::Fixed, .t = at.t, .gap = at.value, .a = placeOf(lump, *at.face)});
+}
+
+/// A straight edge and a function that has one minimum on it.
+double searchConvex(const Curve& edge, const Lump& lump, const Highest& highest, double reach,
+                    Touches& touches) noexcept {
+    const Sample low = sampleAt(edge, highest, -edge.end), high = sampleAt(edge, highest, edge.end);
+    double least = std::min(low.value, high.value);
+    if (low.slope < 0.0 && high.slope > 0.0) {
+        const Touch touch = minimumBetween(edge, lump, highest, low, high);
+        least = touch.gap;
+        if (touch.gap <= reach) touches.add(touch);
+    }
+    addFixed(edge, lump, low, reach, touches);
+    addFixed(edge, lump, high, reach, touches);
+    return least;
+}
+
+/// The point is outside the lump by this face, and the nearest point on the face's whole surface lies on the lump's.
+bool hasFootOn(const Face& face, const Lump& lump, const Vec3& p) noexcept {
+    const double value = valueOf(face, p);
+    if (value < valueOf(lump, p) - kOnFace) return false;
+    const Vec3 foot = p - value * gradientOf(face, p);
+    return std::all_of(lump.faces.begin(), lump.faces.end(),
+                       [&](const Face& other) { return &other == &face || valueOf(other, foot) <= kOnFace; });
+}
+
+void addCore(const Curve& core, const Face& face, const Lump& lump, double t, double reach, Touches& touches) noexcept {
+    const Vec3 p = pointOf(core, t);
+    const double gap = valueOf(face, p) - core.thickness;
+    if (gap > reach || !hasFootOn(face, lump, p)) return;
+    touches.add({.kind = Touch::Kind::Smooth, .t = t, .gap = gap, .a = placeOf(lump, face)});
+}
+
+}  // namespace
+
+double searchEdge(const Curve& edge, const Lump& lump, double reach, Touches& touches) noexcept {
+    const Highest highest(edge, lump);
+    if (highest.least() > reach) return highest.least();
+    if (edge.kind == Curve::Kind::Straight && highest.isConvex())
+        return searchConvex(edge, lump, highest, reach, touches);
+    const bool closed = edge.isClosed();
+    const int pieces = edge.kind == Curve::Kind::Circle ? kCircleSamples : kStraightSamples;
+    const double begin = -edge.end, piece = 2.0 * edge.end / pieces;
+    std::array<Sample, kCircleSamples + 1> samples;
+    for (int i = 0; i <= pieces; ++i) {
+        Sample& sample = samples[static_cast<std::size_t>(i)];
+        sample.t = begin + piece * i;
+        sample.p = samplePoint(edge, i, sample.t);
+        sample.face = highest.at(sample.p, sample.value);
+    }
+    const double farthest = edge.extent() * piece;
+    double least = samples[0].value;
+    bool sloped = false;  // the sample before has its slope
+    for (int i = 0; i < pieces; ++i) {
+        Sample& low = samples[static_cast<std::size_t>(i)];
+        Sample& high = samples[static_cast<std::size_t>(i) + 1];
+        const double bound = 0.5 * (low.value + high.value - farthest);
+        least = std::min(least, bound);
+        if (bound > reach) {
+            sloped = false;
+            continue;
+        }
+        if (!sloped) low.slope = gradientOf(*low.face, low.p).dot(sampleSlope(edge, i, low.t));
+        high.slope = gradientOf(*high.face, high.p).dot(sampleSlope(edge, i + 1, high.t));
+        sloped = true;
+        if (!(low.slope < 0.0 && high.slope >= 0.0)) continue;
+        const Touch touch = minimumBetween(edge, lump, highest, low, high);
+        if (touch.gap <= reach) touches.add(touch);
+    }
+    const int fan = edge.kind == Curve::Kind::Circle ? kCircleSamples / 8 : kStraightSamples;
+    for (int i = 0; i < pieces + (closed ? 0 : 1); i += fan)
+        addFixed(edge, lump, samples[static_cast<std::size_t>(i)], reach, touches);
+    return least;
+}
+
+double searchCore(const Curve& core, const Lump& lump, double reach, Touches& touches) noexcept {
+    double least = -std::numeric_limits<double>::infinity();
+    for (const Face& face : lump.faces)
+        least = std::max(least, valueOf(face, core.centre) - core.extent() - core.thickness);
+    if (least > reach) return least;
+    for (const Face& face : lump.faces) {
+        if (valueOf(face, core.centre) - core.extent() - core.thickness > reach) continue;
+        if (core.kind == Curve::Kind::Point) {
+            addCore(core, face, lump, 0.0, reach, touches);
+            continue;
+        }
+        // A straight core's material ends with flat faces, so that only what lies beside it counts: nothing does of
+        // a plane or a hollow face, which are nearest to its ends.
+        const bool straight = core.kind == Curve::Kind::Straight;
+        if (straight && (face.isPlane() || face.hollow)) continue;
+        const int pieces = straight ? kStraightSamples : kRingSamples;
+        const double begin = -core.end, piece = 2.0 * core.end / pieces;
+        double low = begin, at_low = slopeOn(face, core, low);
+        for (int i = 1; i <= pieces; ++i) {
+            const double high = begin + piece * i, at_high = slopeOn(face, core, high);
+            if (at_low < 0.0 && at_high >= 0.0)
+                addCore(core, face, lump,
+                        zeroBetween(low, high, at_low, at_high, [&](double t) { return slopeOn(face, core, t); }),
+                        reach, touches);
+            low = high;
+            at_low = at_high;
+        }
+    }
+    return least;
+}
+
+}  // namespace passung::closed_form
