@@ -140,6 +140,7 @@ public:
             const motion::Surroundings around{nearest, state.X_WG.p, model_.metric_radius, -model_.margins.keep};
             const motion::ConstrainedMotion last = motion::constrainMotion(before, around);
             std::vector<std::uint32_t> held;
+            held.reserve(static_cast<std::size_t>(last.active));
             for (int i = 0; i < last.active; ++i)
                 held.push_back(last.active_contacts[static_cast<std::size_t>(i)].contact);
             double best = kNotGiven;
