@@ -1,5 +1,6 @@
 #include "core/closed_form/face.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace passung::closed_form {

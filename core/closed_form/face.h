@@ -5,8 +5,8 @@
 namespace passung::closed_form {
 
 /// A smooth face of a solid as a function of a point: its signed distance to the whole plane, cylinder, cone, sphere or
-/// torus, positive outside the material. Its gradient has length 1. Cylinders, cones, spheres and tori may be hollow:
-/// material outside of them.
+/// torus, positive outside the material. Its gradient has length 1. Cylinders and cones may be hollow: material outside
+/// of them.
 struct Face {
     enum class Kind { Plane, Cylinder, Cone, Sphere, Torus };
 

@@ -133,9 +133,9 @@ MotionMatrix curvatureInS(const LineView& view, const std::vector<Face>& faces, 
 
 }  // namespace
 
-double PairContacts::overlap() const noexcept {
+double overlapOf(const PairContacts& contacts) noexcept {
     double most = 0.0;
-    for (const Contact& contact : all()) most = std::max(most, -contact.gap);
+    for (const Contact& contact : contacts.all()) most = std::max(most, -contact.gap);
     return most;
 }
 

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "core/closed_form/touch_search.h"
@@ -31,33 +29,11 @@ struct Contact {
     motion::Motion a = motion::Motion::Zero();  // (n, r × n / ρ)
 };
 
-/// Contacts of a pair at one pose. rt-safe.
-class PairContacts {
-public:
-    static constexpr std::size_t kMost = 256;
+/// Contacts of a pair at one pose. Full: an overlap may be unknown.
+using PairContacts = FixedList<Contact, 256>;
 
-    void add(const Contact& contact) noexcept {
-        if (count_ < kMost)
-            all_[count_++] = contact;
-        else
-            full_ = true;
-    }
-    void clear() noexcept {
-        count_ = 0;
-        full_ = false;
-    }
-    /// One more was found than there is room for: an overlap may be unknown.
-    bool full() const noexcept { return full_; }
-    void setFull() noexcept { full_ = true; }
-    std::span<const Contact> all() const noexcept { return {all_.data(), count_}; }
-    /// The most that any contact overlaps [m], ≥ 0.
-    double overlap() const noexcept;
-
-private:
-    std::array<Contact, kMost> all_;  // the first `count_`
-    std::size_t count_ = 0;
-    bool full_ = false;
-};
+/// The most that any contact overlaps [m], ≥ 0.
+double overlapOf(const PairContacts& contacts) noexcept;
 
 /// A held part against an obstacle.
 struct SolidPair {

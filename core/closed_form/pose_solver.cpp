@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "core/motion/active_set.h"
 
@@ -28,12 +27,6 @@ Pose movedBy(const Pose& X, const motion::Motion& u, double rho) noexcept {
     Pose there{rotationFromVector(u.tail<3>() / rho) * X.q, X.p + u.head<3>()};
     there.q.normalize();
     return there;
-}
-
-double apart(const SmoothSolid& lines, const TouchName& name, double s, double t) noexcept {
-    const bool closed = (name.core ? lines.cores : lines.edges)[name.line].isClosed();
-    const double d = std::abs(s - t);
-    return closed ? std::min(d, 2.0 * std::numbers::pi - d) : d;
 }
 
 }  // namespace
@@ -62,7 +55,7 @@ void PoseSolver::find(const Pose& X) noexcept {
     full_ = false;
     for (std::size_t p = 0; p < searches_.size(); ++p) {
         searches_[p].find(X, kReach, contacts_);
-        overlap_ = std::max(overlap_, contacts_.overlap());
+        overlap_ = std::max(overlap_, overlapOf(contacts_));
         full_ = full_ || contacts_.full();
         for (const Contact& contact : contacts_.all())
             add({.from = {.contact = contact, .pair = static_cast<std::uint16_t>(p)},
@@ -72,8 +65,10 @@ void PoseSolver::find(const Pose& X) noexcept {
 }
 
 double PoseSolver::distance(const Contact& contact, const HeldContact& old) const noexcept {
-    const SmoothSolid& lines = old.contact.name.of_held ? *pair(old.pair).held : *pair(old.pair).obstacle;
-    return apart(lines, old.contact.name, contact.touch.t, old.contact.touch.t);
+    const TouchName& name = old.contact.name;
+    const SmoothSolid& lines = name.of_held ? *pair(old.pair).held : *pair(old.pair).obstacle;
+    const Curve& line = (name.core ? lines.cores : lines.edges)[name.line];
+    return apartOn(line, contact.touch.t, old.contact.touch.t);
 }
 
 PoseSolver::Row* PoseSolver::successorOf(const HeldContact& old) noexcept {

@@ -175,12 +175,6 @@ void addOutside(const Plate& plate, SmoothSolid& solid) {
     solid.lumps.push_back(floor);
 }
 
-/// Height of the low end of a pocket's edges.
-template <class Plate>
-double lowEnd(const Plate& plate) {
-    return -std::min(plate.bore_depth, plate.height);
-}
-
 /// The wall of a round bore with its chamfer, added to a lump.
 void addHollow(double radius, double chamfer, Lump& lump) {
     lump.faces.push_back(cylinder(Vec3::Zero(), Vec3::UnitZ(), radius, true));
@@ -230,7 +224,10 @@ SmoothSolid solidFrom(const KeyedBorePlate& plate) {
     SmoothSolid solid;
     const double radius = 0.5 * plate.bore_diameter, half = 0.5 * plate.key_width, c = plate.chamfer;
     const double reach = radius + plate.key_height;
-    const double crossing = std::sqrt(radius * radius - half * half);
+    // Where the bore meets the keyway's side, both wider by `grown`.
+    const auto crossing = [&](double grown) {
+        return std::sqrt((radius + grown) * (radius + grown) - (half + grown) * (half + grown));
+    };
     const auto lump = [&] { return slab(plate.width, plate.depth, plate.height); };
     for (const double sign : {1.0, -1.0}) {  // beside the keyway, outside the bore
         Lump beside = lump();
@@ -249,15 +246,14 @@ SmoothSolid solidFrom(const KeyedBorePlate& plate) {
     solid.edges.push_back(arcBeside({0, 0, -c}, radius, half));
     if (c > 0.0) solid.edges.push_back(arcBeside(Vec3::Zero(), radius + c, half + c));
     if (plate.bore_depth >= plate.height) solid.edges.push_back(arcBeside({0, 0, -plate.height}, radius, half));
-    const double low = lowEnd(plate);
-    const double wide_crossing = std::sqrt((radius + c) * (radius + c) - (half + c) * (half + c));
+    const double low = -std::min(plate.bore_depth, plate.height);
     for (const double sign : {1.0, -1.0}) {
-        solid.edges.push_back(straight({crossing, sign * half, low}, {crossing, sign * half, -c}));
+        solid.edges.push_back(straight({crossing(0.0), sign * half, low}, {crossing(0.0), sign * half, -c}));
         // Where the cone of the mouth meets the keyway's slope: a conic, in pieces within some nanometres of it.
         constexpr int kPieces = 16;
         const auto at = [&](int i) {
-            const double grown = c * i / kPieces, y = half + grown;
-            return Vec3(std::sqrt((radius + grown) * (radius + grown) - y * y), sign * y, grown - c);
+            const double grown = c * i / kPieces;
+            return Vec3(crossing(grown), sign * (half + grown), grown - c);
         };
         for (int i = 0; c > 0.0 && i < kPieces; ++i) solid.edges.push_back(straight(at(i), at(i + 1)));
     }
@@ -265,7 +261,7 @@ SmoothSolid solidFrom(const KeyedBorePlate& plate) {
     if (c > 0.0) levels.emplace_back(0.0, c);
     if (plate.bore_depth >= plate.height) levels.emplace_back(-plate.height, 0.0);
     for (const auto& [z, grown] : levels) {
-        const double from = grown > 0.0 ? wide_crossing : crossing;
+        const double from = crossing(grown);
         for (const double sign : {1.0, -1.0})
             solid.edges.push_back(
                 straight({from, sign * (half + grown), z}, {reach + grown, sign * (half + grown), z}));
@@ -310,6 +306,11 @@ Vec3 slopeOf(const Curve& curve, double t) noexcept {
 Vec3 bendOf(const Curve& curve, double t) noexcept {
     if (curve.kind != Curve::Kind::Circle) return Vec3::Zero();
     return -std::cos(t) * curve.e1 - std::sin(t) * curve.e2;
+}
+
+double apartOn(const Curve& curve, double s, double t) noexcept {
+    const double d = std::abs(s - t);
+    return curve.isClosed() ? std::min(d, 2.0 * std::numbers::pi - d) : d;
 }
 
 double valueOf(const Lump& lump, const Vec3& p) noexcept {

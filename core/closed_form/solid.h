@@ -48,6 +48,9 @@ Vec3 pointOf(const Curve& curve, double t) noexcept;
 Vec3 slopeOf(const Curve& curve, double t) noexcept;  // dP/dt
 Vec3 bendOf(const Curve& curve, double t) noexcept;   // d²P/dt²
 
+/// How far two places of the line are apart, by t; round a whole circle the shorter way.
+double apartOn(const Curve& curve, double s, double t) noexcept;
+
 /// The largest function of the lump's faces: how far the point is outside, exact beside a face, too small beside an
 /// edge.
 double valueOf(const Lump& lump, const Vec3& p) noexcept;

@@ -174,9 +174,7 @@ Touch minimumBetween(const Curve& line, const Lump& lump, const Highest& highest
 
 bool isBeside(const Touches& touches, const Curve& line, double t) noexcept {
     for (const Touch& touch : touches.all()) {
-        double apart = std::abs(touch.t - t);
-        if (line.isClosed()) apart = std::min(apart, 2.0 * std::numbers::pi - apart);
-        if (apart < (touch.kind == Touch::Kind::Kink ? kBesideKink : kSameTouch)) return true;
+        if (apartOn(line, touch.t, t) < (touch.kind == Touch::Kind::Kink ? kBesideKink : kSameTouch)) return true;
     }
     return false;
 }

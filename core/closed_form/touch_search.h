@@ -1,10 +1,8 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
-#include <span>
 
+#include "core/closed_form/fixed_list.h"
 #include "core/closed_form/solid.h"
 
 namespace passung::closed_form {
@@ -27,26 +25,8 @@ struct Touch {
     static constexpr std::uint8_t kNone = 255;
 };
 
-/// Touches of one line. rt-safe.
-class Touches {
-public:
-    static constexpr std::size_t kMost = 40;
-
-    void add(const Touch& touch) noexcept {
-        if (count_ < kMost)
-            all_[count_++] = touch;
-        else
-            full_ = true;
-    }
-    /// One more was found than there is room for.
-    bool full() const noexcept { return full_; }
-    std::span<const Touch> all() const noexcept { return {all_.data(), count_}; }
-
-private:
-    std::array<Touch, kMost> all_;  // the first `count_`
-    std::size_t count_ = 0;
-    bool full_ = false;
-};
+/// Touches of one line.
+using Touches = FixedList<Touch, 40>;
 
 inline constexpr double kBesideKink = 0.3;  // of a line's parameter: a fixed point there has one face's normal alone
 inline constexpr double kSameTouch = 2e-3;  // of a line's parameter

@@ -72,7 +72,7 @@ Pose freeStart(const SolidPair& pair, const Vec3& start) {
         ContactSearch search(pair);
         PairContacts found;
         search.find(X, 1e-3, found);
-        if (found.overlap() == 0.0 && valueOf(*pair.obstacle, X.p) > 0.0) return X;
+        if (overlapOf(found) == 0.0 && valueOf(*pair.obstacle, X.p) > 0.0) return X;
     }
     return {Quat::Identity(), start + Vec3(0.0, 0.0, 0.1)};
 }
