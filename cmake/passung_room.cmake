@@ -8,6 +8,13 @@ if(PASSUNG_PRECOMPILE)
   set(PASSUNG_FALSE_WARNINGS $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds;-Wno-stringop-overflow;-Wno-stringop-overread;-Wno-maybe-uninitialized>>)
 endif()
 
+# ccache keeps what shares parsed headers only if the compiler names the header in its first pass, or stamps no time in it.
+if(PASSUNG_PRECOMPILE AND CMAKE_CXX_COMPILER_LAUNCHER MATCHES "ccache")
+  set(PASSUNG_KEPT_HEADERS
+    $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>>
+    "$<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>>")
+endif()
+
 # What every room is compiled with. Deterministic: no contraction, no fast-math, no -march
 # that would change results between machines. 16-byte alignment: the layout of the distribution's FCL.
 add_library(passung_flags INTERFACE)
@@ -16,6 +23,7 @@ target_compile_options(passung_flags INTERFACE
   $<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wshadow>
   $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>>
   ${PASSUNG_FALSE_WARNINGS}
+  ${PASSUNG_KEPT_HEADERS}
   $<BUILD_INTERFACE:$<$<BOOL:${PASSUNG_WERROR}>:-Werror>>
   -ffp-contract=off)
 target_compile_definitions(passung_flags INTERFACE EIGEN_MAX_ALIGN_BYTES=16)
