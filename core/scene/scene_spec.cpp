@@ -3,6 +3,8 @@
 #include <cmath>
 #include <set>
 
+#include "core/scene/contact_geometry.h"
+
 namespace passung::scene {
 
 namespace {
@@ -63,6 +65,8 @@ std::vector<Error> SceneSpec::validate() const {
     if (contact.coupling != PenaltyCoupling::Direct && contact.method != ContactMethod::Penalty)
         check.errors.push_back(
             {.message = "needs the penalty method: a god object has its own", .key = "contact: coupling"});
+    if (const auto problem = geometryProblem(*this))
+        check.errors.push_back({.message = *problem, .key = "contact: geometry"});
     check.positive("contact: tolerance", contact.tolerance);
     check.notNegative("contact: cell", contact.cell);
     check.positive("contact: spacing", contact.spacing);

@@ -33,9 +33,13 @@ struct PartSpec {
 enum class ContactMethod { Penalty, GodObjectHeuristic, GodObject };
 enum class PenaltyVariant { MaxNormalised, AreaWeighted, Raw };
 enum class PenaltyCoupling { Direct, QuasiStatic, Virtual };
+/// What contact is computed from: shapes' own faces and edges, triangles, or distance fields with point shells. Auto:
+/// as contact_geometry.h picks it.
+enum class Geometry { Auto, ClosedForm, Surface, Field };
 
 struct ContactSpec {
     ContactMethod method = ContactMethod::GodObjectHeuristic;
+    Geometry geometry = Geometry::Auto;
     PenaltyVariant variant = PenaltyVariant::MaxNormalised;
     double stiffness = 1000.0;          // [N/m], > 0
     double rotational_stiffness = 1.0;  // [N·m/rad], ≥ 0
@@ -47,9 +51,10 @@ struct ContactSpec {
     double penalty_stiffness = 10000.0;  // of a coupled penalty's contacts, in place of `stiffness` [N/m], > 0
     double tool_mass = 0.05;             // of PenaltyCoupling::Virtual [kg], > 0
     double tool_inertia = 5e-5;          // likewise [kg·m²], > 0
-    double tolerance = 20e-6;            // asked accuracy of the distance field near surfaces [m], > 0
-    double cell = 0.0;                   // edge of a field cell [m]; 0 = chosen from the tolerance
-    double spacing = 1.0e-3;             // of the point shell [m], > 0
+    // Of distance fields and point shells; Geometry::Field only.
+    double tolerance = 20e-6;  // asked accuracy of the distance field near surfaces [m], > 0
+    double cell = 0.0;         // edge of a field cell [m]; 0 = chosen from the tolerance
+    double spacing = 1.0e-3;   // of the point shell [m], > 0
     field::FieldMode mode = field::FieldMode::Trilinear;
     int budget_nodes = 0;       // per query; 0 = no budget
     bool two_way = false;       // the obstacles' points are held against the held part's field too

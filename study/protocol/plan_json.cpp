@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "core/base/json.h"
+#include "core/scene/contact_geometry.h"
 #include "study/design/allocation.h"
 #include "study/protocol/task_json.h"
 
@@ -76,6 +77,7 @@ std::string contactJson(const plan::Condition& condition) {
     const bool automatic = condition.accuracy_budget > 0.0;
     JsonObject json;
     json.text("method", methodName(contact.method))
+        .text("geometry", scene::geometryName(scene::geometryOf(condition.scene).geometry))
         .text("variant", variantName(contact.variant))
         .number("stiffness_N_per_m", contact.stiffness)
         .number("rotational_stiffness_Nm_per_rad", contact.rotational_stiffness)

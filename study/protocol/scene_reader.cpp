@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/base/regular_file.h"
+#include "core/scene/contact_geometry.h"
 #include "core/scene/field_estimate.h"
 #include "core/scene/part.h"
 #include "study/protocol/felt_features.h"
@@ -204,6 +205,11 @@ scene::ContactSpec readContact(const TableReader& read, const DeviceDescription*
     contact.method = method == "penalty"      ? scene::ContactMethod::Penalty
                      : method == "god_object" ? scene::ContactMethod::GodObject
                                               : scene::ContactMethod::GodObjectHeuristic;
+    const auto geometry = read.text("geometry");
+    contact.geometry = geometry == "closed_form" ? scene::Geometry::ClosedForm
+                       : geometry == "surface"   ? scene::Geometry::Surface
+                       : geometry == "field"     ? scene::Geometry::Field
+                                                 : scene::Geometry::Auto;
     const auto variant = read.text("variant");
     contact.variant = variant == "raw"             ? scene::PenaltyVariant::Raw
                       : variant == "area_weighted" ? scene::PenaltyVariant::AreaWeighted
@@ -314,6 +320,8 @@ SceneContent readSceneNode(const Node& table, std::vector<std::string_view> ids,
     content.scene.registration = readRegistration(registration_table, units);
     content.scene.contact =
         readContact(contact_table, device, device_table.has("preset"), content.scene.registration.scale);
+    if (const auto problem = scene::geometryProblem(content.scene); content.parts_sound && problem)
+        contact_table.fail("geometry", *problem);
     if (content.parts_sound) completeContact(contact_table, content.scene, geometries);
     content.accuracy_budget = readAccuracyBudget(contact_table, content.scene);
     if (const Node* budget = contact_table.node("accuracy_budget_us")) content.accuracy_place = budget->place;

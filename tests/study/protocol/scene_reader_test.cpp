@@ -215,6 +215,20 @@ TEST(SceneReader, CouplesThePenaltyThroughATool) {
         std::string::npos);
 }
 
+TEST(SceneReader, ReadsTheGeometryOfContactAndSaysWhereItCannotBeHad) {
+    // Truth: closed form: the table of keys; a part of a mesh and a penalty have no closed form.
+    ASSERT_TRUE(read(kParts));
+    EXPECT_EQ(read(kParts)->contact.geometry, scene::Geometry::Auto);
+    const auto field = read(kParts + "[contact]\ngeometry = \"field\"\n");
+    ASSERT_TRUE(field);
+    EXPECT_EQ(field->contact.geometry, scene::Geometry::Field);
+    const std::string penalty = "[contact]\nmethod = \"penalty\"\ngeometry = \"closed_form\"\n";
+    EXPECT_NE(errorsOf(kParts + penalty).find("error: contact.geometry: \"closed_form\": "), std::string::npos)
+        << errorsOf(kParts + penalty);
+    EXPECT_NE(errorsOf(kParts + "[contact]\ngeometry = \"fields\"\n").find("contact.geometry: \"fields\""),
+              std::string::npos);
+}
+
 TEST(SceneReader, TakesEncoderStepsFromTheDeviceIfTheyAreKnown) {
     // Truth: closed form: the numbers of a mechanism; of a device without one, as every real one, none are known.
     std::vector<DeviceDescription> devices = fakeDevices();

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/scene/scene_spec.h"
+
+namespace passung::scene {
+
+/// What contact is computed from (never Geometry::Auto), and why.
+struct GeometryChoice {
+    Geometry geometry = Geometry::Field;
+    const char* reason = "";
+};
+
+/// Of the held part with one obstacle. Auto: fields for the penalty; for god objects the closed form where both parts
+/// have one and nothing rubs, else fields.
+GeometryChoice geometryOfPair(const PartSpec& held, const PartSpec& obstacle, const ContactSpec& contact);
+
+/// Of a scene, whose pairs all have one: that which each of them can have.
+GeometryChoice geometryOf(const SceneSpec& scene);
+
+/// What has to hold for the geometry that the scene names, as a requirement; nothing if it does.
+std::optional<std::string> geometryProblem(const SceneSpec& scene);
+
+/// "auto", "closed_form", "surface", "field".
+const char* geometryName(Geometry geometry);
+
+}  // namespace passung::scene
