@@ -111,6 +111,16 @@ std::vector<SampleColumn> makeSampleColumns() {
              row.add(static_cast<double>(sample.period) / 1000.0);
          }}};
     for (const store::Channel& channel : store::tickChannels()) columns.push_back(channelColumn(channel));
+    columns.push_back({{"suspended",
+                        "1 where the tick's work was cut short and went on in the next one, else 0",
+                        "",
+                        "integer",
+                        "bit 18 of status",
+                        1,
+                        {}},
+                       [](NumberText& row, const Sample& s, std::size_t) {
+                           row.add((s.record.status & kSuspended) != 0 ? std::uint32_t{1} : std::uint32_t{0});
+                       }});
     const auto add = [&](const char* name, const char* label, const char* formula, AddCell add_cell) {
         columns.push_back({{name, label, "", "number", formula, 1, {}}, add_cell});
     };

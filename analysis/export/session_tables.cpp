@@ -143,6 +143,11 @@ ColumnsOf<TimingRow> timingColumns() {
             {"p99_us", "Computing time of a tick, 99th percentile", "number", &TimingRow::p99_us, microseconds},
             {"p999_us", "Computing time of a tick, 99.9th percentile", "number", &TimingRow::p999_us, microseconds},
             {"max_us", "Computing time of a tick, largest", "number", &TimingRow::max_us, microseconds},
+            {"processor_mean_us", "Of a tick's computing time what its thread spent on a processor, mean", "number",
+             &TimingRow::processor_mean_us, microseconds},
+            {"processor_p99_us", "The same, 99th percentile", "number", &TimingRow::processor_p99_us, microseconds},
+            {"processor_p999_us", "The same, 99.9th percentile", "number", &TimingRow::processor_p999_us, microseconds},
+            {"processor_max_us", "The same, largest", "number", &TimingRow::processor_max_us, microseconds},
             {"overruns", "Cycles that were missed because an earlier one took too long; 0 in virtual time", "integer",
              &TimingRow::overruns},
             {"dropped_samples", "Ticks that could not be recorded", "integer", &TimingRow::dropped_samples}};

@@ -41,6 +41,8 @@ const char* statusBitMeaning(TickStatus bit) {
             return "engaged: the hand has reached the start pose and contact is rendered (nothing to worry about)";
         case kWrenchWithheld:
             return "the condition displays no force (nothing to worry about)";
+        case kSuspended:
+            return "the tick's work was cut short and goes on in the next one: the proxy lags";
     }
     return nullptr;
 }

@@ -29,6 +29,7 @@ enum TickStatus : std::uint32_t {
     kPassivityActed = 1u << 14,   // the passivity controller added a damper
     kEngaged = 1u << 16,          // the hand has reached the start pose: contact is rendered
     kWrenchWithheld = 1u << 17,   // the scene displays no wrench: zero, whatever contact asks for
+    kSuspended = 1u << 18,        // the tick's work was not done: what is left of it goes on in the next tick
 };
 
 /// What a device reports for one tick.
@@ -71,8 +72,12 @@ struct TickRecord {
     std::uint32_t nodes_visited = 0;
     // an input, known of simulated hands only: DeviceReading::hand_energy_J
     float hand_energy_J = std::numeric_limits<float>::quiet_NaN();
+    // An output: no point of the held part at X_WG is nearer to an obstacle than this, ≥ 0 [m]. NaN: the contact's
+    // geometry proves none, as sampled points and fields.
+    float proxy_gap_m = std::numeric_limits<float>::quiet_NaN();
     // measured, never compared by a replay
-    std::int64_t duration_ns = 0;  // of the tick's computation
+    std::int64_t duration_ns = 0;   // of the tick's computation, by the wall clock
+    std::int64_t processor_ns = 0;  // of it, that the loop's thread spent on a processor
 };
 static_assert(std::is_trivially_copyable_v<TickRecord>);
 

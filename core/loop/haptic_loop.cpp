@@ -9,6 +9,7 @@
 #include <array>
 #include <chrono>
 
+#include "core/base/processor_clock.h"
 #include "core/loop/cadence.h"
 
 namespace passung::loop {
@@ -47,14 +48,19 @@ void HapticCycle::run(std::uint32_t missed) noexcept {
     const std::int64_t tick = scenes_.tick();
     DeviceReading reading = device_.read();
     reading.periods = 1 + missed;
+    // The clock of the processor is the slower to read: outside, where it does not count as the tick's wall time.
+    const std::int64_t processor_begin = threadProcessorNanoseconds();
     const std::int64_t begin = now();
     const tick::TickOutput output = scenes_.step(reading);
     const std::int64_t duration = now() - begin;
+    const std::int64_t processor = threadProcessorNanoseconds() - processor_begin;
     device_.command(output.F_D_B);
     timing_.add(duration);
+    processor_timing_.add(processor);
 
     TickRecord record = tick::makeRecord(tick, reading, output);
     record.duration_ns = duration;
+    record.processor_ns = processor;
     ring_.tryPush(record);
     for (ScreenRing* screen : screens_) screen->tryPush({record, begin});
     if (listener_ != nullptr) listener_->take(record);

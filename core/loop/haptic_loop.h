@@ -49,7 +49,10 @@ public:
     std::uint64_t stateHash() const { return scenes_.hash(); }
     /// As tick::SceneSequence says.
     std::vector<tick::PairAccount> pairs() const { return scenes_.pairs(); }
+    /// Computing time of the ticks, by the wall clock.
     const TimingHistogram& timing() const { return timing_; }
+    /// Of it what the calling thread spent on a processor.
+    const TimingHistogram& processorTiming() const { return processor_timing_; }
 
 private:
     tick::SceneSequence scenes_;
@@ -58,7 +61,7 @@ private:
     bool show_proxy_;
     std::span<ScreenRing* const> screens_;
     TickListener* listener_;  // may be null
-    TimingHistogram timing_;
+    TimingHistogram timing_, processor_timing_;
 };
 
 /// How the real-time thread runs on this machine.

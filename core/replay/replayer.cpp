@@ -2,6 +2,7 @@
 
 #include <array>
 #include <bit>
+#include <cmath>
 
 namespace passung::replay {
 
@@ -17,6 +18,10 @@ public:
     }
     void field(const char* name, std::uint32_t recorded, std::uint32_t replayed) {
         if (recorded != replayed) report(name, recorded, replayed);
+    }
+    /// One NaN is as another: a recording from before the gap was recorded has its reader's.
+    void gap(float recorded, float replayed) {
+        if (!(std::isnan(recorded) && std::isnan(replayed))) field("proxy_gap_m", recorded, replayed);
     }
     template <std::size_t N>
     void field(const char* name, const std::array<float, N>& recorded, const std::array<float, N>& replayed) {
@@ -49,6 +54,7 @@ std::optional<Difference> compare(const TickRecord& recorded, const TickRecord& 
     comparison.field("torque_Nm", recorded.torque_Nm, replayed.torque_Nm);
     comparison.field("hand_depth_m", recorded.hand_depth_m, replayed.hand_depth_m);
     comparison.field("proxy_depth_m", recorded.proxy_depth_m, replayed.proxy_depth_m);
+    comparison.gap(recorded.proxy_gap_m, replayed.proxy_gap_m);
     comparison.field("energy_J", recorded.energy_J, replayed.energy_J);
     comparison.field("quality", recorded.quality, replayed.quality);
     comparison.field("status", recorded.status, replayed.status);

@@ -1,6 +1,7 @@
 #include "core/tick/step.h"
 
 #include <bit>
+#include <cmath>
 
 namespace passung::tick {
 
@@ -31,8 +32,16 @@ void mixOutputs(std::uint64_t& hash, const TickFrame& frame, const Pose& X_WG) n
     mix(hash, frame.F_D_B.torque);
     mix(hash, Vec3(frame.proxy_depth, frame.hand_depth, frame.quality));
     mix(hash, std::bit_cast<std::uint64_t>(frame.energy));
+    // Only where it is known: hashes of scenes without one are as they were before there was a gap.
+    if (!std::isnan(frame.proxy_gap)) mix(hash, std::bit_cast<std::uint64_t>(frame.proxy_gap));
     mix(hash, std::uint64_t{frame.status} << 32 | frame.contacts);
     mix(hash, std::uint64_t{frame.iterations} << 32 | frame.nodes_visited);
+}
+
+/// The nearest float that is not above `value`: what is at least so far away stays so in a record. NaN stays NaN.
+float roundedDown(double value) noexcept {
+    const auto rounded = static_cast<float>(value);
+    return static_cast<double>(rounded) > value ? std::nextafter(rounded, -1.0f) : rounded;
 }
 
 template <std::size_t N>
@@ -80,6 +89,7 @@ TickRecord makeRecord(std::int64_t tick, const DeviceReading& reading, const Tic
     store(record.torque_Nm, frame.F_H_W.torque);
     record.hand_depth_m = static_cast<float>(frame.hand_depth);
     record.proxy_depth_m = static_cast<float>(frame.proxy_depth);
+    record.proxy_gap_m = roundedDown(frame.proxy_gap);
     record.energy_J = static_cast<float>(frame.energy);
     record.quality = static_cast<float>(frame.quality);
     record.status = frame.status;

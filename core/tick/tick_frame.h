@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "core/base/tick_record.h"
 #include "core/base/types.h"
@@ -35,6 +36,8 @@ struct AreaLoad {
 /// What is told of the contacts. Owner: contacts at the hand, or proxy record.
 struct ContactRecord {
     double proxy_depth = 0.0;  // [m], ≥ 0
+    // No point of the held part is nearer to an obstacle, ≥ 0 [m]; NaN where nothing proves it.
+    double proxy_gap = std::numeric_limits<double>::quiet_NaN();
     std::uint32_t contacts = 0;
 };
 

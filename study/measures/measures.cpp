@@ -107,6 +107,13 @@ Optional largest(const Trial& trial) {
     return result;
 }
 
+Optional leastProxyGap(const Trial& trial) {
+    Optional least;
+    for (const TickRecord& record : trial.ticks)
+        if (const double gap = record.proxy_gap_m; std::isfinite(gap)) least = std::min(gap, least.value_or(gap));
+    return least;
+}
+
 Optional success(const Trial& trial) { return trial.succeeded() ? 1.0 : 0.0; }
 
 Optional completionTime(const Trial& trial) {
@@ -300,6 +307,9 @@ std::vector<Measure> commonMeasures() {
         {{"max_proxy_depth_m", "Largest depth at the proxy's pose", "m",
           std::string("largest proxy_depth_m over the trial ticks") + kDepthOfSamples},
          largest<proxyDepthOf>},
+        {{"min_proxy_gap_m", "Least proven gap at the proxy's pose", "m",
+          "least proxy_gap_m over the trial ticks; empty where contact.geometry proves no gap (field)"},
+         leastProxyGap},
         {{"impulse_Ns", "Impulse", "N s",
           "sum over the trial ticks k of |force(k)| x periods(k+1) x 1 ms, 1 ms where tick k+1 was not recorded", 2},
          impulse},
@@ -317,6 +327,7 @@ std::vector<Measure> commonMeasures() {
         countOf<kForceLimited>("force_limited_ticks", "Ticks at the limit of force or torque"),
         countOf<kRateLimited>("rate_limited_ticks", "Ticks at the limit of rising force"),
         countOf<kPassivityActed>("passivity_ticks", "Ticks in which the passivity controller acted"),
+        countOf<kSuspended>("suspended_ticks", "Ticks whose work went on in the next one: the proxy lags"),
     };
 }
 

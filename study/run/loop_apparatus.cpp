@@ -201,6 +201,11 @@ session::LoopHealth LoopApparatus::stop() {
     health.p99_us = timing.quantileMicroseconds(0.99);
     health.p999_us = timing.quantileMicroseconds(0.999);
     health.max_us = timing.maxMicroseconds();
+    const loop::TimingHistogram& processor = run_->cycle.processorTiming();
+    health.processor_mean_us = processor.meanMicroseconds();
+    health.processor_p99_us = processor.quantileMicroseconds(0.99);
+    health.processor_p999_us = processor.quantileMicroseconds(0.999);
+    health.processor_max_us = processor.maxMicroseconds();
     health.dropped_records = run_->ring.dropped();
     health.histogram = timing.octaves();
     health.state_hash = run_->cycle.stateHash();

@@ -50,7 +50,8 @@ struct Delivered {
 struct LoopHealth {
     std::string loop;  // "virtual", "real-time fifo", "real-time normal"
     std::int64_t ticks = 0;
-    double mean_us = 0, sd_us = 0, p99_us = 0, p999_us = 0, max_us = 0;  // computing time of a tick
+    double mean_us = 0, sd_us = 0, p99_us = 0, p999_us = 0, max_us = 0;  // computing time of a tick, by the wall clock
+    double processor_mean_us = 0, processor_p99_us = 0, processor_p999_us = 0, processor_max_us = 0;  // of its thread
     std::int64_t overruns = 0;  // cycles missed because an earlier one ended after its deadline; 0 in virtual time
     std::int64_t dropped_records = 0;
     std::vector<std::int64_t> histogram;        // ticks per bucket, bucket i: [2^i, 2^(i+1)) × 0.1 µs

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 #include <iterator>
 
+#include "core/base/processor_clock.h"
 #include "core/base/regular_file.h"
 #include "core/scene/scene.h"
 #include "core/tick/step.h"
@@ -20,9 +22,14 @@ constexpr const char* kHeader =
     "tick,t_s,device_x_m,device_y_m,device_z_m,device_qw,device_qx,device_qy,device_qz,proxy_x_m,proxy_y_m,proxy_z_m,"
     "proxy_qw,proxy_qx,proxy_qy,proxy_qz,force_x_N,force_y_N,force_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,proxy_depth_"
     "m,"
-    "device_depth_m,contacts,quality,status,iterations,tick_us\n";
+    "device_depth_m,contacts,quality,status,iterations,tick_us,proxy_gap_m,suspended,tick_processor_us\n";
 
-void writeRow(fmt::memory_buffer& text, std::int64_t tick, const tick::TickOutput& output, double us) {
+/// How long a tick took [µs].
+struct TickTime {
+    double wall, processor;
+};
+
+void writeRow(fmt::memory_buffer& text, std::int64_t tick, const tick::TickOutput& output, const TickTime& us) {
     auto out = std::back_inserter(text);
     const tick::TickFrame& f = output.frame;
     fmt::format_to(out, "{},{}", tick, static_cast<double>(tick) / 1000.0);
@@ -31,8 +38,10 @@ void writeRow(fmt::memory_buffer& text, std::int64_t tick, const tick::TickOutpu
                        pose.q.y(), pose.q.z());
     }
     for (const Vec3& v : {f.F_H_W.force, f.F_H_W.torque}) fmt::format_to(out, ",{},{},{}", v.x(), v.y(), v.z());
-    fmt::format_to(out, ",{},{},{},{},{},{},{:.3f}\n", f.proxy_depth, f.hand_depth, f.contacts, f.quality, f.status,
-                   f.iterations, us);
+    fmt::format_to(out, ",{},{},{},{},{},{},{:.3f}", f.proxy_depth, f.hand_depth, f.contacts, f.quality, f.status,
+                   f.iterations, us.wall);
+    const std::string gap = std::isnan(f.proxy_gap) ? "NA" : fmt::format("{}", f.proxy_gap);
+    fmt::format_to(out, ",{},{},{:.3f}\n", gap, (f.status & kSuspended) != 0 ? 1 : 0, us.processor);
 }
 
 }  // namespace
@@ -66,11 +75,13 @@ int simulate(const SimulateArguments& options) {
     for (std::int64_t i = 0; i <= trajectory->lastTick(); ++i) {
         DeviceReading reading;
         reading.X_BD = trajectory->at(i);
+        const std::int64_t processor_begin = threadProcessorNanoseconds();
         const auto begin = std::chrono::steady_clock::now();
         const tick::TickOutput output = tick::step(model, state, reading);
         const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
+        const std::int64_t processor = threadProcessorNanoseconds() - processor_begin;
         text.clear();
-        writeRow(text, i, output, took.count());
+        writeRow(text, i, output, {took.count(), 1e-3 * static_cast<double>(processor)});
         out.write({text.data(), text.size()});
         if (i % 10000 == 0) progress.show(fmt::format("{} of {} ticks", i, trajectory->lastTick() + 1));
     }

@@ -72,7 +72,11 @@ const Selection<TimingRow>& timingColumns() {
                                                  {"m.p999_us", &TimingRow::p999_us},
                                                  {"m.max_us", &TimingRow::max_us},
                                                  {"m.overruns", &TimingRow::overruns},
-                                                 {"m.dropped_samples", &TimingRow::dropped_samples}};
+                                                 {"m.dropped_samples", &TimingRow::dropped_samples},
+                                                 {"m.processor_mean_us", &TimingRow::processor_mean_us},
+                                                 {"m.processor_p99_us", &TimingRow::processor_p99_us},
+                                                 {"m.processor_p999_us", &TimingRow::processor_p999_us},
+                                                 {"m.processor_max_us", &TimingRow::processor_max_us}};
     return columns;
 }
 

@@ -204,6 +204,7 @@ struct TimingRow {
     std::optional<double> mean_us, sd_us, p99_us, p999_us, max_us;
     std::int64_t overruns = 0;
     std::int64_t dropped_samples = 0;
+    std::optional<double> processor_mean_us, processor_p99_us, processor_p999_us, processor_max_us;
 };
 
 struct AttemptRow {

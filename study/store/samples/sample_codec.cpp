@@ -69,11 +69,14 @@ Layout makeTickLayout() {
     layout.addAxes("torque_", "xyz", "_Nm", "float32", "N·m",
                    "Torque on the hand about the held part's origin, scene axes", offsetof(TickRecord, torque_Nm));
     layout.add("hand_depth_m", "float32", "m",
-               "Depth of the held part's deepest sample point (contact.spacing_mm apart) at the hand's pose",
+               "Depth of the held part's deepest sample point (contact.spacing_mm apart) at the hand's pose; what lies "
+               "between two points may be deeper",
                offsetof(TickRecord, hand_depth_m));
-    layout.add("proxy_depth_m", "float32", "m",
-               "Depth of the held part's deepest sample point (contact.spacing_mm apart) at the proxy's pose",
-               offsetof(TickRecord, proxy_depth_m));
+    layout.add(
+        "proxy_depth_m", "float32", "m",
+        "Depth of the held part's deepest sample point (contact.spacing_mm apart) at the proxy's pose; what lies "
+        "between two points may be deeper",
+        offsetof(TickRecord, proxy_depth_m));
     layout.add(
         "energy_J", "float32", "J",
         "Energy that the controller has taken in through the handle since the trial's first tick; below 0: it gave",
@@ -84,18 +87,27 @@ Layout makeTickLayout() {
     layout.add("contacts", "uint32", "1", "Points inside an obstacle at the proxy", offsetof(TickRecord, contacts));
     layout.add("iterations", "uint32", "1", "Sub-steps of the proxy", offsetof(TickRecord, iterations));
     layout.add("nodes_visited", "uint32", "1", "Nodes that the queries visited", offsetof(TickRecord, nodes_visited));
-    // The last: chunks of databases from before it end here, and its values are then not known.
+    // The last: chunks of databases from before each end here, and its values are then not known.
     layout.add("hand_energy_J", "float32", "J",
                "Energy that the simulated hand has put into the handle since the trial's first tick; not a number of "
                "real hands",
                offsetof(TickRecord, hand_energy_J));
-    layout.later_columns = 1;
+    layout.add("proxy_gap_m", "float32", "m",
+               "Proven least gap between the held part at the proxy's pose and the obstacles; not a number where the "
+               "contact's geometry proves none (field)",
+               offsetof(TickRecord, proxy_gap_m));
+    layout.later_columns = 2;
     return layout;
 }
 
 Layout makeTimingLayout() {
     Layout layout;
-    layout.add("duration_ns", "int64", "ns", "Computing time of the tick", offsetof(TickRecord, duration_ns));
+    layout.add("duration_ns", "int64", "ns", "Computing time of the tick by the wall clock",
+               offsetof(TickRecord, duration_ns));
+    // The last: as above; 0 is then not measured.
+    layout.add("processor_ns", "int64", "ns", "Computing time of the tick that its thread spent on a processor",
+               offsetof(TickRecord, processor_ns));
+    layout.later_columns = 1;
     return layout;
 }
 

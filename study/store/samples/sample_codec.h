@@ -28,7 +28,7 @@ struct Channel {
 
 /// Columns of the stream "tick", in the order of the blob.
 const std::vector<Channel>& tickChannels();
-/// The one column of the stream "tick_timing": measured computing times, only where a real clock ran.
+/// Columns of the stream "tick_timing": measured computing times, only where a real clock ran.
 const std::vector<Channel>& timingChannels();
 
 /// How a chunk's blob is laid out, in words that suffice to write a reader.
@@ -59,7 +59,7 @@ Result<Chunk> unpackTiming(const Chunk& stored, std::string_view encoding);
 
 /// Appends the chunk's ticks. Fails on a wrong checksum or size, and then appends nothing.
 Result<Done> decodeTicks(const Chunk& chunk, std::vector<TickRecord>& records);
-/// Fills duration_ns of those of `records` (ascending ticks) that the chunk holds.
+/// Fills duration_ns and processor_ns of those of `records` (ascending ticks) that the chunk holds.
 Result<Done> decodeTiming(const Chunk& chunk, std::span<TickRecord> records);
 
 /// Length of the first run of consecutive ticks, at most kChunkTicks.

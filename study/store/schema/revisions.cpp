@@ -194,6 +194,14 @@ CREATE TABLE row_hash(
     PRIMARY KEY(table_name, row_key)) STRICT, WITHOUT ROWID;
 )sql";
 
+constexpr const char* kRevision16 = R"sql(
+-- what of the ticks' computing time their thread spent on a processor; NULL: not measured
+ALTER TABLE timing ADD COLUMN processor_mean_us REAL;
+ALTER TABLE timing ADD COLUMN processor_p99_us REAL;
+ALTER TABLE timing ADD COLUMN processor_p999_us REAL;
+ALTER TABLE timing ADD COLUMN processor_max_us REAL;
+)sql";
+
 const std::array kRevisions = {
     Revision{1, "Protocols, participants, sessions, trials, samples, timing and questionnaires", kFirstSchema, 1},
     // A reader that does not know what was picked would replay another scene.
@@ -215,6 +223,8 @@ const std::array kRevisions = {
     Revision{13, "Pictures of each attempt that were drawn with the visual cue", kRevision13, 8},
     Revision{14, "What of each attempt's feedback was delivered", kRevision14, 8},
     Revision{15, "Hashes of what was written, the number of a recording's arithmetic", kRevision15, 8},
+    // Chunks of samples and of times have a column more, which a reader from before takes for damage.
+    Revision{16, "The gap that was proven at each tick, the processor's time beside the wall clock's", kRevision16, 16},
 };
 
 bool isEmpty(const Database& database) { return database.integer("SELECT count(*) FROM sqlite_master") == 0; }

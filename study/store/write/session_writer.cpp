@@ -42,7 +42,11 @@ void insertTiming(const Database& database, std::int64_t attempt_id, const sessi
               Named{"ticks", health.ticks}, Named{"mean_us", us(health.mean_us)}, Named{"sd_us", us(health.sd_us)},
               Named{"p99_us", us(health.p99_us)}, Named{"p999_us", us(health.p999_us)},
               Named{"max_us", us(health.max_us)}, Named{"overruns", health.overruns},
-              Named{"dropped_samples", health.dropped_records}, Named{"hist_json", histogram});
+              Named{"dropped_samples", health.dropped_records}, Named{"hist_json", histogram},
+              Named{"processor_mean_us", us(health.processor_mean_us)},
+              Named{"processor_p99_us", us(health.processor_p99_us)},
+              Named{"processor_p999_us", us(health.processor_p999_us)},
+              Named{"processor_max_us", us(health.processor_max_us)});
 }
 
 /// Has every planned main trial an attempt that counts?

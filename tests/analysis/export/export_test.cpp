@@ -246,6 +246,8 @@ TEST_F(Export, SamplesUnpackToTheRecordedTicks) {
         EXPECT_EQ(samples.at(i, "status"), std::to_string(r.status));
         EXPECT_EQ(samples.at(i, "nodes_visited"), std::to_string(r.nodes_visited));
         EXPECT_EQ(std::stod(samples.at(i, "hand_energy_J")), r.hand_energy_J);
+        EXPECT_EQ(std::stod(samples.at(i, "proxy_gap_m")), r.proxy_gap_m);
+        EXPECT_EQ(samples.at(i, "suspended"), (r.status >> 18 & 1u) != 0 ? "1" : "0");
     }
     EXPECT_EQ(samples.at(14, "t_s"), "0.014");
     EXPECT_EQ(samples.at(15, "periods"), "3");  // two missed cycles
@@ -302,9 +304,11 @@ TEST_F(Export, NoMeasuredTimeReachesAnExportOfVirtualTime) {
     for (const char* clue : {"4711.25", "4711.75", "2001-02-03"}) EXPECT_EQ(all.find(clue), std::string::npos) << clue;
     for (const TickRecord& record : fake::makeRecords(3, 40)) {
         EXPECT_EQ(all.find(std::to_string(record.duration_ns)), std::string::npos);
+        EXPECT_EQ(all.find(std::to_string(record.processor_ns)), std::string::npos);
     }
     const fake::CsvFile timing = csv("timing.csv");
-    for (const char* column : {"mean_us", "sd_us", "p99_us", "p999_us", "max_us"})
+    for (const char* column : {"mean_us", "sd_us", "p99_us", "p999_us", "max_us", "processor_mean_us",
+                               "processor_p99_us", "processor_p999_us", "processor_max_us"})
         EXPECT_EQ(timing.at(0, column), "NA");
     EXPECT_EQ(csv("sessions.csv").at(0, "started_utc"), "2000-01-01T00:00:00.000Z");
     EXPECT_EQ(csv("participants.csv").at(0, "created_utc"), "2000-01-01T00:00:00.000Z");
@@ -440,7 +444,7 @@ TEST(StatusBits, TheCodebookExplainsEveryOne) {
     EXPECT_NE(formula.find("; 65536 = engaged: "), std::string::npos) << formula;
     EXPECT_NE(formula.find(": 1 = bad device input, the last good pose was used; 2 = "), std::string::npos) << formula;
     for (unsigned bit = 0; bit < 32; ++bit) {
-        const bool used = bit <= 14 || bit == 16 || bit == 17;
+        const bool used = bit <= 14 || (bit >= 16 && bit <= 18);
         const char* meaning = statusBitMeaning(static_cast<TickStatus>(1u << bit));
         EXPECT_EQ(meaning != nullptr, used) << bit;
         if (meaning == nullptr) continue;

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <thread>
 
+#include "core/base/processor_clock.h"
 #include "core/base/random.h"
 #include "core/loop/cadence.h"
 #include "tests/support/rt_guard.h"
@@ -67,6 +68,32 @@ TEST(HapticCycle, RecordsEveryTickAndShowsSixtyImagesASecond) {
     EXPECT_EQ(cycle.timing().count(), 1000);
     cycle.release();
     EXPECT_EQ(device.last.force.norm(), 0.0);
+}
+
+TEST(HapticCycle, RecordsWhatATickTookOfTheProcessorBesideTheWallClock) {
+    // Truth: closed form: a thread cannot spend more on a processor than passes on the wall, but for the two readings
+    // of the wall clock inside; and what the ticks took is no more than the thread took for all.
+    test::Bench bench = ballInTable();
+    StillDevice device(kPressed);
+    loop::RecordRing ring(2048);
+    loop::HapticCycle cycle(bench.model(), device, ring, true);
+    const std::int64_t begin = threadProcessorNanoseconds();
+    for (int i = 0; i < 1000; ++i) cycle.run();
+    const std::int64_t all = threadProcessorNanoseconds() - begin;
+    std::vector<TickRecord> records(2048);
+    records.resize(ring.take(records));
+    std::int64_t sum = 0;
+    std::vector<std::int64_t> excess;
+    for (const TickRecord& record : records) {
+        EXPECT_GT(record.processor_ns, 0);
+        sum += record.processor_ns;
+        excess.push_back(record.processor_ns - record.duration_ns);
+    }
+    EXPECT_LE(sum, all);
+    std::nth_element(excess.begin(), excess.begin() + 500, excess.end());
+    EXPECT_LT(excess[500], 10'000);  // [ns], some readings of a clock
+    EXPECT_EQ(cycle.processorTiming().count(), 1000);
+    EXPECT_NEAR(cycle.processorTiming().meanMicroseconds(), 1e-6 * static_cast<double>(sum), 1e-9);
 }
 
 TEST(HapticCycle, EveryScreenGetsEveryTickWithTheTimeAtWhichItBegan) {

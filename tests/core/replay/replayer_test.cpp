@@ -119,6 +119,15 @@ TEST(Replayer, FindsOneChangedBitAndOneMissingTick) {
     EXPECT_EQ(report.first_difference->column, "force_N[2]");
 
     changed = records;
+    changed[1400].proxy_gap_m = 1e-6f;  // none is proven there
+    report = replay::replay(bench.scene(), changed);
+    ASSERT_TRUE(report.first_difference);
+    EXPECT_EQ(report.first_difference->tick, 1400);
+    EXPECT_EQ(report.first_difference->column, "proxy_gap_m");
+    changed[1400].proxy_gap_m = -std::nanf("7");  // any NaN says so
+    EXPECT_FALSE(replay::replay(bench.scene(), changed).first_difference);
+
+    changed = records;
     changed[700].device_position_m[0] = std::nextafter(changed[700].device_position_m[0], 1.0);
     EXPECT_NE(replay::replay(bench.scene(), changed).state_hash, hash);
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/base/random.h"
 #include "tests/support/rt_guard.h"
 #include "tests/support/scenes.h"
 
@@ -171,6 +172,25 @@ TEST(Step, RendersNothingBeforeTheHandHasHeldTheStartPose) {
     for (int i = 0; i < 200; ++i) ASSERT_FALSE(bench.step(start).frame.status & kEngaged) << i;
     EXPECT_TRUE(bench.step(start).frame.status & kEngaged);
     EXPECT_TRUE(bench.step(Pose{Quat::Identity(), Vec3(0.01, 0, 0.02)}).frame.status & kEngaged);
+}
+
+TEST(Step, ARecordedGapIsNeverAboveTheProvenOne) {
+    // Truth: closed form: the floats beside a double, the larger of which would claim room that nobody proved.
+    Random random(3);
+    int rounded_up = 0;
+    for (int i = 0; i < 1000; ++i) {
+        tick::TickOutput output;
+        output.frame.proxy_gap = 1e-6 * random.uniform();
+        const float gap = tick::makeRecord(0, {}, output).proxy_gap_m;
+        EXPECT_LE(static_cast<double>(gap), output.frame.proxy_gap);
+        EXPECT_GT(static_cast<double>(std::nextafter(gap, 1.0f)), output.frame.proxy_gap);
+        rounded_up += static_cast<double>(static_cast<float>(output.frame.proxy_gap)) > output.frame.proxy_gap ? 1 : 0;
+    }
+    EXPECT_GT(rounded_up, 400) << "a plain conversion would have passed";
+    tick::TickOutput output;
+    EXPECT_TRUE(std::isnan(tick::makeRecord(0, {}, output).proxy_gap_m)) << "nothing proves one";
+    output.frame.proxy_gap = 0.0;
+    EXPECT_EQ(tick::makeRecord(0, {}, output).proxy_gap_m, 0.0f);
 }
 
 }  // namespace

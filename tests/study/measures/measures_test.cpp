@@ -152,6 +152,7 @@ TEST(Measures, ForcesAndDepthsAverageOverContactTicksOnly) {
         records[i].torque_Nm = {0.0f, 0.0f, -0.25f * factor};
         records[i].hand_depth_m = 0x1p-9f * factor;
         records[i].proxy_depth_m = 0x1p-14f * factor;
+        records[i].proxy_gap_m = 0x1p-15f / factor;
     }
     const auto values = measure(records, contextUntil(1000));
     EXPECT_DOUBLE_EQ(*values.at("contact_onsets"), 2.0);
@@ -164,6 +165,8 @@ TEST(Measures, ForcesAndDepthsAverageOverContactTicksOnly) {
     EXPECT_DOUBLE_EQ(*values.at("max_hand_depth_m"), 0x1p-8);
     EXPECT_DOUBLE_EQ(*values.at("mean_proxy_depth_m"), 0x1p-14 * 151.0 / 150.0);
     EXPECT_DOUBLE_EQ(*values.at("max_proxy_depth_m"), 0x1p-13);
+    EXPECT_DOUBLE_EQ(*values.at("min_proxy_gap_m"), 0x1p-16);
+    EXPECT_FALSE(measure(restingTicks(101), contextUntil(100)).at("min_proxy_gap_m")) << "none is known";
     EXPECT_NEAR(*values.at("impulse_Ns"), 5.0 * 151.0 * 1e-3, 1e-12);
 }
 
@@ -286,7 +289,7 @@ TEST(Measures, CountTheTicksInWhichEachGuardActed) {
         {"input_held_ticks", kInputHeld},       {"input_rejected_ticks", kInputRejected},
         {"device_stale_ticks", kDeviceStale},   {"latched_ticks", kNonFiniteLatched},
         {"force_limited_ticks", kForceLimited}, {"rate_limited_ticks", kRateLimited},
-        {"passivity_ticks", kPassivityActed}};
+        {"passivity_ticks", kPassivityActed},   {"suspended_ticks", kSuspended}};
     auto records = restingTicks(101);
     TrialContext context = contextUntil(100);
     context.start_tick = 10;

@@ -74,7 +74,9 @@ inline std::vector<TickRecord> makeRecords(std::uint64_t seed, std::size_t count
         r.nodes_visited = static_cast<std::uint32_t>(random.next());
         r.energy_J = static_cast<float>(random.normal());
         r.hand_energy_J = static_cast<float>(random.normal());
+        r.proxy_gap_m = static_cast<float>(random.uniform());
         r.duration_ns = 987'650'000 + static_cast<std::int64_t>(random.below(10'000));
+        r.processor_ns = 876'540'000 + static_cast<std::int64_t>(random.below(10'000));
     }
     return records;
 }
@@ -89,7 +91,7 @@ inline bool sameStoredBits(const TickRecord& a, const TickRecord& b) {
            same(a.force_N, b.force_N) && same(a.torque_Nm, b.torque_Nm) && same(a.hand_depth_m, b.hand_depth_m) &&
            same(a.proxy_depth_m, b.proxy_depth_m) && same(a.quality, b.quality) && a.status == b.status &&
            a.contacts == b.contacts && a.iterations == b.iterations && a.nodes_visited == b.nodes_visited &&
-           same(a.energy_J, b.energy_J) && same(a.hand_energy_J, b.hand_energy_J);
+           same(a.energy_J, b.energy_J) && same(a.hand_energy_J, b.hand_energy_J) && same(a.proxy_gap_m, b.proxy_gap_m);
 }
 
 inline bool sameStoredBits(const std::vector<TickRecord>& a, const std::vector<TickRecord>& b) {

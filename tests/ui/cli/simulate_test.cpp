@@ -10,11 +10,11 @@ namespace passung::test {
 namespace {
 
 const std::vector<std::string> kColumns = {
-    "tick",      "t_s",         "device_x_m",  "device_y_m",  "device_z_m",    "device_qw",
-    "device_qx", "device_qy",   "device_qz",   "proxy_x_m",   "proxy_y_m",     "proxy_z_m",
-    "proxy_qw",  "proxy_qx",    "proxy_qy",    "proxy_qz",    "force_x_N",     "force_y_N",
-    "force_z_N", "torque_x_Nm", "torque_y_Nm", "torque_z_Nm", "proxy_depth_m", "device_depth_m",
-    "contacts",  "quality",     "status",      "iterations",  "tick_us"};
+    "tick",        "t_s",           "device_x_m",     "device_y_m",       "device_z_m", "device_qw",   "device_qx",
+    "device_qy",   "device_qz",     "proxy_x_m",      "proxy_y_m",        "proxy_z_m",  "proxy_qw",    "proxy_qx",
+    "proxy_qy",    "proxy_qz",      "force_x_N",      "force_y_N",        "force_z_N",  "torque_x_Nm", "torque_y_Nm",
+    "torque_z_Nm", "proxy_depth_m", "device_depth_m", "contacts",         "quality",    "status",      "iterations",
+    "tick_us",     "proxy_gap_m",   "suspended",      "tick_processor_us"};
 
 constexpr double kStiffness = 800.0;  // [N/m]
 constexpr double kDepth = 2e-3;       // of the pressed block [m]
@@ -95,6 +95,9 @@ TEST_F(Simulate, WritesARowForEveryMillisecondOfThePath) {
         EXPECT_EQ(number(t, i, "device_qw"), 1.0);
         EXPECT_EQ(number(t, i, "quality"), 1.0);
         EXPECT_GE(number(t, i, "tick_us"), 0.0);
+        EXPECT_GE(number(t, i, "tick_processor_us"), 0.0);
+        EXPECT_EQ(t.at(i, "proxy_gap_m"), "NA") << "no field proves a gap";
+        EXPECT_EQ(t.at(i, "suspended"), "0");
     }
 }
 
@@ -134,7 +137,10 @@ TEST_F(Simulate, ABrokenSensorIsHeldForOneTickThenTheForceIsZero) {
         EXPECT_GT(force(kGoodAgain), 1.0);
         EXPECT_EQ(status(t, kGoodAgain) & (kInputHeld | kInputRejected), 0u);
         for (std::size_t row = 0; row < t.rows.size(); ++row) {
-            for (const std::string& cell : t.rows[row]) ASSERT_TRUE(std::isfinite(std::stod(cell))) << row;
+            for (const std::string& column : kColumns) {
+                if (column == "proxy_gap_m" && t.at(row, column) == "NA") continue;  // no field proves one
+                ASSERT_TRUE(std::isfinite(number(t, row, column))) << column << " " << row;
+            }
         }
     }
 }

@@ -28,9 +28,32 @@ TEST(SampleCodec, KeepsMeasuredDurationsOutOfTheTicksAndInTheirOwnStream) {
     const std::vector<TickRecord> records = fake::makeRecords(1, 50);
     std::vector<TickRecord> back;
     ASSERT_TRUE(decodeTicks(encodeTicks(records), back));
-    for (const TickRecord& record : back) EXPECT_EQ(record.duration_ns, 0);
+    for (const TickRecord& record : back) {
+        EXPECT_EQ(record.duration_ns, 0);
+        EXPECT_EQ(record.processor_ns, 0);
+    }
     ASSERT_TRUE(decodeTiming(encodeTiming(records), back));
-    for (std::size_t i = 0; i < records.size(); ++i) EXPECT_EQ(back[i].duration_ns, records[i].duration_ns);
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        EXPECT_EQ(back[i].duration_ns, records[i].duration_ns);
+        EXPECT_EQ(back[i].processor_ns, records[i].processor_ns);
+    }
+}
+
+TEST(SampleCodec, ReadsTimesFromBeforeTheProcessorsWasMeasured) {
+    // Truth: invariant: the wall clock's as they were, the processor's not measured.
+    const auto records = fake::makeRecords(1, 50);
+    Chunk old = encodeTiming(records);
+    old.data.resize(old.data.size() / 2);
+    old.crc32 = crc32(old.data);
+    const auto unpacked = unpackTiming(packTiming(old), encodingText());
+    ASSERT_TRUE(unpacked);
+    std::vector<TickRecord> back;
+    ASSERT_TRUE(decodeTicks(encodeTicks(records), back));
+    ASSERT_TRUE(decodeTiming(*unpacked, back));
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        EXPECT_EQ(back[i].duration_ns, records[i].duration_ns);
+        EXPECT_EQ(back[i].processor_ns, 0);
+    }
 }
 
 TEST(SampleCodec, FindsEveryFlippedBit) {
@@ -109,10 +132,13 @@ TEST(SampleCodec, LayoutIsWhatItsDescriptionSays) {
         if (channel.name == "hand_energy_J") {
             EXPECT_TRUE(holds(r.hand_energy_J));
         }
+        if (channel.name == "proxy_gap_m") {
+            EXPECT_TRUE(holds(r.proxy_gap_m));
+        }
         offset += 10 * width;
     }
     EXPECT_EQ(offset, chunk.data.size());
-    EXPECT_EQ(checked, 11);
+    EXPECT_EQ(checked, 12);
 }
 
 TEST(SampleCodec, PackedChunksComeBackAndNeighboursThatDifferLittleTakeLittle) {
@@ -156,18 +182,28 @@ TEST(SampleCodec, APackedChunkWithAnyFlippedBitOrWrongLengthIsRefused) {
     EXPECT_FALSE(unpackTicks(counted, encodingText()));
 }
 
-TEST(SampleCodec, ReadsChunksFromBeforeTheHandsEnergyWasRecorded) {
-    // Truth: invariant: all other columns as they were, and the hand's energy not known.
+TEST(SampleCodec, ReadsChunksFromBeforeTheHandsEnergyAndTheGapWereRecorded) {
+    // Truth: invariant: all other columns as they were, the hand's energy and the gap not known.
     auto records = fake::makeRecords(3, 10);
     Chunk old = encodeTicks(records);
-    old.data.resize(old.data.size() - 10 * sizeof(float));
+    old.data.resize(old.data.size() - 10 * sizeof(float));  // the gap, the last column
     old.crc32 = crc32(old.data);
     std::vector<TickRecord> back;
     ASSERT_TRUE(decodeTicks(old, back));
     ASSERT_EQ(back.size(), records.size());
     for (std::size_t i = 0; i < records.size(); ++i) {
+        EXPECT_TRUE(std::isnan(back[i].proxy_gap_m));
+        back[i].proxy_gap_m = records[i].proxy_gap_m;
+    }
+    EXPECT_TRUE(fake::sameStoredBits(records, back));
+    old.data.resize(old.data.size() - 10 * sizeof(float));  // the hand's energy
+    old.crc32 = crc32(old.data);
+    back.clear();
+    ASSERT_TRUE(decodeTicks(old, back));
+    for (std::size_t i = 0; i < records.size(); ++i) {
         EXPECT_TRUE(std::isnan(back[i].hand_energy_J));
         back[i].hand_energy_J = records[i].hand_energy_J;
+        back[i].proxy_gap_m = records[i].proxy_gap_m;
     }
     EXPECT_TRUE(fake::sameStoredBits(records, back));
     old.data.resize(old.data.size() - 10 * sizeof(float));  // one more is damage
