@@ -1150,6 +1150,10 @@
         <translation>Größte Tiefe des Proxys</translation>
     </message>
     <message>
+        <source>Least proven gap at the proxy&apos;s pose</source>
+        <translation>Kleinster bewiesener Spalt am Proxy</translation>
+    </message>
+    <message>
         <source>Impulse</source>
         <translation>Impuls</translation>
     </message>
@@ -1188,6 +1192,10 @@
     <message>
         <source>Ticks in which the passivity controller acted</source>
         <translation>Takte, in denen der Passivitätsregler eingriff</translation>
+    </message>
+    <message>
+        <source>Ticks whose work went on in the next one: the proxy lags</source>
+        <translation>Takte, deren Arbeit im nächsten weiterging: der Proxy bleibt zurück</translation>
     </message>
     <message>
         <source>Followed share of the line</source>
