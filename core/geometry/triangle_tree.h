@@ -47,6 +47,9 @@ public:
     /// All triangles in tree order.
     const std::vector<Corners>& corners() const { return corners_; }
 
+    /// The number in the mesh of the triangle at a place in tree order.
+    std::uint32_t numberOf(std::uint32_t place) const { return original_[place]; }
+
     /// The nearest points of `triangle` (first) and the mesh (second), if they are nearer than `limit`; else a distance
     /// of `limit`.
     TrianglePair closestTo(const TriangleCorners& triangle, double limit) const;

@@ -18,11 +18,11 @@ constexpr std::uint64_t kMesh = 1, kErrors = 2;
 template <class Report>
 auto fieldsOf(Report& r) {
     return std::tie(r.metres_per_unit, r.triangles_read, r.triangles, r.vertices, r.welded_vertices, r.joined_vertices,
-                    r.degenerate_triangles, r.duplicate_triangles, r.boundary_edges, r.holes, r.non_manifold_edges,
-                    r.inconsistent_edges, r.turned_triangles, r.shells, r.turned_patches, r.turned_patch_triangles,
-                    r.cavities, r.nested_solids, r.crossing_triangles, r.crossing_pairs, r.watertight,
-                    r.turned_inside_out, r.kind, r.closed_holes, r.closed_seams, r.closing_triangles, r.open_edges_left,
-                    r.size, r.area, r.volume);
+                    r.split_edges, r.degenerate_triangles, r.duplicate_triangles, r.boundary_edges, r.holes,
+                    r.non_manifold_edges, r.inconsistent_edges, r.turned_triangles, r.shells, r.turned_patches,
+                    r.turned_patch_triangles, r.cavities, r.nested_solids, r.crossing_triangles, r.crossing_pairs,
+                    r.watertight, r.turned_inside_out, r.kind, r.closed_holes, r.closed_seams, r.closing_triangles,
+                    r.open_edges_left, r.size, r.area, r.volume);
 }
 
 class Writer {

@@ -28,6 +28,7 @@ struct MeshReport {
     std::size_t vertices = 0;              // after the repair, before holes were closed
     std::size_t welded_vertices = 0;       // equal positions joined; usual: STL repeats every corner
     std::size_t joined_vertices = 0;       // of open edges, closer than a millionth of the part's size: joined too
+    std::size_t split_edges = 0;           // of one triangle, at a vertex of another such edge that lies on it
     std::size_t degenerate_triangles = 0;  // without area: dropped
     std::size_t duplicate_triangles = 0;   // same three corners, whichever way round: dropped but for the first
     std::size_t boundary_edges = 0;        // edges of one triangle

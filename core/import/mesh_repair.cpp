@@ -14,6 +14,7 @@
 #include "core/import/hole_closing.h"
 #include "core/import/mesh_import.h"
 #include "core/import/patch_orientation.h"
+#include "core/import/seam_split.h"
 #include "core/import/self_intersection.h"
 
 namespace passung::importer {
@@ -24,7 +25,9 @@ namespace {
 /// of three points in a line, far below anything that a part is made of.
 constexpr double kFlat = 1e-12;
 
-constexpr double kNear = 1e-6;  // of the mesh's size: vertices of open edges closer than this are one
+/// Of the mesh's size: vertices of open edges closer than this are one, and lie on an open edge closer than this.
+constexpr double kNear = 1e-6;
+constexpr int kSeamRounds = 4;  // of splitting: what is dropped afterwards may open an edge
 
 constexpr double kUnusuallyLong = 10.0, kUnusuallyShort = 1e-4;  // [m]
 
@@ -73,7 +76,7 @@ std::size_t weld(geometry::TriangleMesh& mesh) {
 
 /// Joins vertices of open edges that are nearly at one place, as rounding leaves them when every triangle is written on
 /// its own: closer than kNear of the mesh's size, to the first of them along x, so that nothing creeps on.
-std::size_t weldNear(geometry::TriangleMesh& mesh) {
+std::size_t weldNear(geometry::TriangleMesh& mesh, double reach) {
     std::vector<std::uint32_t> border;
     geometry::forEachEdge(geometry::halfEdges(mesh.triangles), [&](const geometry::HalfEdge* use, std::size_t count) {
         if (count != 1) return;
@@ -84,7 +87,6 @@ std::size_t weldNear(geometry::TriangleMesh& mesh) {
     std::sort(border.begin(), border.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
     border.erase(std::unique(border.begin(), border.end()), border.end());
     if (border.empty()) return 0;
-    const double reach = kNear * boundsOf(mesh).size().norm();
     std::vector<std::uint32_t> first_at(mesh.vertices.size());
     std::iota(first_at.begin(), first_at.end(), 0u);
     for (std::size_t k = 0; k < border.size(); ++k) {
@@ -124,6 +126,27 @@ void dropDuplicates(geometry::TriangleMesh& mesh, MeshReport& report) {
         if (drop[i] == 0) kept.push_back(mesh.triangles[i]);
     report.duplicate_triangles += mesh.triangles.size() - kept.size();
     mesh.triangles = std::move(kept);
+}
+
+/// Equal vertices become one, then nearly equal ones of open edges, then these edges are split where others end on
+/// them; what has no area or is there twice goes.
+void weldAll(geometry::TriangleMesh& mesh, MeshReport& report) {
+    const auto drop = [&] {
+        dropFlatTriangles(mesh, report);
+        dropDuplicates(mesh, report);
+        return weld(mesh);  // vertices of dropped triangles only
+    };
+    report.welded_vertices = weld(mesh);
+    drop();
+    const double reach = kNear * boundsOf(mesh).size().norm();
+    report.joined_vertices = weldNear(mesh, reach);
+    if (report.joined_vertices > 0) drop();
+    for (int round = 0; round < kSeamRounds; ++round) {
+        const std::size_t splits = splitSeams(mesh, reach);
+        if (splits == 0) return;
+        report.split_edges += splits;
+        drop();
+    }
 }
 
 void countEdges(const geometry::TriangleMesh& mesh, const std::vector<geometry::HalfEdge>& edges, MeshReport& report) {
@@ -265,6 +288,8 @@ void writeNotes(MeshReport& r) {
     noteUnusualSize(r);
     note(r.joined_vertices, "vertex of an open edge lay beside another, nearer than a millionth of the size: joined.",
          "vertices of open edges lay beside others, nearer than a millionth of the size: joined.");
+    note(r.split_edges, "time an open edge was split at a vertex that lies on it, nearer than a millionth of the size.",
+         "times an open edge was split at a vertex that lies on it, nearer than a millionth of the size.");
     note(r.degenerate_triangles, "triangle had no area and was dropped.", "triangles had no area and were dropped.");
     note(r.duplicate_triangles, "triangle repeated the corners of another and was dropped.",
          "triangles repeated the corners of another and were dropped.");
@@ -336,16 +361,7 @@ void settleInside(geometry::TriangleMesh& mesh, std::vector<DirectedEdge> open, 
 ImportedMesh repairMesh(geometry::TriangleMesh mesh) {
     MeshReport report;
     report.triangles_read = mesh.triangles.size();
-    report.welded_vertices = weld(mesh);
-    dropFlatTriangles(mesh, report);
-    dropDuplicates(mesh, report);
-    weld(mesh);  // vertices of dropped triangles only
-    report.joined_vertices = weldNear(mesh);
-    if (report.joined_vertices > 0) {
-        dropFlatTriangles(mesh, report);
-        dropDuplicates(mesh, report);
-        weld(mesh);
-    }
+    weldAll(mesh, report);
 
     std::vector<geometry::HalfEdge> edges = geometry::halfEdges(mesh.triangles);
     countEdges(mesh, edges, report);
@@ -353,8 +369,8 @@ ImportedMesh repairMesh(geometry::TriangleMesh mesh) {
         turnQuarrellingTriangles(mesh, edges, report);
         edges = geometry::halfEdges(mesh.triangles);
     }
-    if (const auto patches = geometry::patchesOf(mesh, edges); patches.size() > 1) {
-        const PatchOrientation orientation = orientPatches(mesh, patches);
+    if (const auto pieces = piecesToOrient(mesh, edges); pieces.size() > 1) {
+        const PatchOrientation orientation = orientPatches(mesh, pieces);
         report.turned_patches = orientation.turned_patches;
         report.turned_patch_triangles = orientation.turned_triangles;
         report.cavities = orientation.cavities;

@@ -1,6 +1,7 @@
 #include "core/import/patch_orientation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numeric>
@@ -22,6 +23,8 @@ constexpr double kClear = 0.05;        // evidence above this decides the order
 constexpr double kInside = 0.5;
 constexpr double kBounds = 0.5;  // |B| above this: the patch bounds a solid of its own
 constexpr int kSweeps = 4;
+constexpr std::size_t kDisorderProbes = 1000;
+constexpr double kBesideMesh = 1e-5;  // of the mesh's size
 
 struct Patch {
     std::unique_ptr<geometry::TriangleTree> tree;  // of its triangles alone
@@ -84,6 +87,26 @@ Evidence ask(const Patch& patch, const Winding& winding) {
     for (const Vec3& p : patch.before) evidence.before += winding(p);
     const auto count = static_cast<double>(patch.behind.size());
     return {evidence.behind / count, evidence.before / count};
+}
+
+/// How far the mesh is from bounding a solid, or one inside out: the mean over its area of what the winding numbers
+/// just behind and just in front, added, are off 1.
+double disorderOf(const geometry::TriangleMesh& mesh) {
+    const geometry::TriangleTree tree(mesh);
+    const double step = kBesideMesh * geometry::boundsOf(mesh).size().norm();
+    const std::size_t stride = std::max<std::size_t>(1, mesh.triangles.size() / kDisorderProbes);
+    std::array<double, 2> off{};  // outside out, inside out
+    double total_area = 0.0;
+    for (std::size_t i = 0; i < mesh.triangles.size(); i += stride) {
+        const auto& t = mesh.triangles[i];
+        const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+        const Vec3 area = (b - a).cross(c - a), middle = (a + b + c) / 3.0, beside = step * area.normalized();
+        const double balance = tree.windingNumber(middle - beside) + tree.windingNumber(middle + beside);
+        off[0] += area.norm() * std::abs(balance - 1.0);
+        off[1] += area.norm() * std::abs(balance + 1.0);
+        total_area += area.norm();
+    }
+    return std::min(off[0], off[1]) / total_area;
 }
 
 class Orientation {
@@ -196,8 +219,57 @@ private:
 
 }  // namespace
 
+std::vector<std::vector<std::uint32_t>> piecesToOrient(const geometry::TriangleMesh& mesh,
+                                                       const std::vector<geometry::HalfEdge>& edges) {
+    auto patches = geometry::patchesOf(mesh, edges);
+    std::vector<std::uint32_t> patch_of(mesh.triangles.size());
+    for (std::size_t i = 0; i < patches.size(); ++i)
+        for (const std::uint32_t t : patches[i]) patch_of[t] = static_cast<std::uint32_t>(i);
+    geometry::Groups components(patches.size());
+    std::vector<char> alone(patches.size(), 1);     // each edge balanced by the patch itself
+    std::vector<char> together(patches.size(), 1);  // by all that use it
+    geometry::forEachEdge(edges, [&](const geometry::HalfEdge* use, std::size_t count) {
+        int balance = 0;
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::uint32_t patch = patch_of[use[k].triangle];
+            int own = 0;
+            for (std::size_t i = 0; i < count; ++i)
+                if (patch_of[use[i].triangle] == patch) own += use[i].forward ? 1 : -1;
+            if (own != 0) alone[patch] = 0;
+            components.join(patch_of[use[0].triangle], patch);
+            balance += use[k].forward ? 1 : -1;
+        }
+        for (std::size_t k = 0; k < count && balance != 0; ++k) together[patch_of[use[k].triangle]] = 0;
+    });
+    std::vector<char> closed(patches.size(), 1);
+    for (std::uint32_t i = 0; i < patches.size(); ++i)
+        if (together[i] == 0) closed[components.find(i)] = 0;
+    constexpr std::size_t kNone = ~std::size_t{0};
+    std::vector<std::size_t> piece_of(patches.size(), kNone);  // of components
+    std::vector<std::vector<std::uint32_t>> pieces;
+    for (std::uint32_t i = 0; i < patches.size(); ++i) {
+        const std::uint32_t component = components.find(i);
+        const bool joins = closed[component] != 0 && alone[i] == 0;
+        if (joins && piece_of[component] != kNone) {
+            auto& piece = pieces[piece_of[component]];
+            piece.insert(piece.end(), patches[i].begin(), patches[i].end());
+            continue;
+        }
+        if (joins) piece_of[component] = pieces.size();
+        pieces.push_back(std::move(patches[i]));
+    }
+    return pieces;
+}
+
 PatchOrientation orientPatches(geometry::TriangleMesh& mesh, const std::vector<std::vector<std::uint32_t>>& patches) {
-    return Orientation(mesh, patches).settle();
+    std::vector<geometry::Triangle> written = mesh.triangles;
+    const PatchOrientation result = Orientation(mesh, patches).settle();
+    if (result.turned_patches == 0) return result;
+    const double turned = disorderOf(mesh);
+    std::swap(mesh.triangles, written);
+    if (disorderOf(mesh) < turned) return {};
+    std::swap(mesh.triangles, written);
+    return result;
 }
 
 }  // namespace passung::importer

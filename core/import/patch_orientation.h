@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/geometry/mesh.h"
+#include "core/geometry/mesh_edges.h"
 
 namespace passung::importer {
 
@@ -17,6 +18,12 @@ struct PatchOrientation {
     std::size_t nested_solids = 0;  // closed patches inside a solid that face outwards like it
 };
 
+/// The triangles of each piece that is to be judged as a whole: patches that hang together by edges of two triangles.
+/// Patches that are closed only together, at edges of more triangles, are one piece if they use every edge as often in
+/// one direction as in the other: they agree as they are written, and the volume tells which way they face.
+std::vector<std::vector<std::uint32_t>> piecesToOrient(const geometry::TriangleMesh& mesh,
+                                                       const std::vector<geometry::HalfEdge>& edges);
+
 /// Turns patches that no edge tells which way to face, because they are cut off from the rest by gaps, cracks or edges
 /// of three and more triangles. Each patch is asked two things:
 ///   - what the others say: their winding number rises from its front to its back by D ∈ [-1, 1] (of a piece cut out of
@@ -28,6 +35,8 @@ struct PatchOrientation {
 ///   The kLargePatches largest are judged one after the other against those judged before: always the one with the
 /// clearest D, or if none has any the one with the largest box, since what holds another has the larger box. The small
 /// ones are many, so most face the right way; they are judged together against all others, some times over.
+/// Where the mesh is nearer to a solid's winding numbers as it was written, all stays so: what is told from a patch's
+/// surroundings errs where seams part it from them.
 /// `patches`: the triangles of each; every triangle in one patch, neighbours within a patch agree.
 PatchOrientation orientPatches(geometry::TriangleMesh& mesh, const std::vector<std::vector<std::uint32_t>>& patches);
 

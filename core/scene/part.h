@@ -50,7 +50,7 @@ std::optional<std::string> tooManyPoints(const Vec3& size, double area, double s
 
 /// Of the fields and shells in a store: whoever changes a bit of what is built from the same geometry and needs counts
 /// on. tests/core/scene/kept_format_test.cpp holds the bits of this one.
-inline constexpr int kKeptFormat = 1;
+inline constexpr int kKeptFormat = 2;
 
 /// With a store, field and shell are taken from it if they are there for this geometry, these needs and kKeptFormat,
 /// else kept there; they are the same bits. One that is damaged is built anew, which a note tells.
