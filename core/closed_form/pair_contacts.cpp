@@ -1,6 +1,7 @@
 #include "core/closed_form/pair_contacts.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace passung::closed_form {
 
@@ -156,19 +157,23 @@ void ContactSearch::addMeetings(bool of_held) {
     }
 }
 
-void ContactSearch::find(const Pose& X_WH, double reach, PairContacts& contacts) noexcept {
+double ContactSearch::find(const Pose& X_WH, double reach, PairContacts& contacts) noexcept {
     way_ += (X_WH.p - X_last_.p).norm();
     turn_ += rotationVector(X_WH.q * X_last_.q.conjugate()).norm();
     X_last_ = X_WH;
     contacts.clear();
-    for (Meeting& meeting : meetings_)
-        if (!isFar(meeting, reach)) look(X_WH, reach, meeting, contacts);
+    double least = std::numeric_limits<double>::infinity();
+    for (Meeting& meeting : meetings_) {
+        if (!(boundOf(meeting) > reach)) look(X_WH, reach, meeting, contacts);
+        least = std::min(least, boundOf(meeting));
+    }
+    return least;
 }
 
 /// A function with a gradient of length 1 changes by no more than its point moves.
-bool ContactSearch::isFar(const Meeting& meeting, double reach) const noexcept {
+double ContactSearch::boundOf(const Meeting& meeting) const noexcept {
     const double way = way_ - meeting.way, turn = turn_ - meeting.turn;
-    return meeting.bound - way - turn * (meeting.lever + way) > reach;
+    return meeting.bound - way - turn * (meeting.lever + way);
 }
 
 void ContactSearch::look(const Pose& X_WH, double reach, Meeting& meeting, PairContacts& contacts) noexcept {

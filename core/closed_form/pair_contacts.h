@@ -52,8 +52,9 @@ public:
 
     const SolidPair& pair() const noexcept { return pair_; }
 
-    /// All contacts with a gap of at most `reach`. rt-safe.
-    void find(const Pose& X_WH, double reach, PairContacts& contacts) noexcept;
+    /// All contacts with a gap of at most `reach`. Returns a way that no point of the held part has to go before the
+    /// parts touch [m], proven where it is > 0. rt-safe.
+    double find(const Pose& X_WH, double reach, PairContacts& contacts) noexcept;
 
 private:
     /// A line and a lump of the other part.
@@ -65,7 +66,7 @@ private:
     };
 
     void addMeetings(bool of_held);
-    bool isFar(const Meeting& meeting, double reach) const noexcept;
+    double boundOf(const Meeting& meeting) const noexcept;
     void look(const Pose& X_WH, double reach, Meeting& meeting, PairContacts& contacts) noexcept;
 
     SolidPair pair_;

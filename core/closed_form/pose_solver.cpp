@@ -31,12 +31,17 @@ Pose movedBy(const Pose& X, const motion::Motion& u, double rho) noexcept {
 
 }  // namespace
 
-PoseSolver::PoseSolver(std::span<const SolidPair> pairs) : rows_(kMostRows), prepared_(kMostRows) {
-    for (const SolidPair& pair : pairs) searches_.emplace_back(pair);
+PoseSolver::PoseSolver(std::span<const SolidPair> pairs)
+    : rows_(pairs.empty() ? 0 : kMostRows), prepared_(rows_.size()) {
+    for (const SolidPair& pair : pairs) {
+        searches_.emplace_back(pair);
+        reach_ = std::max(reach_, reachOf(*pair.held));
+        longest_way_ = std::min({longest_way_, 0.5 * thicknessOf(*pair.held), 0.5 * thicknessOf(*pair.obstacle)});
+    }
 }
 
 void PoseSolver::add(const Row& row) noexcept {
-    if (count_ < kMostRows)
+    if (count_ < rows_.size())
         rows_[count_++] = row;
     else
         full_ = true;
@@ -52,9 +57,10 @@ void PoseSolver::find(const Pose& X) noexcept {
     X_found_ = X;
     count_ = 0;
     overlap_ = 0.0;
+    free_ = std::numeric_limits<double>::infinity();
     full_ = false;
     for (std::size_t p = 0; p < searches_.size(); ++p) {
-        searches_[p].find(X, kReach, contacts_);
+        free_ = std::min(free_, searches_[p].find(X, kReach, contacts_));
         overlap_ = std::max(overlap_, overlapOf(contacts_));
         full_ = full_ || contacts_.full();
         for (const Contact& contact : contacts_.all())
@@ -150,7 +156,7 @@ motion::Motion PoseSolver::step(const Pose& X, const motion::Motion& wanted, Pos
         prepared_[i].a = a / length;
         prepared_[i].length = length;
         prepared_[i].contact = static_cast<std::uint32_t>(i);
-        prepared_[i].bound = -rows_[i].from.contact.gap / length;
+        prepared_[i].bound = -(rows_[i].from.contact.gap + allowed_) / length;
     }
     motion::ActiveSet active;
     motion::Motion y;
@@ -167,28 +173,40 @@ motion::Motion PoseSolver::step(const Pose& X, const motion::Motion& wanted, Pos
     return L.transpose().triangularView<Eigen::Upper>().solve(y);
 }
 
-ConstrainedPose PoseSolver::solve(const Pose& X_WG, const Pose& X_WH, PoseMemory& memory) noexcept {
+/// What of a look's motion is safe to make.
+motion::Motion PoseSolver::shortened(const motion::Motion& u) const noexcept {
+    const double rho = searches_.empty() ? 1.0 : pair(0).metric_radius;
+    const double way = u.head<3>().norm() + reach_ / rho * u.tail<3>().norm();
+    if (way < free_) return u;
+    const double share = std::min(longest_way_ / way, kLongestLook / u.norm());
+    return std::min(1.0, std::max(share, free_ / way)) * u;
+}
+
+ConstrainedPose PoseSolver::solve(const Pose& X_WG, const Pose& X_WH, PoseMemory& memory, int most) noexcept {
     ConstrainedPose result{.X_WG = X_WG};
+    way_.clear();
     const double rho = searches_.empty() ? 1.0 : pair(0).metric_radius;
     Pose X = X_WG;
     double last = std::numeric_limits<double>::infinity();  // length of the last look's motion
     for (int i = 0;; ++i) {
         find(X);
         const motion::Motion wanted = wayTo(X, X_WH, rho);
-        if (overlap_ <= kKeptOverlap || i == 0) {
+        if (i == 0) allowed_ = std::max(0.0, overlap_ - kRepair);
+        const bool kept = overlap_ <= allowed_ + kKeptOverlap;
+        if (kept || i == 0) {
+            way_.add(X);
             result.X_WG = X;
             result.overlap = overlap_;
             result.full = full_;
             result.pull = wanted;
         }
-        result.converged = overlap_ <= kKeptOverlap && last <= kStillMoving;
-        if (result.converged || i == kMostLooks) return result;
+        result.converged = kept && last <= kStillMoving;
+        if (result.converged || i == most) return result;
         result.iterations = i + 1;
         remember(X, memory);
-        motion::Motion u = step(X, wanted, memory);
+        const motion::Motion u = step(X, wanted, memory);
         last = u.norm();
-        if (last > kLongestLook) u *= kLongestLook / last;
-        X = movedBy(X, u, rho);
+        X = movedBy(X, shortened(u), rho);
     }
 }
 

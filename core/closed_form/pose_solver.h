@@ -30,14 +30,16 @@ struct ConstrainedPose {
     Pose X_WG;             // the proxy
     double overlap = 0.0;  // there [m]
     int iterations = 0;
-    bool converged = true;  // false: kMostLooks were used up, or nothing was allowed
+    bool converged = true;  // false: the looks were used up, or nothing was allowed
     bool full = false;      // more contacts than there is room for: PairContacts::full()
     motion::Motion pull =
         motion::Motion::Zero();  // what is left of the way to the hand, (Δx, ρ Δφ) [m]: the spring's wrench over K
 };
 
 inline constexpr int kMostLooks = 24;
-inline constexpr double kLongestLook = 2.5e-4;  // of |u| [m]
+inline constexpr double kLongestLook = 2.5e-4;  // of |u| in a look near an obstacle [m]
+inline constexpr double kLongestWay = 7e-4;     // of any point of the held part in such a look [m]
+inline constexpr double kRepair = 1e-4;         // of overlap that was there before, in a solve [m]
 inline constexpr double kKeptOverlap = 5e-8;    // [m]
 inline constexpr double kStillMoving = 2e-6;    // of |u| in a look: the error left is of second order [m]
 inline constexpr double kLeastStiffness = 0.3;  // of the least eigenvalue of B
@@ -50,14 +52,23 @@ inline constexpr int kKeptLooks = 6;
 /// past which rows alone run tangentially at every look. Where B is not positive its eigenvalues are raised to
 /// kLeastStiffness. Contacts that held stay as rows at their own place on the line for some looks (cuts), which ends
 /// cycles where a minimum moves along a kink. Where no pose is free, overlap is only kept from growing.
+///
+/// Nothing is jumped. A pose counts only if it overlaps by no more than kKeptOverlap. On the way from one to the next
+/// no point of the held part goes farther than is proven to be free, or than kLongestWay and half the thickness of the
+/// thinnest part, which is less than the distance in which contacts are rows: to come to the other side of an obstacle
+/// it would have to break rows by more than that, and they are broken by the second order of a look only.
+/// A start in overlap comes out by kRepair a solve, the deepest contacts first.
 /// What a solver knows of earlier poses changes its time, never its result.
 class PoseSolver {
 public:
     /// The held part's pairs, with one ρ. Their solids outlive this.
     explicit PoseSolver(std::span<const SolidPair> pairs);
 
-    /// rt-safe, bounded.
-    ConstrainedPose solve(const Pose& X_WG, const Pose& X_WH, PoseMemory& memory) noexcept;
+    /// In at most `most` looks. rt-safe.
+    ConstrainedPose solve(const Pose& X_WG, const Pose& X_WH, PoseMemory& memory, int most = kMostLooks) noexcept;
+
+    /// Poses without overlap that the last solve went through, from its start on: the proxy's way.
+    std::span<const Pose> way() const noexcept { return way_.all(); }
 
     const SolidPair& pair(std::size_t i) const noexcept { return searches_[i].pair(); }
 
@@ -76,6 +87,7 @@ private:
     MotionMatrix factor(const Pose& X) const noexcept;
     bool solveRows(const motion::Motion& wanted, motion::ActiveSet& active, motion::Motion& y) noexcept;
     void add(const Row& row) noexcept;
+    motion::Motion shortened(const motion::Motion& u) const noexcept;
     Row* successorOf(const HeldContact& old) noexcept;
     double distance(const Contact& contact, const HeldContact& old) const noexcept;
 
@@ -84,9 +96,12 @@ private:
     std::vector<Row> rows_;                    // kMostRows, the first `count_`
     std::vector<motion::MotionRow> prepared_;  // the same
     std::size_t count_ = 0, found_ = 0;        // rows; those of them that were found at `X_found_`
-    double overlap_ = 0.0;                     // there [m]
+    double overlap_ = 0.0, free_ = 0.0;        // there; a way that is proven to be free [m]
     std::optional<Pose> X_found_;
-    bool full_ = false;  // there
+    bool full_ = false;                               // there
+    double reach_ = 0.0, longest_way_ = kLongestWay;  // of the held part's points
+    double allowed_ = 0.0;                            // overlap that the solve leaves [m]
+    FixedList<Pose, kMostLooks + 1> way_;
 };
 
 }  // namespace passung::closed_form

@@ -271,6 +271,19 @@ SmoothSolid solidFrom(const KeyedBorePlate& plate) {
     return solid;
 }
 
+/// Between a face and the opposite one of its lump, if it is one.
+double thicknessBetween(const Face& face, const Face& other) {
+    constexpr double kOpposite = -0.999;
+    const double none = std::numeric_limits<double>::infinity();
+    if (face.kind == Face::Kind::Torus) return 2.0 * face.tube;
+    if (!face.hollow && (face.kind == Face::Kind::Cylinder || face.kind == Face::Kind::Sphere))
+        return 2.0 * face.radius;
+    if (!other.isPlane()) return none;
+    if (face.isPlane()) return face.axis.dot(other.axis) < kOpposite ? -valueOf(other, face.origin) : none;
+    const bool along = std::abs(face.axis.dot(other.axis)) < 1.0 + kOpposite;
+    return face.kind == Face::Kind::Cylinder && along ? -valueOf(other, face.origin) - face.radius : none;
+}
+
 std::optional<SmoothSolid> solidFrom(const shape::Sheet&) { return std::nullopt; }
 
 }  // namespace
@@ -322,6 +335,24 @@ double valueOf(const Lump& lump, const Vec3& p) noexcept {
 double valueOf(const SmoothSolid& solid, const Vec3& p) noexcept {
     double least = std::numeric_limits<double>::infinity();
     for (const Lump& lump : solid.lumps) least = std::min(least, valueOf(lump, p));
+    return least;
+}
+
+double reachOf(const SmoothSolid& solid) noexcept {
+    double most = 0.0;
+    for (const auto* lines : {&solid.edges, &solid.cores})
+        for (const Curve& line : *lines) most = std::max(most, line.centre.norm() + line.extent() + line.thickness);
+    return most;
+}
+
+double thicknessOf(const SmoothSolid& solid) noexcept {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Lump& lump : solid.lumps)
+        for (const Face& face : lump.faces)
+            for (const Face& other : lump.faces) {
+                const double between = thicknessBetween(face, other);
+                if (between > 0.0) least = std::min(least, between);
+            }
     return least;
 }
 

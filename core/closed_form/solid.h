@@ -58,4 +58,10 @@ double valueOf(const Lump& lump, const Vec3& p) noexcept;
 /// The same of all lumps: the least.
 double valueOf(const SmoothSolid& solid, const Vec3& p) noexcept;
 
+/// No point of the solid is farther from its frame's origin [m].
+double reachOf(const SmoothSolid& solid) noexcept;
+
+/// The least distance of two faces of one lump whose material lies between them [m]; infinite if there are none.
+double thicknessOf(const SmoothSolid& solid) noexcept;
+
 }  // namespace passung::closed_form

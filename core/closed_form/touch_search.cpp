@@ -258,12 +258,15 @@ double searchEdge(const Curve& edge, const Lump& lump, double reach, Touches& to
 }
 
 double searchCore(const Curve& core, const Lump& lump, double reach, Touches& touches) noexcept {
+    const auto boundOf = [&core](const Face& face) {
+        const bool level = face.isPlane() && core.kind == Curve::Kind::Straight;
+        return valueOf(face, core.centre) - (level ? std::abs(face.axis.dot(core.e1)) : core.extent()) - core.thickness;
+    };
     double least = -std::numeric_limits<double>::infinity();
-    for (const Face& face : lump.faces)
-        least = std::max(least, valueOf(face, core.centre) - core.extent() - core.thickness);
+    for (const Face& face : lump.faces) least = std::max(least, boundOf(face));
     if (least > reach) return least;
     for (const Face& face : lump.faces) {
-        if (valueOf(face, core.centre) - core.extent() - core.thickness > reach) continue;
+        if (boundOf(face) > reach) continue;
         if (core.kind == Curve::Kind::Point) {
             addCore(core, face, lump, 0.0, reach, touches);
             continue;

@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "core/scene/contact_geometry.h"
+
 namespace passung::scene {
 
 namespace {
@@ -44,11 +46,12 @@ Result<Scene> buildScene(const SceneSpec& spec, PartCache& cache) {
     if (auto errors = spec.validate(); !errors.empty()) return errors;
     Scene scene;
     scene.spec = spec;
+    const bool fields = geometryOf(spec).geometry == Geometry::Field;
     for (std::size_t i = 0; i < spec.parts.size(); ++i) {
         const PartSpec& part = spec.parts[i];
         if (part.held) scene.held = i;
-        auto built = cache.get(part, {.field = !part.held || spec.contact.two_way,
-                                      .shell = part.held || spec.contact.two_way,
+        auto built = cache.get(part, {.field = fields && (!part.held || spec.contact.two_way),
+                                      .shell = fields && (part.held || spec.contact.two_way),
                                       .tolerance = spec.contact.tolerance,
                                       .cell = spec.contact.cell,
                                       .spacing = spec.contact.spacing});

@@ -32,7 +32,8 @@ struct Scene {
     std::size_t held = 0;                            // index of the hand's part
 };
 
-/// Builds the shell of the held part and the fields of all others, with contact.two_way all of both. Errors:
+/// Builds what the scene's geometry (contact_geometry.h) takes: of Geometry::Field the shell of the held part and the
+/// fields of all others, with contact.two_way all of both; of closed forms nothing beside the parts. Errors:
 /// SceneSpec::validate and buildPart.
 Result<Scene> buildScene(const SceneSpec& spec, PartCache& cache);
 

@@ -67,7 +67,7 @@ inline constexpr StageOf kProxySweep{
     {.name = "proxy sweep",
      .parameters = "contact.method, stiffness_N_per_m, rotational_stiffness, mode, budget_nodes, two_way; friction",
      .cost = "a few queries of each obstacle and as many motions under contacts; bounds: kSweeps, kCuts",
-     .needs = [](const TickModel& model) { return model.hasProxyOf(scene::ContactMethod::GodObject); },
+     .needs = [](const TickModel& model) { return model.hasFieldProxyOf(scene::ContactMethod::GodObject); },
      .reason =
          [](const TickModel& model) {
              return model.contact.two_way

@@ -70,7 +70,7 @@ inline constexpr StageOf kProxyCorrection{
     {.name = "proxy correction",
      .parameters = "contact.method, mode, budget_nodes, two_way",
      .cost = "nothing, or a few queries of each obstacle; bound: kCorrections",
-     .needs = [](const TickModel& model) { return model.hasProxyOf(scene::ContactMethod::GodObjectHeuristic); },
+     .needs = [](const TickModel& model) { return model.hasFieldProxyOf(scene::ContactMethod::GodObjectHeuristic); },
      .reason =
          [](const TickModel& model) {
              return model.contact.two_way
@@ -89,7 +89,7 @@ inline constexpr StageOf kProxyMotion{
     {.name = "proxy motion",
      .parameters = "contact.stiffness_N_per_m, rotational_stiffness, mode, budget_nodes, two_way; friction",
      .cost = "a few queries of each obstacle and as many motions under contacts; bound: kSubSteps",
-     .needs = [](const TickModel& model) { return model.hasProxyOf(scene::ContactMethod::GodObjectHeuristic); },
+     .needs = [](const TickModel& model) { return model.hasFieldProxyOf(scene::ContactMethod::GodObjectHeuristic); },
      .reason =
          [](const TickModel&) { return "steps #3 and #4: the proxy follows the hand as far as the contacts let it"; }}};
 

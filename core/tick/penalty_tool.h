@@ -60,7 +60,7 @@ inline constexpr StageOf kPenaltyTool{
      .parameters = "contact.coupling, variant, penalty_stiffness_N_per_m, tool_mass_kg, tool_inertia_kg_m2, stiffness, "
                    "damping, mode, budget_nodes, two_way",
      .cost = "a few queries of each obstacle; bound: kToolSteps",
-     .needs = [](const TickModel& model) { return model.hasProxyOf(scene::ContactMethod::Penalty); },
+     .needs = [](const TickModel& model) { return model.hasFieldProxyOf(scene::ContactMethod::Penalty); },
      .reason =
          [](const TickModel& model) {
              return model.contact.coupling == scene::PenaltyCoupling::Virtual

@@ -110,7 +110,7 @@ inline constexpr StageOf kProxyFilter{
      .cost = "in contact one query of each obstacle, at most two",
      .needs =
          [](const TickModel& model) {
-             return model.hasProxy() && model.contact.proxy_filter > 0.0 &&
+             return model.hasFieldProxy() && model.contact.proxy_filter > 0.0 &&
                     model.contact.method != scene::ContactMethod::Penalty;
          },
      .reason = [](const TickModel&) { return "contact.proxy_filter_hz is set: a low-pass of the proxy in contact"; }}};
@@ -122,7 +122,7 @@ inline constexpr StageOf kProxyRecord{
     {.name = "proxy record",
      .parameters = "",
      .cost = "a little for each contact",
-     .needs = [](const TickModel& model) { return model.hasProxy(); },
+     .needs = [](const TickModel& model) { return model.hasFieldProxy(); },
      .reason = [](const TickModel&) { return "overlap and contacts at the proxy, for the record"; }}};
 
 /// Depth of the held part at the hand's pose: only for the record, an extra query.
@@ -133,7 +133,7 @@ inline constexpr StageOf kHandDepth{
     {.name = "hand depth",
      .parameters = "contact.record_hand_depth",
      .cost = "a query of each obstacle, with two_way two",
-     .needs = [](const TickModel& model) { return model.hasProxy() && model.record_hand_depth; },
+     .needs = [](const TickModel& model) { return model.hasFieldProxy() && model.record_hand_depth; },
      .reason = [](const TickModel&) { return "the overlap at the device's pose is measured and recorded"; }}};
 
 }  // namespace passung::tick

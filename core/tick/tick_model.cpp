@@ -16,11 +16,56 @@ ProxyMargins marginsOf(const TickModel& model, const ProxyMargins& share, double
 }
 
 ProxyMargins marginsOf(const TickModel& model) {
-    if (model.hasProxyOf(scene::ContactMethod::GodObjectHeuristic))
+    if (model.hasFieldProxyOf(scene::ContactMethod::GodObjectHeuristic))
         return marginsOf(model, {kKeep, kRelieve, kAccept}, model.contact.tolerance);
-    if (model.hasProxyOf(scene::ContactMethod::GodObject))
+    if (model.hasFieldProxyOf(scene::ContactMethod::GodObject))
         return marginsOf(model, {kKept, kRelieved, kAccepted}, 0.5 * model.contact.tolerance);
     return {};
+}
+
+void addFields(TickModel& model, const scene::Scene& scene) {
+    const scene::SceneSpec& spec = scene.spec;
+    model.shell = &*scene.parts[scene.held]->shell;
+    model.reach = model.shell->reach();
+    model.edges = &*scene.parts[scene.held]->edges;
+    const bool two_way = spec.contact.two_way;
+    if (two_way) model.held_field = &*scene.parts[scene.held]->field;
+    for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+        const bool held = i == scene.held;
+        if (!held)
+            model.obstacles.push_back({&*scene.parts[i]->field, spec.parts[i].X_WP,
+                                       two_way ? &*scene.parts[i]->shell : nullptr,
+                                       two_way ? &*scene.parts[i]->edges : nullptr});
+        if (held && !two_way) continue;
+        const double cell = scene.parts[i]->field->cell();
+        model.finest_cell = model.finest_cell > 0.0 ? std::min(model.finest_cell, cell) : cell;
+    }
+}
+
+/// The held part's first, then the obstacles'.
+void addSolids(TickModel& model, const scene::Scene& scene) {
+    const auto solidOf = [&](std::size_t part) { return *closed_form::solidOf(*scene.parts[part]->shape); };
+    model.solids.push_back(solidOf(scene.held));
+    model.reach = closed_form::reachOf(model.solids.front());
+    for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+        if (i == scene.held) continue;
+        model.solids.push_back(solidOf(i));
+        model.obstacles.push_back({nullptr, scene.spec.parts[i].X_WP});
+    }
+}
+
+/// Of the held part's surface about its origin [m].
+double gyrationRadius(const TickModel& model, const scene::Scene& scene) {
+    if (model.shell != nullptr) return model.shell->gyrationRadius();
+    const geometry::TriangleMesh& mesh = scene.parts[scene.held]->mesh;
+    double area = 0.0, second = 0.0;
+    for (const auto& triangle : mesh.triangles) {
+        const Vec3 &a = mesh.vertices[triangle[0]], &b = mesh.vertices[triangle[1]], &c = mesh.vertices[triangle[2]];
+        const double size = 0.5 * (b - a).cross(c - a).norm();
+        area += size;
+        second += size / 12.0 * (a.squaredNorm() + b.squaredNorm() + c.squaredNorm() + (a + b + c).squaredNorm());
+    }
+    return area > 0.0 ? std::sqrt(second / area) : 0.0;
 }
 
 /// The coefficients of the held part with each obstacle, if any rubs.
@@ -59,23 +104,14 @@ TickModel makeModel(const scene::Scene& scene) {
     model.record_hand_depth = spec.record_hand_depth;
     model.display_wrench = spec.display_wrench;
     model.X_WG_start = spec.parts[scene.held].X_WP;
-    model.shell = &*scene.parts[scene.held]->shell;
-    model.edges = &*scene.parts[scene.held]->edges;
-    const bool two_way = spec.contact.two_way;
-    if (two_way) model.held_field = &*scene.parts[scene.held]->field;
-    for (std::size_t i = 0; i < scene.parts.size(); ++i) {
-        const bool held = i == scene.held;
-        if (!held)
-            model.obstacles.push_back({&*scene.parts[i]->field, spec.parts[i].X_WP,
-                                       two_way ? &*scene.parts[i]->shell : nullptr,
-                                       two_way ? &*scene.parts[i]->edges : nullptr});
-        if (held && !two_way) continue;
-        const double cell = scene.parts[i]->field->cell();
-        model.finest_cell = model.finest_cell > 0.0 ? std::min(model.finest_cell, cell) : cell;
-    }
+    model.geometry = scene::geometryOf(spec).geometry;
+    if (model.geometry == scene::Geometry::ClosedForm)
+        addSolids(model, scene);
+    else
+        addFields(model, scene);
     addFriction(model, scene);
     const double ratio = spec.contact.rotational_stiffness / spec.contact.stiffness;
-    model.metric_radius = ratio > 0.0 ? std::sqrt(ratio) : std::max(model.shell->gyrationRadius(), 1e-6);
+    model.metric_radius = ratio > 0.0 ? std::sqrt(ratio) : std::max(gyrationRadius(model, scene), 1e-6);
     model.margins = marginsOf(model);
     addStages(model, AllStages{});
     return model;

@@ -3,7 +3,9 @@
 #include <vector>
 
 #include "core/base/types.h"
+#include "core/closed_form/solid.h"
 #include "core/motion/friction.h"
+#include "core/scene/contact_geometry.h"
 #include "core/scene/scene.h"
 #include "core/tick/stage.h"
 
@@ -17,9 +19,9 @@ struct Stage {
     void (*run)(const TickModel&, TickState&, TickFrame&) noexcept;
 };
 
-/// An obstacle: a distance field fixed in the world.
+/// An obstacle fixed in the world, as what its geometry is: a distance field, or one of TickModel::solids.
 struct Obstacle {
-    const field::DistanceField* field;
+    const field::DistanceField* field;  // Geometry::Field only
     Pose X_WF;
     const shell::SphereTree* shell = nullptr;  // two-way contact only
     const shell::EdgeCurves* edges = nullptr;  // with the shell
@@ -34,9 +36,12 @@ struct ProxyMargins {
 
 /// Everything that does not change while a trial runs. Borrows the scene's parts.
 struct TickModel {
+    scene::Geometry geometry = scene::Geometry::Field;
+    // Geometry::Field only
     const shell::SphereTree* shell = nullptr;
     const shell::EdgeCurves* edges = nullptr;
     const field::DistanceField* held_field = nullptr;  // two-way contact only
+    std::vector<closed_form::SmoothSolid> solids;      // Geometry::ClosedForm only: the held part, the obstacles
     std::vector<Obstacle> obstacles;
     std::vector<motion::Friction> friction;  // of each obstacle with the held part; empty: the scene names none
     Pose X_WG_start;
@@ -46,6 +51,7 @@ struct TickModel {
     scene::StartGate start_gate;
     std::vector<Stage> stages;
     double finest_cell = 0.0;    // of all fields [m]
+    double reach = 0.0;          // no point of the held part is farther from its origin [m]
     double metric_radius = 0.0;  // [m]: makes a rotation comparable with a translation (god_object_heuristic.h)
     ProxyMargins margins;
     scene::Effects effects;
@@ -56,7 +62,12 @@ struct TickModel {
     bool rendersAtHand() const noexcept { return hasObstacles() && contact.rendersAtHand(); }
     /// Of a god object, or a tool.
     bool hasProxy() const noexcept { return hasObstacles() && !contact.rendersAtHand(); }
-    bool hasProxyOf(scene::ContactMethod method) const noexcept { return hasProxy() && contact.method == method; }
+    bool hasClosedForm() const noexcept { return hasProxy() && geometry == scene::Geometry::ClosedForm; }
+    /// A proxy or tool among distance fields.
+    bool hasFieldProxy() const noexcept { return hasProxy() && geometry == scene::Geometry::Field; }
+    bool hasFieldProxyOf(scene::ContactMethod method) const noexcept {
+        return hasFieldProxy() && contact.method == method;
+    }
 };
 
 /// What the scene fixes, and those of AllStages that it needs. `scene` must outlive the result.

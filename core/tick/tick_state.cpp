@@ -4,14 +4,9 @@
 
 namespace passung::tick {
 
-TickState makeState(const TickModel& model) {
-    TickState state;
-    state.engaged = model.start_gate.hold_ticks <= 0;
-    state.X_WG = model.X_WG_start;
-    state.pairs.resize(model.obstacles.size() + 1);
-    state.pushes.resize(state.pairs.size());
-    state.last_shares.resize(state.pairs.size());
-    state.push_line.resize(state.pairs.size() * (static_cast<std::size_t>(model.limits.delay_ticks) + 1));
+namespace {
+
+void addQueryMemory(const TickModel& model, Proxy& proxy, QueryMemory& memory) {
     // When a budget ends a node stands in by a point and a sphere, and every obstacle may touch every point and every
     // edge around every station.
     const auto most = [](const shell::SphereTree& shell, const shell::EdgeCurves& edges) {
@@ -24,9 +19,25 @@ TickState makeState(const TickModel& model) {
         capacity += most(*obstacle.shell, *obstacle.edges);
         nodes = std::max(nodes, obstacle.shell->nodes().size());
     }
-    state.manifold = contact::ContactManifold(capacity);
-    state.scratch = contact::ContactManifold(capacity);
-    state.workspace = contact::QueryWorkspace(nodes);
+    proxy.manifold = contact::ContactManifold(capacity);
+    memory.scratch = contact::ContactManifold(capacity);
+    memory.workspace = contact::QueryWorkspace(nodes);
+}
+
+}  // namespace
+
+TickState makeState(const TickModel& model) {
+    TickState state;
+    state.engaged = model.start_gate.hold_ticks <= 0;
+    state.X_WG = model.X_WG_start;
+    state.pairs.resize(model.obstacles.size() + 1);
+    state.pushes.resize(state.pairs.size());
+    state.last_shares.resize(state.pairs.size());
+    state.push_line.resize(state.pairs.size() * (static_cast<std::size_t>(model.limits.delay_ticks) + 1));
+    if (model.hasClosedForm())
+        static_cast<ClosedFormMemory&>(state) = closedFormMemory(model);
+    else
+        addQueryMemory(model, state, state);
     return state;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "core/tick/closed_form_proxy.h"
 #include "core/tick/contact_energy.h"
 #include "core/tick/energy_account.h"
 #include "core/tick/god_object.h"
@@ -29,6 +30,8 @@ using AllStages = StageList<kInputGuard, kEnergyAccount, kStartGate,            
                             kPenaltyTool, kProxySweep,                           // tool, god object
                             kProxyCorrection, kProxyMotion,                      // its heuristic
                             kProxyFilter, kProxyRecord, kHandDepth,              // what follows them
+                            kClosedFormProxy, kClosedFormFilter,                 // god objects on closed forms
+                            kClosedFormRecord, kClosedFormDepth,                 // what follows them
                             kVirtualCoupling,                                    // their wrench
                             kTransients,                                         // effects
                             kContactShares, kOutputDelay, kPassivityController,  // what goes out
@@ -43,7 +46,8 @@ struct TickCount {
 
 /// Everything that a tick carries to the next: the stages' own states. Sized by makeState; a tick never allocates.
 struct TickState : Parts<TickCount, InputGuard, Engagement, EnergyAccounts, Proxy, ProxyMotion, ProxyFilter,
-                         HandVelocity, ToolMotion, Stretch, Ringing, Pushes, DelayLine, SentWrench, QueryMemory> {};
+                         ClosedFormHold, FilteredHold, ClosedFormMemory, HandVelocity, ToolMotion, Stretch, Ringing,
+                         Pushes, DelayLine, SentWrench, QueryMemory> {};
 
 /// What one tick works on; dies with it.
 struct TickFrame : Parts<Reading, HandSample, AreaLoad, ContactRecord, HandDepth, EnergyRecord, HandWrench,

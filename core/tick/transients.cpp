@@ -16,7 +16,7 @@ Wrench sum(double a, const Wrench& x, double b, const Wrench& y) noexcept {
 
 /// |F| of the header.
 double sizeOf(const TickModel& model, const Wrench& wrench) noexcept {
-    return std::max(wrench.force.norm(), wrench.torque.norm() / model.shell->reach());
+    return std::max(wrench.force.norm(), wrench.torque.norm() / model.reach);
 }
 
 /// s of the header.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/scene/contact_geometry.h"
 #include "study/plan/scene_parts.h"
 
 namespace passung::protocol {
@@ -82,6 +83,7 @@ public:
     FeltCheck(const scene::SceneSpec& scene, PartGeometries& geometries) : scene_(scene), geometries_(geometries) {}
 
     std::vector<Unfelt> run() {
+        if (scene::geometryOf(scene_).geometry != scene::Geometry::Field) return {};  // nothing is sampled
         const scene::PartSpec* held = plan::heldPart(scene_);
         for (part_ = 0; held != nullptr && part_ < scene_.parts.size(); ++part_) {
             const scene::PartSpec& part = scene_.parts[part_];

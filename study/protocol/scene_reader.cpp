@@ -184,6 +184,7 @@ void checkStability(const TableReader& device_table, const TableReader& contact_
 /// Refuses a spacing that gives a part too many points, and cells that give it a field too large to build. A mesh is
 /// judged when it is loaded.
 void checkSizes(const TableReader& contact_table, const scene::SceneSpec& scene, PartGeometries& geometries) {
+    if (scene::geometryOf(scene).geometry != scene::Geometry::Field) return;
     const scene::ContactSpec& contact = scene.contact;
     const auto refuse = [&](const char* key, const scene::PartSpec& part, const std::optional<std::string>& excess) {
         if (excess) contact_table.fail(key, fmt::format("part {}: {}", part.name, *excess));

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <thread>
 
+#include "core/scene/contact_geometry.h"
 #include "devices/simulated/resting_device.h"
 #include "devices/simulated/simulated_device.h"
 #include "study/run/machine/frame_clock.h"
@@ -92,7 +93,8 @@ Result<std::vector<session::StageNote>> LoopApparatus::prepare(const plan::Condi
 Result<BuiltScenes> LoopApparatus::build(const std::vector<session::RenderedScene>& scenes) {
     std::size_t pieces = 0;
     for (const session::RenderedScene& scene : scenes)
-        pieces += scene.spec.parts.size() * (scene.spec.contact.two_way ? 2 : 1);
+        if (scene::geometryOf(scene.spec).geometry == scene::Geometry::Field)
+            pieces += scene.spec.parts.size() * (scene.spec.contact.two_way ? 2 : 1);
     watched_.begin(pieces, [this](double share) { return performer_ == nullptr || performer_->builds(share); });
     try {
         return buildScenes(scenes, parts_);

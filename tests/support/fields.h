@@ -8,8 +8,14 @@
 
 #include "core/base/random.h"
 #include "core/contact/contact_query.h"
+#include "core/tick/closed_form_proxy.h"
 
 namespace passung::test {
+
+/// What saves time and holds nothing that anybody may look at.
+template <class T>
+inline constexpr bool kIsMemory =
+    std::is_same_v<T, contact::QueryWorkspace> || std::is_same_v<T, tick::ClosedFormMemory>;
 
 /// Converts to whatever a field is.
 struct Anything {
@@ -69,7 +75,7 @@ void eachField(T& value, F f) {
 template <class T, class F>
 void eachNumber(T& value, F&& f) {
     using Plain = std::remove_const_t<T>;
-    if constexpr (std::is_arithmetic_v<Plain>) {
+    if constexpr (std::is_arithmetic_v<Plain> || std::is_enum_v<Plain>) {
         f(value);
     } else if constexpr (std::is_same_v<Plain, Quat>) {
         for (int i = 0; i < 4; ++i) f(value.coeffs()[i]);
@@ -80,7 +86,7 @@ void eachNumber(T& value, F&& f) {
                              value.begin();
                          }) {
         for (auto& element : value) eachNumber(element, f);
-    } else if constexpr (!std::is_same_v<Plain, contact::QueryWorkspace>) {
+    } else if constexpr (!kIsMemory<Plain>) {
         eachField(value, [&f](auto& field) { eachNumber(field, f); });
     }
 }
@@ -112,14 +118,14 @@ void scramble(T& value, Random& random) {
         value = random.below(2) == 1;
     } else if constexpr (std::is_same_v<T, double>) {
         value = std::bit_cast<double>(random.next());
-    } else if constexpr (std::is_integral_v<T>) {
+    } else if constexpr (std::is_integral_v<T> || std::is_enum_v<T>) {
         value = static_cast<T>(random.next());
     } else if constexpr (std::is_same_v<T, Quat> || std::is_base_of_v<Eigen::MatrixBase<T>, T> || requires {
                              value[0];
                              value.begin();
                          }) {
         eachNumber(value, [&random](auto& number) { scramble(number, random); });
-    } else if constexpr (!std::is_same_v<T, contact::QueryWorkspace>) {
+    } else if constexpr (!kIsMemory<T>) {
         eachField(value, [&random](auto& field) { scramble(field, random); });
     }
 }

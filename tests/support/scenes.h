@@ -39,6 +39,7 @@ inline scene::SceneSpec scene(const shape::Shape& held, const Pose& X_WHeld, con
     spec.parts.push_back({.name = "held", .geometry = held, .X_WP = X_WHeld, .held = true});
     spec.parts.push_back({.name = "fixed", .geometry = fixed, .X_WP = X_WFixed});
     spec.contact.method = method;
+    spec.contact.geometry = scene::Geometry::Field;
     spec.contact.cell = 0.5e-3;
     spec.contact.spacing = 1e-3;
     spec.limits.max_force = 1e4;

@@ -76,6 +76,16 @@ QString orderWord(plan::BlockOrder order) {
     QT_TRANSLATE_NOOP("stages", "overlap and contacts at the proxy, for the record"),
     QT_TRANSLATE_NOOP("stages", "hand depth"),
     QT_TRANSLATE_NOOP("stages", "the overlap at the device's pose is measured and recorded"),
+    QT_TRANSLATE_NOOP("stages", "closed-form proxy"),
+    QT_TRANSLATE_NOOP("stages",
+                      "contact.method is god_object and all pairs have a closed form: the proxy follows the hand as "
+                      "far as the shapes' faces and edges let it; no distance field, no points"),
+    QT_TRANSLATE_NOOP("stages",
+                      "contact.method is god_object_heuristic and all pairs have a closed form: steps #1 to #4 on the "
+                      "shapes' faces and edges; no distance field, no points"),
+    QT_TRANSLATE_NOOP("stages", "closed-form filter"),
+    QT_TRANSLATE_NOOP("stages", "closed-form record"),
+    QT_TRANSLATE_NOOP("stages", "closed-form hand depth"),
     QT_TRANSLATE_NOOP("stages", "virtual coupling"),
     QT_TRANSLATE_NOOP("stages", "spring and damper between proxy and hand"),
     QT_TRANSLATE_NOOP("stages", "contact transients"),

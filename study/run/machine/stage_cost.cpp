@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 
+#include "core/tick/closed_form_proxy.h"
 #include "core/tick/obstacle_query.h"
 #include "core/tick/step.h"
 #include "study/protocol/plan_json.h"
@@ -20,9 +21,28 @@ constexpr int kApproachTicks = 500;
 constexpr int kMostTicks = 5 * TickCost::kWantedTicks;
 constexpr double kPressed = 2e-3, kSlide = 3e-3;  // [m]
 
+constexpr double kNearest = 1e-3, kFarthest = 10.0;  // [m] in which a contact is looked for
+
+/// The same among closed forms.
+Vec3 wayToContact(const Pose& X_WG, tick::ClosedFormMemory& memory) {
+    const closed_form::Contact* nearest = nullptr;
+    closed_form::Contact best;
+    for (double reach = kNearest; nearest == nullptr && reach < kFarthest; reach *= 2.0)
+        for (closed_form::ContactSearch& search : memory.at_hand) {
+            search.find(X_WG, reach, memory.found);
+            for (const closed_form::Contact& contact : memory.found.all()) {
+                if (nearest != nullptr && best.gap <= contact.gap) continue;
+                best = contact;
+                nearest = &best;
+            }
+        }
+    return -(best.gap + kPressed) * best.normal.stableNormalized();
+}
+
 /// The motion of the held part that ends pressed into the nearest obstacle.
 Vec3 wayToContact(const tick::TickModel& model, tick::TickState& state) {
     if (model.obstacles.empty()) return Vec3(0.02, 0.0, 0.0);
+    if (model.hasClosedForm()) return wayToContact(model.X_WG_start, state);
     state.scratch.clear();
     const contact::QueryAnswer answer =
         tick::queryObstacles(model, model.X_WG_start, {.search_below = 1.0}, state.workspace, state.scratch);

@@ -76,7 +76,10 @@ std::vector<scene::SceneSpec> scenesOfAllStages() {
     auto heuristic = boxOverPlate(GodObjectHeuristic);
     heuristic.contact.proxy_filter = 50.0;
     heuristic.contact.budget_nodes = 60;
-    return {free, penalty, tool, god_object, heuristic};
+    auto closed_form = boxOverPlate(GodObject);
+    closed_form.contact.geometry = scene::Geometry::ClosedForm;
+    closed_form.contact.proxy_filter = 50.0;
+    return {free, penalty, tool, god_object, heuristic, closed_form};
 }
 
 /// A hand that presses, slides and turns; samples are lost, lie, and lie for long.

@@ -1795,6 +1795,30 @@
         <translation>Schritte #3 und #4: Der Proxy folgt der Hand, soweit die Kontakte es zulassen</translation>
     </message>
     <message>
+        <source>closed-form proxy</source>
+        <translation>Proxy in geschlossener Form</translation>
+    </message>
+    <message>
+        <source>contact.method is god_object and all pairs have a closed form: the proxy follows the hand as far as the shapes&apos; faces and edges let it; no distance field, no points</source>
+        <translation>contact.method ist god_object, und alle Paare haben eine geschlossene Form: Der Proxy folgt der Hand, so weit Flächen und Kanten der Formen ihn lassen; kein Abstandsfeld, keine Punkte</translation>
+    </message>
+    <message>
+        <source>contact.method is god_object_heuristic and all pairs have a closed form: steps #1 to #4 on the shapes&apos; faces and edges; no distance field, no points</source>
+        <translation>contact.method ist god_object_heuristic, und alle Paare haben eine geschlossene Form: Schritte #1 bis #4 auf Flächen und Kanten der Formen; kein Abstandsfeld, keine Punkte</translation>
+    </message>
+    <message>
+        <source>closed-form filter</source>
+        <translation>Filter in geschlossener Form</translation>
+    </message>
+    <message>
+        <source>closed-form record</source>
+        <translation>Aufzeichnung in geschlossener Form</translation>
+    </message>
+    <message>
+        <source>closed-form hand depth</source>
+        <translation>Tiefe der Hand in geschlossener Form</translation>
+    </message>
+    <message>
         <source>proxy sweep</source>
         <translation>Proxy-Schwenk</translation>
     </message>

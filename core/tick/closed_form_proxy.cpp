@@ -1,0 +1,102 @@
+#include "core/tick/closed_form_proxy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/tick/contact_energy.h"
+
+namespace passung::tick {
+
+namespace {
+
+/// In place of the pushes so far: K λ along each contact's normal (contact_energy.h).
+void noteHold(const TickModel& model, const Proxy& proxy, const closed_form::PoseMemory& hold,
+              Pushes& pushes) noexcept {
+    clearPushes(pushes);
+    const double K = model.contact.stiffness;
+    const double turn = model.contact.rotational_stiffness / (model.metric_radius * model.metric_radius);
+    for (const closed_form::HeldContact& held : hold.all()) {
+        const Vec3 push = held.push * held.contact.normal;
+        ObstaclePush& of = pushes.pushes[held.pair];
+        of.wrench.force += K * push;
+        of.wrench.torque += turn * (held.contact.point - proxy.X_WG.p).cross(push);
+        of.pressure += K * push.norm();
+    }
+}
+
+void note(const closed_form::ConstrainedPose& found, Report& report) noexcept {
+    if (!found.converged) report.status |= kIterationLimit;
+    if (found.full) report.status |= kContactCap;
+    report.iterations += static_cast<std::uint32_t>(found.iterations);
+}
+
+int mostLooks(const TickModel& model) noexcept {
+    return model.contact.method == scene::ContactMethod::GodObject ? closed_form::kMostLooks : kHeuristicLooks;
+}
+
+std::vector<closed_form::SolidPair> pairsOf(const TickModel& model) {
+    std::vector<closed_form::SolidPair> pairs;
+    for (std::size_t i = 0; i < model.obstacles.size(); ++i)
+        pairs.push_back({&model.solids.front(), &model.solids[i + 1], model.obstacles[i].X_WF, model.metric_radius});
+    return pairs;
+}
+
+}  // namespace
+
+ClosedFormMemory closedFormMemory(const TickModel& model) {
+    ClosedFormMemory memory;
+    const auto pairs = pairsOf(model);
+    memory.solver = closed_form::PoseSolver(pairs);
+    for (const closed_form::SolidPair& pair : pairs) memory.at_hand.emplace_back(pair);
+    return memory;
+}
+
+void followInClosedForm(const TickModel& model, const HandSample& hand, Proxy& proxy, ClosedFormHold& held,
+                        ClosedFormMemory& memory, Pushes& pushes, Report& report) noexcept {
+    if (hand.relocated) {  // a spring from the old place would throw the hand across the room
+        proxy.X_WG = hand.X_WH;
+        held.hold = {};
+    }
+    const closed_form::ConstrainedPose found = memory.solver.solve(proxy.X_WG, hand.X_WH, held.hold, mostLooks(model));
+    proxy.X_WG = found.X_WG;
+    proxy.clearance = -found.overlap;
+    note(found, report);
+    noteHold(model, proxy, held.hold, pushes);
+}
+
+void filterInClosedForm(const TickModel& model, const HandSample& hand, const ClosedFormHold& held,
+                        FilteredHold& filter, Proxy& proxy, ClosedFormMemory& memory, Report& report) noexcept {
+    if (hand.relocated) filter.has_last_proxy = false;
+    const double alpha = 1.0 - std::exp(-2.0 * std::numbers::pi * model.contact.proxy_filter * kTickSeconds);
+    if (held.hold.count > 0 && filter.has_last_proxy) {
+        const motion::Motion u = unconstrainedMotion(model, filter.X_WG_last, proxy.X_WG);
+        const closed_form::ConstrainedPose found = memory.solver.solve(
+            filter.X_WG_last, moved(model, filter.X_WG_last, alpha * u), filter.hold, mostLooks(model));
+        proxy.X_WG = found.X_WG;
+        proxy.clearance = -found.overlap;
+        note(found, report);
+    } else {
+        filter.hold = {};
+    }
+    filter.X_WG_last = proxy.X_WG;
+    filter.has_last_proxy = true;
+}
+
+void describeClosedForm(const TickModel&, const Proxy& proxy, const ClosedFormHold& held,
+                        ContactRecord& record) noexcept {
+    record.proxy_depth = overlap(proxy);
+    record.contacts = static_cast<std::uint32_t>(held.hold.count);
+}
+
+void measureClosedFormDepth(const TickModel&, const HandSample& hand, ClosedFormMemory& memory, HandDepth& depth,
+                            Report& report) noexcept {
+    depth.hand_depth = 0.0;
+    for (closed_form::ContactSearch& search : memory.at_hand) {
+        search.find(hand.X_WH, 0.0, memory.found);
+        depth.hand_depth = std::max(depth.hand_depth, closed_form::overlapOf(memory.found));
+        if (memory.found.full()) report.status |= kContactCap;
+    }
+}
+
+}  // namespace passung::tick
