@@ -11,6 +11,13 @@ namespace passung::run {
 
 namespace {
 
+/// Leaves of a try-out nothing but its trials.
+void keepTrialsOnly(plan::StudyPlan& plan) {
+    plan.consent.clear();
+    plan.instructions.clear();
+    plan.questionnaires.clear();
+}
+
 /// Takes from another reading of the draft's text what follows from stable maxima, if the kept ones are others.
 Result<Done> keepStiffness(std::span<const plan::StableStiffness> kept, plan::StudyPlan& plan,
                            const ImportLimits& limits) {
@@ -27,8 +34,10 @@ Result<Done> keepStiffness(std::span<const plan::StableStiffness> kept, plan::St
 
 }  // namespace
 
-Result<plan::FrozenPlan> freeze(plan::StudyPlan draft, const KeptPlan& kept, const ImportLimits& limits) {
-    if (kept.seed) draft.seed = *kept.seed;
+Result<plan::FrozenPlan> freeze(plan::StudyPlan draft, const KeptPlan& kept, const plan::RunChoice& choice,
+                                const ImportLimits& limits) {
+    draft.seed = choice.seedOf(draft);
+    if (choice.trials_only) keepTrialsOnly(draft);
     if (const auto done = keepStiffness(kept.stable_stiffness, draft, limits); !done) return done.errors();
     if (const auto done = applyAccuracy(kept.protocol_sha256, kept.accuracy, draft, limits); !done)
         return done.errors();

@@ -299,7 +299,6 @@ Result<KeptPlan> keptFor(const store::Unfinished& session, const StoredPlans& pl
         return Error{.message = "is not stored with the protocol"};
     };
     kept->language = session.language;
-    kept->seed = session.seed;
     return kept;
 }
 
@@ -372,14 +371,14 @@ Result<RunEnd> runSessions(const plan::StudyPlan& draft, RunOptions options, con
     auto opened = openForRun(options, listener);
     if (!opened.store) return opened.errors;
     if (calibrates && measured.empty()) {
-        const auto known = opened.store->checkProtocol(draft);
+        const auto known = opened.store->checkProtocol(draft, options.choice);
         if (!known) return known.errors();
         const auto there = opened.store->accuracy(*known);
         if (!there) return there.errors();
         if (there->empty())
             if (const auto done = measure(); !done) return done.errors();
     }
-    auto sha256 = opened.store->importProtocol(draft);
+    auto sha256 = opened.store->importProtocol(draft, options.choice);
     if (!sha256) return sha256.errors();
     if (!measured.empty()) {
         if (const auto done = opened.store->keepAccuracy(measured); !done) return done.errors();
@@ -395,7 +394,8 @@ Result<RunEnd> runSessions(const plan::StudyPlan& draft, RunOptions options, con
     }
     const auto stable = opened.store->stableStiffness(*sha256);
     if (!stable) return stable.errors();
-    const auto plan = freeze(draft, {*sha256, *stable, *kept, {}, readFile, options.language}, options.import_limits);
+    const auto plan =
+        freeze(draft, {*sha256, *stable, *kept, readFile, options.language}, options.choice, options.import_limits);
     if (!plan) return plan.errors();
     if (options.warns)
         for (const std::string& difference : stiffnessDifferences(draft.stable_stiffness, (*plan)->stable_stiffness))
@@ -422,7 +422,7 @@ Result<RunEnd> resumeSession(const ResumeOptions& resume, RunOptions options,
     if (!draft) return draft.errors();
     const auto kept = keptFor(*session, plans, *reader, *draft);
     if (!kept) return kept.errors();
-    const auto plan = freeze(*draft, *kept, options.import_limits);
+    const auto plan = freeze(*draft, *kept, {.seed = session->seed}, options.import_limits);
     if (!plan) return plan.errors();
     if (Errors why = whyNotPeople(**plan, session->participant, options.performer); !why.empty()) return why;
     if (Errors unstable = beyondBorder(**plan, knownDevices()); !unstable.empty()) return unstable;

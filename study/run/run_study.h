@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/base/result.h"
-#include "study/plan/study_plan.h"
+#include "study/plan/run_choice.h"
 #include "study/run/files/mesh_importer.h"
 #include "study/run/files/wall_clock.h"
 #include "study/run/log/study_log.h"
@@ -20,6 +20,7 @@ struct RunOptions {
     std::string participant;  // code of one participant; empty: the next free codes of simulated ones
     store::Station station;
     int simulated = 1;  // how many simulated participants, one after another
+    plan::RunChoice choice;
     Clock clock = Clock::Virtual;
     bool backup = true;                               // copy the database when the run ends, however it does
     bool group = false;                               // share the database, as of store::OpenOptions
@@ -57,8 +58,8 @@ struct ResumeOptions {
 };
 
 /// Goes on with an interrupted session of the database by its protocol's [resume], in the clock and language that it
-/// had. Of `options`, participant, simulated, clock and language do not matter. Later trials are what the uninterrupted
-/// session's would have been.
+/// had. Of `options`, participant, simulated, choice, clock and language do not matter. Later trials are what the
+/// uninterrupted session's would have been.
 Result<RunEnd> resumeStudy(const ResumeOptions& resume, RunOptions options, const session::SessionListener& listener);
 
 }  // namespace passung::run

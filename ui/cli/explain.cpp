@@ -189,7 +189,7 @@ int explain(const ExplainArguments& options) {
     }
     const auto kept = keptFor(options.database, *draft, store.get());
     if (!kept) return fail(kept.errors());
-    const auto plan = run::freeze(*draft, *kept, options.import_limits);
+    const auto plan = run::freeze(*draft, *kept, {}, options.import_limits);
     if (!plan) return fail(plan.errors());
     const auto described = session::describePlan(**plan, participants, options.stations);
     if (!described) return fail(described.errors());

@@ -183,7 +183,6 @@ int run(const RunArguments& options) {
         return fail(plan.errors());
     }
     warn(options.protocol, session::planWarnings(*plan));
-    if (options.seed) plan->seed = *options.seed;
 
     run::RunOptions what;
     what.database = options.database.empty() ? plan->name + ".db" : options.database;
@@ -195,6 +194,7 @@ int run(const RunArguments& options) {
     what.backup = !options.no_backup;
     what.group = options.group;
     what.wait = options.wait;
+    what.choice.seed = options.seed;
     what.clock = options.real_time ? run::Clock::RealTime : run::Clock::Virtual;
 
     what.language = options.language;

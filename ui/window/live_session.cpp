@@ -47,11 +47,6 @@ presenter::TrialBrief briefOf(const plan::Condition& condition) {
 
 LiveSession::LiveSession(plan::StudyPlan plan, LiveOptions options)
     : plan_(std::move(plan)), options_(std::move(options)) {
-    if (options_.try_out) {
-        plan_.questionnaires.clear();
-        plan_.instructions.clear();
-        plan_.consent.clear();
-    }
     if (options_.sound != nullptr) screens_.push_back(&options_.sound->ring());
     thread_ = std::thread([this] { main(); });
 }
@@ -92,6 +87,7 @@ Result<run::RunEnd> LiveSession::perform(const session::SessionListener& listene
     run.station = options_.station;
     run.clock = run::Clock::RealTime;
     run.backup = !options_.try_out;
+    run.choice.trials_only = options_.try_out;
     run.wait = options_.waits;
     run.performer = this;
     if (!options_.try_out) run.language = options_.language;

@@ -25,7 +25,7 @@ Result<plan::FrozenPlan> StoredPlans::plan(const std::string& sha256) {
     if (!draft) return draft.errors();
     const auto kept = this->kept(sha256);
     if (!kept) return kept.errors();
-    const auto plan = freeze(*draft, *kept, limits_);
+    const auto plan = freeze(*draft, *kept, {}, limits_);
     if (plan) plans_.emplace(sha256, *plan);
     return plan;
 }

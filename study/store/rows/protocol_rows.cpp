@@ -131,16 +131,18 @@ void insertMeasures(const Database& database) {
     }
 }
 
-std::string importPlan(const Database& database, const plan::StudyPlan& plan, const std::vector<MeshContent>& meshes,
-                       const std::vector<PictureContent>& pictures, const OpenOptions& options, bool keep) {
+std::string importPlan(const Database& database, const plan::StudyPlan& plan, const plan::RunChoice& choice,
+                       const std::vector<MeshContent>& meshes, const std::vector<PictureContent>& pictures,
+                       const OpenOptions& options, bool keep) {
     const std::string sha256 = sha256Hex(plan.source_text);
+    const std::uint64_t seed = choice.seedOf(plan);
     Transaction transaction(database);
     if (database.prepare("SELECT 1 FROM protocol_version WHERE protocol_sha256=?").bind(sha256).step()) {
-        requireSeed(database, sha256, plan.seed);
+        requireSeed(database, sha256, seed);
         requireMeshes(database, sha256, meshes);
         requirePictures(database, sha256, pictures);
         requireQuestionnaires(database, sha256, plan);
-        storeSeed(database, sha256, plan.seed);
+        storeSeed(database, sha256, seed);
         insertMeasures(database);
         if (keep) transaction.commit();
         return sha256;
@@ -151,21 +153,21 @@ std::string importPlan(const Database& database, const plan::StudyPlan& plan, co
               Named{"expanded_json", plan.expanded_json}, Named{"schema_version", schemaNumber()},
               Named{"app_version", options.app_version}, Named{"imported_utc", options.now_utc},
               Named{"title", plan.title}, Named{"sequences", sequenceCount(plan)});
-    storeSeed(database, sha256, plan.seed);
+    storeSeed(database, sha256, seed);
     for (const MeshContent& mesh : meshes)
         insertRow(database, "mesh_file", Named{"protocol_sha256", sha256}, Named{"mesh", mesh.mesh},
                   Named{"sha256", mesh.sha256}, Named{"bytes", mesh.bytes});
     insertPictures(database, sha256, pictures);
     insertFactors(database, sha256, plan);
     insertConditions(database, sha256, plan);
-    insertQuestionnaires(database, plan);
+    if (!choice.trials_only) insertQuestionnaires(database, plan);
     insertMeasures(database);
     declareMeasures(database, sha256, plan);
     for (const plan::StableStiffness& stable : plan.stable_stiffness)
         insertRow(database, "stable_stiffness", Named{"protocol_sha256", sha256}, Named{"device", stable.device},
                   Named{"stable_stiffness_N_per_m", stable.linear},
                   Named{"stable_rotational_stiffness_Nm_per_rad", stable.rotational}, Named{"origin", stable.origin});
-    insertConsentClauses(database, sha256, plan.consent);
+    if (!choice.trials_only) insertConsentClauses(database, sha256, plan.consent);
     while (slotCount(database, sha256) < plan.participants)
         insertSlots(database, sha256, plan::participantKindName(plan::ParticipantKind::Real));
     if (keep) transaction.commit();

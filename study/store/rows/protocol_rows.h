@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "study/plan/study_plan.h"
+#include "study/plan/run_choice.h"
 #include "study/store/rows/picture_rows.h"
 #include "study/store/schema/open_options.h"
 
@@ -31,7 +31,8 @@ void requireSeed(const Database& database, const std::string& sha256, std::uint6
 void insertMeasures(const Database& database);
 
 /// In a transaction, kept or not; returns the SHA-256 of the text.
-std::string importPlan(const Database& database, const plan::StudyPlan& plan, const std::vector<MeshContent>& meshes,
-                       const std::vector<PictureContent>& pictures, const OpenOptions& options, bool keep);
+std::string importPlan(const Database& database, const plan::StudyPlan& plan, const plan::RunChoice& choice,
+                       const std::vector<MeshContent>& meshes, const std::vector<PictureContent>& pictures,
+                       const OpenOptions& options, bool keep);
 
 }  // namespace passung::store

@@ -203,17 +203,22 @@ Store::Opened Store::open(const std::string& path, const OpenOptions& options) {
     return opened;
 }
 
-Result<std::string> Store::importProtocol(const plan::StudyPlan& plan) { return importOrCheck(plan, true); }
+Result<std::string> Store::importProtocol(const plan::StudyPlan& draft, const plan::RunChoice& choice) {
+    return importOrCheck(draft, choice, true);
+}
 
-Result<std::string> Store::checkProtocol(const plan::StudyPlan& plan) { return importOrCheck(plan, false); }
+Result<std::string> Store::checkProtocol(const plan::StudyPlan& draft, const plan::RunChoice& choice) {
+    return importOrCheck(draft, choice, false);
+}
 
-Result<std::string> Store::importOrCheck(const plan::StudyPlan& plan, bool keep) {
-    const auto meshes = readMeshes(plan);
+Result<std::string> Store::importOrCheck(const plan::StudyPlan& draft, const plan::RunChoice& choice, bool keep) {
+    const auto meshes = readMeshes(draft);
     if (!meshes) return meshes.errors();
-    const auto pictures = readPictures(plan);
+    const auto pictures = readPictures(draft);
     if (!pictures) return pictures.errors();
-    return thread_->call(
-        [&](const Database& database) { return importPlan(database, plan, *meshes, *pictures, options_, keep); });
+    return thread_->call([&](const Database& database) {
+        return importPlan(database, draft, choice, *meshes, *pictures, options_, keep);
+    });
 }
 
 Result<std::vector<AccuracyRow>> Store::accuracy(const std::string& protocol_sha256) {

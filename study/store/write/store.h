@@ -12,7 +12,7 @@
 #include "core/base/result.h"
 #include "study/design/trial_order.h"
 #include "study/plan/participant.h"
-#include "study/plan/study_plan.h"
+#include "study/plan/run_choice.h"
 #include "study/store/read/unfinished.h"
 #include "study/store/rows/rows.h"
 #include "study/store/schema/identity.h"
@@ -67,10 +67,10 @@ public:
     /// Stores the protocol with its text, factors, conditions, measures, the SHA-256 of every mesh file that it names
     /// and a free slot for every planned participant. Returns the SHA-256 of the text. Importing the same text again
     /// changes nothing; another seed than that of the sessions of this protocol is refused, and so is a mesh or
-    /// questionnaire file with another content.
-    Result<std::string> importProtocol(const plan::StudyPlan& plan);
+    /// questionnaire file with another content. Of a try-out neither consent nor questionnaires are stored.
+    Result<std::string> importProtocol(const plan::StudyPlan& draft, const plan::RunChoice& choice = {});
     /// The same answer, but nothing is stored.
-    Result<std::string> checkProtocol(const plan::StudyPlan& plan);
+    Result<std::string> checkProtocol(const plan::StudyPlan& draft, const plan::RunChoice& choice = {});
 
     /// What was measured and picked for the protocol's accuracy = "auto", by candidate; none if it never ran so.
     Result<std::vector<AccuracyRow>> accuracy(const std::string& protocol_sha256);
@@ -131,7 +131,7 @@ public:
 
 private:
     friend class ParticipantRecords;
-    Result<std::string> importOrCheck(const plan::StudyPlan& plan, bool keep);
+    Result<std::string> importOrCheck(const plan::StudyPlan& draft, const plan::RunChoice& choice, bool keep);
     Store(OpenOptions options, std::unique_ptr<ProcessLock> lock, std::unique_ptr<WriterThread> thread);
 
     OpenOptions options_;

@@ -35,18 +35,28 @@ TEST(Freeze, AFractionOfTheMaximumIsOneOfTheKeptMaximum) {
 }
 
 TEST(Freeze, WhatDoesNotFollowFromMaximaIsTheDrafts) {
-    // Truth: invariant: a try-out takes consent away, a command sets another seed; questionnaires' items are in files
-    // of their own.
-    auto draft = shippedStudy();
-    ASSERT_FALSE(draft.consent.empty());
-    draft.consent.clear();
-    draft.seed += 1;
+    // Truth: invariant: questionnaires' items are in files of their own, which a second reading does not open.
+    const auto draft = shippedStudy();
     const auto frozen = freeze(draft, halfAsStiff(draft));
     ASSERT_TRUE(frozen);
-    EXPECT_TRUE((*frozen)->consent.empty());
     EXPECT_EQ((*frozen)->seed, draft.seed);
+    EXPECT_EQ((*frozen)->consent.size(), draft.consent.size());
     ASSERT_EQ((*frozen)->questionnaires.size(), 2u);
     EXPECT_EQ((*frozen)->questionnaires[0].definition.items.size(), 6u);
+}
+
+TEST(Freeze, ARunDecidesItsSeedAndWhetherOnlyTrialsRun) {
+    // Truth: invariant; the kept maxima are others, so that conditions are read again: what the run decides stays.
+    const auto draft = shippedStudy();
+    ASSERT_FALSE(draft.consent.empty());
+    ASSERT_FALSE(draft.questionnaires.empty());
+    const auto frozen = freeze(draft, halfAsStiff(draft), {.seed = draft.seed + 1, .trials_only = true});
+    ASSERT_TRUE(frozen);
+    EXPECT_EQ((*frozen)->seed, draft.seed + 1);
+    EXPECT_TRUE((*frozen)->consent.empty());
+    EXPECT_TRUE((*frozen)->instructions.empty());
+    EXPECT_TRUE((*frozen)->questionnaires.empty());
+    EXPECT_EQ((*frozen)->conditions.size(), draft.conditions.size());
 }
 
 }  // namespace

@@ -609,8 +609,10 @@ TEST(Store, NobodyCompletesAProtocolTwiceAndItsSeedStays) {
     require(writer->finishSession(true, 0));
     EXPECT_THROW(fake::beginSession(*store, "S001", 1), std::runtime_error);
     plan::StudyPlan plan = fake::makePlan();
+    EXPECT_FALSE(store->importProtocol(plan, {.seed = 8}));
     plan.seed = 8;
     EXPECT_FALSE(store->importProtocol(plan));
+    EXPECT_TRUE(store->importProtocol(plan, {.seed = fake::makePlan().seed}));
     EXPECT_FALSE(store->enrol("P001", plan::ParticipantKind::Simulated, ""));
 }
 
