@@ -1,5 +1,6 @@
 # cmake -DROOT=... -P rooms.cmake: every include of every source file against the table of rooms and the doors of the
-# cards. Prints every violation as file:line: message and fails.
+# cards, and every folder of the product against the most sources that it may have. Prints every violation as
+# file:line: message and fails.
 cmake_policy(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/../cmake/doors.cmake)
 
@@ -280,6 +281,24 @@ foreach(entry IN LISTS hidden_types)
   list(GET entry 3 type)
   if(type IN_LIST types AND NOT room IN_LIST rooms_of_${type})
     list(APPEND faults "${file}:${number}: ${type} is a type of ${rooms_of_${type}} already")
+  endif()
+endforeach()
+
+# A folder that a reader can survey: at most so many .cpp files.
+set(most_sources 40)
+file(GLOB_RECURSE sources RELATIVE ${ROOT} ${ROOT}/core/*.cpp ${ROOT}/devices/*.cpp ${ROOT}/study/*.cpp
+  ${ROOT}/analysis/*.cpp ${ROOT}/ui/*.cpp)
+set(folders)
+foreach(source IN LISTS sources)
+  get_filename_component(folder ${source} DIRECTORY)
+  list(APPEND folders ${folder})
+  list(APPEND sources_of_${folder} ${source})
+endforeach()
+list(REMOVE_DUPLICATES folders)
+foreach(folder IN LISTS folders)
+  list(LENGTH sources_of_${folder} count)
+  if(count GREATER most_sources)
+    list(APPEND faults "${folder}:${count}: sources, at most ${most_sources}: part the folder by ideas")
   endif()
 endforeach()
 
