@@ -124,7 +124,7 @@ ColumnsOf<ParticipantRow> participantTableColumns(const StudyData& study) {
           {.levels = {"enrolled", "active", "complete", "excluded", "withdrawn"}}},
          {"status_reason", "Why", "text", &ParticipantRow::status_reason},
          {"group",
-          "Group of the between-subjects factors; all if there is none; NA: there is no place yet, or it was given "
+          "Group of the between-subjects factors; all if there is none; NA: there is no slot yet, or it was given "
           "back",
           "text", [&study](const ParticipantRow& person) { return groupOf(study, person.participant_id); }},
          {"sequence_index", "Row of the counterbalancing square, from 0", "integer", &ParticipantRow::sequence_index},

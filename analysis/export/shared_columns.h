@@ -40,7 +40,7 @@ template <class Row>
 ColumnsOf<Row> whoColumns() {
     ColumnsOf<Row> columns = participantColumns<Row>();
     append(columns, {{"group",
-                      "Group of the between-subjects factors; all if there is none; NA: the place was given back, see "
+                      "Group of the between-subjects factors; all if there is none; NA: the slot was given back, see "
                       "order_sequence",
                       "text", &Row::group}});
     return columns;
@@ -51,7 +51,7 @@ template <class Row>
 ColumnOf<Row> sequenceColumn(const StudyData& study) {
     return {"order_sequence",
             "Row of the counterbalancing that the participant has, from 0: sequence_index of participants.csv; NA: the "
-            "place was given back, as after a session that did not complete and by exclusion",
+            "slot was given back, as after a session that did not complete and by exclusion",
             "integer", [&study](const Row& row) { return sequenceOf(study, row.participant_id); }};
 }
 
