@@ -24,7 +24,7 @@ struct NumberTable {
 /// breaks. A byte order mark and empty lines are passed over. Errors name file, line, column and value.
 Result<NumberTable> readNumbers(const std::string& path, const std::vector<std::string>& required);
 
-/// Of a table's faults the first five; the fifth then says how many more there are.
+/// First five of a table's faults; the fifth then says how many more there are.
 Errors firstFaults(Errors errors);
 
 }  // namespace passung

@@ -12,7 +12,7 @@ std::string printable(std::string_view text);
 /// The same for text of several lines: \n and \t stay, and \r if `returns`.
 std::string printableLines(std::string_view text, bool returns = false);
 
-/// Is a control character in it, other than the end of a line and the tab?
+/// Tells whether the text has a control character other than the end of a line and the tab.
 bool holdsControls(std::string_view text);
 
 /// How many bytes at the end of `text` begin a character that is cut off there.

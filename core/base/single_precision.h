@@ -7,7 +7,7 @@
 
 namespace passung {
 
-/// Of a value that is stored as a float, relative, with room for computing with it.
+/// Relative error of a value that is stored as a float, with room for computing with it.
 inline constexpr double kFloatRounding = 0x1p-24 * (1.0 + 0x1p-20);
 
 /// The number nearest to `value` that a float holds. A conversion there and back is not enough: g++ 12 leaves it out

@@ -6,14 +6,14 @@
 
 namespace passung::loop {
 
-/// When the cycles of the haptic loop are due: one a period from `first_due` on. A cycle that takes longer than its
-/// period lets the following ones pass: they are missed, not made up for, and the next is due at the next whole period.
-/// Pure arithmetic on a clock's nanoseconds; rt-safe.
+/// Times at which the cycles of the haptic loop are due: one a period from `first_due` on. A cycle that takes longer
+/// than its period lets the following ones pass: they are missed, not made up for, and the next is due at the next
+/// whole period. Pure arithmetic on a clock's nanoseconds; rt-safe.
 class Cadence {
 public:
     explicit Cadence(std::int64_t first_due) noexcept : due_(first_due) {}
 
-    /// When the next cycle is due [ns].
+    /// Time at which the next cycle is due [ns].
     std::int64_t due() const noexcept { return due_; }
 
     /// The cycle that was due has ended at `end` [ns]. Returns how many cycles after it are missed, mostly 0.

@@ -15,7 +15,7 @@ namespace passung::loop {
 
 inline constexpr std::int64_t kDisplayHz = 60;
 
-/// Does the display of a simulated person get a picture with this tick?
+/// Tells whether the display of a simulated person gets a picture with this tick.
 constexpr bool hasPicture(std::int64_t tick) noexcept {
     return tick == 0 || tick * kDisplayHz / 1000 != (tick - 1) * kDisplayHz / 1000;
 }
@@ -47,7 +47,7 @@ public:
 
     std::int64_t ticks() const { return scenes_.tick(); }
     std::uint64_t stateHash() const { return scenes_.hash(); }
-    /// As tick::SceneSequence says.
+    /// Energies as tick::SceneSequence gives them.
     std::vector<tick::PairAccount> pairs() const { return scenes_.pairs(); }
     /// Computing time of the ticks, by the wall clock.
     const TimingHistogram& timing() const { return timing_; }
@@ -83,7 +83,7 @@ public:
     /// Ends after the running cycle and releases the device.
     void stop();
 
-    /// As stop(), without waiting for it. From any thread.
+    /// Stops as stop() does, without waiting for the end. From any thread.
     void askToStop() noexcept { running_.store(false); }
 
     std::int64_t ticks() const noexcept { return ticks_.load(std::memory_order_acquire); }

@@ -18,7 +18,7 @@ public:
     std::optional<std::string> load(const std::string& name) override;
     void keep(const std::string& name, std::string_view bytes) override;
     Result<importer::ImportedMesh> importMesh(const std::string& path, double metres_per_unit) override;
-    /// Of all that was taken or kept [s], wall time.
+    /// Wall time of all that was taken or kept [s].
     double seconds() const;
 
 private:

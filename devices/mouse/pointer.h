@@ -12,13 +12,13 @@ namespace passung::mouse {
 /// The vector in its direction, at most `longest` long.
 Vec3 shortened(const Vec3& v, double longest) noexcept;
 
-/// Where somebody with mouse and keyboard wants the held part to be, and what keys act as the handle's buttons. Windows
-/// move it, a device follows it.
+/// Pose at which somebody with mouse and keyboard wants the held part, and what keys act as the handle's buttons.
+/// Windows move it, a device follows it.
 class Pointer {
 public:
     /// The held part shall be here. Any thread but the loop's.
     void place(const Pose& X_W);
-    /// By so much farther, world axes [m], and turned about its own origin by a rotation vector in world axes [rad].
+    /// Moves the wish by so much, world axes [m], turned about its own origin by a rotation vector in world axes [rad].
     /// Any thread but the loop's.
     void move(const Vec3& way, const Vec3& turn);
     /// Keys are held: from now on pass() moves it at this speed [m/s] and spin [rad/s], world axes, until they are told

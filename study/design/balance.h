@@ -17,7 +17,7 @@ struct FactorBalance {
     bool even = false;
 };
 
-/// Of everything that takes turns, for participants with these slots; none without slots.
+/// Balance of everything that takes turns, for participants with these slots; none without slots.
 std::vector<FactorBalance> balancesOf(const Design& design, std::span<const std::size_t> slots);
 
 /// How many participants show all rows in all groups equally often.

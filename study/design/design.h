@@ -62,7 +62,7 @@ struct BlockPlan {
     std::vector<std::size_t> conditions = {};  // that it has, in the order of Listed; empty: all
 };
 
-/// Does the block have this condition, in a pass or as a catch trial?
+/// Tells whether the block has this condition, in a pass or as a catch trial.
 bool hasCondition(const BlockPlan& block, std::size_t condition);
 
 /// The number of the condition among all of the study, the blocks' own ones included. @pre the block has it
@@ -119,7 +119,7 @@ struct Cells {
 };
 Cells cellsOf(const Design& design, std::size_t group, std::size_t slot, std::string_view study, std::uint64_t seed);
 
-/// Of these what the block has, in the order in which it lists its conditions.
+/// Those of the cells that the block has, in the order in which it lists its conditions.
 Cells cellsOf(const BlockPlan& block, const Cells& cells);
 
 /// `cells` parted by the levels of `factor`, levels ascending; one part without a factor.

@@ -11,7 +11,7 @@
 
 namespace passung::design {
 
-/// Who is planned for.
+/// Participant and session that are planned for.
 struct SessionKey {
     std::string_view study;        // name
     std::uint64_t seed = 0;        // of the study

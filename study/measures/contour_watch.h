@@ -18,7 +18,7 @@ public:
 
     /// Share of the line's length, 0 … 1.
     double progress() const { return place_ / length_; }
-    /// Is the proxy's origin within reach of its place at the newest record?
+    /// Tells whether the proxy's origin is within reach of its place at the newest record.
     bool following() const { return following_; }
     /// How far it is from its place at the newest record [m].
     double deviation() const { return deviation_; }

@@ -20,9 +20,9 @@ struct DetectionSettings {
     int button = 1;                                    // of the device, from 1
 };
 
-/// When stimuli begin: the first one interval after tick 0 of an attempt, intervals uniform between the two bounds,
-/// each a whole number of ticks. They follow from the attempt's seed alone, so that whoever knows it (device, session,
-/// replay) has the same ones. rt-safe.
+/// Times at which stimuli begin: the first one interval after tick 0 of an attempt, intervals uniform between the two
+/// bounds, each a whole number of ticks. They follow from the attempt's seed alone, so that whoever knows it (device,
+/// session, replay) has the same ones. rt-safe.
 class StimulusTimes {
 public:
     StimulusTimes(const DetectionSettings& settings, std::uint64_t attempt_seed) noexcept;
@@ -46,7 +46,7 @@ public:
 
     void follow(const TickRecord& record);
 
-    /// Is a stimulus on, as of the newest record?
+    /// Tells whether a stimulus is on, as of the newest record.
     bool isOn() const { return current_ && !all_[*current_].off; }
 
     /// What has come of the task, by time, for a trial from `start` to `end`; without `start` it never began. A

@@ -78,10 +78,11 @@ struct Value {
     std::optional<double> value;  // empty: not defined for this trial (e.g. insertion time without insertion)
 };
 
-/// Is the measure known of a trial that no device feels? Those of the secondary task are, where there is one.
+/// Tells whether the measure is known of a trial that no device feels: those of the secondary task are, where there is
+/// one.
 bool isKnownUnwatched(std::string_view measure);
 
-/// Does the measure count ticks with a status bit: how the loop did, not what the person did?
+/// Tells whether the measure counts ticks with a status bit: how the loop did, not what the person did.
 bool countsTicks(std::string_view measure);
 
 /// Every measure of one trial from its recorded ticks, in the order of definitions().

@@ -32,7 +32,7 @@ public:
     void follow(const TickRecord& record, std::int64_t time);
 
     Phase phase() const { return phase_; }
-    /// When the phase began.
+    /// Time at which the phase began.
     std::int64_t since() const { return since_; }
     /// The interval that was named, 1 or 2. @pre phase() is Answered
     int answer() const { return answer_; }

@@ -18,7 +18,7 @@ const char* blockOrderName(BlockOrder order);  // "williams", "permutations", "r
 
 enum class Repeat { Never, Now, AtBlockEnd };
 
-/// Who ends a rest that has lasted long enough.
+/// Person or clock that ends a rest which has lasted long enough.
 enum class RestEnds { ByTime, ByParticipant, ByExperimenter };
 const char* restEndsName(RestEnds ends);  // "time", "participant", "experimenter"
 
@@ -42,7 +42,7 @@ struct Block {
     Repeat on_timeout = Repeat::Never;
     Repeat on_invalid = Repeat::Never;  // of a trial whose attempt does not count
     int max_attempts = 3;               // of a trial, however they end
-    /// Of the shared conditions those that it has, as it lists them, those of its catch trials last; empty: all.
+    /// Shared conditions that the block has, as it lists them, those of its catch trials last; empty: all.
     std::vector<std::size_t> conditions = {};
 };
 

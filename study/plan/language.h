@@ -15,11 +15,11 @@ std::vector<std::string> languagesOf(const StudyPlan& plan);
 /// `asked`, or (empty) the first of languagesOf(). Errors: it is none of them.
 Result<std::string> chooseLanguage(const StudyPlan& plan, const std::string& asked);
 
-/// Is the study in several languages of which this is one?
+/// Tells whether the study is in several languages of which this is one.
 bool speaks(const StudyPlan& plan, const std::string& language);
 
 /// Languages that a questionnaire is asked in, each session in its own: all of a study with several of which its own
-/// is one. A slot's texts are in one.
+/// is one. A template's texts are in one.
 std::vector<std::string> languagesAsked(const StudyPlan& plan, const PlannedQuestionnaire& planned);
 
 }  // namespace passung::plan

@@ -8,7 +8,7 @@
 
 namespace passung::plan {
 
-/// Who takes part in a study. Data of different kinds is never mixed.
+/// Kind of participant. Data of different kinds is never mixed.
 enum class ParticipantKind { Real, Pilot, Simulated };
 const char* participantKindName(ParticipantKind kind);  // "real", "pilot", "simulated": as stored
 

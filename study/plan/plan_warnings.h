@@ -15,7 +15,7 @@ std::vector<std::string> conditionWarnings(std::span<const Condition> conditions
 /// of conditionWarnings(). Not empty: people and pilots cannot take part.
 std::vector<std::string> cuesWithoutOutput(std::span<const Condition> conditions);
 
-/// Can everything that the plan's cues ask for be given to a person here?
+/// Tells whether everything that the plan's cues ask for can be given to a person here.
 bool isForPeople(const StudyPlan& plan);
 
 /// Such sentences about main blocks. One that a staircase governs repeats what its tracks lack anyway.

@@ -20,7 +20,7 @@ struct SecondaryTask {
     bool any() const { return stimulus != Stimulus::None; }
 };
 
-/// Who says when a trial begins and ends: the program, which feels and sees the held part; the experimenter, for real
+/// Source of a trial's begin and end: the program, which feels and sees the held part; the experimenter, for real
 /// parts in the hand; or the clock alone, for trials in which nothing is to be handled.
 enum class TimedBy { Program, Experimenter, Clock };
 inline constexpr std::array kTimedByNames = {"program", "experimenter", "clock"};  // as stored

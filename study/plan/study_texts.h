@@ -15,7 +15,8 @@ struct StudyText {
     std::vector<std::pair<std::string, std::string>> languages;  // language, text
 };
 
-/// When instructions are shown: before the session's first trial, before the first trial of a block, after the last.
+/// Moment at which instructions are shown: before the session's first trial, before the first trial of a block, after
+/// the last.
 enum class ShowAt { SessionStart, BeforeBlock, SessionEnd };
 inline constexpr std::array kShowAtNames = {"session_start", "before_block", "session_end"};  // as stored
 inline const char* showAtName(ShowAt moment) { return kShowAtNames[static_cast<std::size_t>(moment)]; }

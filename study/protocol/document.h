@@ -10,7 +10,7 @@
 
 namespace passung::protocol {
 
-/// Where something stands in a text; line and column count from 1.
+/// Line and column of something in a text, from 1.
 struct TextPosition {
     std::string file;
     int line = 1;

@@ -42,7 +42,7 @@ public:
     /// cannot be read.
     const std::vector<shape::ThinFeature>& thin(const scene::PartSpec& part, double radius, shape::ThinIn where);
 
-    /// Was a search of thin() ended before it had come to all places?
+    /// Tells whether a search of thin() ended before it had come to all places.
     bool halfSearched(const scene::PartSpec& part) const { return half_searched_.count(geometryKey(part)) > 0; }
 
     /// Signed distance of `p` (part frame) from the part [m], positive outside; of a sheet unsigned. @pre of(part)

@@ -21,7 +21,8 @@ Errors checkQuestionnaires(const plan::StudyPlan& plan,
 /// Reads the files that the plan's questionnaires name, relative to the plan's own, and checks them, in
 /// every language that they are asked in; the plan's expanded JSON then holds their texts. `read` gives a file's bytes
 /// by its path. A plan with an error in it stays as it was.
-/// `language`: of a session, in which they are then, slots with texts in another one left out; empty: the protocol's.
+/// `language`: of a session, in which they are then, templates with texts in another one left out; empty: the
+/// protocol's.
 Result<Done> loadQuestionnaires(plan::StudyPlan& plan,
                                 const std::function<Result<std::string>(const std::string&)>& read,
                                 const std::string& language = {});

@@ -8,7 +8,8 @@
 
 namespace passung::protocol {
 
-/// Is this the text of a questionnaire file? (It has the key `questionnaire` with a name, where a study has tables.)
+/// Tells whether this is the text of a questionnaire file. (It has the key `questionnaire` with a name, where a study
+/// has tables.)
 bool isQuestionnaire(const std::string& text, const std::string& file);
 
 /// Reads the text of a questionnaire file: checks everything, also that all languages have all texts and that the

@@ -10,7 +10,7 @@
 
 namespace passung::protocol {
 
-/// Can a hand on this device do the trial? Adds an error, where the protocol says it, for
+/// Tells whether a hand on this device can do the trial. Adds an error, where the protocol says it, for
 ///   a start, target or corner of a line that the handle cannot reach: the device's workspace is a ball about the
 ///   origin of its base, and  p_B = scale⁻¹ · (X_WB⁻¹ X_WH X_DH⁻¹).p  has to lie in it, but for the task's tolerance;
 ///   a goal or an end where the held part stands in an obstacle, deeper than the tolerances allow;

@@ -13,7 +13,7 @@ namespace passung::protocol {
 /// a `scene` (nullptr: its parts are not known) it looks at what the table says by itself.
 plan::Task readTask(const StudyTables& tables, const scene::SceneSpec* scene, Errors& errors);
 
-/// Does [task] have this key where its type is this one?
+/// Tells whether [task] has this key where its type is this one.
 bool isTaskKey(const std::string& type, const std::string& key);
 
 /// The scene of the other interval of a discrimination_pair: the condition's with the keys of task.comparison.

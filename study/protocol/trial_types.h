@@ -22,7 +22,7 @@ std::span<const TrialType> trialTypes();
 
 const TrialType& typeOf(const plan::Task& task);
 
-/// Of the known measures those that a trial of one of these types can have.
+/// Known measures that a trial of one of these types can have.
 std::vector<std::string> measuresOf(std::span<const TrialType* const> types, std::span<const std::string> known);
 
 /// The types whose own measure this is; none: every trial has it.

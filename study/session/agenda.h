@@ -38,7 +38,7 @@ public:
         for (const std::size_t place : todo_) needless_[place] = needless(trials_[place]);
     }
 
-    /// Is any trial over?
+    /// Tells whether any trial is over.
     bool canGoBack() const { return !history_.empty(); }
     /// The trial that is over last. @pre canGoBack()
     std::size_t last() const { return history_.back(); }

@@ -34,7 +34,7 @@ constexpr std::optional<CommandKind> commandNamed(std::string_view name) {
     return std::nullopt;
 }
 
-/// Does the command say nothing without a text?
+/// Tells whether the command says nothing without a text.
 constexpr bool needsText(CommandKind kind) { return kind == CommandKind::Note || kind == CommandKind::Invalidate; }
 
 /// Why a command is refused.

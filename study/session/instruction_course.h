@@ -21,7 +21,7 @@ public:
     InstructionCourse(const plan::StudyPlan& plan, std::string language, bool timing_measured,
                       InstructionReader* reader, TrialSink& sink);
 
-    /// One look at the pages before the trial `next`, or (nullptr) after the last one: true while one is open.
+    /// Checks once the pages before the trial `next`, or (nullptr) after the last one: true while one is open.
     bool show(const design::PlannedTrial* next, std::int64_t session_ns);
 
 private:

@@ -21,7 +21,7 @@ struct PageRead {
     std::optional<std::int64_t> reading_ms;  // from showing the page to its acknowledgement; empty: not measured
 };
 
-/// Who shows instructions and hears when they were read; and who rests.
+/// Interface that shows instructions and hears when they were read; and who rests.
 class InstructionReader {
 public:
     virtual ~InstructionReader() = default;

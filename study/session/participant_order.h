@@ -12,7 +12,7 @@
 
 namespace passung::session {
 
-/// Where a participant stands in the design.
+/// Slot of a participant in the design.
 struct DesignPlace {
     std::size_t slot = 0;   // running number in the group, from 0: decides the rows of the squares
     std::size_t group = 0;  // index into plan::groupNames()

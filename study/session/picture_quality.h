@@ -29,7 +29,8 @@ inline constexpr const char* kQualityEvent = "picture_quality";
 /// Its fields as JSON; unfinished.cpp in study/store reads them.
 std::string qualityJson(const QualityFound& found);
 
-/// Of a note of the windows from before it was an event of its own; nothing if the note is about something else.
+/// Quality in a note of the windows, from before it was an event of its own; nothing if the note is about something
+/// else.
 std::optional<QualityFound> qualityOfNote(const std::string& note);
 
 }  // namespace passung::session

@@ -25,16 +25,16 @@ struct QuestionnaireKey {
 /// it.
 class QuestionnaireCourse {
 public:
-    /// `source`: who answers; may be null if the plan has no questionnaire. Everything outlives the desk.
+    /// `source`: who answers; may be null if the plan has no questionnaire. Everything outlives the course.
     QuestionnaireCourse(const plan::StudyPlan& plan, QuestionnaireKey key, QuestionnaireSource* source,
                         TrialSink& sink);
 
-    /// One look at what is due between the trial that was remembered last and the first one `to_do`: true while
+    /// Checks once what is due between the trial that was remembered last and the first one `to_do`: true while
     /// something is, so that the trial has to wait. Errors: an answer that its item does not offer, or what the sink
     /// refuses.
     Result<bool> ask(std::span<const design::PlannedTrial> to_do, std::int64_t session_ns);
 
-    /// Is anything due? Nothing is shown.
+    /// Tells whether anything is due. Nothing is shown.
     bool isDue(std::span<const design::PlannedTrial> to_do) const { return nextDue(to_do).has_value(); }
 
     /// A trial is over; forms may ask about it from now on.

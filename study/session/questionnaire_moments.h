@@ -18,7 +18,7 @@ std::vector<Occasion> occasionsBetween(const plan::StudyPlan& plan, const design
 /// Those whose answers are about the trial: it, its condition and block, and the session up to its end.
 std::vector<Occasion> occasionsAbout(const plan::StudyPlan& plan, const design::PlannedTrial& trial);
 
-/// Does a form of this occasion ask about the trial?
+/// Tells whether a form of this occasion asks about the trial.
 bool isAbout(const plan::StudyPlan& plan, const Occasion& occasion, const design::PlannedTrial& trial);
 
 }  // namespace passung::session

@@ -21,7 +21,7 @@ struct FinishedTrial {
     std::int64_t begun_ns = 0;  // session time
 };
 
-/// When a questionnaire is asked, and about what.
+/// Moment at which a questionnaire is asked, and what about.
 struct Occasion {
     std::size_t questionnaire = 0;            // index into the plan's
     std::optional<std::int64_t> block_index;  // empty: at the start or end of the session
@@ -57,7 +57,7 @@ struct FilledForm {
     std::string answered_by;          // "participant", "experimenter" (who read it out), "simulated"
 };
 
-/// Who answers questionnaires.
+/// Interface to whoever answers questionnaires.
 class QuestionnaireSource {
 public:
     virtual ~QuestionnaireSource() = default;

@@ -54,7 +54,7 @@ struct EarlierTrial {
     bool succeeded() const { return over && valid && outcome == measures::Outcome::Success; }
 };
 
-/// Where an interrupted session goes on.
+/// Point at which an interrupted session goes on.
 struct Resumption {
     Agenda agenda;
     std::vector<Past> past;                    // by place in the plan
@@ -73,7 +73,7 @@ Then thenAfter(const plan::Block& block, measures::Outcome outcome, bool valid, 
 /// The same of a trial whose finished attempt was made invalid.
 Then thenAfterInvalid(const plan::Block& block, int judged);
 
-/// Does a whole session need another attempt at this trial?
+/// Tells whether a whole session needs another attempt at this trial.
 bool lacks(const Staircases& staircases, const design::PlannedTrial& trial, const Past& past);
 
 /// The session's state after `attempts`, ascending by time, and the `steps` that its order took: trials come as in the

@@ -5,7 +5,7 @@
 
 namespace passung::session {
 
-/// When presses of the protocol's secondary task count.
+/// Times within which presses of the protocol's secondary task count.
 inline measures::DetectionSettings detectionSettings(const plan::SecondaryTask& task) {
     return {task.least_interval, task.most_interval, task.duration, task.earliest, task.latest, task.button};
 }

@@ -77,7 +77,7 @@ public:
     /// What is done and what is to come.
     const Agenda& agenda() const { return agenda_; }
 
-    /// Has every main trial an attempt that counts, and every track of a staircase come to its end?
+    /// Tells whether every main trial has an attempt that counts and every track of a staircase has come to its end.
     bool isWhole() const;
 
     /// Why the session failed; empty unless state() is Failed.

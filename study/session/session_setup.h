@@ -29,7 +29,7 @@ struct SessionSetup {
     TrialTimer* timer = nullptr;               // of trials that the experimenter times; null: commands do it
     std::string language = {};                 // of instructions; empty: the first that they have
     InstructionReader* reader = nullptr;       // of instructions; null: they are logged as not shown
-    /// When a device was calibrated on this machine [UTC], empty: never. Without it (virtual time) nothing is said.
+    /// Time of a device's calibration on this machine [UTC], empty: never. Without it (virtual time) nothing is said.
     std::function<std::string(const std::string& device)> calibrated_utc = {};
     bool shown = false;  // in a window, whose look is logged
 };

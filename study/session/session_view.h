@@ -43,7 +43,7 @@ struct SessionView {
     bool stopped = false;                  // an emergency stop is why the session is paused: motors are off
     std::string awaited_device = {};       // to be put in place while the session is Paused; empty: it waits for none
     std::optional<RestView> rest = {};
-    /// Of every command, by its kind, with the text that it needs and without the number of an attempt.
+    /// Permission of every command, by its kind, with the text that it needs and without the number of an attempt.
     std::array<Permission, std::size(kCommandNames)> commands = {};
 
     const Permission& permission(CommandKind kind) const { return commands[static_cast<std::size_t>(kind)]; }
@@ -51,9 +51,9 @@ struct SessionView {
     friend bool operator==(const SessionView&, const SessionView&) = default;
 };
 
-/// Where there is no session: nothing is obeyed.
+/// View where there is no session: nothing is obeyed.
 SessionView viewWithoutSession();
-/// Before it begins, while consent is asked for: it can be told not to, and nothing else.
+/// View before a session begins, while consent is asked for: only Abort is obeyed.
 SessionView viewBeforeSession();
 
 }  // namespace passung::session

@@ -10,7 +10,7 @@ namespace passung::session {
 /// empty if there is none.
 std::string staircasesText(const plan::StudyPlan& plan);
 
-/// May a session need fewer trials than are planned?
+/// Tells whether a session may need fewer trials than are planned.
 bool mayEndEarly(const plan::StudyPlan& plan);
 
 }  // namespace passung::session

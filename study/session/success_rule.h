@@ -10,7 +10,7 @@
 
 namespace passung::session {
 
-/// When a peg-in-hole trial has succeeded. All of this must hold in every tick for `hold` seconds:
+/// Rule by which a peg-in-hole trial has succeeded. All of this must hold in every tick for `hold` seconds:
 /// - the proxy's origin (the peg's tip) is at least success_fraction × insertion_depth below the bore's mouth and
 ///   in the bore (measures::tipDepthInBore);
 /// - the held part at the proxy's pose overlaps nothing by more than measures::kWallGive: a part that a soft contact

@@ -47,13 +47,13 @@ public:
     measures::TrialContext context() const;
     const std::string& abortReason() const { return abort_reason_; }
 
-    /// When the trial started [periods since the attempt's tick 0]; none: it did not.
+    /// Time at which the trial started [periods since the attempt's tick 0]; none: it did not.
     std::optional<std::int64_t> startTime() const { return start_time_; }
 
-    /// When the attempt ended [periods since its tick 0]. @pre ended()
+    /// Time at which the attempt ended [periods since its tick 0]. @pre ended()
     std::int64_t endTime() const { return end_time_; }
 
-    /// Of the periods between the trial's start and its end so many had no tick.
+    /// Number of periods between the trial's start and its end that had no tick.
     std::int64_t missedCycles() const { return clock_.missed() - missed_at_start_; }
     /// Length of the trial [periods]; 0 if it never started. @pre ended()
     std::int64_t length() const { return start_time_ ? end_time_ - *start_time_ : 0; }

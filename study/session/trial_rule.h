@@ -41,7 +41,7 @@ public:
     /// How it ends at this record, if it does; appends what happened. `time`: of the record [periods].
     std::optional<TrialState> follow(const TickRecord& record, std::int64_t time, std::vector<TrialEvent>& events);
 
-    /// Has the type a time-out of its own?
+    /// Tells whether the type has a time-out of its own.
     bool timesItself() const { return std::holds_alternative<Pair>(form_); }
 
     /// Adds what its measures need to know.

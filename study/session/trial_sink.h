@@ -28,7 +28,8 @@ struct AttemptStart {
     std::optional<StaircaseStep> staircase = {};
 };
 
-/// Who says what becomes of a trial. Only attempts that the protocol decides on count for its max_attempts.
+/// Person or rule that says what becomes of a trial. Only attempts that the protocol decides on count for its
+/// max_attempts.
 enum class Decider { Protocol, Experimenter, Interruption };
 
 struct AttemptEnd {
@@ -68,7 +69,7 @@ struct Event {
     std::string payload_json = "{}";
 };
 
-/// Where a session's data goes. Calls return quickly; those that give a Result<Done> return when the
+/// Destination of a session's data. Calls return quickly; those that give a Result<Done> return when the
 /// data is durable.
 class TrialSink {
 public:

@@ -8,8 +8,8 @@
 
 namespace passung::session {
 
-/// Who times the trials that the experimenter would (plan::TimedBy::Experimenter), where nobody is there to send
-/// commands: in virtual time.
+/// Source of begin and end of the trials that the experimenter would time (plan::TimedBy::Experimenter), where nobody
+/// is there to send commands: in virtual time.
 class TrialTimer {
 public:
     virtual ~TrialTimer() = default;

@@ -4,7 +4,7 @@
 
 namespace passung::cli {
 
-/// Prints how even the orders of those are who have a place in the design, for each version of the protocol and kind of
+/// Prints how even the orders of those are who have a slot, for each version of the protocol and kind of
 /// participant; that several versions count their places apart is said too.
 void printTakenPlaces(const store::StoreReader& reader);
 

@@ -50,7 +50,7 @@ struct ParticipantEntry {
     const SessionEntry* resumable() const;
 };
 
-/// A place of the design; real participants take them in this order.
+/// A slot; real participants take them in this order.
 struct PlaceEntry {
     session::DesignPlace at;
     std::string owner;  // empty: free

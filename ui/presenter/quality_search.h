@@ -30,7 +30,7 @@ public:
     /// The next picture with the candidate took so long [s].
     void take(double seconds);
     bool done() const { return done_; }
-    /// That the candidate has reached. @pre done()
+    /// Pictures a second that the candidate has reached. @pre done()
     double picturesPerSecond() const { return reached_; }
 
 private:

@@ -23,7 +23,7 @@ struct Recorded {
 };
 Result<Recorded> readRecorded(const store::StoreReader& reader);
 
-/// The measure that a look at them begins with: how long it took, if that varies, else the first that does.
+/// The measure that summaries begin with: how long a trial took, if that varies, else the first measure that does.
 std::size_t firstMeasure(const Recorded& recorded);
 
 /// The attempts of a session, by trial, then by number.

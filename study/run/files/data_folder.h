@@ -4,7 +4,7 @@
 
 namespace passung::run {
 
-/// Where this user's data lies: $XDG_DATA_HOME/passung, or ~/.local/share/passung; empty if neither variable names a
+/// Folder of this user's data: $XDG_DATA_HOME/passung, or ~/.local/share/passung; empty if neither variable names a
 /// folder.
 std::filesystem::path dataFolder();
 

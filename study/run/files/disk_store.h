@@ -19,8 +19,8 @@ private:
     std::filesystem::path folder_;
 };
 
-/// In $XDG_CACHE_HOME/passung, or ~/.cache/passung; nothing if neither variable names a folder, or if the variable
-/// PASSUNG_NO_CACHE is set and not empty.
+/// Store in $XDG_CACHE_HOME/passung, or ~/.cache/passung; nothing if neither variable names a folder, or if the
+/// variable PASSUNG_NO_CACHE is set and not empty.
 std::unique_ptr<DiskStore> openDiskStore();
 
 }  // namespace passung::run

@@ -18,13 +18,13 @@ public:
     /// `meshes`: folder that the protocols' mesh paths start from; empty: here, else beside the database.
     StoredPlans(const store::StoreReader& reader, const std::string& meshes, const ImportLimits& limits = {});
 
-    /// Its questionnaires are not opened. Errors: as of draft() and freeze().
+    /// Plan of the protocol with this hash; its questionnaires are not opened. Errors: as of draft() and freeze().
     Result<plan::FrozenPlan> plan(const std::string& sha256);
 
     /// The stored text, read with the stable stiffness that was kept. Errors: the protocol is not there, or a mesh file
     /// of it is missing or another one than at the time.
     Result<plan::StudyPlan> draft(const std::string& sha256) const;
-    /// What is kept for it.
+    /// Values that the database keeps for the protocol.
     Result<KeptPlan> kept(const std::string& sha256) const;
 
 private:

@@ -14,7 +14,7 @@
 
 namespace passung::run {
 
-/// Where the calibration of a device is kept: in $XDG_DATA_HOME/passung, or ~/.local/share/passung; empty if neither
+/// Path of a device's calibration: in $XDG_DATA_HOME/passung, or ~/.local/share/passung; empty if neither
 /// variable names a folder.
 std::string calibrationPath(const std::string& device);
 
@@ -26,7 +26,7 @@ Result<protocol::Calibration> findStiffness(const simulated::DeviceParams& devic
 /// Keeps it for all later runs of this user. Errors: it cannot be written.
 Result<Done> keepCalibration(const protocol::Calibration& calibration);
 
-/// When the device was last calibrated on this machine [Unix time, ms]; nothing: never.
+/// Time of the device's last calibration on this machine [Unix time, ms]; nothing: never.
 std::optional<std::int64_t> calibratedAt(const std::string& device);
 
 /// What an experimenter is to know who puts the device in place for a session that began at `began_ms` [Unix time]:
@@ -40,7 +40,7 @@ Result<std::vector<DeviceDescription>> withCalibrations(std::vector<DeviceDescri
 /// The presets with the stable maxima that a study's database keeps. One from before they were kept has none.
 std::vector<DeviceDescription> devicesAsKept(std::span<const plan::StableStiffness> kept);
 
-/// Do both stand for the same maxima, whatever their origin?
+/// Tells whether both stand for the same maxima, whatever their origin.
 bool sameStiffness(std::span<const plan::StableStiffness> a, std::span<const plan::StableStiffness> b);
 
 /// What differs between the maxima in force now and those that the study keeps, a sentence each.

@@ -33,7 +33,7 @@ public:
 
     /// Number for an attempt that is to be shown; no two are alike. The session's thread.
     std::int64_t expect() { return ++expected_; }
-    /// Has the display had a picture of this attempt, or of a later one? The session's thread.
+    /// Tells whether the display has had a picture of this attempt, or of a later one. The session's thread.
     bool hasShown(std::int64_t attempt) const { return shown_.load() >= attempt; }
     /// Pictures that show a newer tick than the one before, the oldest first, as many as fit, each once. The session's
     /// thread.
@@ -61,8 +61,8 @@ struct PictureTimes {
     std::int64_t cued = 0;  // of them: drawn with the visual cue above 0
 };
 
-/// Of the pictures of an attempt whose first tick was at `zero_ns`: before the first one the screen shows the scene as
-/// at that tick.
+/// Ages of the pictures of an attempt whose first tick was at `zero_ns`: before the first one the screen shows the
+/// scene as at that tick.
 PictureTimes timesBetween(std::span<const Picture> pictures, std::int64_t zero_ns, std::int64_t from_ns,
                           std::int64_t to_ns);
 

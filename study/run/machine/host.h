@@ -4,7 +4,7 @@
 
 namespace passung::run {
 
-/// This machine's system, without its name: "Linux 6.1.0 x86_64".
+/// System of this machine, without the machine's name: "Linux 6.1.0 x86_64".
 std::string hostText();
 
 /// The same with the number of its processors.

@@ -26,7 +26,7 @@ struct TickCost {
 
     static constexpr int kRuns = 3;            // a tick's time is the least of so many equal runs
     static constexpr int kWantedTicks = 2000;  // of contact
-    /// Of a hundred ticks 99 take less than the millisecond that they have.
+    /// Tells whether 99 of a hundred ticks take less than the millisecond that they have.
     bool fits() const { return p99_us < 1000.0; }
 };
 

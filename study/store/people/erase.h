@@ -7,7 +7,7 @@
 
 namespace passung::store {
 
-/// Deletes the participant with everything that hangs on them, frees their place in the design, leaves a tombstone in
+/// Deletes the participant with everything that hangs on them, frees their slot, leaves a tombstone in
 /// the audit (see tombstone.h: the identity alone, no code) and writes the file anew, so that no byte of them remains
 /// in it nor beside it. Needs room for a second copy, and nobody else may have the file open. For this room only:
 /// throws. Returns the identity.

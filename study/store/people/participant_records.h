@@ -32,7 +32,7 @@ public:
     /// Takes part no more; what is there stays in the analysis.
     Result<Done> withdraw(const std::string& code, const std::string& reason);
 
-    /// What is there stays and counts nowhere; the place in the design is free again. `action` is what the audit calls
+    /// What is there stays and counts nowhere; the slot is free again. `action` is what the audit calls
     /// it: "exclude", or "withdraw" where the participant asked for it.
     Result<Done> exclude(const std::string& code, const std::string& reason, const std::string& action = "exclude");
 

@@ -7,7 +7,7 @@
 
 namespace passung::store {
 
-/// Takes an exclusion back: data and status are as before, and the place in the design too unless somebody else has it
+/// Takes an exclusion back: data and status are as before, and the slot too unless somebody else has it
 /// by now. Returns whether it has. Throws for somebody who is not excluded, or who asked for it. For this room only.
 bool readmit(const Database& database, const Actor& actor, const std::string& code, const std::string& reason);
 

@@ -33,7 +33,7 @@ struct Unfinished {
 /// its participant has begun another one since.
 Unfinished readUnfinished(const Database& database, const std::string& session_id, const std::string& now_utc);
 
-/// It runs again: what its end had set is taken back.
+/// Runs the session again: what its end had set is taken back.
 void reopenSession(const Database& database, const std::string& session_id);
 
 }  // namespace passung::store

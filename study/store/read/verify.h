@@ -8,7 +8,7 @@
 
 namespace passung::store {
 
-/// What a look at every hash, checksum and page of a database found.
+/// Findings of a check of every hash, checksum and page of a database.
 struct Verification {
     std::vector<std::string> damages;     // a line each: "S001, session 1, trial 4, attempt 1, samples: …"
     std::vector<std::string> not_hashed;  // what has no hashes to compare: "S001, session 1"

@@ -4,7 +4,7 @@
 
 namespace passung::store {
 
-/// Who does something, and when.
+/// Person who does something, and the time.
 struct Actor {
     std::string name;
     std::string now_utc;

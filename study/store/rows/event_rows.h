@@ -20,7 +20,7 @@ inline constexpr const char* kEventUtc =
 void insertEvent(const Database& database, std::int64_t segment_id, const session::Event& event,
                  const std::optional<std::string>& utc);
 
-/// By participant and session, in the order of time.
+/// Reads the events by participant and session, in the order of time.
 std::vector<EventRow> readEvents(const Database& database);
 
 }  // namespace passung::store

@@ -10,7 +10,7 @@ class Database;
 
 // What protocols plan, as rows. For this room only: whatever touches the database throws.
 
-/// Of the plan's main blocks those without a staircase.
+/// Main blocks of the plan without a staircase.
 std::vector<std::string> readMainBlocks(const Database& database, const std::string& expanded_json);
 std::vector<ConditionRow> readConditions(const Database& database);      // those that sessions plan
 std::vector<PlannedCellRow> readPlannedCells(const Database& database);  // by participant, session, block, condition

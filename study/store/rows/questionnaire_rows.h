@@ -19,7 +19,7 @@ void insertQuestionnaires(const Database& database, const plan::StudyPlan& plan)
 /// and answers to two wordings must not mix.
 void requireQuestionnaires(const Database& database, const std::string& protocol_sha256, const plan::StudyPlan& plan);
 
-/// When a questionnaire was filled.
+/// Times at which a questionnaire was filled.
 struct FormUtc {
     std::string started;  // unless an event of the segment says when the form was shown
     std::string completed;
@@ -30,7 +30,7 @@ struct FormUtc {
 void insertQuestionnaireRun(const Database& database, const std::string& session_id, std::int64_t segment_id,
                             const session::QuestionnaireRun& run, const FormUtc& utc);
 
-/// By participant and session, then as they were asked; answers as they were presented, scores by name.
+/// Reads by participant and session, then as asked; answers as presented, scores by name.
 std::vector<QuestionnaireRunRow> readQuestionnaireRuns(const Database& database);
 
 }  // namespace passung::store

@@ -16,7 +16,7 @@ namespace passung::store {
 void insertDetections(const Database& database, std::int64_t attempt_id, std::int64_t start_ns,
                       const std::vector<measures::Detection>& detections);
 
-/// By participant, session, trial, attempt, time.
+/// Reads by participant, session, trial, attempt, time.
 std::vector<DetectionRow> readDetections(const Database& database);
 
 }  // namespace passung::store

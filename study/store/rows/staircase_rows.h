@@ -18,10 +18,10 @@ void insertStaircaseStep(const Database& database, const std::string& session_id
 /// What came of it. @pre in the transaction that ends the attempt
 void storeStaircaseAnswer(const Database& database, std::int64_t attempt_id, const session::StaircaseAnswer& answer);
 
-/// By protocol, as it lists them.
+/// Reads staircases by protocol, as it lists them.
 std::vector<StaircaseTrackRow> readStaircaseTracks(const Database& database);
 
-/// By attempt.
+/// Reads steps by attempt.
 std::vector<StaircaseStepRow> readStaircaseSteps(const Database& database);
 
 }  // namespace passung::store

@@ -7,7 +7,7 @@ namespace passung::store {
 
 class Database;
 
-/// Where the copy of a database lies: beside it (links resolved), with `.backup` after its name; its SHA-256 in
+/// Path of a database's copy: beside the database (links resolved), with `.backup` after its name; its SHA-256 in
 /// `<backup>.sha256`, as sha256sum writes and checks it. To go back to it, copy it over the database.
 std::string backupPath(const std::string& database_path);
 

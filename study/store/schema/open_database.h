@@ -27,7 +27,7 @@ enum class OlderFile { UpgradeCopy, Refuse };
 /// How far a file has to be sound to be opened: pages and rows; pages, whatever rows hold; no more than its beginning.
 enum class ReadCheck { Pages, Structure, None };
 
-/// Are the file's pages sound? Faults of single rows and of indices are not of them.
+/// Tells whether the file's pages are sound. Faults of single rows and of indices are not of them.
 bool pagesAreSound(const Database& database);
 
 /// Rows of `table` that belong to no row of `parent`: told once a pair.

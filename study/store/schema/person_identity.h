@@ -11,7 +11,7 @@ namespace passung::store {
 // nothing about them follows; of simulated participants a hash of study, seed and code, so that equal runs give equal
 // files. For this room only: the functions throw.
 
-/// Of somebody who is enrolled now.
+/// Identity of somebody who is enrolled now.
 std::string newIdentity(const Database& database, const std::string& code, const std::string& kind);
 
 /// Of everybody in the database `schema` who has none: participants of programs that knew no identities. Every copy of

@@ -24,7 +24,7 @@ private:
     int descriptor_ = -1;
 };
 
-/// Does a process hold that lock, or one that this user may not look at? `database_path`: links resolved.
+/// Tells whether a process holds that lock, or one that this user may not look at. `database_path`: links resolved.
 bool isBeingWritten(const std::string& database_path);
 
 }  // namespace passung::store

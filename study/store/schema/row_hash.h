@@ -10,7 +10,7 @@
 
 namespace passung::store {
 
-// SHA-256 of every row that belongs to no session: protocols, conditions, people, places of the design … kept by what
+// SHA-256 of every row that belongs to no session: protocols, conditions, people, slots … kept by what
 // names the row, whatever its number. For this room only: the functions throw.
 
 /// From now on every transaction of this connection keeps the hashes of the study's rows that it adds or changes. A row

@@ -166,9 +166,9 @@ private:
     bool kept_ = false;
 };
 
-/// Is the file no sound database, as opposed to a disk, another program or a statement that is at fault?
+/// Tells whether the file is no sound database, as opposed to a disk, another program or a statement at fault.
 bool isDamage(const SqliteError& error);
-/// Is the disk, memory or another program at fault, whatever the file holds?
+/// Tells whether the disk, memory or another program is at fault, whatever the file holds.
 bool isOfTheDisk(const SqliteError& error);
 
 /// A readable error for `path`.

@@ -16,8 +16,8 @@ namespace passung::store {
 /// taken in in a private copy.
 std::unique_ptr<Database> openUntouched(const std::string& path);
 
-/// Does SQLite leave the file as it is where a connection that writes another one attaches it? Not if it holds a log or
-/// a journal, and not at all where this user may not write.
+/// Tells whether SQLite leaves the file as it is where a connection that writes another one attaches it: not if it
+/// holds a log or a journal, and not at all where this user may not write.
 bool staysUntouched(const std::string& path);
 
 /// The same data in a file of our own, which goes with the connection and may be written.

@@ -13,7 +13,7 @@ class UtcClock {
 public:
     using Now = std::function<std::int64_t()>;  // UTC by the machine's clock, in milliseconds since 1970
 
-    /// When something happened. Stamps of one clock never go backwards.
+    /// Time at which something happened. Stamps of one clock never go backwards.
     struct Stamp {
         std::string utc;
         std::string machine_utc;  // what the machine's clock says, if it was set back before `utc` since the last stamp
@@ -30,9 +30,9 @@ public:
     Epoch epoch() const { return epoch_; }
     /// UTC `t_ns` after zero as `2000-01-01T00:00:12.345Z`.
     std::string at(std::int64_t t_ns) const;
-    /// Is the wall clock read at every stamp?
+    /// Tells whether the wall clock is read at every stamp.
     bool runs() const { return static_cast<bool>(now_); }
-    /// Of what happens now, at session time `t_ns`, which decides where no clock runs.
+    /// Stamp of what happens now, at session time `t_ns`, which decides where no clock runs.
     Stamp stamp(std::int64_t t_ns);
 
 private:

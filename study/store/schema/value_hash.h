@@ -31,7 +31,7 @@ inline const std::string kSamplesUnit = ", samples";  // end of the name of such
 /// What a session consists of, with names that do not depend on numbers of rows.
 struct SessionValues {
     std::vector<ValueRow> rows;
-    /// Of tables that others refer to, by number: "trial 4, attempt 1".
+    /// Parts of tables that others refer to, by number: "trial 4, attempt 1".
     std::map<std::string, std::map<std::int64_t, std::string>> names;
 };
 SessionValues sessionValues(const Database& database, const std::vector<SessionTable>& tables,

@@ -7,8 +7,8 @@
 
 namespace passung::store {
 
-/// Has the session in the attached database `other` anything that it has not in `one`? Remarks on it apart. For this
-/// room only, as below: throws.
+/// Tells whether the session in the attached database `other` has anything that it has not in `one`, remarks apart. For
+/// this room only, as below: throws.
 bool sessionLacks(const Database& database, const std::string& one, const std::string& other, const std::string& id);
 
 /// Copies a session with all that belongs to it from the attached database `source` into the main one, under numbers

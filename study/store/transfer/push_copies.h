@@ -32,7 +32,7 @@ inline std::string nameOf(const TableColumn& column) { return column.name; }
 
 std::string typeThere(const std::string& type);
 
-/// As texts that PostgreSQL reads.
+/// Values as texts that PostgreSQL reads.
 Values valuesOf(const Statement& row, const std::vector<TableColumn>& columns);
 
 /// Rows that do not belong to a session. Their numbers mean nothing outside this file and stay here.

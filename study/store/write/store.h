@@ -81,8 +81,8 @@ public:
     /// mean in this database, for good. None in protocols from before revision 4.
     Result<std::vector<plan::StableStiffness>> stableStiffness(const std::string& protocol_sha256);
 
-    /// May somebody of this kind, enrolled or not, begin a session of the protocol? Nothing is stored. Errors:
-    /// excluded, withdrawn, or a required clause of consent without a yes.
+    /// Checks whether somebody of this kind, enrolled or not, may begin a session of the protocol. Nothing is stored.
+    /// Errors: excluded, withdrawn, or a required clause of consent without a yes.
     Result<Done> checkAdmission(const std::string& protocol_sha256, const std::string& code,
                                 plan::ParticipantKind kind);
 
@@ -98,7 +98,7 @@ public:
     /// stratum the kind of participant; a further round of it if none is free. It is theirs for good once a session
     /// completes; as long as none does, a session that does not complete gives it back. Refused to whoever has
     /// completed the protocol. Each kind of participant has slots of its own, so that simulated people never use up a
-    /// place of the design.
+    /// slot.
     /// `fits`: which free slots may be taken; empty: all.
     Result<Slot> assignSlot(const std::string& protocol_sha256, const std::string& participant,
                             const std::function<bool(const Slot&)>& fits = {});
