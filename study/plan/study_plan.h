@@ -92,7 +92,7 @@ const char* momentName(Moment moment);  // "session_start", …: as stored
 
 /// A questionnaire and when it is asked.
 struct PlannedQuestionnaire {
-    std::string file, texts;  // as the protocol writes them; texts: the lab's, for a slot
+    std::string file, texts;  // as the protocol writes them; texts: the lab's, for a template
     std::string language;
     Moment moment = Moment::SessionEnd;
     std::string block;                     // whose moment it is; empty: every main block's

@@ -20,15 +20,15 @@ inline constexpr std::array kConditionKeys{
     Key{"feedback", "result", KeyType::Choice, {}, "none|outcome|time", "none", "Feedback to the participant after a trial, until the next one begins: nothing, how the trial ended, or also how long the trial took."},
 
     Key{"secondary", "stimulus", KeyType::Choice, {}, "none|visual|vibrotactile|audio", "none", "Stimulus that a button answers; its command, 0 or 1, is a column of the exported samples. Windows play audio; visual and vibrotactile have no output yet: check warns, and only simulated participants can run them. A block's or a level's `set` turns it on where it is wanted."},
-    Key{"secondary", "interval_min_s", KeyType::Number, {0.1, 600}, "", "3", "Least time between two onsets; they are drawn uniformly, the first one counts from the attempt's first tick."},
+    Key{"secondary", "interval_min_s", KeyType::Number, {0.1, 600}, "", "3", "Least time between two onsets. Times are drawn uniformly; the first counts from the attempt's first tick."},
     Key{"secondary", "interval_max_s", KeyType::Number, {0.1, 600}, "", "5", "Longest time between two stimuli."},
     Key{"secondary", "stimulus_ms", KeyType::Number, {1, 10000}, "", "1000", "Duration of a stimulus that is not answered."},
-    Key{"secondary", "response_min_ms", KeyType::Number, {0, 10000}, "", "100", "An earlier press after an onset is a false alarm."},
-    Key{"secondary", "response_max_ms", KeyType::Number, {1, 10000}, "", "2500", "A stimulus without response by then is a miss."},
+    Key{"secondary", "response_min_ms", KeyType::Number, {0, 10000}, "", "100", "Shortest response; an earlier press after an onset is a false alarm."},
+    Key{"secondary", "response_max_ms", KeyType::Number, {1, 10000}, "", "2500", "Longest response; a stimulus without response by then is a miss."},
     Key{"secondary", "button", KeyType::Integer, {1, 24}, "", "1", "Number of the device's button, from 1."},
 
     Key{"instruction", "moment", KeyType::Choice, {}, "session_start|before_block|session_end", "!", "Moment at which the page is shown: before the session's first trial, before the first trial of `block`, after the last trial. Logged with who read it and, in real time, for how long."},
-    Key{"instruction", "block", KeyType::Name, {}, "", "(only before_block)", "The block."},
+    Key{"instruction", "block", KeyType::Name, {}, "", "(only before_block)", "Block before which the page is shown."},
     Key{"instruction", "text", KeyType::Name, {}, "", "!", "Name of a text."},
     Key{"instruction", "picture", KeyType::Text, {}, "", "(none)", "PNG or JPEG file, relative to the study's. Its SHA-256 is stored with the study, which refuses another content later."},
 };

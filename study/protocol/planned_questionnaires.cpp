@@ -42,17 +42,17 @@ public:
         const auto text = open(planned, "file", planned.file);
         if (!text) return;
         const std::string path = pathOf(planned.file);
-        // A slot's language is that of the lab's texts.
+        // A template's language is that of the lab's texts.
         auto definition = readQuestionnaire(*text, path, "");
         if (!definition) return add(definition.errors());
-        const bool slot = definition->slot;
-        if (slot && planned.texts.empty())
-            return fail(planned, "texts", "", "required: " + definition->key + " is a slot for the lab's texts");
-        if (!slot && !planned.texts.empty())
+        const bool is_template = definition->is_template;
+        if (is_template && planned.texts.empty())
+            return fail(planned, "texts", "", "required: " + definition->key + " is a template for the lab's texts");
+        if (!is_template && !planned.texts.empty())
             return fail(planned, "texts", planned.texts, definition->key + " has texts of its own");
         JsonObject source;
         source.text("definition", *text);
-        if (slot) {
+        if (is_template) {
             const auto texts = open(planned, "texts", planned.texts);
             if (!texts) return;
             definition = withTexts(*std::move(definition), *texts, pathOf(planned.texts));
@@ -65,7 +65,7 @@ public:
             return fail(planned, "language", planned.language,
                         fmt::format("there are no texts of {} in this language", definition->key));
         for (const std::string& language : plan::languagesAsked(plan_, planned))
-            if (!slot && readQuestionnaire(*text, path, language)->language != language)
+            if (!is_template && readQuestionnaire(*text, path, language)->language != language)
                 fail(planned, "language", language,
                      fmt::format("there are no texts of {} in this language of the study", definition->key));
         planned.definition = *std::move(definition);
@@ -108,18 +108,18 @@ void speakLanguage(const plan::StudyPlan& plan, const std::string& language,
         if (plan::speaks(plan, planned.language)) planned.language = language;
 }
 
-/// The lab's texts of a slot are in one language each: a session has those in its own.
+/// The lab's texts of a template are in one language each: a session has those in its own.
 void checkSlots(const plan::StudyPlan& plan, const std::vector<plan::PlannedQuestionnaire>& all, Errors& errors) {
-    for (const plan::PlannedQuestionnaire& slot : all) {
-        if (slot.texts.empty() || !plan::speaks(plan, slot.language)) continue;
+    for (const plan::PlannedQuestionnaire& filled : all) {
+        if (filled.texts.empty() || !plan::speaks(plan, filled.language)) continue;
         for (const std::string& language : plan.languages) {
             const bool there = std::any_of(all.begin(), all.end(), [&](const plan::PlannedQuestionnaire& other) {
-                return other.file == slot.file && other.moment == slot.moment && other.block == slot.block &&
+                return other.file == filled.file && other.moment == filled.moment && other.block == filled.block &&
                        other.language == language;
             });
             if (there) continue;
-            errors.push_back(errorAt({plan.source_path, slot.line, slot.column}, "questionnaire.texts",
-                                     fmt::format("\"{}\"", slot.texts),
+            errors.push_back(errorAt({plan.source_path, filled.line, filled.column}, "questionnaire.texts",
+                                     fmt::format("\"{}\"", filled.texts),
                                      fmt::format("the study is also in \"{}\": another [[questionnaire]] has to give "
                                                  "the texts in that language",
                                                  language)));

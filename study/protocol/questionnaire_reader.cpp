@@ -86,10 +86,10 @@ private:
         definition_.licence = root_.text("licence");
         definition_.citation = root_.text("citation");
         definition_.shuffled = root_.text("order") == "random";
-        definition_.slot = root_.boolean("slot");
+        definition_.is_template = root_.boolean("slot");
         definition_.polarity_from_texts = root_.boolean("polarity_from_texts");
-        if (definition_.polarity_from_texts && !definition_.slot)
-            root_.fail("polarity_from_texts", "only a slot gets texts from elsewhere");
+        if (definition_.polarity_from_texts && !definition_.is_template)
+            root_.fail("polarity_from_texts", "is for templates (slot = true): only they get texts from elsewhere");
     }
 
     /// A text in the language asked for; empty if absent or wrong.
@@ -163,9 +163,10 @@ private:
         if (read.has("high_anchor")) item.response.high_anchor = localText(read, "high_anchor");
         if (item.reversed && !hasLimits(item.response.kind)) read.fail("reversed", "only a number can be reversed");
         const bool pair = item.response.kind == AnswerKind::Pair;
-        if (!definition_.slot && !pair && item.text.empty())
-            read.fail("text", "required: only a slot has items without");
-        if (definition_.slot && read.has("text")) read.fail("text", "a slot takes the texts from the lab's file");
+        if (!definition_.is_template && !pair && item.text.empty())
+            read.fail("text", "required: only a template (slot = true) has items without");
+        if (definition_.is_template && read.has("text"))
+            read.fail("text", "a template (slot = true) takes the texts from the lab's file");
         if (read.has("felt")) item.felt = feltNamed(read.text("felt"));
         definition_.items.push_back(std::move(item));
     }

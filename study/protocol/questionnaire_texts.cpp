@@ -12,14 +12,16 @@ namespace {
 
 using namespace questionnaire;
 
-void checkHead(const TableReader& read, const Definition& slot) {
-    if (read.has("texts_for") && read.text("texts_for") != slot.key)
-        read.fail("texts_for", fmt::format("must be \"{}\": the questionnaire that these texts are for", slot.key));
+void checkHead(const TableReader& read, const Definition& definition) {
+    if (read.has("texts_for") && read.text("texts_for") != definition.key)
+        read.fail("texts_for",
+                  fmt::format("must be \"{}\": the questionnaire that these texts are for", definition.key));
     const auto check = [&](const char* name, double Response::*limit) {
         const auto differs = [&](const Item& item) { return item.response.*limit != read.number(name); };
         if (!read.has(name)) return;
-        if (const auto item = std::find_if(slot.items.begin(), slot.items.end(), differs); item != slot.items.end())
-            read.fail(name, fmt::format("{} is scored for answers from {} to {}", slot.key, item->response.low,
+        if (const auto item = std::find_if(definition.items.begin(), definition.items.end(), differs);
+            item != definition.items.end())
+            read.fail(name, fmt::format("{} is scored for answers from {} to {}", definition.key, item->response.low,
                                         item->response.high));
     };
     check("low", &Response::low);
@@ -27,59 +29,59 @@ void checkHead(const TableReader& read, const Definition& slot) {
 }
 
 /// Puts one text into its item; the item's index, if it is one.
-std::optional<std::size_t> readText(const Node& table, Definition& slot, Errors& errors) {
+std::optional<std::size_t> readText(const Node& table, Definition& definition, Errors& errors) {
     const TableReader read(table, {"questionnaire_text"}, "item", errors);
-    const auto index = itemNamed(slot, read.text("id"));
+    const auto index = itemNamed(definition, read.text("id"));
     if (!index) {
-        if (read.has("id")) read.fail("id", fmt::format("{} has no item with this id", slot.key));
+        if (read.has("id")) read.fail("id", fmt::format("{} has no item with this id", definition.key));
         return std::nullopt;
     }
-    Item& item = slot.items[*index];
+    Item& item = definition.items[*index];
     if (!item.text.empty()) read.fail("id", "two texts are for this item");
     item.text = read.text("text");
     if (read.has("low_anchor")) item.response.low_anchor = read.text("low_anchor");
     if (read.has("high_anchor")) item.response.high_anchor = read.text("high_anchor");
-    if (read.has("reversed") && !slot.polarity_from_texts)
-        read.fail("reversed", fmt::format("{} says itself which items are reversed", slot.key));
-    else if (slot.polarity_from_texts)
+    if (read.has("reversed") && !definition.polarity_from_texts)
+        read.fail("reversed", fmt::format("{} says itself which items are reversed", definition.key));
+    else if (definition.polarity_from_texts)
         item.reversed = read.boolean("reversed");
     return index;
 }
 
 /// Items in the order of the lab's file; scales and golden vectors follow them.
-void reorder(Definition& slot, const std::vector<std::size_t>& order) {
+void reorder(Definition& definition, const std::vector<std::size_t>& order) {
     std::vector<std::size_t> place(order.size());
     std::vector<Item> items;
     for (std::size_t i = 0; i < order.size(); ++i) {
         place[order[i]] = i;
-        items.push_back(std::move(slot.items[order[i]]));
+        items.push_back(std::move(definition.items[order[i]]));
     }
-    slot.items = std::move(items);
-    for (Scale& scale : slot.scales)
+    definition.items = std::move(items);
+    for (Scale& scale : definition.scales)
         for (std::size_t& item : scale.items) item = place[item];
     // They were checked against the definition's own polarity.
-    slot.golden.clear();
+    definition.golden.clear();
 }
 
 }  // namespace
 
-Result<Definition> withTexts(Definition slot, const std::string& text, const std::string& file) {
+Result<Definition> withTexts(Definition definition, const std::string& text, const std::string& file) {
     const auto document = parseDocument(text, file);
     if (!document) return document.errors();
     Errors errors;
     const TableReader read(*document, {"questionnaire_texts"}, "", errors);
-    checkHead(read, slot);
-    slot.language = read.text("language");
-    if (read.has("instruction")) slot.instruction = read.text("instruction");
+    checkHead(read, definition);
+    definition.language = read.text("language");
+    if (read.has("instruction")) definition.instruction = read.text("instruction");
     std::vector<std::size_t> order;
     for (const Node& table : read.items("item"))
-        if (const auto index = readText(table, slot, errors)) order.push_back(*index);
-    for (const Item& item : slot.items)
+        if (const auto index = readText(table, definition, errors)) order.push_back(*index);
+    for (const Item& item : definition.items)
         if (read.has("item") && item.text.empty()) read.fail("item", fmt::format("the text of {} is missing", item.id));
     tidy(errors);
     if (!errors.empty()) return errors;
-    reorder(slot, order);
-    return slot;
+    reorder(definition, order);
+    return definition;
 }
 
 }  // namespace passung::protocol

@@ -15,9 +15,9 @@ using namespace ranges;
 // clang-format off
 inline constexpr std::array kSceneKeys{
     Key{"scene", "unit", Choice, kAny, "um|mm|cm|m|in", "mm", "Unit of lengths without one in their key: shapes, positions, meshes that do not say theirs."},
-    Key{"scene", "part", Tables, kAny, "", "!", "The parts; exactly one is held."},
+    Key{"scene", "part", Tables, kAny, "", "!", "Parts of the scene; exactly one is held."},
     Key{"scene", "contact", Table, kAny, "", "(its defaults)", "Method, coupling and accuracy of contact."},
-    Key{"scene", "device", Table, kAny, "", "(no preset)", "The haptic device and its limits; a study needs a preset."},
+    Key{"scene", "device", Table, kAny, "", "(no preset)", "Haptic device and its limits; a study needs a preset."},
     Key{"scene", "registration", Table, kAny, "", "(its defaults)", "Pose and scale of the device's space in the scene."},
     Key{"scene", "start_gate", Table, kAny, "", "(no gate)", "Start of a trial: the hand holds the start pose first."},
     Key{"scene", "effects", Table, kAny, "", "(none)", "Further effects, a table each."},
@@ -33,14 +33,14 @@ inline constexpr std::array kSceneKeys{
     Key{"calibration", "damping_Ns_per_m", Number, atLeast(0), "", "!", "Damping of the wall with which the maximum was found; the recommended one."},
     Key{"calibration", "rotational_damping_Nms_per_rad", Number, atLeast(0), "", "!", "Rotational damping of that wall."},
 
-    Key{"part", "name", Name, kAny, "", "!", "Unique; factors address the part by it."},
+    Key{"part", "name", Name, kAny, "", "!", "Name of the part, unique; factors address the part by this name."},
     Key{"part", "mesh", Text, kAny, "", "(a shape)", "Mesh file, relative to the file that names it. The data hold its SHA-256, not its content: keep it beside the study; a replay refuses another."},
     Key{"part", "shape", Table, kAny, "", "(a mesh)", "Parametric shape."},
     Key{"part", "pose", Table, kAny, "", "(identity)", "Part to world at the start."},
-    Key{"part", "held", Boolean, kAny, "", "false", "The part in the hand."},
+    Key{"part", "held", Boolean, kAny, "", "false", "True for the part in the hand."},
     Key{"part", "friction", Number, from(0, 10), "", "0", "Coefficient at rest. Two parts rub with the geometric mean of theirs: 0 on either side is none. God objects only."},
     Key{"part", "sliding_friction", Number, from(0, 10), "", "(as `friction`)", "Coefficient while sliding; at most `friction`."},
-    Key{"part", "shown_offset", LengthVector, kAny, "", "(zero)", "The part is drawn this far from where it is touched, along the world's axes; not for the held part."},
+    Key{"part", "shown_offset", LengthVector, kAny, "", "(zero)", "Distance from where the part is touched to where the part is drawn, along the world's axes; not for the held part."},
     Key{"part", "unit", Choice, kAny, "um|mm|cm|m|in", "(the scene's)", "Unit of this part's lengths."},
 
     Key{"pose", "position", LengthVector, kAny, "", "(zero)", "Origin of the part in the world."},
@@ -99,7 +99,7 @@ inline constexpr std::array kSceneKeys{
     Key{"contact", "variant", Choice, kAny, "max_normalised|area_weighted|raw", "max_normalised", "Weighting of the penalty; unused by other methods. Only max_normalised keeps to the stiffness: raw adds it up over all points, area_weighted has area_stiffness_N_per_m3 instead; with direct coupling neither is held below the device's stable maximum, and `check` warns of them."},
     Key{"contact", "stiffness_N_per_m", Stiffness, above(0), "", "(\"max\"; without a device preset 1000)", "Number, or fraction of the device's stable maximum: \"max\", \"0.5 max\"; never above it, unless `allow_unstable`. The maximum is what was found on this machine's device (`passung doctor --device NAME --find-stiffness`), else the preset's below; a study keeps the one with which it began. The maximum is known only for the recommended damping and no added delay; with a scale s of the registration both are 1/s of the device's."},
     Key{"contact", "rotational_stiffness_Nm_per_rad", Stiffness, atLeast(0), "", "(the same fraction of the device's maximum as the stiffness; without a device preset 1)", "Stiffness for rotations, given like the stiffness."},
-    Key{"contact", "allow_unstable", Boolean, kAny, "", "false", "Lifts the rules that keep a stiffness where the device is known to be stable: the stable maximum as an upper limit, the recommended damping, no added delay, and the border of a coupled penalty through its tool."},
+    Key{"contact", "allow_unstable", Boolean, kAny, "", "false", "True lifts the rules that keep a stiffness where the device is known to be stable: the stable maximum as an upper limit, the recommended damping, no added delay, and the border of a coupled penalty through its tool."},
     Key{"contact", "damping_Ns_per_m", Number, atLeast(0), "", "(1/scale times the device's recommended damping; without a device preset 0)", "Damping of the coupling between hand and scene; with a device preset only what it recommends."},
     Key{"contact", "rotational_damping_Nms_per_rad", Number, atLeast(0), "", "(1 times the device's recommended damping; without a device preset 0)", "Damping for rotations, given like the damping."},
     Key{"contact", "coupling", Choice, kAny, "direct|quasi_static|virtual", "direct", "Coupling of the penalty to the hand. direct: the overlap at the hand's own pose makes the force. Else the penalty acts on a tool that stiffness and damping couple to the hand, which then feels at most the stiffness, whatever the variant: quasi_static, a tool without mass where both balance; virtual, a tool with mass, whose inertia is felt in free motion too. A god object has a coupling of its own."},
@@ -115,13 +115,13 @@ inline constexpr std::array kSceneKeys{
     Key{"contact", "mode", Choice, kAny, "layered|surface_point|linear|trilinear|cubic", "trilinear",
         "Interpolation in the distance field, from coarse to smooth."},
     Key{"contact", "budget_nodes", Integer, from(0, 1000000), "", "0", "Largest number of tree nodes that a query visits; 0 = no budget."},
-    Key{"contact", "two_way", Boolean, kAny, "", "(true where a pin, fin, wall, acute edge or relief of an obstacle would slip between the held part's points)", "Points of the obstacles are held against the held part as well: finds edges that poke between its points, and takes about twice as long. With false, what would slip through is an error."},
+    Key{"contact", "two_way", Boolean, kAny, "", "(true where a pin, fin, wall, acute edge or relief of an obstacle would slip between the held part's points)", "True where points of the obstacles are held against the held part as well: finds edges between the held part's points, and takes about twice as long. With false, what would slip through is an error."},
     Key{"contact", "proxy_filter_hz", Number, from(0, 500), "", "0", "Corner of the proxy's low-pass while in contact; 0 = no filter. God objects only."},
 
     Key{"device", "preset", Text, kAny, "", "(none)", "Name of a known device."},
-    Key{"device", "max_force_N", Number, above(0), "", "(the device's)", "Tightens the device's limit."},
-    Key{"device", "max_torque_Nm", Number, atLeast(0), "", "(the device's)", "Tightens the device's limit."},
-    Key{"device", "max_force_rate_N_per_s", Number, above(0), "", "(the device's)", "Tightens the device's limit of rising force."},
+    Key{"device", "max_force_N", Number, above(0), "", "(the device's)", "Limit of the output, tighter than the device's."},
+    Key{"device", "max_torque_Nm", Number, atLeast(0), "", "(the device's)", "Limit of the output, tighter than the device's."},
+    Key{"device", "max_force_rate_N_per_s", Number, above(0), "", "(the device's)", "Limit of rising force, tighter than the device's."},
     Key{"device", "delay_ticks", Integer, from(0, scene::kMaxDelayTicks), "", "0", "Milliseconds added between command and effect, beside the device's own delay; with a device preset only 0."},
 
     Key{"registration", "position", LengthVector, kAny, "", "(zero)", "Origin of the device's base in the world."},
@@ -132,7 +132,7 @@ inline constexpr std::array kSceneKeys{
 
     Key{"start_gate", "position_tolerance_mm", Number, from(0, 1000), "", "0", "Largest distance from the held part's start; 0 = not asked."},
     Key{"start_gate", "angle_tolerance_deg", Number, from(0, 180), "", "0", "Largest angle from the held part's start; 0 = not asked."},
-    Key{"start_gate", "hold_ms", Number, from(0, 10000), "", "0", "Time for which the part stays there."},
+    Key{"start_gate", "hold_ms", Number, from(0, 10000), "", "0", "Time for which the part stays within these tolerances."},
 
     Key{"effects", "passivity_controller", Table, kAny, "", "(none)", "A damper that takes energy back where the controller gave more than it took in; the account itself is always recorded."},
     Key{"effects", "transients", Table, kAny, "", "(none)", "Event-based transients: a decaying vibration in proportion to the speed, added at every impact, as a tap on something hard gives."},
@@ -141,7 +141,7 @@ inline constexpr std::array kSceneKeys{
 
     Key{"effects.transients", "amplitude_Ns_per_m", Number, above(0), "", "!", "Force of the vibration per speed of the impact. The device's limits hold for contact and vibration together."},
     Key{"effects.transients", "frequency_hz", Number, aboveUpTo(0, 400), "", "!", "Frequency of the vibration."},
-    Key{"effects.transients", "decay_ms", Number, aboveUpTo(0, 1000), "", "!", "Time in which it falls to 37 %."},
+    Key{"effects.transients", "decay_ms", Number, aboveUpTo(0, 1000), "", "!", "Time in which the vibration falls to 37 %."},
 };
 // clang-format on
 

@@ -15,11 +15,11 @@ using namespace ranges;
 inline constexpr std::array kStaircaseKeys{
     Key{"protocol", "staircase", Tables, kAny, "", "(none)", "Keys of the scene whose value follows, trial by trial, from what came before."},
 
-    Key{"staircase", "name", Name, kAny, "", "!", "Unique; a column of staircase.csv."},
-    Key{"staircase", "block", Name, kAny, "", "!", "The main block whose trials it governs; how many those are follows from it. Every condition of the block has all tracks to itself."},
+    Key{"staircase", "name", Name, kAny, "", "!", "Name of the staircase, unique; a column of staircase.csv."},
+    Key{"staircase", "block", Name, kAny, "", "!", "Main block whose trials the staircase governs; the staircase decides how many trials run. Every condition of the block has all tracks to itself."},
     Key{"staircase", "key", Text, kAny, "", "!", "Key that varies, as a factor's `key`; a number that is harder to notice, or easier to fail with, the lower it is."},
     Key{"staircase", "unit", Text, kAny, "", "(none)", "Unit of the levels, for tables."},
-    Key{"staircase", "levels", Levels, kAny, "", "(low, high and count)", "The values that can be presented, ascending. Each makes a condition that `check` looks at."},
+    Key{"staircase", "levels", Levels, kAny, "", "(low, high and count)", "Values that can be presented, ascending. Each value makes a condition that `check` examines."},
     Key{"staircase", "low", Number, kAny, "", "(levels)", "Lowest level, in place of `levels`."},
     Key{"staircase", "high", Number, kAny, "", "(levels)", "Highest level."},
     Key{"staircase", "count", Integer, from(2, 200), "", "(levels)", "Number of levels from low to high, evenly on the axis."},
@@ -33,17 +33,17 @@ inline constexpr std::array kStaircaseKeys{
     Key{"staircase", "max_reversals", Integer, from(0, 1000), "", "0", "Number of reversals after which a track stops; 0: trials alone stop it."},
     Key{"staircase", "skip_reversals", Integer, from(0, 1000), "", "2", "Number of first reversals that the estimate, the mean of the others, leaves out."},
     Key{"staircase", "guess", Number, from(0, 0.99), "", "(needed by psi)", "Share of positive trials far below the threshold: 0.5 where one of two is chosen."},
-    Key{"staircase", "lapse", Number, from(0, 0.5), "", "0.02", "Share of trials that are not positive far above it; only psi."},
+    Key{"staircase", "lapse", Number, from(0, 0.5), "", "0.02", "Share of trials that are not positive far above the threshold; only psi."},
     Key{"staircase", "sigma_low", Number, above(0), "", "(needed by psi)", "Smallest standard deviation of the ogive that psi considers, in levels or decades."},
     Key{"staircase", "sigma_high", Number, above(0), "", "(needed by psi)", "Largest standard deviation that psi considers."},
     Key{"staircase", "tracks", Tables, kAny, "", "!", "Tracks that take turns at random, at least one."},
     Key{"staircase", "catch_share", Number, from(0, 0.5), "", "0", "Share of the trials that are catch trials: at `catch_level`, and no track is told of them."},
-    Key{"staircase", "catch_level", Number, kAny, "", "(needed with catch_share)", "One of the levels."},
+    Key{"staircase", "catch_level", Number, kAny, "", "(needed with catch_share)", "Level of catch trials: one of the staircase's."},
     Key{"staircase", "measure", Text, kAny, "", "!", "Measure of a trial by which it counts as positive; a trial without it tells its track nothing."},
     Key{"staircase", "above", Number, kAny, "", "(below)", "Bound of the measure in SI units, as exported; a trial above it is positive."},
     Key{"staircase", "below", Number, kAny, "", "(above)", "Bound of the measure in SI units, as exported; a trial below it is positive."},
 
-    Key{"staircase_track", "name", Name, kAny, "", "!", "Unique in the staircase."},
+    Key{"staircase_track", "name", Name, kAny, "", "!", "Name of the track, unique in the staircase."},
     Key{"staircase_track", "start", Number, kAny, "", "(needed, but not by psi)", "First level of the track."},
 };
 // clang-format on

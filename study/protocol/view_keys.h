@@ -25,10 +25,10 @@ inline constexpr std::array kViewKeys{
     Key{"view", "light_percent", Number, from(0, 300), "", "100", "Brightness of that light."},
     Key{"view", "fill_light_percent", Number, from(0, 300), "", "32", "Brightness of the light beside the camera, without shadows."},
     Key{"view", "ambient_light_percent", Number, from(0, 100), "", "36", "Brightness of the light from everywhere."},
-    Key{"view", "shadow_percent", Number, from(0, 100), "", "55", "Darkness of shadows; 0: none are drawn."},
-    Key{"view", "ground", Boolean, kAny, "", "true", "A plane is drawn below all parts."},
-    Key{"view", "max_picture_age_ms", Number, above(0), "", "1000", "A person's trial does not count if what is on the screen was ever older than that: from the reading of the device for the newest tick that it shows until another picture takes its place."},
-    Key{"view", "min_pictures_per_s", Number, from(0, 240), "", "10", "Nor does one with fewer pictures a second that show something new. Nobody looks at the pictures of a simulated participant."},
+    Key{"view", "shadow_percent", Number, from(0, 100), "", "55", "Darkness of shadows; 0: no shadows are drawn."},
+    Key{"view", "ground", Boolean, kAny, "", "true", "True for a plane below all parts."},
+    Key{"view", "max_picture_age_ms", Number, above(0), "", "1000", "Largest age of what is on the screen in a person's trial that counts: from the reading of the device for the newest tick that it shows until another picture takes its place."},
+    Key{"view", "min_pictures_per_s", Number, from(0, 240), "", "10", "A person's trial does not count with fewer pictures a second that show something new. Pictures of simulated participants are not judged."},
 };
 // clang-format on
 

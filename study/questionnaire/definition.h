@@ -38,7 +38,7 @@ enum class Felt { Force, Time, Failure, Success, Depth, Hardness };
 
 struct Item {
     std::string id;
-    std::string text;  // empty in a slot that has not got the lab's texts
+    std::string text;  // empty in a template that has not got the lab's texts
     Response response;
     bool reversed = false;                   // scored as low + high - answer
     std::pair<std::size_t, std::size_t> of;  // Pair: the two items
@@ -60,7 +60,7 @@ struct Class {
     double from = 0.0;
 };
 
-/// Of items, or of scales that stand before it.
+/// Formula over items, or over scales that stand before it.
 struct Scale {
     std::string name;
     std::string label;
@@ -103,8 +103,8 @@ struct Definition {
     std::string licence;   // under which the texts stand
     std::string citation;  // where instrument and scoring are from
     bool shuffled = false;
-    bool slot = false;                 // the texts are the lab's
-    bool polarity_from_texts = false;  // of a slot: the lab's texts say which items are reversed
+    bool is_template = false;          // the texts are the lab's
+    bool polarity_from_texts = false;  // of a template: the lab's texts say which items are reversed
     std::vector<Item> items;
     std::vector<Scale> scales;
     std::vector<Golden> golden;

@@ -248,7 +248,7 @@ private:
                 (*commands)->serve([&](const session::Command& c) { return session.command(c); }, waits);
             else if (waits)
                 std::this_thread::sleep_for(CommandSocket::kServeWait);
-            if (options_.performer != nullptr) options_.performer->look(session);
+            if (options_.performer != nullptr) options_.performer->betweenSteps(session);
             if (options_.interrupted && options_.interrupted())
                 session.interrupt("interrupted");
             else
@@ -336,7 +336,7 @@ Errors whyNotPeople(const plan::StudyPlan& plan, const std::string& code, const 
     return why;
 }
 
-/// Elsewhere the session would take a place of the design that is not its station's.
+/// Elsewhere the session would take a slot that is not its station's.
 Error otherStation(const store::Unfinished& session, const RunOptions& options) {
     const bool only = session.station == store::Station{}.name;
     return Error{.message = fmt::format("{}, session {}: {}", session.participant, session.ordinal,

@@ -9,7 +9,7 @@
 #include "study/run/files/wall_clock.h"
 #include "study/run/log/study_log.h"
 #include "study/run/loop_apparatus.h"
-#include "study/run/person/person_at_desk.h"
+#include "study/run/person/taking_part.h"
 #include "study/session/session.h"
 #include "study/store/write/store.h"
 

@@ -25,7 +25,7 @@ std::optional<int> checkQuestionnaire(const std::string& path) {
     if (!definition) return fail(definition.errors());
     fmt::print("{}: ok: {} {}, {} items, {} scales, {} golden vectors{}\n", path, definition->key, definition->version,
                definition->items.size(), definition->scales.size(), definition->golden.size(),
-               definition->slot ? ", a slot for the lab's texts" : "");
+               definition->is_template ? ", a template for the lab's texts" : "");
     return 0;
 }
 

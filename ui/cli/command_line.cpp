@@ -145,7 +145,7 @@ private:
     static void addStation(CLI::App* sub, StationArguments& options) {
         auto* letter = sub->add_option("--station", options.station,
                                        "letter of this station, where several run the study with a database each. Each "
-                                       "takes places of the design and codes of its own");
+                                       "takes slots and codes of its own");
         letter->check(capitalLetter());
         auto* count = sub->add_option("--stations", options.stations, "number of stations, the same for each");
         count->check(between(2.0, 26.0, "a number from 2 to 26"))->needs(letter);
@@ -153,11 +153,11 @@ private:
     }
 
     void addParticipantCommands() {
-        CLI::App& desk =
+        CLI::App& people =
             *app_.add_subcommand("participant", "enrol and list participants: codes and consent, never names");
-        desk.require_subcommand(1);
+        people.require_subcommand(1);
         const auto action = [&](const char* name, const char* help, int (*function)(const ParticipantArguments&)) {
-            auto* sub = command(desk, name, help, participant_, function);
+            auto* sub = command(people, name, help, participant_, function);
             sub->add_option("DB", participant_.database, "database of a study")->required();
             return sub;
         };
@@ -177,7 +177,7 @@ private:
 
         addStation(sub, participant_.station);
 
-        action("list", "list all participants, with state, place in the design and consent", listParticipants);
+        action("list", "list all participants, with state, slot and consent", listParticipants);
 
         sub = action("consent", "store decisions on the protocol's clauses of consent", decideConsent);
         about(sub);
@@ -199,8 +199,7 @@ private:
             ->check(CLI::IsMember({"erase", "keep"}));
         sub->add_option("--reason", participant_.reason, "reason, if the participant gave one; no names");
 
-        sub = action("exclude", "exclude a participant from the analysis and free the place in the design",
-                     excludeParticipant);
+        sub = action("exclude", "exclude a participant from the analysis and free the slot", excludeParticipant);
         about(sub);
         sub->add_option("--reason", participant_.reason, "reason, stored with the status")->required();
 

@@ -18,7 +18,7 @@ int merge(const MergeArguments& options) {
     for (const std::string& session : report->unfinished)
         fmt::print("{}: left out: it runs, or was killed and its database not opened since\n", session);
     for (const std::string& person : report->moved_places)
-        fmt::print("{}: the same row of the square in a further replicate, for another one has the place\n", person);
+        fmt::print("{}: the same row of the square in a further replicate, for another one has the slot\n", person);
     for (const std::string& person : report->erased)
         fmt::print("{}: passung participant withdraw --scope erase removes them\n", person);
     for (const std::string& healed : report->healed) fmt::print("{}: {}: healed\n", options.out, healed);

@@ -23,7 +23,7 @@ namespace passung::cli {
 
 namespace {
 
-/// What `work` does at the study's desk as an exit code. The database has to be there unless `create`.
+/// What `work` does on the study's participants as an exit code. The database has to be there unless `create`.
 int withParticipants(const ParticipantArguments& options, bool create,
                      const std::function<Result<Done>(store::Store&, store::ParticipantRecords&)>& work) {
     const auto station = stationOf(options.station);
@@ -54,10 +54,11 @@ int enrolParticipant(const ParticipantArguments& options) {
         plan = *std::move(read);
     }
     return withParticipants(
-        options, plan.has_value(), [&](store::Store& store, store::ParticipantRecords& desk) -> Result<Done> {
+        options, plan.has_value(), [&](store::Store& store, store::ParticipantRecords& records) -> Result<Done> {
             if (plan)
                 if (const auto imported = store.importProtocol(*plan); !imported) return imported.errors();
-            const auto code = presenter::enrolAt(store, desk, *plan::participantKindNamed(options.kind), options.code);
+            const auto code =
+                presenter::enrolAt(store, records, *plan::participantKindNamed(options.kind), options.code);
             if (!code) return code.errors();
             fmt::print("{}: {} participant, enrolled\n", *code, options.kind);
             return Done{};
@@ -73,15 +74,15 @@ int listParticipants(const ParticipantArguments& options) {
     if (!consents) return fail(consents.errors());
     const auto protocols = reader->protocols();
     if (!protocols) return fail(protocols.errors());
-    fmt::print("{:<12} {:<10} {:<10} {:>5} {:<8} {:>8}  {}\n", "code", "kind", "status", "place", "version", "sessions",
+    fmt::print("{:<12} {:<10} {:<10} {:>5} {:<8} {:>8}  {}\n", "code", "kind", "status", "slot", "version", "sessions",
                "consent; reason of the status");
     for (const auto& person : *people) {
-        const std::string place =
+        const std::string slot =
             person.sequence_index ? fmt::format("{}.{}", *person.replicate + 1, *person.sequence_index + 1) : "-";
         const auto protocol = std::find_if(protocols->begin(), protocols->end(),
                                            [&](const auto& row) { return row.sha256 == person.place_sha256; });
         fmt::print("{:<12} {:<10} {:<10} {:>5} {:<8} {:>8}  {}{}\n", person.participant_id, person.kind, person.status,
-                   place, protocol == protocols->end() ? "-" : protocol->version, person.sessions,
+                   slot, protocol == protocols->end() ? "-" : protocol->version, person.sessions,
                    consentText(*consents, person.participant_id),
                    person.status_reason ? "; " + *person.status_reason : "");
     }
@@ -93,8 +94,8 @@ int decideConsent(const ParticipantArguments& options) {
     const auto decision = options.decision == "yes"  ? store::Consent::Yes
                           : options.decision == "no" ? store::Consent::No
                                                      : store::Consent::Withdrawn;
-    return withParticipants(options, false, [&](store::Store&, store::ParticipantRecords& desk) -> Result<Done> {
-        const auto decided = desk.decide(options.code, options.clauses, options.language, decision);
+    return withParticipants(options, false, [&](store::Store&, store::ParticipantRecords& records) -> Result<Done> {
+        const auto decided = records.decide(options.code, options.clauses, options.language, decision);
         if (!decided) return decided.errors();
         fmt::print("{}: {}: {}\n", options.code, options.decision, fmt::join(*decided, ", "));
         return Done{};
@@ -161,20 +162,19 @@ int withdrawParticipant(const ParticipantArguments& options) {
 }
 
 int excludeParticipant(const ParticipantArguments& options) {
-    return withParticipants(options, false, [&](store::Store&, store::ParticipantRecords& desk) -> Result<Done> {
-        if (const auto done = desk.exclude(options.code, options.reason); !done) return done;
-        fmt::print("{}: excluded; the data counts nowhere any more and the place in the design is free\n",
-                   options.code);
+    return withParticipants(options, false, [&](store::Store&, store::ParticipantRecords& records) -> Result<Done> {
+        if (const auto done = records.exclude(options.code, options.reason); !done) return done;
+        fmt::print("{}: excluded; the data counts nowhere any more and the slot is free\n", options.code);
         return Done{};
     });
 }
 
 int readmitParticipant(const ParticipantArguments& options) {
-    return withParticipants(options, false, [&](store::Store&, store::ParticipantRecords& desk) -> Result<Done> {
-        const auto placed = desk.readmit(options.code, options.reason);
+    return withParticipants(options, false, [&](store::Store&, store::ParticipantRecords& records) -> Result<Done> {
+        const auto placed = records.readmit(options.code, options.reason);
         if (!placed) return placed.errors();
         fmt::print("{}: takes part again and the data counts{}\n", options.code,
-                   *placed ? "" : "; the place in the design has another owner by now");
+                   *placed ? "" : "; the slot has another owner by now");
         return Done{};
     });
 }

@@ -38,18 +38,18 @@ void printTakenPlaces(const store::StoreReader& reader) {
         for (const auto& [kind, placed] : by_kind) {
             const auto plan = plans.plan(protocol.sha256);
             if (!plan) {
-                fmt::print("\nplaces of version {}: their balance cannot be told: {}\n", protocol.version,
+                fmt::print("\nslots of version {}: their balance cannot be told: {}\n", protocol.version,
                            toString(plan.errors().front()));
                 break;
             }
             std::vector<session::DesignPlace> places;
             for (const auto* person : placed) places.push_back(placeOf(**plan, *person));
             if (const auto text = session::describeBalance(**plan, places); !text.empty())
-                fmt::print("\nplaces of version {}, {}: {}", protocol.version, kind, text);
+                fmt::print("\nslots of version {}, {}: {}", protocol.version, kind, text);
         }
     }
     if (versions.size() > 1)
-        fmt::print("\nwarning: versions {} of the protocol count their places apart: each is balanced by itself only\n",
+        fmt::print("\nwarning: versions {} of the protocol count their slots apart: each is balanced by itself only\n",
                    fmt::join(versions, ", "));
 }
 

@@ -30,7 +30,7 @@ int push(const PushArguments& options) {
         fmt::print("{}: left out: was erased there; passung participant withdraw --scope erase removes them here\n",
                    code);
     for (const std::string& people : report->shared_places)
-        fmt::print("{}: have one place of the design; passung merge would part them\n", people);
+        fmt::print("{}: have one slot; passung merge would part them\n", people);
     fmt::print("{}: {} sessions added, {} brought up to date, {} known{}\n", options.database, report->sessions,
                report->replaced, report->known,
                report->healed == 0 ? "" : fmt::format(", {} healed that were damaged there", report->healed));

@@ -111,8 +111,7 @@ public:
         fmt::print("{}: {} trials{}, {} succeeded{}\n", participant_, count_.planned,
                    count_.earlier == 0 ? "" : fmt::format(", {} of them earlier", count_.earlier),
                    count_.succeeded.size(), count_.invalid == 0 ? "" : fmt::format(", {} invalid", count_.invalid));
-        if (!over.whole)
-            fmt::print("{}: the session is not complete; its place in the design is free again\n", participant_);
+        if (!over.whole) fmt::print("{}: the session is not complete; its slot is free again\n", participant_);
         std::fflush(stdout);
         count_ = {};  // of the participant's next session
     }
@@ -122,7 +121,7 @@ public:
         progress_.show("");
         return fmt::format(
             "interrupted: {} trials of {} are finished; the running one and the session are stored as aborted; "
-            "`passung resume` goes on with it. Its place in the design is free again: `passung run` with --participant "
+            "`passung resume` goes on with it. Its slot is free again: `passung run` with --participant "
             "{} begins a new session of all trials",
             count_.finished, count_.planned, code_);
     }

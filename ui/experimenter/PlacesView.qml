@@ -1,6 +1,6 @@
 import QtQuick
 
-// The places of the design in the order in which they are taken, and how even the orders are so far.
+// The slots in the order in which they are taken, and how even the orders are so far.
 Flickable {
     id: view
     contentHeight: sheet.height

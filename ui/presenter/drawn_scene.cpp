@@ -29,13 +29,13 @@ void extendBy(geometry::Bounds& bounds, const ShadedMesh& mesh, const Pose& X_W)
 }
 
 /// As the study says; what it does not say so that a sphere of this radius about `middle` fills the picture.
-Camera cameraOn(const Vec3& middle, double radius, const plan::View& look) {
+Camera cameraOn(const Vec3& middle, double radius, const plan::View& appearance) {
     Camera camera;
-    camera.centre = look.camera_target.value_or(middle);
-    camera.opening = look.camera_opening;
+    camera.centre = appearance.camera_target.value_or(middle);
+    camera.opening = appearance.camera_opening;
     const double reach = radius + (middle - camera.centre).norm();  // of all that is drawn, from what it looks at
-    const double distance = look.camera_distance.value_or(reach / std::sin(0.5 * camera.opening));
-    const Vec3 back = look.camera_from.normalized();
+    const double distance = appearance.camera_distance.value_or(reach / std::sin(0.5 * camera.opening));
+    const Vec3 back = appearance.camera_from.normalized();
     const Vec3 across = Vec3::UnitZ().cross(back);
     const Vec3 right = across.norm() > kUpright ? across.normalized() : Vec3::UnitX();
     Mat3 axes;
@@ -47,8 +47,8 @@ Camera cameraOn(const Vec3& middle, double radius, const plan::View& look) {
 }
 
 /// Where no other is asked for: over the camera's left shoulder.
-Vec3 lightFrom(const Camera& camera, const plan::View& look) {
-    return look.light_from.value_or(camera.X_WC.q * Vec3(-0.55, 0.5, 0.35) + 1.3 * Vec3::UnitZ()).normalized();
+Vec3 lightFrom(const Camera& camera, const plan::View& appearance) {
+    return appearance.light_from.value_or(camera.X_WC.q * Vec3(-0.55, 0.5, 0.35) + 1.3 * Vec3::UnitZ()).normalized();
 }
 
 }  // namespace
@@ -117,9 +117,10 @@ std::vector<Mark> SceneArtist::marksOf(const plan::Task& task, const Pose& X_WTa
     return {};  // of a pair nothing is to be reached
 }
 
-Result<std::shared_ptr<const DrawnScene>> SceneArtist::draw(const plan::Condition& condition, const plan::View& look) {
+Result<std::shared_ptr<const DrawnScene>> SceneArtist::draw(const plan::Condition& condition,
+                                                            const plan::View& appearance) {
     auto scene = std::make_shared<DrawnScene>();
-    scene->look = look;
+    scene->appearance = appearance;
     scene->shown = condition.shown;
     scene->cues = condition.cues;
     geometry::Bounds bounds;
@@ -140,8 +141,8 @@ Result<std::shared_ptr<const DrawnScene>> SceneArtist::draw(const plan::Conditio
     for (const Mark& mark : scene->marks) extendBy(bounds, *mark.mesh, mark.X_W);
     scene->floor = bounds.low.z() - kGround;
     scene->radius = 0.5 * bounds.size().norm();
-    scene->camera = cameraOn(0.5 * (bounds.low + bounds.high), 1.08 * scene->radius, look);
-    scene->light_from = lightFrom(scene->camera, look);
+    scene->camera = cameraOn(0.5 * (bounds.low + bounds.high), 1.08 * scene->radius, appearance);
+    scene->light_from = lightFrom(scene->camera, appearance);
     return std::shared_ptr<const DrawnScene>(std::move(scene));
 }
 

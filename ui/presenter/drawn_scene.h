@@ -38,7 +38,7 @@ struct DrawnScene {
     Vec3 held_offset = Vec3::Zero();  // drawn so far from where it is, world axes [m]
     plan::ShownPose shown = plan::ShownPose::Proxy;
     plan::Cues cues;
-    plan::View look;
+    plan::View appearance;
     std::vector<Mark> marks;
     double floor = 0.0;   // height of the ground [m]
     double radius = 0.1;  // of everything about the camera's centre [m]
@@ -57,7 +57,7 @@ public:
     /// `builds`, if there is one, reads the meshes; it outlives the artist.
     explicit SceneArtist(scene::BuildStore* builds = nullptr) : builds_(builds) {}
     /// Errors: a mesh that cannot be read.
-    Result<std::shared_ptr<const DrawnScene>> draw(const plan::Condition& condition, const plan::View& look);
+    Result<std::shared_ptr<const DrawnScene>> draw(const plan::Condition& condition, const plan::View& appearance);
 
 private:
     Result<std::shared_ptr<const ShadedMesh>> surfaceOf(const scene::PartSpec& part);

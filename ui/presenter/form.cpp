@@ -34,7 +34,7 @@ bool isBeside(const Response& response) {
     return response.options.size() <= kMostBeside && letters <= kBesideLetters;
 }
 
-ItemControl lookOf(const Item& item, bool consent) {
+ItemControl controlOf(const Item& item, bool consent) {
     if (consent) return ItemControl::Decision;
     switch (item.response.kind) {
         case AnswerKind::Choice:
@@ -54,8 +54,8 @@ ItemControl lookOf(const Item& item, bool consent) {
 }
 
 /// Height of a row in those of a scale.
-double heightOf(const Item& item, ItemControl look) {
-    switch (look) {
+double heightOf(const Item& item, ItemControl control) {
+    switch (control) {
         case ItemControl::Pair:
         case ItemControl::Decision:
             return kPage;
@@ -95,9 +95,9 @@ std::string trimmed(const std::string& text) {
 }
 
 /// What a label means: of a point its value, of an option its own, of a pair 0 or 1.
-double valueOf(const Item& item, ItemControl look, std::size_t label) {
-    if (look == ItemControl::Points) return item.response.low + item.response.step * static_cast<double>(label);
-    if (look == ItemControl::Pair) return static_cast<double>(label);
+double valueOf(const Item& item, ItemControl control, std::size_t label) {
+    if (control == ItemControl::Points) return item.response.low + item.response.step * static_cast<double>(label);
+    if (control == ItemControl::Pair) return static_cast<double>(label);
     return item.response.options[label].value;
 }
 
@@ -115,7 +115,7 @@ Form::Form(std::shared_ptr<const FormRequest> request, std::int64_t now_ms)
 /// Pages as equal as they can be without one that is too full.
 void Form::layOut() {
     const auto& order = request_->order;
-    const auto height = [this](std::size_t i) { return heightOf(item(i), lookOf(item(i), request_->consent)); };
+    const auto height = [this](std::size_t i) { return heightOf(item(i), controlOf(item(i), request_->consent)); };
     double total = 0.0;
     for (const std::size_t i : order) total += height(i);
     const double fair = std::ceil(total / std::ceil(total / kPage));
@@ -146,7 +146,7 @@ FormRow Form::rowOf(std::size_t row) const {
     const Response& response = asked.response;
     FormRow shown;
     shown.number = starts_[page_] + row + 1;
-    shown.look = lookOf(asked, request_->consent);
+    shown.control = controlOf(asked, request_->consent);
     shown.text = asked.text;
     shown.low_anchor = response.low_anchor;
     shown.high_anchor = response.high_anchor;
@@ -158,16 +158,16 @@ FormRow Form::rowOf(std::size_t row) const {
     shown.open = told_ && isOpen(row);
     shown.beside = isBeside(response);
     const int steps = stepsOf(response);
-    if (shown.look == ItemControl::Ticks) shown.ticks = steps;
-    if (shown.look == ItemControl::Points)
+    if (shown.control == ItemControl::Ticks) shown.ticks = steps;
+    if (shown.control == ItemControl::Points)
         for (int point = 0; point < steps; ++point)
             shown.labels.push_back(fmt::format("{:g}", response.low + point * response.step));
-    if (shown.look == ItemControl::Decision) shown.labels.resize(response.options.size());
-    if (shown.look == ItemControl::Options)
+    if (shown.control == ItemControl::Decision) shown.labels.resize(response.options.size());
+    if (shown.control == ItemControl::Options)
         for (const auto& option : response.options) shown.labels.push_back(option.label);
-    if (shown.look == ItemControl::Pair) shown.labels = {item(asked.of.first).text, item(asked.of.second).text};
+    if (shown.control == ItemControl::Pair) shown.labels = {item(asked.of.first).text, item(asked.of.second).text};
     for (std::size_t label = 0; label < shown.labels.size() && shown.value; ++label)
-        if (std::abs(valueOf(asked, shown.look, label) - *shown.value) < 1e-9) shown.picked = label;
+        if (std::abs(valueOf(asked, shown.control, label) - *shown.value) < 1e-9) shown.picked = label;
     return shown;
 }
 
@@ -199,13 +199,14 @@ void Form::choose(std::size_t row, std::size_t label, std::int64_t now_ms) {
     const FormRow shown = rowOf(row);
     if (done_ || label >= shown.labels.size()) return;
     focus(row);
-    give(itemOf(row), valueOf(item(itemOf(row)), shown.look, label), now_ms);
+    give(itemOf(row), valueOf(item(itemOf(row)), shown.control, label), now_ms);
 }
 
 void Form::pick(std::size_t row, std::size_t label, std::int64_t now_ms) {
     choose(row, label, now_ms);
     // A pair has a page of its own: nothing is left to do there, except at the end of the form.
-    if (rowOf(row).look == ItemControl::Pair && !isOpen(row) && page_ + 2 < starts_.size()) turnTo(page_ + 1, now_ms);
+    if (rowOf(row).control == ItemControl::Pair && !isOpen(row) && page_ + 2 < starts_.size())
+        turnTo(page_ + 1, now_ms);
 }
 
 void Form::place(std::size_t row, double value, std::int64_t now_ms) {
@@ -246,25 +247,25 @@ void Form::step(std::size_t row, int by, std::int64_t now_ms) {
     if (!shown.labels.empty()) {
         const auto last = static_cast<int>(shown.labels.size()) - 1;
         const int now = shown.picked ? static_cast<int>(*shown.picked) + by : by > 0 ? 0 : last;
-        if (shown.look == ItemControl::Points && !shown.picked)
+        if (shown.control == ItemControl::Points && !shown.picked)
             return choose(row, static_cast<std::size_t>(last / 2), now_ms);
         return choose(row, static_cast<std::size_t>(std::clamp(now, 0, last)), now_ms);
     }
-    if (shown.look != ItemControl::Ticks && shown.look != ItemControl::Line) return;
-    const double width = shown.look == ItemControl::Line ? 0.01 * (response.high - response.low) : response.step;
+    if (shown.control != ItemControl::Ticks && shown.control != ItemControl::Line) return;
+    const double width = shown.control == ItemControl::Line ? 0.01 * (response.high - response.low) : response.step;
     place(row, shown.value ? *shown.value + by * width : 0.5 * (response.low + response.high), now_ms);
 }
 
 void Form::end(std::size_t row, bool high, std::int64_t now_ms) {
     const FormRow shown = rowOf(row);
     if (!shown.labels.empty()) return choose(row, high ? shown.labels.size() - 1 : 0, now_ms);
-    if (shown.look == ItemControl::Ticks || shown.look == ItemControl::Line)
+    if (shown.control == ItemControl::Ticks || shown.control == ItemControl::Line)
         place(row, high ? shown.high : shown.low, now_ms);
 }
 
 bool Form::digit(std::size_t row, int digit, std::int64_t now_ms) {
     const FormRow shown = rowOf(row);
-    if (shown.look == ItemControl::Points) {
+    if (shown.control == ItemControl::Points) {
         const auto named = std::find(shown.labels.begin(), shown.labels.end(), std::to_string(digit));
         const bool numbers = item(itemOf(row)).response.low >= 0.0;  // else the first point is number 1
         if (numbers && named == shown.labels.end()) return false;
@@ -275,7 +276,7 @@ bool Form::digit(std::size_t row, int digit, std::int64_t now_ms) {
         pick(row, static_cast<std::size_t>(digit - 1), now_ms);
         return true;
     }
-    if (shown.look != ItemControl::Ticks && shown.look != ItemControl::Line) return false;
+    if (shown.control != ItemControl::Ticks && shown.control != ItemControl::Line) return false;
     place(row, shown.low + 0.1 * digit * (shown.high - shown.low), now_ms);
     return true;
 }

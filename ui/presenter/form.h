@@ -37,7 +37,7 @@ enum class FormFault { None, NoNumber, OutOfRange };
 /// An item on the page that is shown.
 struct FormRow {
     std::size_t number = 0;  // as presented, from 1
-    ItemControl look = ItemControl::Points;
+    ItemControl control = ItemControl::Points;
     std::string text, low_anchor, high_anchor;
     std::vector<std::string> labels;    // of points, options or the pair; of a decision two without words
     std::optional<std::size_t> picked;  // of the labels

@@ -17,11 +17,11 @@ Result<Done> withParticipants(const ParticipantAccess& access,
     open.group = access.group;
     const auto opened = store::Store::open(access.database, open);
     if (!opened.store) return opened.errors;
-    store::ParticipantRecords desk(*opened.store, {access.by, open.now_utc});
-    return work(*opened.store, desk);
+    store::ParticipantRecords records(*opened.store, {access.by, open.now_utc});
+    return work(*opened.store, records);
 }
 
-Result<std::string> enrolAt(store::Store& store, store::ParticipantRecords& desk, plan::ParticipantKind kind,
+Result<std::string> enrolAt(store::Store& store, store::ParticipantRecords& records, plan::ParticipantKind kind,
                             std::string code) {
     if (code.empty()) {
         const auto next = store.nextCode(kind);
@@ -30,23 +30,23 @@ Result<std::string> enrolAt(store::Store& store, store::ParticipantRecords& desk
     }
     const bool simulated = kind == plan::ParticipantKind::Simulated;
     const auto clock = simulated ? store::UtcClock::virtualEpoch() : store::UtcClock::wall(run::unixMilliseconds());
-    if (const auto done = desk.enrol(code, kind, clock.at(0)); !done) return done.errors();
+    if (const auto done = records.enrol(code, kind, clock.at(0)); !done) return done.errors();
     return code;
 }
 
 Result<Left> leave(const ParticipantAccess& access, const presenter::Leaving& leaving) {
     using presenter::Scope;
     Left left;
-    const auto done = withParticipants(access, [&](store::Store&, store::ParticipantRecords& desk) -> Result<Done> {
-        if (leaving.scope == Scope::Stop) return desk.withdraw(leaving.code, leaving.reason);
-        if (leaving.scope == Scope::Exclude) return desk.exclude(leaving.code, leaving.reason, "withdraw");
-        if (leaving.scope == Scope::Dismiss) return desk.exclude(leaving.code, leaving.reason);
+    const auto done = withParticipants(access, [&](store::Store&, store::ParticipantRecords& records) -> Result<Done> {
+        if (leaving.scope == Scope::Stop) return records.withdraw(leaving.code, leaving.reason);
+        if (leaving.scope == Scope::Exclude) return records.exclude(leaving.code, leaving.reason, "withdraw");
+        if (leaving.scope == Scope::Dismiss) return records.exclude(leaving.code, leaving.reason);
         if (leaving.backup_too) {
-            const auto erased = desk.eraseFromBackup(leaving.code);
+            const auto erased = records.eraseFromBackup(leaving.code);
             left.backup = erased && *erased;
             if (!erased) left.backup_problem = erased.errors().front().message;
         }
-        const auto surrogate = desk.erase(leaving.code);
+        const auto surrogate = records.erase(leaving.code);
         if (!surrogate) return surrogate.errors();
         left.surrogate = *surrogate;
         left.copies = run::knownCopies(access.database, leaving.code);

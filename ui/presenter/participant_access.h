@@ -24,7 +24,7 @@ Result<Done> withParticipants(const ParticipantAccess& access,
                               const std::function<Result<Done>(store::Store&, store::ParticipantRecords&)>& work);
 
 /// Enrols somebody; no code: the first that is free. Returns the code.
-Result<std::string> enrolAt(store::Store& store, store::ParticipantRecords& desk, plan::ParticipantKind kind,
+Result<std::string> enrolAt(store::Store& store, store::ParticipantRecords& records, plan::ParticipantKind kind,
                             std::string code);
 
 /// What came of somebody's leaving.

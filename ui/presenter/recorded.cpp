@@ -62,10 +62,10 @@ FiveNumbers fiveNumbers(std::vector<double> values) {
 
 std::vector<ConditionSummary> lookAt(const Recorded& recorded, const std::string& measure, const std::string& kind) {
     const auto cells = exporter::cellsOf(recorded.data);
-    std::vector<ConditionSummary> looks;
+    std::vector<ConditionSummary> summaries;
     for (const store::ConditionRow& row : recorded.data.conditions) {
-        ConditionSummary look;
-        look.condition = row.condition;
+        ConditionSummary summary;
+        summary.condition = row.condition;
         bool met = false;
         std::set<std::string> people;
         for (const exporter::Cell& cell : cells) {
@@ -73,17 +73,17 @@ std::vector<ConditionSummary> lookAt(const Recorded& recorded, const std::string
             met = true;
             const auto values = exporter::valuesOf(cell.attempts, measure);
             if (!values.empty()) people.insert(cell.participant_id);
-            look.values.insert(look.values.end(), values.begin(), values.end());
+            summary.values.insert(summary.values.end(), values.begin(), values.end());
         }
         if (!met) continue;
-        look.participants = people.size();
+        summary.participants = people.size();
         if (recorded.data.protocols.size() > 1)
             for (const store::ProtocolRow& protocol : recorded.data.protocols)
-                if (protocol.sha256 == row.protocol_sha256) look.version = protocol.version;
-        if (!look.values.empty()) look.numbers = fiveNumbers(look.values);
-        looks.push_back(std::move(look));
+                if (protocol.sha256 == row.protocol_sha256) summary.version = protocol.version;
+        if (!summary.values.empty()) summary.numbers = fiveNumbers(summary.values);
+        summaries.push_back(std::move(summary));
     }
-    return looks;
+    return summaries;
 }
 
 }  // namespace passung::presenter

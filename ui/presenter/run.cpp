@@ -33,7 +33,7 @@ bool hasEnded(RowState state) { return state >= RowState::Success && state != Ro
 void Run::open(const plan::StudyPlan& plan) {
     *this = Run();
     view_.state = RunState::Opening;
-    look_ = plan.view;
+    appearance_ = plan.view;
     view_.study = plan.title.empty() ? plan.name : plan.title;
     for (const auto& condition : plan.conditions) conditions_.push_back(condition.name);
 }
@@ -62,7 +62,7 @@ void Run::hear(const session::SessionEvent& event) {
 }
 
 void Run::begin(const SessionBegun& begun) {
-    look_ = begun.look;
+    appearance_ = begun.appearance;
     view_.quality = begun.quality;
     view_.participant = begun.participant;
     view_.planned = begun.trials.size();

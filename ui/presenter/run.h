@@ -131,7 +131,7 @@ public:
     const std::optional<PageDue>& page() const { return page_; }
     const TrialBrief& brief() const { return brief_; }
     /// How the participant's window draws.
-    const plan::View& look() const { return look_; }
+    const plan::View& appearance() const { return appearance_; }
     /// Of a pair: where it is; nothing before its first interval.
     const std::optional<measures::PairWatch>& pair() const { return pair_; }
     /// What the participant may know of the trial that ended last; nothing once the next one begins.
@@ -155,7 +155,7 @@ private:
     std::shared_ptr<const FormRequest> form_;
     std::optional<PageDue> page_;
     TrialBrief brief_;
-    plan::View look_;
+    plan::View appearance_;
     std::optional<measures::PairWatch> pair_;
     std::optional<TrialResult> result_;
     std::vector<std::string> conditions_;  // names

@@ -25,7 +25,7 @@ struct SessionBegun {
     std::string participant;
     std::vector<design::PlannedTrial> trials;
     std::vector<session::EarlierTrial> earlier = {};  // of a session that is resumed
-    plan::View look = {};
+    plan::View appearance = {};
     std::optional<QualityFound> quality = {};  // with which a session that is resumed was drawn
 };
 

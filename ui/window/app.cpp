@@ -109,9 +109,9 @@ void App::makeParticipant() {
 }
 
 void App::dressParticipant() {
-    const plan::View& look = desk_.run().look();
-    participant_look_.setDark(look.theme == plan::Theme::Dark);
-    participant_look_.setScale(look.text_scale);
+    const plan::View& appearance = desk_.run().appearance();
+    participant_look_.setDark(appearance.theme == plan::Theme::Dark);
+    participant_look_.setScale(appearance.text_scale);
 }
 
 /// What tells of losses is queued, what measures is not: both may come from the thread that draws.

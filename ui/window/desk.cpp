@@ -15,7 +15,7 @@ constexpr int kFrame = 16;  // [ms]
 Desk::Desk(std::string data) : data_(std::move(data)) {
     timer_.setTimerType(Qt::PreciseTimer);
     timer_.setInterval(kFrame);
-    connect(&timer_, &QTimer::timeout, this, &Desk::look);
+    connect(&timer_, &QTimer::timeout, this, &Desk::refresh);
 }
 
 Desk::~Desk() { end(); }
@@ -120,7 +120,7 @@ void Desk::checkPictures() {
 
 mouse::Pointer* Desk::pointer() { return byMouse() ? &live_->pointer() : nullptr; }
 
-void Desk::look() {
+void Desk::refresh() {
     // Ticks first: what is still to come of an attempt that is over was before the news of the next one.
     std::array<loop::ScreenTick, 256> ticks;
     std::optional<loop::ScreenTick> newest;

@@ -15,7 +15,7 @@
 namespace passung::window {
 
 /// Between the running session and the windows: brings news and ticks to the presenter at the display's rate and tells
-/// the windows to look. The session never waits for it.
+/// the windows to refresh. The session never waits for it.
 class Desk : public QObject {
     Q_OBJECT
 
@@ -46,7 +46,7 @@ public:
     /// Where the mouse wants the held part; null: nobody moves it by mouse.
     mouse::Pointer* pointer();
     bool byMouse() const { return live_ && hand_ == window::LiveHand::Mouse; }
-    /// That the participant is spoken to in.
+    /// Language that the participant is spoken to in.
     const std::string& language() const { return language_; }
 
     // What the participant answers, read and wants.
@@ -70,7 +70,7 @@ signals:
     void prepared(qint64 attempt);  // the windows show its scene; it begins with its first picture
 
 private:
-    void look();
+    void refresh();
     void take(std::span<const loop::ScreenTick> ticks);
     void show(const std::vector<presenter::News>& news, const std::optional<loop::ScreenTick>& newest);
     void end();

@@ -14,8 +14,8 @@ using presenter::RunState;
 
 namespace {
 
-QString lookName(ItemControl look) {
-    switch (look) {
+QString controlName(ItemControl control) {
+    switch (control) {
         case ItemControl::Points:
             return QStringLiteral("points");
         case ItemControl::Ticks:
@@ -40,11 +40,11 @@ QString lookName(ItemControl look) {
 
 FormModel::FormModel(Desk& desk, Speech& speech) : desk_(desk), speech_(speech) {
     clock_.start();
-    connect(&desk_, &Desk::happened, this, &FormModel::look);
+    connect(&desk_, &Desk::happened, this, &FormModel::refresh);
 }
 
 /// Another form, none, or one that is hidden by a pause and comes back.
-void FormModel::look() {
+void FormModel::refresh() {
     const auto& asked = desk_.run().form();
     const RunState state = desk_.run().view().state;
     if (!asked && !form_) return;
@@ -82,18 +82,18 @@ QVariantList FormModel::rows() const {
     for (const FormRow& row : view_.rows) {
         QStringList labels;
         for (const std::string& label : row.labels) labels.append(text(label));
-        if (row.look == ItemControl::Decision)
+        if (row.control == ItemControl::Decision)
             labels = {speech_(QT_TRANSLATE_NOOP("participant", "I agree")),
                       speech_(QT_TRANSLATE_NOOP("participant", "I do not agree"))};
         QString range;
-        if (row.look == ItemControl::Number)
+        if (row.control == ItemControl::Number)
             range = speech_(QT_TRANSLATE_NOOP("participant", "%1 to %2"))
                         .arg(speech_.number(row.low, 0), speech_.number(row.high, 0));
         QString question = text(row.text);
-        if (row.look == ItemControl::Pair)
+        if (row.control == ItemControl::Pair)
             question = speech_(QT_TRANSLATE_NOOP("participant", "Which of the two mattered more?"));
         all.append(QVariantMap{{"number", static_cast<int>(row.number)},
-                               {"look", lookName(row.look)},
+                               {"look", controlName(row.control)},
                                {"text", question},
                                {"lowAnchor", text(row.low_anchor)},
                                {"highAnchor", text(row.high_anchor)},

@@ -65,7 +65,7 @@ signals:
     void turned();  // another page
 
 private:
-    void look();
+    void refresh();
     void show();
     std::int64_t now() const { return clock_.elapsed(); }
     QString faultWord(const presenter::FormRow& row) const;

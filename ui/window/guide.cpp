@@ -8,14 +8,14 @@ using presenter::ParticipantScreen;
 using Kind = presenter::TrialBrief::Kind;
 
 Guide::Guide(Desk& desk, Speech& speech) : desk_(desk), speech_(speech) {
-    connect(&desk_, &Desk::happened, this, &Guide::look);
+    connect(&desk_, &Desk::happened, this, &Guide::refresh);
     connect(&desk_, &Desk::frame, this, [this] {
         const auto view = presenter::participantView(desk_.run(), !desk_.byMouse());
-        if (view.screen != view_.screen || view.interval != view_.interval) look();
+        if (view.screen != view_.screen || view.interval != view_.interval) refresh();
     });
 }
 
-void Guide::look() {
+void Guide::refresh() {
     view_ = presenter::participantView(desk_.run(), !desk_.byMouse());
     if (view_.screen != ParticipantScreen::Question) pressed_ = 0;
     if (const auto& page = desk_.run().page(); page && reading() && page->number != page_) {

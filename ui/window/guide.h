@@ -52,13 +52,13 @@ public:
     Q_INVOKABLE void goOn();
     /// Names an interval, 1 or 2, as the device's buttons do.
     Q_INVOKABLE void answer(int interval, bool down);
-    void retranslate() { look(); }
+    void retranslate() { refresh(); }
 
 signals:
     void changed();
 
 private:
-    void look();
+    void refresh();
     QString taskLine() const;
 
     Desk& desk_;

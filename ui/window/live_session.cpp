@@ -165,8 +165,8 @@ std::unique_ptr<loop::HapticDevice> LiveSession::device(const simulated::DeviceP
 
 void LiveSession::begins(session::Apparatus& apparatus, const session::SessionSetup& setup) {
     interview_.forget();
-    look_ = setup.plan->view;
-    presenter::SessionBegun begun{.participant = setup.participant, .trials = setup.trials, .look = look_};
+    appearance_ = setup.plan->view;
+    presenter::SessionBegun begun{.participant = setup.participant, .trials = setup.trials, .appearance = appearance_};
     if (setup.resumed) {
         begun.earlier = setup.resumed->earlier;
         begun.quality = setup.resumed->quality;
@@ -189,7 +189,7 @@ void LiveSession::prepares(const plan::Condition& condition, std::int64_t trial_
     if (options_.frames != nullptr) attempt_ = options_.frames->expect();
     presenter::AttemptPrepared prepared{trial_index, condition.name,     nullptr,
                                         heard.any(), briefOf(condition), attempt_};
-    if (auto scene = artist_.draw(condition, look_))
+    if (auto scene = artist_.draw(condition, appearance_))
         prepared.scene = *scene;  // else the session fails at the same mesh
     tell(std::move(prepared));
 }
@@ -210,7 +210,7 @@ void LiveSession::show(session::SessionView view) {
     tell(std::move(view));
 }
 
-void LiveSession::look(session::Session& session) {
+void LiveSession::betweenSteps(session::Session& session) {
     // Here and not with the pictures: how far a held key goes must not depend on how fast they come.
     const std::int64_t now = run::steadyNanoseconds();
     if (looked_ns_ > 0) pointer_.pass(1e-9 * static_cast<double>(now - looked_ns_));

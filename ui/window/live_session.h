@@ -77,7 +77,7 @@ private:
     void begins(session::Apparatus& apparatus, const session::SessionSetup& setup) override;
     void prepares(const plan::Condition& condition, std::int64_t trial_index, std::uint64_t seed) override;
     bool builds(double share) override;
-    void look(session::Session& session) override;
+    void betweenSteps(session::Session& session) override;
     void over() override;
 
     void main();
@@ -93,7 +93,7 @@ private:
     LiveOptions options_;
     std::unique_ptr<run::Builds> builds_ = run::openBuilds();
     presenter::SceneArtist artist_{builds_.get()};
-    plan::View look_;  // of the plan that runs, which is the stored one where a session goes on
+    plan::View appearance_;  // of the plan that runs, which is the stored one where a session goes on
     std::optional<session::SessionView> told_;
     bool cancelled_ = false;  // a build
     mouse::Pointer pointer_;

@@ -224,7 +224,7 @@ QStringList leavingLines(const presenter::Leaving& leaving) {
             break;
     }
     if (leaving.frees_place)
-        lines << said(QT_TRANSLATE_NOOP("participants", "Their place in the design is free for the next participant."));
+        lines << said(QT_TRANSLATE_NOOP("participants", "Their slot is free for the next participant."));
     return lines;
 }
 

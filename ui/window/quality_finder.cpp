@@ -43,7 +43,7 @@ void QualityFinder::prepare(std::int64_t attempt) {
 }
 
 void QualityFinder::begin() {
-    search_.emplace(desk_.run().look().shadow > 0.0);
+    search_.emplace(desk_.run().appearance().shadow > 0.0);
     quality_ = search_->candidate();
     last_ns_ = 0;
     emit changed();

@@ -46,7 +46,7 @@ ReplayModel::ReplayModel() {
     timer_.setInterval(kReplayFrame);
     connect(&timer_, &QTimer::timeout, this, [this] {
         if (!playback_ || !playback_->pass(1e-3 * static_cast<double>(since_.restart()))) return;
-        look();
+        refresh();
         if (!playback_->plays()) play(false);
     });
 }
@@ -63,7 +63,7 @@ void ReplayModel::show(const std::string& database, const std::string& meshes, q
                     if (read) {
                         playback_ = std::make_unique<presenter::Playback>(std::move(**read));
                         SceneModel::show(*playback_->scene());
-                        look();
+                        refresh();
                     } else {
                         told_ = QString::fromStdString(toString(read.errors().front()));
                     }
@@ -91,12 +91,12 @@ void ReplayModel::close() {
 
 bool ReplayModel::drawsProxy() const { return playback_ && playback_->scene()->shown == plan::ShownPose::Proxy; }
 
-void ReplayModel::look() { SceneModel::show(presenter::playbackView(*playback_->scene(), playback_->record())); }
+void ReplayModel::refresh() { SceneModel::show(presenter::playbackView(*playback_->scene(), playback_->record())); }
 
 void ReplayModel::seek(double time) {
     if (!playback_ || time == playback_->time()) return;
     playback_->seek(time);
-    look();
+    refresh();
 }
 
 void ReplayModel::play(bool plays) {
@@ -107,7 +107,7 @@ void ReplayModel::play(bool plays) {
         timer_.start();
     else
         timer_.stop();
-    look();
+    refresh();
     emit playsChanged();
 }
 

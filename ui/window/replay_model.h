@@ -62,7 +62,7 @@ signals:
     void playsChanged();
 
 private:
-    void look();
+    void refresh();
 
     std::unique_ptr<presenter::Playback> playback_;
     std::unique_ptr<run::Builds> builds_ = run::openBuilds();  // both of the worker's thread alone

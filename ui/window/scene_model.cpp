@@ -52,7 +52,7 @@ void SceneModel::show(const presenter::DrawnScene& scene) {
         model.insert("pale", mark.pale);
         marks_.append(model);
     }
-    look_ = scene.look;
+    appearance_ = scene.appearance;
     radius_ = 1e3 * scene.radius;
     const presenter::Camera& camera = scene.camera;
     ground_position_ = millimetres({camera.centre.x(), camera.centre.y(), scene.floor});

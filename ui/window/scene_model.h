@@ -65,12 +65,12 @@ public:
     QQuaternion arrowRotation() const;
     double arrowLength() const;
 
-    bool dark() const { return look_.theme == plan::Theme::Dark; }
-    bool ground() const { return look_.ground; }
-    double light() const { return look_.light; }
-    double fillLight() const { return look_.fill_light; }
-    double ambientLight() const { return look_.ambient_light; }
-    double shadow() const { return look_.shadow; }
+    bool dark() const { return appearance_.theme == plan::Theme::Dark; }
+    bool ground() const { return appearance_.ground; }
+    double light() const { return appearance_.light; }
+    double fillLight() const { return appearance_.fill_light; }
+    double ambientLight() const { return appearance_.ambient_light; }
+    double shadow() const { return appearance_.shadow; }
 
 signals:
     void sceneChanged();
@@ -78,7 +78,7 @@ signals:
 
 private:
     presenter::ParticipantView view_;
-    plan::View look_;
+    plan::View appearance_;
     bool software_ = false, heavy_ = false;
     QVariantList parts_, ghosts_, marks_;
     QVector3D ground_position_, camera_position_;

@@ -18,7 +18,7 @@ class Performer {
 public:
     virtual ~Performer() = default;
 
-    /// As whom the data is stored.
+    /// Kind of participant under which the data is stored.
     virtual plan::ParticipantKind kind() const = 0;
     /// The device for an attempt at `condition`; null: a simulated person holds one. And what it says about itself.
     virtual std::unique_ptr<loop::HapticDevice> device(const simulated::DeviceParams& preset,
@@ -32,10 +32,10 @@ public:
     /// What windows have given the participant between these times of the attempt whose loop began at `zero_ns`, on the
     /// steady clock.
     virtual session::Presentation presented(std::int64_t zero_ns, std::int64_t from_ns, std::int64_t to_ns) = 0;
-    /// Who answers questionnaires; may be null if the plan has none.
+    /// Source of the answers to questionnaires; may be null if the plan has none.
     virtual session::QuestionnaireSource* answers() = 0;
 
-    /// Who reads the instructions; may be null: then they are only logged.
+    /// Reader of the instructions; may be null: then they are only logged.
     virtual session::InstructionReader* reader() = 0;
 
     /// A session begins: `apparatus` may be halted at any time until over().
@@ -44,8 +44,8 @@ public:
     virtual void prepares(const plan::Condition& condition, std::int64_t trial_index, std::uint64_t seed) = 0;
     /// Fields and shells of that scene are built; this share of them is done. False: nobody waits for it.
     virtual bool builds(double share) = 0;
-    /// Between two steps of the session: to look at it and to give commands.
-    virtual void look(session::Session& session) = 0;
+    /// Called between two steps of the session, to read its view and to give commands.
+    virtual void betweenSteps(session::Session& session) = 0;
     virtual void over() = 0;
 };
 

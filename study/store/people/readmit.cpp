@@ -6,7 +6,7 @@
 namespace passung::store {
 namespace {
 
-/// A place in the design by what it is, which is the same in every file.
+/// A slot by what it is, which is the same in every file.
 struct FormerPlace {
     std::string protocol_sha256, group, state;
     std::int64_t sequence = 0, replicate = 0;

@@ -347,7 +347,7 @@ struct QuestionnaireRunRow {
     std::string version;
     std::string language;
     std::string definition_text;            // the questionnaire's file
-    std::optional<std::string> texts_text;  // the lab's texts, of a slot
+    std::optional<std::string> texts_text;  // the lab's texts, of a template
     std::string moment;
     std::optional<std::int64_t> block_index;
     std::optional<std::string> block;

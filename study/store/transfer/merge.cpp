@@ -86,7 +86,7 @@ private:
             settleStandings(database_);
         });
         mergeSessions(healer);
-        part("the places of the design", [&] {
+        part("the slots", [&] {
             for (std::string& who : mergePlaces(database_)) report_.moved_places.push_back(std::move(who));
         });
         part("hashes of what is new", [&] { sealNewRows(database_); });

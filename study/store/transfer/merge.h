@@ -16,7 +16,7 @@ struct MergeReport {
     std::int64_t known = 0;     // there already
     std::vector<std::string>
         unfinished;  // left out: still running, or killed and not opened since: "B.db: P001, session 1"
-    std::vector<std::string> moved_places;  // participants whose place in the design another one had as well
+    std::vector<std::string> moved_places;  // participants whose slot another one had as well
     std::vector<std::string> erased;        // who was erased in one of the files and is in another
     std::vector<std::string> damaged;  // sessions and people that were left out, and what stays damaged in the result
     std::vector<std::string> healed;   // what was damaged in the result and intact in a source

@@ -19,7 +19,7 @@ struct PushReport {
     std::vector<std::string> unfinished;   // left out: still running, or killed and not opened since
     std::vector<std::string> erased_there;   // codes: were erased here, and now there too
     std::vector<std::string> left_out;       // codes: were erased there, from another file
-    std::vector<std::string> shared_places;  // codes that have one place of the design: "P001, P101"
+    std::vector<std::string> shared_places;  // codes that have one slot: "P001, P101"
 };
 
 /// Copies the study into the PostgreSQL database `to` (a connection URI or string of libpq), into a schema with the
@@ -28,7 +28,7 @@ struct PushReport {
 /// pushing again copies only what is new or has changed, never an older copy over a newer one, and places and people
 /// that are gone here are gone there. What is damaged here does not travel. Of what is damaged there, sessions, people
 /// and places are replaced by what is intact here; other rows of the study that are there already stay as they are.
-/// Refused is what mergeDatabases() refuses, and a damaged audit. Free places of the design stay here.
+/// Refused is what mergeDatabases() refuses, and a damaged audit. Free slots stay here.
 Result<PushReport> pushDatabase(const std::string& path, const std::string& to);
 
 }  // namespace passung::store

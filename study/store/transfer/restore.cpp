@@ -182,7 +182,7 @@ void makeAnew(const std::string& path, const std::string& from, const Workshop& 
     report.told = merged->conflicts;
     for (const std::string& who : merged->moved_places)
         report.told.push_back(who +
-                              ": the same row of the square in a further replicate, for another one has the place");
+                              ": the same row of the square in a further replicate, for another one has the slot");
     if (const auto newer = merged->sessions + merged->replaced; newer > 0)
         report.told.push_back(std::to_string(newer) + (newer == 1 ? " session that is" : " sessions that are") +
                               " newer than the source: taken over");

@@ -79,14 +79,14 @@ Slot takeSlot(const Database& database, const std::string& sha256, const std::st
         "SELECT protocol_sha256, sequence_index, replicate, between_group FROM design_slot WHERE participant_id=?");
     if (own.bind(participant).step()) {
         if (own.text(0) == sha256) return slotOf(own, slots);
-        throw std::runtime_error("participant " + participant + " already has a place in another protocol");
+        throw std::runtime_error("participant " + participant + " already has a slot in another protocol");
     }
     auto slot = findFreeSlot(database, sha256, kind, slots, station, fits);
     for (int round = 0; !slot && round < station.count; ++round) {
         insertSlots(database, sha256, kind.c_str());
         slot = findFreeSlot(database, sha256, kind, slots, station, fits);
     }
-    if (!slot) throw std::runtime_error("no place of the design has the order of " + participant);
+    if (!slot) throw std::runtime_error("no slot has the order of " + participant);
     database.prepare("UPDATE design_slot SET state='assigned', participant_id=?, station=? WHERE slot_id=?")
         .bind(participant, station.name, slot->first)
         .run();

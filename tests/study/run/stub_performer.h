@@ -19,7 +19,7 @@ public:
     void begins(session::Apparatus&, const session::SessionSetup&) override {}
     void prepares(const plan::Condition&, std::int64_t, std::uint64_t) override {}
     bool builds(double) override { return true; }
-    void look(session::Session&) override {}
+    void betweenSteps(session::Session&) override {}
     void over() override {}
 };
 

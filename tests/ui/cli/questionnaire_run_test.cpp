@@ -157,7 +157,8 @@ TEST_F(QuestionnaireRun, AWrongKeyStopsTheStudyBeforeTheFirstParticipant) {
     EXPECT_EQ(run({"check", "ssq.toml"}).exit_code, 1);
     const Ended slot = run({"check", "ueq_s.toml"});
     EXPECT_EQ(slot.exit_code, 0);
-    EXPECT_EQ(slot.out, "ueq_s.toml: ok: ueq_s 1.0, 8 items, 3 scales, 1 golden vectors, a slot for the lab's texts\n");
+    EXPECT_EQ(slot.out,
+              "ueq_s.toml: ok: ueq_s 1.0, 8 items, 3 scales, 1 golden vectors, a template for the lab's texts\n");
 }
 
 TEST_F(QuestionnaireRun, AnotherWordingNeedsAnotherVersionOfTheStudy) {

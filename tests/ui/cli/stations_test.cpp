@@ -23,7 +23,7 @@ TEST(Stations, RunApartAndAreMergedIntoOneDatabase) {
     const std::vector<std::string> merge = {"merge", "A.db", "B.db", "--out", "ALL.db"};
     const Ended merged = runProgram(folder.path(), merge);
     const std::string balance =
-        "\nplaces of version 1.0, simulated: 2 participants; all rows and groups meet equally often with multiples of "
+        "\nslots of version 1.0, simulated: 2 participants; all rows and groups meet equally often with multiples of "
         "2.\n  conditions, Williams square of 2 (2 rows): position counts 1, neighbour counts 1\n";
     EXPECT_EQ(merged.out, "ALL.db: 2 sessions added, 0 brought up to date, 0 known\n" + balance) << merged.err;
     EXPECT_EQ(runProgram(folder.path(), merge).out,

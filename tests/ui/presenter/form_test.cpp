@@ -76,15 +76,15 @@ TEST(Form, ShowsItemsAsPresentedOnPagesThatAreAboutEquallyFull) {
 
 TEST(Form, LooksFollowFromHowItemsAreAnswered) {
     // Truth: closed form
-    const auto lookOf = [](const Item& item) { return formOf({item}).view().rows.front().look; };
-    EXPECT_EQ(lookOf(rating("likert", 1, 7, 1)), ItemControl::Points);
-    EXPECT_EQ(lookOf(rating("tlx", 0, 100, 5)), ItemControl::Ticks);
+    const auto controlOf = [](const Item& item) { return formOf({item}).view().rows.front().control; };
+    EXPECT_EQ(controlOf(rating("likert", 1, 7, 1)), ItemControl::Points);
+    EXPECT_EQ(controlOf(rating("tlx", 0, 100, 5)), ItemControl::Ticks);
     EXPECT_EQ(formOf({rating("tlx", 0, 100, 5)}).view().rows.front().ticks, 21);
-    EXPECT_EQ(lookOf(rating("vas", 0, 100, 0)), ItemControl::Line);
-    EXPECT_EQ(lookOf(rating("percent", 0, 100, 1)), ItemControl::Line);
-    EXPECT_EQ(lookOf(choice("side", {{7, "left"}, {9, "right"}})), ItemControl::Options);
-    EXPECT_EQ(lookOf(number("age", 16, 120)), ItemControl::Number);
-    EXPECT_EQ(lookOf(itemOf(AnswerKind::Text, "words")), ItemControl::Text);
+    EXPECT_EQ(controlOf(rating("vas", 0, 100, 0)), ItemControl::Line);
+    EXPECT_EQ(controlOf(rating("percent", 0, 100, 1)), ItemControl::Line);
+    EXPECT_EQ(controlOf(choice("side", {{7, "left"}, {9, "right"}})), ItemControl::Options);
+    EXPECT_EQ(controlOf(number("age", 16, 120)), ItemControl::Number);
+    EXPECT_EQ(controlOf(itemOf(AnswerKind::Text, "words")), ItemControl::Text);
 }
 
 TEST(Form, CountsTheTimeFromShowingToTheLastAnswerAndEveryChange) {
@@ -137,7 +137,7 @@ TEST(Form, OpenItemsArePointedOutOnceAndThenLeftOut) {
 TEST(Form, AClauseOfConsentMustBeDecided) {
     // Truth: invariant
     Form form = formOf({choice("data", {{1, ""}, {0, ""}})}, {}, true);
-    EXPECT_EQ(form.view().rows[0].look, ItemControl::Decision);
+    EXPECT_EQ(form.view().rows[0].control, ItemControl::Decision);
     for (int i = 0; i < 3; ++i) form.next(i);
     EXPECT_FALSE(form.isDone());
     EXPECT_TRUE(form.digit(0, 2, 5));

@@ -141,7 +141,7 @@ public:
         if (condition.timed_by == plan::TimedBy::Program) look_(moment_);
     }
     bool builds(double) override { return true; }
-    void look(session::Session& session) override {
+    void betweenSteps(session::Session& session) override {
         moment_.in_trial = false;
         bring();
         desk_.bring({session.view()}, {});

@@ -1708,7 +1708,7 @@
         <translation>In der Sicherung nicht gelöscht: %1</translation>
     </message>
     <message>
-        <source>Their place in the design is free for the next participant.</source>
+        <source>Their slot is free for the next participant.</source>
         <translation>Der Platz im Versuchsplan ist für die nächste Person frei.</translation>
     </message>
     <message>

@@ -71,7 +71,7 @@ TEST(ParticipantRecords, NobodyTakesPartWithoutTheRequiredConsentToTheProtocolsO
         const std::string refusal = messageOf(begin(*store, sha256, code));
         EXPECT_NE(refusal.find("requires: data_use"), std::string::npos) << refusal;
         EXPECT_EQ(refusal.find("photos"), std::string::npos) << "not required";
-        EXPECT_FALSE(store->assignSlot(sha256, code)) << "no place in the design is used up";
+        EXPECT_FALSE(store->assignSlot(sha256, code)) << "no slot is used up";
     }
     EXPECT_EQ(require(desk.decide("P001", {"photos"}, "en", Consent::Yes)), std::vector<std::string>{"photos"});
     EXPECT_FALSE(begin(*store, sha256, "P001"));

@@ -1,4 +1,4 @@
-#include "study/run/person/person_at_desk.h"
+#include "study/run/person/taking_part.h"
 
 #include <fmt/format.h>
 
@@ -45,7 +45,7 @@ Result<Done> askForConsent(store::Store& store, const std::string& database, con
     if (!reader) return reader.errors();
     const auto decisions = reader->consents();
     if (!decisions) return decisions.errors();
-    store::ParticipantRecords desk(store, {"participant", now_utc});
+    store::ParticipantRecords records(store, {"participant", now_utc});
     for (const plan::ConsentClause& clause : plan.consent) {
         if (isDecided(clause, *decisions, participant)) continue;
         const auto text = std::find_if(clause.texts.begin(), clause.texts.end(),
@@ -54,7 +54,7 @@ Result<Done> askForConsent(store::Store& store, const std::string& database, con
         const auto agreed = ask(clause, text->second);
         if (!agreed) return fault("nobody decided on the clause " + clause.clause);
         const auto stored =
-            desk.decide(participant, {clause.clause}, language, *agreed ? store::Consent::Yes : store::Consent::No);
+            records.decide(participant, {clause.clause}, language, *agreed ? store::Consent::Yes : store::Consent::No);
         if (!stored) return stored.errors();
         if (!*agreed && clause.required) return fault("no consent to the clause " + clause.clause + ", no session");
     }
