@@ -11,8 +11,8 @@
 
 namespace passung::query {
 
-/// Steps of one refinement at most: some milliseconds, which only large areas at equal depth take.
-inline constexpr int kMostRefinements = 10000;
+/// Steps of one refinement at most, 1 µs each: seldom more than a thousand are needed.
+inline constexpr int kMostRefinements = 50000;
 
 struct PartQueryRequest {
     double proximity = std::numeric_limits<double>::infinity();  // distances beyond are not searched [m], ≥ 0

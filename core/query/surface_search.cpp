@@ -4,11 +4,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <queue>
 #include <span>
 
 #include "core/query/neighbour_list.h"
-#include "core/query/triangle_pieces.h"
+#include "core/query/overlap_search.h"
+#include "core/query/search_progress.h"
 
 namespace passung::query {
 
@@ -21,7 +21,6 @@ using geometry::TriangleCorners;
 constexpr std::size_t kBlock = 64;           // points that the field is asked for at once
 constexpr std::size_t kFewTriangles = 4;     // for which neighbours need not be collected
 constexpr std::size_t kMostPerTriangle = 3;  // steps
-constexpr std::size_t kMostPerPiece = 8;
 // Of a sphere's radius: what the field may leave open before exact distances are asked.
 constexpr double kLooseShare = 0.5;
 constexpr double kArithmetic = 1e-12;  // rounding of what is computed here, per metre of the numbers it comes from
@@ -47,13 +46,7 @@ SurfaceSearch::SurfaceSearch(const scene::Part& a, const scene::Part& b)
 SurfaceSearch::~SurfaceSearch() = default;
 
 /// One search; A's frame, but for what says B.
-struct SurfaceSearch::Search {
-    /// A piece of a triangle that may be inside.
-    struct Piece {
-        double lower;  // of φ_A on it [m]
-        TriangleCorners corners;
-        bool operator<(const Piece& other) const { return lower > other.lower; }
-    };
+struct SurfaceSearch::Search : SearchProgress {
     /// Points of B at which the field is asked at once; B's frame.
     struct Points {
         std::array<float, kBlock> x, y, z, bound;
@@ -74,14 +67,11 @@ struct SurfaceSearch::Search {
     const double rounding;  // of what is computed here [m]
     const double slack;     // of the field's bounds [m]
     const double offset;
-    const double tolerance;
-    const int most_steps;
-    SurfaceBounds found;
-    double left = std::numeric_limits<double>::infinity();  // no less than this is left out or not looked at [m]
+    const Solid solid;
     bool far = false;  // the field says little around the point where the search begins
     std::vector<Waiting>& triangles;
     std::vector<std::uint32_t>& corners;  // of them
-    std::priority_queue<Piece> pieces;
+    OverlapSearch overlap;
     NeighbourList& neighbours;  // all of A that may be nearer to `triangles` than found.upper
     Points points;
 
@@ -94,11 +84,13 @@ struct SurfaceSearch::Search {
           rounding(kArithmetic * (1.0 + X_AB.p.norm())),
           slack(search.a_.chord_error + rounding),
           offset(field.sheetOffset()),
-          tolerance(std::max(0.0, tolerance_ - 4.0 * rounding)),
-          most_steps(most),
+          solid{search.triangles_, field, slack, rounding},
           triangles(search.scratch_->triangles),
           corners(search.scratch_->corners),
+          overlap(solid, *this),
           neighbours(search.scratch_->neighbours) {
+        tolerance = std::max(0.0, tolerance_ - 4.0 * rounding);
+        most_steps = most;
         triangles.clear();
         neighbours.begin(search.triangles_, rounding);
         found.upper = std::numeric_limits<double>::infinity();
@@ -109,23 +101,6 @@ struct SurfaceSearch::Search {
     }
 
     bool canBeInside() const { return offset == 0.0; }
-    bool maySpend(std::size_t steps) const { return found.steps + static_cast<int>(steps) <= most_steps; }
-
-    /// What is nowhere below this need not be looked at [m]: next to contact, half of what is known, which tells a gap
-    /// from an overlap.
-    double goal() const {
-        return found.upper > 0.0 ? std::max(found.upper - tolerance, 0.5 * found.upper) : found.upper - tolerance;
-    }
-    /// Distances from here on are enough, squared.
-    double enough() const { return goal() * std::abs(goal()); }
-
-    /// True if what is nowhere below `lower` need not be looked at.
-    bool leave(double lower) {
-        if (lower < goal()) return false;
-        left = std::min(left, lower);
-        return true;
-    }
-
     void askBounds() {
         const std::size_t n = points.count;
         field.lowerBounds(B, {points.x.data(), n}, {points.y.data(), n}, {points.z.data(), n},
@@ -135,36 +110,8 @@ struct SurfaceSearch::Search {
     /// Of φ_A at a point that was asked for.
     double boundAt(std::size_t i) const { return static_cast<double>(points.bound[i]) + offset - slack; }
 
-    bool isInside(const Vec3& p) const {
-        if (!canBeInside()) return false;
-        const double phi = field.sample(p, field::FieldMode::Trilinear).phi;
-        const double error = field.errorBound(p, field::FieldMode::Trilinear) + slack;
-        return phi + error < 0.0 || (phi - error <= 0.0 && of.triangles_.inside(p));
-    }
-
-    void offer(double phi, const Vec3& p, const Vec3& on_a) {
-        if (!(phi < found.upper)) return;
-        found.upper = phi;
-        found.point = p;
-        const Vec3 out = phi < 0.0 ? on_a - p : p - on_a;
-        const double length = out.norm();
-        found.normal = length > 0.0 ? Vec3(out / length) : Vec3(Vec3::Zero());
-    }
-
-    /// φ_A at `p`, exactly; the triangle of A next to it.
-    TriangleCorners look(const Vec3& p) {
-        const geometry::ClosestPoint near = of.triangles_.closest(p);
-        ++found.steps;
-        // Only what would be deeper, or nearer, than what is known needs a sign.
-        if (-near.distance < found.upper) {
-            const double phi = isInside(p) ? -near.distance : near.distance;
-            offer(phi, p, near.point);
-        }
-        return of.triangles_.cornersOf(near);
-    }
-
     void begin(const Vec3& p, double off) {
-        look(p);
+        solid.look(p, *this);
         found.upper += off;
         far = saysLittle(p, field.lowerBound(p) + offset, of.spheres_.leaf_radius);
     }
@@ -188,7 +135,7 @@ struct SurfaceSearch::Search {
             if ((far || found.upper < 0.0) && saysLittle(c, bound, node.radius)) {
                 const double d = of.triangles_.closest(c).distance;
                 ++found.steps;
-                lower = std::max(lower, (isInside(c) ? -d : d) - node.radius - rounding);
+                lower = std::max(lower, (solid.isInside(c) ? -d : d) - node.radius - rounding);
                 if (leave(lower)) continue;
             }
             for (std::uint32_t k = 0; k < node.count; ++k) triangles.push_back({lower, node.first + k});
@@ -259,15 +206,6 @@ struct SurfaceSearch::Search {
         if (found.upper > 0.0) findNeighbours();
     }
 
-    /// A piece of a triangle that is not known to be outside.
-    void pushPiece(const TriangleCorners& piece, double above) {
-        const TriangleCorners near = look(centroid(piece));
-        auto [depth, deepest] = farthestFrom(near, piece);
-        if (-depth < found.upper) depth = std::min(depth, farthestFrom(look(piece[deepest]), piece).distance);
-        const double lower = std::max(above, -depth - rounding);
-        if (!leave(lower)) pieces.push({lower, piece});
-    }
-
     TriangleCorners cornersInA(const Waiting& triangle) const {
         return {Vec3(R_AB * vertex(triangle, 0).p + p_AB), Vec3(R_AB * vertex(triangle, 1).p + p_AB),
                 Vec3(R_AB * vertex(triangle, 2).p + p_AB)};
@@ -294,11 +232,11 @@ struct SurfaceSearch::Search {
         const bool outside = triangle.lower > 0.0;
         const bool whole = outside || pair.distance > rounding;  // on one side
         // A point of B that is known to be as near to A's surface as this.
-        if (pair.distance < limit && (outside || !whole || !isInside(pair.on_first)))
+        if (pair.distance < limit && (outside || !whole || !solid.isInside(pair.on_first)))
             offer(pair.distance, pair.on_first, pair.on_second);
         left = std::min(left, std::max(triangle.lower, pair.distance - rounding));
-        if (outside || !canBeInside() || (whole && !isInside(centroid(t)))) return;
-        pushPiece(t, triangle.lower);
+        if (outside || !canBeInside() || (whole && !solid.isInside(centroid(t)))) return;
+        overlap.add(t, triangle.lower);
     }
 
     /// What is left of `triangles` by spheres around each.
@@ -325,34 +263,18 @@ struct SurfaceSearch::Search {
         triangles.resize(kept);
     }
 
-    /// What is left of `triangles` by spheres around their sixteenths.
-    void narrowInside() {
-        if (maySpend(triangles.size())) narrowBySpheres();
-        if (!maySpend(kSixteenths.size() * triangles.size())) return;
-        std::size_t kept = 0;
-        for (Waiting triangle : triangles) {
-            const Vec3 &a = vertex(triangle, 0).p, &b = vertex(triangle, 1).p, &c = vertex(triangle, 2).p;
-            const Vec3 ab = b - a, ac = c - a, middle = a + (ab + ac) / 3.0;
-            const double reach = farthestCorner(middle, {a, b, c});
-            points.count = 0;
-            for (const auto& [s, t] : kSixteenths) points.add(a + s * ab + t * ac);
-            askBounds();
-            double least = std::numeric_limits<double>::infinity();
-            for (std::size_t i = 0; i < points.count; ++i) least = std::min(least, boundAt(i));
-            triangle.lower = std::max(triangle.lower, least - reach / 4.0 - of.spheres_.float_rounding);
-            if (!leave(triangle.lower)) triangles[kept++] = triangle;
-        }
-        triangles.resize(kept);
-    }
-
     void lookAtTriangles() {
         if (found.upper > 0.0 && maySpend(3 * triangles.size())) narrowOutside();
-        if (found.upper <= 0.0) narrowInside();
+        if (found.upper <= 0.0 && maySpend(triangles.size())) narrowBySpheres();
         std::sort(triangles.begin(), triangles.end(), [](const Waiting& a, const Waiting& b) {
             return std::pair(a.lower, a.index) < std::pair(b.lower, b.index);
         });
         for (const Waiting& triangle : triangles) {
             if (leave(triangle.lower)) continue;
+            if (found.upper <= 0.0 && canBeInside()) {
+                overlap.add(cornersInA(triangle), triangle.lower);
+                continue;
+            }
             if (!maySpend(kMostPerTriangle)) {
                 left = std::min(left, triangle.lower);
                 break;
@@ -362,19 +284,10 @@ struct SurfaceSearch::Search {
         }
     }
 
-    void lookAtPieces() {
-        while (!pieces.empty() && !leave(pieces.top().lower) && maySpend(kMostPerPiece)) {
-            const Piece piece = pieces.top();
-            pieces.pop();
-            for (const TriangleCorners& part : quarters(piece.corners)) pushPiece(part, piece.lower);
-        }
-        if (!pieces.empty()) left = std::min(left, pieces.top().lower);
-    }
-
     void run() {
         if (findTriangles()) {
             lookAtTriangles();
-            lookAtPieces();
+            overlap.run();
         }
         found.lower = std::min(found.upper, left) - rounding;
     }

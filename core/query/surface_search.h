@@ -26,9 +26,7 @@ struct SurfaceBounds {
 /// from A's triangles found exactly: first the triangle that seems nearest, which brings the upper bound down, then all
 /// others that may be nearer than that less the tolerance. A triangle of B that does not meet A's surface lies on one
 /// side of it.
-///   Inside or across, depth is sought: any triangle t of A is at least as far from a point as A's surface is, and the
-/// distance from t is convex, so that no point of T is deeper than the farthest of its corners from t. T is quartered
-/// until that and the depth of a known point agree; next to a flat face they agree to second order.
+///   Inside or across, depth is sought, piece by piece of those triangles: see OverlapSearch.
 class SurfaceSearch {
 public:
     static constexpr int kLeastSteps = 32;  // fewer lead nowhere

@@ -8,21 +8,25 @@
 /// Parts of triangles: what a search cuts where a whole one says too little.
 namespace passung::query {
 
-/// The middles of the sixteen parts of a triangle that is quartered twice, along two of its sides.
-inline constexpr auto kSixteenths = [] {
-    std::array<std::array<double, 2>, 16> middles{};
-    std::size_t n = 0;
-    for (int i = 0; i < 4; ++i)
-        for (int j = 0; i + j < 4; ++j) {
-            middles[n++] = {(i + 1.0 / 3.0) / 4.0, (j + 1.0 / 3.0) / 4.0};
-            if (i + j < 3) middles[n++] = {(i + 2.0 / 3.0) / 4.0, (j + 2.0 / 3.0) / 4.0};
-        }
-    return middles;
-}();
+/// Across the longest edge.
+inline std::array<geometry::TriangleCorners, 2> halves(const geometry::TriangleCorners& t) {
+    std::size_t k = 0;
+    for (std::size_t i = 1; i < 3; ++i)
+        if ((t[(i + 1) % 3] - t[i]).squaredNorm() > (t[(k + 1) % 3] - t[k]).squaredNorm()) k = i;
+    const Vec3 &a = t[k], &b = t[(k + 1) % 3], &apex = t[(k + 2) % 3], middle = 0.5 * (a + b);
+    return {{{a, middle, apex}, {middle, b, apex}}};
+}
 
-inline std::array<geometry::TriangleCorners, 4> quarters(const geometry::TriangleCorners& t) {
-    const Vec3 ab = 0.5 * (t[0] + t[1]), bc = 0.5 * (t[1] + t[2]), ca = 0.5 * (t[2] + t[0]);
-    return {{{t[0], ab, ca}, {ab, t[1], bc}, {ca, bc, t[2]}, {ab, bc, ca}}};
+/// Along the line on which a function that is linear on the triangle is zero; `values` at the corners, one of which has
+/// another sign than the two others.
+inline std::array<geometry::TriangleCorners, 3> partsAtZero(const geometry::TriangleCorners& t,
+                                                            const std::array<double, 3>& values) {
+    std::size_t k = 0;  // the corner on a side of its own
+    while ((values[k] > 0.0) == (values[(k + 1) % 3] > 0.0) || (values[k] > 0.0) == (values[(k + 2) % 3] > 0.0)) ++k;
+    const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+    const Vec3 on_i = t[k] + values[k] / (values[k] - values[i]) * (t[i] - t[k]);
+    const Vec3 on_j = t[k] + values[k] / (values[k] - values[j]) * (t[j] - t[k]);
+    return {{{t[k], on_i, on_j}, {on_i, t[i], t[j]}, {on_i, t[j], on_j}}};
 }
 
 struct FarthestCorner {
