@@ -1,5 +1,6 @@
 # Checks as jobs, and a table of what came of them; CI and ./dev check-all share them. Sourced, at the root of the tree.
 
+only_names= chosen= page=  # every job, no page
 names=() seconds=() verdicts=() counts=()
 passed=0 failed=0
 
@@ -19,12 +20,15 @@ count_tests() {
     counts+=("$ok / $bad")
 }
 
-# job NAME COMMAND...
+# job NAME COMMAND...: runs it if its name has the word `chosen`; with `only_names` takes its name alone.
 job() {
     local name=$1 began=$SECONDS status=0
     shift
+    if [[ -n $only_names ]]; then known+=("$name"); return; fi
+    if [[ $name != *"$chosen"* ]]; then return; fi
     printf '\n######## %s\n' "$name"
-    local log
+    local log commit
+    commit=$(git rev-parse --short HEAD 2>/dev/null) || commit='no commit'
     log=$(mktemp)
     "$@" </dev/null 2>&1 | tee "$log" || status=1
     count_tests "$log" "$status"
@@ -32,6 +36,7 @@ job() {
     names+=("$name")
     seconds+=($((SECONDS - began)))
     if ((status == 0)); then verdicts+=(ok); else verdicts+=(FAILED); fi
+    if [[ -n $page ]]; then keep_result "$commit"; fi
 }
 
 # every_job FUZZ_SECONDS: all that CI runs.
@@ -42,7 +47,7 @@ every_job() {
     job 'clang, ASan, UBSan: files, data, program' ./dev asan-check
     job 'fuzzers' ./dev fuzz-check "$1"
     job 'TSan: threads' ./dev tsan-check
-    job 'lint of the last commit' ./dev lint
+    job 'lint of what changed' ./dev lint
 }
 
 # edit_to_tests FILE ROOM: what somebody waits who changed FILE.
@@ -62,13 +67,43 @@ table() {
     ((failed == 0))
 }
 
-# The table as a page that is kept with the sources.
-checked_page() {
-    local i
-    printf '# Checked\n\nEvery check, without a limit of time: `./dev check-all` wrote this page at `%s`, %s.\n\n' \
-        "$(git rev-parse --short HEAD)" "$(date +%F)"
-    printf '| check | minutes | passed / failed | result |\n|---|---|---|---|\n'
-    for i in "${!names[@]}"; do
-        printf '| %s | %d | %s | %s |\n' "${names[i]}" $(((seconds[i] + 30) / 60)) "${counts[i]}" "${verdicts[i]}"
-    done
+# The page's row of a check, nothing if it has none.
+row_of() {
+    if [[ -f $page ]]; then awk -v start="| $1 | " 'index($0, start) == 1' "$page"; fi
+}
+
+# keep_result COMMIT: the page with the row of the job that just ended in place of its earlier one. Rows of other jobs stay
+# as they are; a job without a row says so; rows of jobs that are no more go.
+keep_result() {
+    local commit=$1 name row text
+    if [[ -n $(git status --porcelain -- . ":!$page" 2>/dev/null) ]]; then commit+=' with changes'; fi
+    text=$(
+        printf '# Checked\n\n'
+        printf 'Every check without a limit of time, each with the commit that it read: `./dev check-all [WORD]` runs those\n'
+        printf 'whose name has the word and writes their rows.\n\n'
+        printf '| check | commit | date | minutes | passed / failed | result |\n|---|---|---|---|---|---|\n'
+        for name in "${known[@]}"; do
+            if [[ $name == "${names[-1]}" ]]; then
+                row="| $name | $commit | $(date +%F) | $(((seconds[-1] + 30) / 60)) | ${counts[-1]} | ${verdicts[-1]} |"
+            else
+                row=$(row_of "$name")
+            fi
+            printf '%s\n' "${row:-| $name |  |  |  |  | not yet run at this length |}"
+        done
+    )
+    printf '%s\n' "$text" >"$page"
+}
+
+# check_jobs PAGE WORD JOBS: runs those jobs of the function JOBS whose name has the word, writes each one's row when it ends.
+check_jobs() {
+    local known=() only_names=1 chosen=$2 page=$1
+    "$3"
+    only_names=
+    if ! printf '%s\n' "${known[@]}" | grep -qF -- "$chosen"; then
+        printf "no check's name has the word %s; there are:\n" "$chosen" >&2
+        printf '  %s\n' "${known[@]}" >&2
+        return 2
+    fi
+    "$3"
+    table
 }
