@@ -21,14 +21,14 @@ constexpr double kSameWay = 0.999;
 
 }  // namespace
 
-bool Solid::isInside(const Vec3& p) const {
+bool MeshSolid::isInside(const Vec3& p) const {
     if (field.sheetOffset() != 0.0) return false;
     const double phi = field.sample(p, field::FieldMode::Trilinear).phi;
     const double error = field.errorBound(p, field::FieldMode::Trilinear) + slack;
     return phi + error < 0.0 || (phi - error <= 0.0 && triangles.inside(p));
 }
 
-geometry::ClosestPoint Solid::look(const Vec3& p, SearchProgress& progress) const {
+geometry::ClosestPoint MeshSolid::look(const Vec3& p, SearchProgress& progress) const {
     const geometry::ClosestPoint near = triangles.closest(p);
     ++progress.found.steps;
     // Only what would be deeper, or nearer, than what is known needs a sign.

@@ -10,7 +10,7 @@
 namespace passung::query {
 
 /// A solid with what tells inside from outside; its frame.
-struct Solid {
+struct MeshSolid {
     const geometry::TriangleTree& triangles;
     const field::DistanceField& field;
     double slack;     // of the field's bounds against the triangles [m]
@@ -37,7 +37,7 @@ struct Solid {
 class OverlapSearch {
 public:
     /// Both outlive this.
-    OverlapSearch(const Solid& solid, SearchProgress& progress) : solid_(solid), progress_(progress) {}
+    OverlapSearch(const MeshSolid& solid, SearchProgress& progress) : solid_(solid), progress_(progress) {}
 
     /// `lower`: of φ_A on the triangle [m].
     void add(const geometry::TriangleCorners& triangle, double lower) { pieces_.push({lower, triangle}); }
@@ -61,7 +61,7 @@ private:
     double lowerBound(const Piece& piece);
     void split(const Piece& piece);
 
-    const Solid& solid_;
+    const MeshSolid& solid_;
     SearchProgress& progress_;
     std::priority_queue<Piece> pieces_;
     // Of the piece looked at last: what lies nearest to its middle and to the corner farthest from that.

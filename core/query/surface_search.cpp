@@ -67,7 +67,7 @@ struct SurfaceSearch::Search : SearchProgress {
     const double rounding;  // of what is computed here [m]
     const double slack;     // of the field's bounds [m]
     const double offset;
-    const Solid solid;
+    const MeshSolid solid;
     bool far = false;  // the field says little around the point where the search begins
     std::vector<Waiting>& triangles;
     std::vector<std::uint32_t>& corners;  // of them
