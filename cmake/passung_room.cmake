@@ -63,11 +63,12 @@ function(passung_one_piece target)
   endif()
 endfunction()
 
-# Rooms in which nothing is hot: they wait for files and people, and -O1 compiles them in half the time.
+# Rooms in which nothing is hot: they wait for files and people, or are as fast so; -O1 compiles them in half the time.
 set(PASSUNG_COLD_OPTIONS $<$<NOT:$<CONFIG:Debug>>:-O1>)
-set(PASSUNG_COLD_ROOMS "^(analysis/(export|power)|study/(plan|protocol|run|session|store/(schema|rows|read|write|people|transfer))|ui/.*)$")
+set(PASSUNG_COLD_ROOMS "^(core/scene|devices/.*|analysis/(export|power|stats)|study/(design|plan|protocol|run|session|store/(schema|rows|read|write|people|transfer))|ui/.*)$")
 
-# Rooms that the tick runs stay in many pieces, so that an edit there is tested soon.
+# Rooms that the tick runs stay in many pieces, so that an edit there is tested soon; with PASSUNG_TICK_ONE_PIECE, as the
+# preset `program` has it for who only runs it, they do not.
 set(PASSUNG_TICK_ROOMS "^core/(field|shell|contact|motion|closed_form|tick|query|loop)$")
 
 # passung_cold(TARGET "what TARGET links"): neither it nor its headers are optimised at length.
@@ -91,8 +92,12 @@ function(passung_room room)
   else()
     passung_reuse_headers(passung_${name} "${ROOM_HEADERS}" "${ROOM_LINK};${ROOM_PRIVATE_LINK}")
   endif()
-  if(NOT room MATCHES "${PASSUNG_TICK_ROOMS}")
+  if(PASSUNG_TICK_ONE_PIECE OR NOT room MATCHES "${PASSUNG_TICK_ROOMS}")
     passung_one_piece(passung_${name})
+  endif()
+  if(PASSUNG_TICK_ONE_PIECE AND room MATCHES "${PASSUNG_TICK_ROOMS}")
+    # A source within a piece counts as a header, where g++ warns of what only one source may use.
+    target_compile_options(passung_${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()
 endfunction()
 

@@ -10,9 +10,6 @@ namespace passung::field {
 
 namespace {
 
-constexpr int kCells = SurfaceBlock::kCells;
-constexpr int kNodes = SurfaceBlock::kNodes;
-constexpr std::array<int, 3> kStride{1, kNodes, kNodes* kNodes};
 /// In a direction of no meaning: edges of parts often lie on nodes, and what crosses at an edge would have to be told
 /// by rounding.
 constexpr double kShift = 0.1 * kLineShift;
@@ -43,6 +40,9 @@ public:
     void giveSigns(const Triangles& all);
 
 private:
+    static constexpr int kCells = SurfaceBlock::kCells, kNodes = SurfaceBlock::kNodes;
+    static constexpr std::array<int, 3> kStride{1, kNodes, kNodes* kNodes};
+
     Vec3 at(double x, double y, double z) const { return low_ + cell_ * Vec3(x, y, z); }
     void countAlong(const std::vector<Boxed>& triangles, int axis, int rows1, int rows2);
     bool consistent() const;

@@ -11,7 +11,7 @@ namespace passung::field {
 namespace {
 
 constexpr int kHalf = SurfaceBlock::kCells / 2;
-constexpr int kCells = kHalf * kHalf * kHalf;
+constexpr int kCubes = kHalf * kHalf * kHalf;
 constexpr double kLeastSlope = 0.25;  // below, as halfway between two walls, cones are no help
 constexpr double kFirstRadius = 2.0;  // tried, in cells; then twice as much each time
 constexpr int kRadii = 9;
@@ -188,12 +188,12 @@ double boundInterpolation(const shape::Shape& shape, const SurfaceBlock& block, 
     };
     // Begin at the surface, where there is most room for cones.
     int nearest = 0;
-    for (int k = 1; k < kCells; ++k)
+    for (int k = 1; k < kCubes; ++k)
         if (cubeAt(k).least() < cubeAt(nearest).least()) nearest = k;
     OctantBound bound(shape, cell);
     double most = 0.0;
-    for (int i = 0; i < kCells && most < cell; ++i) {
-        const Cube cube = cubeAt((nearest + i) % kCells);
+    for (int i = 0; i < kCubes && most < cell; ++i) {
+        const Cube cube = cubeAt((nearest + i) % kCubes);
         if (cube.least() <= reach) most = std::max(most, bound.of(cube));
     }
     return most + kRounding * cell;

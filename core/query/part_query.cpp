@@ -9,7 +9,7 @@ namespace passung::query {
 
 namespace {
 
-constexpr double kArithmetic = 1e-12;  // rounding of a closed form, per metre of its point
+constexpr double kClosedFormRounding = 1e-12;  // rounding of a closed form, per metre of its point
 
 std::size_t nodesOf(const scene::Part& part) { return part.shell ? part.shell->nodes().size() : 0; }
 std::size_t pointsOf(const scene::Part& part) { return part.shell ? part.shell->points().size() : 0; }
@@ -33,7 +33,8 @@ void boundError(PartQueryResult& result) {
 double fieldErrorAtClosest(const scene::Part& field, const contact::QueryAnswer& answer, field::FieldMode mode) {
     if (!field.shape) return field.field->errorBound(answer.closest_F, mode);
     const double truth = shape::signedDistance(*field.shape, answer.closest_F);
-    return std::abs(answer.phi + field.field->sheetOffset() - truth) + kArithmetic * (1.0 + answer.closest_F.norm());
+    return std::abs(answer.phi + field.field->sheetOffset() - truth) +
+           kClosedFormRounding * (1.0 + answer.closest_F.norm());
 }
 
 /// Sets the bound of the field at the shell's points: `least` is no more than the smallest true φ there.

@@ -25,7 +25,7 @@ constexpr int kRelaxations = 2;
 constexpr std::uint64_t kSeed = 20260101;  // of the order in which candidates are tried; any value serves
 // Candidates are tried in a random order among so many that lie next to each other, so that memory is used in order.
 constexpr std::size_t kShuffled = 2048;
-constexpr std::size_t kBatch = 16384;  // candidates that one thread assigns at a time
+constexpr std::size_t kCandidatesAtOnce = 16384;  // candidates that one thread assigns at a time
 
 /// A piece of a triangle, cut by halving.
 struct Candidate {
@@ -138,11 +138,11 @@ private:
         }
         const NearestAlike nearest(bounds_, positions, normals, radius_);
         patch_.resize(candidates_.size(), kNoPoint);
-        geometry::parallelFor((candidates_.size() + kBatch - 1) / kBatch, [&](std::size_t batch) {
-            const std::size_t end = std::min(candidates_.size(), (batch + 1) * kBatch);
+        geometry::parallelFor((candidates_.size() + kCandidatesAtOnce - 1) / kCandidatesAtOnce, [&](std::size_t batch) {
+            const std::size_t end = std::min(candidates_.size(), (batch + 1) * kCandidatesAtOnce);
             // Where the last sample was, or that of the candidate before, is a good place to begin.
             std::uint32_t before = kNoPoint;
-            for (std::size_t i = batch * kBatch; i < end; ++i) {
+            for (std::size_t i = batch * kCandidatesAtOnce; i < end; ++i) {
                 const std::uint32_t hint = patch_[i] != kNoPoint ? patch_[i] : before;
                 before = patch_[i] =
                     nearest.at(candidates_[i].position(), normals_[candidates_[i].triangle], radius, hint);

@@ -15,7 +15,7 @@ namespace {
 
 // Two unit vectors that lie in a box with sides up to 1 are no farther apart than √3: the angle is at most 120°.
 constexpr float kMostFacing = 1.0f;
-constexpr std::size_t kBatch = 64;  // nodes that one thread summarises at a time
+constexpr std::size_t kNodesAtOnce = 64;  // nodes that one thread summarises at a time
 
 /// A point while clusters are formed.
 struct ClusterPoint {
@@ -202,9 +202,9 @@ SphereTree::SphereTree(const PointShell& shell, const geometry::TriangleMesh& me
         positions_.add(item.position[0], item.position[1], item.position[2]);
         facings_.push_back(facingOf(points_.back().normal, points_.back().area));
     }
-    geometry::parallelFor((nodes_.size() + kBatch - 1) / kBatch, [&](std::size_t batch) {
-        const std::size_t end = std::min(nodes_.size(), (batch + 1) * kBatch);
-        for (std::size_t i = batch * kBatch; i < end; ++i)
+    geometry::parallelFor((nodes_.size() + kNodesAtOnce - 1) / kNodesAtOnce, [&](std::size_t batch) {
+        const std::size_t end = std::min(nodes_.size(), (batch + 1) * kNodesAtOnce);
+        for (std::size_t i = batch * kNodesAtOnce; i < end; ++i)
             summarise(std::span<const SurfacePoint>(points_).subspan(ranges[i].begin, ranges[i].count()), nodes_[i]);
     });
     for (const SphereNode& node : nodes_) {
