@@ -18,17 +18,27 @@ const Vec3& apexOf(const TriangleMesh& mesh, const HalfEdge& edge) {
 }  // namespace
 
 std::vector<HalfEdge> halfEdges(const std::vector<Triangle>& triangles) {
-    std::vector<HalfEdge> edges;
-    edges.reserve(3 * triangles.size());
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t from = triangles[i][k], to = triangles[i][(k + 1) % 3];
-            edges.push_back({std::min(from, to), std::max(from, to), static_cast<std::uint32_t>(i), from < to});
-        }
-    }
-    std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
-        return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+    std::size_t vertices = 0;
+    for (const Triangle& t : triangles)
+        vertices = std::max({vertices, t[0] + std::size_t{1}, t[1] + std::size_t{1}, t[2] + std::size_t{1}});
+    // Each to its lower vertex first: what is left to sort is short.
+    std::vector<std::size_t> place(vertices + 1, 0);
+    const auto forEach = [&](const auto& use) {
+        for (std::size_t i = 0; i < triangles.size(); ++i)
+            for (std::size_t k = 0; k < 3; ++k) use(i, triangles[i][k], triangles[i][(k + 1) % 3]);
+    };
+    forEach([&](std::size_t, std::uint32_t from, std::uint32_t to) { ++place[std::min(from, to) + 1]; });
+    for (std::size_t v = 0; v < vertices; ++v) place[v + 1] += place[v];
+    std::vector<HalfEdge> edges(3 * triangles.size());
+    forEach([&](std::size_t i, std::uint32_t from, std::uint32_t to) {
+        edges[place[std::min(from, to)]++] = {std::min(from, to), std::max(from, to), static_cast<std::uint32_t>(i),
+                                              from < to};
     });
+    for (std::size_t begin = 0, v = 0; v < vertices; begin = place[v], ++v)
+        std::sort(edges.begin() + static_cast<std::ptrdiff_t>(begin),
+                  edges.begin() + static_cast<std::ptrdiff_t>(place[v]), [](const HalfEdge& a, const HalfEdge& b) {
+                      return std::tie(a.high, a.triangle) < std::tie(b.high, b.triangle);
+                  });
     return edges;
 }
 

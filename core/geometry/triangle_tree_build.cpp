@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/base/assert.h"
+#include "core/geometry/parallel.h"
 #include "core/geometry/triangle_tree.h"
 
 /// How a TriangleTree is made; its queries are in triangle_tree.cpp.
@@ -157,13 +158,18 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
     // The triangles below a node are contiguous: from the first of its leftmost leaf to the last of its rightmost one.
     // Children come after their parent, so the ranges are known when going backwards.
     std::vector<std::pair<std::uint32_t, std::uint32_t>> ranges(nodes_.size());
-    clusters_.resize(nodes_.size());
     for (std::size_t k = nodes_.size(); k-- > 0;) {
         const Node& node = nodes_[k];
         ranges[k] = node.count > 0 ? std::pair(node.first, node.first + node.count)
                                    : std::pair(ranges[node.first].first, ranges[node.first + 1].second);
-        clusters_[k] = summarise(ranges[k].first, ranges[k].second - ranges[k].first);
     }
+    clusters_.resize(nodes_.size());
+    constexpr std::size_t kAtOnce = 4096;
+    parallelFor((nodes_.size() + kAtOnce - 1) / kAtOnce, [&](std::size_t i) {
+        const std::size_t end = std::min(nodes_.size(), (i + 1) * kAtOnce);
+        for (std::size_t k = i * kAtOnce; k < end; ++k)
+            clusters_[k] = summarise(ranges[k].first, ranges[k].second - ranges[k].first);
+    });
 }
 
 TriangleTree::Cluster TriangleTree::summarise(std::uint32_t first, std::uint32_t count) const {
