@@ -15,6 +15,7 @@ constexpr int kMeasured = 3;         // points of a cell along each axis
 constexpr double kMeasuredShare = 0.95;  // of the allowed error: between the measured points it may be more
 constexpr double kCentreShare = 0.25;    // of that
 constexpr double kLipschitzSlack = 1.01;
+constexpr std::size_t kFewTriangles = 128;  // of a cell: of more a tree looks at few
 
 }  // namespace
 
@@ -40,7 +41,8 @@ double DistanceField::Builder::allowed(double phi) const {
 /// Exact distance at `u` in a cell with its first corner at `origin`.
 double DistanceField::Builder::distanceIn(const CornerValues& values, std::span<const std::uint32_t> triangles,
                                           const Vec3& origin, const Vec3& u) const {
-    if (!triangles.empty()) return exact.source.distance_to(origin + cell * u, triangles);
+    if (!triangles.empty() && triangles.size() <= kFewTriangles)
+        return exact.source.distance_to(origin + cell * u, triangles);
     const unsigned near = nearestCorner(u);
     // The stored corner is rounded: a step is far below this share of a cell.
     const double way = cell * ((u - cornerAt(near)).norm() + 1e-3);
