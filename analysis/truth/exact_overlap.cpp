@@ -1,0 +1,327 @@
+#include "analysis/truth/exact_overlap.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <queue>
+
+#include "analysis/truth/shape_outside.h"
+
+namespace passung::truth {
+namespace {
+
+constexpr double kAside = 1e-9;  // [m] outside a plane: what lies there does not count as in the solid
+
+double radiusOf(std::span<const Vec3> corners, const Vec3& middle) {
+    double squared = 0.0;
+    for (const Vec3& corner : corners) squared = std::max(squared, (corner - middle).squaredNorm());
+    return std::sqrt(squared);
+}
+
+/// A convex piece of a triangle.
+struct Polygon {
+    std::array<Vec3, 8> corners;
+    std::size_t count = 0;
+
+    std::span<const Vec3> span() const { return std::span(corners).first(count); }
+    void add(const Vec3& p) { corners[count++] = p; }
+    Vec3 middle() const {
+        Vec3 sum = Vec3::Zero();
+        for (const Vec3& corner : span()) sum += corner;
+        return sum / static_cast<double>(count);
+    }
+};
+
+Polygon polygonOf(const Corners& t) {
+    Polygon polygon;
+    for (const Vec3& corner : t) polygon.add(corner);
+    return polygon;
+}
+
+/// In half across its greatest length, so that the pieces of a sliver get shorter and not thinner; one with as many
+/// corners as there is room for from corner to corner.
+std::array<Polygon, 2> halves(const Polygon& whole) {
+    std::array<Polygon, 2> parts;
+    const std::size_t n = whole.count;
+    if (n == whole.corners.size()) {
+        for (std::size_t i = 0; i <= n / 2; ++i) parts[0].add(whole.corners[i]);
+        for (std::size_t i = n / 2; i <= n; ++i) parts[1].add(whole.corners[i % n]);
+        return parts;
+    }
+    double most = -1.0;
+    Vec3 way, middle;
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t k = i + 1; k < n; ++k)
+            if (const Vec3 d = whole.corners[k] - whole.corners[i]; d.squaredNorm() > most) {
+                most = d.squaredNorm();
+                way = d;
+                middle = 0.5 * (whole.corners[k] + whole.corners[i]);
+            }
+    for (std::size_t i = 0; i < n; ++i) {
+        const Vec3 &a = whole.corners[i], &b = whole.corners[(i + 1) % n];
+        const double at_a = way.dot(a - middle), at_b = way.dot(b - middle);
+        parts[at_a < 0.0 ? 0 : 1].add(a);
+        if ((at_a < 0.0) == (at_b < 0.0)) continue;
+        const Vec3 between = a + at_a / (at_a - at_b) * (b - a);
+        for (Polygon& part : parts) part.add(between);
+    }
+    return parts;
+}
+
+/// A branch of a surface's tree, or a piece of one of its triangles in the frame of the solid.
+struct Piece {
+    double bound;        // no point of it is deeper [m]
+    bool b_in_a;         // whose surface
+    std::uint32_t node;  // kNone: a piece
+    Polygon polygon;
+};
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+/// Which surface is looked for in which solid.
+struct Direction {
+    const OverlapBody* solid;
+    const OverlapBody* surface;
+    Pose X_SolidSurface, X_WSolid;
+};
+
+class Search {
+public:
+    Search(const std::array<Direction, 2>& directions, const OverlapSearch& search)
+        : directions_(directions), search_(search) {}
+
+    Overlap run() {
+        for (std::size_t i = 0; i < 2; ++i)
+            if (directions_[i].solid->hasInside()) addNode(i == 1, 0);
+        while (!waiting_.empty() && waiting_.top().bound > found_.depth + search_.tolerance &&
+               found_.pieces < search_.most_pieces) {
+            const Piece piece = waiting_.top();
+            waiting_.pop();
+            expand(piece);
+        }
+        found_.bound = std::max({found_.depth, left_out_, waiting_.empty() ? 0.0 : waiting_.top().bound});
+        return found_;
+    }
+
+private:
+    const Direction& of(bool b_in_a) const { return directions_[b_in_a ? 1 : 0]; }
+
+    void expand(const Piece& piece) {
+        const Direction& way = of(piece.b_in_a);
+        if (piece.node == kNone) {
+            for (const Polygon& half : halves(piece.polygon)) addPolygon(piece.b_in_a, half);
+            return;
+        }
+        const TriangleBoxes::Node& node = way.surface->surface().nodes()[piece.node];
+        if (node.right != 0) {
+            addNode(piece.b_in_a, piece.node + 1);
+            addNode(piece.b_in_a, node.right);
+            return;
+        }
+        for (std::uint32_t i = node.first; i < node.end; ++i) {
+            const Corners& t = way.surface->surface().triangles()[i];
+            const Corners placed{way.X_SolidSurface * t[0], way.X_SolidSurface * t[1], way.X_SolidSurface * t[2]};
+            addPolygon(piece.b_in_a, polygonOf(placed));
+        }
+    }
+
+    void addNode(bool b_in_a, std::uint32_t index) {
+        const Direction& way = of(b_in_a);
+        std::array<Vec3, 8> corners = way.surface->surface().nodes()[index].hull;
+        for (Vec3& corner : corners) corner = way.X_SolidSurface * corner;
+        const Vec3 middle = 0.5 * (corners.front() + corners.back());
+        ++found_.pieces;
+        const double phi = way.solid->signedDistance(middle), radius = radiusOf(corners, middle);
+        if (phi >= radius) return;
+        const double bound = std::min(radius - phi, way.solid->deepestOver(corners, middle, phi));
+        const double enough = std::max(found_.depth, search_.ignore);
+        if (bound > enough && isShallow(way, index, middle, enough))
+            left_out_ = std::max(left_out_, search_.ignore);
+        else
+            push({bound, b_in_a, index, {}});
+    }
+
+    /// Does the hull of the vertices themselves, tighter than any box, prove it?
+    bool isShallow(const Direction& way, std::uint32_t index, const Vec3& middle, double enough) {
+        const TriangleBoxes& surface = way.surface->surface();
+        placed_.clear();
+        for (const Vec3& p : surface.vertices(surface.nodes()[index])) placed_.push_back(way.X_SolidSurface * p);
+        return !placed_.empty() && way.solid->isShallow(placed_, middle, enough);
+    }
+
+    /// A point of the surface that is looked for in a solid.
+    void note(const Direction& way, const Vec3& p, double phi) {
+        if (!(-phi > found_.depth)) return;
+        found_.depth = -phi;
+        found_.point = way.X_WSolid * p;
+    }
+
+    void addPolygon(bool b_in_a, const Polygon& piece) {
+        const Direction& way = of(b_in_a);
+        const Vec3 middle = piece.middle();
+        ++found_.pieces;
+        const double phi = way.solid->signedDistance(middle);
+        note(way, middle, phi);
+        const double radius = radiusOf(piece.span(), middle);
+        if (phi >= radius) return;
+        const double bound = std::min(radius - phi, way.solid->deepestOverPiece(piece.span(), middle, phi));
+        if (way.solid->isOutside(piece.span(), phi) || !push({bound, b_in_a, kNone, piece})) return;
+        for (const Vec3& corner : piece.span()) note(way, corner, way.solid->signedDistance(corner));
+    }
+
+    /// What is no deeper than what is found, or need not be told, is left out.
+    bool push(const Piece& piece) {
+        if (piece.bound > std::max(found_.depth, search_.ignore)) {
+            waiting_.push(piece);
+            return true;
+        }
+        if (piece.bound <= search_.ignore) left_out_ = std::max(left_out_, piece.bound);
+        return false;
+    }
+
+    struct Later {
+        bool operator()(const Piece& a, const Piece& b) const { return a.bound < b.bound; }
+    };
+    const std::array<Direction, 2>& directions_;
+    const OverlapSearch& search_;
+    Overlap found_;
+    double left_out_ = 0.0;
+    std::vector<Vec3> placed_;  // vertices of a node in the solid's frame
+    std::priority_queue<Piece, std::vector<Piece>, Later> waiting_;
+};
+
+struct Meeting {
+    const TriangleBoxes& a;
+    const TriangleBoxes& b;
+    Pose X_BA;
+
+    /// Is there a pair below these nodes?
+    bool below(std::uint32_t of_a) const {
+        const TriangleBoxes::Node& node = a.nodes()[of_a];
+        geometry::Bounds box;
+        for (const Vec3& corner : node.hull) box.extend(X_BA * corner);
+        if (!(box.low.array() <= b.nodes()[0].box.high.array()).all() ||
+            !(b.nodes()[0].box.low.array() <= box.high.array()).all())
+            return false;
+        if (node.right != 0) return below(of_a + 1) || below(node.right);
+        for (std::uint32_t i = node.first; i < node.end; ++i) {
+            const Corners& t = a.triangles()[i];
+            if (b.isMetBy({X_BA * t[0], X_BA * t[1], X_BA * t[2]})) return true;
+        }
+        return false;
+    }
+};
+
+}  // namespace
+
+OverlapBody::OverlapBody(const shape::Shape& shape, double chord_error)
+    : shape_(std::make_unique<const shape::Shape>(shape)),
+      surface_(std::make_unique<const TriangleBoxes>(shape::tessellate(shape, chord_error))),
+      chord_error_(shape::chordError(shape, chord_error)) {}
+
+OverlapBody::OverlapBody(const geometry::TriangleMesh& mesh) : surface_(std::make_unique<const TriangleBoxes>(mesh)) {}
+
+bool OverlapBody::hasInside() const { return shape_ == nullptr || !std::holds_alternative<shape::Sheet>(*shape_); }
+
+double OverlapBody::signedDistance(const Vec3& p) const {
+    if (shape_ != nullptr) return shape::signedDistance(*shape_, p);
+    const double distance = surface_->nearest(p).distance;
+    return surface_->contains(p) ? -distance : distance;
+}
+
+/// Of a mesh: the nearest triangle is one convex set outside, the shadow of the hull on its plane another, if nothing
+/// of the mesh crosses it. The triangle that is nearest to the middle shows how near the bound gets to the depth.
+double OverlapBody::deepestOver(std::span<const Vec3> corners, const Vec3& middle, double phi) const {
+    if (shape_ != nullptr) return truth::deepestOver(*shape_, corners, middle);
+    const double lipschitz = radiusOf(corners, middle) - phi;
+    if (!(phi < 0.0)) return lipschitz;
+    const Corners& nearest = surface_->triangles()[surface_->nearest(middle).triangle];
+    double of_triangle = 0.0;
+    for (const Vec3& corner : corners) of_triangle = std::max(of_triangle, distanceToTriangle(corner, nearest));
+    return std::min(lipschitz, of_triangle);
+}
+
+double OverlapBody::deepestOverPiece(std::span<const Vec3> corners, const Vec3& middle, double phi) const {
+    const double bound = deepestOver(corners, middle, phi);
+    if (shape_ != nullptr || !(phi < 0.0)) return bound;
+    const Corners& nearest = surface_->triangles()[surface_->nearest(middle).triangle];
+    const Vec3 n = (nearest[1] - nearest[0]).cross(nearest[2] - nearest[0]).normalized();
+    Polygon shadow;
+    double of_plane = 0.0;
+    for (const Vec3& corner : corners) {
+        const double height = n.dot(corner - nearest[0]) - kAside;
+        of_plane = std::max(of_plane, std::abs(height));
+        shadow.add(corner - height * n);
+    }
+    const bool open = of_plane < bound && !surface_->contains(shadow.middle()) && !isMetBy(shadow.span());
+    return open ? of_plane : bound;
+}
+
+bool OverlapBody::isShallow(std::span<const Vec3> corners, const Vec3& middle, double enough) const {
+    if (shape_ == nullptr) return false;
+    const double just_above = enough + 1e-12;  // [m]
+    return truth::deepestOver(*shape_, corners, middle, just_above) < just_above;
+}
+
+bool OverlapBody::isMetBy(std::span<const Vec3> piece) const {
+    for (std::size_t i = 2; i < piece.size(); ++i)
+        if (surface_->isMetBy({piece[0], piece[i - 1], piece[i]})) return true;
+    return false;
+}
+
+bool OverlapBody::isOutside(std::span<const Vec3> piece, double phi) const {
+    return shape_ == nullptr && phi >= 0.0 && !isMetBy(piece);
+}
+
+Overlap overlapOf(const OverlapBody& a, const Pose& X_WA, const OverlapBody& b, const Pose& X_WB,
+                  const OverlapSearch& search) {
+    const Pose X_AB = X_WA.inverse() * X_WB;
+    return Search({Direction{&b, &a, X_AB.inverse(), X_WB}, Direction{&a, &b, X_AB, X_WA}}, search).run();
+}
+
+bool surfacesMeet(const OverlapBody& a, const Pose& X_WA, const OverlapBody& b, const Pose& X_WB) {
+    return Meeting{a.surface(), b.surface(), X_WB.inverse() * X_WA}.below(0);
+}
+
+std::shared_ptr<const OverlapBody> OverlapBodies::of(const scene::Part& part) {
+    std::string key = part.shape ? shape::kindName(*part.shape) : std::to_string(geometry::contentHash(part.mesh));
+    if (part.shape)
+        for (const double value : shape::dimensions(*part.shape))
+            key += " " + std::to_string(std::bit_cast<std::uint64_t>(value));
+    auto& body = bodies_[key];
+    if (!body)
+        body = part.shape ? std::make_shared<const OverlapBody>(*part.shape, chord_error_)
+                          : std::make_shared<const OverlapBody>(part.mesh);
+    return body;
+}
+
+SceneOverlap::SceneOverlap(const scene::Scene& scene, OverlapBodies& bodies)
+    : held_(bodies.of(*scene.parts[scene.held])) {
+    for (std::size_t i = 0; i < scene.parts.size(); ++i)
+        if (i != scene.held) obstacles_.push_back({bodies.of(*scene.parts[i]), scene.spec.parts[i].X_WP});
+}
+
+Overlap SceneOverlap::at(const Pose& X_WG, const OverlapSearch& search) const {
+    Overlap deepest;
+    for (const Obstacle& obstacle : obstacles_) {
+        OverlapSearch deeper = search;
+        deeper.ignore = std::max(search.ignore, deepest.depth);
+        const Overlap found = overlapOf(*held_, X_WG, *obstacle.body, obstacle.X_WO, deeper);
+        if (found.depth > deepest.depth) {
+            deepest.depth = found.depth;
+            deepest.point = found.point;
+        }
+        deepest.bound = std::max(deepest.bound, found.bound);
+        deepest.pieces += found.pieces;
+    }
+    return deepest;
+}
+
+bool SceneOverlap::surfacesMeet(const Pose& X_WG) const {
+    return std::any_of(obstacles_.begin(), obstacles_.end(), [&](const Obstacle& obstacle) {
+        return truth::surfacesMeet(*held_, X_WG, *obstacle.body, obstacle.X_WO);
+    });
+}
+
+}  // namespace passung::truth

@@ -1,0 +1,108 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/truth/triangle_boxes.h"
+#include "core/base/types.h"
+#include "core/geometry/mesh.h"
+#include "core/scene/scene.h"
+#include "core/shape/shape.h"
+
+namespace passung::truth {
+
+/// How deep two parts reach into each other: the largest depth of any point of either surface in the other solid. It
+/// lies in [depth, bound] [m], of shapes give or take the chord errors of their triangles; depth is that of `point`,
+/// found and not merely possible.
+struct Overlap {
+    double depth = 0.0;
+    double bound = 0.0;
+    Vec3 point = Vec3::Zero();  // in the frame that the poses are in
+    std::size_t pieces = 0;     // of surfaces that were looked at
+};
+
+/// What a search may leave open.
+struct OverlapSearch {
+    double tolerance = 2e-6;  // of the depth [m], > 0
+    double ignore = 0.0;  // depths up to it need not be told from 0 [m], ≥ 0; to prove that surfaces which lie along
+                          // each other do not overlap takes the longer the less it is
+    std::size_t most_pieces = 200'000;  // then `bound` is what was proven by then
+};
+
+/// One part: its surface as triangles, its inside by the closed form of a shape or the winding number of a mesh. A
+/// mesh with gaps has the inside of its winding number; a sheet has none. Nothing of the contact core is asked.
+class OverlapBody {
+public:
+    /// A shape, its triangles at most `chord_error` [m] off the true surface.
+    OverlapBody(const shape::Shape& shape, double chord_error);
+    /// @pre at least one triangle, finite vertices.
+    explicit OverlapBody(const geometry::TriangleMesh& mesh);
+
+    const TriangleBoxes& surface() const { return *surface_; }
+    double chordError() const { return chord_error_; }  // as reached [m]
+    bool hasInside() const;
+    /// Positive outside [m]. @pre hasInside().
+    double signedDistance(const Vec3& p) const;
+    /// No point of the hull of `corners` is deeper than this [m]; `middle` near its middle, `phi` its signed distance.
+    double deepestOver(std::span<const Vec3> corners, const Vec3& middle, double phi) const;
+    /// Is the hull of `corners` proven to be no deeper than `enough` [m]? Of a mesh never: that would take too long.
+    bool isShallow(std::span<const Vec3> corners, const Vec3& middle, double enough) const;
+    /// The same of a convex flat piece; at most 8 corners, in turn.
+    double deepestOverPiece(std::span<const Vec3> corners, const Vec3& middle, double phi) const;
+    /// Is all of a flat piece outside? False where that cannot be told at once.
+    bool isOutside(std::span<const Vec3> piece, double phi) const;
+
+private:
+    bool isMetBy(std::span<const Vec3> piece) const;
+
+    std::unique_ptr<const shape::Shape> shape_;  // none: a mesh
+    std::unique_ptr<const TriangleBoxes> surface_;
+    double chord_error_ = 0.0;
+};
+
+/// The overlap of A and B, by branch and bound over both surfaces, the deepest possible piece first: of each piece the
+/// depth of its middle, and a bound by the radius of its hull and by convex sets outside the solid. @pre poses finite.
+Overlap overlapOf(const OverlapBody& a, const Pose& X_WA, const OverlapBody& b, const Pose& X_WB,
+                  const OverlapSearch& search = {});
+
+/// Do any two triangles of A and B meet? (triangleMeets: touching is none.)
+bool surfacesMeet(const OverlapBody& a, const Pose& X_WA, const OverlapBody& b, const Pose& X_WB);
+
+/// Bodies of parts, each made once: of shapes with triangles within `chord_error` [m], or as near as tessellation gets.
+class OverlapBodies {
+public:
+    explicit OverlapBodies(double chord_error = 5e-7) : chord_error_(chord_error) {}
+    /// shared_ptr: scenes that come and go share a body.
+    std::shared_ptr<const OverlapBody> of(const scene::Part& part);
+
+private:
+    double chord_error_;
+    std::map<std::string, std::shared_ptr<const OverlapBody>> bodies_;
+};
+
+/// The held part of a scene against all its obstacles.
+class SceneOverlap {
+public:
+    /// The scene and `bodies` may go.
+    SceneOverlap(const scene::Scene& scene, OverlapBodies& bodies);
+
+    bool hasObstacles() const { return !obstacles_.empty(); }
+    /// With the held part at X_WG.
+    Overlap at(const Pose& X_WG, const OverlapSearch& search = {}) const;
+    /// Do the held part's triangles meet any obstacle's?
+    bool surfacesMeet(const Pose& X_WG) const;
+
+private:
+    struct Obstacle {
+        std::shared_ptr<const OverlapBody> body;
+        Pose X_WO;
+    };
+    std::shared_ptr<const OverlapBody> held_;
+    std::vector<Obstacle> obstacles_;
+};
+
+}  // namespace passung::truth

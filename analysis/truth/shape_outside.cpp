@@ -1,0 +1,216 @@
+#include "analysis/truth/shape_outside.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace passung::truth {
+namespace {
+
+using namespace shape;
+
+constexpr double kHalfRoot = 1.0 / std::numbers::sqrt2;
+
+double positive(double x) { return std::max(x, 0.0); }
+double radial(const Vec3& p) { return std::hypot(p.x(), p.y()); }
+
+/// The direction from the z axis to `p`.
+Vec3 outwards(const Vec3& p) {
+    const double r = radial(p);
+    return r > 0.0 ? Vec3(p.x() / r, p.y() / r, 0.0) : Vec3(1.0, 0.0, 0.0);
+}
+
+/// The least of the bounds over one corner list.
+class Bound {
+public:
+    Bound(std::span<const Vec3> corners, const Vec3& centre, double enough)
+        : middle(centre), corners_(corners), least_(enough) {}
+
+    /// A convex set by an upper bound of a point's distance from it.
+    template <class Distance>
+    void set(const Distance& distance) {
+        double most = 0.0;
+        for (const Vec3& corner : corners_) {
+            most = std::max(most, distance(corner));
+            if (most >= least_) return;
+        }
+        least_ = most;
+    }
+    /// The half-space n·p ≥ h, n of length 1.
+    void beyond(const Vec3& n, double h) {
+        set([&](const Vec3& p) { return positive(h - n.dot(p)); });
+    }
+    /// Both half-spaces at once: n·p ≥ h and m·p ≥ k.
+    void beyondBoth(const Vec3& n, double h, const Vec3& m, double k) {
+        const double c = n.dot(m);
+        set([&](const Vec3& p) {
+            const double a = h - n.dot(p), b = k - m.dot(p);  // > 0: short of it
+            if (a <= 0.0 && b <= 0.0) return 0.0;
+            if (a > 0.0 && b - c * a <= 0.0) return a;  // the foot on the first plane is beyond the second
+            if (b > 0.0 && a - c * b <= 0.0) return b;
+            return std::sqrt(positive(a * a + b * b - 2.0 * c * a * b) / (1.0 - c * c));  // the line of both
+        });
+    }
+    void besideBox(double half_width, double half_depth, double low, double high) {
+        beyond({1, 0, 0}, half_width);
+        beyond({-1, 0, 0}, half_width);
+        beyond({0, 1, 0}, half_depth);
+        beyond({0, -1, 0}, half_depth);
+        aboveAndBelow(low, high);
+    }
+    void aboveAndBelow(double low, double high) {
+        beyond({0, 0, 1}, high);
+        beyond({0, 0, -1}, -low);
+    }
+    double least() const { return least_; }
+
+    const Vec3& middle;
+
+private:
+    std::span<const Vec3> corners_;
+    double least_;
+};
+
+void add(const Sphere& s, Bound& bound) {
+    const double r = bound.middle.norm();
+    bound.beyond(r > 0.0 ? Vec3(bound.middle / r) : Vec3(0, 0, 1), 0.5 * s.diameter);
+}
+
+void add(const Box& b, Bound& bound) { bound.besideBox(0.5 * b.width, 0.5 * b.depth, -0.5 * b.height, 0.5 * b.height); }
+
+void add(const Cylinder& c, Bound& bound) {
+    bound.beyond(outwards(bound.middle), 0.5 * c.diameter);
+    bound.aboveAndBelow(-0.5 * c.length, 0.5 * c.length);
+}
+
+/// Tangents of the tube's circle: beyond one that leans outwards a half-space, else the inside of a cone or cylinder,
+/// cos(a) (r - R) + sin(a) z ≥ tube radius with cos(a) < 0.
+void add(const Torus& t, Bound& bound) {
+    const double ring = 0.5 * t.diameter, tube = 0.5 * t.tube_diameter;
+    const double x = radial(bound.middle) - ring, z = bound.middle.z(), length = std::hypot(x, z);
+    const double c = length > 0.0 ? x / length : 0.0, s = length > 0.0 ? z / length : 1.0;
+    if (c >= 0.0) {
+        bound.beyond(c * outwards(bound.middle) + Vec3(0, 0, s), ring * c + tube);
+    } else {
+        // Where the tangent's foot lies beyond the axis the true distance is larger: that to the apex.
+        bound.set([&](const Vec3& p) {
+            const double r = radial(p), short_of = tube - (c * (r - ring) + s * p.z());
+            if (short_of <= 0.0) return 0.0;
+            if (r + short_of * c >= 0.0) return short_of;
+            return std::abs(s) > 0.0 ? std::hypot(r, p.z() - (tube + c * ring) / s) : short_of;
+        });
+    }
+}
+
+void add(const Sheet&, Bound&) {}
+
+void add(const Peg& peg, Bound& bound) {
+    const double radius = 0.5 * peg.diameter;
+    const Vec3 out = outwards(bound.middle);
+    bound.beyond(out, radius);
+    bound.aboveAndBelow(0.0, peg.length);
+    if (peg.chamfer > 0.0) bound.beyond(kHalfRoot * (out - Vec3(0, 0, 1)), kHalfRoot * (radius - peg.chamfer));
+}
+
+void add(const SquarePeg& peg, Bound& bound) {
+    const double w = 0.5 * peg.width, d = 0.5 * peg.depth;
+    bound.besideBox(w, d, 0.0, peg.length);
+    if (!(peg.chamfer > 0.0)) return;
+    for (const double side : {-1.0, 1.0}) {
+        bound.beyond(kHalfRoot * Vec3(side, 0, -1), kHalfRoot * (w - peg.chamfer));
+        bound.beyond(kHalfRoot * Vec3(0, side, -1), kHalfRoot * (d - peg.chamfer));
+    }
+}
+
+/// Beyond the round body and beside or beyond the key at once; only the chamfer of the key's sides has no set.
+void add(const KeyedPeg& peg, Bound& bound) {
+    const double radius = 0.5 * peg.diameter, half_key = 0.5 * peg.key_width, reach = radius + peg.key_height;
+    const Vec3 out = outwards(bound.middle);
+    bound.aboveAndBelow(0.0, peg.length);
+    bound.beyond({1, 0, 0}, reach);
+    bound.beyond(out, std::max(radius, positive(out.x()) * reach + std::abs(out.y()) * half_key));
+    const double side = bound.middle.y() < 0.0 ? -1.0 : 1.0;
+    const Vec3 beside(0, side, 0);
+    if (beside.dot(out) < 0.999) bound.beyondBoth(out, radius, beside, half_key);
+    if (!(peg.chamfer > 0.0)) return;
+    bound.beyond(kHalfRoot * Vec3(1, 0, -1), kHalfRoot * (reach - peg.chamfer));
+    const Vec3 slope = kHalfRoot * (out - Vec3(0, 0, 1));
+    const double h = kHalfRoot * (radius - peg.chamfer);
+    if (out.x() <= 0.0 && half_key <= radius - peg.chamfer) bound.beyond(slope, h);
+    bound.beyondBoth(slope, h, beside, half_key);
+}
+
+/// The room of a round bore above `floor`.
+void addBore(double radius, double floor, Bound& bound) {
+    bound.set([=](const Vec3& p) { return std::hypot(positive(radial(p) - radius), positive(floor - p.z())); });
+}
+
+/// The room between the slopes of a mouth: r ≤ radius + s with s = z + chamfer ≥ 0. The distance, or a little more
+/// below it.
+void addRoundMouth(double radius, double chamfer, Bound& bound) {
+    bound.set([=](const Vec3& p) {
+        const double lift = positive(-(p.z() + chamfer));
+        const double over = positive(radial(p) - radius - (p.z() + chamfer + lift));
+        return std::hypot(0.5 * over, lift + 0.5 * over);
+    });
+}
+
+/// Room between x_low and x_high, |y| ≤ half_y, above `floor`.
+void addSlot(double x_low, double x_high, double half_y, double floor, Bound& bound) {
+    bound.set([=](const Vec3& p) {
+        return Vec3(positive(std::max(x_low - p.x(), p.x() - x_high)), positive(std::abs(p.y()) - half_y),
+                    positive(floor - p.z()))
+            .norm();
+    });
+}
+
+/// The same room where it widens: all borders but `fixed_low` by s = z + chamfer ≥ 0.
+void addSlotMouth(double x_low, double x_high, double half_y, double chamfer, bool fixed_low, Bound& bound) {
+    bound.set([=](const Vec3& p) {
+        const double lift = positive(-(p.z() + chamfer)), s = p.z() + chamfer + lift;
+        const double low = positive(x_low - (fixed_low ? 0.0 : s) - p.x());
+        const double ex = std::max(fixed_low ? 2.0 * low : low, positive(p.x() - x_high - s));
+        const double ey = positive(std::abs(p.y()) - half_y - s);
+        return Vec3(0.5 * ex, 0.5 * ey, lift + 0.5 * std::max(ex, ey)).norm();
+    });
+}
+
+template <class Plate>
+double floorOf(const Plate& plate) {
+    return plate.bore_depth >= plate.height ? -std::numeric_limits<double>::infinity() : -plate.bore_depth;
+}
+
+void add(const BorePlate& plate, Bound& bound) {
+    bound.besideBox(0.5 * plate.width, 0.5 * plate.depth, -plate.height, 0.0);
+    addBore(0.5 * plate.bore_diameter, floorOf(plate), bound);
+    if (plate.chamfer > 0.0) addRoundMouth(0.5 * plate.bore_diameter, plate.chamfer, bound);
+}
+
+void add(const SquareBorePlate& plate, Bound& bound) {
+    const double w = 0.5 * plate.pocket_width, d = 0.5 * plate.pocket_depth;
+    bound.besideBox(0.5 * plate.width, 0.5 * plate.depth, -plate.height, 0.0);
+    addSlot(-w, w, d, floorOf(plate), bound);
+    if (plate.chamfer > 0.0) addSlotMouth(-w, w, d, plate.chamfer, false, bound);
+}
+
+void add(const KeyedBorePlate& plate, Bound& bound) {
+    const double radius = 0.5 * plate.bore_diameter, half_key = 0.5 * plate.key_width;
+    const double reach = radius + plate.key_height;
+    bound.besideBox(0.5 * plate.width, 0.5 * plate.depth, -plate.height, 0.0);
+    addBore(radius, floorOf(plate), bound);
+    addSlot(0.0, reach, half_key, floorOf(plate), bound);
+    if (!(plate.chamfer > 0.0)) return;
+    addRoundMouth(radius, plate.chamfer, bound);
+    addSlotMouth(0.0, reach, half_key, plate.chamfer, true, bound);
+}
+
+}  // namespace
+
+double deepestOver(const Shape& shape, std::span<const Vec3> corners, const Vec3& middle, double enough) {
+    Bound bound(corners, middle, enough);
+    std::visit([&](const auto& s) { add(s, bound); }, shape);
+    return bound.least();
+}
+
+}  // namespace passung::truth
