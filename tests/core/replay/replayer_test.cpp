@@ -7,6 +7,7 @@
 
 #include "core/base/random.h"
 #include "core/loop/haptic_loop.h"
+#include "tests/support/every_effect.h"
 #include "tests/support/scenes.h"
 
 namespace passung {
@@ -44,8 +45,7 @@ scene::SceneSpec pressing(scene::ContactMethod method) {
 
 /// The same with everything that a scene can name.
 scene::SceneSpec withEveryEffect(scene::SceneSpec spec) {
-    spec.effects.passivity_damping = 5;
-    spec.effects.transients = {.amplitude = 20, .frequency = 150, .decay = 0.01};
+    spec.effects = test::everyEffect();
     spec.limits.delay_ticks = 2;
     spec.contact.proxy_filter = 150;
     spec.contact.damping = 3;

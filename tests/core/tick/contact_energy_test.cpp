@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/random.h"
+#include "tests/support/every_effect.h"
 #include "tests/support/scenes.h"
 
 namespace passung {
@@ -94,8 +95,7 @@ scene::SceneSpec withEverything(ContactMethod method, bool two_way) {
     spec.contact.two_way = two_way;
     spec.contact.damping = 3.0;
     spec.contact.rotational_damping = 1e-3;
-    spec.effects.passivity_damping = 5.0;
-    spec.effects.transients = {.amplitude = 5, .frequency = 150, .decay = 0.01};
+    spec.effects = test::everyEffect();
     spec.limits.delay_ticks = 2;
     spec.limits.max_force = 2.0;
     spec.limits.max_torque = 0.01;

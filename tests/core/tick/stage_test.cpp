@@ -9,6 +9,7 @@
 
 #include "core/base/random.h"
 #include "core/tick/step.h"
+#include "tests/support/every_effect.h"
 #include "tests/support/fields.h"
 #include "tests/support/scenes.h"
 
@@ -51,7 +52,7 @@ scene::SceneSpec boxOverPlate(scene::ContactMethod method) {
     spec.limits.max_force = 3.0;
     spec.limits.max_speed = 2.0;
     spec.limits.quantum = 1e-5;
-    spec.effects.passivity_damping = 10.0;
+    spec.effects = test::everyEffect();
     return spec;
 }
 
@@ -63,14 +64,12 @@ std::vector<scene::SceneSpec> scenesOfAllStages() {
     auto penalty = boxOverPlate(Penalty);
     penalty.contact.variant = scene::PenaltyVariant::AreaWeighted;
     penalty.limits.delay_ticks = 3;
-    penalty.effects.transients.amplitude = 1.0;
     penalty.start_gate = {0.1, 3.0, 5};
     auto tool = boxOverPlate(Penalty);
     tool.contact.coupling = scene::PenaltyCoupling::Virtual;
     tool.display_wrench = false;
     auto god_object = boxOverPlate(GodObject);
     for (auto& part : god_object.parts) part.friction = part.sliding_friction = 0.3;
-    god_object.effects.transients.amplitude = 1.0;
     god_object.contact.proxy_filter = 50.0;
     god_object.contact.two_way = true;
     auto heuristic = boxOverPlate(GodObjectHeuristic);

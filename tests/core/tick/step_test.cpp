@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/random.h"
+#include "tests/support/every_effect.h"
 #include "tests/support/rt_guard.h"
 #include "tests/support/scenes.h"
 
@@ -59,8 +60,7 @@ std::vector<std::pair<const char*, scene::SceneSpec>> everyKindOfScene() {
         scenes.back().second.contact.budget_nodes = 200;
         scenes.back().second.limits.delay_ticks = 2;
         scenes.back().second.start_gate = {0.02, 0.1, 50};
-        scenes.back().second.effects.passivity_damping = 5;
-        scenes.back().second.effects.transients = {.amplitude = 5, .frequency = 150, .decay = 0.01};
+        scenes.back().second.effects = test::everyEffect();
         for (auto& part : scenes.back().second.parts) part.friction = part.sliding_friction = 0.3;
         scenes.emplace_back("god object, two-way, rough", pegAndPlate(method));
         scenes.back().second.contact.two_way = true;

@@ -10,6 +10,7 @@
 #include "study/run/files/known_names.h"
 #include "study/store/read/store_reader.h"
 #include "study/store/schema/sqlite.h"
+#include "tests/support/every_effect.h"
 #include "tests/ui/cli/small_study.h"
 #include "tests/ui/window/windows.h"
 #include "ui/presenter/participant_access.h"
@@ -425,8 +426,7 @@ std::vector<StageText> stageTexts() {
             spec.record_hand_depth = true;
             spec.start_gate.hold_ticks = 10;
             spec.limits.delay_ticks = 1;
-            spec.effects.passivity_damping = 1.0;
-            spec.effects.transients.amplitude = 1.0;
+            spec.effects = test::everyEffect();
             spec.display_wrench = false;
             const auto scene = scene::buildScene(spec, cache);
             if (!scene) throw std::runtime_error(toString(scene.errors().front()));
