@@ -23,6 +23,9 @@ public:
     virtual DeviceReading read() noexcept = 0;
     /// `F_D_B`: wrench on the hand, about the handle's origin, in the device's base frame.
     virtual void command(const Wrench& F_D_B) noexcept = 0;
+    /// False for a stand-in without motors, such as a mouse: no hand feels what it is commanded. Asked before the loop
+    /// runs.
+    virtual bool pushesHand() const { return true; }
     /// A new frame on the display. Real devices ignore it; a simulated hand looks at it.
     virtual void show(const DisplayedImage&) noexcept {}
 };

@@ -28,6 +28,8 @@ public:
     DeviceReading read() noexcept override;
     void command(const Wrench& F_D_B) noexcept override { dynamics_.command(F_D_B); }
 
+    bool pushesHand() const override { return false; }
+
     /// How far the pointer may be ahead of the handle for all of the pull [m], [rad]; farther changes nothing.
     double reach() const noexcept { return reach_; }
     double swing() const noexcept { return swing_; }

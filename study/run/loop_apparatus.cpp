@@ -48,7 +48,7 @@ LoopApparatus::Run::Run(BuiltScenes built, HeldDevice device, const plan::Condit
                         std::span<loop::ScreenRing* const> screens)
     : scenes(std::move(built)),
       held(std::move(device)),
-      cues(session::cueSettings(condition.cues), held.person, held.drives_hand),
+      cues(session::cueSettings(condition.cues), held.person, held.device->pushesHand()),
       ring(kRingRecords),
       cycle(scenes.turns, *held.device, ring, condition.shown == plan::ShownPose::Proxy, screens, &cues) {}
 
@@ -111,7 +111,6 @@ LoopApparatus::HeldDevice LoopApparatus::makeDevice(const simulated::DeviceParam
     const simulated::VisibleTask task = visibleTask(condition);
     HeldDevice held;
     if (performer_ != nullptr) held.device = performer_->device(preset, condition);
-    held.drives_hand = held.device == nullptr;  // what a performer brings is a mouse
     if (held.device != nullptr) return held;
     if (condition.timed_by == plan::TimedBy::Program) {
         auto device = std::make_unique<simulated::SimulatedDevice>(preset, simulatedHand(person_, trials_before), task,

@@ -42,7 +42,6 @@ private:
     struct HeldDevice {
         std::unique_ptr<loop::HapticDevice> device;
         simulated::SimulatedDevice* person = nullptr;  // who holds it; null: nobody simulated
-        bool drives_hand = true;                       // false: a stand-in without motors, such as a mouse
     };
 
     /// Everything of one attempt; members are destroyed in reverse order, the thread first.

@@ -23,6 +23,7 @@ public:
     const DeviceDescription& description() const override { return device_->description(); }
     DeviceReading read() noexcept override;
     void command(const Wrench& F_D_B) noexcept override;
+    bool pushesHand() const override { return device_->pushesHand(); }
     void show(const loop::DisplayedImage& image) noexcept override { device_->show(image); }
 
 private:

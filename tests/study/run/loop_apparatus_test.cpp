@@ -251,8 +251,8 @@ TEST(LoopApparatus, AHaltInRealTimeEndsTheLoopAfterItsRunningTick) {
 /// Keeps what the motors were told; else it is the simulated device with its hand.
 class WatchedDevice : public loop::HapticDevice {
 public:
-    explicit WatchedDevice(std::unique_ptr<loop::HapticDevice> watched, std::vector<double>& forces)
-        : watched_(std::move(watched)), forces_(forces) {
+    explicit WatchedDevice(std::unique_ptr<loop::HapticDevice> watched, std::vector<double>& forces, bool motors)
+        : watched_(std::move(watched)), forces_(forces), motors_(motors) {
         forces_.reserve(100'000);
     }
     const DeviceDescription& description() const override { return watched_->description(); }
@@ -260,18 +260,23 @@ public:
     void command(const Wrench& F_D_B) noexcept override {
         forces_.push_back(F_D_B.force.norm());
         told_.fetch_add(1);
+        if (!F_D_B.force.isZero(0.0) || !F_D_B.torque.isZero(0.0)) felt_.fetch_add(1);
         if (forces_.back() > 0.5) pushed_.store(true);
         watched_->command(F_D_B);
     }
     void show(const loop::DisplayedImage& image) noexcept override { watched_->show(image); }
+    bool pushesHand() const override { return motors_; }
 
     std::size_t told() const { return told_.load(); }
+    std::int64_t felt() const { return felt_.load(); }  // how often it was told a wrench other than zero
     bool pushed() const { return pushed_.load(); }
 
 private:
     std::unique_ptr<loop::HapticDevice> watched_;
     std::vector<double>& forces_;  // of the loop's thread; [N]
+    const bool motors_;
     std::atomic<std::size_t> told_{0};
+    std::atomic<std::int64_t> felt_{0};
     std::atomic<bool> pushed_{false};
 };
 
@@ -282,16 +287,34 @@ public:
         const scene::Registration& r = c.scene.registration;
         auto hand = std::make_unique<simulated::SimulatedDevice>(
             preset, simulatedHand({}, 0), visibleTask(c), simulated::HandRegistration{r.X_WB, r.scale, r.X_DH}, 5);
-        auto watched = std::make_unique<WatchedDevice>(std::move(hand), forces);
+        auto watched = std::make_unique<WatchedDevice>(std::move(hand), forces, motors);
         device_ = watched.get();
         return watched;
     }
     DeviceDescription describe(const simulated::DeviceParams& preset) const override {
         return simulated::describe(preset);
     }
+    bool motors = true;
     std::vector<double> forces;
     WatchedDevice* device_ = nullptr;
 };
+
+TEST(LoopApparatus, GivesForceToWhoeverBringsADeviceWithMotors) {
+    // Truth: invariant, as the device sees it: it was told to push in as many ticks as force is said to have been
+    // given; without motors in none, whatever it was told.
+    for (const bool motors : {true, false}) {
+        DeviceOfHis performer;
+        performer.motors = motors;
+        LoopApparatus apparatus(*simulated::findPreset("sigma7"), {}, Clock::Virtual, &performer);
+        ASSERT_TRUE(apparatus.prepare(condition("none"), 5, 0));
+        apparatus.start();
+        for (int i = 0; i < 400; ++i) apparatus.advance(20);
+        const session::Delivered delivered = apparatus.stop().delivered;
+        const std::int64_t pushed = performer.device_->felt();
+        EXPECT_GT(pushed, 100);
+        EXPECT_EQ(delivered.force, motors ? pushed : 0);
+    }
+}
 
 TEST(LoopApparatus, AHaltInContactTurnsTheMotorsOffWithinTwoTicks) {
     // Truth: invariant, as the device sees it: after the halt at most the running tick's wrench, then zero, then
