@@ -59,7 +59,7 @@ inline constexpr bool kIsPart = [] {
 /// goes into hum.h and hum.cpp, in the room's CMakeLists.txt. Then
 ///   - scene::Effects (core/scene/scene_spec.h) gets its parameters, which it finds in TickModel::effects,
 ///   - tick_state.h the header, TickState the part Hum and AllStages, at its place in the order, kHum,
-///   - a scene of tests/core/tick/stage_test.cpp the effect: the test says whether the declaration is true.
+///   - tests/support/every_effect.h the effect: stage_test.cpp says whether the declaration is true.
 /// Memory that depends on the scene is sized in makeState (tick_state.cpp).
 template <class... Argument>
 struct StageOf {
