@@ -73,7 +73,7 @@ public:
     const SolidPair& pair(std::size_t i) const noexcept { return searches_[i].pair(); }
 
 private:
-    static constexpr std::size_t kMostRows = 320;
+    static constexpr std::size_t kMostRows = 1024;
 
     /// A row of a look, with the push that its contact had in the one before.
     struct Row {

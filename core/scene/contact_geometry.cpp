@@ -6,9 +6,8 @@ namespace passung::scene {
 
 namespace {
 
-// What this version can compute contact from, beside fields.
+// What this version can compute contact from, beside fields and closed forms.
 constexpr bool kSurfaceBuilt = false;
-constexpr bool kClosedFormDefault = false;  // of auto
 
 /// Its faces and edges bound a solid (closed_form::solidOf); a sheet has no inside.
 bool hasClosedForm(const PartSpec& part) {
@@ -20,10 +19,11 @@ bool rub(const PartSpec& a, const PartSpec& b) { return a.friction > 0.0 && b.fr
 
 /// Why the pair has no closed form; nothing if it has one.
 const char* closedFormProblem(const PartSpec& held, const PartSpec& obstacle, const ContactSpec& contact) {
-    if (contact.method == ContactMethod::Penalty) return "needs a god object: the penalty is a sum over sample points";
+    if (contact.method == ContactMethod::Penalty)
+        return "closed_form needs a god object: the penalty is a sum over sample points";
     if (!hasClosedForm(held) || !hasClosedForm(obstacle))
-        return "needs parts that are parametric shapes, without a mesh or sheet";
-    if (rub(held, obstacle)) return "needs parts without friction";
+        return "closed_form needs parts that are parametric shapes, without a mesh or sheet";
+    if (rub(held, obstacle)) return "closed_form needs parts without friction";
     return nullptr;
 }
 
@@ -36,10 +36,8 @@ const PartSpec* heldPart(const SceneSpec& scene) {
 
 GeometryChoice geometryOfPair(const PartSpec& held, const PartSpec& obstacle, const ContactSpec& contact) {
     if (contact.geometry != Geometry::Auto) return {contact.geometry, "contact.geometry names it"};
-    if (kClosedFormDefault && closedFormProblem(held, obstacle, contact) == nullptr)
-        return {Geometry::ClosedForm, "both parts are parametric shapes"};
-    if (contact.method == ContactMethod::Penalty) return {Geometry::Field, "the penalty is a sum over sample points"};
-    return {Geometry::Field, "a part has no closed form"};
+    if (const char* problem = closedFormProblem(held, obstacle, contact)) return {Geometry::Field, problem};
+    return {Geometry::ClosedForm, "a god object, and parts that are parametric shapes"};
 }
 
 GeometryChoice geometryOf(const SceneSpec& scene) {

@@ -75,9 +75,10 @@ const char* couplingName(scene::PenaltyCoupling coupling) {
 std::string contactJson(const plan::Condition& condition) {
     const scene::ContactSpec& contact = condition.scene.contact;
     const bool automatic = condition.accuracy_budget > 0.0;
+    const scene::Geometry geometry = scene::geometryOf(condition.scene).geometry;
     JsonObject json;
     json.text("method", methodName(contact.method))
-        .text("geometry", scene::geometryName(scene::geometryOf(condition.scene).geometry))
+        .text("geometry", scene::geometryName(geometry))
         .text("variant", variantName(contact.variant))
         .number("stiffness_N_per_m", contact.stiffness)
         .number("rotational_stiffness_Nm_per_rad", contact.rotational_stiffness)
@@ -91,13 +92,15 @@ std::string contactJson(const plan::Condition& condition) {
     if (contact.coupling == scene::PenaltyCoupling::Virtual)
         json.number("tool_mass_kg", contact.tool_mass).number("tool_inertia_kg_m2", contact.tool_inertia);
     if (automatic) json.text("accuracy", "auto").number("accuracy_budget_s", condition.accuracy_budget);
+    json.number("proxy_filter_hz", contact.proxy_filter);
+    if (geometry != scene::Geometry::Field) return json.str();
     if (!automatic || condition.accuracy_picked)
         json.number("tolerance_m", contact.tolerance)
             .number("cell_m", contact.cell)
             .number("spacing_m", contact.spacing)
             .text("mode", field::modeName(contact.mode))
             .integer("budget_nodes", contact.budget_nodes);
-    return json.boolean("two_way", contact.two_way).number("proxy_filter_hz", contact.proxy_filter).str();
+    return json.boolean("two_way", contact.two_way).str();
 }
 
 std::string limitsJson(const scene::OutputLimits& limits) {

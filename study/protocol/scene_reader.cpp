@@ -211,6 +211,8 @@ scene::ContactSpec readContact(const TableReader& read, const DeviceDescription*
                        : geometry == "surface"   ? scene::Geometry::Surface
                        : geometry == "field"     ? scene::Geometry::Field
                                                  : scene::Geometry::Auto;
+    // What accuracy = "auto" picks is of distance fields.
+    if (geometry == "auto" && read.text("accuracy") == "auto") contact.geometry = scene::Geometry::Field;
     const auto variant = read.text("variant");
     contact.variant = variant == "raw"             ? scene::PenaltyVariant::Raw
                       : variant == "area_weighted" ? scene::PenaltyVariant::AreaWeighted
@@ -246,6 +248,8 @@ double readAccuracyBudget(const TableReader& read, const scene::SceneSpec& scene
         if (read.has("accuracy_budget_us")) read.fail("accuracy_budget_us", "needs accuracy = \"auto\"");
         return 0.0;
     }
+    if (scene.contact.geometry != scene::Geometry::Field)
+        read.fail("accuracy", "needs geometry = \"field\" or \"auto\": it picks settings of distance fields");
     for (const char* key : {"tolerance_um", "cell_mm", "spacing_mm", "mode", "budget_nodes"})
         if (read.has(key)) read.fail(key, "is picked by accuracy = \"auto\"");
     if (read.has("two_way") && !read.boolean("two_way"))

@@ -222,6 +222,7 @@ Result<std::vector<Row>> forceRows(const std::string& protocol, const Extent& ex
         std::string settings = condition.name;
         if (const auto at = settings.find("penalty/"); at != std::string::npos) settings.erase(at, 8);
         condition.scene.contact.method = scene::ContactMethod::GodObject;
+        condition.scene.contact.geometry = scene::Geometry::Field;  // of these the rows are
         const auto records = perform(*plan, condition, ticks);
         if (!records) return records.errors();
         const auto scene = scene::buildScene(condition.scene, parts);

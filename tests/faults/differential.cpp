@@ -325,6 +325,7 @@ void runScenes(Random& random) {
         const scene::ContactMethod methods[] = {scene::ContactMethod::Penalty, scene::ContactMethod::GodObjectHeuristic,
                                                 scene::ContactMethod::GodObject};
         spec.contact.method = methods[run % 3];
+        spec.contact.geometry = scene::Geometry::Field;
         spec.contact.cell = 1e-3;
         spec.contact.spacing = 2e-3;
         spec.limits.delay_ticks = run % 4;

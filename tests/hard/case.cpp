@@ -111,6 +111,7 @@ Result<Run> runCase(const Case& c, scene::ContactMethod method, std::uint64_t se
     auto spec = readHardScene(c.scene);
     if (!spec) return spec.errors();
     spec->contact.method = method;
+    spec->contact.geometry = scene::Geometry::Field;  // of these the cases are
     if (c.vary != nullptr && seed > 0) c.vary(*spec, seed);
     const Drive drive = c.drive(*spec, seed);
     const std::int64_t ticks = std::llround((full ? c.full_seconds : c.seconds) / kTickSeconds);

@@ -5,6 +5,7 @@
 
 #include "core/base/digest.h"
 #include "core/base/regular_file.h"
+#include "core/scene/contact_geometry.h"
 #include "study/protocol/document.h"
 #include "study/run/files/builds.h"
 #include "study/run/files/known_names.h"
@@ -48,6 +49,8 @@ Result<Done> printStages(const scene::SceneSpec& spec, scene::PartCache& cache) 
     const auto scene = scene::buildScene(spec, cache);
     if (!scene) return scene.errors();
     printShapes(spec);
+    const scene::GeometryChoice choice = scene::geometryOf(spec);
+    fmt::print("  {:<22}{}: {}\n", "geometry of contact", scene::geometryName(choice.geometry), choice.reason);
     fmt::print("  {:<22}{:>10}{:>10}  {}\n", "stage of the tick", "median µs", "p99 µs", "why it runs");
     const run::TickCost tick = run::measureTick(*scene);
     for (const run::StageCost& cost : tick.stages)

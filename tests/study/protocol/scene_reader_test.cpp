@@ -333,7 +333,7 @@ TEST(SceneReader, RefusesAnOffsetPictureOfTheHeldPart) {
 
 TEST(SceneReader, TwoWayContactNeedsPointsOnEveryPart) {
     // Truth: closed form: the plate has about 13 000 mm2, at 0.05 mm more than 5e6 points; the peg has few enough.
-    const std::string fine = kParts + "[contact]\nspacing_mm = 0.05\n";
+    const std::string fine = kParts + "[contact]\ngeometry = \"field\"\nspacing_mm = 0.05\n";
     EXPECT_FALSE(read(fine)->contact.two_way);
     EXPECT_TRUE(read(kParts + "[contact]\ntwo_way = true\n")->contact.two_way);
     EXPECT_EQ(errorsOf(fine + "two_way = false\n"), "");
@@ -348,7 +348,7 @@ TEST(SceneReader, BoundsLengths) {
     EXPECT_EQ(errorsOf(kParts + "[registration]\nposition = [0, -10000, 0]\n"), "");
     EXPECT_EQ(errorsOf("[[part]]\nname = \"b\"\nheld = true\nshape = { kind = \"sphere\", diameter = 10001 }\n"),
               "s.toml:4:39: error: part.b.shape.diameter: 10001: must be at most 10 m");
-    EXPECT_EQ(errorsOf(kParts + "[contact]\nspacing_mm = 0.03\n"),
+    EXPECT_EQ(errorsOf(kParts + "[contact]\nspacing_mm = 0.03\ngeometry = \"field\"\n"),
               "s.toml:12:14: error: contact.spacing_mm: 0.03: part peg: points 0.03 mm apart on a part of 20 x 20 x "
               "50 mm are about 4.2e+06, more than 2e+06: check its unit, or choose a spacing of at least 0.0436 mm");
     EXPECT_EQ(errorsOf(kParts + "[contact]\nspacing_mm = 0.05\n"), "");

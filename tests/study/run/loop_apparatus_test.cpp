@@ -67,16 +67,16 @@ TEST(LoopApparatus, NamesTheStagesThatTheConditionCallsForAndNoOthers) {
     EXPECT_EQ(stagesOf(condition("none")), (Names{"input guard", "energy account", "start gate", "contacts at the hand",
                                                   "penalty wrench", "contact shares", "output limits"}));
     EXPECT_EQ(stagesOf(condition("fair")),
-              (Names{"input guard", "energy account", "start gate", "proxy correction", "proxy motion", "proxy record",
-                     "hand depth", "virtual coupling", "contact shares", "output limits"}));
+              (Names{"input guard", "energy account", "start gate", "closed-form proxy", "closed-form record",
+                     "closed-form hand depth", "virtual coupling", "contact shares", "output limits"}));
     plan::Condition bare = condition("fair");
     bare.scene.start_gate = {};
     bare.scene.record_hand_depth = false;
     bare.scene.contact.proxy_filter = 100.0;
     bare.scene.limits.delay_ticks = 3;
     EXPECT_EQ(stagesOf(bare),
-              (Names{"input guard", "energy account", "proxy correction", "proxy motion", "proxy filter",
-                     "proxy record", "virtual coupling", "contact shares", "output delay", "output limits"}));
+              (Names{"input guard", "energy account", "closed-form proxy", "closed-form filter", "closed-form record",
+                     "virtual coupling", "contact shares", "output delay", "output limits"}));
 }
 
 /// Somebody of this kind takes part in windows; the device is held by a simulated hand all the same.

@@ -401,6 +401,7 @@ std::vector<StageText> stageTexts() {
     std::vector<StageText> all;
     scene::PartCache cache;
     using scene::ContactMethod;
+    using scene::Geometry;
     using scene::PenaltyCoupling;
     const std::pair<ContactMethod, PenaltyCoupling> methods[] = {
         {ContactMethod::Penalty, PenaltyCoupling::Direct},
@@ -409,7 +410,8 @@ std::vector<StageText> stageTexts() {
         {ContactMethod::GodObjectHeuristic, PenaltyCoupling::Direct},
         {ContactMethod::GodObject, PenaltyCoupling::Direct}};
     for (const auto& [method, coupling] : methods) {
-        for (const bool two_way : {false, true}) {
+        for (const auto& [two_way, geometry] :
+             {std::pair(false, Geometry::Field), {true, Geometry::Field}, {false, Geometry::Auto}}) {
             scene::SceneSpec spec;
             spec.parts.push_back({.name = "ball",
                                   .geometry = shape::Sphere{0.02},
@@ -422,6 +424,7 @@ std::vector<StageText> stageTexts() {
             spec.contact.method = method;
             spec.contact.coupling = coupling;
             spec.contact.two_way = two_way;
+            spec.contact.geometry = geometry;
             spec.contact.proxy_filter = 50.0;
             spec.record_hand_depth = true;
             spec.start_gate.hold_ticks = 10;
