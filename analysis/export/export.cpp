@@ -9,6 +9,7 @@
 #include "analysis/export/cell_tables.h"
 #include "analysis/export/codebook.h"
 #include "analysis/export/contact_energy_table.h"
+#include "analysis/export/exact_overlap_table.h"
 #include "analysis/export/export_folder.h"
 #include "analysis/export/gzip.h"
 #include "analysis/export/missing_table.h"
@@ -40,6 +41,7 @@ std::vector<Table> makeTables(const StudyData& study) {
     tables.push_back(makeParticipants(study));
     tables.push_back(makeTiming(study));
     tables.push_back(makeContactEnergy(study));
+    tables.push_back(makeExactOverlap(study));
     if (Table shown = makePresentation(study); !shown.rows.empty()) tables.push_back(std::move(shown));
     if (!study.detections.empty()) tables.push_back(makeSecondary(study));
     if (!study.staircase_steps.empty()) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "study/measures/detection.h"
+#include "study/measures/overlap.h"
 #include "study/measures/period_clock.h"
 #include "study/measures/tick_facts.h"
 #include "study/measures/trial.h"
@@ -112,6 +113,23 @@ Optional leastProxyGap(const Trial& trial) {
     for (const TickRecord& record : trial.ticks)
         if (const double gap = record.proxy_gap_m; std::isfinite(gap)) least = std::min(gap, least.value_or(gap));
     return least;
+}
+
+Optional maxExactOverlap(const Trial& trial) {
+    Optional most;
+    for (const TickOverlap& tick : trial.context.overlaps) most = std::max(tick.depth, most.value_or(0.0));
+    return most;
+}
+
+Optional exactOverlapShare(const Trial& trial) {
+    std::int64_t judged = 0, overlapping = 0;
+    for (const TickOverlap& tick : trial.context.overlaps) {
+        if (!tick.every_20th) continue;
+        ++judged;
+        if (tick.depth > kLeastOverlap) ++overlapping;
+    }
+    if (judged == 0) return std::nullopt;
+    return static_cast<double>(overlapping) / static_cast<double>(judged);
 }
 
 Optional success(const Trial& trial) { return trial.succeeded() ? 1.0 : 0.0; }
@@ -295,21 +313,32 @@ std::vector<Measure> commonMeasures() {
         {{"mean_torque_Nm", "Mean torque", "N m", "mean of |torque| over the contact ticks; empty without contact"},
          meanInContact<torqueOf>},
         {{"peak_torque_Nm", "Peak torque", "N m", "largest |torque| over the trial ticks"}, largest<torqueOf>},
-        {{"mean_hand_depth_m", "Mean depth at the hand's pose", "m",
+        {{"mean_hand_depth_m", "Mean depth of sample points at the hand's pose", "m",
           std::string("mean of hand_depth_m over the contact ticks; empty without contact") + kDepthOfSamples},
          meanInContact<handDepthOf>},
-        {{"max_hand_depth_m", "Largest depth at the hand's pose", "m",
+        {{"max_hand_depth_m", "Largest depth of sample points at the hand's pose", "m",
           std::string("largest hand_depth_m over the trial ticks") + kDepthOfSamples},
          largest<handDepthOf>},
-        {{"mean_proxy_depth_m", "Mean depth at the proxy's pose", "m",
+        {{"mean_proxy_depth_m", "Mean depth of sample points at the proxy's pose", "m",
           std::string("mean of proxy_depth_m over the contact ticks; empty without contact") + kDepthOfSamples},
          meanInContact<proxyDepthOf>},
-        {{"max_proxy_depth_m", "Largest depth at the proxy's pose", "m",
+        {{"max_proxy_depth_m", "Largest depth of sample points at the proxy's pose", "m",
           std::string("largest proxy_depth_m over the trial ticks") + kDepthOfSamples},
          largest<proxyDepthOf>},
         {{"min_proxy_gap_m", "Least proven gap at the proxy's pose", "m",
           "least proxy_gap_m over the trial ticks; empty where contact.geometry proves no gap (field)"},
          leastProxyGap},
+        {{"max_exact_overlap_m", "Largest true overlap of what was shown", "m",
+          "largest overlap_m of exact_overlap.csv over the trial's judged ticks: the depth of the deepest point of "
+          "either "
+          "part's surface in the other at the proxy's pose, by exact geometry after the trial, to 2 um; judged are "
+          "every "
+          "20th contact tick (the first, the 21st ...) and the 20 trial ticks of largest proxy_depth_m and of largest "
+          "|force|; empty where none was judged"},
+         maxExactOverlap},
+        {{"exact_overlap_share", "Share of contact ticks with a true overlap", "1",
+          "of every 20th contact tick the share with overlap_m of exact_overlap.csv > 1 um; empty without one"},
+         exactOverlapShare},
         {{"impulse_Ns", "Impulse", "N s",
           "sum over the trial ticks k of |force(k)| x periods(k+1) x 1 ms, 1 ms where tick k+1 was not recorded", 2},
          impulse},

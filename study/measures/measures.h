@@ -47,6 +47,17 @@ struct Detection {
     friend bool operator==(const Detection&, const Detection&) = default;
 };
 
+/// How deep the held part and the obstacles truly reached into each other at a tick, as shown (X_WG of its record), and
+/// why this tick was judged. The depth lies in [depth, bound] [m].
+struct TickOverlap {
+    std::int64_t tick = 0;
+    bool every_20th = false;     // every 20th tick in contact
+    bool largest_depth = false;  // one of the 20 of largest recorded proxy_depth_m
+    bool largest_force = false;  // one of the 20 of largest |force|
+    double depth = 0.0, bound = 0.0;
+    friend bool operator==(const TickOverlap&, const TickOverlap&) = default;
+};
+
 /// What the measures need to know of a trial beside its records.
 struct TrialContext {
     std::int64_t start_tick = 0;  // the hand held the start pose: contact on, "go" shown
@@ -59,6 +70,7 @@ struct TrialContext {
     std::variant<std::monostate, PassageFacts, ContourFacts, PlacementFacts, PairFacts> form;  // first: peg in hole
     bool watched = true;  // false: real parts, which no device feels; only times and outcome are known
     std::optional<std::vector<Detection>> detections = {};  // of the secondary task, where there is one
+    std::vector<TickOverlap> overlaps = {};                 // of the ticks that were judged; none: not measured
 };
 
 /// A measure's definition: name (the column; its unit is the suffix), label, unit, formula.

@@ -216,6 +216,10 @@ session::LoopHealth LoopApparatus::stop() {
     return health;
 }
 
+bool LoopApparatus::measureOverlaps(std::span<const TickRecord> trial, std::span<measures::TickOverlap> ticks) {
+    return overlap_.measure(run_->scenes, trial, ticks);
+}
+
 /// Of the trial's time; of the attempt's where it did not start or the program does not see it start.
 session::Presentation LoopApparatus::presentation() const {
     const std::int64_t zero_ns = started_ns_ == 0 ? steadyNanoseconds() : started_ns_;

@@ -13,6 +13,7 @@
 #include "study/run/files/built_scenes.h"
 #include "study/run/files/watched_store.h"
 #include "study/run/person/performer.h"
+#include "study/run/shown_overlap.h"
 #include "study/session/apparatus.h"
 
 namespace passung::run {
@@ -35,6 +36,7 @@ public:
     void advance(std::int64_t ticks) override;
     std::size_t takeRecords(std::span<TickRecord> into) override;
     session::LoopHealth stop() override;
+    bool measureOverlaps(std::span<const TickRecord> trial, std::span<measures::TickOverlap> ticks) override;
     void halt() override;
     void rearm() override;
 
@@ -70,6 +72,7 @@ private:
     std::unique_ptr<Builds> store_;
     WatchedStore watched_{store_.get()};
     scene::PartCache parts_{&watched_};
+    ShownOverlap overlap_;
     std::mutex halt_mutex_;  // run_ and its thread come and go, halted_ changes
     bool halted_ = false;
     std::int64_t started_ns_ = 0;             // on the steady clock, of the newest attempt's loop; 0: it did not start

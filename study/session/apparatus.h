@@ -11,6 +11,7 @@
 #include "core/base/device_description.h"
 #include "core/base/result.h"
 #include "core/base/tick_record.h"
+#include "study/measures/measures.h"
 #include "study/plan/study_plan.h"
 
 namespace passung::session {
@@ -94,6 +95,15 @@ public:
 
     /// Stops the loop with a zero wrench and says how it went.
     virtual LoopHealth stop() = 0;
+
+    /// Measures by exact geometry how deep the held part and the obstacles reached into each other at these ticks of
+    /// the attempt that stop() ended, as it was shown, and fills in depth and bound. `trial`: its records from the
+    /// start tick on. False: nothing can be measured. The same records give the same; it takes no longer than a pause
+    /// between trials bears.
+    virtual bool measureOverlaps(std::span<const TickRecord> trial, std::span<measures::TickOverlap> ticks) {
+        static_cast<void>(trial), static_cast<void>(ticks);
+        return false;
+    }
 
     /// Emergency: a zero wrench after the running tick, and no tick more until rearm(), not even of an attempt that is
     /// started meanwhile. From any thread.

@@ -49,6 +49,7 @@ Result<Judgement> judgeAgain(const plan::Condition& condition, std::span<const T
         course.abort(of_trial.empty() ? seen : of_trial.back().tick + 1, "", events);
     }
     measures::TrialContext context = course.context();
+    context.overlaps = stored.overlaps;
     if (secondary) context.detections = secondary->detections(course.startTime(), course.endTime());
     return Judgement{context.outcome, measures::computeMeasures(of_trial, context),
                      context.detections.value_or(std::vector<measures::Detection>{})};

@@ -25,6 +25,7 @@ struct StoredEnd {
     std::int64_t end_time = 0;                    // [periods after tick 0]
     std::optional<std::int64_t> start_time = {};  // likewise; of a trial that the experimenter timed
     std::uint64_t seed = 0;                       // of the attempt
+    std::vector<measures::TickOverlap> overlaps = {};
 };
 
 /// Judges recorded ticks once more, as the session did while they came.

@@ -10,6 +10,7 @@
 #include "core/base/assert.h"
 #include "core/base/json.h"
 #include "core/base/random.h"
+#include "study/measures/overlap.h"
 #include "study/plan/participant.h"
 #include "study/session/rendered_scenes.h"
 #include "study/session/secondary.h"
@@ -272,7 +273,7 @@ bool Session::isWhole() const {
     return true;
 }
 
-AttemptEnd Session::describeEnd(LoopHealth health) const {
+AttemptEnd Session::describeEnd(LoopHealth health) {
     const TrialCourse& course = attempt().course;
     measures::TrialContext context = course.context();
     AttemptEnd end;
@@ -282,6 +283,11 @@ AttemptEnd Session::describeEnd(LoopHealth health) const {
     }
     end.end_ns = session_ns_ + course.endTime() * kTickNanoseconds;
     end.outcome = context.outcome;
+    if (context.watched) {
+        std::vector<measures::TickOverlap> overlaps = measures::ticksToJudge(attempt().records, context);
+        if (!overlaps.empty() && apparatus_.measureOverlaps(attempt().records, overlaps)) context.overlaps = overlaps;
+    }
+    end.overlaps = context.overlaps;
     end.measures = measures::computeMeasures(attempt().records, context);
     end.timing_measured = setup_.timing_measured;
 

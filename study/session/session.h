@@ -153,7 +153,7 @@ private:
     void finishTrial(std::optional<Verdict> verdict = {});  // none: as the protocol says
     Verdict judgeByProtocol(const AttemptEnd& end);
     void takeEnd(AttemptId attempt, const AttemptEnd& end);
-    AttemptEnd describeEnd(LoopHealth health) const;
+    AttemptEnd describeEnd(LoopHealth health);
     const plan::Block& blockOf(std::size_t place) const;
     void appendEvents(const std::vector<TrialEvent>& events);
     void finish(State over);

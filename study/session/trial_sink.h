@@ -39,6 +39,7 @@ struct AttemptEnd {
     std::string invalid_reason;  // e.g. dropped records
     std::vector<measures::Value> measures;
     std::vector<measures::Detection> detections;  // of the secondary task, by time
+    std::vector<measures::TickOverlap> overlaps;  // of the ticks that were judged
     LoopHealth health;
     bool timing_measured = true;  // false in virtual time: timing cells are exported as NA
     std::optional<StaircaseAnswer> staircase = {};

@@ -81,6 +81,7 @@ private:
         const auto outcome = measures::outcomeNamed(attempt.outcome);
         if (!outcome || !attempt.end_ns) return std::string();  // it did not end: nothing was measured
         session::StoredEnd end{*outcome, (*attempt.end_ns - attempt.start_ns) / kTickNanoseconds, {}, attempt.seed};
+        end.overlaps = attempt.overlaps;
         if (attempt.trial_ns) end.start_time = (*attempt.trial_ns - attempt.start_ns) / kTickNanoseconds;
         const auto again = session::judgeAgain(condition, records, end);
         if (!again) return again.errors();
@@ -92,6 +93,11 @@ private:
         };
         for (const measures::Value& value : again->measures) {
             const auto found = attempt.measures.find(value.name);
+            const auto& undefined = attempt.undefined;
+            // A measure that there was not yet when the attempt was recorded.
+            if (found == attempt.measures.end() &&
+                std::find(undefined.begin(), undefined.end(), value.name) == undefined.end())
+                continue;
             const auto stored = found == attempt.measures.end() ? std::nullopt : std::optional(found->second);
             const bool same = stored && value.value
                                   ? std::bit_cast<std::uint64_t>(*stored) == std::bit_cast<std::uint64_t>(*value.value)

@@ -2,6 +2,7 @@
 
 #include "study/store/rows/contact_energy_rows.h"
 #include "study/store/rows/delivery_rows.h"
+#include "study/store/rows/exact_overlap_rows.h"
 #include "study/store/rows/presentation_rows.h"
 #include "study/store/schema/named_columns.h"
 
@@ -95,10 +96,15 @@ const Selection<measures::CueSettings>& cueColumns() {
 
 /// Adds what other tables hold of the attempt.
 void readParts(const Database& database, AttemptRow& attempt) {
-    Statement values =
-        database.prepare("SELECT measure, value_num FROM attempt_measure WHERE attempt_id=? AND value_num IS NOT NULL");
+    Statement values = database.prepare("SELECT measure, value_num FROM attempt_measure WHERE attempt_id=?");
     values.bind(attempt.attempt_id);
-    while (values.step()) attempt.measures.emplace(values.text(0), values.real(1));
+    while (values.step()) {
+        if (values.isNull(1))
+            attempt.undefined.push_back(values.text(0));
+        else
+            attempt.measures.emplace(values.text(0), values.real(1));
+    }
+    attempt.overlaps = readExactOverlaps(database, attempt.attempt_id);
     attempt.contact_energy = readContactEnergy(database, attempt.attempt_id);
     attempt.delivered = readDelivery(database, attempt.attempt_id);
     attempt.presentation = readPresentation(database, attempt.attempt_id);

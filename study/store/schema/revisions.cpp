@@ -202,6 +202,19 @@ ALTER TABLE timing ADD COLUMN processor_p999_us REAL;
 ALTER TABLE timing ADD COLUMN processor_max_us REAL;
 )sql";
 
+constexpr const char* kRevision17 = R"sql(
+-- how deep the parts truly reached into each other, as shown, at ticks that were judged after the trial
+CREATE TABLE exact_overlap(
+    attempt_id INTEGER NOT NULL REFERENCES attempt ON DELETE CASCADE,
+    tick INTEGER NOT NULL CHECK(tick >= 0),
+    every_20th INTEGER NOT NULL,
+    largest_depth INTEGER NOT NULL,
+    largest_force INTEGER NOT NULL,
+    overlap_m REAL NOT NULL CHECK(overlap_m >= 0),
+    bound_m REAL NOT NULL CHECK(bound_m >= overlap_m),
+    PRIMARY KEY(attempt_id, tick)) STRICT, WITHOUT ROWID;
+)sql";
+
 const std::array kRevisions = {
     Revision{1, "Protocols, participants, sessions, trials, samples, timing and questionnaires", kFirstSchema, 1},
     // A reader that does not know what was picked would replay another scene.
@@ -225,6 +238,7 @@ const std::array kRevisions = {
     Revision{15, "Hashes of what was written, the number of a recording's arithmetic", kRevision15, 8},
     // Chunks of samples and of times have a column more, which a reader from before takes for damage.
     Revision{16, "The gap that was proven at each tick, the processor's time beside the wall clock's", kRevision16, 16},
+    Revision{17, "True overlaps at judged ticks of each attempt", kRevision17, 16},
 };
 
 bool isEmpty(const Database& database) { return database.integer("SELECT count(*) FROM sqlite_master") == 0; }

@@ -7,6 +7,7 @@
 #include "study/store/rows/contact_energy_rows.h"
 #include "study/store/rows/delivery_rows.h"
 #include "study/store/rows/event_rows.h"
+#include "study/store/rows/exact_overlap_rows.h"
 #include "study/store/rows/order_rows.h"
 #include "study/store/rows/presentation_rows.h"
 #include "study/store/rows/questionnaire_rows.h"
@@ -230,6 +231,7 @@ void SessionWriter::storeEnd(const Database& database, const OpenAttempt& attemp
     if (end.staircase) storeStaircaseAnswer(database, attempt_id, *end.staircase);
     insertTiming(database, attempt_id, end.health, end.timing_measured);
     insertContactEnergy(database, attempt_id, end.health.contact_energy);
+    insertExactOverlaps(database, attempt_id, end.overlaps);
     insertDelivery(database, attempt_id, end.health.delivered);
     if (end.health.presentation) insertPresentation(database, attempt_id, *end.health.presentation);
     insertOrderSteps(database, rows_.session_id, rows_.segment_id,

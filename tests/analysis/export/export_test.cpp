@@ -265,6 +265,19 @@ TEST_F(Export, EnergyIsToldOfEachAttemptAndObstacle) {
     EXPECT_EQ(energy.at(3, "taken_in_J"), energy.at(3, "trial_index"));
 }
 
+TEST_F(Export, TrueOverlapsAreToldOfEachAttemptAndJudgedTick) {
+    // Truth: invariant: what the fake study hands over, two rows an attempt that ended.
+    const fake::CsvFile overlaps = csv("exact_overlap.csv");
+    ASSERT_EQ(overlaps.rows.size(), 2 * csv("timing.csv").rows.size());
+    EXPECT_EQ(overlaps.at(0, "tick"), "3");
+    EXPECT_EQ(overlaps.at(0, "every_20th"), "1");
+    EXPECT_EQ(overlaps.at(0, "largest_depth"), "0");
+    EXPECT_EQ(overlaps.at(0, "largest_force"), "1");
+    EXPECT_EQ(std::stod(overlaps.at(0, "overlap_m")), 1e-6);
+    EXPECT_EQ(std::stod(overlaps.at(0, "bound_m")), 2e-6);
+    EXPECT_EQ(overlaps.at(1, "largest_depth"), "1");
+}
+
 TEST_F(Export, PicturesAndSoundAreToldOfAttemptsThatAWindowShowed) {
     // Truth: invariant: what the fake study hands over.
     EXPECT_FALSE(files_.contains("presentation.csv")) << "no window showed it";

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <set>
 
+#include "study/measures/overlap.h"
+
 namespace passung::measures {
 namespace {
 
@@ -168,6 +170,44 @@ TEST(Measures, ForcesAndDepthsAverageOverContactTicksOnly) {
     EXPECT_DOUBLE_EQ(*values.at("min_proxy_gap_m"), 0x1p-16);
     EXPECT_FALSE(measure(restingTicks(101), contextUntil(100)).at("min_proxy_gap_m")) << "none is known";
     EXPECT_NEAR(*values.at("impulse_Ns"), 5.0 * 151.0 * 1e-3, 1e-12);
+}
+
+TEST(Measures, EveryTwentiethContactTickAndTheLargestOfDepthAndForceAreJudged) {
+    // Truth: closed form. Contact in ticks 100 ... 199: the 1st, 21st ... of them; the force grows with the tick, the
+    // depth falls with it, so that the 20 largest are the last and the first of them. Tick 5 is before the trial.
+    auto records = restingTicks(1001);
+    for (std::size_t i = 100; i < 200; ++i) {
+        records[i].force_N = {0.0f, 0.0f, 1.0f + 0.01f * static_cast<float>(i)};
+        records[i].proxy_depth_m = 1e-5f - 1e-8f * static_cast<float>(i);
+    }
+    records[5].force_N = {9.0f, 0.0f, 0.0f};
+    TrialContext context = contextUntil(1000);
+    context.start_tick = 10;
+    const auto judged = ticksToJudge(records, context);
+    ASSERT_EQ(judged.size(), 43u) << "20 and 20, and of every 20th those at 120, 140 and 160";
+    for (const TickOverlap& tick : judged) {
+        EXPECT_EQ(tick.every_20th, tick.tick % 20 == 0) << tick.tick;
+        EXPECT_EQ(tick.largest_depth, tick.tick >= 100 && tick.tick < 120) << tick.tick;
+        EXPECT_EQ(tick.largest_force, tick.tick >= 180 && tick.tick < 200) << tick.tick;
+    }
+    EXPECT_TRUE(ticksToJudge(restingTicks(50), contextUntil(49)).empty());
+}
+
+TEST(Measures, ExactOverlapsAreTheLargestAndTheShareOfEveryTwentiethAboveAMicrometre) {
+    // Truth: closed form (definition). Of every 20th tick two of four overlap by more than 1 um.
+    TrialContext context = contextUntil(100);
+    for (const double depth : {0.0, 1e-6, 1.1e-6, 5e-5})
+        context.overlaps.push_back({.tick = static_cast<std::int64_t>(context.overlaps.size()),
+                                    .every_20th = true,
+                                    .depth = depth,
+                                    .bound = depth});
+    context.overlaps.push_back({.tick = 9, .largest_depth = true, .depth = 7e-5, .bound = 8e-5});
+    const auto values = measure(restingTicks(101), context);
+    EXPECT_EQ(values.at("max_exact_overlap_m"), 7e-5);
+    EXPECT_EQ(values.at("exact_overlap_share"), 0.5);
+    const auto none = measure(restingTicks(101), contextUntil(100));
+    EXPECT_FALSE(none.at("max_exact_overlap_m")) << "nothing was judged";
+    EXPECT_FALSE(none.at("exact_overlap_share"));
 }
 
 TEST(Measures, MeansAreEmptyAndSumsZeroWithoutContact) {

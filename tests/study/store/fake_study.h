@@ -185,6 +185,7 @@ inline session::AttemptEnd attemptEnd(std::int64_t trial_index, std::size_t tick
                                                         "played", "speakers",       21'333.0, 7};
     if (timing_measured && trial_index == 5)  // the last one was to be heard, without an output, and nothing was drawn
         end.health.presentation = session::Presentation{"device", 0, 0.0, 0.0, 0.0, "silent", "", 0.0, std::nullopt};
+    end.overlaps = {{3, true, false, true, 1e-6, 2e-6}, {7, false, true, false, 0.0, 0.5e-6}};
     end.health.contact_energy = {{"plate", 1.0 / 3.0, -0.25}, {"", static_cast<double>(trial_index), 0.0}};
     return end;
 }

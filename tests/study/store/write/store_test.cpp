@@ -160,6 +160,9 @@ TEST(Store, AWholeSessionReadsBackAsItWasWritten) {
         EXPECT_EQ(attempt.kind, "simulated");
         EXPECT_EQ(attempt.seed, fake::attemptStart(index).seed);
         EXPECT_EQ(attempt.state_hash, "0123456789abcdef");
+        const std::vector<measures::TickOverlap> judged{{3, true, false, true, 1e-6, 2e-6},
+                                                        {7, false, true, false, 0.0, 0.5e-6}};
+        EXPECT_EQ(attempt.overlaps, judged);
         ASSERT_EQ(attempt.contact_energy.size(), 2u);
         EXPECT_EQ(attempt.contact_energy[0].obstacle, "plate");
         EXPECT_EQ(attempt.contact_energy[0].taken_in_J, 1.0 / 3.0);

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/base/tick_record.h"
+#include "study/measures/measures.h"
+
+namespace passung::measures {
+
+/// Every so many-th tick in contact is judged, and so many ticks of largest recorded depth and of largest force.
+inline constexpr std::int64_t kJudgedEvery = 20;
+inline constexpr std::size_t kJudgedLargest = 20;
+/// An overlap of more than this [m] is one for exact_overlap_share: a thousandth of a hair, and ten times what rounded
+/// poses and chords of round faces are off.
+inline constexpr double kLeastOverlap = 1e-6;
+
+/// Which trial ticks are judged by exact geometry after the trial, in the order of ticks; their depths are still 0.
+std::vector<TickOverlap> ticksToJudge(std::span<const TickRecord> records, const TrialContext& context);
+
+}  // namespace passung::measures

@@ -1,0 +1,78 @@
+#include "study/run/shown_overlap.h"
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+namespace passung::run {
+namespace {
+
+constexpr double kTolerance = 2e-6;                // of a depth [m]
+constexpr double kIgnored = 0.5e-6;                // of a depth [m]: half of what counts as an overlap
+constexpr std::size_t kMostPieces = 2'000'000;     // of a trial: less than a second
+constexpr std::size_t kMostPiecesOfTick = 20'000;  // of surfaces
+
+/// Which scene rendered each record: the turns as in tick::SceneSequence, from records alone.
+class TurnOf {
+public:
+    explicit TurnOf(std::span<const tick::SceneTurn> turns) : turns_(turns) {}
+
+    std::size_t next(const TickRecord& record) {
+        if (engaged_) rendered_ += record.periods;
+        if (engaged_ && current_ + 1 < turns_.size() && rendered_ >= turns_[current_].periods) {
+            ++current_;
+            engaged_ = false;
+            rendered_ = 0;
+        }
+        engaged_ = engaged_ || (record.status & kEngaged) != 0;
+        return current_;
+    }
+
+private:
+    std::span<const tick::SceneTurn> turns_;
+    std::size_t current_ = 0;
+    bool engaged_ = false;
+    std::int64_t rendered_ = 0;
+};
+
+Pose shownPose(const TickRecord& record) {
+    const auto& p = record.proxy_position_m;
+    const auto& q = record.proxy_quaternion;
+    return {Quat(q[0], q[1], q[2], q[3]).normalized(), Vec3(p[0], p[1], p[2])};
+}
+
+}  // namespace
+
+bool ShownOverlap::measure(const BuiltScenes& scenes, std::span<const TickRecord> trial,
+                           std::span<measures::TickOverlap> ticks) {
+    std::vector<truth::SceneOverlap> of_scenes;
+    for (const scene::Scene& scene : scenes.scenes) of_scenes.emplace_back(scene, bodies_);
+    if (std::none_of(of_scenes.begin(), of_scenes.end(), [](const auto& scene) { return scene.hasObstacles(); }))
+        return false;
+    struct Shown {
+        Pose X_WG;
+        std::size_t scene;
+    };
+    std::map<std::int64_t, Shown> shown;
+    TurnOf turn(scenes.turns);
+    for (const TickRecord& record : trial) shown[record.tick] = {shownPose(record), turn.next(record)};
+    // Those that are likely the deepest first, should the work not suffice for all.
+    std::vector<measures::TickOverlap*> order;
+    for (measures::TickOverlap& tick : ticks) order.push_back(&tick);
+    std::stable_sort(order.begin(), order.end(), [](const auto* a, const auto* b) {
+        return 2 * a->largest_depth + a->largest_force > 2 * b->largest_depth + b->largest_force;
+    });
+    std::size_t left = kMostPieces;
+    for (measures::TickOverlap* tick : order) {
+        const Shown& there = shown.at(tick->tick);
+        const truth::Overlap found = of_scenes[there.scene].at(
+            there.X_WG,
+            {.tolerance = kTolerance, .ignore = kIgnored, .most_pieces = std::min(left, kMostPiecesOfTick)});
+        tick->depth = found.depth;
+        tick->bound = found.bound;
+        left -= std::min(left, found.pieces);
+    }
+    return true;
+}
+
+}  // namespace passung::run
