@@ -88,7 +88,7 @@ struct Direction {
 
 class Search {
 public:
-    Search(const std::array<Direction, 2>& directions, const OverlapSearch& search)
+    Search(const std::array<Direction, 2>& directions, const OverlapEffort& search)
         : directions_(directions), search_(search) {}
 
     Overlap run() {
@@ -184,7 +184,7 @@ private:
         bool operator()(const Piece& a, const Piece& b) const { return a.bound < b.bound; }
     };
     const std::array<Direction, 2>& directions_;
-    const OverlapSearch& search_;
+    const OverlapEffort& search_;
     Overlap found_;
     double left_out_ = 0.0;
     std::vector<Vec3> placed_;  // vertices of a node in the solid's frame
@@ -275,7 +275,7 @@ bool OverlapBody::isOutside(std::span<const Vec3> piece, double phi) const {
 }
 
 Overlap overlapOf(const OverlapBody& a, const Pose& X_WA, const OverlapBody& b, const Pose& X_WB,
-                  const OverlapSearch& search) {
+                  const OverlapEffort& search) {
     const Pose X_AB = X_WA.inverse() * X_WB;
     return Search({Direction{&b, &a, X_AB.inverse(), X_WB}, Direction{&a, &b, X_AB, X_WA}}, search).run();
 }
@@ -302,10 +302,10 @@ SceneOverlap::SceneOverlap(const scene::Scene& scene, OverlapBodies& bodies)
         if (i != scene.held) obstacles_.push_back({bodies.of(*scene.parts[i]), scene.spec.parts[i].X_WP});
 }
 
-Overlap SceneOverlap::at(const Pose& X_WG, const OverlapSearch& search) const {
+Overlap SceneOverlap::at(const Pose& X_WG, const OverlapEffort& search) const {
     Overlap deepest;
     for (const Obstacle& obstacle : obstacles_) {
-        OverlapSearch deeper = search;
+        OverlapEffort deeper = search;
         deeper.ignore = std::max(search.ignore, deepest.depth);
         const Overlap found = overlapOf(*held_, X_WG, *obstacle.body, obstacle.X_WO, deeper);
         if (found.depth > deepest.depth) {

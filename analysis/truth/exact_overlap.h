@@ -26,7 +26,7 @@ struct Overlap {
 };
 
 /// What a search may leave open.
-struct OverlapSearch {
+struct OverlapEffort {
     double tolerance = 2e-6;  // of the depth [m], > 0
     double ignore = 0.0;  // depths up to it need not be told from 0 [m], ≥ 0; to prove that surfaces which lie along
                           // each other do not overlap takes the longer the less it is
@@ -67,7 +67,7 @@ private:
 /// The overlap of A and B, by branch and bound over both surfaces, the deepest possible piece first: of each piece the
 /// depth of its middle, and a bound by the radius of its hull and by convex sets outside the solid. @pre poses finite.
 Overlap overlapOf(const OverlapBody& a, const Pose& X_WA, const OverlapBody& b, const Pose& X_WB,
-                  const OverlapSearch& search = {});
+                  const OverlapEffort& search = {});
 
 /// Do any two triangles of A and B meet? (triangleMeets: touching is none.)
 bool surfacesMeet(const OverlapBody& a, const Pose& X_WA, const OverlapBody& b, const Pose& X_WB);
@@ -92,7 +92,7 @@ public:
 
     bool hasObstacles() const { return !obstacles_.empty(); }
     /// With the held part at X_WG.
-    Overlap at(const Pose& X_WG, const OverlapSearch& search = {}) const;
+    Overlap at(const Pose& X_WG, const OverlapEffort& search = {}) const;
     /// Do the held part's triangles meet any obstacle's?
     bool surfacesMeet(const Pose& X_WG) const;
 

@@ -15,7 +15,7 @@ constexpr double kChord = 1e-7;  // [m]
 constexpr double kTight = 1e-8;  // of the search [m]
 constexpr double mm = 1e-3, um = 1e-6;
 
-OverlapSearch tight() { return {.tolerance = kTight, .ignore = 0.0, .most_pieces = 2'000'000}; }
+OverlapEffort tight() { return {.tolerance = kTight, .ignore = 0.0, .most_pieces = 2'000'000}; }
 
 Pose at(double x, double y, double z) { return {Quat::Identity(), Vec3(x, y, z)}; }
 Pose tilted(double angle, const Vec3& p) { return {rotationFromVector(Vec3(0.0, angle, 0.0)), p}; }
