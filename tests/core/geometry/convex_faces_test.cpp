@@ -1,0 +1,50 @@
+#include "core/geometry/convex_faces.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/surface_cases.h"
+
+namespace passung::geometry {
+namespace {
+
+double areaOf(const ConvexFaces& merged) {
+    double area = 0.0;
+    for (const ConvexFace& face : merged.faces) {
+        Vec3 sum = Vec3::Zero();
+        const Vec3& origin = merged.vertices[face.corners[0]];
+        for (std::size_t i = 1; i + 1 < face.corners.size(); ++i)
+            sum +=
+                0.5 * (merged.vertices[face.corners[i]] - origin).cross(merged.vertices[face.corners[i + 1]] - origin);
+        area += sum.norm();
+    }
+    return area;
+}
+
+TEST(ConvexFaces, ABoxHasSixFacesHoweverItsSidesAreCut) {
+    // Truth: closed form: six sides, 2 (ab + bc + ca) of area.
+    const auto box = mergeFlatTriangles(test::boxMesh({0, 0, 0}, {.01, .02, .03}));
+    EXPECT_EQ(box.faces.size(), 6u);
+    EXPECT_NEAR(areaOf(box), 2.0 * (.01 * .02 + .02 * .03 + .03 * .01), 1e-15);
+    const auto cut = mergeFlatTriangles(test::seamedMesh({0, 0, 0}, {.01, .02, .03}, 8));
+    EXPECT_LE(cut.faces.size(), 5u + 8u);
+    EXPECT_NEAR(areaOf(cut), areaOf(box), 1e-12);
+}
+
+TEST(ConvexFaces, AFanOfADiscIsAFewFaces) {
+    // Truth: closed form: the area of a regular polygon.
+    const int n = 60;
+    const auto disc = mergeFlatTriangles(test::fanMesh(test::circleLine(.01, n), {0, 0}, 0, true));
+    EXPECT_LE(disc.faces.size(), 3u);
+    EXPECT_NEAR(areaOf(disc), 0.5 * n * 1e-4 * std::sin(2.0 * std::numbers::pi / n), 1e-15);
+}
+
+TEST(ConvexFaces, CurvedSurfacesKeepTheirTriangles) {
+    // Truth: invariant: no two triangles of a bumpy ball lie in a plane, but for those without area at its poles.
+    const auto ball = test::bumpyMesh(.01, 12, 0.3);
+    EXPECT_GT(mergeFlatTriangles(ball).faces.size(), ball.triangles.size() * 9 / 10);
+}
+
+}  // namespace
+}  // namespace passung::geometry
