@@ -29,7 +29,7 @@ function(passung_install component)
 endfunction()
 
 set_target_properties(passung_flags PROPERTIES EXPORT_NAME flags)
-set(core_rooms base geometry import shape field shell scene contact motion closed_form tick query loop replay)
+set(core_rooms base geometry import shape field shell scene contact motion closed_form surface tick query loop replay)
 list(TRANSFORM core_rooms PREPEND passung_core_)
 passung_install(core FOLDERS core TARGETS passung_flags ${core_rooms})
 if(PASSUNG_PROGRAM)

@@ -6,7 +6,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/../cmake/doors.cmake)
 
 # Each room and the rooms it may include besides itself. Arrows point only upward.
 set(model_rooms "core/geometry core/import core/shape core/field core/shell core/scene")
-set(contact_rooms "core/base ${model_rooms} core/contact core/motion core/closed_form")
+set(contact_rooms "core/base ${model_rooms} core/contact core/motion core/closed_form core/surface")
 set(core_rooms "${contact_rooms} core/tick core/query core/loop core/replay")
 set(plan_rooms "study/plan study/design study/questionnaire study/measures")
 set(row_rooms "core/base ${plan_rooms} study/session")
@@ -23,6 +23,7 @@ set(rooms
   "core/contact        | core/base ${model_rooms}"
   "core/motion         | core/base ${model_rooms} core/contact"
   "core/closed_form    | core/base core/geometry core/import core/shape core/motion"
+  "core/surface        | core/base ${model_rooms} core/contact core/motion"
   "core/tick           | ${contact_rooms}"
   "core/query          | ${contact_rooms}"
   "core/loop           | ${contact_rooms} core/tick"
@@ -174,7 +175,7 @@ endfunction()
 function(judge_foreign room file path)
   set(complaint "" PARENT_SCOPE)
   if(path MATCHES "^[a-z0-9_]+$")
-    if(room MATCHES "^core/(contact|motion|closed_form|tick)$" AND NOT path IN_LIST tick_standard_headers)
+    if(room MATCHES "^core/(contact|motion|closed_form|surface|tick)$" AND NOT path IN_LIST tick_standard_headers)
       set(complaint "<${path}> has no place in the tick" PARENT_SCOPE)
     elseif(room IN_LIST threadless_rooms AND path IN_LIST thread_headers)
       set(complaint "<${path}>: ${room} has no threads" PARENT_SCOPE)

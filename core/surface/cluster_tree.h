@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/geometry/convex_faces.h"
+
+namespace passung::surface {
+
+/// Faces near each other as one convex hull: of their corners if these are few, else of the box around them.
+struct Cluster {
+    Vec3 centre = Vec3::Zero();  // of a ball around its corners, part frame [m]
+    double radius = 0.0;
+    Vec3 normal = Vec3::Zero();  // of a face, unit; zero without area
+    std::uint32_t first = 0;     // its corners
+    std::uint32_t count = 0;     // a multiple of kLanes: the last one may stand there several times
+    std::uint32_t child = 0;     // the first of two; 0: a face
+    std::uint32_t triangle = 0;  // of a face: in the mesh
+    bool isFace() const noexcept { return child == 0; }
+};
+
+inline constexpr std::uint32_t kLanes = 4;
+
+/// Binary tree of clusters over the faces of a mesh. Built once, then const.
+class ClusterTree {
+public:
+    explicit ClusterTree(const geometry::TriangleMesh& mesh);
+
+    /// The root is 0.
+    const Cluster& operator[](std::uint32_t i) const noexcept { return clusters_[i]; }
+    std::size_t size() const noexcept { return clusters_.size(); }
+    std::size_t faceCount() const noexcept { return faces_; }
+
+    Vec3 corner(std::uint32_t i) const noexcept { return {x_[i], y_[i], z_[i]}; }
+    /// Coordinates of all corners; those of a cluster lie at [first, first + count).
+    const double* x() const noexcept { return x_.data(); }
+    const double* y() const noexcept { return y_.data(); }
+    const double* z() const noexcept { return z_.data(); }
+
+    const geometry::Bounds& box() const noexcept { return box_; }
+    /// The farthest vertex from the origin of the part frame [m].
+    double reach() const noexcept { return reach_; }
+
+private:
+    struct Builder;
+
+    std::vector<Cluster> clusters_;
+    std::vector<double> x_, y_, z_;  // corners
+    geometry::Bounds box_;
+    double reach_ = 0.0;
+    std::size_t faces_ = 0;
+};
+
+}  // namespace passung::surface

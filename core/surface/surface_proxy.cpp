@@ -1,0 +1,397 @@
+#include "core/surface/surface_proxy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace passung::surface {
+
+namespace {
+
+constexpr double kStill = 1e-8;       // [m]: a motion below this is none
+constexpr double kGoodEnough = 2e-6;  // [m]: what a look leaves is of second order
+constexpr double kGoodShare = 0.03;   // of a tick's way, the same
+constexpr double kLeastTrust = 2e-5;  // [m]
+constexpr double kFastest = 1e-3;     // of the proxy where the hand is slower [m/tick]
+constexpr double kEase = 3e-7;        // of a gap that is too small [m/tick]
+constexpr double kOpening = 1e-8;     // of the gap that is held [m/tick]
+constexpr double kArcShare = 0.5;     // of the least gap: most of an arc's rise
+constexpr double kOpposite = -0.7;    // cosine of the normals of two sides
+constexpr double kStraight = 0.95;    // cosine: they face each other
+constexpr int kMostRefined = 8;       // planes in a tick
+constexpr int kMostGhosts = 3;        // rounds of a look that drop some
+constexpr double kTold = 1e-9;        // [m]: welding and rounding, which the told gap leaves out
+constexpr double kUnlimited = 0.1;    // [m]: the least gap where nothing is near
+constexpr std::size_t kMostWoken = 2500;
+constexpr int kMostIdle = 3;  // ticks of a row that does not hold
+constexpr int kMostRounds = 12;
+constexpr int kMostShorter = 4;
+constexpr double kNearlyWhole = 0.95;  // of a motion: shortened by less, it is not solved for again
+constexpr double kPart = 0.3;          // of a motion that leaves an overlap: along the hand
+
+std::size_t pairsFor(const ClusterTree& held, const ClusterTree& obstacles) {
+    return std::clamp<std::size_t>(16 * (held.size() + obstacles.size()), 1u << 16, 1u << 20);
+}
+
+motion::Motion motionTo(const Pose& X, const Pose& X_WH, double rho) noexcept {
+    motion::Motion w;
+    w << X_WH.p - X.p, rho * rotationVector(X_WH.q * X.q.conjugate());
+    return w;
+}
+
+}  // namespace
+
+SurfaceProxy::SurfaceProxy(const ClusterTree& held, const ClusterTree& obstacles, const SurfaceSettings& settings)
+    : held_(&held),
+      obstacles_(&obstacles),
+      settings_(settings),
+      budget_(settings.budget),
+      forest_(pairsFor(held, obstacles)),
+      near_(forest_.capacity()),
+      rows_(kMostRows),
+      manifold_(kMostRows),
+      gap_(settings.gap) {
+    place({});
+}
+
+void SurfaceProxy::place(const Pose& X_WG) noexcept {
+    forest_.restart();
+    near_count_ = row_count_ = 0;
+    X_ = X_WG;
+    P_ = Placement(X_);
+    travelled_ = last_way_ = 0.0;
+    least_ = 0.0;
+    overlaps_ = false;
+    X_WH_last_.reset();
+    phase_ = Phase::Idle;
+}
+
+void SurfaceProxy::prepare() {
+    budget_ = std::numeric_limits<int>::max();
+    tick_ = {};
+    settle(0.0);
+    budget_ = settings_.budget;
+    tell();
+}
+
+double SurfaceProxy::wayBetween(const Placement& from, const Placement& to) const noexcept {
+    const geometry::Bounds& box = held_->box();
+    const Mat3 D = to.R - from.R;
+    const Vec3 d = to.p - from.p;
+    double square = 0.0;
+    for (int i = 0; i < 8; ++i) {
+        const Vec3 c(i & 1 ? box.high.x() : box.low.x(), i & 2 ? box.high.y() : box.low.y(),
+                     i & 4 ? box.high.z() : box.low.z());
+        square = std::max(square, (D * c + d).squaredNorm());
+    }
+    return std::sqrt(square);
+}
+
+/// Sets the end of the look to `u_`, made shorter where it goes farther than `most` or turns too far.
+void SurfaceProxy::limit(double most) noexcept {
+    const double rise = kArcShare * std::max(least_, kLeastGap * 0.01);
+    const double angle = u_.tail<3>().norm() / settings_.metric_radius;
+    const double most_angle = std::sqrt(8.0 * rise / std::max(held_->reach(), 1e-9));
+    if (angle > most_angle) {
+        u_ *= most_angle / angle;
+        limited_ = true;
+    }
+    for (int i = 0;; ++i) {
+        const Vec3 turn = u_.tail<3>() / settings_.metric_radius;
+        X_next_ = {rotationFromVector(turn) * X_.q, X_.p + u_.head<3>()};
+        X_next_.q.normalize();
+        P_next_ = Placement(X_next_);
+        arc_ = held_->reach() * turn.squaredNorm() / 8.0;
+        way_ = wayBetween(P_, P_next_) + arc_;
+        if (way_ <= most || i == 8) break;
+        u_ *= 0.98 * most / way_;
+        limited_ = true;
+    }
+    if (way_ > most) {
+        u_.setZero();
+        X_next_ = X_;
+        P_next_ = P_;
+        way_ = arc_ = 0.0;
+        limited_ = true;
+    }
+    turn_ = P_next_.R - P_.R;
+    move_ = P_next_.p - P_.p;
+}
+
+/// The rows at the pose of now; those that lost their meaning go.
+void SurfaceProxy::refreshRows() noexcept {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < row_count_; ++i) {
+        ContactRow row = rows_[i];
+        if (!refresh(row, {*held_, *obstacles_, (*held_)[row.held], (*obstacles_)[row.obstacle]}, P_)) continue;
+        tick_.work += row.fixed ? 1 : 40;
+        bool twice = false;
+        for (std::size_t k = 0; k < kept && !twice; ++k) twice = rows_[k].isLike(row);
+        if (!twice) rows_[kept++] = row;
+    }
+    row_count_ = kept;
+}
+
+/// The gap that is held: an eighth of what two sides leave, where a near plane faces a row that holds.
+void SurfaceProxy::adaptGap() noexcept {
+    double room = 8.0 * settings_.gap;
+    int refined = 0;
+    for (std::size_t i = 0; i < row_count_; ++i) {
+        const ContactRow& row = rows_[i];
+        if (!(row.push > 0.0)) continue;
+        for (std::size_t k = 0; k < near_count_; ++k) {
+            NearPair& near = near_[k];
+            const auto faces = [&] { return near.s + row.s < room && near.n.dot(row.n) < kOpposite; };
+            if (!faces() || !isFacePair(near.pair)) continue;
+            // A plane that proves something need not be the nearest one.
+            if (++refined > kMostRefined) return;
+            const NearestHulls now = nearestPoints(hulls(near.pair), P_, near.n);
+            tick_.work += 5 * now.looks;
+            if (now.separation > near.s) {
+                near.n = near.n_next = now.n;
+                near.s = now.separation;
+            }
+            const Vec3 across = now.on_obstacle - row.point(P_);
+            const bool same_place = std::abs(across.dot(row.n)) > kStraight * across.norm();
+            if (faces() && same_place) room = near.s + row.s;
+        }
+    }
+    const double wanted = std::max(room / 8.0, kLeastGap);
+    gap_ = std::min(wanted, gap_ + kOpening);
+}
+
+/// The motion nearest to the hand's that the rows leave.
+void SurfaceProxy::solve() noexcept {
+    manifold_.clear();
+    std::array<std::uint32_t, 6> likely;
+    std::size_t likely_count = 0;
+    for (std::size_t i = 0; i < row_count_; ++i) {
+        ContactRow& row = rows_[i];
+        if (row.push > 0.0 && likely_count < likely.size()) likely[likely_count++] = static_cast<std::uint32_t>(i);
+        row.push = 0.0;
+        contact::ContactPoint contact{};
+        contact.position = row.point(P_);
+        contact.normal = -row.n;
+        contact.gradient = row.n;
+        contact.phi = std::max(row.s - gap_, -ease_) + row.bend;
+        manifold_.tryPush(contact);
+    }
+    const motion::Surroundings around{manifold_, X_.p, settings_.metric_radius, 0.0};
+    const motion::ConstrainedMotion result = motion::constrainMotion(wanted_, around, {likely.data(), likely_count});
+    u_ = result.u;
+    for (int i = 0; i < result.active; ++i) {
+        const motion::ActiveContact& active = result.active_contacts[static_cast<std::size_t>(i)];
+        rows_[active.contact].push = active.push;
+    }
+    ++tick_.rounds;
+    tick_.work += 20 + static_cast<int>(row_count_) + 8 * result.iterations;
+}
+
+/// Where triangles cross: out along what faces them, and along the hand, no faster than kFastest.
+motion::Motion SurfaceProxy::wayOut() const noexcept {
+    Vec3 out = Vec3::Zero();
+    for (std::size_t i = 0; i < near_count_; ++i) {
+        if (!near_[i].meets) continue;
+        const HullPair pair = hulls(near_[i].pair);
+        out += pair.of_obstacle.normal - P_.R * pair.of_held.normal;
+    }
+    motion::Motion u = wanted_;
+    const double room = kFastest - way_in_tick_;
+    const double length = u.norm();
+    if (out.norm() > 1e-6 && length > kPart * room) u *= kPart * room / length;
+    if (out.norm() > 1e-6) u.head<3>() += (1.0 - kPart) * room * out.normalized();
+    if (u.norm() > room) u *= room / u.norm();
+    return u;
+}
+
+/// False if nothing is left to do in this tick.
+bool SurfaceProxy::beginLook(const Pose& X_WH) noexcept {
+    X_WH_ = X_WH;
+    refreshRows();
+    if (tick_.looks == 0) adaptGap();
+    ease_ = tick_.looks == 0 ? kEase : 0.0;
+    wanted_ = motionTo(X_, X_WH_, settings_.metric_radius);
+    const double room = std::min(overlaps_ ? kFastest : trust_, most_in_tick_ - way_in_tick_);
+    if (!(room > kStill)) return false;
+    if (overlaps_) {
+        wanted_ = wayOut();
+        row_count_ = 0;
+    }
+    solve();
+    limited_ = false;
+    const double length = u_.norm();
+    limit(room);
+    if (way_ < kStill) return false;
+    if (const double share = u_.norm() / length; share < kNearlyWhole) {
+        // Rows have to bind where the look ends, so that what they overlook there can be allowed for.
+        wanted_ *= share;
+        solve();
+        limit(room);
+    }
+    if (tick_.looks > 0 && !limited_ && way_ < std::max(kGoodEnough, kGoodShare * way_in_tick_)) return false;
+    most_way_ = std::min(room, 1.3 * way_ + 2e-6);
+    front_ = at_ = 0;
+    front_only_ = false;
+    rounds_ = added_ = ghosts_ = 0;
+    violated_ = false;
+    least_share_ = 1.0;
+    phase_ = Phase::Waking;
+    return true;
+}
+
+/// Lets all pairs wake that the look may reach, or shortens it. False: the budget ended.
+bool SurfaceProxy::wakeAll() noexcept {
+    for (;;) {
+        if (!settle(most_way_)) return false;
+        const double wanted = travelled_ + most_way_ + gap_;
+        if (forest_.due() >= wanted) break;
+        const double due = forest_.wake(wanted, kMostWoken);
+        if (!settle(most_way_)) return false;
+        const double known = due - travelled_ - gap_;
+        if (known >= most_way_) break;
+        if (known > 0.5 * most_way_ || known > kLeastTrust) {
+            most_way_ = known;
+            break;
+        }
+    }
+    if (way_ > most_way_) limit(most_way_);
+    phase_ = Phase::Checking;
+    return true;
+}
+
+/// What the rows' linear motion overlooked at the end of the look, so that the next round allows for it.
+void SurfaceProxy::bendRows() noexcept {
+    for (std::size_t i = 0; i < row_count_; ++i) {
+        ContactRow& row = rows_[i];
+        const double linear =
+            row.s +
+            row.n.dot(Vec3(u_.head<3>() + (u_.tail<3>() / settings_.metric_radius).cross(row.point(P_) - X_.p)));
+        row.bend = std::min(0.0, row.gapAt(P_next_) - linear);
+    }
+}
+
+/// One more round of a look. False: what was proven is to be accepted, or nothing was found, and the look is over.
+bool SurfaceProxy::tryAgain(bool violated) noexcept {
+    ++rounds_;
+    bool shorten = rounds_ > kMostRounds;
+    const motion::Motion before = u_;
+    if (!shorten) {
+        if (violated) bendRows();
+        solve();
+        limit(most_way_);
+        shorten = (u_ - before).norm() <= kStill;
+    }
+    if (shorten && !violated) {
+        u_ = before;
+        limit(most_way_);
+        return false;
+    }
+    if (shorten) {
+        rounds_ = std::max(rounds_, kMostRounds);
+        u_ *= std::clamp(0.9 * least_share_, 0.1, 0.7);
+        limited_ = true;
+        limit(most_way_);
+        if (way_ < kStill || rounds_ > kMostRounds + kMostShorter) {
+            phase_ = Phase::Idle;
+            return false;
+        }
+    }
+    at_ = 0;
+    front_only_ = true;
+    violated_ = false;
+    added_ = 0;
+    least_share_ = 1.0;
+    return true;
+}
+
+/// Rows that hold although their faces stay far from each other are planes beyond the faces' ends: they go. True if
+/// there were any.
+bool SurfaceProxy::dropsGhosts() noexcept {
+    ++ghosts_;
+    std::size_t kept = 0;
+    const Placement& X = P_next_;
+    for (std::size_t i = 0; i < row_count_; ++i) {
+        const ContactRow& row = rows_[i];
+        bool ghost = false;
+        if (row.push > 0.0) {
+            const HullPair pair{*held_, *obstacles_, (*held_)[row.held], (*obstacles_)[row.obstacle]};
+            const double by_row = std::max(row.gapAt(X), gap_);
+            const NearestHulls there = nearestHulls(pair, X, row.n, 1.5 * by_row + kLeastGap, 0.0);
+            tick_.work += 5 * there.looks;
+            ghost = there.separation > 1.5 * by_row + kLeastGap;
+        }
+        if (!ghost) rows_[kept++] = row;
+    }
+    const bool any = kept < row_count_;
+    row_count_ = kept;
+    return any;
+}
+
+const SurfaceTick& SurfaceProxy::advance(const Pose& X_WH) noexcept {
+    tick_ = {};
+    chain_count_ = 0;
+    const double hand_way = X_WH_last_ ? wayBetween(Placement(*X_WH_last_), Placement(X_WH)) : 0.0;
+    X_WH_last_ = X_WH;
+    trust_ = std::max({kLeastTrust, 1.5 * hand_way, std::min(2.0 * last_way_, kFastest)});
+    most_in_tick_ = overlaps_ ? kFastest : std::max(kFastest, 1.5 * hand_way);
+    way_in_tick_ = 0.0;
+    if (phase_ == Phase::Idle && !settle(0.0)) tick_.suspended = true;
+    while (!tick_.suspended && static_cast<std::size_t>(tick_.looks) < kMostLooks) {
+        if (phase_ == Phase::Idle && !beginLook(X_WH)) break;
+        if (phase_ == Phase::Waking && !wakeAll()) tick_.suspended = true;
+        if (phase_ != Phase::Checking) continue;
+        const Checked checked = check();
+        if (checked == Checked::Spent) {
+            tick_.suspended = true;
+        } else if (checked == Checked::Violated || (ghosts_ < kMostGhosts && dropsGhosts())) {
+            if (tryAgain(checked == Checked::Violated)) continue;
+            if (phase_ == Phase::Idle) {
+                tick_.stuck = true;
+                break;
+            }
+            accept();
+        } else {
+            accept();
+            if (!limited_ && way_ < kGoodEnough) break;
+        }
+    }
+    if (!tick_.suspended) {
+        last_way_ = way_in_tick_;
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < row_count_; ++i) {
+            rows_[i].idle = rows_[i].push > 0.0 ? 0 : rows_[i].idle + 1;
+            if (rows_[i].idle <= kMostIdle) rows_[kept++] = rows_[i];
+        }
+        row_count_ = kept;
+    }
+    tell();
+    return tick_;
+}
+
+void SurfaceProxy::tell() noexcept {
+    double least = kUnlimited;
+    overlaps_ = false;
+    for (std::size_t i = 0; i < near_count_; ++i) {
+        least = std::min(least, near_[i].s);
+        overlaps_ = overlaps_ || near_[i].meets;
+    }
+    least_ = least;
+    tick_.X_WG = X_;
+    const double proven = std::min({least, kSeen, forest_.due() - travelled_});
+    tick_.gap = forest_.hasWaiting() ? 0.0 : std::max(0.0, proven - kTold);
+    tick_.meets = overlaps_;
+    tick_.rows = static_cast<int>(row_count_);
+    for (std::size_t i = 0; i < row_count_; ++i) tick_.active += rows_[i].push > 0.0 ? 1 : 0;
+}
+
+double SurfaceProxy::handDepth(const Pose& X_WH) const noexcept {
+    double depth = 0.0;
+    const Placement hand(X_WH);
+    for (std::size_t i = 0; i < row_count_; ++i)
+        if (rows_[i].push > 0.0)
+            depth = std::max(
+                depth, rows_[i].n.dot(rows_[i].point(P_) - hand * (P_.R.transpose() * (rows_[i].point(P_) - P_.p))));
+    return depth;
+}
+
+}  // namespace passung::surface

@@ -1,0 +1,177 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/contact/contact_query.h"
+#include "core/motion/constrained_motion.h"
+#include "core/surface/contact_row.h"
+#include "core/surface/pair_forest.h"
+
+namespace passung::surface {
+
+struct SurfaceSettings {
+    double metric_radius = 0.0;  // ρ: makes a rotation comparable with a translation [m], > 0
+    double gap = 1e-6;           // held between the parts where there is room for it [m]
+    int budget = 20000;          // units of work in a tick
+};
+
+/// What a tick did.
+struct SurfaceTick {
+    Pose X_WG;
+    double gap = 0.0;        // proven: no two triangles are nearer at X_WG [m]; at most SurfaceProxy::kSeen
+    bool suspended = false;  // the budget ended: what was begun goes on in the next tick
+    bool meets = false;      // triangles cross, as at a start in overlap: they are being set apart
+    bool stuck = false;      // no motion was found within the bounds on rounds
+    int looks = 0;
+    int rounds = 0;  // motions solved for
+    int work = 0;
+    int rows = 0, active = 0;
+};
+
+/// Keeps a held part's triangles from ever meeting those of the obstacles while it follows a hand.
+///
+/// Source: a kinetic certificate for each pair of clusters (Basch, Guibas, Hershberger 1997) instead of a measured
+/// overlap; the motion by Gauss's principle of least constraint under the rows of those pairs that it would violate
+/// (constrained_motion.h).
+///
+/// Invariant: at the accepted pose X each pair of faces is covered by one pair of clusters, which is either asleep with
+/// key k, so that its distance is at least k - S, S the way travelled, or near, with a plane (n, s): its hulls are set
+/// apart by s > 0 along n. S grows by the largest displacement of any point of the part. Nothing else is assumed of the
+/// meshes: no inside, no closedness.
+///
+/// A look: rows -> nearest pose to the hand -> all pairs whose key is due wake -> each near pair must be set apart at
+/// the new pose AND on the way there -> those that are not become rows, and it is solved again. A pose is accepted only
+/// when all are proven; u = 0 always is, so that no force and no budget causes an overlap.
+/// The way: with n fixed, n · a(t) ≥ min(n · a(0), n · a(1)) - e, e = R θ²/8 the rise of an arc of radius R over its
+/// chord. With n turning from n0 to n1 the separation is a polynomial in t of second degree: it stays above its least
+/// Bernstein coefficient  n0·a0 - h0,  ½(n0·a1 + n1·a0 - h0 - h1),  n1·a1 - h1,  less e.
+/// A cluster's hull is proven from one number: any x within r of c has  n · Δx ≥ n · Δc - |Dᵀ n| r,  D = R1 - R0.
+///
+/// Limit cases: nothing near → the hand. One plane → the hand's projection onto it, one gap away. Where two sides leave
+/// less than 8 gaps, the gap shrinks to an eighth of what is there. Rounding: kWelded and 1e-10 m, which are 1/100 of
+/// the least gap.
+class SurfaceProxy {
+public:
+    /// The trees outlive this. The obstacles' is one, in the world.
+    SurfaceProxy(const ClusterTree& held, const ClusterTree& obstacles, const SurfaceSettings& settings);
+
+    /// Puts the held part somewhere; the past is void. rt-safe; the next ticks find out what is near.
+    void place(const Pose& X_WG) noexcept;
+    /// Finds out what is near, whatever it takes. For the time before the first tick.
+    void prepare();
+
+    /// Follows the hand. rt-safe, bounded by the budget.
+    const SurfaceTick& advance(const Pose& X_WH) noexcept;
+
+    /// Rows that hold the pose: those with `push` > 0; which triangle of the obstacles each is of.
+    std::span<const ContactRow> rows() const noexcept { return {rows_.data(), row_count_}; }
+    std::uint32_t obstacleTriangle(const ContactRow& row) const noexcept {
+        return (*obstacles_)[row.obstacle].triangle;
+    }
+    /// Where it acts, world.
+    Vec3 pointOf(const ContactRow& row) const noexcept { return row.point(P_); }
+    const Pose& pose() const noexcept { return X_; }
+    /// The poses accepted in the last tick, in order.
+    std::span<const Pose> chain() const noexcept { return {chain_.data(), chain_count_}; }
+    /// How far the hand's pose lies beyond the row that it presses most [m], ≥ 0.
+    double handDepth(const Pose& X_WH) const noexcept;
+
+    static constexpr double kSeen = 8e-6;      // [m]: farther pairs are not told apart
+    static constexpr double kLeastGap = 1e-7;  // [m]
+    static constexpr std::size_t kMostLooks = 16;
+    static constexpr std::size_t kMostRows = 96;
+
+private:
+    struct NearPair {
+        Vec3 n, n_next;    // plane now and after the look
+        double s, s_next;  // separation by it [m]
+        std::uint32_t pair;
+        bool meets;  // triangles cross: no plane yet
+    };
+    struct PlaneAt {
+        Placement X;
+        Vec3 n;
+    };
+    enum class Phase : std::uint8_t { Idle, Waking, Checking };
+    enum class Checked : std::uint8_t { Passed, Violated, Spent };
+
+    // surface_proof.cpp
+    HullPair hulls(std::uint32_t pair) const noexcept;
+    bool isFacePair(std::uint32_t pair) const noexcept;
+    bool spent() const noexcept { return tick_.work >= budget_; }
+    double sleepBeyond(double way) const noexcept;
+    bool settle(double way) noexcept;
+    void sort(std::uint32_t at, double asleep_beyond) noexcept;
+    void push(std::uint32_t pair, const Vec3& n, double s, bool meets) noexcept;
+    void fallAsleep(std::uint32_t at, const Vec3& n, double s) noexcept;
+    std::uint32_t splitPair(std::uint32_t at) noexcept;
+    bool trySplit(std::size_t at) noexcept;
+    double needOf(double s, bool faces) const noexcept;
+    Checked check() noexcept;
+    bool proves(NearPair& near) noexcept;
+    bool provesFaces(NearPair& near, const HullPair& pair) noexcept;
+    bool provesParts(const NearPair& near, const HullPair& pair, const Vec3& n_end, double need) noexcept;
+    bool provesTurning(const HullPair& pair, const PlaneAt& from, const PlaneAt& to, double need) const noexcept;
+    Pose poseOnWay(double share) const noexcept;
+    void addRow(NearPair& near) noexcept;
+    void accept() noexcept;
+
+    // surface_proxy.cpp
+    double wayBetween(const Placement& from, const Placement& to) const noexcept;
+    void limit(double most) noexcept;
+    void refreshRows() noexcept;
+    void adaptGap() noexcept;
+    void solve() noexcept;
+    motion::Motion wayOut() const noexcept;
+    bool beginLook(const Pose& X_WH) noexcept;
+    bool wakeAll() noexcept;
+    void bendRows() noexcept;
+    bool tryAgain(bool violated) noexcept;
+    bool dropsGhosts() noexcept;
+    void tell() noexcept;
+
+    const ClusterTree* held_;
+    const ClusterTree* obstacles_;
+    SurfaceSettings settings_;
+    int budget_;
+
+    PairForest forest_;
+    std::vector<NearPair> near_;
+    std::size_t near_count_ = 0, front_ = 0;  // those before `front_` failed in this look
+    std::vector<ContactRow> rows_;
+    std::size_t row_count_ = 0;
+    contact::ContactManifold manifold_;
+
+    Pose X_;                    // accepted
+    Placement P_;               // the same
+    double travelled_ = 0;      // S [m]
+    double gap_, least_ = 0.0;  // held; the least proven at X_ [m]
+    double last_way_ = 0.0;     // in the last tick [m]
+    bool overlaps_ = false;
+    std::optional<Pose> X_WH_last_;
+
+    // Of the tick.
+    double trust_ = 0.0, most_in_tick_ = 0.0, way_in_tick_ = 0.0;  // [m]
+
+    // Of the look that was begun.
+    Phase phase_ = Phase::Idle;
+    Pose X_WH_, X_next_;
+    Placement P_next_;
+    motion::Motion wanted_ = motion::Motion::Zero(), u_ = motion::Motion::Zero();
+    Mat3 turn_ = Mat3::Zero();  // R1 - R0
+    Vec3 move_ = Vec3::Zero();  // p1 - p0
+    double most_way_ = 0.0, way_ = 0.0, arc_ = 0.0, ease_ = 0.0, least_share_ = 1.0;
+    std::size_t at_ = 0;
+    bool front_only_ = false, violated_ = false, limited_ = false;
+    int added_ = 0, rounds_ = 0, ghosts_ = 0;
+
+    SurfaceTick tick_;
+    std::array<Pose, kMostLooks> chain_;
+    std::size_t chain_count_ = 0;
+};
+
+}  // namespace passung::surface
