@@ -6,8 +6,7 @@ namespace passung::scene {
 
 namespace {
 
-// What this version can compute contact from, beside fields and closed forms.
-constexpr bool kSurfaceBuilt = false;
+constexpr bool kSurfaceDefault = false;  // of auto, where a mesh takes part
 
 /// Its faces and edges bound a solid (closed_form::solidOf); a sheet has no inside.
 bool hasClosedForm(const PartSpec& part) {
@@ -27,6 +26,16 @@ const char* closedFormProblem(const PartSpec& held, const PartSpec& obstacle, co
     return nullptr;
 }
 
+/// Why the scene has no contact of surfaces; nothing if it has.
+const char* surfaceProblem(const PartSpec& held, const PartSpec& obstacle, const ContactSpec& contact) {
+    if (contact.method == ContactMethod::Penalty) return "surface needs a god object: the penalty is a sum over sample points";
+    if (contact.proxy_filter > 0.0) return "surface needs a proxy without low-pass (contact.proxy_filter_hz)";
+    if (rub(held, obstacle)) return "surface needs parts without friction";
+    return nullptr;
+}
+
+bool isMesh(const PartSpec& part) { return std::holds_alternative<MeshFile>(part.geometry); }
+
 const PartSpec* heldPart(const SceneSpec& scene) {
     const auto held = std::find_if(scene.parts.begin(), scene.parts.end(), [](const auto& part) { return part.held; });
     return held == scene.parts.end() ? nullptr : &*held;
@@ -36,8 +45,11 @@ const PartSpec* heldPart(const SceneSpec& scene) {
 
 GeometryChoice geometryOfPair(const PartSpec& held, const PartSpec& obstacle, const ContactSpec& contact) {
     if (contact.geometry != Geometry::Auto) return {contact.geometry, "contact.geometry names it"};
-    if (const char* problem = closedFormProblem(held, obstacle, contact)) return {Geometry::Field, problem};
-    return {Geometry::ClosedForm, "a god object, and parts that are parametric shapes"};
+    const char* problem = closedFormProblem(held, obstacle, contact);
+    if (problem == nullptr) return {Geometry::ClosedForm, "a god object, and parts that are parametric shapes"};
+    if (kSurfaceDefault && (isMesh(held) || isMesh(obstacle)) && surfaceProblem(held, obstacle, contact) == nullptr)
+        return {Geometry::Surface, "a part is a mesh"};
+    return {Geometry::Field, problem};
 }
 
 GeometryChoice geometryOf(const SceneSpec& scene) {
@@ -46,18 +58,21 @@ GeometryChoice geometryOf(const SceneSpec& scene) {
     for (const PartSpec& part : scene.parts) {
         if (held == nullptr || part.held) continue;
         const GeometryChoice choice = geometryOfPair(*held, part, scene.contact);
-        if (!all || choice.geometry == Geometry::Field) all = choice;
+        const bool coarser = all && (choice.geometry == Geometry::Field ||
+                                     (choice.geometry == Geometry::Surface && all->geometry == Geometry::ClosedForm));
+        if (!all || coarser) all = choice;
     }
     return all.value_or(GeometryChoice{Geometry::Field, "the scene has no obstacle"});
 }
 
 std::optional<std::string> geometryProblem(const SceneSpec& scene) {
-    if (scene.contact.geometry == Geometry::Surface && !kSurfaceBuilt) return "is not built in this version";
     const PartSpec* held = heldPart(scene);
-    if (scene.contact.geometry != Geometry::ClosedForm || held == nullptr) return std::nullopt;
+    const Geometry asked = scene.contact.geometry;
+    if ((asked != Geometry::ClosedForm && asked != Geometry::Surface) || held == nullptr) return std::nullopt;
     for (const PartSpec& part : scene.parts) {
         if (part.held) continue;
-        if (const char* problem = closedFormProblem(*held, part, scene.contact))
+        const auto problemOf = asked == Geometry::Surface ? surfaceProblem : closedFormProblem;
+        if (const char* problem = problemOf(*held, part, scene.contact))
             return std::string(problem) + " (" + held->name + ", " + part.name + ")";
     }
     return std::nullopt;

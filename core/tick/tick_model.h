@@ -7,6 +7,7 @@
 #include "core/motion/friction.h"
 #include "core/scene/contact_geometry.h"
 #include "core/scene/scene.h"
+#include "core/surface/cluster_tree.h"
 #include "core/tick/stage.h"
 
 namespace passung::tick {
@@ -19,7 +20,8 @@ struct Stage {
     void (*run)(const TickModel&, TickState&, TickFrame&) noexcept;
 };
 
-/// An obstacle fixed in the world, as what its geometry is: a distance field, or one of TickModel::solids.
+/// An obstacle fixed in the world, as what its geometry is: a distance field, one of TickModel::solids, or a share of
+/// TickModel::surfaces.
 struct Obstacle {
     const field::DistanceField* field;  // Geometry::Field only
     Pose X_WF;
@@ -42,6 +44,8 @@ struct TickModel {
     const shell::EdgeCurves* edges = nullptr;
     const field::DistanceField* held_field = nullptr;  // two-way contact only
     std::vector<closed_form::SmoothSolid> solids;      // Geometry::ClosedForm only: the held part, the obstacles
+    std::vector<surface::ClusterTree> surfaces;  // Geometry::Surface only: the held part, all obstacles in the world
+    std::vector<std::uint32_t> first_triangles;  // of each obstacle in the second of those
     std::vector<Obstacle> obstacles;
     std::vector<motion::Friction> friction;  // of each obstacle with the held part; empty: the scene names none
     Pose X_WG_start;
@@ -63,6 +67,7 @@ struct TickModel {
     /// Of a god object, or a tool.
     bool hasProxy() const noexcept { return hasObstacles() && !contact.rendersAtHand(); }
     bool hasClosedForm() const noexcept { return hasProxy() && geometry == scene::Geometry::ClosedForm; }
+    bool hasSurfaces() const noexcept { return hasProxy() && geometry == scene::Geometry::Surface; }
     /// A proxy or tool among distance fields.
     bool hasFieldProxy() const noexcept { return hasProxy() && geometry == scene::Geometry::Field; }
     bool hasFieldProxyOf(scene::ContactMethod method) const noexcept {

@@ -36,7 +36,9 @@ TickState makeState(const TickModel& model) {
     state.push_line.resize(state.pairs.size() * (static_cast<std::size_t>(model.limits.delay_ticks) + 1));
     if (model.hasClosedForm())
         static_cast<ClosedFormMemory&>(state) = closedFormMemory(model);
-    else
+    else if (model.hasSurfaces())
+        static_cast<SurfaceFollow&>(state) = surfaceFollow(model);
+    else if (model.geometry == scene::Geometry::Field)
         addQueryMemory(model, state, state);
     return state;
 }

@@ -15,6 +15,7 @@
 #include "core/tick/proxy.h"
 #include "core/tick/proxy_state.h"
 #include "core/tick/stage.h"
+#include "core/tick/surface_follow.h"
 #include "core/tick/tick_frame.h"
 #include "core/tick/transients.h"
 #include "core/tick/virtual_coupling.h"
@@ -32,6 +33,7 @@ using AllStages = StageList<kInputGuard, kEnergyAccount, kStartGate,            
                             kProxyFilter, kProxyRecord, kHandDepth,              // what follows them
                             kClosedFormProxy, kClosedFormFilter,                 // god objects on closed forms
                             kClosedFormRecord, kClosedFormDepth,                 // what follows them
+                            kSurfaceProxy, kSurfaceRecord, kSurfaceDepth,        // the same on surfaces
                             kVirtualCoupling,                                    // their wrench
                             kTransients,                                         // effects
                             kContactShares, kOutputDelay, kPassivityController,  // what goes out
@@ -46,8 +48,8 @@ struct TickCount {
 
 /// Everything that a tick carries to the next: the stages' own states. Sized by makeState; a tick never allocates.
 struct TickState : Parts<TickCount, InputGuard, Engagement, EnergyAccounts, Proxy, ProxyMotion, ProxyFilter,
-                         ClosedFormHold, FilteredHold, ClosedFormMemory, HandVelocity, ToolMotion, Stretch, Ringing,
-                         Pushes, DelayLine, SentWrench, QueryMemory> {};
+                         ClosedFormHold, FilteredHold, ClosedFormMemory, SurfaceFollow, HandVelocity, ToolMotion,
+                         Stretch, Ringing, Pushes, DelayLine, SentWrench, QueryMemory> {};
 
 /// What one tick works on; dies with it.
 struct TickFrame : Parts<Reading, HandSample, AreaLoad, ContactRecord, HandDepth, EnergyRecord, HandWrench,

@@ -86,6 +86,17 @@ QString orderWord(plan::BlockOrder order) {
     QT_TRANSLATE_NOOP("stages", "closed-form filter"),
     QT_TRANSLATE_NOOP("stages", "closed-form record"),
     QT_TRANSLATE_NOOP("stages", "closed-form hand depth"),
+    QT_TRANSLATE_NOOP("stages", "surface proxy"),
+    QT_TRANSLATE_NOOP("stages",
+                      "contact.method is god_object and contact is that of surfaces: the proxy follows the hand as far "
+                      "as no triangles meet; no distance field, no points"),
+    QT_TRANSLATE_NOOP("stages",
+                      "contact.method is god_object_heuristic and contact is that of surfaces: the proxy follows the "
+                      "hand as far as no triangles meet; no distance field, no points"),
+    QT_TRANSLATE_NOOP("stages", "surface record"),
+    QT_TRANSLATE_NOOP("stages", "the proven gap and the contacts at the proxy, for the record"),
+    QT_TRANSLATE_NOOP("stages", "surface hand depth"),
+    QT_TRANSLATE_NOOP("stages", "the way from proxy to hand along what holds it is recorded"),
     QT_TRANSLATE_NOOP("stages", "virtual coupling"),
     QT_TRANSLATE_NOOP("stages", "spring and damper between proxy and hand"),
     QT_TRANSLATE_NOOP("stages", "contact transients"),

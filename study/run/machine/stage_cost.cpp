@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 
+#include "core/surface/nearest_faces.h"
 #include "core/tick/closed_form_proxy.h"
 #include "core/tick/obstacle_query.h"
 #include "core/tick/step.h"
@@ -43,6 +44,10 @@ Vec3 wayToContact(const Pose& X_WG, tick::ClosedFormMemory& memory) {
 Vec3 wayToContact(const tick::TickModel& model, tick::TickState& state) {
     if (model.obstacles.empty()) return Vec3(0.02, 0.0, 0.0);
     if (model.hasClosedForm()) return wayToContact(model.X_WG_start, state);
+    if (model.hasSurfaces()) {
+        const auto nearest = surface::nearestFaces(model.surfaces[0], model.surfaces[1], model.X_WG_start);
+        return -(nearest.distance + kPressed) * nearest.n;
+    }
     state.scratch.clear();
     const contact::QueryAnswer answer =
         tick::queryObstacles(model, model.X_WG_start, {.search_below = 1.0}, state.workspace, state.scratch);

@@ -78,7 +78,9 @@ std::vector<scene::SceneSpec> scenesOfAllStages() {
     auto closed_form = boxOverPlate(GodObject);
     closed_form.contact.geometry = scene::Geometry::ClosedForm;
     closed_form.contact.proxy_filter = 50.0;
-    return {free, penalty, tool, god_object, heuristic, closed_form};
+    auto surface = boxOverPlate(GodObject);
+    surface.contact.geometry = scene::Geometry::Surface;
+    return {free, penalty, tool, god_object, heuristic, closed_form, surface};
 }
 
 /// A hand that presses, slides and turns; samples are lost, lie, and lie for long.

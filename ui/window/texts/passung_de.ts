@@ -1819,6 +1819,34 @@
         <translation>Tiefe der Hand in geschlossener Form</translation>
     </message>
     <message>
+        <source>surface proxy</source>
+        <translation>Proxy auf Oberflächen</translation>
+    </message>
+    <message>
+        <source>contact.method is god_object and contact is that of surfaces: the proxy follows the hand as far as no triangles meet; no distance field, no points</source>
+        <translation>contact.method ist god_object, und Kontakt ist der von Oberflächen: Der Proxy folgt der Hand, soweit keine Dreiecke sich treffen; kein Abstandsfeld, keine Punkte</translation>
+    </message>
+    <message>
+        <source>contact.method is god_object_heuristic and contact is that of surfaces: the proxy follows the hand as far as no triangles meet; no distance field, no points</source>
+        <translation>contact.method ist god_object_heuristic, und Kontakt ist der von Oberflächen: Der Proxy folgt der Hand, soweit keine Dreiecke sich treffen; kein Abstandsfeld, keine Punkte</translation>
+    </message>
+    <message>
+        <source>surface record</source>
+        <translation>Aufzeichnung auf Oberflächen</translation>
+    </message>
+    <message>
+        <source>the proven gap and the contacts at the proxy, for the record</source>
+        <translation>bewiesener Spalt und Kontakte am Proxy, für die Aufzeichnung</translation>
+    </message>
+    <message>
+        <source>surface hand depth</source>
+        <translation>Tiefe der Hand auf Oberflächen</translation>
+    </message>
+    <message>
+        <source>the way from proxy to hand along what holds it is recorded</source>
+        <translation>Der Weg vom Proxy zur Hand entlang dem, was ihn hält, wird aufgezeichnet</translation>
+    </message>
+    <message>
         <source>proxy sweep</source>
         <translation>Proxy-Schwenk</translation>
     </message>

@@ -1,0 +1,68 @@
+#include "core/tick/surface_follow.h"
+
+#include <algorithm>
+
+#include "core/tick/contact_energy.h"
+
+namespace passung::tick {
+
+namespace {
+
+/// In place of the pushes so far: K λ along each row's normal (contact_energy.h).
+void noteRows(const TickModel& model, const surface::SurfaceProxy& surface, Pushes& pushes) noexcept {
+    clearPushes(pushes);
+    const double K = model.contact.stiffness;
+    const double turn = model.contact.rotational_stiffness / (model.metric_radius * model.metric_radius);
+    for (const surface::ContactRow& row : surface.rows()) {
+        if (!(row.push > 0.0)) continue;
+        const auto& firsts = model.first_triangles;
+        const auto after = std::upper_bound(firsts.begin(), firsts.end(), surface.obstacleTriangle(row));
+        ObstaclePush& of = pushes.pushes[static_cast<std::size_t>(after - firsts.begin()) - 1];
+        const Vec3 push = row.push * row.n;
+        of.wrench.force += K * push;
+        of.wrench.torque += turn * (surface.pointOf(row) - surface.pose().p).cross(push);
+        of.pressure += K * row.push;
+    }
+}
+
+}  // namespace
+
+SurfaceFollow surfaceFollow(const TickModel& model) {
+    SurfaceFollow follow;
+    follow.surface.emplace(
+        model.surfaces[0], model.surfaces[1],
+        surface::SurfaceSettings{.metric_radius = model.metric_radius, .gap = kSurfaceGap, .budget = kSurfaceBudget});
+    follow.surface->place(model.X_WG_start);
+    follow.surface->prepare();
+    return follow;
+}
+
+void followOnSurface(const TickModel& model, const HandSample& hand, Proxy& proxy, SurfaceFollow& follow,
+                     Pushes& pushes, Report& report) noexcept {
+    // A spring from the old place would throw the hand across the room.
+    if (hand.relocated) follow.surface->place(hand.X_WH);
+    const surface::SurfaceTick& now = follow.surface->advance(hand.X_WH);
+    follow.gap = now.gap;
+    follow.contacts = static_cast<std::uint32_t>(now.active);
+    proxy.X_WG = now.X_WG;
+    proxy.clearance = now.gap;
+    report.iterations += static_cast<std::uint32_t>(now.looks);
+    report.rows_taken = std::max(report.rows_taken, static_cast<std::uint32_t>(now.rows));
+    report.nodes_visited += static_cast<std::uint32_t>(now.work);
+    if (now.suspended) report.status |= kSuspended;
+    if (now.stuck) report.status |= kIterationLimit;
+    noteRows(model, *follow.surface, pushes);
+}
+
+void describeSurface(const TickModel&, const SurfaceFollow& follow, ContactRecord& record) noexcept {
+    record.proxy_depth = 0.0;
+    record.proxy_gap = follow.gap;
+    record.contacts = follow.contacts;
+}
+
+void measureSurfaceDepth(const TickModel&, const HandSample& hand, const SurfaceFollow& follow,
+                         HandDepth& depth) noexcept {
+    depth.hand_depth = follow.surface->handDepth(hand.X_WH);
+}
+
+}  // namespace passung::tick
