@@ -16,9 +16,11 @@
 namespace passung::measures {
 namespace {
 
-constexpr const char* kDepthOfSamples =
-    "; depth is that of the held part's sample points, which lie about contact.spacing_mm apart: an obstacle's edge "
-    "between two of them reaches deeper than it says";
+constexpr const char* kWhatDepthIs =
+    "; with contact.geometry = field depth is that of the held part's sample points, which lie about "
+    "contact.spacing_mm "
+    "apart: an obstacle's edge between two of them reaches deeper than it says; with closed_form it is exact; with "
+    "surface it is 0 at the proxy, and at the hand the largest way from the proxy to the hand along a contact's normal";
 
 double magnitude(const std::array<float, 3>& vector) { return Vec3(vector[0], vector[1], vector[2]).norm(); }
 
@@ -117,16 +119,22 @@ Optional leastProxyGap(const Trial& trial) {
 
 Optional maxExactOverlap(const Trial& trial) {
     Optional most;
-    for (const TickOverlap& tick : trial.context.overlaps) most = std::max(tick.depth, most.value_or(0.0));
+    double bound = 0.0;
+    for (const TickOverlap& tick : trial.context.overlaps) {
+        most = std::max(tick.depth, most.value_or(0.0));
+        bound = std::max(bound, tick.bound);
+    }
+    if (most && bound > *most + kOverlapLeftOpen + 0.01 * *most) return std::nullopt;
     return most;
 }
 
 Optional exactOverlapShare(const Trial& trial) {
     std::int64_t judged = 0, overlapping = 0;
     for (const TickOverlap& tick : trial.context.overlaps) {
-        if (!tick.every_20th) continue;
+        const bool overlaps = tick.depth > kLeastOverlap;
+        if (!tick.every_20th || (!overlaps && tick.bound > kOverlapLeftOpen)) continue;
         ++judged;
-        if (tick.depth > kLeastOverlap) ++overlapping;
+        if (overlaps) ++overlapping;
     }
     if (judged == 0) return std::nullopt;
     return static_cast<double>(overlapping) / static_cast<double>(judged);
@@ -313,31 +321,32 @@ std::vector<Measure> commonMeasures() {
         {{"mean_torque_Nm", "Mean torque", "N m", "mean of |torque| over the contact ticks; empty without contact"},
          meanInContact<torqueOf>},
         {{"peak_torque_Nm", "Peak torque", "N m", "largest |torque| over the trial ticks"}, largest<torqueOf>},
-        {{"mean_hand_depth_m", "Mean depth of sample points at the hand's pose", "m",
-          std::string("mean of hand_depth_m over the contact ticks; empty without contact") + kDepthOfSamples},
+        {{"mean_hand_depth_m", "Mean depth at the hand's pose", "m",
+          std::string("mean of hand_depth_m over the contact ticks; empty without contact") + kWhatDepthIs},
          meanInContact<handDepthOf>},
-        {{"max_hand_depth_m", "Largest depth of sample points at the hand's pose", "m",
-          std::string("largest hand_depth_m over the trial ticks") + kDepthOfSamples},
+        {{"max_hand_depth_m", "Largest depth at the hand's pose", "m",
+          std::string("largest hand_depth_m over the trial ticks") + kWhatDepthIs},
          largest<handDepthOf>},
-        {{"mean_proxy_depth_m", "Mean depth of sample points at the proxy's pose", "m",
-          std::string("mean of proxy_depth_m over the contact ticks; empty without contact") + kDepthOfSamples},
+        {{"mean_proxy_depth_m", "Mean depth at the proxy's pose", "m",
+          std::string("mean of proxy_depth_m over the contact ticks; empty without contact") + kWhatDepthIs},
          meanInContact<proxyDepthOf>},
-        {{"max_proxy_depth_m", "Largest depth of sample points at the proxy's pose", "m",
-          std::string("largest proxy_depth_m over the trial ticks") + kDepthOfSamples},
+        {{"max_proxy_depth_m", "Largest depth at the proxy's pose", "m",
+          std::string("largest proxy_depth_m over the trial ticks") + kWhatDepthIs},
          largest<proxyDepthOf>},
         {{"min_proxy_gap_m", "Least proven gap at the proxy's pose", "m",
           "least proxy_gap_m over the trial ticks; empty where contact.geometry proves no gap (field)"},
          leastProxyGap},
         {{"max_exact_overlap_m", "Largest true overlap of what was shown", "m",
           "largest overlap_m of exact_overlap.csv over the trial's judged ticks: the depth of the deepest point of "
-          "either "
-          "part's surface in the other at the proxy's pose, by exact geometry after the trial, to 2 um; judged are "
-          "every "
+          "either part's surface in the other at the proxy's pose, by exact geometry after the trial; judged are every "
           "20th contact tick (the first, the 21st ...) and the 20 trial ticks of largest proxy_depth_m and of largest "
-          "|force|; empty where none was judged"},
+          "|force|; empty where none was judged, or where bound_m leaves open more than 3 um and a hundredth beyond "
+          "it"},
          maxExactOverlap},
         {{"exact_overlap_share", "Share of contact ticks with a true overlap", "1",
-          "of every 20th contact tick the share with overlap_m of exact_overlap.csv > 1 um; empty without one"},
+          "of every 20th contact tick the share with overlap_m of exact_overlap.csv > 1 um; ticks with less whose "
+          "bound_m "
+          "is above 3 um are left out; empty without one"},
          exactOverlapShare},
         {{"impulse_Ns", "Impulse", "N s",
           "sum over the trial ticks k of |force(k)| x periods(k+1) x 1 ms, 1 ms where tick k+1 was not recorded", 2},

@@ -30,6 +30,8 @@ namespace {
     QT_TRANSLATE_NOOP("measures", "Mean depth at the proxy's pose"),
     QT_TRANSLATE_NOOP("measures", "Largest depth at the proxy's pose"),
     QT_TRANSLATE_NOOP("measures", "Least proven gap at the proxy's pose"),
+    QT_TRANSLATE_NOOP("measures", "Largest true overlap of what was shown"),
+    QT_TRANSLATE_NOOP("measures", "Share of contact ticks with a true overlap"),
     QT_TRANSLATE_NOOP("measures", "Impulse"),
     QT_TRANSLATE_NOOP("measures", "Work of the hand"),
     QT_TRANSLATE_NOOP("measures", "Share of ticks at the force limit"),

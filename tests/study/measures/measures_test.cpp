@@ -201,13 +201,24 @@ TEST(Measures, ExactOverlapsAreTheLargestAndTheShareOfEveryTwentiethAboveAMicrom
                                     .every_20th = true,
                                     .depth = depth,
                                     .bound = depth});
-    context.overlaps.push_back({.tick = 9, .largest_depth = true, .depth = 7e-5, .bound = 8e-5});
+    context.overlaps.push_back({.tick = 9, .largest_depth = true, .depth = 7e-5, .bound = 7.2e-5});
     const auto values = measure(restingTicks(101), context);
     EXPECT_EQ(values.at("max_exact_overlap_m"), 7e-5);
     EXPECT_EQ(values.at("exact_overlap_share"), 0.5);
     const auto none = measure(restingTicks(101), contextUntil(100));
     EXPECT_FALSE(none.at("max_exact_overlap_m")) << "nothing was judged";
     EXPECT_FALSE(none.at("exact_overlap_share"));
+}
+
+TEST(Measures, AnOverlapThatIsNotProvenIsNoneThatWasMeasured) {
+    // Truth: closed form (definition). A search that ended early found nothing, and proves 1 mm only.
+    TrialContext context = contextUntil(100);
+    context.overlaps = {{.tick = 1, .every_20th = true, .depth = 5e-6, .bound = 6e-6},
+                        {.tick = 2, .every_20th = true, .depth = 0.0, .bound = 1e-3},
+                        {.tick = 3, .every_20th = true, .depth = 0.0, .bound = 5e-7}};
+    const auto values = measure(restingTicks(101), context);
+    EXPECT_FALSE(values.at("max_exact_overlap_m"));
+    EXPECT_EQ(values.at("exact_overlap_share"), 0.5) << "of the first and the third";
 }
 
 TEST(Measures, MeansAreEmptyAndSumsZeroWithoutContact) {

@@ -1154,6 +1154,14 @@
         <translation>Kleinster bewiesener Spalt am Proxy</translation>
     </message>
     <message>
+        <source>Largest true overlap of what was shown</source>
+        <translation>Größte wahre Überlappung des Gezeigten</translation>
+    </message>
+    <message>
+        <source>Share of contact ticks with a true overlap</source>
+        <translation>Anteil der Kontakttakte mit wahrer Überlappung</translation>
+    </message>
+    <message>
         <source>Impulse</source>
         <translation>Impuls</translation>
     </message>
