@@ -26,10 +26,11 @@ inline long double volumeOf(const Vec3& a, const Vec3& b, const Vec3& c, const V
     return (b.cast<long double>() - o).cross(c.cast<long double>() - o).dot(d.cast<long double>() - o);
 }
 
-/// True if the segment meets the triangle; within rounding, if in doubt true.
+/// True if the segment passes through the triangle's plane within the triangle; in doubt about the triangle's sides
+/// true. One that lies in the plane, within 1e-14 m or so, does not: how near it is to points and edges then tells.
 inline bool passesThrough(const Vec3& p, const Vec3& q, const Corners3& t) {
     const double longest = std::max({(q - p).norm(), (t[1] - t[0]).norm(), (t[2] - t[0]).norm(), (p - t[0]).norm()});
-    const long double doubt = std::ldexp(static_cast<long double>(longest) * longest * longest, -60);
+    const long double doubt = std::ldexp(static_cast<long double>(longest) * longest * longest, -56);
     const long double from = volumeOf(t[0], t[1], t[2], p), to = volumeOf(t[0], t[1], t[2], q);
     if ((from > doubt && to > doubt) || (from < -doubt && to < -doubt)) return false;
     std::array<long double, 3> turn;
