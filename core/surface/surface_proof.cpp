@@ -43,6 +43,7 @@ bool SurfaceProxy::settle(double way) noexcept {
         if (spent()) return false;
         sort(forest_.takeWaiting(), sleepBeyond(way));
     }
+    settled_ = forest_.due();
     return true;
 }
 

@@ -21,6 +21,7 @@ constexpr double kStraight = 0.95;    // cosine: they face each other
 constexpr int kMostRefined = 8;       // planes in a tick
 constexpr int kMostGhosts = 3;        // rounds of a look that drop some
 constexpr double kTold = 1e-9;        // [m]: welding and rounding, which the told gap leaves out
+constexpr double kTouches = 1.2;      // gaps: a row no farther away holds the pose
 constexpr double kUnlimited = 0.1;    // [m]: the least gap where nothing is near
 constexpr std::size_t kMostWoken = 2500;
 constexpr int kMostIdle = 3;  // ticks of a row that does not hold
@@ -59,7 +60,7 @@ void SurfaceProxy::place(const Pose& X_WG) noexcept {
     near_count_ = row_count_ = 0;
     X_ = X_WG;
     P_ = Placement(X_);
-    travelled_ = last_way_ = 0.0;
+    travelled_ = last_way_ = settled_ = 0.0;
     least_ = 0.0;
     overlaps_ = false;
     X_WH_last_.reset();
@@ -377,11 +378,12 @@ void SurfaceProxy::tell() noexcept {
     }
     least_ = least;
     tick_.X_WG = X_;
-    const double proven = std::min({least, kSeen, forest_.due() - travelled_});
-    tick_.gap = forest_.hasWaiting() ? 0.0 : std::max(0.0, proven - kTold);
+    const double proven = std::min({least, kSeen, settled_ - travelled_});
+    tick_.gap = std::max(0.0, proven - kTold);
     tick_.meets = overlaps_;
     tick_.rows = static_cast<int>(row_count_);
-    for (std::size_t i = 0; i < row_count_; ++i) tick_.active += rows_[i].push > 0.0 ? 1 : 0;
+    for (std::size_t i = 0; i < row_count_; ++i)
+        tick_.active += rows_[i].push > 0.0 && rows_[i].gapAt(P_) <= kTouches * gap_ ? 1 : 0;
 }
 
 double SurfaceProxy::handDepth(const Pose& X_WH) const noexcept {

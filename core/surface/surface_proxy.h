@@ -29,7 +29,7 @@ struct SurfaceTick {
     int looks = 0;
     int rounds = 0;  // motions solved for
     int work = 0;
-    int rows = 0, active = 0;
+    int rows = 0, active = 0;  // conditions, and those that hold the pose
 };
 
 /// Keeps a held part's triangles from ever meeting those of the obstacles while it follows a hand.
@@ -148,7 +148,8 @@ private:
 
     Pose X_;                    // accepted
     Placement P_;               // the same
-    double travelled_ = 0;      // S [m]
+    double travelled_ = 0.0;    // S [m]
+    double settled_ = 0.0;      // keys of all that are not near are no less [m]
     double gap_, least_ = 0.0;  // held; the least proven at X_ [m]
     double last_way_ = 0.0;     // in the last tick [m]
     bool overlaps_ = false;

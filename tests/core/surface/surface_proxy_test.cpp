@@ -26,7 +26,7 @@ double threadMicroseconds() {
 struct Followed {
     int crossings = 0, between = 0;  // poses at which triangles cross
     int too_high = 0, measured = 0,
-        loose = 0;  // gaps told: above the exact one; with a row that holds; and far below it
+        loose = 0;  // gaps told: above the exact one; at rest under a row; and far below it
     int suspended = 0, longest = 0, stuck = 0, meets = 0;
     double grain = 0.0;  // greatest change of the spring's force in a tick [N]
     std::vector<double> times;
@@ -78,7 +78,7 @@ Followed follow(const test::SurfaceCase& scene) {
         if (!full) continue;
         seen.between += crossingsBetween(truth, before, proxy.chain());
         seen.too_high += now.gap > distance;
-        if (now.active == 0) continue;
+        if (now.active == 0 || now.suspended) continue;
         ++seen.measured;
         seen.loose += distance > 1.1 * now.gap + 2e-7;
     }
