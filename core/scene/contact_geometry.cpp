@@ -28,7 +28,8 @@ const char* closedFormProblem(const PartSpec& held, const PartSpec& obstacle, co
 
 /// Why the scene has no contact of surfaces; nothing if it has.
 const char* surfaceProblem(const PartSpec& held, const PartSpec& obstacle, const ContactSpec& contact) {
-    if (contact.method == ContactMethod::Penalty) return "surface needs a god object: the penalty is a sum over sample points";
+    if (contact.method == ContactMethod::Penalty)
+        return "surface needs a god object: the penalty is a sum over sample points";
     if (contact.proxy_filter > 0.0) return "surface needs a proxy without low-pass (contact.proxy_filter_hz)";
     if (rub(held, obstacle)) return "surface needs parts without friction";
     return nullptr;
