@@ -40,7 +40,7 @@ struct ProxyMotion {
     double first_share = 1.0;         // of a motion that is tried first: less where a tick was suspended over it
 };
 
-/// Memory of queries. Handed on, but what is in it is nobody's: each stage finds it in any state.
+/// Memory of queries, handed on. Each stage finds the first two in any state; looks keep in the others what is proven.
 struct QueryMemory {
     static constexpr bool kHandedOn = true;
     contact::QueryWorkspace workspace;
