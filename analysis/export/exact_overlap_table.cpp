@@ -36,7 +36,7 @@ ColumnsOf<OverlapRow> overlapColumns() {
                "largest distance from the other part's surface of a point of one part's surface inside the other, "
                "at the recorded pose proxy_*; by closed forms and triangles, not by what contact is computed from"}},
          {"bound_m",
-          "No point is deeper; more than 2 um above overlap_m where the search ended early",
+          "No point is deeper; more than 2 um and 3 % above overlap_m where the search ended early",
           "number",
           [](const OverlapRow& row) { return row.tick->bound; },
           {.unit = "m"}}});

@@ -84,6 +84,9 @@ struct Direction {
     const OverlapBody* solid;
     const OverlapBody* surface;
     Pose X_SolidSurface, X_WSolid;
+    Mat3 R_SolidSurface = X_SolidSurface.q.toRotationMatrix();  // for many points faster than the quaternion
+
+    Vec3 inSolid(const Vec3& p_Surface) const { return R_SolidSurface * p_Surface + X_SolidSurface.p; }
 };
 
 class Search {
@@ -94,7 +97,7 @@ public:
     Overlap run() {
         for (std::size_t i = 0; i < 2; ++i)
             if (directions_[i].solid->hasInside()) addNode(i == 1, 0);
-        while (!waiting_.empty() && waiting_.top().bound > found_.depth + search_.tolerance &&
+        while (!waiting_.empty() && waiting_.top().bound > (1.0 + search_.share) * found_.depth + search_.tolerance &&
                found_.pieces < search_.most_pieces) {
             const Piece piece = waiting_.top();
             waiting_.pop();
@@ -121,7 +124,7 @@ private:
         }
         for (std::uint32_t i = node.first; i < node.end; ++i) {
             const Corners& t = way.surface->surface().triangles()[i];
-            const Corners placed{way.X_SolidSurface * t[0], way.X_SolidSurface * t[1], way.X_SolidSurface * t[2]};
+            const Corners placed{way.inSolid(t[0]), way.inSolid(t[1]), way.inSolid(t[2])};
             addPolygon(piece.b_in_a, polygonOf(placed));
         }
     }
@@ -129,7 +132,7 @@ private:
     void addNode(bool b_in_a, std::uint32_t index) {
         const Direction& way = of(b_in_a);
         std::array<Vec3, 8> corners = way.surface->surface().nodes()[index].hull;
-        for (Vec3& corner : corners) corner = way.X_SolidSurface * corner;
+        for (Vec3& corner : corners) corner = way.inSolid(corner);
         const Vec3 middle = 0.5 * (corners.front() + corners.back());
         ++found_.pieces;
         const double phi = way.solid->signedDistance(middle), radius = radiusOf(corners, middle);
@@ -146,7 +149,7 @@ private:
     bool isShallow(const Direction& way, std::uint32_t index, const Vec3& middle, double enough) {
         const TriangleBoxes& surface = way.surface->surface();
         placed_.clear();
-        for (const Vec3& p : surface.vertices(surface.nodes()[index])) placed_.push_back(way.X_SolidSurface * p);
+        for (const Vec3& p : surface.vertices(surface.nodes()[index])) placed_.push_back(way.inSolid(p));
         return !placed_.empty() && way.solid->isShallow(placed_, middle, enough);
     }
 

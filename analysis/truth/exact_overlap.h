@@ -28,6 +28,7 @@ struct Overlap {
 /// What a search may leave open.
 struct OverlapEffort {
     double tolerance = 2e-6;  // of the depth [m], > 0
+    double share = 0.0;       // of the depth, besides the tolerance, ≥ 0
     double ignore = 0.0;  // depths up to it need not be told from 0 [m], ≥ 0; to prove that surfaces which lie along
                           // each other do not overlap takes the longer the less it is
     std::size_t most_pieces = 200'000;  // then `bound` is what was proven by then

@@ -124,7 +124,7 @@ Optional maxExactOverlap(const Trial& trial) {
         most = std::max(tick.depth, most.value_or(0.0));
         bound = std::max(bound, tick.bound);
     }
-    if (most && bound > *most + kOverlapLeftOpen + 0.01 * *most) return std::nullopt;
+    if (most && bound > *most + kOverlapLeftOpen + kOverlapShareLeftOpen * *most) return std::nullopt;
     return most;
 }
 
@@ -340,11 +340,10 @@ std::vector<Measure> commonMeasures() {
           "largest overlap_m of exact_overlap.csv over the trial's judged ticks: the depth of the deepest point of "
           "either part's surface in the other at the proxy's pose, by exact geometry after the trial; judged are every "
           "20th contact tick (the first, the 21st ...) and the 20 trial ticks of largest proxy_depth_m and of largest "
-          "|force|; empty where none was judged, or where bound_m leaves open more than 3 um and a hundredth beyond "
-          "it"},
+          "|force|; empty where none was judged, or where bound_m leaves open more than 3 um and 5 % beyond it"},
          maxExactOverlap},
         {{"exact_overlap_share", "Share of contact ticks with a true overlap", "1",
-          "of every 20th contact tick the share with overlap_m of exact_overlap.csv > 1 um; ticks with less whose "
+          "of every 20th contact tick the share with overlap_m of exact_overlap.csv > 2 um; ticks with less whose "
           "bound_m "
           "is above 3 um are left out; empty without one"},
          exactOverlapShare},

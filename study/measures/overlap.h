@@ -14,9 +14,10 @@ inline constexpr std::int64_t kJudgedEvery = 20;
 inline constexpr std::size_t kJudgedLargest = 20;
 /// An overlap of more than this [m] is one for exact_overlap_share: a thousandth of a hair, and ten times what rounded
 /// poses and chords of round faces are off.
-inline constexpr double kLeastOverlap = 1e-6;
+inline constexpr double kLeastOverlap = 2e-6;
 /// What a search that ended as it should leaves open between depth and bound [m], and a little more.
 inline constexpr double kOverlapLeftOpen = 3e-6;
+inline constexpr double kOverlapShareLeftOpen = 0.05;  // of the depth, besides
 
 /// Which trial ticks are judged by exact geometry after the trial, in the order of ticks; their depths are still 0.
 std::vector<TickOverlap> ticksToJudge(std::span<const TickRecord> records, const TrialContext& context);

@@ -4,13 +4,16 @@
 #include <map>
 #include <vector>
 
+#include "study/measures/overlap.h"
+
 namespace passung::run {
 namespace {
 
-constexpr double kTolerance = 2e-6;                // of a depth [m]
-constexpr double kIgnored = 0.5e-6;                // of a depth [m]: half of what counts as an overlap
-constexpr std::size_t kMostPieces = 2'000'000;     // of a trial: less than a second
-constexpr std::size_t kMostPiecesOfTick = 20'000;  // of surfaces
+constexpr double kTolerance = 2e-6;                   // of a depth [m]
+constexpr double kShare = 0.03;                       // of a depth besides
+constexpr double kIgnored = measures::kLeastOverlap;  // of a depth [m]
+constexpr std::size_t kMostPieces = 400'000;          // of a trial: about a tenth of a second
+constexpr std::size_t kMostPiecesOfTick = 20'000;     // of surfaces
 
 /// Which scene rendered each record: the turns as in tick::SceneSequence, from records alone.
 class TurnOf {
@@ -65,9 +68,11 @@ bool ShownOverlap::measure(const BuiltScenes& scenes, std::span<const TickRecord
     std::size_t left = kMostPieces;
     for (measures::TickOverlap* tick : order) {
         const Shown& there = shown.at(tick->tick);
-        const truth::Overlap found = of_scenes[there.scene].at(
-            there.X_WG,
-            {.tolerance = kTolerance, .ignore = kIgnored, .most_pieces = std::min(left, kMostPiecesOfTick)});
+        const truth::Overlap found =
+            of_scenes[there.scene].at(there.X_WG, {.tolerance = kTolerance,
+                                                   .share = kShare,
+                                                   .ignore = kIgnored,
+                                                   .most_pieces = std::min(left, kMostPiecesOfTick)});
         tick->depth = found.depth;
         tick->bound = found.bound;
         left -= std::min(left, found.pieces);

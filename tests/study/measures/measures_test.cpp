@@ -193,10 +193,10 @@ TEST(Measures, EveryTwentiethContactTickAndTheLargestOfDepthAndForceAreJudged) {
     EXPECT_TRUE(ticksToJudge(restingTicks(50), contextUntil(49)).empty());
 }
 
-TEST(Measures, ExactOverlapsAreTheLargestAndTheShareOfEveryTwentiethAboveAMicrometre) {
-    // Truth: closed form (definition). Of every 20th tick two of four overlap by more than 1 um.
+TEST(Measures, ExactOverlapsAreTheLargestAndTheShareOfEveryTwentiethAboveTwoMicrometres) {
+    // Truth: closed form (definition). Of every 20th tick two of four overlap by more than 2 um.
     TrialContext context = contextUntil(100);
-    for (const double depth : {0.0, 1e-6, 1.1e-6, 5e-5})
+    for (const double depth : {0.0, 2e-6, 2.1e-6, 5e-5})
         context.overlaps.push_back({.tick = static_cast<std::int64_t>(context.overlaps.size()),
                                     .every_20th = true,
                                     .depth = depth,
