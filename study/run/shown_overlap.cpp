@@ -12,7 +12,7 @@ namespace {
 constexpr double kTolerance = 2e-6;                   // of a depth [m]
 constexpr double kShare = 0.03;                       // of a depth besides
 constexpr double kIgnored = measures::kLeastOverlap;  // of a depth [m]
-constexpr std::size_t kMostPieces = 400'000;          // of a trial: about a tenth of a second
+constexpr std::size_t kMostPieces = 800'000;          // of a trial: a fifth of a second
 constexpr std::size_t kMostPiecesOfTick = 20'000;     // of surfaces
 
 /// Which scene rendered each record: the turns as in tick::SceneSequence, from records alone.
