@@ -18,7 +18,6 @@ struct ShellInField {
     const field::DistanceField::Placement S;  // the shell in the field
     const Mat3 R_WF;
     const Mat3 R_FS;
-    const Quat q_FS;
     const Vec3 p_FS;
     const Mat3 R_WS;
     const Vec3 p_WS;
@@ -31,7 +30,6 @@ struct ShellInField {
           S(f.place(X_FS)),
           R_WF(X_WF_.q.toRotationMatrix()),
           R_FS(X_FS.q.toRotationMatrix()),
-          q_FS(X_FS.q),
           p_FS(X_FS.p),
           R_WS(X_WS.q.toRotationMatrix()),
           p_WS(X_WS.p) {}
@@ -89,27 +87,26 @@ public:
     bool hasToProve(double above) const noexcept { return plan_.request.prove && above < answer.lower_bound; }
     void prove(double bound) noexcept { answer.lower_bound = std::min(answer.lower_bound, bound); }
 
-    /// A sample that was read: the deepest so far, a contact, both or neither. True if it was a contact.
-    bool take(const Vec3& p_F, const ShellSample& sample, const field::FieldSample& s) noexcept {
+    /// A sample that was read: the deepest so far, a contact, both or neither.
+    void take(const Vec3& p_F, const ShellSample& sample, const field::FieldSample& s) noexcept {
         if (s.phi < answer.phi) {
             answer.found = true;
             deepest_ = sample.point;
             setDeepest(p_F, s);
         }
-        return s.phi < plan_.request.collect_below && collect(sample, s.phi, s.gradient);
+        if (s.phi < plan_.request.collect_below) collect(sample, s.phi, s.gradient);
     }
 
-    /// True if it counts: see QueryRequest::facing.
-    bool collect(const ShellSample& sample, double phi, const Vec3& gradient) noexcept {
+    void collect(const ShellSample& sample, double phi, const Vec3& gradient) noexcept {
         const auto& [position, normal, area, point] = sample;
         const bool of_face = plan_.facing && area > 0.0;
-        if (of_face && !(-normal.dot(place_.R_FS.transpose() * gradient) > kFacing * gradient.norm())) return false;
+        if (of_face && !(-normal.dot(place_.R_FS.transpose() * gradient) > kFacing * gradient.norm())) return;
         ++answer.contacts;
         if (plan_.request.load) {
             const Vec3 f = area * phi * normal;
             force_ += f;
             moment_ += position.cross(f);
-            return true;
+            return;
         }
         ContactPoint contact;
         contact.position = place_.inWorld(position);
@@ -122,7 +119,6 @@ public:
         contact.phi = phi;
         contact.area = area;
         push(contact);
-        return true;
     }
 
     /// The sphere of a node that is not looked into.

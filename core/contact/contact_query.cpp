@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "core/contact/contact_finds.h"
-#include "core/contact/look_memory.h"
 #include "core/contact/surface_descent.h"
 
 namespace passung::contact {
@@ -13,12 +12,8 @@ namespace passung::contact {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t kBatch = 64;                                  // nodes or points that are looked at together
-constexpr std::size_t kKinds = 8 * shell::SphereTree::kLeafGroups;  // of points of a leaf: see kindOf
-/// Of a node's radius: moved less, its certificate is hardly worse than a new bound. That of a leaf's points is better
-/// than the one of its sphere.
-constexpr double kRecent = 0.5, kRecentCentre = 0.05;
-constexpr double kSettled = 48.0;  // groups in contact: from here on their errors level out, and some are taken whole
+constexpr std::size_t kBatch = 64;  // nodes or points that are looked at together
+constexpr double kSettled = 48.0;   // groups in contact: from here on their errors level out, and some are taken whole
 
 /// Places in the shell's frame, one after the other, though they are parted in memory.
 struct Batch {
@@ -107,7 +102,6 @@ struct Traversal {
     const QueryRequest& request;
     const field::DistanceField& field;
     const shell::SphereTree& shell;
-    LookMemory* const memory;
     NodeQueue queue;
     NearGroups groups;
     Batch batch;
@@ -121,56 +115,15 @@ struct Traversal {
           request(p.request),
           field(in.field),
           shell(in.shell),
-          memory(p.request.memory.empty() || p.pointwise() ? nullptr : p.request.memory.data()),
           queue(w.heap_, p.ordered) {}
 
     bool exceedsBudget(const shell::SphereNode& node) const noexcept {
         const int children = node.leaf ? 0 : static_cast<int>(node.count);
-        return request.max_nodes > 0 && finds.answer.nodes_read + children > request.max_nodes;
-    }
-
-    /// As push(), of what the looks so far leave open.
-    void pushKnown(std::uint32_t begin, std::uint32_t count, double above) noexcept {
-        const double limit = finds.pruneAbove();
-        std::array<std::uint32_t, shell::SphereTree::kChildren> open;
-        std::array<float, shell::SphereTree::kChildren> x, y, z, read;
-        std::size_t opened = 0;
-        for (std::uint32_t node = begin; node < begin + count; ++node) {
-            const shell::SphereNode& here = shell.nodes()[node];
-            const Vec3 centre_F = place.inField(here.centre);
-            ++finds.answer.nodes_visited;
-            double known = std::max(above, memory->atCentre(node, centre_F) - here.radius);
-            if (here.leaf) known = std::max(known, memory->ofLeaf(node, centre_F, place.q_FS, here.radius));
-            if (known >= limit) continue;
-            if (memory->sinceCentre(node, centre_F) < kRecentCentre * here.radius ||
-                (here.leaf && memory->sinceLeaf(node, centre_F, place.q_FS, here.radius) < kRecent * here.radius)) {
-                enqueue(node, known);
-                continue;
-            }
-            x[opened] = static_cast<float>(here.centre.x());
-            y[opened] = static_cast<float>(here.centre.y());
-            z[opened] = static_cast<float>(here.centre.z());
-            open[opened++] = node;
-        }
-        if (opened == 0) return;
-        finds.answer.nodes_read += static_cast<int>(opened);
-        field.lowerBounds(place.S, {x.data(), opened}, {y.data(), opened}, {z.data(), opened}, {read.data(), opened});
-        for (std::size_t i = 0; i < opened; ++i) {
-            const shell::SphereNode& here = shell.nodes()[open[i]];
-            memory->noteCentre(open[i], static_cast<double>(read[i]), place.inField(here.centre));
-            const double bound = std::max(above, static_cast<double>(read[i]) - here.radius);
-            if (bound < finds.pruneAbove()) enqueue(open[i], bound);
-        }
-    }
-
-    void enqueue(std::uint32_t node, double bound) noexcept {
-        const bool first = request.max_nodes > 0 && !request.spheres && node < shell.roots().size();
-        queue.push({bound, first ? -kInfinity : bound, node});
+        return request.max_nodes > 0 && finds.answer.nodes_visited + children > request.max_nodes;
     }
 
     /// Some nodes that follow each other; `above`: the bound of their parent holds for their points too.
     void push(std::uint32_t begin, std::uint32_t count, double above) noexcept {
-        if (memory != nullptr) return pushKnown(begin, count, above);
         std::array<float, shell::SphereTree::kChildren> at_centre;
         const auto& centres = shell.centres();
         field.lowerBounds(place.S, centres.x(begin, count), centres.y(begin, count), centres.z(begin, count),
@@ -179,8 +132,9 @@ struct Traversal {
             const std::uint32_t node = begin + i;
             const double bound = std::max(above, static_cast<double>(at_centre[i]) - shell.nodes()[node].radius);
             ++finds.answer.nodes_visited;
-            ++finds.answer.nodes_read;
-            if (bound < finds.pruneAbove()) enqueue(node, bound);
+            if (bound >= finds.pruneAbove()) continue;
+            const bool first = request.max_nodes > 0 && !request.spheres && node < shell.roots().size();
+            queue.push({bound, first ? -kInfinity : bound, node});
         }
     }
 
@@ -202,19 +156,6 @@ struct Traversal {
             return;
         }
         batch.append(shell.positions(), leaf.first, leaf.count);
-        if (memory != nullptr) {
-            const field::DistanceField::KnownRead read =
-                field.sampleKnown(place.S, batch.all(batch.x), batch.all(batch.y), batch.all(batch.z), memory->cells,
-                                  leaf.first, {batch.read.data(), batch.count});
-            finds.answer.points_tested += read.fresh;
-            finds.answer.points_known += static_cast<int>(leaf.count) - read.fresh;
-            const auto node = static_cast<std::uint32_t>(&leaf - shell.nodes().data());
-            const auto least = static_cast<double>(read.least_bound);
-            memory->noteLeaf(node, least, place.inField(leaf.centre), place.q_FS);
-            if (finds.hasToProve(above)) finds.prove(std::max(above, least));
-            takeBatch();
-            return;
-        }
         evaluateBatch();
         if (finds.hasToProve(above)) {
             std::array<float, shell::SphereTree::kLeafPoints> low;
@@ -231,11 +172,6 @@ struct Traversal {
         field.sampleMany(place.S, batch.all(batch.x), batch.all(batch.y), batch.all(batch.z),
                          {batch.read.data(), batch.count});
         finds.answer.points_tested += static_cast<int>(batch.count);
-        takeBatch();
-    }
-
-    /// The points of the batch as they were read.
-    void takeBatch() noexcept {
         const double read_off = plan.gradients ? plan.slack : 0.0;
         // Those that matter, without a jump, first.
         const auto limit =
@@ -250,14 +186,12 @@ struct Traversal {
         }
         // Only what is not surely above another is read exactly.
         const double lowest = std::min(static_cast<double>(least) + 2.0 * plan.slack, finds.answer.phi + plan.slack);
-        if (memory != nullptr && plan.gradients) {
-            takeNearest(near, nears, lowest, request.collect_below + read_off);
-            batch.count = 0;
-            return;
-        }
         for (std::size_t k = 0; k < nears; ++k) {
             const double read = static_cast<double>(batch.read[near[k]]);
-            const ShellSample sample = sampleOf(near[k]);
+            const std::uint32_t point = batch.index[near[k]];
+            const shell::Facing& weight = shell.facings()[point];
+            const ShellSample sample{batch.position(near[k]), weight.normal.cast<double>(),
+                                     static_cast<double>(weight.area), point};
             const bool exactly = plan.gradients || (!request.load && !(sample.area > 0.0));
             if (read < lowest || (exactly && read < request.collect_below + read_off)) {
                 const Vec3 p_F = place.inField(sample.position);
@@ -267,71 +201,6 @@ struct Traversal {
             }
         }
         batch.count = 0;
-    }
-
-    /// Of the points `near` of one leaf the nearest of each octant of the normal, of faces and of edges: what the
-    /// others forbid a small motion, it forbids as well, to within their distance times its turn; a look after the
-    /// motion sees them all. Where it is no contact (QueryRequest::facing), the next one.
-    void takeNearest(std::array<std::uint32_t, kBatch>& near, std::size_t nears, double lowest,
-                     double collect_below) noexcept {
-        std::size_t faces = 0;
-        for (std::size_t k = 0; k < nears; ++k) {
-            if (shell.facings()[batch.index[near[k]]].area > 0.0f) {
-                near[faces++] = near[k];
-                continue;
-            }
-            const double read = static_cast<double>(batch.read[near[k]]);
-            if (!(read < lowest || read < collect_below)) continue;
-            const ShellSample sample = sampleOf(near[k]);
-            const Vec3 p_F = place.inField(sample.position);
-            finds.take(p_F, sample, field.sample(p_F, request.mode));
-        }
-        nears = faces;
-        std::array<std::size_t, kKinds> nearest;
-        for (bool more = true; more;) {
-            more = false;
-            nearest.fill(kBatch);
-            for (std::size_t k = 0; k < nears; ++k) {
-                std::size_t& best = nearest[kindOf(near[k])];
-                if (best == kBatch || batch.read[near[k]] < batch.read[near[best]]) best = k;
-            }
-            std::uint64_t done = 0;
-            for (std::size_t kind = 0; kind < kKinds; ++kind) {
-                if (nearest[kind] == kBatch) continue;
-                const std::uint32_t i = near[nearest[kind]];
-                const double read = static_cast<double>(batch.read[i]);
-                bool taken = true;
-                if (read < lowest || read < collect_below) {
-                    const ShellSample sample = sampleOf(i);
-                    const Vec3 p_F = place.inField(sample.position);
-                    taken = finds.take(p_F, sample, field.sample(p_F, request.mode)) || !plan.facing;
-                }
-                if (taken)
-                    done |= std::uint64_t{1} << kind;
-                else
-                    more = true;
-            }
-            // What is left: of kinds without a contact those that were not tried yet.
-            std::size_t left = 0;
-            for (std::size_t k = 0; k < nears; ++k) {
-                const std::size_t kind = kindOf(near[k]);
-                if ((done >> kind & 1u) == 0 && k != nearest[kind]) near[left++] = near[k];
-            }
-            nears = left;
-            more = more && nears > 0;
-        }
-    }
-
-    /// Octant of a point's normal, and its place in the leaf, whose neighbours follow each other.
-    std::size_t kindOf(std::uint32_t i) const noexcept {
-        const shell::Facing& facing = shell.facings()[batch.index[i]];
-        return (facing.normal.x() < 0.0f ? 1u : 0u) | (facing.normal.y() < 0.0f ? 2u : 0u) |
-               (facing.normal.z() < 0.0f ? 4u : 0u) | i / shell::SphereTree::kGroupPoints * 8u;
-    }
-
-    ShellSample sampleOf(std::uint32_t i) const noexcept {
-        const shell::Facing& weight = shell.facings()[batch.index[i]];
-        return {batch.position(i), weight.normal.cast<double>(), static_cast<double>(weight.area), batch.index[i]};
     }
 
     /// All nodes level by level, and then the leaves that are left: many together are read several times as fast.
@@ -438,7 +307,7 @@ struct Traversal {
     }
 
     void run() noexcept {
-        if (!plan.ordered && !request.prove && memory == nullptr) return sweep();
+        if (!plan.ordered && !request.prove) return sweep();
         push(0, static_cast<std::uint32_t>(shell.roots().size()), -kInfinity);
         while (!queue.empty()) {
             if (request.max_nodes > 0 && exceedsBudget(shell.nodes()[queue.next()])) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "core/base/types.h"
@@ -76,8 +75,6 @@ private:
     friend struct Traversal;
 };
 
-class LookMemory;
-
 /// What a query is asked for.
 struct QueryRequest {
     double collect_below = 0.0;  // points with φ < this go into the manifold [m] (the thesis's p_c)
@@ -94,9 +91,6 @@ struct QueryRequest {
                           // neighbours may then be taken as one
     bool edges = false;   // what lies on edges between their samples is searched too (queryObstacles: edge_search.h)
     bool refine = false;  // the deepest point is searched on the surface between the samples too
-    // What earlier looks of this shell in this field found out (queryObstacles: of each obstacle, for each way); in
-    // FieldMode::Trilinear. Then what cannot be found is not read again. None: nothing is used or kept.
-    std::span<LookMemory> memory = {};
 };
 
 struct QueryAnswer {
@@ -109,9 +103,7 @@ struct QueryAnswer {
     double quality = 1.0;           // share of the shell's area pruned with proof or evaluated point by point
     int nodes_visited = 0;
     int points_tested = 0;
-    int nodes_read = 0;    // of nodes_visited: those that no earlier look (QueryRequest::memory) had decided
-    int points_known = 0;  // read at places that an earlier look had read: beside points_tested, cheap
-    int contacts = 0;      // points with φ < collect_below, those taken as one included
+    int contacts = 0;  // points with φ < collect_below, those taken as one included
     Wrench load;  // if asked for: Σ area · depth · (-normal) over the contacts, about the shell's origin, world axes
     bool budget_reached = false;
     bool manifold_full = false;

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,7 +12,6 @@
 
 #include "core/base/result.h"
 #include "core/base/types.h"
-#include "core/field/cell_memory.h"
 #include "core/field/field_mode.h"
 #include "core/field/instructions.h"
 #include "core/field/surface_block.h"
@@ -107,16 +105,6 @@ public:
     /// instructions; `phi` is as long as the others.
     void sampleMany(const Placement& S, std::span<const float> x, std::span<const float> y, std::span<const float> z,
                     std::span<float> phi, Instructions instructions = bestInstructions()) const noexcept;
-
-    struct KnownRead {
-        float least_bound = std::numeric_limits<float>::infinity();  // of the true φ at all of the points [m]
-        int fresh = 0;                                               // points that the field's memory was read for
-    };
-    /// As sampleMany, the same bits, for points first, first + 1, ... of `memory`: those that have stayed in their cell
-    /// are not read again. rt-safe. @pre `memory` has served no other field.
-    KnownRead sampleKnown(const Placement& S, std::span<const float> x, std::span<const float> y,
-                          std::span<const float> z, CellMemory& memory, std::size_t first, std::span<float> phi,
-                          Instructions instructions = bestInstructions()) const noexcept;
 
     /// lowerBound() at many points of the frame S, less what single precision may add: never above the true φ.
     void lowerBounds(const Placement& S, std::span<const float> x, std::span<const float> y, std::span<const float> z,

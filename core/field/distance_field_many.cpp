@@ -107,21 +107,6 @@ struct DistanceField::Block {
         return {left(0, i), right(0, i), left(1, i), right(1, i), left(2, i), right(2, i), left(3, i), right(3, i)};
     }
 
-    /// edge² Σ_axis u (1 - u), rounded up.
-    PASSUNG_INLINE static float spreadOf(float edge, float x, float y, float z) {
-        return edge * edge * (x * (1.0f - x) + y * (1.0f - y) + z * (1.0f - z)) * kMore;
-    }
-
-    /// As lowerBound() near the surface.
-    PASSUNG_INLINE static float nearBound(float value, float spread, float step, float slack, float most,
-                                          float arithmetic, float within) {
-        const float margin = kStepMargin * step + arithmetic;
-        const float size = value < 0.0f ? -value : value;
-        const float by_slack = slack * std::sqrt(spread);
-        const float most_here = size <= within ? most : by_slack;
-        return value - (by_slack < most_here ? by_slack : most_here) * kMore - margin - size * (1.0f - kLess);
-    }
-
     PASSUNG_INLINE void interpolateAll(float* phi, std::size_t count) const {
         for (std::size_t i = 0; i < count; ++i)
             phi[i] = low[i] + step[i] * between(corners(i), u[0][i], u[1][i], u[2][i]);
@@ -132,10 +117,14 @@ struct DistanceField::Block {
         for (std::size_t i = 0; i < count; ++i) {
             const float x = u[0][i], y = u[1][i], z = u[2][i];
             const std::array<float, 8> c = corners(i);
-            const float spread = spreadOf(edge[i], x, y, z);
+            const float spread = edge[i] * edge[i] * (x * (1.0f - x) + y * (1.0f - y) + z * (1.0f - z)) * kMore;
             const float margin = kStepMargin * step[i] + arithmetic;
             const float value = low[i] + step[i] * between(c, x, y, z);
-            const float near = nearBound(value, spread, step[i], slack[i], most[i], arithmetic, within);
+            const float size = value < 0.0f ? -value : value;
+            const float by_slack = slack[i] * std::sqrt(spread);
+            const float most_here = size <= within ? most[i] : by_slack;
+            const float near =
+                value - (by_slack < most_here ? by_slack : most_here) * kMore - margin - size * (1.0f - kLess);
             const float zero = low[i] + offset - margin;
             std::array<float, 8> square;
             for (std::size_t k = 0; k < 8; ++k) {
@@ -231,142 +220,6 @@ struct DistanceField::Block {
         }
     }
 
-    /// Where the remembered cell of each point still is the one around it: φ, and a lower bound of the true one. The
-    /// others are listed.
-    PASSUNG_INLINE static std::size_t readRemembered(const Placement& S, const float* x, const float* y, const float* z,
-                                                     const CellMemory& memory, std::size_t first, float arithmetic,
-                                                     float within, float* phi, float* bound, std::uint32_t* missing,
-                                                     std::size_t count) {
-        const float *cells = memory.cells.data() + first, *lows = memory.low.data() + first;
-        const float *steps = memory.step.data() + first, *edges = memory.edge.data() + first;
-        const float *slacks = memory.slack.data() + first, *mosts = memory.most.data() + first;
-        const std::int32_t *cell_x = memory.cell[0].data() + first, *cell_y = memory.cell[1].data() + first,
-                           *cell_z = memory.cell[2].data() + first;
-        std::array<const std::uint32_t*, 4> pairs;
-        for (std::size_t k = 0; k < 4; ++k) pairs[k] = memory.pair[k].data() + first;
-        Lane<std::int32_t> known;
-        for (std::size_t i = 0; i < count; ++i) {
-            const double px = static_cast<double>(x[i]), py = static_cast<double>(y[i]), pz = static_cast<double>(z[i]);
-            const double gx = S.turn[0] * px + S.turn[1] * py + S.turn[2] * pz + S.shift[0];
-            const double gy = S.turn[3] * px + S.turn[4] * py + S.turn[5] * pz + S.shift[1];
-            const double gz = S.turn[6] * px + S.turn[7] * py + S.turn[8] * pz + S.shift[2];
-            const int in_x = isWithin(gx, S.low[0], S.high[0]);
-            const int in_y = isWithin(gy, S.low[1], S.high[1]);
-            const int in_z = isWithin(gz, S.low[2], S.high[2]);
-            const double n = static_cast<double>(cells[i]);
-            const double fx = (in_x != 0 ? gx : S.low[0]) * n, fy = (in_y != 0 ? gy : S.low[1]) * n,
-                         fz = (in_z != 0 ? gz : S.low[2]) * n;
-            const auto cx = static_cast<std::int32_t>(fx), cy = static_cast<std::int32_t>(fy),
-                       cz = static_cast<std::int32_t>(fz);
-            known[i] = in_x & in_y & in_z & static_cast<int>(cells[i] != CellMemory::kUnknown) &
-                       static_cast<int>(cx == cell_x[i]) & static_cast<int>(cy == cell_y[i]) &
-                       static_cast<int>(cz == cell_z[i]);
-            const auto u = static_cast<float>(fx - cx), v = static_cast<float>(fy - cy),
-                       w = static_cast<float>(fz - cz);
-            std::array<float, 8> c;
-            for (std::size_t k = 0; k < 4; ++k) {
-                c[2 * k] = static_cast<float>(static_cast<std::int32_t>(pairs[k][i] & 0xffffu));
-                c[2 * k + 1] = static_cast<float>(static_cast<std::int32_t>(pairs[k][i] >> 16));
-            }
-            const float value = lows[i] + steps[i] * between(c, u, v, w);
-            phi[i] = value;
-            bound[i] = nearBound(value, spreadOf(edges[i], u, v, w), steps[i], slacks[i], mosts[i], arithmetic, within);
-        }
-        std::size_t missed = 0;
-        for (std::uint32_t i = 0; i < count; ++i) {
-            missing[missed] = i;
-            missed += known[i] == 0 ? 1 : 0;
-        }
-        return missed;
-    }
-
-    /// Reads the points `which` afresh and remembers their cells.
-    PASSUNG_INLINE static void remember(const DistanceField& field, const Placement& S, const float* x, const float* y,
-                                        const float* z, CellMemory& memory, std::size_t first, float arithmetic,
-                                        float within, float* phi, float* bound, const std::uint32_t* which,
-                                        std::size_t count) {
-        std::array<Lane<float>, 3> at;
-        for (std::size_t i = 0; i < count; ++i) {
-            at[0][i] = x[which[i]];
-            at[1][i] = y[which[i]];
-            at[2][i] = z[which[i]];
-        }
-        Block block;
-        Lane<float> value;
-        block.placeAll(S, at[0].data(), at[1].data(), at[2].data(), count);
-        block.brickAll<true>(field, count);
-        block.cellAll(count);
-        block.pairAll(field.samples_.data(), count);
-        block.interpolateAll(value.data(), count);
-        for (std::size_t i = 0; i < count; ++i) {
-            const std::size_t to = which[i], m = first + to;
-            if (block.outside[i] != 0) {
-                const Vec3 p_F = S.X_FS * Vec3(static_cast<double>(at[0][i]), static_cast<double>(at[1][i]),
-                                               static_cast<double>(at[2][i]));
-                phi[to] = static_cast<float>(field.sample(p_F, FieldMode::Trilinear).phi);
-                bound[to] = below(field.lowerBound(p_F));
-                memory.cells[m] = CellMemory::kUnknown;
-                continue;
-            }
-            const float cells = std::abs(block.head[i].cells);
-            phi[to] = value[i];
-            bound[to] = nearBound(value[i], spreadOf(block.edge[i], block.u[0][i], block.u[1][i], block.u[2][i]),
-                                  block.step[i], block.slack[i], block.most[i], arithmetic, within);
-            memory.cells[m] = cells;
-            memory.low[m] = block.low[i];
-            memory.step[m] = block.step[i];
-            memory.edge[m] = block.edge[i];
-            memory.slack[m] = block.slack[i];
-            memory.most[m] = block.most[i];
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                memory.cell[axis][m] = static_cast<std::int32_t>(block.place[axis][i] * static_cast<double>(cells));
-            for (std::size_t k = 0; k < 4; ++k) memory.pair[k][m] = block.pair[k][i];
-        }
-    }
-
-    PASSUNG_INLINE static KnownRead runKnown(const DistanceField& field, const Placement& S, const float* x,
-                                             const float* y, const float* z, CellMemory& memory, std::size_t first,
-                                             float* phi, std::size_t total) {
-        const auto arithmetic = static_cast<float>(2.0 * field.arithmetic_);
-        const auto within = static_cast<float>(field.bounded_within_);
-        KnownRead read;
-        for (std::size_t start = 0; start < total; start += kBlock) {
-            const std::size_t count = std::min(kBlock, total - start);
-            const float *bx = x + start, *by = y + start, *bz = z + start;
-            Lane<float> bound;
-            Lane<std::uint32_t> missing;
-            const std::size_t missed = readRemembered(S, bx, by, bz, memory, first + start, arithmetic, within,
-                                                      phi + start, bound.data(), missing.data(), count);
-            if (missed > 0)
-                remember(field, S, bx, by, bz, memory, first + start, arithmetic, within, phi + start, bound.data(),
-                         missing.data(), missed);
-            read.fresh += static_cast<int>(missed);
-            for (std::size_t i = 0; i < count; ++i) read.least_bound = std::min(read.least_bound, bound[i]);
-        }
-        return read;
-    }
-
-    using ReadKnown = KnownRead (*)(const DistanceField&, const Placement&, const float*, const float*, const float*,
-                                    CellMemory&, std::size_t, float*, std::size_t);
-    static KnownRead knownBaseline(const DistanceField& f, const Placement& S, const float* x, const float* y,
-                                   const float* z, CellMemory& memory, std::size_t first, float* phi,
-                                   std::size_t count) {
-        return runKnown(f, S, x, y, z, memory, first, phi, count);
-    }
-    PASSUNG_V3 static KnownRead knownV3(const DistanceField& f, const Placement& S, const float* x, const float* y,
-                                        const float* z, CellMemory& memory, std::size_t first, float* phi,
-                                        std::size_t count) {
-        return runKnown(f, S, x, y, z, memory, first, phi, count);
-    }
-    PASSUNG_V4 static KnownRead knownV4(const DistanceField& f, const Placement& S, const float* x, const float* y,
-                                        const float* z, CellMemory& memory, std::size_t first, float* phi,
-                                        std::size_t count) {
-        return runKnown(f, S, x, y, z, memory, first, phi, count);
-    }
-    static ReadKnown knownWith(Instructions instructions) {
-        return instructions == Instructions::V4 ? knownV4 : instructions == Instructions::V3 ? knownV3 : knownBaseline;
-    }
-
     /// The largest float that is not above a number.
     static float below(double value) {
         const auto rounded = static_cast<float>(value);
@@ -434,16 +287,6 @@ void DistanceField::lowerBounds(const Placement& S, std::span<const float> x, st
     for (std::size_t i = 0; i < bound.size(); ++i)
         bound[i] = Block::below(
             lowerBound(S.X_FS * Vec3(static_cast<double>(x[i]), static_cast<double>(y[i]), static_cast<double>(z[i]))));
-}
-
-DistanceField::KnownRead DistanceField::sampleKnown(const Placement& S, std::span<const float> x,
-                                                    std::span<const float> y, std::span<const float> z,
-                                                    CellMemory& memory, std::size_t first, std::span<float> phi,
-                                                    Instructions instructions) const noexcept {
-    KnownRead read =
-        Block::knownWith(instructions)(*this, S, x.data(), y.data(), z.data(), memory, first, phi.data(), phi.size());
-    if (!bound_proven_) read.least_bound = -std::numeric_limits<float>::infinity();
-    return read;
 }
 
 void DistanceField::fillIndex() {

@@ -69,7 +69,7 @@ Step makeStep(const MovingProxy& moving, const motion::Motion& wanted, const mot
     const TickModel& model = moving.model;
     Proxy& proxy = moving.proxy;
     const StepStart here = startOf(proxy);
-    double share = moving.motion.first_share;
+    double share = 1.0;
     for (int tried = 0; tried <= kCuts + kHalvings; ++tried) {
         const double length = longestPath(model, allowed.u);
         if (length < kStill) {
@@ -79,7 +79,6 @@ Step makeStep(const MovingProxy& moving, const motion::Motion& wanted, const mot
         const motion::Motion u = share * (length > bounds.known ? bounds.known / length : 1.0) * allowed.u;
         queryAround(moving, moved(model, here.X_WG, u), bounds.reach, bounds.search);
         if (overlap(proxy) <= bounds.accepted) {
-            moving.motion.first_share = 1.0;
             return {.u = u,
                     .rubbing = allowed.rubbing,
                     .made = true,
@@ -89,10 +88,6 @@ Step makeStep(const MovingProxy& moving, const motion::Motion& wanted, const mot
         moving.report.status |= kStepRejected;
         const Pose X_met = proxy.X_WG;
         takeBack(moving, here);
-        if (suspends(model, moving.report)) {
-            moving.motion.first_share = std::max(0.5 * moving.motion.first_share, kLeastShare);
-            break;
-        }
         if (tried < kCuts) {
             addCuts(moving, X_met, u);
             allowed = allowedMotion(moving, wanted, around);
@@ -123,7 +118,7 @@ void sweepProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pr
         const double path = longestPath(model, wanted);
         const double before = overlap(proxy);
         arrived = path < kStill && before <= margins.relieve;
-        if (arrived || (sweep > 0 && suspends(model, report))) break;
+        if (arrived) break;
         const double accepted = std::max(margins.accept, before + 0.1 * margins.keep);
         if (sweep < kSweeps && proxy.clearance_bound > path) {
             if (!way.goesOn(model, wanted, path)) break;
@@ -165,7 +160,7 @@ void sweepProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pr
         whole = made.whole;
         reach = next_reach;
     }
-    if (!arrived && (report.status & kSuspended) == 0) report.status |= kIterationLimit;
+    if (!arrived) report.status |= kIterationLimit;
     motion.last_motion = unconstrainedMotion(model, X_before, proxy.X_WG).norm();
 }
 

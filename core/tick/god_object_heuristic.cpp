@@ -104,7 +104,7 @@ void moveProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pro
         const motion::Motion wanted = unconstrainedMotion(model, proxy.X_WG, hand.X_WH);
         const double path = longestPath(model, wanted);
         arrived = path < kStill;
-        if (arrived || (sub_step > 0 && suspends(model, report))) break;
+        if (arrived) break;
         report.iterations = static_cast<std::uint32_t>(sub_step + 1);
         const Pose X_here = proxy.X_WG;
         const double accepted = std::max(model.margins.accept, overlap(proxy));
@@ -126,8 +126,7 @@ void moveProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pro
         if (step_path > known) u *= known / step_path;
         if (!way.goesOn(model, u, step_path)) break;
         const double next_reach = std::clamp(kReachGrowth * std::min(step_path, path), reach, kLongestStep * s);
-        bool good = false, whole = step_path <= known && motion.first_share == 1.0;
-        u *= motion.first_share;
+        bool good = false, whole = step_path <= known;
         for (int half = 0; half <= kHalvings; ++half, u *= 0.5) {
             queryAround(moving, moved(model, X_here, u), next_reach, std::max(next_reach, path));
             relieve(moving, next_reach, left);
@@ -136,13 +135,8 @@ void moveProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pro
             if (good) break;
             report.status |= kStepRejected;
             whole = false;
-            if (suspends(model, report)) {
-                motion.first_share = std::max(0.5 * motion.first_share, kLeastShare);
-                break;
-            }
         }
         if (good) {
-            motion.first_share = 1.0;
             way.add(unconstrainedMotion(model, X_here, proxy.X_WG));
             good = way.bentBy(motion::Motion::Zero()) <= model.margins.relieve ||
                    !cutsCorner(moving, X_before, proxy.X_WG, between);
@@ -152,7 +146,7 @@ void moveProxy(const TickModel& model, const HandSample& hand, Proxy& proxy, Pro
         if (!good || whole) break;
         reach = next_reach;
     }
-    if (!arrived && (report.status & kSuspended) == 0) report.status |= kIterationLimit;
+    if (!arrived) report.status |= kIterationLimit;
     motion.last_motion = unconstrainedMotion(model, X_before, proxy.X_WG).norm();
 }
 

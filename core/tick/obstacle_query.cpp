@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "core/contact/edge_search.h"
-#include "core/contact/look_memory.h"
 
 namespace passung::tick {
 
@@ -21,8 +20,6 @@ void merge(const contact::QueryAnswer& answer, contact::QueryAnswer& all) noexce
     all.quality = std::min(all.quality, answer.quality);
     all.nodes_visited += answer.nodes_visited;
     all.points_tested += answer.points_tested;
-    all.nodes_read += answer.nodes_read;
-    all.points_known += answer.points_known;
     all.contacts += answer.contacts;
     all.load.force += answer.load.force;
     all.load.torque += answer.load.torque;
@@ -33,9 +30,7 @@ void merge(const contact::QueryAnswer& answer, contact::QueryAnswer& all) noexce
 /// The points of a shell, and its edges if asked for.
 contact::QueryAnswer query(const field::DistanceField& field, const Pose& X_WF, const shell::SphereTree& shell,
                            const shell::EdgeCurves& edges, const Pose& X_WS, contact::QueryRequest request,
-                           std::size_t way, contact::QueryWorkspace& workspace,
-                           contact::ContactManifold& manifold) noexcept {
-    if (!request.memory.empty()) request.memory = request.memory.subspan(way, 1);
+                           contact::QueryWorkspace& workspace, contact::ContactManifold& manifold) noexcept {
     contact::QueryAnswer answer = contact::queryContacts(field, X_WF, shell, X_WS, request, workspace, manifold);
     if (!request.edges) return answer;
     if (!request.refine) request.search_below = answer.phi;
@@ -47,11 +42,11 @@ contact::QueryAnswer query(const field::DistanceField& field, const Pose& X_WF, 
 /// -g · u, g the gradient of its field: told with normal and gradient reversed such a point is a contact like any
 /// other.
 contact::QueryAnswer queryBack(const TickModel& model, const Obstacle& obstacle, const Pose& X_WS,
-                               const contact::QueryRequest& request, std::size_t way,
-                               contact::QueryWorkspace& workspace, contact::ContactManifold& manifold) noexcept {
+                               const contact::QueryRequest& request, contact::QueryWorkspace& workspace,
+                               contact::ContactManifold& manifold) noexcept {
     const std::size_t first = manifold.size();
-    contact::QueryAnswer answer = query(*model.held_field, X_WS, *obstacle.shell, *obstacle.edges, obstacle.X_WF,
-                                        request, way, workspace, manifold);
+    contact::QueryAnswer answer =
+        query(*model.held_field, X_WS, *obstacle.shell, *obstacle.edges, obstacle.X_WF, request, workspace, manifold);
     manifold.reverseFrom(first);
     answer.load.force = -answer.load.force;
     answer.load.torque = (obstacle.X_WF.p - X_WS.p).cross(answer.load.force) - answer.load.torque;
@@ -82,26 +77,15 @@ contact::QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, co
     };
     for (const Obstacle& obstacle : model.obstacles) {
         const std::size_t first = manifold.size();
-        const std::size_t way = 2 * place;
-        take(
-            query(*obstacle.field, obstacle.X_WF, *model.shell, *model.edges, X_WS, request, way, workspace, manifold));
-        if (obstacle.shell != nullptr) take(queryBack(model, obstacle, X_WS, request, way + 1, workspace, manifold));
+        take(query(*obstacle.field, obstacle.X_WF, *model.shell, *model.edges, X_WS, request, workspace, manifold));
+        if (obstacle.shell != nullptr) take(queryBack(model, obstacle, X_WS, request, workspace, manifold));
         manifold.assign(first, place++);
     }
     return all;
 }
 
-std::uint32_t workOf(const contact::QueryAnswer& answer) noexcept {
-    return static_cast<std::uint32_t>(kNodeWork * (answer.nodes_visited + answer.nodes_read) +
-                                      kPointWork * answer.points_tested + kKnownWork * answer.points_known +
-                                      kContactWork * answer.contacts);
-}
-
 void account(const contact::QueryAnswer& answer, Report& report) noexcept {
     report.nodes_visited += static_cast<std::uint32_t>(answer.nodes_visited);
-    ++report.looks;
-    report.work += workOf(answer);
-    report.points_read += static_cast<std::uint32_t>(answer.points_tested);
     report.quality = std::min(report.quality, answer.quality);
     if (answer.budget_reached) report.status |= kBudgetReached;
     if (answer.manifold_full) report.status |= kContactCap;

@@ -18,10 +18,6 @@ contact::QueryAnswer queryObstacles(const TickModel& model, const Pose& X_WS, co
                                     contact::QueryWorkspace& workspace, contact::ContactManifold& manifold,
                                     std::span<ObstaclePush> pushes = {}) noexcept;
 
-/// What a query took, counted in about nanoseconds of a slow core: the same on every machine. rt-safe.
-std::uint32_t workOf(const contact::QueryAnswer& answer) noexcept;
-inline constexpr int kNodeWork = 8, kPointWork = 30, kKnownWork = 5, kContactWork = 150;
-
 /// Books a query's cost and completeness. rt-safe.
 void account(const contact::QueryAnswer& answer, Report& report) noexcept;
 

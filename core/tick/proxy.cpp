@@ -72,12 +72,6 @@ double longestPath(const TickModel& model, const motion::Motion& u) noexcept {
     return u.head<3>().norm() + u.tail<3>().norm() / model.metric_radius * model.shell->reach();
 }
 
-bool suspends(const TickModel& model, Report& report) noexcept {
-    if (report.work < model.most_work) return false;
-    report.status |= kSuspended;
-    return true;
-}
-
 double overlap(const Proxy& proxy) noexcept { return std::max(0.0, -proxy.clearance); }
 
 bool isInside(const contact::ContactPoint& contact) noexcept { return contact.phi < 0.0 && !(contact.radius > 0.0); }
@@ -89,8 +83,7 @@ void queryAround(const ProxyView& view, const Pose& X_WG, double reach, double s
                                   .search_below = search,
                                   .spheres = true,
                                   .facing = model.contact.two_way,
-                                  .edges = true,
-                                  .memory = memory.around_proxy};
+                                  .edges = true};
     contact::QueryAnswer answer = queryObstacles(model, X_WG, request, memory.workspace, memory.scratch);
     account(answer, report);
     std::swap(proxy.manifold, memory.scratch);
@@ -111,11 +104,8 @@ bool overlapsBetween(const ProxyView& view, const Pose& X_from, const Pose& X_to
                      double accepted) noexcept {
     const Pose X{X_from.q.slerp(share, X_to.q), X_from.p + share * (X_to.p - X_from.p)};
     view.memory.scratch.clear();
-    const contact::QueryRequest request{.collect_below = -1e300,
-                                        .search_below = -accepted,
-                                        .facing = view.model.contact.two_way,
-                                        .edges = true,
-                                        .memory = view.memory.around_proxy};
+    const contact::QueryRequest request{
+        .collect_below = -1e300, .search_below = -accepted, .facing = view.model.contact.two_way, .edges = true};
     const contact::QueryAnswer answer =
         queryObstacles(view.model, X, request, view.memory.workspace, view.memory.scratch);
     account(answer, view.report);
@@ -215,11 +205,9 @@ void describeProxy(const TickModel&, const Proxy& proxy, ContactRecord& record) 
 void measureHandDepth(const TickModel& model, const HandSample& hand, QueryMemory& memory, HandDepth& depth,
                       Report& report) noexcept {
     memory.scratch.clear();
-    const contact::QueryAnswer answer = queryObstacles(
-        model, hand.X_WH, {.collect_below = -1e300, .memory = memory.around_hand}, memory.workspace, memory.scratch);
+    const contact::QueryAnswer answer =
+        queryObstacles(model, hand.X_WH, {.collect_below = -1e300}, memory.workspace, memory.scratch);
     report.nodes_visited += static_cast<std::uint32_t>(answer.nodes_visited);
-    ++report.looks;
-    report.points_read += static_cast<std::uint32_t>(answer.points_tested);
     depth.hand_depth = std::max(0.0, -answer.phi);
 }
 

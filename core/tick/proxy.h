@@ -15,12 +15,6 @@ inline constexpr double kShortestReach = 0.04;  // per cell: what is looked at e
 inline constexpr double kReachGrowth = 2.0;     // over the last motion, so that a start from rest is not held back long
 inline constexpr double kStill = 1e-8;          // [m]: a motion below this is none
 inline constexpr int kHalvings = 4;
-inline constexpr double kLeastShare = 1.0 / 64.0;  // ProxyMotion::first_share
-
-/// True, and it is noted, if the tick has done all the work that it may (workOf, TickModel::most_work). The proxy is
-/// then not moved any more: it stays at the last pose that was accepted, from which the next tick goes on, and the tick
-/// says kSuspended. So a tick takes no more than that and one or two looks. rt-safe.
-bool suspends(const TickModel& model, Report& report) noexcept;
 
 /// `pose` moved by `u`.
 Pose moved(const TickModel& model, const Pose& pose, const motion::Motion& u) noexcept;

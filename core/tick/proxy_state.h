@@ -1,10 +1,8 @@
 #pragma once
 
 #include <array>
-#include <vector>
 
 #include "core/contact/contact_query.h"
-#include "core/contact/look_memory.h"
 #include "core/motion/friction.h"
 
 namespace passung::tick {
@@ -37,16 +35,13 @@ struct ProxyMotion {
     motion::FrictionPatches rubbing;  // of the last motion in contact
     ActivePoints held;                // of the last motion: where the solver of the next one begins
     double last_motion = 0.0;         // of the proxy, in the metric of metric_radius [m]
-    double first_share = 1.0;         // of a motion that is tried first: less where a tick was suspended over it
 };
 
-/// Memory of queries, handed on. Each stage finds the first two in any state; looks keep in the others what is proven.
+/// Memory of queries. Handed on, but what is in it is nobody's: each stage finds it in any state.
 struct QueryMemory {
     static constexpr bool kHandedOn = true;
     contact::QueryWorkspace workspace;
     contact::ContactManifold scratch;
-    /// Of each obstacle, its points in the held part's field after the held part's in its; of methods with a proxy.
-    std::vector<contact::LookMemory> around_proxy, around_hand;
 };
 
 }  // namespace passung::tick

@@ -41,7 +41,7 @@ bool ProxyWay::goesOn(const TickModel& model, const motion::Motion& next, double
 bool cutsCorner(const ProxyView& view, const Pose& X_from, const Pose& X_to, double accepted) noexcept {
     for (int place = 1; place <= kPlaces; ++place) {
         const double share = static_cast<double>(place) / (kPlaces + 1);
-        if (suspends(view.model, view.report) || overlapsBetween(view, X_from, X_to, share, accepted)) return true;
+        if (overlapsBetween(view, X_from, X_to, share, accepted)) return true;
     }
     return false;
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "core/base/types.h"
@@ -59,7 +58,6 @@ struct TickModel {
     double reach = 0.0;          // no point of the held part is farther from its origin [m]
     double metric_radius = 0.0;  // [m]: makes a rotation comparable with a translation (god_object_heuristic.h)
     ProxyMargins margins;
-    std::uint32_t most_work = 250'000;  // of a tick, see suspends() in proxy.h
     scene::Effects effects;
     bool record_hand_depth = true;
     bool display_wrench = true;

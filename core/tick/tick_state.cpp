@@ -22,13 +22,6 @@ void addQueryMemory(const TickModel& model, Proxy& proxy, QueryMemory& memory) {
     proxy.manifold = contact::ContactManifold(capacity);
     memory.scratch = contact::ContactManifold(capacity);
     memory.workspace = contact::QueryWorkspace(nodes);
-    if (!model.hasProxy() || model.contact.method == scene::ContactMethod::Penalty) return;
-    for (const Obstacle& obstacle : model.obstacles) {
-        memory.around_proxy.emplace_back(*model.shell);
-        memory.around_proxy.push_back(obstacle.shell != nullptr ? contact::LookMemory(*obstacle.shell)
-                                                                : contact::LookMemory());
-    }
-    if (model.record_hand_depth) memory.around_hand = memory.around_proxy;
 }
 
 }  // namespace

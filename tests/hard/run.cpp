@@ -59,8 +59,6 @@ Result<Run> runScene(const scene::SceneSpec& spec, const Drive& drive, std::int6
                              .nodes = f.nodes_visited,
                              .rows = f.rows_taken,
                              .turns = f.friction_turns,
-                             .looks = f.looks,
-                             .read = f.points_read,
                              .us = static_cast<float>(us)});
     }
     return run;

@@ -18,7 +18,6 @@ public:
 
     const scene::Scene& scene() const { return scene_; }
     const tick::TickModel& model() const { return model_; }
-    tick::TickModel& model() { return model_; }
     tick::TickState& state() { return state_; }
 
 private:

@@ -9,7 +9,6 @@
 #include <numbers>
 
 #include "core/base/random.h"
-#include "core/contact/look_memory.h"
 #include "core/scene/part.h"
 #include "core/tick/penalty.h"
 
@@ -80,59 +79,6 @@ TEST(ContactQuery, FindsExactlyWhatTestingEveryPointFinds) {
     }
     EXPECT_GT(touching, 100);
     EXPECT_LT(touching, 450);
-}
-
-TEST(ContactQuery, WithMemoryMissesNoTrulyDeepPointAlongAPathAndReadsFewAgain) {
-    // Truth: closed form of the plate at every point of the shell, within the error that the field states there. A peg
-    // slides, turns and rattles in the bore, jumps out of it and back; some looks are from the same pose as the last.
-    const scene::Part plate = build(kPlate), peg = build(kPeg);
-    const auto points = peg.shell->points();
-    contact::QueryWorkspace workspace(peg.shell->nodes().size());
-    contact::ContactManifold manifold(points.size());
-    std::vector<contact::LookMemory> memory(1, contact::LookMemory(*peg.shell));
-    Random random(7);
-    Pose X_FS{Quat::Identity(), Vec3(0, 0, -0.012)};
-    const double reach = 0.15e-3;
-    int read = 0, looks = 0, touching = 0;
-    for (int i = 0; i < 400; ++i) {
-        if (i % 100 == 99) X_FS = somewhere(0.04, random);
-        if (i % 100 == 0) X_FS = {Quat::Identity(), Vec3(0, 0, -0.012)};
-        const Vec3 turn = 1e-4 * Vec3(random.normal(), random.normal(), random.normal());
-        if (i % 5 != 0)
-            X_FS = {(rotationFromVector(turn) * X_FS.q).normalized(),
-                    X_FS.p + 2e-5 * Vec3(random.normal(), random.normal(), random.normal())};
-        const bool survey = i % 2 == 0;
-        contact::QueryRequest request{.collect_below = survey ? reach : -1e300,
-                                      .search_below = survey ? reach : 0.0,
-                                      .prove = i % 7 == 0,
-                                      .memory = memory};
-        manifold.clear();
-        const auto answer =
-            contact::queryContacts(*plate.field, Pose{}, *peg.shell, X_FS, request, workspace, manifold);
-        double deepest = 1.0;
-        for (const auto& point : points) {
-            const Vec3 p = X_FS * point.position;
-            const double truth = shape::signedDistance(kPlate, p);
-            const double error = plate.field->errorBound(p, field::FieldMode::Trilinear);
-            deepest = std::min(deepest, truth);
-            ASSERT_LE(answer.phi, std::max(truth, std::min(truth, request.search_below)) + error + 1e-9) << i;
-            if (!survey || !(truth + error < reach)) continue;
-            // A contact at most as far away lies beside it: a leaf of 32 points of 1 mm.
-            const bool covered = std::any_of(manifold.begin(), manifold.end(), [&](const contact::ContactPoint& c) {
-                return c.phi <= truth + error + 1e-9 && (c.position - p).norm() < 0.01;
-            });
-            ASSERT_TRUE(covered) << i << ": " << point.position.transpose();
-        }
-        if (request.prove) {
-            ASSERT_LE(answer.lower_bound, deepest + 1e-9);
-        }
-        if (i % 100 == 99 || i % 100 == 0) continue;
-        ++looks;
-        read += answer.points_tested;
-        touching += deepest < 0.0 ? 1 : 0;
-    }
-    EXPECT_GT(touching, 50);
-    EXPECT_LT(read, looks * static_cast<int>(points.size()) / 5);
 }
 
 TEST(ContactQuery, ManifoldHoldsEveryPointThatIsTrulyNearOnceAndNoneThatIsFar) {

@@ -102,44 +102,6 @@ TEST(SampleMany, GivesTheSameBitsWithAllInstructionsAndInAnyGrouping) {
     }
 }
 
-TEST(SampleKnown, ReadsTheSameBitsAlongAPathAndBoundsTheDistance) {
-    // Truth: invariant (sampleMany, whose truth is sample()); closed form of the shapes for the bound. A path of small
-    // and large steps, so that most points stay in their cell, some leave it and all leave the field.
-    const std::vector<shape::Shape> shapes{
-        shape::Sphere{0.03}, shape::BorePlate{0.06, 0.06, 0.03, 0.0202, 0.025, 0.001}, shape::Sheet{0.05, 0.03}};
-    std::size_t k = 0;
-    for (const DistanceField& field : someFields()) {
-        const Points points = someAround(field);
-        const std::size_t count = points.x.size();
-        for (const Instructions instructions : {Instructions::Baseline, Instructions::V3, Instructions::V4}) {
-            if (instructions > bestInstructions()) continue;
-            CellMemory memory(count + 5);
-            Pose pose = kPose;
-            int fresh_when_still = 0, fresh = 0;
-            for (int step = 0; step < 60; ++step) {
-                const auto S = field.place(pose);
-                std::vector<float> known(count), plain(count);
-                const auto read = field.sampleKnown(S, points.x, points.y, points.z, memory, 5, known, instructions);
-                field.sampleMany(S, points.x, points.y, points.z, plain);
-                ASSERT_EQ(std::memcmp(known.data(), plain.data(), count * sizeof(float)), 0) << step;
-                for (std::size_t i = 0; i < count; i += 7) {
-                    if (!std::isfinite(points.x[i]) || !std::isfinite(points.y[i])) continue;
-                    const double truth = shape::signedDistance(shapes[k], pose * points.at(i)) - field.sheetOffset();
-                    ASSERT_LE(static_cast<double>(read.least_bound), truth + 1e-12) << step;
-                }
-                (step % 10 == 5 ? fresh_when_still : fresh) += read.fresh;
-                if (step % 10 == 4) continue;  // the next look is from the same pose
-                const double way = step == 40 ? 0.3 : step == 41 ? -0.3 : 20e-6;
-                pose = {(rotationFromVector(Vec3(2e-4, -1e-4, 1e-4)) * pose.q).normalized(),
-                        pose.p + Vec3(way, way, 0)};
-            }
-            EXPECT_LT(fresh_when_still, static_cast<int>(6 * count));
-            EXPECT_GT(fresh, static_cast<int>(count));
-        }
-        ++k;
-    }
-}
-
 TEST(LowerBounds, AreNeverAboveTheDistanceAndHardlyBelowTheOneOfEachPoint) {
     // Truth: closed form; lowerBound() of each point.
     std::vector<shape::Shape> shapes{shape::Sphere{0.03}, shape::BorePlate{0.06, 0.06, 0.03, 0.0202, 0.025, 0.001},

@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "core/base/random.h"
-#include "core/tick/god_object_heuristic.h"
 #include "core/tick/proxy.h"
 #include "tests/support/scenes.h"
 
@@ -51,52 +50,6 @@ tick::TickOutput drive(test::Bench& bench, const Room& room, const Vec3& from, c
     tick::TickOutput out;
     for (int i = 1; i <= ticks; ++i) out = bench.step(room.world(from + (to - from) * i / ticks));
     return out;
-}
-
-TEST(GodObject, GoesOnInTheNextTickWhereItsWorkIsCapped) {
-    // Truth: closed form. A ball pressed into a corner, with so little work allowed that every tick ends after one
-    // look: it never is in overlap, says that it is suspended, and comes to the same place as soon as the hand rests.
-    constexpr double R = 0.005;
-    for (const ContactMethod method : {ContactMethod::GodObject, ContactMethod::GodObjectHeuristic}) {
-        Room room(shape::Sphere{2 * R}, {0.012, 0.012, 0.012}, Quat::Identity());
-        room.spec.contact.method = method;
-        room.add(shape::Box{0.02, 0.06, 0.06}, {-0.01, 0, 0.01});
-        room.add(shape::Box{0.06, 0.02, 0.06}, {0, -0.01, 0.01});
-        test::Bench bench(room.spec);
-        bench.model().most_work = 1;
-        const Vec3 start(0.012, 0.012, 0.012), hand(-0.002, 0.001, -0.003);
-        int suspended = 0;
-        for (int i = 1; i <= 1100; ++i) {
-            const auto out = bench.step(room.world(start + (hand - start) * std::min(1.0, i / 10.0)));
-            suspended += (out.frame.status & kSuspended) != 0 ? 1 : 0;
-            ASSERT_GT(out.X_WG.p.minCoeff(), R - tick::kAccept * kCell - kQuantum) << i;
-        }
-        EXPECT_GE(suspended, 10);  // the hand comes in ten ticks, each of which has room for one step of half a cell
-        const auto out = bench.step(room.world(hand));
-        EXPECT_LT((out.X_WG.p - hand.cwiseMax(R)).cwiseAbs().maxCoeff(), kOverlap + tick::kKeep * kCell + 25e-6);
-    }
-}
-
-TEST(GodObject, WithABudgetComesToTheForceOfAnUnlimitedOneWhenTheHandRests) {
-    // Truth: closed form. A box of 10 mm lies on a floor; pressed by 2 mm the spring's force is K · 2 mm. While the
-    // hand moves, and unread parts hold the box, the force is no more than the stiffness times the way that it lags
-    // behind.
-    for (const ContactMethod method : {ContactMethod::GodObject, ContactMethod::GodObjectHeuristic})
-        for (const int budget : {1000, 300, 100}) {
-            Room room(shape::Box{0.01, 0.01, 0.01}, {0.003, 0.002, 0.008}, Quat::Identity());
-            room.spec.contact.method = method;
-            room.spec.contact.spacing = 0.2e-3;
-            room.spec.contact.budget_nodes = budget;
-            test::Bench bench(room.spec);
-            tick::TickOutput out;
-            for (int i = 1; i <= 1100; ++i) {
-                const double down = 0.005 * std::min(1.0, i / 100.0);
-                out = bench.step(room.world({0.003 + 0.2 * down, 0.002, 0.008 - down}));
-                ASSERT_GT(out.X_WG.p.z(), 0.005 - tick::kAccept * kCell - kQuantum) << budget << " " << i;
-            }
-            EXPECT_NEAR(out.frame.F_H_W.force.z(), 2.0, 0.02) << budget;
-            EXPECT_LT(out.frame.F_H_W.force.head<2>().norm(), 0.02) << budget;
-        }
 }
 
 TEST(GodObject, IsTheHandsProjectionOntoAPlaneAnEdgeAndACorner) {
