@@ -52,8 +52,8 @@ Table makeExactOverlap(const StudyData& study) {
     return makeTable(
         "exact_overlap.csv",
         "One row per attempt and tick that was judged after the trial: how deep the held part, as it was "
-        "shown, and the obstacles truly reached into each other. What the record says of depth at the same "
-        "tick, proxy_depth_m of samples, is that of sample points.",
+        "shown, and the obstacles truly reached into each other. The record's proxy_depth_m of the same tick "
+        "is that of sample points.",
         overlapColumns(), rows);
 }
 

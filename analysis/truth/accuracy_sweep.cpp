@@ -47,10 +47,11 @@ struct PoseReading {
     Wrench wrench;
 };
 
-/// A scene of FIELD at the origin and SHELL in the hand.
+/// A scene of FIELD at the origin and SHELL in the hand. Its contact is that of fields, whose settings are measured.
 scene::Scene sceneOf(const scene::ContactSpec& contact, const SharedPart& field, const SharedPart& shell) {
     scene::Scene scene;
     scene.spec.contact = contact;
+    scene.spec.contact.geometry = scene::Geometry::Field;
     scene.spec.parts.resize(2);
     scene.spec.parts[1].held = true;
     scene.parts = {field, shell};

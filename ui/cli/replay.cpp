@@ -93,11 +93,6 @@ private:
         };
         for (const measures::Value& value : again->measures) {
             const auto found = attempt.measures.find(value.name);
-            const auto& undefined = attempt.undefined;
-            // A measure that there was not yet when the attempt was recorded.
-            if (found == attempt.measures.end() &&
-                std::find(undefined.begin(), undefined.end(), value.name) == undefined.end())
-                continue;
             const auto stored = found == attempt.measures.end() ? std::nullopt : std::optional(found->second);
             const bool same = stored && value.value
                                   ? std::bit_cast<std::uint64_t>(*stored) == std::bit_cast<std::uint64_t>(*value.value)

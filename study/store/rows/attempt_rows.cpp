@@ -96,14 +96,10 @@ const Selection<measures::CueSettings>& cueColumns() {
 
 /// Adds what other tables hold of the attempt.
 void readParts(const Database& database, AttemptRow& attempt) {
-    Statement values = database.prepare("SELECT measure, value_num FROM attempt_measure WHERE attempt_id=?");
+    Statement values =
+        database.prepare("SELECT measure, value_num FROM attempt_measure WHERE attempt_id=? AND value_num IS NOT NULL");
     values.bind(attempt.attempt_id);
-    while (values.step()) {
-        if (values.isNull(1))
-            attempt.undefined.push_back(values.text(0));
-        else
-            attempt.measures.emplace(values.text(0), values.real(1));
-    }
+    while (values.step()) attempt.measures.emplace(values.text(0), values.real(1));
     attempt.overlaps = readExactOverlaps(database, attempt.attempt_id);
     attempt.contact_energy = readContactEnergy(database, attempt.attempt_id);
     attempt.delivered = readDelivery(database, attempt.attempt_id);

@@ -342,7 +342,7 @@ TEST_F(Export, EveryColumnOfEveryTableIsInTheCodebook) {
         EXPECT_EQ(described[file], fake::readCsv(bytes).header) << file;
         ++tables;
     }
-    EXPECT_EQ(tables, 11);
+    EXPECT_EQ(tables, 12);
     EXPECT_TRUE(described.count("samples/*.csv.gz"));
     const store::Database sqlite(folder_ / "json.db", store::OpenMode::Create);
     store::Statement valid = sqlite.prepare("SELECT json_valid(?)");

@@ -74,7 +74,9 @@ TEST(Messages, SayWhichOfCellAndToleranceWins) {
 
 TEST(Messages, ALabelOfALevelStaysAsShortAsItWas) {
     // Truth: regression: labels are parts of orders and columns; only messages tell 1.0 from 1.
-    const auto plan = read("[[factor]]\nname = \"spacing\"\nkey = \"contact.spacing_mm\"\nlevels = [1.0, 0.5]\n");
+    const auto plan = read(
+        "[scene.contact]\ngeometry = \"field\"\n"
+        "[[factor]]\nname = \"spacing\"\nkey = \"contact.spacing_mm\"\nlevels = [1.0, 0.5]\n");
     ASSERT_TRUE(plan) << faultOf(plan);
     EXPECT_EQ(plan->conditions[0].name, "1");
     EXPECT_EQ(plan->conditions[1].name, "0.5");

@@ -36,6 +36,8 @@ const std::string kTask = R"([task]
 type = "peg_in_hole"
 target = "plate"
 )";
+// Points have a spacing on fields alone.
+const std::string kOnFields = "[scene.contact]\ngeometry = \"field\"\n";
 const std::string kFactors = R"([[factor]]
 name = "method"
 key = "contact.method"
@@ -403,7 +405,7 @@ TEST(ProtocolReader, HoldsItsSceneItself) {
 TEST(ProtocolReader, RefusesConditionsThatAreTheSame) {
     // Truth: closed form: 1 and 1.0 are one number, and a part's name is nothing that can be felt.
     const auto with = [](const std::string& factor) {
-        return errorsOf(kHead + kScene + kTask + kFactors + "[[factor]]\n" + factor + kBlock);
+        return errorsOf(kHead + kScene + kTask + kFactors + "[[factor]]\n" + factor + kBlock + kOnFields);
     };
     EXPECT_EQ(with("name = \"s\"\nkey = \"contact.spacing_mm\"\nlevels = [1, { label = \"one\", value = 1.0 }]\n"),
               "p.toml:28:1: error: factor.s: conditions \"penalty/1000/1\" and \"penalty/1000/one\" are the same in "
@@ -425,7 +427,7 @@ TEST(ProtocolReader, RefusesNamesThatExportsCouldNotTellApart) {
     const auto with = [](const std::string& name, const std::string& level) {
         return errorsOf(kHead + kScene + kTask + "[[factor]]\nname = \"" + name +
                         "\"\nkey = \"contact.spacing_mm\"\nlevels = [1, { label = \"" + level + "\", value = 2 }]\n" +
-                        kBlock);
+                        kBlock + kOnFields);
     };
     for (const std::string name : {"n_trials", "n_success", "success_share", "dropped_samples", "n_ticks"})
         EXPECT_EQ(with(name, "x"), "p.toml:20:8: error: factor." + name + ".name: \"" + name +

@@ -9,6 +9,7 @@
 
 #include "core/base/random.h"
 #include "study/store/read/store_reader.h"
+#include "study/store/schema/sqlite.h"
 #include "study/store/write/store.h"
 #include "tests/support/temp_folder.h"
 
@@ -201,6 +202,18 @@ inline Result<Done> writeAttempt(store::SessionWriter& writer, std::int64_t tria
     }
     writer.appendEvent({*id, trial_index * 10'000'000'000, "session", "started", "{}"});
     return writer.finishAttempt(*id, attemptEnd(trial_index, ticks, timing_measured));
+}
+
+/// Takes from a database what later revisions added, as a program before there were hashes left it.
+inline void makeOlderThanHashes(const std::string& path) {
+    store::Database(path, store::OpenMode::ReadWrite)
+        .execute(
+            "DROP TABLE exact_overlap; ALTER TABLE timing DROP COLUMN processor_mean_us; ALTER TABLE timing DROP "
+            "COLUMN "
+            "processor_p99_us; ALTER TABLE timing DROP COLUMN processor_p999_us; ALTER TABLE timing DROP COLUMN "
+            "processor_max_us; DROP TABLE session_hash; DROP TABLE later_change; DROP TABLE row_hash; ALTER TABLE "
+            "stream "
+            "DROP COLUMN numerics; DELETE FROM schema_revision WHERE revision>=15");
 }
 
 }  // namespace passung::fake

@@ -184,7 +184,7 @@ TEST_F(ExitCode, AUnitSlipIsRefusedBeforeAnythingIsBuilt) {
     EXPECT_EQ(query.err,
               "tetra.stl: error: part tetra.stl: points 1 mm apart on a part of 3e+04 x 3e+04 x 3e+04 mm are about "
               "2.1e+09, more than 2e+06: check its unit, or choose a spacing of at least 32.8 mm\n");
-    std::string slip = smallStudy();
+    std::string slip = onFields(smallStudy());
     slip.replace(slip.find("unit = \"mm\""), 11, "unit = \"cm\"");
     slip.replace(slip.find("spacing_mm = 3.0"), 16, "spacing_mm = 0.2");
     slip.replace(slip.find("position = [4, 0, 8]"), 20, "position = [4, 0, 9]");

@@ -27,7 +27,7 @@ std::string smallStudyWith(const std::string& factor) {
 TEST(Explain, GivesConditionsOfAnotherGeometryOrResolutionATableOfTheirOwn) {
     // Truth: invariant (what a stage costs depends on cells, points and clearance; not on stiffness)
     const TempFolder folder;
-    writeText(folder / "study.toml", smallStudyWith(R"([[factor]]
+    writeText(folder / "study.toml", onFields(smallStudyWith(R"([[factor]]
 name = "place"
 levels = [
   { label = "wide", set = { "contact.cell_mm" = 1.0 } },
@@ -39,7 +39,7 @@ name = "stiffness"
 key = "contact.stiffness_N_per_m"
 levels = [500, 1000]
 
-)"));
+)")));
     const Ended ended = runProgram(folder.path(), {"explain", "study.toml"});
     ASSERT_EQ(ended.exit_code, 0) << ended.err;
     EXPECT_EQ(groupsOf(ended.out),

@@ -5,11 +5,23 @@
 #include "tests/analysis/export/csv_reader.h"
 #include "tests/hard/case.h"
 #include "tests/ui/cli/program.h"
+#include "tests/ui/cli/small_study.h"
 
 namespace passung::test {
 namespace {
 
 constexpr double kRounding = 1e-9;  // of a path with rotations, and what a spring makes of it
+
+/// Writes the scene file of a hard case, with contact of fields as the cases have it, beside the meshes that it names.
+std::string writeOnFields(const TempFolder& folder, const std::string& scene) {
+    const std::filesystem::path path = hard::hardScenePath(scene);
+    for (const auto& file : std::filesystem::directory_iterator(path.parent_path()))
+        if (file.path().extension() == ".off")
+            std::filesystem::copy_file(file, folder / file.path().filename().string(),
+                                       std::filesystem::copy_options::overwrite_existing);
+    writeText(folder / "scene.toml", onFields(readText(path.string())));
+    return "scene.toml";
+}
 
 TEST(HardSimulate, TheProgramGivesWhatTheHardCasesJudge) {
     // Truth: invariant. The same scene file and path through `passung simulate`, read back exactly but for quaternions,
@@ -24,7 +36,7 @@ TEST(HardSimulate, TheProgramGivesWhatTheHardCasesJudge) {
         writeText(folder / "path.csv", hard::trajectoryCsv(*run));
         const std::string out = std::string(name) + ".csv";
         const Ended ended = runProgram(
-            folder.path(), {"simulate", hard::hardScenePath(some.scene), "--trajectory", "path.csv", "--out", out});
+            folder.path(), {"simulate", writeOnFields(folder, some.scene), "--trajectory", "path.csv", "--out", out});
         ASSERT_EQ(ended.exit_code, 0) << ended.err;
         const fake::CsvFile t = fake::readCsv(readText(folder / out));
         ASSERT_EQ(t.rows.size(), run->ticks.size());
@@ -54,7 +66,7 @@ TEST(HardSimulate, ThePressOfABallIsTheSpringOfItsDepth) {
     ASSERT_TRUE(run);
     writeText(folder / "path.csv", hard::trajectoryCsv(*run));
     const Ended ended = runProgram(
-        folder.path(), {"simulate", hard::hardScenePath(some.scene), "--trajectory", "path.csv", "--out", "out.csv"});
+        folder.path(), {"simulate", writeOnFields(folder, some.scene), "--trajectory", "path.csv", "--out", "out.csv"});
     ASSERT_EQ(ended.exit_code, 0) << ended.err;
     const fake::CsvFile t = fake::readCsv(readText(folder / "out.csv"));
     int pressed = 0;

@@ -5,6 +5,7 @@
 #include "core/base/tick_record.h"
 #include "tests/analysis/export/csv_reader.h"
 #include "tests/ui/cli/program.h"
+#include "tests/ui/cli/small_study.h"
 
 namespace passung::test {
 namespace {
@@ -169,7 +170,7 @@ TEST_F(Simulate, TheSceneLimitsTheForce) {
 
 TEST_F(Simulate, ASheetThatItsCellsLoseIsRefusedByEachCommandThatRunsTheScene) {
     // Truth: closed form: half a millimetre lies within the diagonal of a cell of 1 mm; nothing is written.
-    std::string scene = pressScene("god_object");
+    std::string scene = onFields(pressScene("god_object"));
     const std::string thick = "height = 30 }\npose = { position = [0, 0, -15] }";
     const std::size_t at = scene.find(thick);
     ASSERT_NE(at, std::string::npos);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <stdexcept>
 #include <string>
 
 namespace passung::test {
@@ -65,6 +66,14 @@ inline std::string fairStudy() {
     std::string text = smallStudy();
     const std::string hopeless = "\"task.timeout_s\" = 0.4";
     return text.replace(text.find(hopeless), hopeless.size(), "\"task.timeout_s\" = 20");
+}
+
+/// `text` of a scene or study with contact of fields, whatever its parts have. Throws if it has no table of contact.
+inline std::string onFields(std::string text) {
+    const std::string table = "contact]\n";
+    const std::size_t at = text.find(table);
+    if (at == std::string::npos) throw std::invalid_argument("no table of contact");
+    return text.insert(at + table.size(), "geometry = \"field\"\n");
 }
 
 }  // namespace passung::test

@@ -36,8 +36,8 @@ TEST(Stations, RunApartAndAreMergedIntoOneDatabase) {
     EXPECT_EQ(runProgram(folder.path(), {"replay", "ALL.db"}).exit_code, 0);
 }
 
-TEST(Stations, AChangedVersionCountsItsPlacesApartAndTheListSaysSo) {
-    // Truth: invariant: two people at place 1.1, of different protocols.
+TEST(Stations, AChangedVersionCountsItsSlotsApartAndTheListSaysSo) {
+    // Truth: invariant: two people in slot 1.1, of different protocols.
     const TempFolder folder;
     std::string study = smallStudy();
     writeText(folder / "study.toml", study);
@@ -50,7 +50,7 @@ TEST(Stations, AChangedVersionCountsItsPlacesApartAndTheListSaysSo) {
     const std::string list = runProgram(folder.path(), {"participant", "list", "s.db"}).out;
     EXPECT_NE(list.find("S001         simulated  complete     1.1 1.0 "), std::string::npos) << list;
     EXPECT_NE(list.find("S002         simulated  complete     1.1 1.1 "), std::string::npos) << list;
-    EXPECT_NE(list.find("warning: versions 1.0, 1.1 of the protocol count their places apart"), std::string::npos)
+    EXPECT_NE(list.find("warning: versions 1.0, 1.1 of the protocol count their slots apart"), std::string::npos)
         << list;
 }
 

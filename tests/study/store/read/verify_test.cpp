@@ -183,9 +183,7 @@ TEST_F(Verify, DamageStaysDamageWhateverIsWrittenAfterIt) {
 
 TEST_F(Verify, AnUpgradedDatabaseIsHashedFromThenOn) {
     // Truth: invariant: rows of before are found changed; until it is opened for writing they are said to have no hash.
-    change(
-        "DROP TABLE session_hash; DROP TABLE later_change; DROP TABLE row_hash; ALTER TABLE stream DROP COLUMN "
-        "numerics; DELETE FROM schema_revision WHERE revision>=15");
+    fake::makeOlderThanHashes(path_);
     EXPECT_EQ(require(verifyDatabase(path_)).not_hashed.front(), "the study's own rows");
     fake::openStore(path_);
     for (const std::string& line : require(verifyDatabase(path_)).not_hashed)

@@ -55,11 +55,7 @@ protected:
     }
     void change(const std::string& sql) const { Database(path_, OpenMode::ReadWrite).execute(sql); }
     /// As a program before there were hashes left it.
-    void makeOlder() const {
-        change(
-            "DROP TABLE session_hash; DROP TABLE later_change; DROP TABLE row_hash; ALTER TABLE stream DROP COLUMN "
-            "numerics; DELETE FROM schema_revision WHERE revision>=15");
-    }
+    void makeOlder() const { fake::makeOlderThanHashes(path_); }
     RestoreReport restore() const { return require(restoreDatabase(path_, backup_, fake::options())); }
     std::int64_t sessionsOf(const std::string& code) const {
         return Database(path_, OpenMode::ReadOnly)
