@@ -230,7 +230,9 @@ TEST_F(Pages, ASessionThatGoesOnIsDrawnAsItBegan) {
     waitFor([&] { return run().view().may(session::CommandKind::Pause); });
     ASSERT_TRUE(run().view().quality);
     EXPECT_EQ(run().view().quality->quality, found.quality);
-    const QQuickItem* scene = item(app_->participant(), "scene");
+    const QQuickItem* scene = nullptr;
+    waitFor([&] { return (scene = item(app_->participant(), "scene")) != nullptr; });
+    ASSERT_TRUE(scene) << "the participant's window shows no scene";
     EXPECT_EQ(scene->property("samples").toInt(), found.quality.samples);
     EXPECT_EQ(store::Database(database(), store::OpenMode::ReadOnly)
                   .integer("SELECT count(*) FROM event WHERE event='picture_quality' AND source='window'"),
