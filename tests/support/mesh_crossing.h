@@ -60,6 +60,20 @@ inline bool liesBeyond(const Corners3& t, const Corners3& plane, double limit) {
     return far > 0.0 && (side.minCoeff() > far || side.maxCoeff() < -far);
 }
 
+/// True if a direction across an edge of each shows that they are farther apart than `limit`; rounding as above.
+inline bool liesAside(const Corners3& a, const Corners3& b, double limit) {
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) {
+            const Vec3 axis = (a[(i + 1) % 3] - a[i]).cross(b[(j + 1) % 3] - b[j]);
+            const double far = limit * axis.norm() * (1.0 + 1e-6);
+            const Vec3 first(axis.dot(a[0] - b[0]), axis.dot(a[1] - b[0]), axis.dot(a[2] - b[0]));
+            const Vec3 second(0.0, axis.dot(b[1] - b[0]), axis.dot(b[2] - b[0]));
+            const double apart = std::max(first.minCoeff() - second.maxCoeff(), second.minCoeff() - first.maxCoeff());
+            if (far > 0.0 && apart > far) return true;
+        }
+    return false;
+}
+
 /// 0 if they meet.
 inline double distanceOfTriangles(const Corners3& a, const Corners3& b) {
     double least = 1e300;
@@ -165,7 +179,9 @@ private:
             for (std::size_t i = m.first; i < m.end; ++i)
                 for (std::size_t j = f.first; j < f.end; ++j) {
                     const Corners3 first = moving_.cornersOf(i), second = fixed_.cornersOf(j);
-                    if (liesBeyond(first, second, best_) || liesBeyond(second, first, best_)) continue;
+                    if (liesBeyond(first, second, best_) || liesBeyond(second, first, best_) ||
+                        liesAside(first, second, best_))
+                        continue;
                     best_ = std::min(best_, distanceOfTriangles(first, second));
                 }
         } else if (f.right == 0 || (m.right != 0 && m.box.size().squaredNorm() > f.box.size().squaredNorm())) {
