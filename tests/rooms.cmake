@@ -50,9 +50,10 @@ set(rooms
   "analysis/power      | core/base ${study_rooms} study/session study/store study/run analysis/export analysis/stats"
   "ui/presenter        | core/base ${model_rooms} ${study_rooms} study/session study/store study/run analysis/export analysis/stats"
   "ui/sound            | core/base core/loop study/measures"
-  "ui/experimenter     | ui/presenter"
+  "ui/controls         |"
+  "ui/experimenter     | ui/controls ui/presenter"
   "ui/participant      | ui/presenter"
-  "ui/window           | ${front_rooms} ui/sound ui/experimenter ui/participant"
+  "ui/window           | ${front_rooms} ui/sound ui/controls ui/experimenter ui/participant"
   "ui/cli              | ${front_rooms}"
   "tests               | *")
 
@@ -227,7 +228,7 @@ foreach(folder core devices study analysis ui protocols tests)
       list(APPEND faults "${file}:1: this folder is no room of the table")
       continue()
     endif()
-    if(file MATCHES "[.]qml$" AND NOT room MATCHES "^ui/(experimenter|participant)$")
+    if(file MATCHES "[.]qml$" AND NOT room MATCHES "^ui/(controls|experimenter|participant)$")
       list(APPEND faults "${file}:1: QML has no place in ${room}")
       continue()
     endif()
@@ -285,10 +286,10 @@ foreach(entry IN LISTS hidden_types)
   endif()
 endforeach()
 
-# A folder that a reader can survey: at most so many .cpp files.
+# A folder that a reader can survey: at most so many .cpp and .qml files.
 set(most_sources 40)
 file(GLOB_RECURSE sources RELATIVE ${ROOT} ${ROOT}/core/*.cpp ${ROOT}/devices/*.cpp ${ROOT}/study/*.cpp
-  ${ROOT}/analysis/*.cpp ${ROOT}/ui/*.cpp)
+  ${ROOT}/analysis/*.cpp ${ROOT}/ui/*.cpp ${ROOT}/ui/*.qml)
 set(folders)
 foreach(source IN LISTS sources)
   get_filename_component(folder ${source} DIRECTORY)

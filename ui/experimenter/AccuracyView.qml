@@ -1,5 +1,6 @@
 import QtQuick
 import QtQuick.Layouts
+import "../controls"
 
 // What accuracy costs in time: a dot per measured setting, the ones picked marked.
 Item {

@@ -1,4 +1,5 @@
 import QtQuick
+import "../controls"
 
 // The attempts of the selected session; one that is opened is shown again.
 ListView {

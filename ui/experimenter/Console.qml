@@ -1,6 +1,7 @@
 import QtQuick
 import QtQuick.Layouts
 import QtQuick.Window
+import "../controls"
 
 // The experimenter's window.
 Window {

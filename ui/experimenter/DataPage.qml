@@ -1,5 +1,6 @@
 import QtQuick
 import QtQuick.Layouts
+import "../controls"
 
 // What was recorded: sessions and their attempts, a quick look per condition, export.
 ColumnLayout {

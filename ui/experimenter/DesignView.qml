@@ -1,5 +1,6 @@
 import QtQuick
 import QtQuick.Layouts
+import "../controls"
 
 // Everybody's order: a line per participant and session, a chip per trial; what the numbers mean; how even it is.
 Item {

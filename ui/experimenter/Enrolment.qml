@@ -1,5 +1,6 @@
 import QtQuick
 import QtQuick.Layouts
+import "../controls"
 
 // Enrols the next participant: which kind, and the code that is proposed.
 RowLayout {

@@ -1,5 +1,6 @@
 import QtQuick
 import QtQuick.Layouts
+import "../controls"
 
 // Writes the whole database as tables.
 ColumnLayout {

@@ -1,6 +1,7 @@
 import QtQuick
 import QtQuick.Layouts
 import QtQuick.Templates as T
+import "../controls"
 
 // Something that is wrong, with its place: a click goes there.
 T.AbstractButton {

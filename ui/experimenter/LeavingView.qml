@@ -1,5 +1,6 @@
 import QtQuick
 import QtQuick.Layouts
+import "../controls"
 
 // Somebody leaves: how and why; then, with what it does in sight, whether really.
 Item {

@@ -1,6 +1,7 @@
 import QtQuick
 import QtQuick.Layouts
 import Passung
+import "../controls"
 
 // A measure per condition: every attempt that counts as a dot, quartiles as a box.
 Item {

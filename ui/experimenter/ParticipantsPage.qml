@@ -1,5 +1,6 @@
 import QtQuick
 import QtQuick.Layouts
+import "../controls"
 
 // Who takes part in the chosen study: places, sessions, consent; enrolling, starting, leaving.
 ColumnLayout {

@@ -1,5 +1,6 @@
 import QtQuick
 import QtQuick.Layouts
+import "../controls"
 
 // The selected participant: what they did and agreed to, and what may be done now.
 Item {

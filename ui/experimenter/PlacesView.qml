@@ -1,4 +1,5 @@
 import QtQuick
+import "../controls"
 
 // The slots in the order in which they are taken, and how even the orders are so far.
 Flickable {

@@ -1,5 +1,6 @@
 import QtQuick
 import QtQuick.Layouts
+import "../controls"
 
 // Something to decide before anything else; what is behind it waits.
 FocusScope {

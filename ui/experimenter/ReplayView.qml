@@ -1,6 +1,7 @@
 import QtQuick
 import QtQuick.Layouts
 import "../participant"
+import "../controls"
 
 // A recorded attempt once more: the scene, its traces with a cursor, and the time.
 ColumnLayout {

@@ -1,5 +1,6 @@
 import QtQuick
 import QtQuick.Layouts
+import "../controls"
 
 // What may be done about a running session, and the note or reason that goes with it.
 ColumnLayout {

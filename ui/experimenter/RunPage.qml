@@ -1,6 +1,7 @@
 import QtQuick
 import QtQuick.Layouts
 import "../participant"
+import "../controls"
 
 // A running session: what happens, how well, and what may be done about it.
 ColumnLayout {

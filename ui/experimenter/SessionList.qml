@@ -1,4 +1,5 @@
 import QtQuick
+import "../controls"
 
 // The sessions of a database.
 ListView {

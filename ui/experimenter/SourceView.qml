@@ -1,5 +1,6 @@
 import QtQuick
 import QtQuick.Layouts
+import "../controls"
 
 // A text file to read, with a line that is marked.
 ColumnLayout {

@@ -1,5 +1,6 @@
 import QtQuick
 import QtQuick.Layouts
+import "../controls"
 
 // The stages that some conditions share, each with a bar of its cost.
 Column {

@@ -1,4 +1,5 @@
 import QtQuick
+import "../controls"
 
 // What a session does, to be read from across the room.
 Rectangle {

@@ -1,5 +1,6 @@
 import QtQuick
 import QtQuick.Layouts
+import "../controls"
 
 // The studies that there are, and what the chosen one consists of.
 RowLayout {

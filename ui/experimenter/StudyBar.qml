@@ -1,5 +1,6 @@
 import QtQuick
 import QtQuick.Layouts
+import "../controls"
 
 // Which study a page is about, what came of the last action, and what else stands at its right.
 RowLayout {

@@ -1,5 +1,6 @@
 import QtQuick
 import QtQuick.Layouts
+import "../controls"
 
 // What a study consists of, what is wrong with it, and whether this machine keeps up.
 Flickable {

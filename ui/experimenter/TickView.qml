@@ -1,5 +1,6 @@
 import QtQuick
 import QtQuick.Layouts
+import "../controls"
 
 // How stiff each condition's wall is against what its device bears, and which stages a tick runs at what cost.
 Flickable {

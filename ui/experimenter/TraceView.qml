@@ -1,5 +1,6 @@
 import QtQuick
 import Passung
+import "../controls"
 
 // A signal over time, with its newest value: the last ten seconds unless `marks` says otherwise.
 Item {

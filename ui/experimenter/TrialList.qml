@@ -1,4 +1,5 @@
 import QtQuick
+import "../controls"
 
 // The trials of a session, a line each.
 ListView {

@@ -1,5 +1,6 @@
 import QtQuick
 import QtQuick.Layouts
+import "../controls"
 
 // The stiffness of a condition as a share of what its device bears.
 RowLayout {

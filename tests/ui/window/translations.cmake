@@ -4,7 +4,7 @@ cmake_policy(VERSION 3.25)
 file(MAKE_DIRECTORY ${TEMP})
 configure_file(${ROOT}/ui/window/texts/passung_de.ts ${TEMP}/passung_de.ts COPYONLY)
 execute_process(COMMAND ${LUPDATE} -silent -locations none
-  ${ROOT}/ui/window ${ROOT}/ui/experimenter ${ROOT}/ui/participant -ts ${TEMP}/passung_de.ts
+  ${ROOT}/ui/window ${ROOT}/ui/controls ${ROOT}/ui/experimenter ${ROOT}/ui/participant -ts ${TEMP}/passung_de.ts
   COMMAND_ERROR_IS_FATAL ANY)
 file(READ ${TEMP}/passung_de.ts text)
 # One list item a line, whatever the lines contain.
