@@ -99,7 +99,7 @@ private:
 
     void seeTrial() {
         click("watch");
-        waitFor([&] { return run().view().force_N > 2.0 && run().view().trial_s > 1.5; });
+        waitFor([&] { return run().view().force_N > 0.5 && run().view().trial_s > 1.5; });
         see(app_->participant(), "participant_task");
         see(console_, "console_session");
         activate(console_);
