@@ -66,8 +66,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const importer::ImportedMesh repaired = importer::repairMesh(std::move(*mesh));
     requireSound(repaired.mesh);
     const importer::MeshReport& r = repaired.report;
-    require(r.triangles_read == count && r.triangles <= count);
-    require(r.triangles + r.degenerate_triangles + r.duplicate_triangles == count);
+    require(r.triangles_read == count && r.triangles <= count + r.split_edges);
+    require(r.triangles + r.degenerate_triangles + r.duplicate_triangles == count + r.split_edges);
     require(repaired.mesh.triangles.size() == r.triangles + r.closing_triangles);
     require(r.size.allFinite());
     return 0;
