@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "core/contact/contact_query.h"
 #include "core/contact/depth_sum.h"
+#include "core/query/surface_search.h"
 
 namespace passung::query {
 
@@ -94,7 +97,26 @@ void mergeInterval(const PartQueryResult& back, PartQueryResult& result) {
 
 }  // namespace
 
-PartQuery::PartQuery(const scene::Part& field, const scene::Part& shell, const PartQueryRequest& request)
+/// Parts, request and memory.
+struct PartQuery::Search {
+    Search(const scene::Part& field, const scene::Part& shell, const PartQueryRequest& request);
+    PartQueryResult at(const Pose& X_FS);
+
+private:
+    PartQueryResult oneWay(const scene::Part& field, const scene::Part& shell, std::optional<SurfaceSearch>& search,
+                           const Pose& X_FS);
+
+    const scene::Part& field_;
+    const scene::Part& shell_;
+    PartQueryRequest request_;
+    double surface_error_;  // of both meshes [m]
+    contact::QueryWorkspace workspace_;
+    contact::ContactManifold manifold_;
+    contact::ClusterFinder clusters_;
+    std::optional<SurfaceSearch> search_, search_back_;  // SHELL's surface against FIELD's, and the other way round
+};
+
+PartQuery::Search::Search(const scene::Part& field, const scene::Part& shell, const PartQueryRequest& request)
     : field_(field),
       shell_(shell),
       request_(request),
@@ -107,8 +129,8 @@ PartQuery::PartQuery(const scene::Part& field, const scene::Part& shell, const P
     if (request.two_way && shell.field->boundProven()) search_back_.emplace(shell, field);
 }
 
-PartQueryResult PartQuery::oneWay(const scene::Part& field, const scene::Part& shell,
-                                  std::optional<SurfaceSearch>& search, const Pose& X_FS) {
+PartQueryResult PartQuery::Search::oneWay(const scene::Part& field, const scene::Part& shell,
+                                          std::optional<SurfaceSearch>& search, const Pose& X_FS) {
     const double chords = surface_error_ + shell.shell->rounding();
     // What the triangles prove is more than the points could, so that those need not prove anything before.
     const bool decided = search && request_.max_nodes == 0 && std::isinf(request_.proximity);
@@ -169,7 +191,7 @@ PartQueryResult PartQuery::oneWay(const scene::Part& field, const scene::Part& s
     return result;
 }
 
-PartQueryResult PartQuery::at(const Pose& X_FS) {
+PartQueryResult PartQuery::Search::at(const Pose& X_FS) {
     PartQueryResult result = oneWay(field_, shell_, search_, X_FS);
     if (request_.patches) {
         const auto patches = clusters_.find(manifold_, 2.0 * shell_.shell->coverRadius());
@@ -201,5 +223,12 @@ PartQueryResult PartQuery::at(const Pose& X_FS) {
     mergeInterval(back, result);
     return result;
 }
+
+PartQuery::PartQuery(const scene::Part& field, const scene::Part& shell, const PartQueryRequest& request)
+    : search_(std::make_unique<Search>(field, shell, request)) {}
+
+PartQuery::~PartQuery() = default;
+
+PartQueryResult PartQuery::at(const Pose& X_FS) { return search_->at(X_FS); }
 
 }  // namespace passung::query

@@ -1,12 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <limits>
-#include <optional>
+#include <memory>
 #include <vector>
 
+#include "core/base/types.h"
 #include "core/contact/contact_clusters.h"
-#include "core/contact/contact_query.h"
-#include "core/query/surface_search.h"
+#include "core/field/field_mode.h"
 #include "core/scene/part.h"
 
 namespace passung::query {
@@ -86,23 +87,16 @@ struct PartQueryResult {
 /// `signed_distance` is the smallest φ_k of both ways, in the second case moved into the interval.
 class PartQuery {
 public:
+    /// Both parts outlive this.
     PartQuery(const scene::Part& field, const scene::Part& shell, const PartQueryRequest& request);
+    ~PartQuery();
 
     /// `X_FS`: pose of SHELL's file frame in FIELD's; finite.
     PartQueryResult at(const Pose& X_FS);
 
 private:
-    PartQueryResult oneWay(const scene::Part& field, const scene::Part& shell, std::optional<SurfaceSearch>& search,
-                           const Pose& X_FS);
-
-    const scene::Part& field_;
-    const scene::Part& shell_;
-    PartQueryRequest request_;
-    double surface_error_;  // of both meshes [m]
-    contact::QueryWorkspace workspace_;
-    contact::ContactManifold manifold_;
-    contact::ClusterFinder clusters_;
-    std::optional<SurfaceSearch> search_, search_back_;  // SHELL's surface against FIELD's, and the other way round
+    struct Search;
+    std::unique_ptr<Search> search_;
 };
 
 }  // namespace passung::query
