@@ -11,10 +11,7 @@
 
 #include "core/query/part_query.h"
 #include "core/scene/timed_store.h"
-#include "core/tick/obstacle_query.h"
-#include "core/tick/penalty.h"
-#include "core/tick/proxy.h"
-#include "core/tick/tick_state.h"
+#include "core/tick/tick_query.h"
 
 namespace passung::truth {
 
@@ -41,12 +38,6 @@ Result<Built> build(const scene::PartSpec& spec, const scene::PartNeeds& needs, 
     return Built{std::make_shared<const scene::Part>(std::move(*part)), timed.seconds()};
 }
 
-/// What the tick's query says at one pose.
-struct PoseReading {
-    double depth = 0.0;
-    Wrench wrench;
-};
-
 /// A scene of FIELD at the origin and SHELL in the hand. Its contact is that of fields, whose settings are measured.
 scene::Scene sceneOf(const scene::ContactSpec& contact, const SharedPart& field, const SharedPart& shell) {
     scene::Scene scene;
@@ -59,49 +50,11 @@ scene::Scene sceneOf(const scene::ContactSpec& contact, const SharedPart& field,
     return scene;
 }
 
-/// The query of a tick, by the tick's own stages; memory sized once.
-class TickQuery {
-public:
-    TickQuery(const scene::ContactSpec& contact, const SharedPart& field, const SharedPart& shell)
-        : scene_(sceneOf(contact, field, shell)), model_(tick::makeModel(scene_)), state_(tick::makeState(model_)) {
-        weighted_.variant = scene::PenaltyVariant::AreaWeighted;
-        weighted_.area_stiffness = kAreaStiffness;
-        weighted_.two_way = contact.two_way;
-    }
-
-    PoseReading at(const Pose& X_FS) {
-        tick::TickFrame frame;
-        frame.X_WH = X_FS;
-        if (!model_.contact.rendersAtHand()) {
-            tick::surveyContacts({model_, state_, state_, frame}, X_FS);
-            return {std::max(0.0, -state_.clearance), tick::penaltyWrench(weighted_, state_.manifold, X_FS.p)};
-        }
-        tick::runStage<tick::kContactsAtHand>(model_, state_, frame);
-        const bool summed = model_.contact.variant == scene::PenaltyVariant::AreaWeighted;
-        return {frame.hand_depth, summed ? tick::weightedWrench(weighted_, frame.load)
-                                         : tick::penaltyWrench(weighted_, state_.manifold, X_FS.p)};
-    }
-
-    /// How far the nearest point is, wherever it is.
-    double distanceAt(const Pose& X_FS) {
-        contact::QueryRequest request = tick::penaltyRequest(model_.contact.variant);
-        request.search_below = kUnlimited;
-        state_.scratch.clear();
-        return tick::queryObstacles(model_, X_FS, request, state_.workspace, state_.scratch).phi;
-    }
-
-private:
-    scene::Scene scene_;
-    tick::TickModel model_;
-    tick::TickState state_;
-    scene::ContactSpec weighted_;
-};
-
 /// Errors of all poses so far.
 struct ErrorLists {
     std::vector<double> depth, force, direction, torque;
 
-    void add(const PoseReading& answer, const PoseTruth& truth, double lever, double least_force) {
+    void add(const tick::QueryReading& answer, const PoseTruth& truth, double lever, double least_force) {
         if (truth.inContact() || answer.depth > 0.0)
             depth.push_back(std::abs(answer.depth - std::max(0.0, -truth.distance)));
         const double size = truth.wrench.force.norm();
@@ -224,7 +177,7 @@ SettingCost measureSetting(const AccuracySetting& setting, scene::ContactSpec co
     row.points = points.points().size();
     row.field_bytes = static_cast<double>(field->field->memoryBytes());
     row.shell_bytes = static_cast<double>(points.nodes().size_bytes() + points.points().size_bytes());
-    TickQuery query(contact, field, shell);
+    tick::TickQuery query(sceneOf(contact, field, shell), kAreaStiffness);
     double largest_force = 0.0;
     for (const JudgedPose& pose : poses) largest_force = std::max(largest_force, pose.truth.wrench.force.norm());
     ErrorLists errors;

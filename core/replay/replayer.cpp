@@ -67,8 +67,8 @@ std::optional<Difference> compare(const TickRecord& recorded, const TickRecord& 
 }  // namespace
 
 ReplayReport replay(const scene::Scene& scene, std::span<const TickRecord> records) {
-    const tick::TickModel model = tick::makeModel(scene);
-    return replay(std::array{tick::SceneTurn{&model}}, records);
+    const tick::SceneModels models(scene);
+    return replay(std::array{tick::SceneTurn{&models[0]}}, records);
 }
 
 ReplayReport replay(std::span<const tick::SceneTurn> turns, std::span<const TickRecord> records) {

@@ -1,11 +1,39 @@
 #include "core/tick/scene_sequence.h"
 
+#include "core/tick/tick_model.h"
+#include "core/tick/tick_state.h"
+
 namespace passung::tick {
+
+SceneModels::SceneModels() = default;
+
+SceneModels::SceneModels(std::span<const scene::Scene> scenes) {
+    models_.reserve(scenes.size());
+    for (const scene::Scene& scene : scenes) models_.push_back(makeModel(scene));
+}
+
+SceneModels::SceneModels(SceneModels&&) noexcept = default;
+
+SceneModels& SceneModels::operator=(SceneModels&&) noexcept = default;
+
+SceneModels::~SceneModels() = default;
+
+std::size_t SceneModels::size() const noexcept { return models_.size(); }
+
+const TickModel& SceneModels::operator[](std::size_t i) const noexcept { return models_[i]; }
+
+std::span<const Stage> SceneModels::stages(std::size_t i) const noexcept { return models_[i].stages; }
 
 SceneSequence::SceneSequence(std::span<const SceneTurn> turns) : turns_(turns.begin(), turns.end()) {
     states_.reserve(turns_.size());
     for (const SceneTurn& turn : turns_) states_.push_back(makeState(*turn.model));
 }
+
+SceneSequence::~SceneSequence() = default;
+
+std::int64_t SceneSequence::tick() const noexcept { return states_[current_].tick; }
+
+std::uint64_t SceneSequence::hash() const noexcept { return states_[current_].hash; }
 
 std::vector<PairAccount> SceneSequence::pairs() const {
     std::vector<PairAccount> all;

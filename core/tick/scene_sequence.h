@@ -1,15 +1,41 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
 
+#include "core/scene/scene.h"
+#include "core/tick/energy_account.h"
 #include "core/tick/step.h"
 
 namespace passung::tick {
 
 inline constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
+
+/// The models (tick_model.h) of scenes, for who need not look into them. A model stays where it is when the whole
+/// moves.
+class SceneModels {
+public:
+    SceneModels();
+    /// makeModel() of each. @pre the scenes' parts outlive this
+    explicit SceneModels(std::span<const scene::Scene> scenes);
+    /// Of one scene.
+    explicit SceneModels(const scene::Scene& scene) : SceneModels(std::span(&scene, 1)) {}
+    SceneModels(SceneModels&&) noexcept;
+    SceneModels& operator=(SceneModels&&) noexcept;
+    ~SceneModels();
+
+    std::size_t size() const noexcept;
+    /// @pre `i` < size()
+    const TickModel& operator[](std::size_t i) const noexcept;
+    /// Those of the scene number `i`, in the order of the tick. @pre `i` < size()
+    std::span<const Stage> stages(std::size_t i) const noexcept;
+
+private:
+    std::vector<TickModel> models_;
+};
 
 /// One of the scenes that are rendered one after the other in one attempt.
 struct SceneTurn {
@@ -25,13 +51,16 @@ class SceneSequence {
 public:
     /// Allocates all that the ticks need. @pre `turns` is not empty
     explicit SceneSequence(std::span<const SceneTurn> turns);
+    ~SceneSequence();
+    SceneSequence(const SceneSequence&) = delete;
+    SceneSequence& operator=(const SceneSequence&) = delete;
 
     /// One tick. rt-safe.
     TickOutput step(const DeviceReading& reading) noexcept;
 
     /// Number of the next tick.
-    std::int64_t tick() const noexcept { return states_[current_].tick; }
-    std::uint64_t hash() const noexcept { return states_[current_].hash; }
+    std::int64_t tick() const noexcept;
+    std::uint64_t hash() const noexcept;
     /// Of each scene in turn: energy of its obstacles in the order of the scene, and of what none pushed.
     std::vector<PairAccount> pairs() const;
 

@@ -85,6 +85,14 @@ private:
 template <class... Argument>
 StageOf(void (*)(const TickModel&, Argument...) noexcept, StageCard) -> StageOf<Argument...>;
 
+/// A stage of one scene. `reason` says why this scene has it.
+struct Stage {
+    const char* name;
+    const char* reason;
+    bool before_start;  // runs also while the start gate is closed
+    void (*run)(const TickModel&, TickState&, TickFrame&) noexcept;
+};
+
 /// Stages in the order of the tick.
 template <const auto&... stage>
 struct StageList {};

@@ -3,6 +3,9 @@
 #include <bit>
 #include <cmath>
 
+#include "core/tick/tick_model.h"
+#include "core/tick/tick_state.h"
+
 namespace passung::tick {
 
 namespace {

@@ -1,11 +1,18 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
-#include "core/tick/tick_model.h"
-#include "core/tick/tick_state.h"
+#include "core/base/tick_record.h"
+#include "core/base/types.h"
+#include "core/tick/stage.h"
+#include "core/tick/tick_frame.h"
 
 namespace passung::tick {
+
+/// What one tick works on; dies with it.
+struct TickFrame : Parts<Reading, HandSample, AreaLoad, ContactRecord, HandDepth, EnergyRecord, HandWrench,
+                         CommandedWrench, Report> {};
 
 /// What one tick gives back: exact values, before they are rounded into a record.
 struct TickOutput {
@@ -20,7 +27,8 @@ struct StageWatch {
     void* context;
 };
 
-/// One tick of the haptic loop: a plain function over values. Same model, state and reading: same bits.
+/// One tick of the haptic loop: a plain function over values (tick_model.h, tick_state.h). Same model, state and
+/// reading: same bits.
 ///   It walks the model's stages; each sees the parts of state and frame that it declares (stage.h). Nothing allocates,
 ///   locks or throws, and every loop has a bound. rt-safe.
 TickOutput step(const TickModel& model, TickState& state, const DeviceReading& reading,

@@ -12,14 +12,6 @@
 
 namespace passung::tick {
 
-/// A stage (stage.h) of one scene. `reason` says why this scene has it.
-struct Stage {
-    const char* name;
-    const char* reason;
-    bool before_start;  // runs also while the start gate is closed
-    void (*run)(const TickModel&, TickState&, TickFrame&) noexcept;
-};
-
 /// An obstacle fixed in the world, as what its geometry is: a distance field, one of TickModel::solids, or a share of
 /// TickModel::surfaces.
 struct Obstacle {

@@ -15,8 +15,10 @@
 #include "core/tick/proxy.h"
 #include "core/tick/proxy_state.h"
 #include "core/tick/stage.h"
+#include "core/tick/step.h"
 #include "core/tick/surface_follow.h"
 #include "core/tick/tick_frame.h"
+#include "core/tick/tick_model.h"
 #include "core/tick/transients.h"
 #include "core/tick/virtual_coupling.h"
 
@@ -50,10 +52,6 @@ struct TickCount {
 struct TickState : Parts<TickCount, InputGuard, Engagement, EnergyAccounts, Proxy, ProxyMotion, ProxyFilter,
                          ClosedFormHold, FilteredHold, ClosedFormMemory, SurfaceFollow, HandVelocity, ToolMotion,
                          Stretch, Ringing, Pushes, DelayLine, SentWrench, QueryMemory> {};
-
-/// What one tick works on; dies with it.
-struct TickFrame : Parts<Reading, HandSample, AreaLoad, ContactRecord, HandDepth, EnergyRecord, HandWrench,
-                         CommandedWrench, Report> {};
 
 /// The state before the first tick, with all memory that the ticks will need.
 TickState makeState(const TickModel& model);

@@ -38,9 +38,9 @@ std::vector<session::ContactEnergy> contactEnergy(std::span<const scene::Scene> 
 
 }  // namespace
 
-std::vector<session::StageNote> stageNotes(const tick::TickModel& model) {
+std::vector<session::StageNote> stageNotes(std::span<const tick::Stage> stages) {
     std::vector<session::StageNote> notes;
-    for (const tick::Stage& stage : model.stages) notes.push_back({stage.name, stage.reason});
+    for (const tick::Stage& stage : stages) notes.push_back({stage.name, stage.reason});
     return notes;
 }
 
@@ -82,8 +82,8 @@ Result<std::vector<session::StageNote>> LoopApparatus::prepare(const plan::Condi
         run_.swap(run);
     }
     std::vector<session::StageNote> notes;  // of a pair the stages of both intervals, each once
-    for (const tick::TickModel& model : run_->scenes.models)
-        for (session::StageNote& note : stageNotes(model))
+    for (std::size_t i = 0; i < run_->scenes.models.size(); ++i)
+        for (session::StageNote& note : stageNotes(run_->scenes.models.stages(i)))
             if (std::none_of(notes.begin(), notes.end(), [&](const auto& known) { return known.name == note.name; }))
                 notes.push_back(std::move(note));
     if (performer_ != nullptr) performer_->awaitPicture();  // no clock runs before

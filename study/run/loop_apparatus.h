@@ -81,7 +81,7 @@ private:
     std::unique_ptr<Run> run_;
 };
 
-/// What runs in every tick of `model` and why.
-std::vector<session::StageNote> stageNotes(const tick::TickModel& model);
+/// What runs in every tick of a scene and why.
+std::vector<session::StageNote> stageNotes(std::span<const tick::Stage> stages);
 
 }  // namespace passung::run

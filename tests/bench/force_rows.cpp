@@ -10,6 +10,7 @@
 #include "core/tick/obstacle_query.h"
 #include "core/tick/proxy.h"
 #include "core/tick/step.h"
+#include "core/tick/tick_state.h"
 #include "study/person/simulated_person.h"
 #include "study/protocol/protocol_reader.h"
 #include "study/run/files/disk_store.h"

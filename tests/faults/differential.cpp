@@ -13,6 +13,7 @@
 #include "core/motion/friction.h"
 #include "core/scene/scene.h"
 #include "core/tick/step.h"
+#include "core/tick/tick_state.h"
 
 namespace passung {
 namespace {

@@ -8,6 +8,7 @@
 #include "core/base/result.h"
 #include "core/scene/scene.h"
 #include "core/tick/step.h"
+#include "core/tick/tick_state.h"
 
 namespace passung::hard {
 

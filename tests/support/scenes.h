@@ -4,6 +4,7 @@
 
 #include "core/scene/scene.h"
 #include "core/tick/step.h"
+#include "core/tick/tick_state.h"
 
 namespace passung::test {
 

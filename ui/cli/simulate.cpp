@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <iterator>
@@ -7,7 +8,7 @@
 #include "core/base/processor_clock.h"
 #include "core/base/regular_file.h"
 #include "core/scene/scene.h"
-#include "core/tick/step.h"
+#include "core/tick/scene_sequence.h"
 #include "devices/scripted/trajectory.h"
 #include "study/run/files/builds.h"
 #include "study/run/files/protocol_files.h"
@@ -67,8 +68,8 @@ int simulate(const SimulateArguments& options) {
     progress.show("building the scene");
     auto scene = scene::buildScene(*spec, cache);
     if (!scene) return fail(scene.errors());
-    const tick::TickModel model = tick::makeModel(*scene);
-    tick::TickState state = tick::makeState(model);
+    const tick::SceneModels models(*scene);
+    tick::SceneSequence ticks(std::array{tick::SceneTurn{&models[0]}});
     OutputFile out(options.out);
     out.write(kHeader);
     fmt::memory_buffer text;
@@ -77,7 +78,7 @@ int simulate(const SimulateArguments& options) {
         reading.X_BD = trajectory->at(i);
         const std::int64_t processor_begin = threadProcessorNanoseconds();
         const auto begin = std::chrono::steady_clock::now();
-        const tick::TickOutput output = tick::step(model, state, reading);
+        const tick::TickOutput output = ticks.step(reading);
         const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
         const std::int64_t processor = threadProcessorNanoseconds() - processor_begin;
         text.clear();

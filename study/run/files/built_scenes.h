@@ -12,7 +12,7 @@ namespace passung::run {
 /// fine, copying is not.
 struct BuiltScenes {
     std::vector<scene::Scene> scenes;
-    std::vector<tick::TickModel> models;
+    tick::SceneModels models;
     std::vector<tick::SceneTurn> turns;
 
     BuiltScenes() = default;

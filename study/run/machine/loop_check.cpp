@@ -60,12 +60,12 @@ LoopCheck checkLoop(double seconds) {
         check.verdict = toString(scene.errors().front());
         return check;
     }
-    const tick::TickModel model = tick::makeModel(*scene);
+    const tick::SceneModels models(*scene);
     simulated::VisibleTask task;
-    task.X_WHeldStart = model.X_WG_start;
+    task.X_WHeldStart = scene->spec.parts[scene->held].X_WP;
     simulated::SimulatedDevice device(simulated::presets().front(), {}, task, {}, 1);
     loop::RecordRing ring(static_cast<std::size_t>(seconds * 1000.0) + 2048);
-    loop::HapticCycle cycle(model, device, ring, true);
+    loop::HapticCycle cycle(models[0], device, ring, true);
     loop::RealTimeThread thread(cycle);
     std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
     thread.stop();

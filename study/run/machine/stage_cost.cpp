@@ -6,53 +6,16 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <numbers>
+#include <span>
 
-#include "core/surface/nearest_faces.h"
-#include "core/tick/closed_form_proxy.h"
-#include "core/tick/obstacle_query.h"
-#include "core/tick/step.h"
+#include "core/tick/pressed_run.h"
 #include "study/protocol/plan_json.h"
 
 namespace passung::run {
 
 namespace {
 
-constexpr int kApproachTicks = 500;
 constexpr int kMostTicks = 5 * TickCost::kWantedTicks;
-constexpr double kPressed = 2e-3, kSlide = 3e-3;  // [m]
-
-constexpr double kNearest = 1e-3, kFarthest = 10.0;  // [m] in which a contact is looked for
-
-/// The same among closed forms.
-Vec3 wayToContact(const Pose& X_WG, tick::ClosedFormMemory& memory) {
-    const closed_form::Contact* nearest = nullptr;
-    closed_form::Contact best;
-    for (double reach = kNearest; nearest == nullptr && reach < kFarthest; reach *= 2.0)
-        for (closed_form::ContactSearch& search : memory.at_hand) {
-            search.find(X_WG, reach, memory.found);
-            for (const closed_form::Contact& contact : memory.found.all()) {
-                if (nearest != nullptr && best.gap <= contact.gap) continue;
-                best = contact;
-                nearest = &best;
-            }
-        }
-    return -(best.gap + kPressed) * best.normal.stableNormalized();
-}
-
-/// The motion of the held part that ends pressed into the nearest obstacle.
-Vec3 wayToContact(const tick::TickModel& model, tick::TickState& state) {
-    if (model.obstacles.empty()) return Vec3(0.02, 0.0, 0.0);
-    if (model.hasClosedForm()) return wayToContact(model.X_WG_start, state);
-    if (model.hasSurfaces()) {
-        const auto nearest = surface::nearestFaces(model.surfaces[0], model.surfaces[1], model.X_WG_start);
-        return -(nearest.distance + kPressed) * nearest.n;
-    }
-    state.scratch.clear();
-    const contact::QueryAnswer answer =
-        tick::queryObstacles(model, model.X_WG_start, {.search_below = 1.0}, state.workspace, state.scratch);
-    return -(answer.phi + kPressed) * answer.normal_W;
-}
 
 /// Processor time of this thread [ns].
 std::int64_t processorTime() noexcept {
@@ -77,11 +40,11 @@ public:
     explicit StageTimes(std::size_t stages) : last_tick_(stages) {}
 
     /// One tick of the loop's own walk; true if parts touched.
-    bool step(const tick::TickModel& model, tick::TickState& state, const DeviceReading& reading) {
+    bool step(tick::PressedRun& run, const DeviceReading& reading) {
         const tick::StageWatch watch{&StageTimes::after, this};
         std::fill(last_tick_.begin(), last_tick_.end(), 0);
         last_ = processorTime();
-        return tick::step(model, state, reading, &watch).frame.contacts > 0;
+        return run.step(reading, &watch).frame.contacts > 0;
     }
     void count() { all_.insert(all_.end(), last_tick_.begin(), last_tick_.end()); }
 
@@ -99,22 +62,13 @@ private:
 };
 
 /// The times of one run; `contact`: of ticks in contact only.
-std::vector<std::int64_t> timesOfRun(const scene::Scene& scene, bool contact) {
-    tick::TickModel model = tick::makeModel(scene);
-    tick::TickState state = tick::makeState(model);
-    const Vec3 way = wayToContact(model, state);
-    // Poses are those of the held part: the registration has nothing to do, and the gate is open.
-    model.registration = scene::Registration{};
-    state.engaged = true;
-    StageTimes times(model.stages.size());
-    const Vec3 aside = way.unitOrthogonal();
+std::vector<std::int64_t> timesOfRun(const scene::Scene& scene, std::size_t stages, bool contact) {
+    constexpr int kApproachTicks = tick::PressedRun::kApproachTicks;
+    tick::PressedRun run(scene);
+    StageTimes times(stages);
     int counted = 0;
     for (int i = 0; i < kApproachTicks + kMostTicks && counted < TickCost::kWantedTicks; ++i) {
-        const double share = std::min(1.0, static_cast<double>(i) / kApproachTicks);
-        const double slide = kSlide * std::sin(2e-3 * std::numbers::pi * std::max(0, i - kApproachTicks));
-        DeviceReading reading;
-        reading.X_BD = {model.X_WG_start.q, model.X_WG_start.p + share * way + slide * aside};
-        const bool touches = times.step(model, state, reading);
+        const bool touches = times.step(run, run.readingAt(i));
         if (i < kApproachTicks || (contact && !touches)) continue;
         times.count();
         ++counted;
@@ -123,10 +77,10 @@ std::vector<std::int64_t> timesOfRun(const scene::Scene& scene, bool contact) {
 }
 
 /// The least of equal runs, time by time.
-std::vector<std::int64_t> leastTimes(const scene::Scene& scene, bool contact) {
-    std::vector<std::int64_t> least = timesOfRun(scene, contact);
+std::vector<std::int64_t> leastTimes(const scene::Scene& scene, std::size_t stages, bool contact) {
+    std::vector<std::int64_t> least = timesOfRun(scene, stages, contact);
     for (int run = 1; run < TickCost::kRuns && !least.empty(); ++run) {
-        const std::vector<std::int64_t> again = timesOfRun(scene, contact);
+        const std::vector<std::int64_t> again = timesOfRun(scene, stages, contact);
         for (std::size_t i = 0; i < std::min(least.size(), again.size()); ++i) least[i] = std::min(least[i], again[i]);
     }
     return least;
@@ -177,26 +131,26 @@ std::vector<std::vector<const plan::Condition*>> costGroups(const plan::StudyPla
 }
 
 TickCost measureTick(const scene::Scene& scene) {
-    const tick::TickModel model = tick::makeModel(scene);
-    const std::size_t stages = model.stages.size();
+    const tick::SceneModels models(scene);
+    const std::span<const tick::Stage> stages = models.stages(0);
     TickCost cost;
-    cost.in_contact = !model.obstacles.empty();
-    std::vector<std::int64_t> times = leastTimes(scene, cost.in_contact);
+    cost.in_contact = scene.parts.size() > 1;
+    std::vector<std::int64_t> times = leastTimes(scene, stages.size(), cost.in_contact);
     if (times.empty()) {
         cost.in_contact = false;
-        times = leastTimes(scene, false);
+        times = leastTimes(scene, stages.size(), false);
     }
-    const std::size_t ticks = stages == 0 ? 0 : times.size() / stages;
+    const std::size_t ticks = stages.empty() ? 0 : times.size() / stages.size();
     cost.ticks = static_cast<int>(ticks);
     std::vector<std::int64_t> whole(ticks, 0);
-    for (std::size_t s = 0; s < stages; ++s) {
+    for (std::size_t s = 0; s < stages.size(); ++s) {
         std::vector<std::int64_t> of_stage;
         for (std::size_t t = 0; t < ticks; ++t) {
-            of_stage.push_back(times[t * stages + s]);
+            of_stage.push_back(times[t * stages.size() + s]);
             whole[t] += of_stage.back();
         }
-        cost.stages.push_back({model.stages[s].name, model.stages[s].reason, quantileOf(of_stage, 0.5),
-                               quantileOf(std::move(of_stage), 0.99)});
+        cost.stages.push_back(
+            {stages[s].name, stages[s].reason, quantileOf(of_stage, 0.5), quantileOf(std::move(of_stage), 0.99)});
     }
     cost.median_us = quantileOf(whole, 0.5);
     cost.p99_us = quantileOf(whole, 0.99);

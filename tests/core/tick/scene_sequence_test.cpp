@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "core/replay/replayer.h"
@@ -64,6 +65,21 @@ TEST(SceneSequence, OneSceneIsTheTickItself) {
     for (int k = 0; k < 50; ++k) EXPECT_EQ(scenes.step({kPressed}).F_D_B.force, bench.step(kPressed).F_D_B.force);
     EXPECT_EQ(scenes.hash(), bench.state().hash);
     EXPECT_EQ(scenes.tick(), bench.state().tick);
+}
+
+TEST(SceneModels, StayWhereTheyAreAndAreThoseOfTheirScenes) {
+    // Truth: invariant: the bits of a tick do not depend on who keeps its model, nor on the whole being moved.
+    test::Bench soft(pressed(500.0)), hard(pressed(1000.0));
+    tick::SceneModels built(std::array{soft.scene(), hard.scene()});
+    const tick::TickModel* second = &built[1];
+    const tick::SceneModels models = std::move(built);
+    ASSERT_EQ(models.size(), 2u);
+    EXPECT_EQ(second, &models[1]);
+    ASSERT_EQ(models.stages(1).size(), hard.model().stages.size());
+    for (std::size_t i = 0; i < models.stages(1).size(); ++i)
+        EXPECT_STREQ(models.stages(1)[i].name, hard.model().stages[i].name);
+    tick::SceneSequence scenes(std::array{tick::SceneTurn{&models[1]}});
+    for (int k = 0; k < 50; ++k) EXPECT_EQ(scenes.step({kPressed}).F_D_B.force, hard.step(kPressed).F_D_B.force);
 }
 
 TEST(SceneSequence, TheHashTellsOfWhatCameBeforeAChangeOfScenes) {

@@ -9,6 +9,7 @@
 
 #include "core/base/random.h"
 #include "core/tick/step.h"
+#include "core/tick/tick_state.h"
 #include "tests/support/every_effect.h"
 #include "tests/support/fields.h"
 #include "tests/support/scenes.h"

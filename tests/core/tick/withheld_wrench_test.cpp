@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/tick/step.h"
+#include "core/tick/tick_state.h"
 #include "tests/support/scenes.h"
 
 namespace passung {

@@ -1,0 +1,80 @@
+#include "core/tick/pressed_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/surface/nearest_faces.h"
+#include "core/tick/closed_form_proxy.h"
+#include "core/tick/obstacle_query.h"
+#include "core/tick/tick_model.h"
+#include "core/tick/tick_state.h"
+
+namespace passung::tick {
+
+namespace {
+
+constexpr double kPressed = 2e-3, kSlide = 3e-3;  // [m]
+
+constexpr double kNearest = 1e-3, kFarthest = 10.0;  // [m] in which a contact is looked for
+
+/// The same among closed forms.
+Vec3 wayToContact(const Pose& X_WG, ClosedFormMemory& memory) {
+    const closed_form::Contact* nearest = nullptr;
+    closed_form::Contact best;
+    for (double reach = kNearest; nearest == nullptr && reach < kFarthest; reach *= 2.0)
+        for (closed_form::ContactSearch& search : memory.at_hand) {
+            search.find(X_WG, reach, memory.found);
+            for (const closed_form::Contact& contact : memory.found.all()) {
+                if (nearest != nullptr && best.gap <= contact.gap) continue;
+                best = contact;
+                nearest = &best;
+            }
+        }
+    return -(best.gap + kPressed) * best.normal.stableNormalized();
+}
+
+/// The motion of the held part that ends pressed into the nearest obstacle.
+Vec3 wayToContact(const TickModel& model, TickState& state) {
+    if (model.obstacles.empty()) return Vec3(0.02, 0.0, 0.0);
+    if (model.hasClosedForm()) return wayToContact(model.X_WG_start, state);
+    if (model.hasSurfaces()) {
+        const auto nearest = surface::nearestFaces(model.surfaces[0], model.surfaces[1], model.X_WG_start);
+        return -(nearest.distance + kPressed) * nearest.n;
+    }
+    state.scratch.clear();
+    const contact::QueryAnswer answer =
+        queryObstacles(model, model.X_WG_start, {.search_below = 1.0}, state.workspace, state.scratch);
+    return -(answer.phi + kPressed) * answer.normal_W;
+}
+
+/// Poses are those of the held part: the registration has nothing to do.
+scene::Scene unregistered(scene::Scene scene) {
+    scene.spec.registration = scene::Registration{};
+    return scene;
+}
+
+}  // namespace
+
+PressedRun::PressedRun(const scene::Scene& scene) : models_(unregistered(scene)), X_WG_start_(models_[0].X_WG_start) {
+    states_.push_back(makeState(models_[0]));
+    way_ = wayToContact(models_[0], states_[0]);
+    aside_ = way_.unitOrthogonal();
+    states_[0].engaged = true;
+}
+
+PressedRun::~PressedRun() = default;
+
+DeviceReading PressedRun::readingAt(int i) const noexcept {
+    const double share = std::min(1.0, static_cast<double>(i) / kApproachTicks);
+    const double slide = kSlide * std::sin(2e-3 * std::numbers::pi * std::max(0, i - kApproachTicks));
+    DeviceReading reading;
+    reading.X_BD = {X_WG_start_.q, X_WG_start_.p + share * way_ + slide * aside_};
+    return reading;
+}
+
+TickOutput PressedRun::step(const DeviceReading& reading, const StageWatch* watch) noexcept {
+    return tick::step(models_[0], states_[0], reading, watch);
+}
+
+}  // namespace passung::tick

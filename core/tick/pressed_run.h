@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "core/scene/scene.h"
+#include "core/tick/scene_sequence.h"
+
+namespace passung::tick {
+
+/// Ticks in which the held part of a scene is pressed two millimetres into the nearest obstacle and slides on it, to
+/// measure what they cost. The start gate is open, and the registration has nothing to do. Without obstacles the way
+/// leads two centimetres along x.
+class PressedRun {
+public:
+    static constexpr int kApproachTicks = 500;  // until it is pressed
+
+    /// Allocates all that the ticks need. @pre the scene's parts outlive this
+    explicit PressedRun(const scene::Scene& scene);
+    ~PressedRun();
+    PressedRun(const PressedRun&) = delete;
+    PressedRun& operator=(const PressedRun&) = delete;
+
+    /// What the device reads in tick `i`, counted from 0. rt-safe.
+    DeviceReading readingAt(int i) const noexcept;
+    /// One tick. rt-safe.
+    TickOutput step(const DeviceReading& reading, const StageWatch* watch = nullptr) noexcept;
+
+private:
+    SceneModels models_;             // of the one scene
+    std::vector<TickState> states_;  // its one
+    Pose X_WG_start_;
+    Vec3 way_, aside_;  // to the pressed pose [m]; unit, square to it
+};
+
+}  // namespace passung::tick
