@@ -175,7 +175,7 @@ SettingCost measureSetting(const AccuracySetting& setting, scene::ContactSpec co
     const shell::SphereTree& points = *shell->shell;
     SettingCost row{.setting = setting};
     row.points = points.points().size();
-    row.field_bytes = static_cast<double>(field->field->memoryBytes());
+    row.field_bytes = static_cast<double>(scene::fieldBytes(*field));
     row.shell_bytes = static_cast<double>(points.nodes().size_bytes() + points.points().size_bytes());
     tick::TickQuery query(sceneOf(contact, field, shell), kAreaStiffness);
     double largest_force = 0.0;

@@ -4,6 +4,7 @@
 
 #include "core/contact/contact_query.h"
 #include "core/contact/rim_gradient.h"
+#include "core/field/distance_field.h"
 
 namespace passung::contact {
 

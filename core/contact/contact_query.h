@@ -5,8 +5,12 @@
 #include <vector>
 
 #include "core/base/types.h"
-#include "core/field/distance_field.h"
+#include "core/field/field_mode.h"
 #include "core/shell/sphere_tree.h"
+
+namespace passung::field {
+class DistanceField;
+}
 
 namespace passung::contact {
 

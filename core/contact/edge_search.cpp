@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/field/distance_field.h"
+
 namespace passung::contact {
 
 namespace {

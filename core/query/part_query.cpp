@@ -6,6 +6,7 @@
 
 #include "core/contact/contact_query.h"
 #include "core/contact/depth_sum.h"
+#include "core/field/distance_field.h"
 #include "core/query/surface_search.h"
 
 namespace passung::query {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <span>
 
+#include "core/field/distance_field.h"
 #include "core/query/neighbour_list.h"
 #include "core/query/overlap_search.h"
 #include "core/query/search_progress.h"

@@ -9,12 +9,14 @@
 #include <memory>
 
 #include "core/base/random.h"
+#include "core/field/distance_field.h"
 #include "core/field/interpolation.h"
 #include "core/field/mesh_block.h"
 #include "core/field/shape_bound.h"
 #include "core/geometry/triangle_tree.h"
 #include "core/scene/mesh_source.h"
 #include "core/scene/number_text.h"
+#include "core/shell/edge_curves.h"
 #include "core/shell/shell_bytes.h"
 
 namespace passung::scene {
@@ -135,6 +137,8 @@ double chooseCell(const field::DistanceSource& source, const geometry::TriangleM
     return cell;
 }
 
+std::size_t fieldBytes(const Part& part) { return part.field ? part.field->memoryBytes() : 0; }
+
 std::optional<std::string> tooManyPoints(const Vec3& size, double area, double spacing) {
     const double points = area / (spacing * spacing);
     if (!(points > kMaxShellPoints)) return std::nullopt;
@@ -246,7 +250,7 @@ Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs, BuildStore*
     if (needs.field) {
         auto field = fieldOf(part, needs, store);
         if (!field) return keyedByPart(spec, field.errors());
-        part.field = std::move(*field);
+        part.field = std::make_shared<const field::DistanceField>(std::move(*field));
         if (!part.field->refined())
             part.report.notes.push_back("The field exceeds its tolerance at edges: it would need more than " +
                                         std::to_string(field::FieldAccuracy::kFieldBytes >> 20) + " MiB.");
@@ -256,7 +260,7 @@ Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs, BuildStore*
     }
     if (needs.shell) {
         part.shell.emplace(shellOf(part, needs, store), part.mesh);
-        part.edges.emplace(part.mesh, shell::kEdgeShare * needs.spacing);
+        part.edges = std::make_shared<const shell::EdgeCurves>(part.mesh, shell::kEdgeShare * needs.spacing);
     }
     return part;
 }

@@ -1,17 +1,25 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "core/base/result.h"
-#include "core/field/distance_field.h"
 #include "core/geometry/mesh.h"
 #include "core/import/mesh_import.h"
 #include "core/scene/build_store.h"
 #include "core/scene/scene_spec.h"
-#include "core/shell/edge_curves.h"
 #include "core/shell/sphere_tree.h"
+
+namespace passung::field {
+class DistanceField;
+struct DistanceSource;
+}  // namespace passung::field
+
+namespace passung::shell {
+class EdgeCurves;
+}
 
 namespace passung::scene {
 
@@ -35,10 +43,10 @@ struct Part {
     std::optional<shape::Shape> shape;  // if parametric: its closed form is the truth
     geometry::TriangleMesh mesh;        // part frame, metres
     importer::MeshReport report;
-    double chord_error = 0.0;  // of the mesh against the shape, as reached [m]
-    std::optional<field::DistanceField> field;
+    double chord_error = 0.0;                           // of the mesh against the shape, as reached [m]
+    std::shared_ptr<const field::DistanceField> field;  // these two are shared by copies of the part
     std::optional<shell::SphereTree> shell;
-    std::optional<shell::EdgeCurves> edges;  // with the shell
+    std::shared_ptr<const shell::EdgeCurves> edges;  // with the shell
 };
 
 /// Most points of a point shell, roughly: more take gigabytes and minutes to sample and do not fit a tick.
@@ -56,6 +64,9 @@ inline constexpr int kKeptFormat = 2;
 /// else kept there; they are the same bits. One that is damaged is built anew, which a note tells.
 /// Errors: unreadable mesh, invalid shape, a field too large, a shell of too many points.
 Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs, BuildStore* store = nullptr);
+
+/// What the field of `part` takes of memory [bytes]; 0 without one.
+std::size_t fieldBytes(const Part& part);
 
 /// Exact distances to the geometry of `part`: the closed form of a shape, the triangles of a mesh.
 /// The result holds what it needs; `part` may go.

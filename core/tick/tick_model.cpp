@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/field/distance_field.h"
 #include "core/tick/tick_state.h"
 
 namespace passung::tick {

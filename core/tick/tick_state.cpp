@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/shell/edge_curves.h"
+
 namespace passung::tick {
 
 namespace {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/base/random.h"
+#include "core/field/distance_field.h"
 #include "core/scene/part.h"
 
 namespace passung::bench {

@@ -8,6 +8,7 @@
 
 #include "analysis/truth/exact_mesh.h"
 #include "core/base/random.h"
+#include "core/field/distance_field.h"
 #include "core/geometry/triangle_tree.h"
 #include "core/import/mesh_import.h"
 #include "core/scene/part.h"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/field/distance_field.h"
 #include "tests/bench/contact_scene.h"
 #include "tests/bench/method.h"
 #include "tests/bench/stopwatch.h"

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "core/field/distance_field.h"
 #include "core/scene/timed_store.h"
 #include "core/tick/penalty.h"
 #include "study/run/files/disk_store.h"

@@ -9,6 +9,7 @@
 
 #include "analysis/truth/exact_mesh.h"
 #include "core/base/random.h"
+#include "core/field/distance_field.h"
 #include "core/scene/timed_store.h"
 #include "study/run/files/disk_store.h"
 #include "tests/bench/ours.h"

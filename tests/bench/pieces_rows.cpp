@@ -9,6 +9,7 @@
 
 #include "analysis/truth/exact_mesh.h"
 #include "core/contact/contact_query.h"
+#include "core/field/distance_field.h"
 #include "core/shell/point_shell.h"
 #include "tests/bench/ours.h"
 

@@ -12,6 +12,7 @@
 
 #include "analysis/truth/exact_mesh.h"
 #include "core/base/random.h"
+#include "core/field/distance_field.h"
 #include "tests/bench/flat_array.h"
 #include "tests/bench/ours.h"
 #include "tests/bench/stopwatch.h"

@@ -7,6 +7,7 @@
 
 #include "analysis/truth/exact_mesh.h"
 #include "core/base/random.h"
+#include "core/field/distance_field.h"
 #include "core/shape/shape.h"
 #include "tests/support/scenes.h"
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/base/random.h"
+#include "core/field/distance_field.h"
 #include "core/scene/part.h"
 #include "core/tick/proxy.h"
 #include "tests/support/scenes.h"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/random.h"
+#include "core/field/distance_field.h"
 #include "core/scene/part.h"
 
 namespace passung::field {
@@ -50,7 +51,7 @@ std::vector<DistanceField> someFields() {
         spec.geometry = shape;
         auto part = scene::buildPart(spec, needs);
         EXPECT_TRUE(part);
-        fields.push_back(std::move(*part->field));
+        fields.push_back(*part->field);
     };
     add(shape::Sphere{0.03}, {.field = true, .cell = 0.7e-3});
     add(shape::BorePlate{0.06, 0.06, 0.03, 0.0202, 0.025, 0.001}, {.field = true, .tolerance = 20e-6});

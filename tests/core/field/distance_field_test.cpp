@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/random.h"
+#include "core/field/distance_field.h"
 #include "core/scene/part.h"
 
 namespace passung::field {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/random.h"
+#include "core/field/distance_field.h"
 #include "core/field/interpolation.h"
 #include "core/scene/part.h"
 

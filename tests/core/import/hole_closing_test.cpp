@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/random.h"
+#include "core/field/distance_field.h"
 #include "core/scene/part.h"
 #include "tests/support/broken_mesh.h"
 #include "tests/support/brute_force_mesh.h"

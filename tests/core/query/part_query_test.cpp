@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/base/random.h"
+#include "core/field/distance_field.h"
 
 namespace passung {
 namespace {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/random.h"
+#include "core/field/distance_field.h"
 #include "core/scene/part.h"
 #include "core/shell/shell_bytes.h"
 
