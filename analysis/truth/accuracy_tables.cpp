@@ -4,33 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
+
+#include "analysis/truth/item_columns.h"
 
 namespace passung::truth {
 
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-
-std::string cell(double value) { return std::isnan(value) ? "NA" : fmt::format("{:.6g}", value); }
-
-template <class Item>
-struct ItemColumn {
-    std::string name, unit, meaning;
-    std::function<std::string(const Item&)> text;
-};
-
-template <class Item>
-std::string csv(const std::vector<ItemColumn<Item>>& columns, const std::vector<Item>& items) {
-    std::string text;
-    for (const auto& column : columns) text += (text.empty() ? "" : ",") + column.name;
-    for (const Item& item : items) {
-        text += '\n';
-        for (std::size_t i = 0; i < columns.size(); ++i) text += (i > 0 ? "," : "") + columns[i].text(item);
-    }
-    return text + '\n';
-}
 
 using RowColumns = std::vector<ItemColumn<SettingCost>>;
 
@@ -153,11 +135,8 @@ std::string accuracyCsv(const std::vector<SettingCost>& rows) { return csv(rowCo
 std::string posesCsv(const std::vector<JudgedPose>& poses) { return csv(poseColumns(), poses); }
 
 std::string accuracyCodebook() {
-    std::string text = "file,column,unit,meaning\n";
-    const auto add = [&](const char* file, const auto& columns) {
-        for (const auto& column : columns)
-            text += fmt::format("{},{},{},\"{}\"\n", file, column.name, column.unit, column.meaning);
-    };
+    std::string text = kCodebookHeader;
+    const auto add = [&](const char* file, const auto& columns) { text += codebookOf(file, columns); };
     add("accuracy.csv", rowColumns());
     add("poses.csv", poseColumns());
     return text;
