@@ -3,17 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <system_error>
 
 #include "analysis/truth/accuracy_picture.h"
 #include "analysis/truth/accuracy_sweep.h"
 #include "analysis/truth/accuracy_tables.h"
-#include "core/base/regular_file.h"
 #include "study/run/files/builds.h"
 #include "ui/cli/commands.h"
 #include "ui/cli/console.h"
 #include "ui/cli/part_argument.h"
 #include "ui/cli/pose_table.h"
+#include "ui/cli/result_folder.h"
 
 namespace passung::cli {
 
@@ -25,53 +24,6 @@ constexpr std::size_t kMostPrinted = 20;  // disagreements
 // The picture first, for it tells whose results these are: so does what an interrupted run leaves.
 constexpr std::array kFiles{"accuracy.svg", "accuracy.csv", "poses.csv", "codebook.csv"};
 
-/// A folder for the results; whatever of it was not there before and is still empty in the end is removed.
-class ResultFolder {
-public:
-    explicit ResultFolder(const std::string& name) : folder_(name) {}
-    ~ResultFolder() {
-        std::error_code full;
-        for (const fs::path& made : made_) fs::remove(made, full);
-    }
-    ResultFolder(const ResultFolder&) = delete;
-    ResultFolder& operator=(const ResultFolder&) = delete;
-
-    /// Only nothing, an empty folder, or earlier results of the same pair and nothing else may be replaced.
-    Result<Done> begin(const truth::PictureText& pair) {
-        try {
-            if (auto replaceable = checkReplaceable(pair); !replaceable) return replaceable;
-            for (fs::path part = folder_; !part.empty() && !fs::exists(fs::symlink_status(part));
-                 part = part.parent_path())
-                made_.push_back(part);
-            fs::create_directories(folder_);
-        } catch (const fs::filesystem_error& failed) {
-            return error("cannot be made: " + failed.code().message());
-        }
-        return Done{};
-    }
-
-private:
-    Error error(std::string message) const { return {.message = std::move(message), .file = folder_.string()}; }
-
-    Result<Done> checkReplaceable(const truth::PictureText& pair) const {
-        if (!fs::exists(folder_)) return Done{};
-        if (!fs::is_directory(folder_)) return error("exists and is not a folder");
-        if (fs::is_empty(folder_)) return Done{};
-        for (const auto& entry : fs::directory_iterator(folder_))
-            if (std::find(kFiles.begin(), kFiles.end(), entry.path().filename()) == kFiles.end())
-                return error("exists and holds something else than results of accuracy (" +
-                             entry.path().filename().string() + "): name another folder");
-        const auto picture = readFile((folder_ / "accuracy.svg").string());
-        if (!picture || !truth::isPictureOf(*picture, pair))
-            return error("holds results that are not of " + pair.shell + " against " + pair.field +
-                         ": name another folder");
-        return Done{};
-    }
-
-    fs::path folder_;
-    std::vector<fs::path> made_;  // innermost first
-};
-
 truth::AccuracySpace spaceOf(const AccuracyArguments& options, double length) {
     truth::AccuracySpace space;
     space.modes.clear();
@@ -79,32 +31,25 @@ truth::AccuracySpace spaceOf(const AccuracyArguments& options, double length) {
         if (options.modes.empty() ||
             std::find(options.modes.begin(), options.modes.end(), field::modeName(mode)) != options.modes.end())
             space.modes.push_back(mode);
-    space.tolerances.clear();
+    if (!options.tolerances_um.empty()) space.tolerances.clear();
     for (const double tolerance : options.tolerances_um) space.tolerances.push_back(1e-6 * tolerance);
     for (const double spacing : options.spacings_mm) space.spacings.push_back(1e-3 * spacing);
     if (space.spacings.empty()) space.spacings = truth::defaultSpacings(length);
-    space.budgets = options.budgets;
+    if (!options.budgets.empty()) space.budgets = options.budgets;
     space.repetitions = options.repetitions;
     return space;
 }
 
-Result<Done> writeFile(const fs::path& path, const std::string& text) {
-    OutputFile file(path.string());
-    file.write(text);
-    return file.commit();
-}
-
 std::string nameOf(const std::string& path) { return fs::path(path).stem().string(); }
 
-Result<Done> writeAll(const AccuracyArguments& options, const truth::AccuracyResult& result,
+Result<Done> writeAll(const AccuracyArguments& options, const ResultFolder& folder, const truth::AccuracyResult& result,
                       const std::vector<truth::JudgedPose>& poses) {
-    const fs::path folder(options.out);
     truth::PictureText text{nameOf(options.field), nameOf(options.shell), poses.size(), 0};
     for (const auto& pose : poses) text.contacts += pose.truth.inContact() ? 1 : 0;
     const std::array contents{truth::accuracyPicture(result.rows, text), truth::accuracyCsv(result.rows),
                               truth::posesCsv(poses), truth::accuracyCodebook()};
     for (std::size_t i = 0; i < kFiles.size(); ++i)
-        if (auto done = writeFile(folder / kFiles[i], contents[i]); !done) return done;
+        if (auto done = folder.write(kFiles[i], contents[i]); !done) return done;
     return Done{};
 }
 
@@ -127,6 +72,7 @@ int printDisagreements(const truth::AccuracyResult& result) {
 }  // namespace
 
 int accuracy(const AccuracyArguments& options) {
+    if (!options.trajectory.empty()) return tickAccuracy(options);
     const auto field = partArgument(options.field, options.field_unit.empty() ? options.unit : options.field_unit);
     if (!field) return fail(field.errors());
     const auto shell = partArgument(options.shell, options.shell_unit.empty() ? options.unit : options.shell_unit);
@@ -139,8 +85,10 @@ int accuracy(const AccuracyArguments& options) {
         if (poses->empty()) return fail({{.message = "has no pose", .file = options.poses}});
         given = std::move(*poses);
     }
-    ResultFolder folder(options.out);
-    if (const auto begun = folder.begin({nameOf(options.field), nameOf(options.shell)}); !begun)
+    ResultFolder folder(options.out, kFiles);
+    const truth::PictureText pair{nameOf(options.field), nameOf(options.shell)};
+    const auto is_ours = [&](const std::string& picture) { return truth::isPictureOf(picture, pair); };
+    if (const auto begun = folder.begin(is_ours, pair.shell + " against " + pair.field); !begun)
         return fail(begun.errors());
 
     ProgressLine progress;
@@ -161,7 +109,7 @@ int accuracy(const AccuracyArguments& options) {
         *field, *shell, spaceOf(options, truth->length()), poses, shaken, truth->lever(),
         [&](const std::string& what, double share) { progress.show(progressBar(what, share)); }, builds.get());
     if (!result) return fail(result.errors());
-    if (const auto done = writeAll(options, *result, poses); !done) return fail(done.errors());
+    if (const auto done = writeAll(options, folder, *result, poses); !done) return fail(done.errors());
     fmt::print("{}", truth::frontText(result->rows));
     const int code = printDisagreements(*result);
     fmt::print("{}: accuracy.csv, accuracy.svg, poses.csv, codebook.csv\n", options.out);

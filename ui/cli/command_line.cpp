@@ -405,39 +405,94 @@ private:
     }
 
     void addAccuracyCommand(const CLI::Validator& units) {
-        auto* sub =
-            command("accuracy", "measure error against truth over time, for every way to ask", accuracy_, accuracy);
-        sub->add_option("FIELD", accuracy_.field, "watertight mesh or part.toml")->required();
-        addImport(sub, accuracy_.import_limits);
-        sub->add_option("SHELL", accuracy_.shell, "mesh or part.toml")->required();
-        sub->add_option("--out", accuracy_.out, "folder for accuracy.csv, accuracy.svg, poses.csv, codebook.csv")
+        auto* sub = command("accuracy", "measure error against truth over time, of queries or of a scene's tick",
+                            accuracy_, accuracy);
+        sub->add_option("FIELD", accuracy_.field, "watertight mesh or part.toml; with --trajectory the scene (.toml)")
             ->required();
+        addImport(sub, accuracy_.import_limits);
+        auto* shell = sub->add_option("SHELL", accuracy_.shell, "mesh or part.toml; left out with --trajectory");
+        sub->add_option("--out", accuracy_.out,
+                        "folder for accuracy.csv, accuracy.svg, codebook.csv, without --trajectory poses.csv")
+            ->required();
+        auto* trajectory =
+            sub->add_option("--trajectory", accuracy_.trajectory,
+                            "CSV of poses of the held part, as for simulate: the scene's tick is measured "
+                            "along it, in every way to render it")
+                ->excludes(shell);
+        sub->parse_complete_callback([this] {
+            if (accuracy_.trajectory.empty() && accuracy_.shell.empty()) throw CLI::RequiredError("SHELL");
+        });
+        addAccuracyLevels(sub);
+        addPairOptions(sub, trajectory, units);
+        addTickOptions(sub, trajectory);
+        sub->add_option("--repetitions", accuracy_.repetitions,
+                        "repetitions, the fastest of which is the time of a pose or tick; default 5")
+            ->check(wholeIntFrom(1));
+    }
+
+    static CLI::Option* list(CLI::Option* option) { return option->delimiter(',')->expected(1, -1); }
+
+    void addAccuracyLevels(CLI::App* sub) {
+        list(sub->add_option("--tolerances-um", accuracy_.tolerances_um,
+                             "tolerances of the field; default 100,50,20,10, of a scene twice its own and its own")
+                 ->check(above0()));
+        list(
+            sub->add_option("--spacings-mm", accuracy_.spacings_mm,
+                            "spacings of SHELL's points; default: four around a fiftieth of SHELL's longest side, of a "
+                            "scene twice its own and its own")
+                ->check(above0()));
+        list(sub->add_option("--budgets", accuracy_.budgets,
+                             "most nodes of a query, 0: no limit; default 0,1000,300,100, of a scene its own")
+                 ->check(wholeIntFrom(0)));
+        list(sub->add_option("--modes", accuracy_.modes, "modes of interpolation; default: all, of a scene its own")
+                 ->check(aMode()));
+    }
+
+    /// Of queries of a pair alone.
+    void addPairOptions(CLI::App* sub, CLI::Option* trajectory, const CLI::Validator& units) {
         auto* poses = sub->add_option("--poses", accuracy_.poses,
-                                      "CSV of poses of SHELL in FIELD, as for query; default: along contact paths");
+                                      "CSV of poses of SHELL in FIELD, as for query; default: along contact paths")
+                          ->excludes(trajectory);
         sub->add_option("--paths", accuracy_.paths, "contact paths of 11 poses each; default 12")
             ->check(wholeIntFrom(1))
-            ->excludes(poses);
-        sub->add_option("--seed", accuracy_.seed, "seed of the paths; default 1")->check(wholeUnsigned());
-        const auto list = [](CLI::Option* option) { option->delimiter(',')->expected(1, -1); };
-        list(
-            sub->add_option("--tolerances-um", accuracy_.tolerances_um, "tolerances of the field; default 100,50,20,10")
-                ->check(above0()));
-        list(sub->add_option("--spacings-mm", accuracy_.spacings_mm,
-                             "spacings of SHELL's points; default: four around a fiftieth of SHELL's longest side")
-                 ->check(above0()));
-        list(sub->add_option("--budgets", accuracy_.budgets,
-                             "most nodes of a query, 0: no limit; default 0,1000,300,100")
-                 ->check(wholeIntFrom(0)));
-        list(sub->add_option("--modes", accuracy_.modes, "modes of interpolation; default: all")->check(aMode()));
-        sub->add_option("--repetitions", accuracy_.repetitions,
-                        "repetitions, the fastest of which is a pose's time; default 5")
-            ->check(wholeIntFrom(1));
+            ->excludes(poses)
+            ->excludes(trajectory);
+        sub->add_option("--seed", accuracy_.seed, "seed of the paths; default 1")
+            ->check(wholeUnsigned())
+            ->excludes(trajectory);
         sub->add_option("--fcl-poses", accuracy_.fcl_poses,
                         "number of further poses whose separation and intersection are compared with FCL; default 1000")
-            ->check(wholeIntFrom(0));
-        sub->add_option("--unit", accuracy_.unit, "unit of files that have none; default mm")->check(units);
-        sub->add_option("--field-unit", accuracy_.field_unit, "unit of FIELD, instead of --unit")->check(units);
-        sub->add_option("--shell-unit", accuracy_.shell_unit, "unit of SHELL, instead of --unit")->check(units);
+            ->check(wholeIntFrom(0))
+            ->excludes(trajectory);
+        sub->add_option("--unit", accuracy_.unit, "unit of files that have none; default mm")
+            ->check(units)
+            ->excludes(trajectory);
+        sub->add_option("--field-unit", accuracy_.field_unit, "unit of FIELD, instead of --unit")
+            ->check(units)
+            ->excludes(trajectory);
+        sub->add_option("--shell-unit", accuracy_.shell_unit, "unit of SHELL, instead of --unit")
+            ->check(units)
+            ->excludes(trajectory);
+    }
+
+    /// Of a scene's tick alone.
+    void addTickOptions(CLI::App* sub, CLI::Option* trajectory) {
+        list(sub->add_option("--methods", accuracy_.methods, "methods of contact; default: all")
+                 ->check(CLI::IsMember({"penalty", "god_object_heuristic", "god_object"})))
+            ->needs(trajectory);
+        list(sub->add_option("--geometries", accuracy_.geometries,
+                             "geometries of contact; default: all that the scene's parts can have")
+                 ->check(CLI::IsMember({"closed_form", "surface", "field"})))
+            ->needs(trajectory);
+        list(sub->add_option("--ways", accuracy_.ways,
+                             "1: points of the held part, 2: of both parts (two_way); default: the scene's own")
+                 ->check(CLI::IsMember({"1", "2"})))
+            ->needs(trajectory);
+        sub->add_option("--every", accuracy_.every,
+                        "ticks from one whose overlap and force are judged to the next; default 20. Those of largest "
+                        "recorded overlap and force are judged besides")
+            ->check(wholeIntFrom(1))
+            ->needs(trajectory);
     }
 
     CLI::App app_;

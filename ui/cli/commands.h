@@ -183,20 +183,25 @@ struct SimulateArguments {
 int simulate(const SimulateArguments& options);
 
 struct AccuracyArguments {
-    std::string field, shell, out;
-    std::string poses;  // empty: along generated contact paths
+    std::string field, shell, out;  // with a trajectory: field is the scene, shell is empty
+    std::string poses;              // empty: along generated contact paths
+    std::string trajectory;         // of the held part; empty: queries of a pair are measured, not ticks of a scene
     int paths = 12;
     std::uint64_t seed = 1;
-    std::vector<double> tolerances_um{100.0, 50.0, 20.0, 10.0};
-    std::vector<double> spacings_mm;  // empty: from the size of SHELL
-    std::vector<int> budgets{0, 1000, 300, 100};
-    std::vector<std::string> modes;  // empty: all
+    std::vector<double> tolerances_um;  // empty: 100, 50, 20, 10; of ticks twice the scene's and its own
+    std::vector<double> spacings_mm;    // empty: from the size of SHELL; of ticks twice the scene's and its own
+    std::vector<int> budgets;           // empty: 0, 1000, 300, 100; of ticks the scene's own
+    std::vector<std::string> modes;     // empty: all; of ticks the scene's own
+    std::vector<std::string> methods, geometries;  // of ticks; empty: all that the scene can have
+    std::vector<int> ways;                         // of ticks: 1, 2; empty: the scene's own
+    int every = 20;                                // of so many ticks one is judged
     int repetitions = 5;
     int fcl_poses = 1000;
     std::string unit = "mm", field_unit, shell_unit;  // empty: unit
     run::ImportLimits import_limits;
 };
 int accuracy(const AccuracyArguments& options);
+int tickAccuracy(const AccuracyArguments& options);
 
 struct BenchArguments {
     std::string out, filter;
