@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <functional>
@@ -12,9 +13,10 @@
 #include "analysis/truth/exact_overlap.h"
 #include "analysis/truth/force_reference.h"
 #include "core/base/processor_clock.h"
+#include "core/field/distance_field.h"
 #include "core/scene/contact_geometry.h"
 #include "core/scene/scene.h"
-#include "core/tick/step.h"
+#include "core/tick/scene_sequence.h"
 
 namespace passung::truth {
 
@@ -75,17 +77,17 @@ DeviceReading readingAt(const Pose& X_WH) {
 
 Shown show(const scene::Scene& scene, std::span<const Pose> path) {
     const scene::Scene spring = springOf(scene);
-    const tick::TickModel model = tick::makeModel(spring);
-    tick::TickState state = tick::makeState(model);
+    const tick::SceneModels models(spring);
+    tick::SceneSequence ticks(std::array{tick::SceneTurn{&models[0]}});
+    const scene::ContactSpec& contact = spring.spec.contact;
     Shown shown;
     for (const Pose& pose : path) {
-        const tick::TickOutput output = tick::step(model, state, readingAt(pose));
+        const tick::TickOutput output = ticks.step(readingAt(pose));
         const tick::TickFrame& frame = output.frame;
         shown.X_WH.push_back(frame.X_WH);
         shown.X_WG.push_back(output.X_WG);
-        shown.force.push_back(model.contact.rendersAtHand()
-                                  ? frame.F_H_W.force
-                                  : Vec3(model.contact.stiffness * (output.X_WG.p - frame.X_WH.p)));
+        shown.force.push_back(contact.rendersAtHand() ? frame.F_H_W.force
+                                                      : Vec3(contact.stiffness * (output.X_WG.p - frame.X_WH.p)));
         shown.depth.push_back(frame.proxy_depth);
         shown.usable.push_back(frame.input_usable && !frame.relocated && frame.sample_periods == 1);
         shown.suspended.push_back((frame.status & kSuspended) != 0);
@@ -95,15 +97,15 @@ Shown show(const scene::Scene& scene, std::span<const Pose> path) {
 
 void timeTicks(const scene::Scene& scene, std::span<const Pose> path, int repetitions, PathCost& row) {
     constexpr double kUnlimited = std::numeric_limits<double>::infinity();
-    const tick::TickModel model = tick::makeModel(scene);
+    const tick::SceneModels models(scene);
     std::vector<double> time(path.size(), kUnlimited), wall(path.size(), kUnlimited);
     for (int run = 0; run < repetitions; ++run) {
-        tick::TickState state = tick::makeState(model);
+        tick::SceneSequence ticks(std::array{tick::SceneTurn{&models[0]}});
         for (std::size_t i = 0; i < path.size(); ++i) {
             const DeviceReading reading = readingAt(path[i]);
             const auto begin = std::chrono::steady_clock::now();
             const std::int64_t processor = threadProcessorNanoseconds();
-            tick::step(model, state, reading);
+            ticks.step(reading);
             const std::int64_t spent = threadProcessorNanoseconds() - processor;
             const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
             time[i] = std::min(time[i], 1e-9 * static_cast<double>(spent));
@@ -112,19 +114,6 @@ void timeTicks(const scene::Scene& scene, std::span<const Pose> path, int repeti
     }
     row.time = tickSpreadOf(std::move(time));
     row.wall = tickSpreadOf(std::move(wall));
-}
-
-double bytesOf(const surface::ClusterTree& tree) {
-    std::uint32_t corners = 0;
-    for (std::uint32_t i = 0; i < tree.size(); ++i) corners = std::max(corners, tree[i].first + tree[i].count);
-    return static_cast<double>(tree.size() * sizeof(surface::Cluster) + 3 * sizeof(double) * corners);
-}
-
-double bytesOf(const closed_form::SmoothSolid& solid) {
-    std::size_t bytes = sizeof(solid) + (solid.edges.size() + solid.cores.size()) * sizeof(closed_form::Curve);
-    for (const closed_form::Lump& lump : solid.lumps)
-        bytes += sizeof(lump) + lump.faces.size() * sizeof(closed_form::Face);
-    return static_cast<double>(bytes);
 }
 
 /// Points, and memory of what contact is computed from.
@@ -138,9 +127,7 @@ void measureSize(const scene::Scene& scene, PathCost& row) {
         }
         return;
     }
-    const tick::TickModel model = tick::makeModel(scene);
-    for (const auto& tree : model.surfaces) row.bytes += bytesOf(tree);
-    for (const auto& solid : model.solids) row.bytes += bytesOf(solid);
+    row.bytes = static_cast<double>(tick::SceneModels(scene).memoryBytes(0));
 }
 
 /// Every so many, and the most striking; in their order.

@@ -5,6 +5,23 @@
 
 namespace passung::tick {
 
+namespace {
+
+std::size_t bytesOf(const surface::ClusterTree& tree) noexcept {
+    std::uint32_t corners = 0;
+    for (std::uint32_t i = 0; i < tree.size(); ++i) corners = std::max(corners, tree[i].first + tree[i].count);
+    return tree.size() * sizeof(surface::Cluster) + 3 * sizeof(double) * corners;
+}
+
+std::size_t bytesOf(const closed_form::SmoothSolid& solid) noexcept {
+    std::size_t bytes = sizeof(solid) + (solid.edges.size() + solid.cores.size()) * sizeof(closed_form::Curve);
+    for (const closed_form::Lump& lump : solid.lumps)
+        bytes += sizeof(lump) + lump.faces.size() * sizeof(closed_form::Face);
+    return bytes;
+}
+
+}  // namespace
+
 SceneModels::SceneModels() = default;
 
 SceneModels::SceneModels(std::span<const scene::Scene> scenes) {
@@ -23,6 +40,13 @@ std::size_t SceneModels::size() const noexcept { return models_.size(); }
 const TickModel& SceneModels::operator[](std::size_t i) const noexcept { return models_[i]; }
 
 std::span<const Stage> SceneModels::stages(std::size_t i) const noexcept { return models_[i].stages; }
+
+std::size_t SceneModels::memoryBytes(std::size_t i) const noexcept {
+    std::size_t bytes = 0;
+    for (const auto& tree : models_[i].surfaces) bytes += bytesOf(tree);
+    for (const auto& solid : models_[i].solids) bytes += bytesOf(solid);
+    return bytes;
+}
 
 SceneSequence::SceneSequence(std::span<const SceneTurn> turns) : turns_(turns.begin(), turns.end()) {
     states_.reserve(turns_.size());

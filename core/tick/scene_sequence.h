@@ -32,6 +32,9 @@ public:
     const TickModel& operator[](std::size_t i) const noexcept;
     /// Those of the scene number `i`, in the order of the tick. @pre `i` < size()
     std::span<const Stage> stages(std::size_t i) const noexcept;
+    /// Of the surfaces and smooth solids that scene number `i` computes contact from [bytes]; fields and points are its
+    /// parts'. @pre `i` < size()
+    std::size_t memoryBytes(std::size_t i) const noexcept;
 
 private:
     std::vector<TickModel> models_;
