@@ -13,7 +13,6 @@
 #include "analysis/truth/exact_overlap.h"
 #include "analysis/truth/force_reference.h"
 #include "core/base/processor_clock.h"
-#include "core/field/distance_field.h"
 #include "core/scene/contact_geometry.h"
 #include "core/scene/scene.h"
 #include "core/tick/scene_sequence.h"
@@ -122,7 +121,7 @@ void measureSize(const scene::Scene& scene, PathCost& row) {
         const auto& shell = scene.parts[scene.held]->shell;
         row.points = shell ? shell->points().size() : 0;
         for (const auto& part : scene.parts) {
-            if (part->field) row.bytes += static_cast<double>(part->field->memoryBytes());
+            row.bytes += static_cast<double>(scene::fieldBytes(*part));
             if (part->shell) row.bytes += static_cast<double>(part->shell->memoryBytes());
         }
         return;
