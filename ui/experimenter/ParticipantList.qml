@@ -1,5 +1,4 @@
 import QtQuick
-import QtQuick.Layouts
 import "../controls"
 
 // The participants, a line each.

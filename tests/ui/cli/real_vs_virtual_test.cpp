@@ -21,8 +21,6 @@ protected:
         fs::copy(shipped / "real_vs_virtual", folder_.path() / "study", fs::copy_options::recursive);
         std::string text = readText(study());
         const std::map<std::string, std::string> smaller = {
-            {"cell_mm = 0.5", "cell_mm = 1.0"},
-            {"spacing_mm = 1.0", "spacing_mm = 3.0"},
             {"height = 30, bore_diameter = 21.0, bore_depth = 25, chamfer = 0.5",
              "height = 12, bore_diameter = 22.0, bore_depth = 10, chamfer = 1"},
             {"length = 50, chamfer = 0.5", "length = 20, chamfer = 1"},
