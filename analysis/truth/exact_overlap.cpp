@@ -13,6 +13,7 @@ namespace passung::truth {
 namespace {
 
 constexpr double kAside = 1e-9;  // [m] outside a plane: what lies there does not count as in the solid
+constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
 double radiusOf(std::span<const Vec3> corners, const Vec3& middle) {
     double squared = 0.0;
@@ -24,9 +25,15 @@ double radiusOf(std::span<const Vec3> corners, const Vec3& middle) {
 struct Polygon {
     std::array<Vec3, 8> corners;
     std::size_t count = 0;
+    std::uint8_t fresh = 0;  // bits: corners that the whole it is a half of had not
 
     std::span<const Vec3> span() const { return std::span(corners).first(count); }
     void add(const Vec3& p) { corners[count++] = p; }
+    void addFresh(const Vec3& p) {
+        fresh |= static_cast<std::uint8_t>(1u << count);
+        add(p);
+    }
+    bool isFresh(std::size_t corner) const { return (fresh >> corner & 1u) != 0; }
     Vec3 middle() const {
         Vec3 sum = Vec3::Zero();
         for (const Vec3& corner : span()) sum += corner;
@@ -36,7 +43,7 @@ struct Polygon {
 
 Polygon polygonOf(const Corners& t) {
     Polygon polygon;
-    for (const Vec3& corner : t) polygon.add(corner);
+    for (const Vec3& corner : t) polygon.addFresh(corner);
     return polygon;
 }
 
@@ -65,19 +72,41 @@ std::array<Polygon, 2> halves(const Polygon& whole) {
         parts[at_a < 0.0 ? 0 : 1].add(a);
         if ((at_a < 0.0) == (at_b < 0.0)) continue;
         const Vec3 between = a + at_a / (at_a - at_b) * (b - a);
-        for (Polygon& part : parts) part.add(between);
+        for (Polygon& part : parts) part.addFresh(between);
     }
     return parts;
 }
 
 /// A branch of a surface's tree, or a piece of one of its triangles in the frame of the solid.
 struct Piece {
-    double bound;        // no point of it is deeper [m]
-    bool b_in_a;         // whose surface
-    std::uint32_t node;  // kNone: a piece
-    Polygon polygon;
+    double bound;      // no point of it is deeper [m]
+    std::uint32_t at;  // node of the tree, or place in Polygons
+    bool b_in_a;       // whose surface
+    bool is_node;
 };
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+/// Pieces of triangles that wait. What one leaves the next takes.
+class Polygons {
+public:
+    std::uint32_t keep(const Polygon& polygon) {
+        if (free_.empty()) {
+            kept_.push_back(polygon);
+            return static_cast<std::uint32_t>(kept_.size() - 1);
+        }
+        const std::uint32_t at = free_.back();
+        free_.pop_back();
+        kept_[at] = polygon;
+        return at;
+    }
+    Polygon take(std::uint32_t at) {
+        free_.push_back(at);
+        return kept_[at];
+    }
+
+private:
+    std::vector<Polygon> kept_;
+    std::vector<std::uint32_t> free_;
+};
 
 /// Which surface is looked for in which solid.
 struct Direction {
@@ -112,13 +141,13 @@ private:
 
     void expand(const Piece& piece) {
         const Direction& way = of(piece.b_in_a);
-        if (piece.node == kNone) {
-            for (const Polygon& half : halves(piece.polygon)) addPolygon(piece.b_in_a, half);
+        if (!piece.is_node) {
+            for (const Polygon& half : halves(polygons_.take(piece.at))) addPolygon(piece.b_in_a, half);
             return;
         }
-        const TriangleBoxes::Node& node = way.surface->surface().nodes()[piece.node];
+        const TriangleBoxes::Node& node = way.surface->surface().nodes()[piece.at];
         if (node.right != 0) {
-            addNode(piece.b_in_a, piece.node + 1);
+            addNode(piece.b_in_a, piece.at + 1);
             addNode(piece.b_in_a, node.right);
             return;
         }
@@ -135,14 +164,16 @@ private:
         for (Vec3& corner : corners) corner = way.inSolid(corner);
         const Vec3 middle = 0.5 * (corners.front() + corners.back());
         ++found_.pieces;
+        const double at_once = way.solid->deepestAtOnce(corners, middle);
+        if (!isOpen(at_once)) return;
         const double phi = way.solid->signedDistance(middle), radius = radiusOf(corners, middle);
         if (phi >= radius) return;
-        const double bound = std::min(radius - phi, way.solid->deepestOver(corners, middle, phi));
+        const double bound = std::min(at_once, way.solid->deepestOver(corners, middle, phi));
         const double enough = std::max(found_.depth, search_.ignore);
         if (bound > enough && isShallow(way, index, middle, enough))
             left_out_ = std::max(left_out_, search_.ignore);
-        else
-            push({bound, b_in_a, index, {}});
+        else if (isOpen(bound))
+            waiting_.push({bound, index, b_in_a, true});
     }
 
     /// Does the hull of the vertices themselves, tighter than any box, prove it?
@@ -164,22 +195,22 @@ private:
         const Direction& way = of(b_in_a);
         const Vec3 middle = piece.middle();
         ++found_.pieces;
+        const double at_once = way.solid->deepestAtOnce(piece.span(), middle);
+        if (!isOpen(at_once)) return;
         const double phi = way.solid->signedDistance(middle);
         note(way, middle, phi);
-        const double radius = radiusOf(piece.span(), middle);
-        if (phi >= radius) return;
-        const double bound = std::min(radius - phi, way.solid->deepestOverPiece(piece.span(), middle, phi));
-        if (way.solid->isOutside(piece.span(), phi) || !push({bound, b_in_a, kNone, piece})) return;
-        for (const Vec3& corner : piece.span()) note(way, corner, way.solid->signedDistance(corner));
+        if (phi >= radiusOf(piece.span(), middle)) return;
+        const double bound = std::min(at_once, way.solid->deepestOverPiece(piece.span(), middle, phi));
+        if (way.solid->isOutside(piece.span(), phi) || !isOpen(bound)) return;
+        waiting_.push({bound, polygons_.keep(piece), b_in_a, false});
+        for (std::size_t i = 0; i < piece.count; ++i)
+            if (piece.isFresh(i)) note(way, piece.corners[i], way.solid->signedDistance(piece.corners[i]));
     }
 
     /// What is no deeper than what is found, or need not be told, is left out.
-    bool push(const Piece& piece) {
-        if (piece.bound > std::max(found_.depth, search_.ignore)) {
-            waiting_.push(piece);
-            return true;
-        }
-        if (piece.bound <= search_.ignore) left_out_ = std::max(left_out_, piece.bound);
+    bool isOpen(double bound) {
+        if (bound > std::max(found_.depth, search_.ignore)) return true;
+        if (bound <= search_.ignore) left_out_ = std::max(left_out_, bound);
         return false;
     }
 
@@ -192,6 +223,7 @@ private:
     double left_out_ = 0.0;
     std::vector<Vec3> placed_;  // vertices of a node in the solid's frame
     std::priority_queue<Piece, std::vector<Piece>, Later> waiting_;
+    Polygons polygons_;
 };
 
 struct Meeting {
@@ -233,12 +265,15 @@ double OverlapBody::signedDistance(const Vec3& p) const {
     return surface_->contains(p) ? -distance : distance;
 }
 
+double OverlapBody::deepestAtOnce(std::span<const Vec3> corners, const Vec3& middle) const {
+    return shape_ != nullptr ? truth::deepestOver(*shape_, corners, middle) : kUnknown;
+}
+
 /// Of a mesh: the nearest triangle is one convex set outside, the shadow of the hull on its plane another, if nothing
 /// of the mesh crosses it. The triangle that is nearest to the middle shows how near the bound gets to the depth.
 double OverlapBody::deepestOver(std::span<const Vec3> corners, const Vec3& middle, double phi) const {
-    if (shape_ != nullptr) return truth::deepestOver(*shape_, corners, middle);
     const double lipschitz = radiusOf(corners, middle) - phi;
-    if (!(phi < 0.0)) return lipschitz;
+    if (shape_ != nullptr || !(phi < 0.0)) return lipschitz;
     const Corners& nearest = surface_->triangles()[surface_->nearest(middle).triangle];
     double of_triangle = 0.0;
     for (const Vec3& corner : corners) of_triangle = std::max(of_triangle, distanceToTriangle(corner, nearest));

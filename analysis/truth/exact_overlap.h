@@ -48,7 +48,10 @@ public:
     bool hasInside() const;
     /// Positive outside [m]. @pre hasInside().
     double signedDistance(const Vec3& p) const;
-    /// No point of the hull of `corners` is deeper than this [m]; `middle` near its middle, `phi` its signed distance.
+    /// No point of the hull of `corners` is deeper than this [m]; `middle` near its middle. Of a mesh nothing is known
+    /// at once: infinite.
+    double deepestAtOnce(std::span<const Vec3> corners, const Vec3& middle) const;
+    /// The same with `phi`, the signed distance of the middle.
     double deepestOver(std::span<const Vec3> corners, const Vec3& middle, double phi) const;
     /// Is the hull of `corners` proven to be no deeper than `enough` [m]? Of a mesh never: that would take too long.
     bool isShallow(std::span<const Vec3> corners, const Vec3& middle, double enough) const;
