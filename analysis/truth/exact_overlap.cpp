@@ -116,6 +116,16 @@ struct Direction {
     Mat3 R_SolidSurface = X_SolidSurface.q.toRotationMatrix();  // for many points faster than the quaternion
 
     Vec3 inSolid(const Vec3& p_Surface) const { return R_SolidSurface * p_Surface + X_SolidSurface.p; }
+    /// The corners of a box (TriangleBoxes::Node::hull).
+    std::array<Vec3, 8> boxInSolid(const std::array<Vec3, 8>& box) const {
+        std::array<Vec3, 8> corners;
+        corners[0] = inSolid(box[0]);
+        for (const std::size_t axis : {1u, 2u, 4u}) {
+            const Vec3 edge = R_SolidSurface * (box[axis] - box[0]);
+            for (std::size_t k = 0; k < axis; ++k) corners[k + axis] = corners[k] + edge;
+        }
+        return corners;
+    }
 };
 
 class Search {
@@ -160,8 +170,7 @@ private:
 
     void addNode(bool b_in_a, std::uint32_t index) {
         const Direction& way = of(b_in_a);
-        std::array<Vec3, 8> corners = way.surface->surface().nodes()[index].hull;
-        for (Vec3& corner : corners) corner = way.inSolid(corner);
+        const std::array<Vec3, 8> corners = way.boxInSolid(way.surface->surface().nodes()[index].hull);
         const Vec3 middle = 0.5 * (corners.front() + corners.back());
         ++found_.pieces;
         const double at_once = way.solid->deepestAtOnce(corners, middle);
