@@ -10,6 +10,8 @@ namespace passung::surface {
 
 namespace {
 
+using geometry::kLanes;
+
 constexpr int kMostLooks = 32;
 constexpr double kExact = 1e-4;      // of the distance: left between what is proven and what is reached
 constexpr double kResolved = 1e-11;  // [m], the same

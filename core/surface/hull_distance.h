@@ -2,9 +2,12 @@
 
 #include <array>
 
-#include "core/surface/cluster_tree.h"
+#include "core/geometry/cluster_tree.h"
 
 namespace passung::surface {
+
+using geometry::Cluster;
+using geometry::ClusterTree;
 
 /// A pose as a matrix, and a rigid motion's effect on directions.
 struct Placement {

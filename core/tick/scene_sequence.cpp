@@ -7,10 +7,10 @@ namespace passung::tick {
 
 namespace {
 
-std::size_t bytesOf(const surface::ClusterTree& tree) noexcept {
+std::size_t bytesOf(const geometry::ClusterTree& tree) noexcept {
     std::uint32_t corners = 0;
     for (std::uint32_t i = 0; i < tree.size(); ++i) corners = std::max(corners, tree[i].first + tree[i].count);
-    return tree.size() * sizeof(surface::Cluster) + 3 * sizeof(double) * corners;
+    return tree.size() * sizeof(geometry::Cluster) + 3 * sizeof(double) * corners;
 }
 
 std::size_t bytesOf(const closed_form::SmoothSolid& solid) noexcept {

@@ -4,10 +4,10 @@
 
 #include "core/base/types.h"
 #include "core/closed_form/solid.h"
+#include "core/geometry/cluster_tree.h"
 #include "core/motion/friction.h"
 #include "core/scene/contact_geometry.h"
 #include "core/scene/scene.h"
-#include "core/surface/cluster_tree.h"
 #include "core/tick/stage.h"
 
 namespace passung::tick {
@@ -36,8 +36,8 @@ struct TickModel {
     const shell::EdgeCurves* edges = nullptr;
     const field::DistanceField* held_field = nullptr;  // two-way contact only
     std::vector<closed_form::SmoothSolid> solids;      // Geometry::ClosedForm only: the held part, the obstacles
-    std::vector<surface::ClusterTree> surfaces;  // Geometry::Surface only: the held part, all obstacles in the world
-    std::vector<std::uint32_t> first_triangles;  // of each obstacle in the second of those
+    std::vector<geometry::ClusterTree> surfaces;  // Geometry::Surface only: the held part, all obstacles in the world
+    std::vector<std::uint32_t> first_triangles;   // of each obstacle in the second of those
     std::vector<Obstacle> obstacles;
     std::vector<motion::Friction> friction;  // of each obstacle with the held part; empty: the scene names none
     Pose X_WG_start;

@@ -1,38 +1,37 @@
-#include "core/surface/cluster_tree.h"
+#include "core/geometry/cluster_tree.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-namespace passung::surface {
+namespace passung::geometry {
 
 namespace {
 
 constexpr std::size_t kFewCorners = 48;  // of a hull that is kept as it is
 constexpr std::size_t kByNormals = 128;  // faces: fewer are split where their normals differ most
 
-/// What the tree is split by.
-struct FaceSummary {
-    Vec3 centre, normal;
-};
-
 }  // namespace
 
 struct ClusterTree::Builder {
+    /// What the tree is split by.
+    struct FaceSummary {
+        Vec3 centre, normal;
+    };
+
     ClusterTree& tree;
-    geometry::ConvexFaces mesh;
+    ConvexFaces mesh;
     std::vector<FaceSummary> summaries;
     std::vector<std::uint32_t> order;
     std::vector<std::uint32_t> marks;  // per vertex: the last cluster that has it
     std::uint32_t mark = 0;
 
-    Builder(ClusterTree& of, const geometry::TriangleMesh& triangles)
-        : tree(of), mesh(geometry::mergeFlatTriangles(triangles)) {
+    Builder(ClusterTree& of, const TriangleMesh& triangles) : tree(of), mesh(mergeFlatTriangles(triangles)) {
         order.resize(mesh.faces.size());
         std::iota(order.begin(), order.end(), 0u);
         marks.assign(mesh.vertices.size(), 0);
-        for (const geometry::ConvexFace& face : mesh.faces) {
-            geometry::Bounds box;
+        for (const ConvexFace& face : mesh.faces) {
+            Bounds box;
             Vec3 area = Vec3::Zero();
             const Vec3& origin = mesh.vertices[face.corners[0]];
             for (std::size_t i = 0; i < face.corners.size(); ++i) {
@@ -53,7 +52,7 @@ struct ClusterTree::Builder {
 
     void summarise(Cluster& cluster, std::size_t first, std::size_t end) {
         ++mark;
-        geometry::Bounds box;
+        Bounds box;
         cluster.first = static_cast<std::uint32_t>(tree.x_.size());
         std::size_t corners = 0;
         std::vector<std::uint32_t> found;
@@ -83,7 +82,7 @@ struct ClusterTree::Builder {
 
     /// Where to part the faces between; sorts them.
     std::size_t part(std::size_t first, std::size_t end) {
-        geometry::Bounds centres, normals;
+        Bounds centres, normals;
         for (std::size_t k = first; k < end; ++k) {
             centres.extend(summaries[order[k]].centre);
             normals.extend(summaries[order[k]].normal);
@@ -123,7 +122,7 @@ struct ClusterTree::Builder {
     }
 };
 
-ClusterTree::ClusterTree(const geometry::TriangleMesh& mesh) {
+ClusterTree::ClusterTree(const TriangleMesh& mesh) {
     Builder builder(*this, mesh);
     faces_ = builder.mesh.faces.size();
     for (const Vec3& v : builder.mesh.vertices) {
@@ -134,4 +133,4 @@ ClusterTree::ClusterTree(const geometry::TriangleMesh& mesh) {
     builder.build(0, 0, faces_);
 }
 
-}  // namespace passung::surface
+}  // namespace passung::geometry

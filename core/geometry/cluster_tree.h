@@ -6,7 +6,7 @@
 
 #include "core/geometry/convex_faces.h"
 
-namespace passung::surface {
+namespace passung::geometry {
 
 /// Faces near each other as one convex hull: of their corners if these are few, else of the box around them.
 struct Cluster {
@@ -25,7 +25,7 @@ inline constexpr std::uint32_t kLanes = 4;
 /// Binary tree of clusters over the faces of a mesh. Built once, then const.
 class ClusterTree {
 public:
-    explicit ClusterTree(const geometry::TriangleMesh& mesh);
+    explicit ClusterTree(const TriangleMesh& mesh);
 
     /// The root is 0.
     const Cluster& operator[](std::uint32_t i) const noexcept { return clusters_[i]; }
@@ -38,7 +38,7 @@ public:
     const double* y() const noexcept { return y_.data(); }
     const double* z() const noexcept { return z_.data(); }
 
-    const geometry::Bounds& box() const noexcept { return box_; }
+    const Bounds& box() const noexcept { return box_; }
     /// The farthest vertex from the origin of the part frame [m].
     double reach() const noexcept { return reach_; }
 
@@ -47,9 +47,9 @@ private:
 
     std::vector<Cluster> clusters_;
     std::vector<double> x_, y_, z_;  // corners
-    geometry::Bounds box_;
+    Bounds box_;
     double reach_ = 0.0;
     std::size_t faces_ = 0;
 };
 
-}  // namespace passung::surface
+}  // namespace passung::geometry
