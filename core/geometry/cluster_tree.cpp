@@ -44,12 +44,6 @@ struct ClusterTree::Builder {
         }
     }
 
-    void pushCorner(const Vec3& p) {
-        tree.x_.push_back(p.x());
-        tree.y_.push_back(p.y());
-        tree.z_.push_back(p.z());
-    }
-
     void summarise(Cluster& cluster, std::size_t first, std::size_t end) {
         ++mark;
         Bounds box;
@@ -69,14 +63,12 @@ struct ClusterTree::Builder {
         cluster.radius *= 1.0 + 1e-12;
         corners = found.size();
         if (corners <= kFewCorners || end - first == 1) {
-            for (const std::uint32_t v : found) pushCorner(mesh.vertices[v]);
+            for (const std::uint32_t v : found) tree.pushCorner(mesh.vertices[v]);
         } else {
             corners = 8;
-            for (int i = 0; i < 8; ++i)
-                pushCorner({i & 1 ? box.high.x() : box.low.x(), i & 2 ? box.high.y() : box.low.y(),
-                            i & 4 ? box.high.z() : box.low.z()});
+            tree.pushCornersOf(box);
         }
-        for (; corners % kLanes != 0; ++corners) pushCorner({tree.x_.back(), tree.y_.back(), tree.z_.back()});
+        for (; corners % kLanes != 0; ++corners) tree.pushCorner({tree.x_.back(), tree.y_.back(), tree.z_.back()});
         cluster.count = static_cast<std::uint32_t>(corners);
     }
 
@@ -122,15 +114,83 @@ struct ClusterTree::Builder {
     }
 };
 
-ClusterTree::ClusterTree(const TriangleMesh& mesh) {
+/// Trees as they are, under clusters of the boxes around them.
+struct ClusterTree::Joiner {
+    ClusterTree& whole;
+
+    /// One tree with its root at `self`.
+    void place(std::uint32_t self, const PlacedTree& part) {
+        const ClusterTree& tree = *part.tree;
+        const auto corners = static_cast<std::uint32_t>(whole.x_.size());
+        const auto before = static_cast<std::uint32_t>(whole.clusters_.size()) - 1;  // of all but its root
+        const Mat3 R = part.X.q.toRotationMatrix();
+        for (std::uint32_t i = 0; i < tree.x_.size(); ++i) whole.pushCorner(R * tree.corner(i) + part.X.p);
+        whole.clusters_.resize(whole.clusters_.size() + tree.size() - 1);
+        for (std::uint32_t i = 0; i < tree.size(); ++i) {
+            Cluster cluster = tree[i];
+            cluster.centre = R * cluster.centre + part.X.p;
+            cluster.normal = R * cluster.normal;
+            cluster.first += corners;
+            cluster.triangle += static_cast<std::uint32_t>(whole.triangles_);
+            if (!cluster.isFace()) cluster.child += before;
+            whole.clusters_[i == 0 ? self : before + i] = cluster;
+        }
+        whole.triangles_ += tree.triangles_;
+    }
+
+    void join(std::uint32_t self, std::span<const PlacedTree> parts) {
+        if (parts.size() == 1) return place(self, parts.front());
+        const auto child = static_cast<std::uint32_t>(whole.clusters_.size());
+        whole.clusters_.resize(whole.clusters_.size() + 2);
+        join(child, parts.first(parts.size() / 2));
+        join(child + 1, parts.subspan(parts.size() / 2));
+        Bounds box;
+        for (const std::uint32_t below : {child, child + 1}) {
+            const Cluster& cluster = whole.clusters_[below];
+            for (std::uint32_t i = 0; i < cluster.count; ++i) box.extend(whole.corner(cluster.first + i));
+        }
+        Cluster& cluster = whole.clusters_[self];
+        cluster.child = child;
+        cluster.centre = 0.5 * (box.low + box.high);
+        cluster.radius = (box.high - cluster.centre).norm() * (1.0 + 1e-12);
+        cluster.first = static_cast<std::uint32_t>(whole.x_.size());
+        cluster.count = 8;
+        whole.pushCornersOf(box);
+    }
+};
+
+void ClusterTree::pushCorner(const Vec3& p) {
+    x_.push_back(p.x());
+    y_.push_back(p.y());
+    z_.push_back(p.z());
+}
+
+void ClusterTree::pushCornersOf(const Bounds& box) {
+    for (int i = 0; i < 8; ++i)
+        pushCorner({i & 1 ? box.high.x() : box.low.x(), i & 2 ? box.high.y() : box.low.y(),
+                    i & 4 ? box.high.z() : box.low.z()});
+}
+
+ClusterTree::ClusterTree(const TriangleMesh& mesh) : triangles_(mesh.triangles.size()) {
     Builder builder(*this, mesh);
-    faces_ = builder.mesh.faces.size();
     for (const Vec3& v : builder.mesh.vertices) {
         box_.extend(v);
         reach_ = std::max(reach_, v.norm());
     }
     clusters_.resize(1);
-    builder.build(0, 0, faces_);
+    builder.build(0, 0, builder.mesh.faces.size());
+}
+
+ClusterTree::ClusterTree(std::span<const PlacedTree> trees) {
+    clusters_.resize(1);
+    Joiner{*this}.join(0, trees);
+    for (const Cluster& cluster : clusters_) {
+        if (!cluster.isFace()) continue;
+        for (std::uint32_t i = cluster.first; i < cluster.first + cluster.count; ++i) {
+            box_.extend(corner(i));
+            reach_ = std::max(reach_, corner(i).norm());
+        }
+    }
 }
 
 }  // namespace passung::geometry

@@ -22,15 +22,28 @@ struct Cluster {
 
 inline constexpr std::uint32_t kLanes = 4;
 
+class ClusterTree;
+
+/// A tree and where its part lies.
+struct PlacedTree {
+    const ClusterTree* tree = nullptr;
+    Pose X;
+};
+
 /// Binary tree of clusters over the faces of a mesh. Built once, then const.
 class ClusterTree {
 public:
     explicit ClusterTree(const TriangleMesh& mesh);
+    /// All of them as one, in the frame of their poses; triangles are numbered on from tree to tree. @pre not empty
+    explicit ClusterTree(std::span<const PlacedTree> trees);
 
     /// The root is 0.
     const Cluster& operator[](std::uint32_t i) const noexcept { return clusters_[i]; }
     std::size_t size() const noexcept { return clusters_.size(); }
-    std::size_t faceCount() const noexcept { return faces_; }
+    std::size_t triangleCount() const noexcept { return triangles_; }
+    std::size_t memoryBytes() const noexcept {
+        return clusters_.size() * sizeof(Cluster) + 3 * sizeof(double) * x_.size();
+    }
 
     Vec3 corner(std::uint32_t i) const noexcept { return {x_[i], y_[i], z_[i]}; }
     /// Coordinates of all corners; those of a cluster lie at [first, first + count).
@@ -44,12 +57,16 @@ public:
 
 private:
     struct Builder;
+    struct Joiner;
+
+    void pushCorner(const Vec3& p);
+    void pushCornersOf(const Bounds& box);
 
     std::vector<Cluster> clusters_;
     std::vector<double> x_, y_, z_;  // corners
     Bounds box_;
     double reach_ = 0.0;
-    std::size_t faces_ = 0;
+    std::size_t triangles_ = 0;
 };
 
 }  // namespace passung::geometry

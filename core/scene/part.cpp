@@ -13,6 +13,7 @@
 #include "core/field/interpolation.h"
 #include "core/field/mesh_block.h"
 #include "core/field/shape_bound.h"
+#include "core/geometry/cluster_tree.h"
 #include "core/geometry/triangle_tree.h"
 #include "core/scene/mesh_source.h"
 #include "core/scene/number_text.h"
@@ -23,7 +24,9 @@ namespace passung::scene {
 
 namespace {
 
-constexpr double kBandCells = 4.0;         // bricks reach this many (largest) cells from the surface
+constexpr double kSurfaceChord = 1e-6;                  // [m]: of the triangles of a shape's surface
+constexpr std::size_t kMostSurfaceTriangles = 200'000;  // of a shape: beyond, they become coarser
+constexpr double kBandCells = 4.0;                      // bricks reach this many (largest) cells from the surface
 constexpr double kUniformBandCells = 2.0;  // so far reach cells of one size that was asked for, then larger ones
 // Where the distances of two perpendicular faces meet, interpolation errs by at most 0.29 cells: at this many
 // tolerances refinement may end.
@@ -214,6 +217,14 @@ Result<field::DistanceField> fieldOf(Part& part, const PartNeeds& needs, BuildSt
     return field;
 }
 
+/// What surfaces of `part` are made of.
+geometry::TriangleMesh surfaceTriangles(const Part& part) {
+    if (!part.shape) return part.mesh;
+    for (double chord = kSurfaceChord;; chord *= 2.0)
+        if (auto mesh = shape::tessellate(*part.shape, chord); mesh.triangles.size() <= kMostSurfaceTriangles)
+            return mesh;
+}
+
 shell::PointShell shellOf(Part& part, const PartNeeds& needs, BuildStore* store) {
     const std::string key = storeKey("shell", part, {needs.spacing});
     if (auto shell = loaded(store, key, part, &shell::shellFrom)) return std::move(*shell);
@@ -258,6 +269,7 @@ Result<Part> buildPart(const PartSpec& spec, const PartNeeds& needs, BuildStore*
             part.report.notes.push_back("The sheet is felt " + inMillimetres(part.field->sheetOffset()) +
                                         " in front of its surface, on both sides.");
     }
+    if (needs.clusters) part.clusters = std::make_shared<const geometry::ClusterTree>(surfaceTriangles(part));
     if (needs.shell) {
         part.shell.emplace(shellOf(part, needs, store), part.mesh);
         part.edges = std::make_shared<const shell::EdgeCurves>(part.mesh, shell::kEdgeShare * needs.spacing);

@@ -17,6 +17,10 @@ class DistanceField;
 struct DistanceSource;
 }  // namespace passung::field
 
+namespace passung::geometry {
+class ClusterTree;
+}
+
 namespace passung::shell {
 class EdgeCurves;
 }
@@ -31,13 +35,14 @@ inline constexpr double kDepthTolerances = 40.0;
 struct PartNeeds {
     bool field = false;
     bool shell = false;
+    bool clusters = false;
     double tolerance = 20e-6;  // of the field [m]; see chooseCell
     double cell = 0.0;         // of the field [m], the same everywhere; 0 = chosen from the tolerance
     double depth = 0.0;        // to which the tolerance holds [m]; 0 = kDepthTolerances times the tolerance
     double spacing = 1e-3;     // of the shell [m]
 };
 
-/// A part ready for contact: geometry, distance field, point shell. Built once, then const.
+/// A part ready for contact: geometry, and what contact is computed from. Built once, then const.
 struct Part {
     std::string name;
     std::optional<shape::Shape> shape;  // if parametric: its closed form is the truth
@@ -46,7 +51,9 @@ struct Part {
     double chord_error = 0.0;                           // of the mesh against the shape, as reached [m]
     std::shared_ptr<const field::DistanceField> field;  // these two are shared by copies of the part
     std::optional<shell::SphereTree> shell;
-    std::shared_ptr<const shell::EdgeCurves> edges;  // with the shell
+    std::shared_ptr<const shell::EdgeCurves> edges;         // with the shell
+    std::shared_ptr<const geometry::ClusterTree> clusters;  // of its triangles: a shape's are 1 µm off it at most, or
+                                                            // as near as 200 000 of them get
 };
 
 /// Most points of a point shell, roughly: more take gigabytes and minutes to sample and do not fit a tick.

@@ -26,6 +26,7 @@ std::string cacheKey(const PartSpec& spec, const PartNeeds& needs) {
     }
     key += needs.field ? "field " : "";
     key += needs.shell ? "shell " : "";
+    key += needs.clusters ? "clusters " : "";
     for (const double value : {needs.tolerance, needs.cell, needs.depth, needs.spacing}) append(key, value);
     return key;
 }
@@ -46,12 +47,14 @@ Result<Scene> buildScene(const SceneSpec& spec, PartCache& cache) {
     if (auto errors = spec.validate(); !errors.empty()) return errors;
     Scene scene;
     scene.spec = spec;
-    const bool fields = geometryOf(spec).geometry == Geometry::Field;
+    const Geometry geometry = geometryOf(spec).geometry;
+    const bool fields = geometry == Geometry::Field;
     for (std::size_t i = 0; i < spec.parts.size(); ++i) {
         const PartSpec& part = spec.parts[i];
         if (part.held) scene.held = i;
         auto built = cache.get(part, {.field = fields && (!part.held || spec.contact.two_way),
                                       .shell = fields && (part.held || spec.contact.two_way),
+                                      .clusters = geometry == Geometry::Surface,
                                       .tolerance = spec.contact.tolerance,
                                       .cell = spec.contact.cell,
                                       .spacing = spec.contact.spacing});

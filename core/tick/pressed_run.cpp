@@ -39,7 +39,7 @@ Vec3 wayToContact(const TickModel& model, TickState& state) {
     if (model.obstacles.empty()) return Vec3(0.02, 0.0, 0.0);
     if (model.hasClosedForm()) return wayToContact(model.X_WG_start, state);
     if (model.hasSurfaces()) {
-        const auto nearest = surface::nearestFaces(model.surfaces[0], model.surfaces[1], model.X_WG_start);
+        const auto nearest = surface::nearestFaces(*model.held_surface, *model.obstacle_surface, model.X_WG_start);
         return -(nearest.distance + kPressed) * nearest.n;
     }
     state.scratch.clear();

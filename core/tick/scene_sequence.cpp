@@ -7,12 +7,6 @@ namespace passung::tick {
 
 namespace {
 
-std::size_t bytesOf(const geometry::ClusterTree& tree) noexcept {
-    std::uint32_t corners = 0;
-    for (std::uint32_t i = 0; i < tree.size(); ++i) corners = std::max(corners, tree[i].first + tree[i].count);
-    return tree.size() * sizeof(geometry::Cluster) + 3 * sizeof(double) * corners;
-}
-
 std::size_t bytesOf(const closed_form::SmoothSolid& solid) noexcept {
     std::size_t bytes = sizeof(solid) + (solid.edges.size() + solid.cores.size()) * sizeof(closed_form::Curve);
     for (const closed_form::Lump& lump : solid.lumps)
@@ -43,8 +37,9 @@ std::span<const Stage> SceneModels::stages(std::size_t i) const noexcept { retur
 
 std::size_t SceneModels::memoryBytes(std::size_t i) const noexcept {
     std::size_t bytes = 0;
-    for (const auto& tree : models_[i].surfaces) bytes += bytesOf(tree);
-    for (const auto& solid : models_[i].solids) bytes += bytesOf(solid);
+    const TickModel& model = models_[i];
+    if (model.hasSurfaces()) bytes += model.held_surface->memoryBytes() + model.obstacle_surface->memoryBytes();
+    for (const auto& solid : model.solids) bytes += bytesOf(solid);
     return bytes;
 }
 

@@ -30,7 +30,7 @@ void noteRows(const TickModel& model, const surface::SurfaceProxy& surface, Push
 SurfaceFollow surfaceFollow(const TickModel& model) {
     SurfaceFollow follow;
     follow.surface.emplace(
-        model.surfaces[0], model.surfaces[1],
+        *model.held_surface, *model.obstacle_surface,
         surface::SurfaceSettings{.metric_radius = model.metric_radius, .gap = kSurfaceGap, .budget = kSurfaceBudget});
     follow.surface->place(model.X_WG_start);
     follow.surface->prepare();

@@ -55,32 +55,20 @@ void addSolids(TickModel& model, const scene::Scene& scene) {
     }
 }
 
-constexpr double kChord = 1e-6;                  // [m]: of a shape's triangles
-constexpr std::size_t kMostTriangles = 200'000;  // of a shape: beyond, its triangles become coarser
-
-geometry::TriangleMesh trianglesOf(const scene::Part& part) {
-    if (!part.shape) return part.mesh;
-    for (double chord = kChord;; chord *= 2.0)
-        if (auto mesh = shape::tessellate(*part.shape, chord); mesh.triangles.size() <= kMostTriangles) return mesh;
-}
-
 /// The held part's triangles, and those of all obstacles in the world.
 void addSurfaces(TickModel& model, const scene::Scene& scene) {
-    model.surfaces.reserve(2);
-    model.surfaces.emplace_back(trianglesOf(*scene.parts[scene.held]));
-    model.reach = model.surfaces.front().reach();
-    geometry::TriangleMesh all;
+    model.held_surface = scene.parts[scene.held]->clusters.get();
+    model.reach = model.held_surface->reach();
+    std::vector<geometry::PlacedTree> obstacles;
+    std::size_t triangles = 0;
     for (std::size_t i = 0; i < scene.parts.size(); ++i) {
         if (i == scene.held) continue;
-        const Pose& X_WP = scene.spec.parts[i].X_WP;
-        model.obstacles.push_back({nullptr, X_WP});
-        model.first_triangles.push_back(static_cast<std::uint32_t>(all.triangles.size()));
-        const auto base = static_cast<std::uint32_t>(all.vertices.size());
-        const geometry::TriangleMesh mesh = trianglesOf(*scene.parts[i]);
-        for (const Vec3& v : mesh.vertices) all.vertices.push_back(X_WP * v);
-        for (const auto& t : mesh.triangles) all.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+        obstacles.push_back({scene.parts[i]->clusters.get(), scene.spec.parts[i].X_WP});
+        model.obstacles.push_back({nullptr, obstacles.back().X});
+        model.first_triangles.push_back(static_cast<std::uint32_t>(triangles));
+        triangles += obstacles.back().tree->triangleCount();
     }
-    if (!all.triangles.empty()) model.surfaces.emplace_back(all);
+    model.obstacle_surface.emplace(obstacles);
 }
 
 /// Of the held part's surface about its origin [m].

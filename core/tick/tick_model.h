@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/base/types.h"
@@ -13,7 +14,7 @@
 namespace passung::tick {
 
 /// An obstacle fixed in the world, as what its geometry is: a distance field, one of TickModel::solids, or a share of
-/// TickModel::surfaces.
+/// TickModel::obstacle_surface.
 struct Obstacle {
     const field::DistanceField* field;  // Geometry::Field only
     Pose X_WF;
@@ -36,8 +37,10 @@ struct TickModel {
     const shell::EdgeCurves* edges = nullptr;
     const field::DistanceField* held_field = nullptr;  // two-way contact only
     std::vector<closed_form::SmoothSolid> solids;      // Geometry::ClosedForm only: the held part, the obstacles
-    std::vector<geometry::ClusterTree> surfaces;  // Geometry::Surface only: the held part, all obstacles in the world
-    std::vector<std::uint32_t> first_triangles;   // of each obstacle in the second of those
+    // Geometry::Surface only
+    const geometry::ClusterTree* held_surface = nullptr;
+    std::optional<geometry::ClusterTree> obstacle_surface;  // of all obstacles, in the world
+    std::vector<std::uint32_t> first_triangles;             // in that, of each obstacle
     std::vector<Obstacle> obstacles;
     std::vector<motion::Friction> friction;  // of each obstacle with the held part; empty: the scene names none
     Pose X_WG_start;
