@@ -11,36 +11,23 @@ namespace {
 constexpr double kApart = 0.05e-3;  // [m]
 constexpr double kTurned = 2e-3;    // [rad]
 
-ParticipantScreen screenOf(RunState state) {
-    switch (state) {
-        case RunState::Idle:
-        case RunState::Opening:
-        case RunState::Ready:
-            return ParticipantScreen::Welcome;
-        case RunState::Consenting:
-        case RunState::Answering:
-            return ParticipantScreen::Form;
-        case RunState::Reading:
-            return ParticipantScreen::Page;
-        case RunState::Resting:
-            return ParticipantScreen::Rest;
-        case RunState::Preparing:
-        case RunState::Between:
-            return ParticipantScreen::Wait;
-        case RunState::ToStart:
-            return ParticipantScreen::ToStart;
-        case RunState::Running:
-            return ParticipantScreen::Task;
-        case RunState::Paused:
-        case RunState::Stopped:
-            return ParticipantScreen::Pause;
-        case RunState::Complete:
-        case RunState::Incomplete:
-        case RunState::Failed:
-            break;
+/// The screen of each state.
+struct ScreenOf {
+    using Screen = ParticipantScreen;
+    Screen operator()(const OneOf<state::Idle, state::Opening, state::Ready> auto&) const { return Screen::Welcome; }
+    Screen operator()(const OneOf<state::Consenting, state::Answering> auto&) const { return Screen::Form; }
+    Screen operator()(const state::ReadingPage&) const { return Screen::Page; }
+    Screen operator()(const state::Resting&) const { return Screen::Rest; }
+    Screen operator()(const OneOf<state::Preparing, state::AwaitingPicture, state::Between> auto&) const {
+        return Screen::Wait;
     }
-    return ParticipantScreen::Thanks;
-}
+    Screen operator()(const state::ToStart&) const { return Screen::ToStart; }
+    Screen operator()(const state::Running&) const { return Screen::Task; }
+    Screen operator()(const OneOf<state::Paused, state::Stopped> auto&) const { return Screen::Pause; }
+    Screen operator()(const OneOf<state::Complete, state::Incomplete, state::Failed> auto&) const {
+        return Screen::Thanks;
+    }
+};
 
 /// Where a ray from the middle of the part's box leaves it.
 Vec3 outermost(const ShadedMesh& mesh, const Pose& X_W, const Vec3& way) {
@@ -89,16 +76,16 @@ bool hasScene(ParticipantScreen screen) {
 }  // namespace
 
 ParticipantView participantView(const Run& run, bool feels) {
-    const RunView& state = run.view();
+    const RunView& now = run.view();
     ParticipantView view;
-    view.screen = screenOf(state.state);
-    if (view.screen == ParticipantScreen::Pause && !state.session.awaited_device.empty())
+    view.screen = std::visit(ScreenOf(), now.state);
+    if (view.screen == ParticipantScreen::Pause && !now.session.awaited_device.empty())
         view.screen = ParticipantScreen::Swap;
-    if (state.planned > 0) view.share = static_cast<double>(state.finished) / static_cast<double>(state.planned);
-    view.brief = run.brief();
-    view.rest = state.session.rest;
-    view.result = run.result();
-    view.begun = state.state == RunState::Running;
+    if (now.planned > 0) view.share = static_cast<double>(now.finished) / static_cast<double>(now.planned);
+    view.brief = now.brief;
+    if (const auto* resting = std::get_if<state::Resting>(&now.state)) view.rest = resting->rest;
+    view.result = now.result;
+    view.begun = now.is<state::Running>();
     if (view.screen == ParticipantScreen::ToStart || view.screen == ParticipantScreen::Task) lookIntoTrial(run, view);
     const auto& scene = run.scene();
     if (!scene || !hasScene(view.screen)) return view;

@@ -32,7 +32,7 @@ bool hasEnded(RowState state) { return state >= RowState::Success && state != Ro
 
 void Run::open(const plan::StudyPlan& plan) {
     *this = Run();
-    view_.state = RunState::Opening;
+    view_.state = state::Opening();
     appearance_ = plan.view;
     view_.study = plan.title.empty() ? plan.name : plan.title;
     for (const auto& condition : plan.conditions) conditions_.push_back(condition.name);
@@ -43,11 +43,11 @@ void Run::take(const News& news) {
         [this](const auto& what) {
             using What = std::decay_t<decltype(what)>;
             if constexpr (std::is_same_v<What, SessionBegun>) begin(what);
-            if constexpr (std::is_same_v<What, FormDue>) ask(what.form, std::nullopt);
-            if constexpr (std::is_same_v<What, PageDue>) ask(nullptr, what);
-            if constexpr (std::is_same_v<What, AskedDone>) ask(nullptr, std::nullopt);
+            if constexpr (std::is_same_v<What, FormDue>) ask(what);
+            if constexpr (std::is_same_v<What, PageDue>) ask(what);
+            if constexpr (std::is_same_v<What, AskedDone>) ask({});
             if constexpr (std::is_same_v<What, AttemptPrepared>) prepare(what);
-            if constexpr (std::is_same_v<What, BuildProgress>) view_.built = what.share;
+            if constexpr (std::is_same_v<What, BuildProgress>) view_.state = state::Preparing{what.share};
             if constexpr (std::is_same_v<What, session::SessionEvent>) hear(what);
             if constexpr (std::is_same_v<What, CommandAnswered>) answer(what);
             if constexpr (std::is_same_v<What, RunOver>) finish(what);
@@ -86,38 +86,35 @@ void Run::begin(const SessionBegun& begun) {
     ++view_.rows_changed;
 }
 
-void Run::ask(std::shared_ptr<const FormRequest> form, std::optional<PageDue> page) {
-    form_ = std::move(form);
-    page_ = std::move(page);
+void Run::ask(FormOrPage asked) {
+    view_.asked = std::move(asked);
     if (view_.session.state == SessionState::BetweenTrials) view_.state = between();
 }
 
 /// What goes on while no trial does.
 RunState Run::between() const {
-    if (form_) return form_->consent ? RunState::Consenting : RunState::Answering;
-    if (page_) return RunState::Reading;
-    if (view_.session.rest) return RunState::Resting;
-    return view_.planned > 0 ? RunState::Between : RunState::Opening;
+    if (const auto form = view_.form()) return form->consent ? RunState(state::Consenting()) : state::Answering();
+    if (view_.page() != nullptr) return state::ReadingPage();
+    if (view_.session.rest) return state::Resting{*view_.session.rest};
+    return view_.planned > 0 ? RunState(state::Between()) : state::Opening();
 }
 
 void Run::prepare(const AttemptPrepared& prepared) {
-    form_.reset();
-    page_.reset();
-    brief_ = prepared.brief;
-    view_.by_hand = brief_.timed_by == plan::TimedBy::Experimenter;
+    view_.asked = {};
+    view_.brief = prepared.brief;
     pair_.reset();
-    view_.state = RunState::Preparing;
+    view_.state = state::Preparing();
     view_.number = prepared.trial_index + 1;
     view_.condition = prepared.condition;
     view_.trial_s = view_.force_N = view_.depth_mm = 0.0;
     if (prepared.scene) scene_ = prepared.scene;
-    view_.sound = prepared.sound;
     last_.reset();
     time_ = 0.0;
-    started_ = -1.0;
+    started_.reset();
     ticks_ = 0;
-    view_.loop = {};
-    view_.pictures = {};
+    missed_ = 0;
+    view_.loop.reset();
+    view_.pictures.reset();
     presented_ns_.clear();
     on_screen_ns_ = 0;
     force_.clear();
@@ -125,20 +122,20 @@ void Run::prepare(const AttemptPrepared& prepared) {
 }
 
 void Run::show(const session::SessionView& session) {
-    view_.built.reset();
     view_.session = session;
+    if (view_.is<state::Preparing>()) view_.state = state::Preparing();  // its build has ended
     switch (session.state) {
         case SessionState::Ready:
-            view_.state = RunState::Ready;
+            view_.state = state::Ready();
             break;
         case SessionState::Paused:
-            view_.state = session.stopped ? RunState::Stopped : RunState::Paused;
+            view_.state = session.stopped ? RunState(state::Stopped()) : state::Paused();
             break;
         case SessionState::Preparing:
-            view_.state = RunState::Preparing;
+            if (!view_.is<state::AwaitingPicture>()) view_.state = state::Preparing();
             break;
         case SessionState::InTrial:
-            view_.state = started_ >= 0.0 ? RunState::Running : RunState::ToStart;
+            view_.state = started_ ? RunState(state::Running()) : state::ToStart();
             break;
         case SessionState::BetweenTrials:
             view_.state = between();
@@ -166,10 +163,11 @@ void Run::show(const session::SessionView& session) {
 void Run::end(const session::AttemptEnded& ended) {
     const auto place = static_cast<std::size_t>(ended.trial_index);
     if (place >= view_.rows.size()) return;
-    result_.reset();
-    if (brief_.result != plan::ShownResult::None && ended.outcome != measures::Outcome::Aborted)
-        result_ = {ended.outcome == measures::Outcome::Success,
-                   brief_.result == plan::ShownResult::Time ? ended.trial_time_s : std::nullopt};
+    view_.result.reset();
+    const plan::ShownResult told = view_.brief.result;
+    if (told != plan::ShownResult::None && ended.outcome != measures::Outcome::Aborted)
+        view_.result = {ended.outcome == measures::Outcome::Success,
+                        told == plan::ShownResult::Time ? ended.trial_time_s : std::nullopt};
     TrialRow& row = view_.rows[place];
     row.state = rowStateOf(ended.outcome, ended.valid);
     row.time_s = ended.trial_time_s;
@@ -185,15 +183,21 @@ void Run::answer(const CommandAnswered& answered) {
 }
 
 void Run::finish(const RunOver& over) {
-    view_.built.reset();
-    form_.reset();
-    page_.reset();
+    view_.asked = {};
     view_.session = session::viewWithoutSession();
-    view_.state = over.complete ? RunState::Complete : RunState::Incomplete;
+    view_.state = over.complete ? RunState(state::Complete()) : state::Incomplete();
     view_.number = 0;
-    if (over.errors.empty()) return;
-    view_.state = RunState::Failed;
-    view_.failure = toString(over.errors.front());
+    if (!over.errors.empty()) view_.state = state::Failed{toString(over.errors.front())};
+}
+
+bool Run::checkFirstPicture(bool shown) {
+    if (shown && view_.is<state::AwaitingPicture>())
+        view_.state = state::Preparing();
+    else if (!shown && view_.is<state::Preparing>() && !view_.built())
+        view_.state = state::AwaitingPicture();
+    else
+        return false;
+    return true;
 }
 
 std::optional<session::Command> Run::setDisplay(Display display) {
@@ -214,25 +218,26 @@ void Run::take(std::span<const TickRecord> records) {
 
 void Run::startClock() {
     started_ = time_;
-    result_.reset();
-    if (view_.state == RunState::ToStart || view_.state == RunState::Preparing) view_.state = RunState::Running;
+    view_.result.reset();
+    if (view_.is<state::ToStart, state::Preparing, state::AwaitingPicture>()) view_.state = state::Running();
 }
 
 void Run::watch(const TickRecord& record) {
     if (record.tick == 0 || (last_ && record.tick <= last_->tick)) {  // another attempt
         time_ = 0.0;
-        started_ = -1.0;
+        started_.reset();
         pair_.reset();
         ticks_ = 0;
-        view_.loop.missed = 0;
+        missed_ = 0;
     }
     time_ += record.periods * kTickSeconds;
-    if ((record.status & kEngaged) != 0 && started_ < 0.0 && !view_.by_hand) startClock();
-    if (started_ >= 0.0 && brief_.kind == TrialBrief::Kind::Pair) {
+    const bool by_hand = view_.brief.timed_by == plan::TimedBy::Experimenter;
+    if ((record.status & kEngaged) != 0 && !started_ && !by_hand) startClock();
+    if (started_ && view_.brief.kind == TrialBrief::Kind::Pair) {
         if (!pair_) pair_.emplace();
         pair_->follow(record, std::llround(time_ / kTickSeconds));
     }
-    view_.trial_s = started_ < 0.0 ? 0.0 : time_ - started_;
+    view_.trial_s = started_ ? time_ - *started_ : 0.0;
     view_.force_N =
         static_cast<double>(Eigen::Vector3f(record.force_N[0], record.force_N[1], record.force_N[2]).norm());
     view_.depth_mm = 1e3 * static_cast<double>(record.hand_depth_m);
@@ -242,7 +247,7 @@ void Run::watch(const TickRecord& record) {
     durations_us_[slot] = static_cast<float>(record.duration_ns) * 1e-3f;
     periods_[slot] = record.periods;
     ++ticks_;
-    view_.loop.missed += record.periods - 1;
+    missed_ += record.periods - 1;
     last_ = record;
 }
 
@@ -254,10 +259,10 @@ void Run::see(std::int64_t began_ns, std::int64_t presented_ns) {
 void Run::checkPictures(std::int64_t now_ns) {
     constexpr std::int64_t kSecond = 1'000'000'000;
     while (!presented_ns_.empty() && presented_ns_.front() <= now_ns - kSecond) presented_ns_.pop_front();
-    const bool runs = view_.state == RunState::ToStart || view_.state == RunState::Running;
-    view_.pictures.known = runs && last_ && time_ >= 1.0;
-    view_.pictures.per_s = static_cast<double>(presented_ns_.size());
-    view_.pictures.age_ms = on_screen_ns_ == 0 ? 0.0 : 1e-6 * static_cast<double>(now_ns - on_screen_ns_);
+    view_.pictures.reset();
+    if (!view_.is<state::ToStart, state::Running>() || !last_ || time_ < 1.0) return;
+    view_.pictures = {static_cast<double>(presented_ns_.size()),
+                      on_screen_ns_ == 0 ? 0.0 : 1e-6 * static_cast<double>(now_ns - on_screen_ns_)};
 }
 
 void Run::judgeLoop() {
@@ -266,10 +271,11 @@ void Run::judgeLoop() {
     std::sort(sorted.begin(), sorted.end());
     std::uint64_t periods = 0;
     for (std::size_t i = 0; i < count; ++i) periods += periods_[i];
-    view_.loop.known = count == durations_us_.size();
-    view_.loop.rate_hz = static_cast<double>(count) / (static_cast<double>(periods) * kTickSeconds);
-    view_.loop.typical_us = sorted[count / 2];
-    view_.loop.longest_us = sorted.back();
+    view_.loop = {.rate_hz = static_cast<double>(count) / (static_cast<double>(periods) * kTickSeconds),
+                  .typical_us = sorted[count / 2],
+                  .longest_us = sorted.back(),
+                  .missed = missed_,
+                  .ticks = count};
 }
 
 }  // namespace passung::presenter

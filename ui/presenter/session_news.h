@@ -47,6 +47,7 @@ struct TrialBrief {
     std::string question = {};  // of a pair
     plan::TimedBy timed_by = plan::TimedBy::Program;
     plan::ShownResult result = plan::ShownResult::None;
+    bool sound = false;  // there is something to be heard
 };
 
 /// An attempt is about to begin; its scene is built now.
@@ -54,7 +55,6 @@ struct AttemptPrepared {
     std::int64_t trial_index = 0;
     std::string condition;
     std::shared_ptr<const DrawnScene> scene;  // shared_ptr: windows draw it as long as they like
-    bool sound = false;                       // there is something to be heard
     TrialBrief brief = {};
     std::int64_t shown_as = 0;  // number of its first picture, which it waits for
 };

@@ -18,7 +18,7 @@ CutOff::CutOff(Desk& desk, Studies& studies, ParticipantsModel& participants, QS
         memory_.sync();  // whatever ends the program from here on
     });
     connect(&desk_, &Desk::happened, this, [this] {
-        if (desk_.run().view().state >= presenter::RunState::Complete) forget();
+        if (desk_.run().view().isOver()) forget();
     });
     connect(&participants_, &ParticipantsModel::changed, this, &CutOff::changed);
 }

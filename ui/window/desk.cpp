@@ -111,11 +111,7 @@ void Desk::checkPictures() {
     while (const std::size_t count = frames_.takeForScreen(pictures))
         for (std::size_t i = 0; i < count; ++i) run_.see(pictures[i].began_ns, pictures[i].presented_ns);
     run_.checkPictures(run::steadyNanoseconds());
-    const bool awaits =
-        run_.view().state == presenter::RunState::Preparing && !run_.view().built && !frames_.hasShown(awaited_);
-    if (awaits == run_.view().awaits_picture) return;
-    run_.awaitsPicture(awaits);
-    emit happened();
+    if (run_.checkFirstPicture(frames_.hasShown(awaited_))) emit happened();
 }
 
 mouse::Pointer* Desk::pointer() { return byMouse() ? &live_->pointer() : nullptr; }
@@ -155,7 +151,7 @@ void Desk::show(const std::vector<presenter::News>& news, const std::optional<lo
         }
     }
     checkPictures();
-    if (run_.view().sound && !speaker_) speaker_ = openSpeaker(sound_);
+    if (run_.view().brief.sound && !speaker_) speaker_ = openSpeaker(sound_);
     if (byMouse() && newest && run_.last()) {
         const auto& p = run_.last()->hand_position_m;
         const auto& q = run_.last()->hand_quaternion;

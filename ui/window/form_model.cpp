@@ -10,7 +10,6 @@ namespace passung::window {
 using presenter::FormFault;
 using presenter::FormRow;
 using presenter::ItemControl;
-using presenter::RunState;
 
 namespace {
 
@@ -45,8 +44,8 @@ FormModel::FormModel(Desk& desk, Speech& speech) : desk_(desk), speech_(speech) 
 
 /// Another form, none, or one that is hidden by a pause and comes back.
 void FormModel::refresh() {
-    const auto& asked = desk_.run().form();
-    const RunState state = desk_.run().view().state;
+    const auto asked = desk_.run().view().form();
+    const bool asks = desk_.run().view().is<presenter::state::Answering, presenter::state::Consenting>();
     if (!asked && !form_) return;
     if (!asked) {
         form_.reset();
@@ -54,7 +53,7 @@ void FormModel::refresh() {
         form_.emplace(asked, now());
         turned_to_.reset();
     }
-    visible_ = form_ && !form_->isDone() && (state == RunState::Answering || state == RunState::Consenting);
+    visible_ = form_ && !form_->isDone() && asks;
     if (form_ && visible_)
         form_->unhide(now());
     else if (form_)

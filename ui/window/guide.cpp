@@ -18,7 +18,7 @@ Guide::Guide(Desk& desk, Speech& speech) : desk_(desk), speech_(speech) {
 void Guide::refresh() {
     view_ = presenter::participantView(desk_.run(), !desk_.byMouse());
     if (view_.screen != ParticipantScreen::Question) pressed_ = 0;
-    if (const auto& page = desk_.run().page(); page && reading() && page->number != page_) {
+    if (const auto* page = desk_.run().view().page(); page != nullptr && reading() && page->number != page_) {
         page_ = page->number;
         page_clock_.start();
     }
@@ -26,7 +26,7 @@ void Guide::refresh() {
 }
 
 bool Guide::handling() const {
-    return desk_.byMouse() && !desk_.run().view().awaits_picture &&
+    return desk_.byMouse() && !desk_.run().view().is<presenter::state::AwaitingPicture>() &&
            (view_.screen == ParticipantScreen::ToStart || view_.screen == ParticipantScreen::Task ||
             view_.screen == ParticipantScreen::Question || view_.screen == ParticipantScreen::Idle ||
             view_.screen == ParticipantScreen::ByHand || view_.screen == ParticipantScreen::Wait);
@@ -137,12 +137,12 @@ QString Guide::result() const {
 }
 
 QString Guide::pageText() const {
-    const auto& page = desk_.run().page();
+    const auto* page = desk_.run().view().page();
     return page ? QString::fromStdString(page->text).trimmed() : QString();
 }
 
 QUrl Guide::pagePicture() const {
-    const auto& page = desk_.run().page();
+    const auto* page = desk_.run().view().page();
     return page && !page->picture.empty() ? QUrl::fromLocalFile(QString::fromStdString(page->picture)) : QUrl();
 }
 

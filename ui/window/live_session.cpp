@@ -187,8 +187,8 @@ void LiveSession::prepares(const plan::Condition& condition, std::int64_t trial_
     takePictures();  // what is left of the attempt before
     pictures_.clear();
     if (options_.frames != nullptr) attempt_ = options_.frames->expect();
-    presenter::AttemptPrepared prepared{trial_index, condition.name,     nullptr,
-                                        heard.any(), briefOf(condition), attempt_};
+    presenter::AttemptPrepared prepared{trial_index, condition.name, nullptr, briefOf(condition), attempt_};
+    prepared.brief.sound = heard.any();
     if (auto scene = artist_.draw(condition, appearance_))
         prepared.scene = *scene;  // else the session fails at the same mesh
     tell(std::move(prepared));

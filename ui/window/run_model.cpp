@@ -4,12 +4,28 @@
 
 namespace passung::window {
 
-using presenter::RunState;
+using presenter::OneOf;
+namespace state = presenter::state;
 
 namespace {
 
 constexpr int kMeasuredEvery = 40;                      // [ms]
 constexpr double kGoodRate = 995.0, kPoorRate = 970.0;  // [Hz]
+
+/// The tone of each state.
+struct Tone {
+    const char* operator()(const OneOf<state::ToStart, state::Running, state::Consenting, state::ReadingPage,
+                                       state::Answering> auto&) const {
+        return "go";
+    }
+    const char* operator()(const OneOf<state::Ready, state::Paused, state::Resting> auto&) const { return "wait"; }
+    const char* operator()(const OneOf<state::Stopped, state::Failed> auto&) const { return "bad"; }
+    const char* operator()(const state::Complete&) const { return "good"; }
+    const char* operator()(const OneOf<state::Idle, state::Opening, state::Preparing, state::AwaitingPicture,
+                                       state::Between, state::Incomplete> auto&) const {
+        return "rest";
+    }
+};
 
 }  // namespace
 
@@ -23,8 +39,8 @@ RunModel::RunModel(Desk& desk) : desk_(desk) {
         emit rowsChanged();
     });
     connect(&desk_, &Desk::frame, this, [this] {
-        if (view().state != state_known_) {
-            state_known_ = view().state;
+        if (view().state.index() != state_known_) {
+            state_known_ = view().state.index();
             emit changed();
         }
         if (since_measured_.elapsed() < kMeasuredEvery) return;
@@ -33,32 +49,7 @@ RunModel::RunModel(Desk& desk) : desk_(desk) {
     });
 }
 
-QString RunModel::tone() const {
-    switch (view().state) {
-        case RunState::ToStart:
-        case RunState::Running:
-        case RunState::Consenting:
-        case RunState::Reading:
-        case RunState::Answering:
-            return QStringLiteral("go");
-        case RunState::Ready:
-        case RunState::Paused:
-        case RunState::Resting:
-            return QStringLiteral("wait");
-        case RunState::Stopped:
-        case RunState::Failed:
-            return QStringLiteral("bad");
-        case RunState::Complete:
-            return QStringLiteral("good");
-        case RunState::Idle:
-        case RunState::Opening:
-        case RunState::Preparing:
-        case RunState::Between:
-        case RunState::Incomplete:
-            break;
-    }
-    return QStringLiteral("rest");
-}
+QString RunModel::tone() const { return QString::fromLatin1(std::visit(Tone(), view().state)); }
 
 QString RunModel::line() const { return stateLine(view()); }
 QString RunModel::detail() const { return stateDetail(view()); }
@@ -70,7 +61,7 @@ QString RunModel::warnings() const {
     return lines.join('\n');
 }
 
-QString RunModel::sound() const { return view().sound ? soundLine(desk_.soundOutput()) : QString(); }
+QString RunModel::sound() const { return view().brief.sound ? soundLine(desk_.soundOutput()) : QString(); }
 
 QString RunModel::quality() const { return view().quality ? qualityLine(*view().quality) : QString(); }
 
@@ -115,10 +106,10 @@ QVariantList RunModel::rows() const {
 }
 
 QString RunModel::lamp() const {
-    const presenter::LoopView& loop = view().loop;
-    if (!loop.known || !running()) return QStringLiteral("rest");
-    if (loop.rate_hz >= kGoodRate) return QStringLiteral("good");
-    return loop.rate_hz >= kPoorRate ? QStringLiteral("wait") : QStringLiteral("bad");
+    const std::optional<presenter::LoopView>& loop = view().loop;
+    if (!loop || !loop->isWhole() || !running()) return QStringLiteral("rest");
+    if (loop->rate_hz >= kGoodRate) return QStringLiteral("good");
+    return loop->rate_hz >= kPoorRate ? QStringLiteral("wait") : QStringLiteral("bad");
 }
 
 void RunModel::command(const QString& name, const QString& text) {

@@ -46,19 +46,19 @@ class RunModel : public QObject {
 public:
     explicit RunModel(Desk& desk);
 
-    bool known() const { return view().state != presenter::RunState::Idle; }
+    bool known() const { return !view().is<presenter::state::Idle>(); }
     bool running() const { return view().isRunning(); }
     QString tone() const;
     QString line() const;
     QString detail() const;
-    bool byHand() const { return view().by_hand && running(); }
+    bool byHand() const { return view().brief.timed_by == plan::TimedBy::Experimenter && running(); }
     QString study() const { return QString::fromStdString(view().study); }
     QString participant() const { return QString::fromStdString(view().participant); }
     double share() const;
     QString answer() const;
     QString warnings() const;
     bool refused() const { return view().answered && !view().answered->answer.accepted; }
-    double built() const { return view().built.value_or(-1.0); }
+    double built() const { return view().built().value_or(-1.0); }
     bool displayGone() const { return known() && view().display != presenter::Display::Shown; }
     QString sound() const;
     QVariantMap commands() const;
@@ -68,13 +68,13 @@ public:
     double force() const { return view().force_N; }
     double depth() const { return view().depth_mm; }
     QString lamp() const;
-    double rate() const { return view().loop.rate_hz; }
-    double typical() const { return view().loop.typical_us; }
-    double longest() const { return view().loop.longest_us; }
-    int missed() const { return static_cast<int>(view().loop.missed); }
-    bool pictured() const { return view().pictures.known; }
-    double pictures() const { return view().pictures.per_s; }
-    double pictureAge() const { return view().pictures.age_ms; }
+    double rate() const { return loop().rate_hz; }
+    double typical() const { return loop().typical_us; }
+    double longest() const { return loop().longest_us; }
+    int missed() const { return static_cast<int>(loop().missed); }
+    bool pictured() const { return view().pictures.has_value(); }
+    double pictures() const { return view().pictures ? view().pictures->per_s : 0.0; }
+    double pictureAge() const { return view().pictures ? view().pictures->age_ms : 0.0; }
     QString quality() const;
 
     /// `name`: one of session::kCommandNames.
@@ -91,10 +91,11 @@ signals:
 
 private:
     const presenter::RunView& view() const { return desk_.run().view(); }
+    presenter::LoopView loop() const { return view().loop.value_or(presenter::LoopView()); }
 
     Desk& desk_;
     std::int64_t rows_known_ = -1;
-    presenter::RunState state_known_ = presenter::RunState::Idle;
+    std::size_t state_known_ = 0;  // its place among the states
     QElapsedTimer since_measured_;
 };
 

@@ -76,7 +76,7 @@ void Screen::setFullScreen(bool full) {
 
 bool Screen::shown() const {
     const presenter::RunView& run = desk_.run().view();
-    return run.state != presenter::RunState::Idle && run.display != presenter::Display::Closed;
+    return !run.is<presenter::state::Idle>() && run.display != presenter::Display::Closed;
 }
 
 void Screen::takeScene() {

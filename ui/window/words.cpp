@@ -5,103 +5,116 @@
 namespace passung::window {
 
 using presenter::Display;
+using presenter::OneOf;
 using presenter::RowState;
-using presenter::RunState;
 using presenter::RunView;
 using presenter::Why;
 using session::CommandKind;
+namespace state = presenter::state;
 
 namespace {
 
 QString said(const char* text) { return QCoreApplication::translate("words", text); }
 
+/// The largest line, of each state.
+struct Line {
+    const RunView& view;
+
+    QString trial(const char* text) const { return said(text).arg(view.number).arg(view.planned); }
+
+    QString operator()(const state::Idle&) const { return said(QT_TRANSLATE_NOOP("words", "No session")); }
+    QString operator()(const state::Opening&) const { return said(QT_TRANSLATE_NOOP("words", "Opening the study")); }
+    QString operator()(const OneOf<state::Preparing, state::AwaitingPicture> auto&) const {
+        return trial(QT_TRANSLATE_NOOP("words", "Trial %1 of %2 is being prepared"));
+    }
+    QString operator()(const state::ToStart&) const {
+        if (view.brief.timed_by == plan::TimedBy::Experimenter)
+            return trial(QT_TRANSLATE_NOOP("words", "Trial %1 of %2 waits for Start"));
+        return trial(QT_TRANSLATE_NOOP("words", "Trial %1 of %2 waits for the start pose"));
+    }
+    QString operator()(const state::Running&) const {
+        return trial(QT_TRANSLATE_NOOP("words", "Trial %1 of %2 is running"));
+    }
+    QString operator()(const state::Between&) const { return said(QT_TRANSLATE_NOOP("words", "Between trials")); }
+    QString operator()(const state::Consenting&) const {
+        return said(QT_TRANSLATE_NOOP("words", "The participant decides on consent"));
+    }
+    QString operator()(const state::ReadingPage&) const {
+        return said(QT_TRANSLATE_NOOP("words", "The participant reads instructions"));
+    }
+    QString operator()(const state::Answering&) const {
+        return said(QT_TRANSLATE_NOOP("words", "The participant answers a questionnaire"));
+    }
+    QString operator()(const state::Resting&) const {
+        return said(QT_TRANSLATE_NOOP("words", "The participant rests"));
+    }
+    QString operator()(const state::Ready&) const { return said(QT_TRANSLATE_NOOP("words", "Ready to start")); }
+    QString operator()(const state::Paused&) const {
+        if (view.display == Display::Closed)
+            return said(QT_TRANSLATE_NOOP("words", "Paused: the participant's window is closed"));
+        if (view.display == Display::Lost)
+            return said(QT_TRANSLATE_NOOP("words", "Paused: the participant's picture is lost"));
+        return said(QT_TRANSLATE_NOOP("words", "Paused"));
+    }
+    QString operator()(const state::Stopped&) const {
+        return said(QT_TRANSLATE_NOOP("words", "Emergency stop: motors are off"));
+    }
+    QString operator()(const state::Complete&) const { return said(QT_TRANSLATE_NOOP("words", "Session complete")); }
+    QString operator()(const state::Incomplete&) const {
+        return said(QT_TRANSLATE_NOOP("words", "Session ended early"));
+    }
+    QString operator()(const state::Failed&) const { return said(QT_TRANSLATE_NOOP("words", "The session failed")); }
+};
+
+/// The line below it.
+struct Detail {
+    const RunView& view;
+
+    QString operator()(const state::Preparing& preparing) const {
+        if (!preparing.built) return condition();
+        return said(QT_TRANSLATE_NOOP("words", "models of the parts are built: %1 %"))
+            .arg(qRound(100 * *preparing.built));
+    }
+    QString operator()(const OneOf<state::ToStart, state::Running> auto&) const { return condition(); }
+    QString operator()(const state::AwaitingPicture&) const {
+        return said(QT_TRANSLATE_NOOP("words", "waits for the participant's picture"));
+    }
+    QString operator()(const state::Resting& resting) const {
+        if (resting.rest.seconds > 0)
+            return said(QT_TRANSLATE_NOOP("words", "at least %1 s more")).arg(resting.rest.seconds);
+        return said(QT_TRANSLATE_NOOP("words", "the participant may go on"));
+    }
+    QString operator()(const state::Paused&) const {
+        if (view.session.awaited_device.empty()) return next();
+        return said(QT_TRANSLATE_NOOP("words", "change to the device %1, then continue"))
+            .arg(QString::fromStdString(view.session.awaited_device));
+    }
+    QString operator()(const OneOf<state::Stopped, state::Between> auto&) const { return next(); }
+    QString operator()(const OneOf<state::Complete, state::Incomplete> auto&) const {
+        return said(QT_TRANSLATE_NOOP("words", "%1 of %2 trials are finished and stored"))
+            .arg(view.finished)
+            .arg(view.planned);
+    }
+    QString operator()(const state::Failed& failed) const { return QString::fromStdString(failed.why); }
+    QString operator()(const OneOf<state::Idle, state::Opening, state::Ready, state::Answering, state::Consenting,
+                                   state::ReadingPage> auto&) const {
+        return {};
+    }
+
+    QString condition() const { return QString::fromStdString(view.condition); }
+    QString next() const {
+        if (view.number > 0) return said(QT_TRANSLATE_NOOP("words", "next: trial %1")).arg(view.number);
+        return {};
+    }
+};
+
 }  // namespace
 
-QString stateLine(const RunView& view) {
-    const auto trial = [&view](const char* text) { return said(text).arg(view.number).arg(view.planned); };
-    switch (view.state) {
-        case RunState::Idle:
-            return said(QT_TRANSLATE_NOOP("words", "No session"));
-        case RunState::Opening:
-            return said(QT_TRANSLATE_NOOP("words", "Opening the study"));
-        case RunState::Preparing:
-            return trial(QT_TRANSLATE_NOOP("words", "Trial %1 of %2 is being prepared"));
-        case RunState::ToStart:
-            if (view.by_hand) return trial(QT_TRANSLATE_NOOP("words", "Trial %1 of %2 waits for Start"));
-            return trial(QT_TRANSLATE_NOOP("words", "Trial %1 of %2 waits for the start pose"));
-        case RunState::Running:
-            return trial(QT_TRANSLATE_NOOP("words", "Trial %1 of %2 is running"));
-        case RunState::Between:
-            return said(QT_TRANSLATE_NOOP("words", "Between trials"));
-        case RunState::Consenting:
-            return said(QT_TRANSLATE_NOOP("words", "The participant decides on consent"));
-        case RunState::Reading:
-            return said(QT_TRANSLATE_NOOP("words", "The participant reads instructions"));
-        case RunState::Answering:
-            return said(QT_TRANSLATE_NOOP("words", "The participant answers a questionnaire"));
-        case RunState::Resting:
-            return said(QT_TRANSLATE_NOOP("words", "The participant rests"));
-        case RunState::Ready:
-            return said(QT_TRANSLATE_NOOP("words", "Ready to start"));
-        case RunState::Paused:
-            if (view.display == Display::Closed)
-                return said(QT_TRANSLATE_NOOP("words", "Paused: the participant's window is closed"));
-            if (view.display == Display::Lost)
-                return said(QT_TRANSLATE_NOOP("words", "Paused: the participant's picture is lost"));
-            return said(QT_TRANSLATE_NOOP("words", "Paused"));
-        case RunState::Stopped:
-            return said(QT_TRANSLATE_NOOP("words", "Emergency stop: motors are off"));
-        case RunState::Complete:
-            return said(QT_TRANSLATE_NOOP("words", "Session complete"));
-        case RunState::Incomplete:
-            return said(QT_TRANSLATE_NOOP("words", "Session ended early"));
-        case RunState::Failed:
-            break;
-    }
-    return said(QT_TRANSLATE_NOOP("words", "The session failed"));
-}
+QString stateLine(const RunView& view) { return std::visit(Line{view}, view.state); }
 
 QString stateDetail(const RunView& view) {
     if (view.session.pauses_after) return said(QT_TRANSLATE_NOOP("words", "pauses after this trial"));
-    if (view.built)
-        return said(QT_TRANSLATE_NOOP("words", "models of the parts are built: %1 %")).arg(qRound(100 * *view.built));
-    switch (view.state) {
-        case RunState::Preparing:
-            if (view.awaits_picture) return said(QT_TRANSLATE_NOOP("words", "waits for the participant's picture"));
-            [[fallthrough]];
-        case RunState::ToStart:
-        case RunState::Running:
-            return QString::fromStdString(view.condition);
-        case RunState::Resting:
-            if (view.session.rest && view.session.rest->seconds > 0)
-                return said(QT_TRANSLATE_NOOP("words", "at least %1 s more")).arg(view.session.rest->seconds);
-            return said(QT_TRANSLATE_NOOP("words", "the participant may go on"));
-        case RunState::Answering:
-        case RunState::Consenting:
-        case RunState::Reading:
-            return {};
-        case RunState::Paused:
-            if (!view.session.awaited_device.empty())
-                return said(QT_TRANSLATE_NOOP("words", "change to the device %1, then continue"))
-                    .arg(QString::fromStdString(view.session.awaited_device));
-            [[fallthrough]];
-        case RunState::Stopped:
-        case RunState::Between:
-            if (view.number > 0) return said(QT_TRANSLATE_NOOP("words", "next: trial %1")).arg(view.number);
-            return {};
-        case RunState::Complete:
-        case RunState::Incomplete:
-            return said(QT_TRANSLATE_NOOP("words", "%1 of %2 trials are finished and stored"))
-                .arg(view.finished)
-                .arg(view.planned);
-        case RunState::Failed:
-            return QString::fromStdString(view.failure);
-        case RunState::Idle:
-        case RunState::Opening:
-        case RunState::Ready:
-            break;
-    }
-    return {};
+    return std::visit(Detail{view}, view.state);
 }
 
 QString rowWord(RowState state) {

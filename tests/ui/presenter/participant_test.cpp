@@ -35,7 +35,7 @@ protected:
         auto scene = std::make_shared<DrawnScene>();
         scene->parts.resize(1);
         scene->parts[0].mesh = std::make_shared<const ShadedMesh>();
-        run_.take(AttemptPrepared{0, "a", scene, false, brief});
+        run_.take(AttemptPrepared{0, "a", scene, brief});
         run_.take(shown(SessionState::InTrial));
     }
     void tick(int count, bool engaged, std::uint32_t buttons = 0) {
@@ -49,7 +49,10 @@ protected:
         }
     }
     ParticipantView view() const { return participantView(run_, true); }
-    RunState state() const { return run_.view().state; }
+    template <class State>
+    bool is() const {
+        return run_.view().is<State>();
+    }
 
     presenter::Run run_;
     std::int64_t tick_ = 0;
@@ -62,24 +65,24 @@ TEST_F(Participant, SeesConsentPagesAndFormsOneAfterTheOther) {
     clause->consent = true;
     run_.take(session::viewBeforeSession());
     run_.take(FormDue{clause});
-    EXPECT_EQ(state(), RunState::Consenting);
+    EXPECT_TRUE(is<state::Consenting>());
     EXPECT_EQ(view().screen, ParticipantScreen::Form);
     EXPECT_EQ(run_.view().why(CommandKind::Pause), Why::NotBegun);
     EXPECT_TRUE(run_.view().may(CommandKind::Abort));
     run_.take(AskedDone{});
-    EXPECT_EQ(state(), RunState::Opening);
+    EXPECT_TRUE(is<state::Opening>());
     begin();
     run_.take(shown(SessionState::Ready));
     EXPECT_EQ(view().screen, ParticipantScreen::Welcome);
     run_.take(shown(SessionState::BetweenTrials));
     run_.take(FormDue{std::make_shared<FormRequest>()});
-    EXPECT_EQ(state(), RunState::Answering);
+    EXPECT_TRUE(is<state::Answering>());
     run_.take(shown(SessionState::Paused));
     EXPECT_EQ(view().screen, ParticipantScreen::Pause);
     run_.take(shown(SessionState::BetweenTrials));
     EXPECT_EQ(view().screen, ParticipantScreen::Form) << "it is still open";
     run_.take(AskedDone{});
-    EXPECT_EQ(state(), RunState::Between);
+    EXPECT_TRUE(is<state::Between>());
     run_.take(PageDue{1, "Do it.", ""});
     EXPECT_EQ(view().screen, ParticipantScreen::Page);
     beginTrial({});
@@ -149,7 +152,7 @@ TEST_F(Participant, SeesARestAndTheChangeOfADevice) {
     SessionView resting = shown(SessionState::BetweenTrials);
     resting.rest = session::RestView{90, plan::RestEnds::ByParticipant};
     run_.take(resting);
-    EXPECT_EQ(state(), RunState::Resting);
+    EXPECT_TRUE(is<state::Resting>());
     EXPECT_EQ(view().screen, ParticipantScreen::Rest);
     EXPECT_EQ(view().rest->seconds, 90);
     run_.take(shown(SessionState::BetweenTrials));

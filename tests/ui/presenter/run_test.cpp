@@ -62,14 +62,14 @@ TEST(Run, GoesFromPreparingOverTheStartPoseToRunningByWhatTheTicksSay) {
     // Truth: invariant. The go is the first tick that is engaged, and the trial's time counts from there.
     presenter::Run run = begun();
     run.take(AttemptPrepared{0, "a", nullptr});
-    EXPECT_EQ(run.view().state, RunState::Preparing);
+    EXPECT_TRUE(run.view().is<state::Preparing>());
     run.take(shown(SessionState::InTrial, 0));
-    EXPECT_EQ(run.view().state, RunState::ToStart);
+    EXPECT_TRUE(run.view().is<state::ToStart>());
     feed(run, 0, 200, false);
-    EXPECT_EQ(run.view().state, RunState::ToStart);
+    EXPECT_TRUE(run.view().is<state::ToStart>());
     EXPECT_EQ(run.view().trial_s, 0.0);
     feed(run, 200, 1701, true);
-    EXPECT_EQ(run.view().state, RunState::Running);
+    EXPECT_TRUE(run.view().is<state::Running>());
     EXPECT_NEAR(run.view().trial_s, 1.5, 1e-9);
     EXPECT_EQ(run.view().rows[0].state, RowState::Running);
     EXPECT_EQ(run.view().rows[1].state, RowState::Waiting);
@@ -150,7 +150,7 @@ TEST(Run, ShowsTheSessionsOwnPermissionsAndWithoutOneNone) {
     for (std::size_t kind = 0; kind < view.commands.size(); ++kind)
         EXPECT_EQ(run.view().why(static_cast<CommandKind>(kind)), view.commands[kind].why);
     run.take(RunOver{false, {}});
-    EXPECT_EQ(run.view().state, RunState::Incomplete);
+    EXPECT_TRUE(run.view().is<state::Incomplete>());
     EXPECT_EQ(run.view().why(CommandKind::Stop), Why::NoSession);
 }
 
@@ -161,10 +161,10 @@ TEST(Run, AnEmergencyStopIsShownUntilTheSessionGoesOn) {
     SessionView stopped = shown(SessionState::Paused, 0);
     stopped.stopped = true;
     run.take(stopped);
-    EXPECT_EQ(run.view().state, RunState::Stopped);
+    EXPECT_TRUE(run.view().is<state::Stopped>());
     run.take(shown(SessionState::InTrial, 0));
     run.take(shown(SessionState::Paused, 1));
-    EXPECT_EQ(run.view().state, RunState::Paused);
+    EXPECT_TRUE(run.view().is<state::Paused>());
 }
 
 TEST(Run, ATrialThatTheParticipantNoLongerSeesIsPausedAtOnceAndOnlyOnce) {
@@ -185,11 +185,11 @@ TEST(Run, TellsHowMuchOfASceneIsBuiltUntilItsTrialBegins) {
     // Truth: invariant.
     presenter::Run run = begun();
     run.take(AttemptPrepared{0, "a", nullptr});
-    EXPECT_FALSE(run.view().built);
+    EXPECT_FALSE(run.view().built());
     run.take(BuildProgress{0.5});
-    EXPECT_EQ(run.view().built, 0.5);
+    EXPECT_EQ(run.view().built(), 0.5);
     run.take(shown(SessionState::InTrial, 0));
-    EXPECT_FALSE(run.view().built);
+    EXPECT_FALSE(run.view().built());
 }
 
 TEST(Run, KeepsWhatItWasWarnedOfUntilAnotherRunOpens) {
@@ -213,11 +213,57 @@ TEST(Run, CountsTheLoopsMissedCyclesAndItsRate) {
         records.push_back(record);
     }
     run.take(records);
-    EXPECT_TRUE(run.view().loop.known);
-    EXPECT_EQ(run.view().loop.missed, 250);
-    EXPECT_NEAR(run.view().loop.rate_hz, 800.0, 1e-9);
-    EXPECT_NEAR(run.view().loop.typical_us, 20.0, 1e-4);
-    EXPECT_NEAR(run.view().loop.longest_us, 90.0, 1e-4);
+    ASSERT_TRUE(run.view().loop && run.view().loop->isWhole());
+    EXPECT_EQ(run.view().loop->missed, 250);
+    EXPECT_NEAR(run.view().loop->rate_hz, 800.0, 1e-9);
+    EXPECT_NEAR(run.view().loop->typical_us, 20.0, 1e-4);
+    EXPECT_NEAR(run.view().loop->longest_us, 90.0, 1e-4);
+}
+
+TEST(Run, AwaitsThePictureOfAPreparedTrialOnly) {
+    // Truth: invariant: a trial that is prepared begins with its first picture; nothing else waits for one.
+    presenter::Run run = begun();
+    EXPECT_FALSE(run.checkFirstPicture(false)) << "nothing is prepared";
+    run.take(AttemptPrepared{0, "a", nullptr});
+    EXPECT_TRUE(run.checkFirstPicture(false));
+    EXPECT_FALSE(run.checkFirstPicture(false)) << "it waits already";
+    run.take(shown(SessionState::Preparing, 0));
+    EXPECT_TRUE(run.view().is<state::AwaitingPicture>()) << "what else the session tells leaves it so";
+    EXPECT_TRUE(run.checkFirstPicture(true));
+    EXPECT_TRUE(run.view().is<state::Preparing>());
+    run.take(shown(SessionState::InTrial, 0));
+    EXPECT_FALSE(run.checkFirstPicture(false)) << "it has begun";
+    EXPECT_TRUE(run.view().is<state::ToStart>());
+}
+
+TEST(Run, AwaitsNoPictureWhileModelsAreBuilt) {
+    // Truth: invariant: the share that is built is told on the line that else tells of the picture.
+    presenter::Run run = begun();
+    run.take(AttemptPrepared{0, "a", nullptr});
+    EXPECT_TRUE(run.checkFirstPicture(false));
+    run.take(BuildProgress{0.25});
+    EXPECT_FALSE(run.checkFirstPicture(false));
+    EXPECT_FALSE(run.checkFirstPicture(true));
+    EXPECT_TRUE(run.view().is<state::Preparing>());
+    EXPECT_EQ(run.view().built(), 0.25);
+    run.take(shown(SessionState::Interrupted, 0));
+    EXPECT_FALSE(run.view().built()) << "the session is over, its build with it";
+}
+
+TEST(Run, AsksOneThingAtATimeAndThroughAPause) {
+    // Truth: invariant: a form and a page are never open together; a pause hides what is open and closes nothing.
+    presenter::Run run = begun();
+    run.take(shown(SessionState::BetweenTrials, 0));
+    run.take(FormDue{std::make_shared<FormRequest>()});
+    EXPECT_TRUE(run.view().form());
+    run.take(PageDue{1, "Do it.", ""});
+    EXPECT_FALSE(run.view().form());
+    run.take(shown(SessionState::Paused, 0));
+    EXPECT_TRUE(run.view().is<state::Paused>());
+    ASSERT_NE(run.view().page(), nullptr);
+    EXPECT_EQ(run.view().page()->text, "Do it.");
+    run.take(AttemptPrepared{0, "a", nullptr});
+    EXPECT_EQ(run.view().page(), nullptr);
 }
 
 TEST(ParticipantView, ShowsTheForceOnlyToWhoCannotFeelItAndOnlyInTheTrial) {

@@ -88,7 +88,7 @@ TEST_F(ShownCommands, WhileASceneIsBuiltTheCommandsOfItsTrialAreOffered) {
     begin(1);
     session_->advance();
     ASSERT_EQ(prepared_.size(), 1u);
-    EXPECT_EQ(prepared_[0].state, presenter::RunState::Preparing);
+    EXPECT_TRUE(prepared_[0].is<presenter::state::Preparing>());
     for (std::size_t kind = 0; kind < std::size(kCommandNames); ++kind) {
         const Kind each = static_cast<Kind>(kind);
         EXPECT_EQ(prepared_[0].why(each), offered(each)) << kCommandNames[kind];

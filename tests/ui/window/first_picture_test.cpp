@@ -13,7 +13,7 @@
 namespace passung::test {
 namespace {
 
-using presenter::RunState;
+namespace state = presenter::state;
 
 class FirstPicture : public Windows {
 protected:
@@ -43,7 +43,7 @@ TEST_F(FirstPicture, NoClockRunsBeforeTheScreenShowsTheTrial) {
     click("tryOut");
     waitFor([&] { return run().last().has_value(); });
     EXPECT_LT(run().last()->tick, 1500) << "the loop ran while nothing was shown";
-    waitFor(RunState::Running);
+    waitFor<state::Running>();
     EXPECT_LT(run().view().trial_s, 1.5);
 }
 
@@ -52,8 +52,8 @@ TEST_F(FirstPicture, ATrialWhosePicturesStopDoesNotCountAndSaysHowOldTheyBecame)
     open("en", true);
     click("study-seen");
     click("tryOut");
-    waitFor([&] { return run().view().state == RunState::Running && run().view().pictures.known; });
-    EXPECT_GT(run().view().pictures.per_s, 0.0);
+    waitFor([&] { return run().view().is<state::Running>() && run().view().pictures.has_value(); });
+    EXPECT_GT(run().view().pictures->per_s, 0.0);
     click("page-session");
     waitFor([&] { return item(app_->experimenter(), "pictures") != nullptr; });
     QThread::msleep(2500);
@@ -74,7 +74,7 @@ TEST_F(FirstPicture, QualityIsFoundBeforeTheFirstTrialKeptAndStored) {
     open("en", true);
     click("study-seen");
     click("watch");
-    waitFor(RunState::Running);
+    waitFor<state::Running>();
     ASSERT_TRUE(run().view().quality) << "a trial runs and nothing was found";
     const presenter::QualityFound found = *run().view().quality;
     QQuickItem* scene = item(app_->participant(), "scene");

@@ -10,7 +10,7 @@
 namespace passung::test {
 namespace {
 
-using presenter::RunState;
+namespace state = presenter::state;
 
 class Following : public Windows {
 protected:
@@ -29,7 +29,7 @@ TEST_F(Following, AFileThatWasWholeIsNotSearchedForDamageAfterEachTrial) {
     click("study-small");
     app_->records().setProperty("source", 1);  // try-outs
     click("watch");
-    waitFor(RunState::Running);
+    waitFor<state::Running>();
     settle();
     const int begun = checks.count();
     EXPECT_GT(begun, 0);
@@ -45,9 +45,9 @@ TEST_F(Following, WhatTheSessionWouldRefuseIsNotOfferedAndSaysWhy) {
     open("en", true);
     click("study-small");
     click("watch");
-    waitFor(RunState::Running);
+    waitFor<state::Running>();
     click("pause");
-    waitFor(RunState::Paused);
+    waitFor<state::Paused>();
     ASSERT_TRUE(item(app_->experimenter(), "repeat")->isEnabled());
     click("repeat");
     waitFor([&] { return !item(app_->experimenter(), "repeat")->isEnabled(); });

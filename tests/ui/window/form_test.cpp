@@ -13,7 +13,7 @@
 namespace passung::test {
 namespace {
 
-using presenter::RunState;
+namespace state = presenter::state;
 
 constexpr const char* kAnswers =
     "SELECT group_concat(item || '=' || coalesce(value_num, value_text, 'NULL'), '; ') FROM (SELECT * FROM "
@@ -72,7 +72,7 @@ protected:
     }
     void finish() {
         app_->desk().command({.kind = session::CommandKind::Abort});
-        waitFor(RunState::Incomplete);
+        waitFor<state::Incomplete>();
     }
 
     const std::string database_ = folder_ / "asking.db";
@@ -81,24 +81,24 @@ protected:
 TEST_F(Asked, KeyboardAloneAnswersConsentInstructionsAndEveryKindOfItem) {
     // Truth: closed form: what the keys mean. The person is real and their hand moves the mouse.
     begin("P001", "en");
-    waitFor(RunState::Consenting);
+    waitFor<state::Consenting>();
     waitForFocus("row0");
     picture(window(), "consent");
     key(Qt::Key_1);
     key(Qt::Key_Return);
     waitForFocus("formNext");
     key(Qt::Key_Return);
-    waitFor([&] { return run().form() && run().form()->id == "consent|photos"; });
+    waitFor([&] { return run().view().form() && run().view().form()->id == "consent|photos"; });
     waitForFocus("row0");
     key(Qt::Key_Right);
     key(Qt::Key_Right);
     key(Qt::Key_Tab);
     key(Qt::Key_Space);
-    waitFor(RunState::Ready);
+    waitFor<state::Ready>();
     app_->experimenter()->requestActivate();
     waitFor([&] { return app_->experimenter()->isActive(); });
     pressKey(Qt::Key_F5);
-    waitFor(RunState::Answering);
+    waitFor<state::Answering>();
     window()->requestActivate();
     waitFor([&] { return window()->isActive(); });
 
@@ -149,12 +149,12 @@ TEST_F(Asked, KeyboardAloneAnswersConsentInstructionsAndEveryKindOfItem) {
     waitForFocus("formNext");
     key(Qt::Key_Return);
 
-    waitFor(RunState::Reading);
+    waitFor<state::ReadingPage>();
     waitForFocus("goOn");
     waitFor([&] { return item(window(), "picture")->property("status").toInt() == 1; });
     picture(window(), "instruction");
     key(Qt::Key_Return);
-    waitFor([&] { return run().view().state == RunState::ToStart || run().view().state == RunState::Running; });
+    waitFor([&] { return run().view().is<state::ToStart, state::Running>(); });
     finish();
 
     EXPECT_EQ(query(kAnswers), kExpected);
@@ -178,13 +178,13 @@ TEST_F(Asked, TheMouseAnswersTheSameInTheSessionsLanguageWhateverTheExperimenter
     open("en", false);
     begin("T001", "de");
     for (const char* clause : {"consent|data_use", "consent|photos"}) {
-        waitFor([&] { return run().form() && run().form()->id == clause && app_->form().shown(); });
+        waitFor([&] { return run().view().form() && run().view().form()->id == clause && app_->form().shown(); });
         waitForForm("Ihre Einwilligung");
-        clickPart(0, run().form()->id == "consent|photos" ? "label1" : "label0");
+        clickPart(0, run().view().form()->id == "consent|photos" ? "label1" : "label0");
         picture(window(), "consent_de_light");
         click(window(), "formNext");
     }
-    waitFor(RunState::Ready);
+    waitFor<state::Ready>();
     app_->experimenter()->requestActivate();
     waitFor([&] { return app_->experimenter()->isActive(); });
     pressKey(Qt::Key_F5);
@@ -224,12 +224,12 @@ TEST_F(Asked, TheMouseAnswersTheSameInTheSessionsLanguageWhateverTheExperimenter
     click(window(), "formNext");
     waitFor([&] { return page() == 2; });
     click(window(), "formNext");
-    waitFor(RunState::Reading);
+    waitFor<state::ReadingPage>();
     waitFor([&] { return item(window(), "picture")->property("status").toInt() == 1; });
     picture(window(), "instruction_de_light");
     EXPECT_TRUE(item(window(), "pageText")->property("text").toString().startsWith("Sie stecken"));
     click(window(), "goOn");
-    waitFor([&] { return run().view().state == RunState::ToStart || run().view().state == RunState::Running; });
+    waitFor([&] { return run().view().is<state::ToStart, state::Running>(); });
     finish();
     EXPECT_EQ(query(kAnswers), kExpected);
     EXPECT_EQ(query("SELECT changes FROM item_response WHERE item='likert'"), "1");
@@ -243,14 +243,14 @@ TEST_F(Asked, TheMouseAnswersTheSameInTheSessionsLanguageWhateverTheExperimenter
 TEST_F(Asked, WhoRefusesARequiredClauseGetsNoSession) {
     // Truth: invariant (admission).
     begin("P001", "en");
-    waitFor(RunState::Consenting);
+    waitFor<state::Consenting>();
     waitForFocus("row0");
     key(Qt::Key_2);
     key(Qt::Key_Return);
     key(Qt::Key_Return);
-    waitFor(RunState::Failed);
-    EXPECT_NE(run().view().failure.find("no consent to the clause data_use"), std::string::npos)
-        << run().view().failure;
+    waitFor<state::Failed>();
+    EXPECT_NE(run().view().failure().find("no consent to the clause data_use"), std::string::npos)
+        << run().view().failure();
     EXPECT_EQ(query("SELECT count(*) FROM session"), "0");
     EXPECT_EQ(query("SELECT decision FROM consent"), "no");
     waitFor([&] { return !app_->form().shown(); });
@@ -260,24 +260,24 @@ TEST_F(Asked, TheSessionCanBePausedStoppedAndEndedWhileAQuestionnaireIsOpen) {
     // Truth: invariant. What was answered so far stays on the screen; closing the program asks it again at resume.
     begin("T001", "en");
     for (const char* clause : {"consent|data_use", "consent|photos"}) {
-        waitFor([&] { return run().form() && run().form()->id == clause && app_->form().shown(); });
+        waitFor([&] { return run().view().form() && run().view().form()->id == clause && app_->form().shown(); });
         waitForFocus("row0");
         key(Qt::Key_1);
         key(Qt::Key_Return);
         waitForFocus("formNext");
         key(Qt::Key_Return);
     }
-    waitFor(RunState::Ready);
+    waitFor<state::Ready>();
     app_->desk().command({.kind = session::CommandKind::Start});
-    waitFor(RunState::Answering);
+    waitFor<state::Answering>();
     waitForFocus("row0");
     key(Qt::Key_4);
     app_->desk().command({.kind = session::CommandKind::Stop});
-    waitFor(RunState::Stopped);
+    waitFor<state::Stopped>();
     EXPECT_FALSE(app_->form().shown());
     picture(window(), "pause");
     app_->desk().command({.kind = session::CommandKind::Continue});
-    waitFor(RunState::Answering);
+    waitFor<state::Answering>();
     EXPECT_TRUE(app_->form().shown());
     EXPECT_EQ(app_->form().rows().front().toMap()["value"].toDouble(), 4.0);
     finish();

@@ -29,7 +29,7 @@
 namespace passung::test {
 namespace {
 
-using presenter::RunState;
+namespace state = presenter::state;
 
 constexpr double kFine = 5e-6;    // chord error of shapes as the oracle has them [m]
 constexpr int kManyPixels = 400;  // a part with more is compared by its area
@@ -137,7 +137,7 @@ public:
         presenter::TrialBrief brief;
         brief.kind = static_cast<presenter::TrialBrief::Kind>(condition.task.form.index());
         brief.timed_by = condition.timed_by;
-        desk_.bring({presenter::AttemptPrepared{trial_index, condition.name, *scene, false, brief}}, {});
+        desk_.bring({presenter::AttemptPrepared{trial_index, condition.name, *scene, brief}}, {});
         if (condition.timed_by == plan::TimedBy::Program) look_(moment_);
     }
     bool builds(double) override { return true; }
@@ -147,7 +147,7 @@ public:
         desk_.bring({session.view()}, {});
         if (session.state() != session::SessionState::InTrial || !moment_.tick) return;
         if (moment_.condition->timed_by != plan::TimedBy::Program) return;
-        moment_.in_trial = desk_.run().view().state == RunState::Running && isTask();
+        moment_.in_trial = desk_.run().view().is<state::Running>() && isTask();
         if (!moment_.in_trial) return;
         // The first picture of the trial, one once the part has gone in, and one as deep as half of the cue's scale.
         const double depth = static_cast<double>(moment_.tick->hand_depth_m) / moment_.condition->cues.full_depth;

@@ -78,15 +78,15 @@ text.de = "Sie nehmen teil."
         click("consent-0-yes");
         settle();
         click("startSession");
-        waitFor(presenter::RunState::Ready);
+        waitFor<presenter::state::Ready>();
     }
     void breakOff() {
         activate(app_->experimenter());
         pressKey(Qt::Key_Escape);  // a running trial would be finished first
-        waitFor(presenter::RunState::Stopped);
+        waitFor<presenter::state::Stopped>();
         click("abort");
         click("abort");  // really
-        waitFor(presenter::RunState::Incomplete);
+        waitFor<presenter::state::Incomplete>();
     }
 
     std::string textOf(const char* name) const {
@@ -187,7 +187,7 @@ TEST_F(Pages, ASessionIsBegunBrokenOffAndGoneOnWith) {
     EXPECT_EQ((*first)[0].kind, "real");
     EXPECT_EQ((*first)[0].experimenter, "AB");
     click("resume");
-    waitFor(presenter::RunState::Ready);
+    waitFor<presenter::state::Ready>();
     const auto second = reader().sessions();
     ASSERT_TRUE(second && second->size() == 1) << "it is the same session";
     EXPECT_EQ((*second)[0].segments, 2);
@@ -199,7 +199,7 @@ TEST_F(Pages, ASessionIsBegunBrokenOffAndGoneOnWith) {
     click("questionNo");
     EXPECT_EQ(item(app_->experimenter(), "question"), nullptr);
     EXPECT_TRUE(app_->experimenter()->isVisible());
-    EXPECT_EQ(run().view().state, presenter::RunState::Ready);
+    EXPECT_TRUE(run().view().is<presenter::state::Ready>());
     bool quits = false;
     QObject::connect(qmlEngine(app_->experimenter()), &QQmlEngine::quit, app_->experimenter(), [&] { quits = true; });
     EXPECT_FALSE(app_->experimenter()->close());
@@ -225,7 +225,7 @@ TEST_F(Pages, ASessionThatGoesOnIsDrawnAsItBegan) {
     click("page-participants");
     settle();
     click("resume");
-    waitFor(presenter::RunState::Ready);
+    waitFor<presenter::state::Ready>();
     click("start");
     waitFor([&] { return run().view().may(session::CommandKind::Pause); });
     ASSERT_TRUE(run().view().quality);

@@ -21,7 +21,7 @@
 namespace passung::test {
 namespace {
 
-using presenter::RunState;
+namespace state = presenter::state;
 using Steady = std::chrono::steady_clock;
 
 constexpr std::size_t kTriangles = 59'000;
@@ -148,16 +148,16 @@ TEST_F(Rates, OfAHeavyPartInBothWindows) {
         waitFor([&] { return item(app_->participant(), "scene") != nullptr; });
         item(app_->participant(), "scene")->setProperty("shadows", shadows);
         click("page-session");
-        waitFor(RunState::Running);
+        waitFor<state::Running>();
         const QObject context;
         QObject::connect(app_->participant(), &QQuickWindow::frameSwapped, &context, [&] { ++pictures; });
         QObject::connect(app_->experimenter(), &QQuickWindow::frameSwapped, &context, [&] { ++mirrored; });
         ASSERT_NE(item(app_->experimenter(), "mirror"), nullptr);
         const Spent spent;
-        waitFor([&] { return run().view().state != RunState::Running; });
+        waitFor([&] { return !run().view().is<state::Running>(); });
         const double seconds = spent.seconds(), processor = spent.processor() - share_without * seconds;
         picture(app_->participant(), shadows ? "heavy_shadows" : "heavy");
-        waitFor(RunState::Complete);
+        waitFor<state::Complete>();
         std::printf("  %s shadows: %.1f pictures a second, console %.1f; processor time %.1f ms a picture\n",
                     shadows ? "with" : "without", pictures / seconds, mirrored / seconds, 1e3 * processor / pictures);
         EXPECT_GT(pictures, 0);
@@ -180,10 +180,10 @@ TEST_F(Rates, QualityFallsUntilPicturesAreFastEnoughOrHalfAsLarge) {
         app_->participant()->setGeometry(QRect({0, 0}, size));
         int pictures = 0;
         const QObject context;
-        waitFor(RunState::Running);
+        waitFor<state::Running>();
         QObject::connect(app_->participant(), &QQuickWindow::frameSwapped, &context, [&] { ++pictures; });
         const Spent spent;
-        waitFor([&] { return run().view().state != RunState::Running; });
+        waitFor([&] { return !run().view().is<state::Running>(); });
         const double seconds = spent.seconds();
         const auto found = run().view().quality;
         ASSERT_TRUE(found);

@@ -17,7 +17,7 @@
 namespace passung::test {
 namespace {
 
-using presenter::RunState;
+namespace state = presenter::state;
 
 /// Tells the server of a monitor; what xcb itself offers for that counts a request's length wrong (libxcb 1.15).
 bool setMonitor(xcb_connection_t* connection, xcb_window_t root, xcb_randr_monitor_info_t monitor,
@@ -80,7 +80,7 @@ protected:
         click("study-peg_in_hole");
         click("watch");
         waitFor([&] { return app_->participant()->isExposed(); });
-        waitFor(RunState::Running);
+        waitFor<state::Running>();
     }
     void expectOn(const char* name) {
         EXPECT_EQ(app_->participant()->geometry(), area(name)) << "not on " << name;
@@ -91,7 +91,7 @@ protected:
         activate(app_->experimenter());
         click("abort");
         click("abort");  // really
-        waitFor(RunState::Incomplete);
+        waitFor<state::Incomplete>();
     }
 };
 
@@ -123,7 +123,7 @@ TEST_F(Screens, AWindowThatIsOpenedAgainComesBackToItsScreen) {
     tryOut();
     expectOn("RIGHT");
     app_->participant()->close();
-    waitFor(RunState::Paused);
+    waitFor<state::Paused>();
     click("openDisplay");
     waitFor([&] { return app_->participant()->isExposed(); });
     expectOn("RIGHT");

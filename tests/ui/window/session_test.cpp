@@ -24,7 +24,7 @@ namespace passung::test {
 namespace {
 
 using presenter::DragPlane;
-using presenter::RunState;
+namespace state = presenter::state;
 
 /// Where a process of its own performs the first part; it writes a line when it may be killed.
 constexpr const char* kFolder = "PASSUNG_TEST_FOLDER";
@@ -42,7 +42,7 @@ protected:
     }
     void begin(const char* button) {
         click(button);
-        waitFor(RunState::Ready);
+        waitFor<state::Ready>();
         if (HasFatalFailure()) return;
         pressInConsole(Qt::Key_F5);
     }
@@ -54,12 +54,11 @@ protected:
     void waitForTrial(std::int64_t number) {
         const auto& view = run().view();
         waitFor([&] {
-            return isOver() || view.state == RunState::Answering ||
-                   (view.number == number && view.state == RunState::Running);
+            return isOver() || view.is<state::Answering>() || (view.number == number && view.is<state::Running>());
         });
-        ASSERT_EQ(view.state, RunState::Running) << view.failure;
+        ASSERT_TRUE(view.is<state::Running>()) << view.failure();
     }
-    bool isOver() const { return run().view().state >= RunState::Complete; }
+    bool isOver() const { return run().view().isOver(); }
     int attempts(std::size_t trial) const { return run().view().rows[trial - 1].attempts; }
 
     /// One drag by so many pixels; the middle button drags on the ground.
@@ -113,10 +112,10 @@ protected:
 
     /// Answers every item of the form that is open by its digit.
     void answerForm(char digit) {
-        const auto form = run().form();
+        const auto form = run().view().form();
         waitFor([&] { return app_->form().shown() && app_->form().count() > 0; });
         activate(app_->participant());
-        while (run().form() == form && app_->form().shown()) {
+        while (run().view().form() == form && app_->form().shown()) {
             const int focus = app_->form().focus();
             const int page = app_->form().page();
             const bool row = focus < app_->form().count();
@@ -236,19 +235,19 @@ TEST_F(WholeSession, KilledResumedRepeatedInvalidatedAndStoppedItLeavesWhatARunW
     waitForTrial(4);  // again; and an emergency
     ASSERT_FALSE(HasFatalFailure());
     pressInConsole(Qt::Key_Escape);
-    waitFor(RunState::Stopped);
+    waitFor<state::Stopped>();
     pressInConsole(Qt::Key_P, Qt::ControlModifier);
     performTrial(4);
 
     for (const char* form : {"nasa_tlx_raw", "contact_perception"}) {
-        waitFor([&] { return isOver() || (run().form() && run().view().state == RunState::Answering); });
-        ASSERT_FALSE(isOver()) << run().view().failure;
-        const auto asked = run().form();
+        waitFor([&] { return isOver() || (run().view().form() && run().view().is<state::Answering>()); });
+        ASSERT_FALSE(isOver()) << run().view().failure();
+        const auto asked = run().view().form();
         picture(app_->participant(), form);
         answerForm('5');
-        waitFor([&] { return isOver() || run().form() != asked; });
+        waitFor([&] { return isOver() || run().view().form() != asked; });
     }
-    waitFor(RunState::Complete);
+    waitFor<state::Complete>();
     picture(app_->experimenter(), "session_complete");
     picture(app_->participant(), "thanks");
 

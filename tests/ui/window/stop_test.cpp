@@ -12,7 +12,7 @@
 namespace passung::test {
 namespace {
 
-using presenter::RunState;
+namespace state = presenter::state;
 
 class Stop : public Windows {
 protected:
@@ -20,7 +20,7 @@ protected:
     void begin() {
         click("study-peg_in_hole");
         click("watch");
-        waitFor(RunState::Running);
+        waitFor<state::Running>();
         activate(app_->experimenter());
         waitFor([&] { return run().last()->tick > 300; });
     }
@@ -78,10 +78,10 @@ TEST_F(Stop, EscTurnsTheMotorsOffWhileTheThreadThatDrawsHangsForTenSeconds) {
     const std::int64_t tick = run().last()->tick;
     hang(10'000, 1000, [&] { person_.pressEscape(); });
     expectStopped(tick, 1000, 10'000);
-    waitFor(RunState::Stopped);
+    waitFor<state::Stopped>();
     for (int i = 0; i < 20; ++i) QCoreApplication::processEvents(QEventLoop::AllEvents, 5);  // the window hears it now
     click("pause");                                                                          // goes on
-    waitFor(RunState::Running);
+    waitFor<state::Running>();
     EXPECT_EQ(stopsInTheData(), 1) << "the window's own press of the same key came as a second stop";
 }
 
@@ -107,7 +107,7 @@ TEST_F(Stop, TheButtonTurnsTheMotorsOffWhereverTheWindowIsMoved) {
     ASSERT_EQ(rows.size(), 1u);
     EXPECT_GE(rows[0].timing->ticks, tick + 700) << "a press beside the button, or above it, has stopped";
     expectStopped(tick, 1000, 3000);
-    waitFor(RunState::Stopped);
+    waitFor<state::Stopped>();
 }
 
 TEST_F(Stop, EscInAnotherProgramsWindowIsThatProgramsBusiness) {
@@ -117,13 +117,13 @@ TEST_F(Stop, EscInAnotherProgramsWindowIsThatProgramsBusiness) {
     person_.pressEscape();
     const std::int64_t tick = run().last()->tick;
     waitFor([&] { return run().last()->tick > tick + 300; });
-    EXPECT_EQ(run().view().state, RunState::Running);
+    EXPECT_TRUE(run().view().is<state::Running>());
     person_.closeWindow();
     person_.giveKeyboard(static_cast<std::uint32_t>(app_->participant()->winId()));
     const std::int64_t later = run().last()->tick;
     hang(2000, 200, [&] { person_.pressEscape(); });
     expectStopped(later, 200, 2000);
-    waitFor(RunState::Stopped);
+    waitFor<state::Stopped>();
 }
 
 TEST(StopPath, WindowsRunOnXWhereverItIsAtHand) {

@@ -104,7 +104,7 @@ private:
         see(console_, "console_session");
         activate(console_);
         pressKey(Qt::Key_Escape);
-        waitFor(presenter::RunState::Stopped);
+        waitFor<presenter::state::Stopped>();
         see(console_, "console_session_stopped");
         see(app_->participant(), "participant_stopped");
         app_->participant()->close();
@@ -120,7 +120,7 @@ private:
         activate(console_);
         click("abort");
         click("abort");  // really
-        waitFor(presenter::RunState::Incomplete);
+        waitFor<presenter::state::Incomplete>();
     }
 
     void seeMistake() {
@@ -161,7 +161,7 @@ private:
 
     void seeQuestions() {
         click("startSession");
-        waitFor(presenter::RunState::Consenting);
+        waitFor<presenter::state::Consenting>();
         QQuickWindow* window = app_->participant();
         waitFor([&] { return app_->form().shown(); });
         see(console_, "console_session_consent");
@@ -170,12 +170,12 @@ private:
         layOut(window->contentItem());
         click(window, "label0");
         click(window, "formNext");
-        waitFor(presenter::RunState::Ready);
+        waitFor<presenter::state::Ready>();
         see(console_, "console_session_ready");
         see(window, "participant_ready");
         activate(console_);
         pressKey(Qt::Key_F5);
-        waitFor(presenter::RunState::Answering);
+        waitFor<presenter::state::Answering>();
         for (int page = 0; page < 3; ++page) {
             waitFor([&] { return app_->form().shown() && app_->form().page() == page; });
             see(window, QString("participant_questions_%1").arg(page + 1));
@@ -185,28 +185,26 @@ private:
             if (page == 0) see(window, "participant_questions_open");
             click(window, "formNext");
         }
-        waitFor(presenter::RunState::Reading);
+        waitFor<presenter::state::ReadingPage>();
         waitFor([&] { return item(window, "picture")->property("status").toInt() == 1; });
         see(window, "participant_instruction");
         click(window, "goOn");
     }
 
     void seeTrialByHand() {
-        const auto isThere = [&] {
-            const auto state = run().view().state;
-            return state == presenter::RunState::ToStart || state == presenter::RunState::Running;
-        };
-        waitFor([&] { return isThere() || run().view().by_hand; });
-        if (!run().view().by_hand) {
+        const auto isThere = [&] { return run().view().is<presenter::state::ToStart, presenter::state::Running>(); };
+        const auto byHand = [&] { return run().view().brief.timed_by == plan::TimedBy::Experimenter; };
+        waitFor([&] { return isThere() || byHand(); });
+        if (!byHand()) {
             activate(console_);
             pressKey(Qt::Key_K, Qt::ControlModifier);
         }
-        waitFor([&] { return run().view().by_hand && !app_->screen().drawn(); });
+        waitFor([&] { return byHand() && !app_->screen().drawn(); });
         see(console_, "console_session_by_hand");
         see(app_->participant(), "participant_by_hand");
         activate(console_);
         pressKey(Qt::Key_Escape);
-        waitFor(presenter::RunState::Stopped);
+        waitFor<presenter::state::Stopped>();
         endSession();
         click("page-participants");
         settle();

@@ -14,7 +14,7 @@
 namespace passung::test {
 namespace {
 
-using presenter::RunState;
+namespace state = presenter::state;
 
 TEST_F(Windows, TwoClicksLeadToARunningTrialThatTheMouseMoves) {
     // Truth: invariant. The part on the participant's screen goes where it is dragged, and the stored attempts follow
@@ -22,7 +22,7 @@ TEST_F(Windows, TwoClicksLeadToARunningTrialThatTheMouseMoves) {
     picture(app_->experimenter(), "studies");
     click("study-peg_in_hole");
     click("tryOut");
-    waitFor(RunState::Running);
+    waitFor<state::Running>();
     QQuickWindow* participant = app_->participant();
     waitFor([&] { return participant->isExposed() && participant->isActive(); });
 
@@ -57,13 +57,13 @@ TEST_F(Windows, KeysStopContinueAndLeaveOutTrialsInEitherLanguage) {
     // Truth: invariant. What the state line says is what the session does.
     click("study-peg_in_hole");
     click("watch");
-    waitFor(RunState::Running);
+    waitFor<state::Running>();
     app_->experimenter()->requestActivate();
     waitFor([&] { return app_->experimenter()->isActive(); });
     waitFor([&] { return run().last()->tick > 500; });  // of the five seconds that the trial takes
     picture(app_->experimenter(), "session_watched");
     pressKey(Qt::Key_Escape);
-    waitFor(RunState::Stopped);
+    waitFor<state::Stopped>();
     const QImage stopped = picture(app_->experimenter(), "session_stopped");
     EXPECT_GT(pixelsLike(stopped.copy(20, 60, 12, 120), app_->look().bad()), 300) << "the state line is not marked";
     EXPECT_EQ(run().view().rows[0].state, presenter::RowState::Next);
@@ -89,7 +89,7 @@ TEST_F(Windows, KeysStopContinueAndLeaveOutTrialsInEitherLanguage) {
     pressKey(Qt::Key_K, Qt::ControlModifier);
     waitFor([&] { return run().view().rows[0].state == presenter::RowState::Skipped; });
     pressKey(Qt::Key_P, Qt::ControlModifier);
-    waitFor(RunState::Running);
+    waitFor<state::Running>();
     EXPECT_EQ(run().view().number, 2);
     picture(app_->participant(), "participant_de_light");
     click("page-studies");
@@ -101,7 +101,7 @@ TEST_F(Windows, AWindowThatNobodySeesPausesTheTrialAndComesBackWithoutLosingIt) 
     // window went away is no longer held.
     click("study-peg_in_hole");
     click("tryOut");
-    waitFor(RunState::Running);
+    waitFor<state::Running>();
     QQuickWindow* participant = app_->participant();
     waitFor([&] { return participant->isExposed() && participant->isActive(); });
     QTest::keyPress(participant, Qt::Key_Left);
@@ -109,7 +109,7 @@ TEST_F(Windows, AWindowThatNobodySeesPausesTheTrialAndComesBackWithoutLosingIt) 
     waitFor([&] { return static_cast<double>(run().last()->hand_position_m[0]) < x0 - 0.002; });
     EXPECT_EQ(item(app_->experimenter(), "openDisplay"), nullptr);
     participant->close();
-    waitFor(RunState::Paused);
+    waitFor<state::Paused>();
     EXPECT_FALSE(participant->isVisible());
     EXPECT_EQ(run().view().rows[0].attempts, 1);
     EXPECT_EQ(run().view().rows[0].state, presenter::RowState::Next);
@@ -119,10 +119,10 @@ TEST_F(Windows, AWindowThatNobodySeesPausesTheTrialAndComesBackWithoutLosingIt) 
 
     click("openDisplay");
     waitFor([&] { return participant->isExposed(); });
-    EXPECT_EQ(run().view().state, RunState::Paused) << "only the experimenter goes on";
+    EXPECT_TRUE(run().view().is<state::Paused>()) << "only the experimenter goes on";
     EXPECT_EQ(item(app_->experimenter(), "openDisplay"), nullptr);
     click("pause");
-    waitFor(RunState::Running);
+    waitFor<state::Running>();
     const double x1 = static_cast<double>(run().last()->hand_position_m[0]);
     const std::int64_t tick = run().last()->tick;
     waitFor([&] { return run().last()->tick > tick + 500; });
@@ -134,21 +134,21 @@ TEST_F(Windows, LostGraphicsPauseTheTrialUntilTheExperimenterGoesOn) {
     // Truth: invariant. The scene graph's own signals, as the driver's reset sends them.
     click("study-peg_in_hole");
     click("tryOut");
-    waitFor(RunState::Running);
+    waitFor<state::Running>();
     emit app_->participant()->sceneGraphInvalidated();
-    waitFor(RunState::Paused);
+    waitFor<state::Paused>();
     EXPECT_EQ(run().view().display, presenter::Display::Lost);
     EXPECT_EQ(item(app_->experimenter(), "stateLine")->property("text").toString(),
               "Paused: the participant's picture is lost");
     emit app_->participant()->sceneGraphInitialized();
     waitFor([&] { return run().view().display == presenter::Display::Shown; });
-    EXPECT_EQ(run().view().state, RunState::Paused);
+    EXPECT_TRUE(run().view().is<state::Paused>());
     emit app_->participant()->sceneGraphError(QQuickWindow::ContextNotAvailable, "no context");
     waitFor([&] { return run().view().display == presenter::Display::Lost; });
     click("openDisplay");
     waitFor([&] { return app_->participant()->isExposed() && run().view().display == presenter::Display::Shown; });
     click("pause");
-    waitFor(RunState::Running);
+    waitFor<state::Running>();
     EXPECT_EQ(run().view().rows[0].attempts, 1);
 }
 
@@ -161,11 +161,11 @@ TEST_F(Windows, ATrialWithSomethingToHearSaysWhereItsSoundComesFromOrThatItHasNo
     open("en", true);
     click("study-heard");
     click("watch");
-    waitFor([&] { return run().view().sound; });
+    waitFor([&] { return run().view().brief.sound; });
     QQuickItem* line = item(app_->experimenter(), "sound");
     ASSERT_NE(line, nullptr);
     waitFor([&] { return !run().view().isRunning(); });
-    ASSERT_NE(run().view().state, RunState::Failed) << run().view().failure;
+    ASSERT_FALSE(run().view().is<state::Failed>()) << run().view().failure();
     const bool heard = app_->desk().soundOutput().has_value();
     EXPECT_EQ(line->property("text").toString().startsWith("Sound: "), heard);
     EXPECT_EQ(line->property("text").toString().startsWith("No sound: "), !heard);
@@ -185,7 +185,7 @@ TEST_F(Windows, ASessionOfWhichNoLogCanBeKeptSaysSo) {
     std::filesystem::create_directories(folder_ / "data/peg_in_hole.db.log");
     click("study-peg_in_hole");
     click("watch");
-    waitFor(RunState::Running);
+    waitFor<state::Running>();
     const QString said = item(app_->experimenter(), "warnings")->property("text").toString();
     EXPECT_TRUE(said.startsWith("Warning: no log is kept beside the database")) << said.toStdString();
 }
@@ -194,7 +194,7 @@ TEST_F(Windows, ARefusedCommandSaysWhyInTheLanguageOfTheWindows) {
     // Truth: invariant. The session refuses what its screen would not offer.
     click("study-peg_in_hole");
     click("watch");
-    waitFor(RunState::Running);
+    waitFor<state::Running>();
     click("language");
     app_->desk().command({.kind = session::CommandKind::Continue});
     waitFor([&] { return run().view().answered.has_value(); });

@@ -58,12 +58,10 @@ protected:
         while (!condition()) QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 5);
     }
 
-    void waitFor(presenter::RunState state) {
-        waitFor([&] {
-            const presenter::RunState now = run().view().state;
-            return now == state || now == presenter::RunState::Failed;
-        });
-        ASSERT_EQ(run().view().state, state) << run().view().failure;
+    template <class State>
+    void waitFor() {
+        waitFor([&] { return run().view().is<State, presenter::state::Failed>(); });
+        ASSERT_TRUE(run().view().is<State>()) << run().view().failure();
     }
 
     const presenter::Run& run() const { return app_->desk().run(); }
