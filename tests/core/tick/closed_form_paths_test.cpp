@@ -137,7 +137,10 @@ TEST_P(PegPaths, InTheBoreNothingCatchesAndTheLeastEnergyIsHeld) {
 }
 
 INSTANTIATE_TEST_SUITE_P(GodObjects, PegPaths,
-                         testing::Values(ContactMethod::GodObject, ContactMethod::GodObjectHeuristic));
+                         testing::Values(ContactMethod::GodObject, ContactMethod::GodObjectHeuristic),
+                         [](const auto& made) {
+                             return made.param == ContactMethod::GodObject ? "god_object" : "god_object_heuristic";
+                         });
 
 TEST(ClosedFormPaths, ATiltedPegIsNotHeldAlongItsAxis) {
     // Truth: closed form: with 6 N sideways and a tilt that the play allows, contact normals lean by no more than that
