@@ -93,4 +93,10 @@ const char* geometryName(Geometry geometry) {
     return "field";
 }
 
+std::optional<Geometry> geometryNamed(std::string_view name) {
+    for (const Geometry geometry : {Geometry::Auto, Geometry::ClosedForm, Geometry::Surface, Geometry::Field})
+        if (name == geometryName(geometry)) return geometry;
+    return std::nullopt;
+}
+
 }  // namespace passung::scene

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "core/scene/scene_spec.h"
 
@@ -25,5 +26,7 @@ std::optional<std::string> geometryProblem(const SceneSpec& scene);
 
 /// "auto", "closed_form", "surface", "field".
 const char* geometryName(Geometry geometry);
+/// Nothing for another text.
+std::optional<Geometry> geometryNamed(std::string_view name);
 
 }  // namespace passung::scene

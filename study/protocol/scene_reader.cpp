@@ -207,10 +207,7 @@ scene::ContactSpec readContact(const TableReader& read, const DeviceDescription*
                      : method == "god_object" ? scene::ContactMethod::GodObject
                                               : scene::ContactMethod::GodObjectHeuristic;
     const auto geometry = read.text("geometry");
-    contact.geometry = geometry == "closed_form" ? scene::Geometry::ClosedForm
-                       : geometry == "surface"   ? scene::Geometry::Surface
-                       : geometry == "field"     ? scene::Geometry::Field
-                                                 : scene::Geometry::Auto;
+    contact.geometry = scene::geometryNamed(geometry).value_or(scene::Geometry::Auto);
     // What accuracy = "auto" picks is of distance fields.
     if (geometry == "auto" && read.text("accuracy") == "auto") contact.geometry = scene::Geometry::Field;
     const auto variant = read.text("variant");

@@ -1,5 +1,8 @@
 #include "study/run/freeze.h"
 
+#include <algorithm>
+
+#include "core/scene/contact_geometry.h"
 #include "study/plan/plan_contents.h"
 #include "study/protocol/plan_json.h"
 #include "study/protocol/planned_questionnaires.h"
@@ -32,6 +35,24 @@ Result<Done> keepStiffness(std::span<const plan::StableStiffness> kept, plan::St
     return Done{};
 }
 
+void keepGeometry(const std::string& kept, scene::SceneSpec& scene) {
+    if (scene.contact.geometry != scene::Geometry::Auto) return;
+    if (const auto geometry = scene::geometryNamed(kept)) scene.contact.geometry = *geometry;
+}
+
+/// Another version of the program may pick another one.
+void keepGeometry(std::span<const store::ContactGeometryRow> kept, plan::StudyPlan& plan) {
+    for (plan::Condition& condition : plan.conditions) {
+        const auto row =
+            std::find_if(kept.begin(), kept.end(), [&](const auto& r) { return r.condition == condition.name; });
+        if (row == kept.end()) continue;
+        keepGeometry(row->geometry, condition.scene);
+        if (condition.comparison) keepGeometry(row->comparison, *condition.comparison);
+        condition.params_json = protocol::paramsJson(condition);
+    }
+    if (!kept.empty()) plan.expanded_json = protocol::expandedJson(plan);
+}
+
 }  // namespace
 
 Result<plan::FrozenPlan> freeze(plan::StudyPlan draft, const KeptPlan& kept, const plan::RunChoice& choice,
@@ -39,6 +60,7 @@ Result<plan::FrozenPlan> freeze(plan::StudyPlan draft, const KeptPlan& kept, con
     draft.seed = choice.seedOf(draft);
     if (choice.trials_only) keepTrialsOnly(draft);
     if (const auto done = keepStiffness(kept.stable_stiffness, draft, limits); !done) return done.errors();
+    keepGeometry(kept.geometry, draft);
     if (const auto done = applyAccuracy(kept.protocol_sha256, kept.accuracy, draft, limits); !done)
         return done.errors();
     if (kept.questionnaires)

@@ -394,8 +394,10 @@ Result<RunEnd> runSessions(const plan::StudyPlan& draft, RunOptions options, con
     }
     const auto stable = opened.store->stableStiffness(*sha256);
     if (!stable) return stable.errors();
-    const auto plan =
-        freeze(draft, {*sha256, *stable, *kept, readFile, options.language}, options.choice, options.import_limits);
+    const auto geometry = opened.store->contactGeometry(*sha256);
+    if (!geometry) return geometry.errors();
+    const auto plan = freeze(draft, {*sha256, *stable, *kept, *geometry, readFile, options.language}, options.choice,
+                             options.import_limits);
     if (!plan) return plan.errors();
     if (options.warns)
         for (const std::string& difference : stiffnessDifferences(draft.stable_stiffness, (*plan)->stable_stiffness))

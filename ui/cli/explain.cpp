@@ -115,7 +115,7 @@ void explainStability(const plan::StudyPlan& plan, std::span<const DeviceDescrip
 
 /// What the study's database keeps, or a run that began it now on this machine would keep.
 Result<run::KeptPlan> keptFor(const std::string& database, const plan::StudyPlan& draft, scene::BuildStore* builds) {
-    run::KeptPlan kept{sha256Hex(draft.source_text), draft.stable_stiffness, {}};
+    run::KeptPlan kept{sha256Hex(draft.source_text), draft.stable_stiffness, {}, {}};
     if (!database.empty()) {
         const auto reader = store::StoreReader::open(database);
         if (!reader) return reader.errors();
@@ -124,6 +124,9 @@ Result<run::KeptPlan> keptFor(const std::string& database, const plan::StudyPlan
         auto accuracy = reader->accuracy();
         if (!accuracy) return accuracy.errors();
         kept.stable_stiffness = *std::move(stable);
+        auto geometry = reader->contactGeometry(kept.protocol_sha256);
+        if (!geometry) return geometry.errors();
+        kept.geometry = *std::move(geometry);
         kept.accuracy = *std::move(accuracy);
         std::erase_if(kept.accuracy,
                       [&](const store::AccuracyRow& row) { return row.protocol_sha256 != kept.protocol_sha256; });

@@ -43,7 +43,9 @@ Result<KeptPlan> StoredPlans::kept(const std::string& sha256) const {
     if (!stable) return stable.errors();
     auto accuracy = reader_.accuracy();
     if (!accuracy) return accuracy.errors();
-    return KeptPlan{sha256, *std::move(stable), *std::move(accuracy)};
+    auto geometry = reader_.contactGeometry(sha256);
+    if (!geometry) return geometry.errors();
+    return KeptPlan{sha256, *std::move(stable), *std::move(accuracy), *std::move(geometry)};
 }
 
 /// The stored protocol with the mesh files of the first folder that has them all.

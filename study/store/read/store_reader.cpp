@@ -5,6 +5,7 @@
 #include "study/store/rows/attempt_rows.h"
 #include "study/store/rows/audit.h"
 #include "study/store/rows/consent_rows.h"
+#include "study/store/rows/contact_geometry_rows.h"
 #include "study/store/rows/event_rows.h"
 #include "study/store/rows/note_rows.h"
 #include "study/store/rows/plan_rows.h"
@@ -190,6 +191,10 @@ Result<std::vector<AccuracyRow>> StoreReader::accuracy() const {
 
 Result<std::vector<plan::StableStiffness>> StoreReader::stableStiffness(const std::string& protocol_sha256) const {
     return guarded(path_, [&] { return readStableStiffness(*database_, protocol_sha256); });
+}
+
+Result<std::vector<ContactGeometryRow>> StoreReader::contactGeometry(const std::string& protocol_sha256) const {
+    return guarded(path_, [&] { return readContactGeometry(*database_, protocol_sha256); });
 }
 
 Result<std::map<std::string, std::string>> StoreReader::questionnaireTexts(const std::string& protocol_sha256) const {

@@ -37,6 +37,7 @@ public:
     Result<std::vector<MeshRow>> meshes() const;         // protocols as above, meshes by name
     Result<std::vector<AccuracyRow>> accuracy() const;   // by protocol hash, then candidate
     Result<std::vector<plan::StableStiffness>> stableStiffness(const std::string& protocol_sha256) const;
+    Result<std::vector<ContactGeometryRow>> contactGeometry(const std::string& protocol_sha256) const;
     /// Text of each questionnaire file that the protocol names, by that name.
     Result<std::map<std::string, std::string>> questionnaireTexts(const std::string& protocol_sha256) const;
     Result<std::vector<FactorRow>> factors() const;            // protocols as above, factors as the protocol lists them

@@ -35,6 +35,14 @@ struct MeshRow {
     std::int64_t bytes = 0;
 };
 
+/// What the contact of a condition was computed from when the protocol first ran in this database; holds for all its
+/// sessions.
+struct ContactGeometryRow {
+    std::string condition;
+    std::string geometry;    // scene::geometryName(), never "auto"
+    std::string comparison;  // of a pair: the other interval's
+};
+
 /// A setting that was measured for contact.accuracy = "auto" when the protocol first ran in this database. What was
 /// picked then holds for all its sessions.
 struct AccuracyRow {

@@ -21,6 +21,12 @@ constexpr std::array kAgreements = {
     Agreement{"protocol_version", "version, protocol_sha256",
               "json_extract(s.expanded_json, '$.seed')<>json_extract(m.expanded_json, '$.seed')",
               "its protocol of version ", " was run with another seed"},
+    Agreement{"protocol_version", "version, protocol_sha256",
+              "EXISTS(SELECT 1 FROM json_each(s.expanded_json, '$.conditions') a "
+              "JOIN json_each(m.expanded_json, '$.conditions') b USING(key) WHERE "
+              "coalesce(json_extract(a.value, '$.params.contact.geometry'), 'field')<>"
+              "coalesce(json_extract(b.value, '$.params.contact.geometry'), 'field'))",
+              "its protocol of version ", " was begun with another geometry of contact"},
     Agreement{"mesh_file", "mesh, protocol_sha256", "s.sha256<>m.sha256", "another file lies behind the mesh ", ""},
     Agreement{"picture_file", "picture, protocol_sha256", "s.sha256<>m.sha256", "another file lies behind the picture ",
               ""},

@@ -4,6 +4,7 @@
 
 #include "study/store/rows/accuracy_rows.h"
 #include "study/store/rows/audit.h"
+#include "study/store/rows/contact_geometry_rows.h"
 #include "study/store/rows/participant_rows.h"
 #include "study/store/rows/protocol_rows.h"
 #include "study/store/rows/remarks.h"
@@ -231,6 +232,10 @@ Result<std::vector<AccuracyRow>> Store::accuracy(const std::string& protocol_sha
 
 Result<std::vector<plan::StableStiffness>> Store::stableStiffness(const std::string& protocol_sha256) {
     return thread_->call([&](const Database& database) { return readStableStiffness(database, protocol_sha256); });
+}
+
+Result<std::vector<ContactGeometryRow>> Store::contactGeometry(const std::string& protocol_sha256) {
+    return thread_->call([&](const Database& database) { return readContactGeometry(database, protocol_sha256); });
 }
 
 Result<Done> Store::keepAccuracy(const std::vector<AccuracyRow>& rows) {

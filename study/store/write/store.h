@@ -80,6 +80,7 @@ public:
     /// Stable stiffness of the devices as the plan had it when it was first imported: what the protocol's stiffnesses
     /// mean in this database, for good. None in protocols from before revision 4.
     Result<std::vector<plan::StableStiffness>> stableStiffness(const std::string& protocol_sha256);
+    Result<std::vector<ContactGeometryRow>> contactGeometry(const std::string& protocol_sha256);
 
     /// Checks whether somebody of this kind, enrolled or not, may begin a session of the protocol. Nothing is stored.
     /// Errors: excluded, withdrawn, or a required clause of consent without a yes.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/scene/contact_geometry.h"
 #include "study/run/files/protocol_files.h"
 
 namespace passung::run {
@@ -15,7 +16,7 @@ plan::StudyPlan shippedStudy() {
 
 /// What a database keeps that began with half of the maxima.
 KeptPlan halfAsStiff(const plan::StudyPlan& plan) {
-    KeptPlan kept{"", plan.stable_stiffness, {}};
+    KeptPlan kept{"", plan.stable_stiffness, {}, {}};
     for (plan::StableStiffness& stable : kept.stable_stiffness) stable.linear *= 0.5;
     return kept;
 }
@@ -43,6 +44,23 @@ TEST(Freeze, WhatDoesNotFollowFromMaximaIsTheDrafts) {
     EXPECT_EQ((*frozen)->consent.size(), draft.consent.size());
     ASSERT_EQ((*frozen)->questionnaires.size(), 2u);
     EXPECT_EQ((*frozen)->questionnaires[0].definition.items.size(), 6u);
+}
+
+TEST(Freeze, AGeometryThatTheTextLeavesOpenIsTheOneWithWhichTheStudyBegan) {
+    // Truth: closed form: rows as an earlier program wrote them, when there was but one geometry.
+    const auto draft = shippedStudy();
+    KeptPlan kept{"", draft.stable_stiffness, {}, {}};
+    for (const plan::Condition& condition : draft.conditions) kept.geometry.push_back({condition.name, "field", ""});
+    kept.geometry.pop_back();
+    const auto frozen = freeze(draft, kept);
+    ASSERT_TRUE(frozen);
+    const auto geometryAt = [&](std::size_t i) { return scene::geometryOf((*frozen)->conditions[i].scene).geometry; };
+    const std::size_t last = draft.conditions.size() - 1;
+    EXPECT_EQ(scene::geometryOf(draft.conditions[last - 1].scene).geometry, scene::Geometry::ClosedForm);
+    EXPECT_EQ(geometryAt(last - 1), scene::Geometry::Field);
+    EXPECT_NE((*frozen)->conditions[last - 1].params_json.find("\"geometry\":\"field\""), std::string::npos);
+    EXPECT_NE((*frozen)->expanded_json, draft.expanded_json);
+    EXPECT_EQ(geometryAt(last), scene::Geometry::ClosedForm) << "nothing is kept of it";
 }
 
 TEST(Freeze, ARunDecidesItsSeedAndWhetherOnlyTrialsRun) {

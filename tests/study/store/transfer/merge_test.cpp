@@ -452,6 +452,20 @@ TEST(Merge, RefusesAnotherStudyTextSeedOrFormula) {
             "UPDATE measure SET formula_version=(SELECT min(formula_version) FROM measure) "
             "WHERE measure='peak_force_N'");
     EXPECT_EQ(refusal({version}, all), "") << "a new version of the same study is fine";
+    const auto conditionsOf = [](const std::string& path, const std::string& contact) {
+        Database(path, OpenMode::ReadWrite)
+            .execute("UPDATE protocol_version SET expanded_json=json_set(expanded_json, '$.conditions', json('[" +
+                     contact + "]')); DELETE FROM row_hash");
+        return path;
+    };
+    const auto began = with("began.db", [](auto&) {});
+    conditionsOf(all, R"({"params": {"contact": {}}})");
+    EXPECT_NE(refusal({conditionsOf(began, R"({"params": {"contact": {"geometry": "surface"}}})")}, all)
+                  .find("was begun with another geometry of contact"),
+              std::string::npos);
+    EXPECT_EQ(refusal({conditionsOf(began, R"({"params": {"contact": {"geometry": "field"}}})")}, all).find("geometry"),
+              std::string::npos)
+        << "before it was written there was but this one";
     EXPECT_NE(refusal({folder / "none.db"}, all).find("no such file"), std::string::npos);
     expectSound(all);
 }
